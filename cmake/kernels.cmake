@@ -1,0 +1,32 @@
+# Compiles each file of src/kernels for the baseline of the platform and, on x86-64, for AVX2 with FMA.
+file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/*.cpp)
+
+list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
+
+add_library(cspace_kernels STATIC src/kernels/dispatch.cpp)
+set_target_properties(cspace_kernels PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+target_link_libraries(cspace_kernels PUBLIC cspace PRIVATE cspace_flags)
+target_include_directories(cspace_kernels PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels)
+
+function(add_kernels isa)
+  add_library(cspace_kernels_${isa} OBJECT ${kernel_files})
+  set_target_properties(cspace_kernels_${isa} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+  target_compile_options(cspace_kernels_${isa} PRIVATE ${ARGN})
+  target_compile_definitions(cspace_kernels_${isa} PRIVATE CSPACE_COMPILING_KERNELS)
+  target_link_libraries(cspace_kernels_${isa} PRIVATE cspace cspace_flags)
+  target_sources(cspace_kernels PRIVATE $<TARGET_OBJECTS:cspace_kernels_${isa}>)
+endfunction()
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_OSX_ARCHITECTURES MATCHES "arm64")
+  set(has_avx2 TRUE)
+  add_compile_definitions(CSPACE_HAS_AVX2)
+endif()
+add_kernels(baseline)
+if(has_avx2)
+  if(MSVC)
+    add_kernels(avx2 /arch:AVX2)
+  else()
+    add_kernels(avx2 -mavx2 -mfma)
+  endif()
+endif()
+set_target_properties(cspace_kernels PROPERTIES LINKER_LANGUAGE CXX)

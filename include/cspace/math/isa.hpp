@@ -1,0 +1,30 @@
+// Names the instruction set this translation unit is compiled for.
+//
+// A kernel is compiled once per instruction set and chosen at run time, so the same template exists several
+// times in one program. Every function that may be compiled so lives in `cspace::inline CSPACE_ISA`, which
+// keeps the copies apart for the linker; plain data shared between them lives in `cspace`.
+#pragma once
+
+#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#define CSPACE_ISA avx512
+#elif defined(__AVX2__)
+#define CSPACE_ISA avx2
+#elif defined(__aarch64__) || defined(_M_ARM64)
+#define CSPACE_ISA neon
+#else
+#define CSPACE_ISA baseline
+#endif
+
+namespace cspace {
+inline namespace CSPACE_ISA {}
+}  // namespace cspace
+
+#if defined(__GNUC__) || defined(__clang__)
+#define CSPACE_INLINE inline __attribute__((always_inline))
+#define CSPACE_NOINLINE __attribute__((noinline))
+#define CSPACE_VECTOR_EXTENSIONS 1
+#else
+#define CSPACE_INLINE __forceinline
+#define CSPACE_NOINLINE __declspec(noinline)
+#define CSPACE_VECTOR_EXTENSIONS 0
+#endif

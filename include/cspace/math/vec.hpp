@@ -1,0 +1,121 @@
+// Vectors, rotations and poses over a scalar V (a double or a pack of lanes). Row-major, no member functions.
+#pragma once
+
+#include "cspace/math/lanes.hpp"
+
+namespace cspace {
+
+template <class V>
+struct Vec3 {
+    V x, y, z;
+};
+template <class V>
+struct Mat3 {
+    V m[3][3];
+};
+// A displacement p ↦ R p + t; named T_a_b where it maps coordinates in frame b to coordinates in frame a.
+template <class V>
+struct Pose {
+    Mat3<V> R;
+    Vec3<V> t;
+};
+
+using Vec3d = Vec3<double>;
+using Mat3d = Mat3<double>;
+using Posed = Pose<double>;
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+template <class V>
+CSPACE_INLINE Vec3<V> operator+(const Vec3<V>& a, const Vec3<V>& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class V>
+CSPACE_INLINE Vec3<V> operator-(const Vec3<V>& a, const Vec3<V>& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class V>
+CSPACE_INLINE Vec3<V> operator-(const Vec3<V>& a) {
+    return {-a.x, -a.y, -a.z};
+}
+template <class V, class S>
+CSPACE_INLINE Vec3<V> operator*(const S& s, const Vec3<V>& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+template <class V>
+CSPACE_INLINE V dot(const Vec3<V>& a, const Vec3<V>& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class V>
+CSPACE_INLINE Vec3<V> cross(const Vec3<V>& a, const Vec3<V>& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class V>
+CSPACE_INLINE V norm(const Vec3<V>& a) {
+    return sqrt(dot(a, a));
+}
+template <class V>
+CSPACE_INLINE Vec3<V> column(const Mat3<V>& R, int j) {
+    return {R.m[0][j], R.m[1][j], R.m[2][j]};
+}
+template <class V>
+CSPACE_INLINE Vec3<V> row(const Mat3<V>& R, int i) {
+    return {R.m[i][0], R.m[i][1], R.m[i][2]};
+}
+template <class V>
+CSPACE_INLINE Mat3<V> from_columns(const Vec3<V>& x, const Vec3<V>& y, const Vec3<V>& z) {
+    return {{{x.x, y.x, z.x}, {x.y, y.y, z.y}, {x.z, y.z, z.z}}};
+}
+template <class V>
+CSPACE_INLINE Vec3<V> operator*(const Mat3<V>& R, const Vec3<V>& a) {
+    return {dot(row(R, 0), a), dot(row(R, 1), a), dot(row(R, 2), a)};
+}
+template <class V>
+CSPACE_INLINE Mat3<V> operator*(const Mat3<V>& A, const Mat3<V>& B) {
+    return from_columns(A * column(B, 0), A * column(B, 1), A * column(B, 2));
+}
+template <class V>
+CSPACE_INLINE Mat3<V> transpose(const Mat3<V>& R) {
+    return from_columns(row(R, 0), row(R, 1), row(R, 2));
+}
+// Rᵀ a without forming the transpose.
+template <class V>
+CSPACE_INLINE Vec3<V> transpose_times(const Mat3<V>& R, const Vec3<V>& a) {
+    return {dot(column(R, 0), a), dot(column(R, 1), a), dot(column(R, 2), a)};
+}
+template <class V>
+CSPACE_INLINE Pose<V> operator*(const Pose<V>& A, const Pose<V>& B) {
+    return {A.R * B.R, A.R * B.t + A.t};
+}
+template <class V>
+CSPACE_INLINE Vec3<V> operator*(const Pose<V>& T, const Vec3<V>& p) {
+    return T.R * p + T.t;
+}
+template <class V>
+CSPACE_INLINE Pose<V> inverse(const Pose<V>& T) {
+    return {transpose(T.R), -transpose_times(T.R, T.t)};
+}
+template <class V>
+CSPACE_INLINE Vec3<V> fill3(const Vec3<double>& a) {
+    return {fill<V>(a.x), fill<V>(a.y), fill<V>(a.z)};
+}
+template <class V>
+CSPACE_INLINE Mat3<V> fill33(const Mat3<double>& R) {
+    return from_columns(fill3<V>(column(R, 0)), fill3<V>(column(R, 1)), fill3<V>(column(R, 2)));
+}
+template <class V>
+CSPACE_INLINE Pose<V> fill_pose(const Pose<double>& T) {
+    return {fill33<V>(T.R), fill3<V>(T.t)};
+}
+// Rotation about a unit axis by the angle with cosine c and sine s (Rodrigues 1840).
+template <class V>
+CSPACE_INLINE Mat3<V> rotation_about(const Vec3<V>& k, V c, V s) {
+    const V v = 1.0 - c;
+    return {{{k.x * k.x * v + c, k.x * k.y * v - k.z * s, k.x * k.z * v + k.y * s},
+             {k.x * k.y * v + k.z * s, k.y * k.y * v + c, k.y * k.z * v - k.x * s},
+             {k.x * k.z * v - k.y * s, k.y * k.z * v + k.x * s, k.z * k.z * v + c}}};
+}
+
+}  // namespace cspace::inline CSPACE_ISA

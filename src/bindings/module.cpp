@@ -1,0 +1,13 @@
+// The table of contents of the compiled half: one function per room, each in the file of that name.
+#include <nanobind/nanobind.h>
+
+#include "bindings.hpp"
+#include "cspace/version.hpp"
+#include "dispatch.hpp"
+
+NB_MODULE(_core, m) {
+    m.doc() = "The compiled core of cspace; use it through the package.";
+    m.attr("__version__") = CSPACE_VERSION;
+    m.attr("isa") = cspace::kernels::isa() == cspace::kernels::Isa::avx2 ? "avx2" : "baseline";
+    bind_math(m);
+}

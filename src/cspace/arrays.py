@@ -1,0 +1,38 @@
+"""What callers pass as numbers becomes float64 arrays of the right shape here, or a clear error."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.errors import InputError, InputTypeError
+
+__all__ = ["Array", "as_floats"]
+
+Array = npt.NDArray[np.float64]
+
+
+def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), finite: bool = True) -> Array:
+    """A float64 array whose trailing axes have the sizes `last` (None: any size), all finite.
+
+    value: anything numpy reads as numbers. subject: its name in messages.
+    Raises InputTypeError if it is not numeric, InputError on a wrong shape or on NaN or inf.
+    """
+    try:
+        array = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
+    wanted = "(..., " + ", ".join("k" if n is None else str(n) for n in last) + ")"
+    fits = array.ndim >= len(last) and all(
+        n is None or n == m for n, m in zip(last, array.shape[array.ndim - len(last) :], strict=True)
+    )
+    if not fits:
+        raise InputError(f"{subject} has shape {array.shape}, expected {wanted}")
+    if finite and not np.isfinite(array).all():
+        bad = np.argwhere(~np.isfinite(array))[0]
+        raise InputError(
+            f"{subject} holds {array[tuple(bad)]} at index {tuple(map(int, bad))}; every number must be finite"
+        )
+    return array

@@ -1,0 +1,68 @@
+"""The errors of cspace: each message names the subject, the value, the rule and the remedy."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+__all__ = [
+    "CspaceError",
+    "DescriptionError",
+    "InputError",
+    "InputTypeError",
+    "MissingExtraError",
+    "UnknownNameError",
+    "suggest",
+]
+
+
+class CspaceError(Exception):
+    """The root of every error that cspace raises on purpose."""
+
+    def __str__(self) -> str:
+        """The message as written, without the quotes that KeyError would put around it."""
+        return str(self.args[0]) if self.args else type(self).__name__
+
+
+class InputError(CspaceError, ValueError):
+    """A value that breaks a rule: NaN, a wrong shape, a non-rotation, limits upside down."""
+
+
+class InputTypeError(CspaceError, TypeError):
+    """An argument of a type that cannot be used, or a combination of arguments that makes no sense."""
+
+
+class UnknownNameError(CspaceError, KeyError):
+    """A name that is not in the list: robot, frame, joint, method. The message suggests the nearest."""
+
+
+class DescriptionError(CspaceError, ValueError):
+    """A robot description that cannot be read; carries where: the file and, if known, the line."""
+
+    def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
+        where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
+        super().__init__(where + message)
+        self.path = path
+        self.line = line
+
+
+class MissingExtraError(CspaceError, ImportError):
+    """An optional part is not installed; the message holds the command that installs it."""
+
+    def __init__(self, extra: str, purpose: str) -> None:
+        super().__init__(f"{purpose} needs an optional part; install it with: pip install 'cspace[{extra}]'")
+        self.extra = extra
+
+
+def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = "") -> UnknownNameError:
+    """The error for an unknown name: what was asked, the nearest known names, and the list if it is short."""
+    names = sorted(known)
+    near = difflib.get_close_matches(str(name), names, n=3, cutoff=0.5)
+    text = f"no {subject} {str(name)!r}" + (f" in {owner}" if owner else "")
+    if near:
+        text += "; did you mean " + " or ".join(repr(n) for n in near) + "?"
+    if len(names) <= 30:
+        text += f" {subject}s: " + (", ".join(names) if names else "none")
+    else:
+        text += f" ({len(names)} {subject}s known)"
+    return UnknownNameError(text)
