@@ -33,6 +33,6 @@ def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), fi
     if finite and not np.isfinite(array).all():
         bad = np.argwhere(~np.isfinite(array))[0]
         raise InputError(
-            f"{subject} holds {array[tuple(bad)]} at index {tuple(map(int, bad))}; every number must be finite"
+            f"{subject} holds {array[tuple(bad)]} at index {tuple(map(int, bad))}; all must be finite"
         )
     return array

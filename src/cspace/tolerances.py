@@ -11,5 +11,5 @@ ROTATION_ERROR: Final = 1e-6
 shear or a scaled matrix does not."""
 
 ROTATION_PROJECTION: Final = 0.1
-"""Largest ‖RᵀR − I‖ that projection to the nearest rotation mends: beyond it the input is no worn rotation but
-another matrix, and the nearest rotation would be an invention."""
+"""Largest ‖RᵀR − I‖ that projection to the nearest rotation mends: beyond it the input is no worn rotation
+but another matrix, and the nearest rotation would be an invention."""

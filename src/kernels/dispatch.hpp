@@ -34,9 +34,9 @@ Isa isa();
 #if defined(CSPACE_COMPILING_KERNELS)
 #define CSPACE_KERNEL(result, name, parameters) CSPACE_KERNEL_COPIES(result, name, parameters)
 #else
-#define CSPACE_KERNEL(result, name, parameters)              \
-    CSPACE_KERNEL_COPIES(result, name, parameters)           \
-    namespace cspace::kernels {                              \
+#define CSPACE_KERNEL(result, name, parameters)                         \
+    CSPACE_KERNEL_COPIES(result, name, parameters)                      \
+    namespace cspace::kernels {                                         \
     static result(*const name) parameters = CSPACE_KERNEL_CHOICE(name); \
     }
 #endif

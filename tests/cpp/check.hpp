@@ -25,21 +25,21 @@ inline void fail(const char* file, int line, const char* what) {
 }
 }  // namespace check
 
-#define TEST(name)                                                \
-    static void name();                                           \
-    static const bool name##_added = check::add(#name, &name);    \
+#define TEST(name)                                             \
+    static void name();                                        \
+    static const bool name##_added = check::add(#name, &name); \
     static void name()
-#define CHECK(condition)                                                  \
-    do {                                                                  \
-        if (!(condition)) check::fail(__FILE__, __LINE__, #condition);    \
+#define CHECK(condition)                                               \
+    do {                                                               \
+        if (!(condition)) check::fail(__FILE__, __LINE__, #condition); \
     } while (0)
-#define CHECK_NEAR(a, b, tolerance)                                                                     \
-    do {                                                                                                \
-        const double check_a = (a), check_b = (b);                                                      \
-        if (!(std::fabs(check_a - check_b) <= (tolerance))) {                                           \
-            std::printf("%.17g against %.17g\n", check_a, check_b);                                     \
-            check::fail(__FILE__, __LINE__, #a " is not near " #b);                                     \
-        }                                                                                               \
+#define CHECK_NEAR(a, b, tolerance)                                 \
+    do {                                                            \
+        const double check_a = (a), check_b = (b);                  \
+        if (!(std::fabs(check_a - check_b) <= (tolerance))) {       \
+            std::printf("%.17g against %.17g\n", check_a, check_b); \
+            check::fail(__FILE__, __LINE__, #a " is not near " #b); \
+        }                                                           \
     } while (0)
 
 int main() {

@@ -90,66 +90,66 @@ CSPACE_INLINE void set_lane(Pack<N>& x, int i, double value) {
 
 // --- arithmetic ----------------------------------------------------------------------------------------
 #if CSPACE_VECTOR_EXTENSIONS
-#define CSPACE_ARITHMETIC(op)                                                      \
-    template <int N>                                                               \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, Pack<N> b) {                      \
-        return {a.v op b.v};                                                       \
-    }                                                                              \
-    template <int N>                                                               \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, double b) {                       \
-        return {a.v op b};                                                         \
-    }                                                                              \
-    template <int N>                                                               \
-    CSPACE_INLINE Pack<N> operator op(double a, Pack<N> b) {                       \
-        return {a op b.v};                                                         \
+#define CSPACE_ARITHMETIC(op)                                 \
+    template <int N>                                          \
+    CSPACE_INLINE Pack<N> operator op(Pack<N> a, Pack<N> b) { \
+        return {a.v op b.v};                                  \
+    }                                                         \
+    template <int N>                                          \
+    CSPACE_INLINE Pack<N> operator op(Pack<N> a, double b) {  \
+        return {a.v op b};                                    \
+    }                                                         \
+    template <int N>                                          \
+    CSPACE_INLINE Pack<N> operator op(double a, Pack<N> b) {  \
+        return {a op b.v};                                    \
     }
-#define CSPACE_COMPARISON(op)                                                      \
-    template <int N>                                                               \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, Pack<N> b) {                      \
-        return {(typename Mask<N>::Raw)(a.v op b.v)};                              \
-    }                                                                              \
-    template <int N>                                                               \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, double b) {                       \
-        return {(typename Mask<N>::Raw)(a.v op fill<Pack<N>>(b).v)};               \
+#define CSPACE_COMPARISON(op)                                        \
+    template <int N>                                                 \
+    CSPACE_INLINE Mask<N> operator op(Pack<N> a, Pack<N> b) {        \
+        return {(typename Mask<N>::Raw)(a.v op b.v)};                \
+    }                                                                \
+    template <int N>                                                 \
+    CSPACE_INLINE Mask<N> operator op(Pack<N> a, double b) {         \
+        return {(typename Mask<N>::Raw)(a.v op fill<Pack<N>>(b).v)}; \
     }
-#define CSPACE_LOGIC(op, bitop)                                                    \
-    template <int N>                                                               \
-    CSPACE_INLINE Mask<N> operator op(Mask<N> a, Mask<N> b) {                      \
-        return {a.m bitop b.m};                                                    \
+#define CSPACE_LOGIC(op, bitop)                               \
+    template <int N>                                          \
+    CSPACE_INLINE Mask<N> operator op(Mask<N> a, Mask<N> b) { \
+        return {a.m bitop b.m};                               \
     }
 #else
-#define CSPACE_ARITHMETIC(op)                                                      \
-    template <int N>                                                               \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, Pack<N> b) {                      \
-        Pack<N> r;                                                                 \
-        for (int i = 0; i < N; ++i) r.v[i] = a.v[i] op b.v[i];                     \
-        return r;                                                                  \
-    }                                                                              \
-    template <int N>                                                               \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, double b) {                       \
-        return a op fill<Pack<N>>(b);                                              \
-    }                                                                              \
-    template <int N>                                                               \
-    CSPACE_INLINE Pack<N> operator op(double a, Pack<N> b) {                       \
-        return fill<Pack<N>>(a) op b;                                              \
+#define CSPACE_ARITHMETIC(op)                                  \
+    template <int N>                                           \
+    CSPACE_INLINE Pack<N> operator op(Pack<N> a, Pack<N> b) {  \
+        Pack<N> r;                                             \
+        for (int i = 0; i < N; ++i) r.v[i] = a.v[i] op b.v[i]; \
+        return r;                                              \
+    }                                                          \
+    template <int N>                                           \
+    CSPACE_INLINE Pack<N> operator op(Pack<N> a, double b) {   \
+        return a op fill<Pack<N>>(b);                          \
+    }                                                          \
+    template <int N>                                           \
+    CSPACE_INLINE Pack<N> operator op(double a, Pack<N> b) {   \
+        return fill<Pack<N>>(a) op b;                          \
     }
-#define CSPACE_COMPARISON(op)                                                      \
-    template <int N>                                                               \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, Pack<N> b) {                      \
-        Mask<N> r;                                                                 \
-        for (int i = 0; i < N; ++i) r.m[i] = (a.v[i] op b.v[i]) ? -1 : 0;          \
-        return r;                                                                  \
-    }                                                                              \
-    template <int N>                                                               \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, double b) {                       \
-        return a op fill<Pack<N>>(b);                                              \
+#define CSPACE_COMPARISON(op)                                             \
+    template <int N>                                                      \
+    CSPACE_INLINE Mask<N> operator op(Pack<N> a, Pack<N> b) {             \
+        Mask<N> r;                                                        \
+        for (int i = 0; i < N; ++i) r.m[i] = (a.v[i] op b.v[i]) ? -1 : 0; \
+        return r;                                                         \
+    }                                                                     \
+    template <int N>                                                      \
+    CSPACE_INLINE Mask<N> operator op(Pack<N> a, double b) {              \
+        return a op fill<Pack<N>>(b);                                     \
     }
-#define CSPACE_LOGIC(op, bitop)                                                    \
-    template <int N>                                                               \
-    CSPACE_INLINE Mask<N> operator op(Mask<N> a, Mask<N> b) {                      \
-        Mask<N> r;                                                                 \
-        for (int i = 0; i < N; ++i) r.m[i] = a.m[i] bitop b.m[i];                  \
-        return r;                                                                  \
+#define CSPACE_LOGIC(op, bitop)                                   \
+    template <int N>                                              \
+    CSPACE_INLINE Mask<N> operator op(Mask<N> a, Mask<N> b) {     \
+        Mask<N> r;                                                \
+        for (int i = 0; i < N; ++i) r.m[i] = a.m[i] bitop b.m[i]; \
+        return r;                                                 \
     }
 #endif
 CSPACE_ARITHMETIC(+)
