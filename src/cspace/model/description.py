@@ -1,0 +1,148 @@
+"""A robot is data: links, joints, named poses and where each number comes from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from types import MappingProxyType
+
+from cspace.errors import suggest
+from cspace.model.joint import Joint, Loop
+from cspace.model.link import Link
+from cspace.model.structure import ElementError, check_mimics, check_tree, unique_names
+from cspace.model.values import finite_number, name_of
+
+__all__ = ["Description", "Provenance", "Source"]
+
+
+@dataclass(frozen=True)
+class Source:
+    """Where a group of numbers comes from, and under which licence."""
+
+    source: str
+    licence: str = ""
+
+
+@dataclass(frozen=True)
+class Provenance:
+    """Who made the robot and who published its numbers.
+
+    title: what a person calls it. vendor: its maker. sources: per group of fields (joints, limits, …).
+    missing: the groups nobody published. aliases: other names of the same robot.
+    """
+
+    title: str = ""
+    vendor: str = ""
+    sources: Mapping[str, Source] = field(default_factory=dict)
+    missing: tuple[str, ...] = ()
+    aliases: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "sources", MappingProxyType(dict(self.sources)))
+        object.__setattr__(self, "missing", tuple(self.missing))
+        object.__setattr__(self, "aliases", tuple(self.aliases))
+
+
+@dataclass(frozen=True, eq=False)
+class Description:
+    """A robot as a tree of links and joints, all of them kept, fixed ones too.
+
+    name: the robot. links, joints: in file order; every link but one (the root) is the child of one joint.
+    loops: joints that close loops. poses: named configurations, joint name → value [rad or m].
+    T_child at q is the product of the joint transforms from the root (see Joint).
+
+    Raises DescriptionError for doubled names, missing links, cycles and two roots.
+    """
+
+    name: str
+    links: tuple[Link, ...]
+    joints: tuple[Joint, ...] = ()
+    loops: tuple[Loop, ...] = ()
+    poses: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    provenance: Provenance = field(default_factory=Provenance)
+
+    def __post_init__(self) -> None:
+        name_of(self.name, "robot")
+        store = object.__setattr__
+        store(self, "links", tuple(self.links))
+        store(self, "joints", tuple(self.joints))
+        store(self, "loops", tuple(self.loops))
+        unique_names(self.links, "link", self.name)
+        unique_names((*self.joints, *self.loops), "joint", self.name)
+        store(self, "_order", check_tree(self.name, self.links, self.joints))
+        check_mimics(self.name, self.joints)
+        for loop in self.loops:
+            for end in (loop.parent, loop.child):
+                if end not in self.link_by_name:
+                    error = suggest("link", end, self.link_by_name, owner=f"robot {self.name!r}")
+                    raise ElementError(f"loop {loop.name!r}: {error}", "joint", loop.name)
+        store(self, "poses", MappingProxyType({k: self._checked_pose(k, v) for k, v in self.poses.items()}))
+
+    def _checked_pose(self, pose: str, values: Mapping[str, float]) -> Mapping[str, float]:
+        for joint in values:
+            if joint not in self.joint_by_name:
+                raise suggest("joint", joint, self.joint_by_name, owner=f"pose {pose!r}")
+        checked = {joint: finite_number(v, f"{joint} in pose {pose!r}") for joint, v in values.items()}
+        return MappingProxyType(checked)
+
+    @cached_property
+    def link_by_name(self) -> Mapping[str, Link]:
+        """The links by name, in file order."""
+        return MappingProxyType({link.name: link for link in self.links})
+
+    @cached_property
+    def joint_by_name(self) -> Mapping[str, Joint]:
+        """The joints by name, in file order."""
+        return MappingProxyType({joint.name: joint for joint in self.joints})
+
+    @cached_property
+    def parent_joint(self) -> Mapping[str, Joint]:
+        """For each link but the root, the joint that carries it."""
+        return MappingProxyType({joint.child: joint for joint in self.joints})
+
+    @cached_property
+    def child_joints(self) -> Mapping[str, tuple[Joint, ...]]:
+        """For each link the joints that it carries, in file order."""
+        carried: dict[str, list[Joint]] = {link.name: [] for link in self.links}
+        for joint in self.joints:
+            carried[joint.parent].append(joint)
+        return MappingProxyType({link: tuple(joints) for link, joints in carried.items()})
+
+    @property
+    def root(self) -> str:
+        """The link that no joint carries."""
+        return self.ordered_links[0]
+
+    @cached_property
+    def ordered_links(self) -> tuple[str, ...]:
+        """Link names from the root outward, depth first, children in file order."""
+        order: tuple[str, ...] = self._order  # type: ignore[attr-defined]
+        return order
+
+    @cached_property
+    def leaves(self) -> tuple[str, ...]:
+        """The links that carry nothing, from the root outward."""
+        return tuple(link for link in self.ordered_links if not self.child_joints[link])
+
+    @cached_property
+    def moving_joints(self) -> tuple[Joint, ...]:
+        """The joints that are not fixed, from the root outward."""
+        carriers = (self.parent_joint[link] for link in self.ordered_links[1:])
+        return tuple(joint for joint in carriers if joint.moving)
+
+    def link(self, name: str) -> Link:
+        """The link of that name, or UnknownNameError with the nearest names."""
+        if name not in self.link_by_name:
+            raise suggest("link", name, self.link_by_name, owner=f"robot {self.name!r}")
+        return self.link_by_name[name]
+
+    def joint(self, name: str) -> Joint:
+        """The joint of that name, or UnknownNameError with the nearest names."""
+        if name not in self.joint_by_name:
+            raise suggest("joint", name, self.joint_by_name, owner=f"robot {self.name!r}")
+        return self.joint_by_name[name]
+
+    def renamed(self, name: str) -> Description:
+        """The same robot under another name."""
+        return replace(self, name=name)

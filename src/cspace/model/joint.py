@@ -1,0 +1,199 @@
+"""Joints as data: what may move against what, about which axis and how far."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, suggest
+from cspace.model.values import IDENTITY, X_AXIS, finite_number, frozen, name_of, number, placement, unit_axis
+
+__all__ = ["FREEDOMS", "JOINT_TYPES", "LIMIT_FIELDS", "Joint", "Limits", "Loop", "Mimic"]
+
+FREEDOMS: Final[dict[str, int]] = {
+    "fixed": 0,
+    "revolute": 1,
+    "continuous": 1,
+    "prismatic": 1,
+    "helical": 1,
+    "universal": 2,
+    "cylindrical": 2,
+    "planar": 3,
+    "spherical": 3,
+    "floating": 6,
+}
+"""How many independent motions each kind of joint allows."""
+
+JOINT_TYPES: Final = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+"""The joint types of a tree; loops may be closed by any of FREEDOMS."""
+
+LIMIT_FIELDS: Final = ("lower", "upper", "velocity", "acceleration", "jerk", "effort")
+"""The limits of a joint, in the order of Limits."""
+
+
+@dataclass(frozen=True)
+class Mimic:
+    """A joint that follows another: its value is multiplier · q(joint) + offset.
+
+    joint: name of the joint that leads. multiplier: unitless (or m/rad, rad/m). offset: rad or m.
+    """
+
+    joint: str
+    multiplier: float = 1.0
+    offset: float = 0.0
+
+    def __post_init__(self) -> None:
+        name_of(self.joint, "joint to mimic")
+        object.__setattr__(self, "multiplier", finite_number(self.multiplier, "mimic multiplier"))
+        object.__setattr__(self, "offset", finite_number(self.offset, "mimic offset"))
+
+
+@dataclass(frozen=True, eq=False)
+class Joint:
+    """A joint of the tree: the child link moves against the parent link.
+
+    T_parent_child(q) = origin · motion(q), motion along or about `axis` in the joint frame.
+
+    name, parent, child: the joint and the two links by name. type: one of JOINT_TYPES.
+    origin (4, 4): joint frame in the parent link [m]. axis (3,): unit direction in the joint frame (the
+    normal of a planar joint). lower, upper: range [rad or m], ±inf where unlimited. velocity [rad/s or
+    m/s], acceleration, jerk, effort [N·m or N]: largest magnitudes, inf where unknown. damping, friction:
+    as in URDF, None where unknown. mimic: the joint it follows.
+
+    Raises InputError for limits upside down, a zero axis, NaN; UnknownNameError for an unknown type.
+    """
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    origin: Array = field(default_factory=lambda: IDENTITY)
+    axis: Array = field(default_factory=lambda: X_AXIS)
+    lower: float = -math.inf
+    upper: float = math.inf
+    velocity: float = math.inf
+    acceleration: float = math.inf
+    jerk: float = math.inf
+    effort: float = math.inf
+    damping: float | None = None
+    friction: float | None = None
+    mimic: Mimic | None = None
+
+    def __post_init__(self) -> None:
+        name_of(self.name, "joint")
+        subject = f"joint {self.name!r}"
+        if self.type not in JOINT_TYPES:
+            raise suggest("joint type", self.type, JOINT_TYPES, owner=subject)
+        name_of(self.parent, f"parent link of {subject}")
+        name_of(self.child, f"child link of {subject}")
+        store = object.__setattr__
+        store(self, "origin", placement(self.origin, f"origin of {subject}"))
+        if self.type not in ("fixed", "floating") and self.axis is not X_AXIS:
+            store(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
+        for name in LIMIT_FIELDS:
+            store(self, name, number(getattr(self, name), f"{name} limit of {subject}"))
+        for name in ("damping", "friction"):
+            value = getattr(self, name)
+            if value is not None:
+                store(self, name, finite_number(value, f"{name} of {subject}"))
+        self._check_limits(subject)
+
+    def _check_limits(self, subject: str) -> None:
+        lower, upper = self.lower, self.upper
+        if lower > upper:
+            raise InputError(f"limits of {subject} are upside down: lower {lower:g} is above upper {upper:g}")
+        if lower == math.inf or upper == -math.inf:
+            raise InputError(f"limits of {subject} leave no value: lower {lower:g}, upper {upper:g}")
+        for name in LIMIT_FIELDS[2:]:
+            value = getattr(self, name)
+            if value < 0.0:
+                raise InputError(f"{name} limit of {subject} is {value:g}; it must not be negative")
+
+    @property
+    def moving(self) -> bool:
+        """Whether the joint moves at all."""
+        return self.type != "fixed"
+
+    @property
+    def freedoms(self) -> int:
+        """The independent motions it allows; a mimic joint adds none."""
+        return 0 if self.mimic is not None else FREEDOMS[self.type]
+
+
+@dataclass(frozen=True, eq=False)
+class Loop:
+    """A joint that closes a loop: it ties two links that the tree already holds.
+
+    type: any key of FREEDOMS. origin (4, 4): joint frame in the parent link. child_origin (4, 4): joint frame
+    in the child link. axis (3,): unit direction in the joint frame. It counts in the mobility formula.
+    """
+
+    name: str
+    type: str
+    parent: str
+    child: str
+    origin: Array = field(default_factory=lambda: IDENTITY)
+    child_origin: Array = field(default_factory=lambda: IDENTITY)
+    axis: Array = field(default_factory=lambda: X_AXIS)
+
+    def __post_init__(self) -> None:
+        subject = f"loop {name_of(self.name, 'loop')!r}"
+        if self.type not in FREEDOMS:
+            raise suggest("joint type", self.type, FREEDOMS, owner=subject)
+        name_of(self.parent, f"parent link of {subject}")
+        name_of(self.child, f"child link of {subject}")
+        object.__setattr__(self, "origin", placement(self.origin, f"origin of {subject}"))
+        object.__setattr__(self, "child_origin", placement(self.child_origin, f"child origin of {subject}"))
+        object.__setattr__(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
+
+
+@dataclass(frozen=True, eq=False)
+class Limits:
+    """The limits of all coordinates of a robot, each (dof,); ±inf where absent.
+
+    lower, upper [rad or m], velocity [rad/s or m/s], acceleration, jerk, effort [N·m or N].
+    Omitted fields are filled with infinities. Raises InputError for different lengths, NaN, lower > upper.
+    """
+
+    lower: Array
+    upper: Array
+    velocity: Array = None  # type: ignore[assignment]
+    acceleration: Array = None  # type: ignore[assignment]
+    jerk: Array = None  # type: ignore[assignment]
+    effort: Array = None  # type: ignore[assignment]
+
+    def __post_init__(self) -> None:
+        n = np.asarray(self.lower).size
+        for name in LIMIT_FIELDS:
+            object.__setattr__(self, name, _limit_row(getattr(self, name), name, n))
+        upside_down = np.flatnonzero(self.lower > self.upper)
+        if upside_down.size:
+            i = int(upside_down[0])
+            raise InputError(
+                f"limits of coordinate {i} are upside down:"
+                f" lower {self.lower[i]:g} is above upper {self.upper[i]:g}"
+            )
+
+    def __len__(self) -> int:
+        return int(self.lower.size)
+
+    @classmethod
+    def of(cls, joints: tuple[Joint, ...] | list[Joint]) -> Limits:
+        """The limits of one-freedom joints, in their order."""
+        rows = ([getattr(joint, name) for joint in joints] for name in LIMIT_FIELDS)
+        return cls(*(np.array(row, dtype=np.float64) for row in rows))
+
+
+def _limit_row(value: Any, name: str, n: int) -> Array:
+    if value is None:
+        return frozen(np.full(n, np.inf))
+    row = as_floats(value, f"{name} limits", finite=False)
+    if row.shape != (n,):
+        raise InputError(f"{name} limits have shape {row.shape}, expected ({n},)")
+    if np.isnan(row).any():
+        raise InputError(f"{name} limits hold NaN; use inf where a limit is absent")
+    return frozen(row.copy())

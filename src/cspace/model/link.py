@@ -1,0 +1,134 @@
+"""Links as data: mass and shape of each rigid part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import DescriptionError, InputError, suggest
+from cspace.model.values import IDENTITY, finite_number, frozen, name_of, placement
+from cspace.tolerances import INERTIA_SYMMETRY
+
+__all__ = ["SHAPES", "Geometry", "Inertial", "Link", "Mesh"]
+
+SHAPES: Final[dict[str, tuple[str, ...]]] = {
+    "box": ("x", "y", "z"),
+    "sphere": ("radius",),
+    "cylinder": ("radius", "length"),
+    "capsule": ("radius", "length"),
+    "mesh": (),
+}
+"""The shapes and the sizes [m] that each needs; cylinder and capsule lie along z, centred."""
+
+
+@dataclass(frozen=True, eq=False)
+class Inertial:
+    """Mass properties of one link.
+
+    mass [kg] ≥ 0; com (3,): centre of mass in the link frame [m]; inertia (3, 3): about the centre of mass,
+    in the axes of the link frame [kg·m²], symmetric.
+    """
+
+    mass: float
+    com: Array
+    inertia: Array
+
+    def __post_init__(self) -> None:
+        mass = finite_number(self.mass, "mass")
+        if mass < 0.0:
+            raise InputError(f"mass is {mass:g} kg; it must not be negative")
+        com = _exactly(self.com, "centre of mass", (3,))
+        inertia = _exactly(self.inertia, "inertia", (3, 3))
+        skew = float(np.abs(inertia - inertia.T).max())
+        if skew > INERTIA_SYMMETRY * max(1.0, float(np.abs(inertia).max())):
+            raise InputError(f"inertia is not symmetric: opposite entries differ by {skew:.3g}")
+        object.__setattr__(self, "mass", mass)
+        object.__setattr__(self, "com", frozen(com.copy()))
+        object.__setattr__(self, "inertia", frozen((inertia + inertia.T) / 2))
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A mesh file by reference; nothing is opened until the geometry is asked for.
+
+    uri: as written in the description. path: the file found, or None. searched: every place tried.
+    scale (3,): factors along the axes of the mesh.
+    """
+
+    uri: str
+    path: str | None = None
+    searched: tuple[str, ...] = ()
+    scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+
+    def __post_init__(self) -> None:
+        name_of(self.uri, "mesh file")
+        scale = _exactly(self.scale, f"scale of mesh {self.uri!r}", (3,))
+        object.__setattr__(self, "scale", tuple(scale.tolist()))
+
+    def file(self) -> str:
+        """The path of the mesh file.
+
+        Raises DescriptionError naming every place searched if the file was not found.
+        """
+        if self.path is None:
+            places = "".join(f"\n  {place}" for place in self.searched) or " nowhere"
+            raise DescriptionError(
+                f"mesh {self.uri!r} not found; searched:{places}\n"
+                "Pass package_paths=[folder that holds the package], or set ROS_PACKAGE_PATH."
+            )
+        return self.path
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """One shape fixed to a link.
+
+    shape: a key of SHAPES. size: its sizes [m] in the order of SHAPES. origin (4, 4): shape frame in the
+    link. mesh: the file, for shape "mesh". color: RGBA in 0…1, or None.
+    """
+
+    shape: str
+    size: tuple[float, ...] = ()
+    origin: Array = field(default_factory=lambda: IDENTITY)
+    name: str = ""
+    mesh: Mesh | None = None
+    color: tuple[float, float, float, float] | None = None
+
+    def __post_init__(self) -> None:
+        if self.shape not in SHAPES:
+            raise suggest("shape", self.shape, SHAPES)
+        wanted = SHAPES[self.shape]
+        size = tuple(finite_number(s, f"size of a {self.shape}") for s in self.size)
+        if len(size) != len(wanted):
+            raise InputError(f"a {self.shape} needs the sizes ({', '.join(wanted)}), got {len(size)} numbers")
+        if any(s < 0.0 for s in size):
+            raise InputError(f"a {self.shape} has the size {size}; sizes must not be negative")
+        if (self.mesh is not None) != (self.shape == "mesh"):
+            raise InputError(f"shape {self.shape!r} {'without' if self.mesh is None else 'with'} a mesh file")
+        object.__setattr__(self, "size", size)
+        object.__setattr__(self, "origin", placement(self.origin, f"origin of a {self.shape}"))
+
+
+@dataclass(frozen=True, eq=False)
+class Link:
+    """A rigid part: its name, mass properties (None if unknown) and shapes."""
+
+    name: str
+    inertial: Inertial | None = None
+    visual: tuple[Geometry, ...] = ()
+    collision: tuple[Geometry, ...] = ()
+
+    def __post_init__(self) -> None:
+        name_of(self.name, "link")
+        object.__setattr__(self, "visual", tuple(self.visual))
+        object.__setattr__(self, "collision", tuple(self.collision))
+
+
+def _exactly(value: Any, subject: str, shape: tuple[int, ...]) -> Array:
+    array = as_floats(value, subject, last=shape)
+    if array.ndim != len(shape):
+        raise InputError(f"{subject} has shape {array.shape}, expected {shape}")
+    return array

@@ -1,0 +1,138 @@
+"""Is it a tree? The checks on names, links and joints, each fault with the element that it is about."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Protocol
+
+from cspace.errors import DescriptionError, suggest
+from cspace.model.joint import Joint
+from cspace.model.link import Link
+
+__all__ = ["ElementError", "check_mimics", "check_tree", "unique_names"]
+
+
+class Named(Protocol):
+    """Anything with a name."""
+
+    @property
+    def name(self) -> str: ...
+
+
+class ElementError(DescriptionError):
+    """A fault of one link or joint; a reader adds the file and the line of that element."""
+
+    def __init__(self, message: str, kind: str, name: str, occurrence: int = 0) -> None:
+        super().__init__(message)
+        self.kind = kind
+        self.name = name
+        self.occurrence = occurrence
+
+
+def unique_names(elements: Iterable[Named], kind: str, robot: str) -> None:
+    """Raise ElementError if two elements have one name."""
+    seen: set[str] = set()
+    for element in elements:
+        if element.name in seen:
+            message = f"two {kind}s of robot {robot!r} are named {element.name!r}"
+            raise ElementError(message, kind, element.name, 1)
+        seen.add(element.name)
+
+
+def check_tree(robot: str, links: Sequence[Link], joints: Sequence[Joint]) -> tuple[str, ...]:
+    """Link names from the root outward, depth first.
+
+    Raises ElementError unless every joint ties two existing links, every link has at most one parent, there
+    is exactly one root, and no chain of joints closes on itself.
+    """
+    names = {link.name for link in links}
+    if not names:
+        raise ElementError(f"robot {robot!r} has no links", "robot", robot)
+    carried_by: dict[str, Joint] = {}
+    carries: dict[str, list[str]] = {name: [] for name in names}
+    for joint in joints:
+        _check_ends(robot, joint, names)
+        other = carried_by.get(joint.child)
+        if other is not None:
+            raise ElementError(
+                f"link {joint.child!r} is the child of two joints, {other.name!r} and {joint.name!r};"
+                " a link has one parent (a closed loop is given as a loop, not as a joint)",
+                "joint",
+                joint.name,
+            )
+        carried_by[joint.child] = joint
+        carries[joint.parent].append(joint.child)
+    roots = [link.name for link in links if link.name not in carried_by]
+    if not roots:
+        raise _cycle(links[0].name, carried_by)
+    if len(roots) > 1:
+        shown = ", ".join(repr(root) for root in roots[:5]) + (", …" if len(roots) > 5 else "")
+        raise ElementError(
+            f"robot {robot!r} has {len(roots)} roots: {shown}; every link but one is the child of a joint",
+            "link",
+            roots[1],
+        )
+    order = _depth_first(roots[0], carries)
+    if len(order) < len(links):
+        reached = set(order)
+        raise _cycle(next(link.name for link in links if link.name not in reached), carried_by)
+    return order
+
+
+def _check_ends(robot: str, joint: Joint, names: set[str]) -> None:
+    for end, link in (("parent", joint.parent), ("child", joint.child)):
+        if link not in names:
+            error = suggest("link", link, names, owner=f"robot {robot!r}")
+            raise ElementError(f"{end} of joint {joint.name!r}: {error}", "joint", joint.name)
+    if joint.parent == joint.child:
+        raise ElementError(f"joint {joint.name!r} ties link {joint.child!r} to itself", "joint", joint.name)
+
+
+def _depth_first(root: str, carries: dict[str, list[str]]) -> tuple[str, ...]:
+    order: list[str] = []
+    stack = [root]
+    while stack:
+        name = stack.pop()
+        order.append(name)
+        stack.extend(reversed(carries[name]))
+    return tuple(order)
+
+
+def _cycle(start: str, carried_by: dict[str, Joint]) -> ElementError:
+    """The fault of the cycle that `start` hangs on."""
+    seen: dict[str, None] = {}
+    link = start
+    while link not in seen:
+        seen[link] = None
+        link = carried_by[link].parent
+    path = list(seen)
+    circle = [link, *reversed(path[path.index(link) :])]
+    joint = carried_by[circle[-1]]
+    shown = " → ".join(repr(name) for name in circle[:12]) + (" → …" if len(circle) > 12 else "")
+    return ElementError(f"the joints close a cycle: {shown}; a robot must be a tree", "joint", joint.name)
+
+
+def check_mimics(robot: str, joints: Sequence[Joint]) -> None:
+    """Raise ElementError where a joint follows itself, an unknown joint or one without a single value."""
+    by_name = {joint.name: joint for joint in joints}
+    sound: set[str] = set()
+    for joint in joints:
+        if joint.mimic is None:
+            continue
+        if joint.type not in ("revolute", "continuous", "prismatic"):
+            raise ElementError(f"joint {joint.name!r} is {joint.type} and cannot mimic", "joint", joint.name)
+        seen = {joint.name}
+        follower = joint
+        while follower.mimic is not None and follower.name not in sound:
+            leader = by_name.get(follower.mimic.joint)
+            if leader is None:
+                error = suggest("joint", follower.mimic.joint, by_name, owner=f"robot {robot!r}")
+                raise ElementError(f"joint {follower.name!r} mimics: {error}", "joint", follower.name)
+            if leader.name in seen:
+                raise ElementError(f"joint {joint.name!r} mimics itself in a circle", "joint", joint.name)
+            if leader.type not in ("revolute", "continuous", "prismatic"):
+                message = f"joint {follower.name!r} mimics {leader.name!r}, which is {leader.type}"
+                raise ElementError(message, "joint", follower.name)
+            seen.add(leader.name)
+            follower = leader
+        sound |= seen

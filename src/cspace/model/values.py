@@ -1,0 +1,96 @@
+"""Numbers that come into a description: checked once, then read-only."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.tolerances import AXIS_LENGTH, ROTATION_ERROR
+
+__all__ = ["IDENTITY", "X_AXIS", "finite_number", "frozen", "name_of", "number", "placement", "unit_axis"]
+
+
+def frozen(array: Array) -> Array:
+    """The array itself, made read-only."""
+    array.setflags(write=False)
+    return array
+
+
+IDENTITY: Array = frozen(np.eye(4))
+"""The placement that moves nothing."""
+
+X_AXIS: Array = frozen(np.array([1.0, 0.0, 0.0]))
+"""The axis of a joint that names none (URDF)."""
+
+
+def name_of(value: object, subject: str) -> str:
+    """A name: a non-empty string."""
+    if not isinstance(value, str):
+        raise InputTypeError(f"the name of a {subject} must be a string, got {type(value).__name__}")
+    if not value.strip():
+        raise InputError(f"the name of a {subject} is empty")
+    return value
+
+
+def number(value: Any, subject: str) -> float:
+    """A float that is not NaN; infinities pass, for limits."""
+    try:
+        result = float(value)
+    except (TypeError, ValueError):
+        raise InputTypeError(f"{subject} must be a number, got {value!r}") from None
+    if math.isnan(result):
+        raise InputError(f"{subject} is NaN; it must be a number")
+    return result
+
+
+def finite_number(value: Any, subject: str) -> float:
+    """A float that is neither NaN nor infinite."""
+    result = number(value, subject)
+    if math.isinf(result):
+        raise InputError(f"{subject} is {result}; it must be finite")
+    return result
+
+
+def placement(value: Any, subject: str) -> Array:
+    """A read-only (4, 4) rigid transform, copied from `value`.
+
+    Raises InputError where the last row is not (0, 0, 0, 1) or the upper left block is no rotation.
+    """
+    pose = IDENTITY
+    if value is pose:
+        return pose
+    pose = as_floats(value, subject, last=(4, 4))
+    if pose.ndim != 2:
+        raise InputError(f"{subject} has shape {pose.shape}, expected (4, 4)")
+    if pose[3, 0] != 0.0 or pose[3, 1] != 0.0 or pose[3, 2] != 0.0 or pose[3, 3] != 1.0:
+        raise InputError(f"{subject} has the last row {pose[3].tolist()}, expected [0, 0, 0, 1]")
+    rotation = pose[:3, :3]
+    error = float(np.abs(rotation.T @ rotation - IDENTITY[:3, :3]).max())
+    if error > ROTATION_ERROR or np.linalg.det(rotation) < 0.0:
+        raise InputError(
+            f"{subject} is no rigid transform: its rotation block misses RᵀR = I, det R = +1 by {error:.3g}"
+            f" (allowed {ROTATION_ERROR:g})"
+        )
+    return frozen(np.array(pose))
+
+
+def unit_axis(value: Any, subject: str) -> Array:
+    """A read-only unit vector (3,) along `value`.
+
+    Raises InputError for a vector shorter than tolerances.AXIS_LENGTH.
+    """
+    vector = as_floats(value, subject, last=(3,))
+    if vector.ndim != 1:
+        raise InputError(f"{subject} has shape {vector.shape}, expected (3,)")
+    scale = float(np.abs(vector).max())
+    length = scale * math.sqrt(sum((x / scale) ** 2 for x in vector.tolist())) if scale > 0.0 else 0.0
+    if length < AXIS_LENGTH:
+        raise InputError(f"{subject} is {vector.tolist()}, no direction; an axis must not be zero")
+    if length == 1.0:
+        return frozen(np.array(vector))
+    scaled: Array = vector / length
+    return frozen(scaled)
