@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from cspace.errors import InputError, InputTypeError
 
-__all__ = ["Array", "as_floats"]
+__all__ = ["Array", "as_floats", "as_generator"]
 
 Array = npt.NDArray[np.float64]
 
@@ -36,3 +36,17 @@ def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), fi
             f"{subject} holds {array[tuple(bad)]} at index {tuple(map(int, bad))}; all must be finite"
         )
     return array
+
+
+def as_generator(rng: int | np.random.Generator | None) -> np.random.Generator:
+    """The random generator behind every `rng=` argument: an int is a seed, None draws a fresh one.
+
+    Raises InputTypeError for anything else (a bool included), InputError for a negative seed.
+    """
+    if isinstance(rng, np.random.Generator):
+        return rng
+    if rng is not None and (isinstance(rng, bool) or not isinstance(rng, (int, np.integer))):
+        raise InputTypeError(f"rng is a {type(rng).__name__}; use an int seed, a numpy Generator or None")
+    if rng is not None and rng < 0:
+        raise InputError(f"rng is {rng}; a seed must be 0 or more")
+    return np.random.default_rng(rng)

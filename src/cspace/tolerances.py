@@ -4,7 +4,15 @@ from __future__ import annotations
 
 from typing import Final
 
-__all__ = ["AXIS_LENGTH", "INERTIA_SYMMETRY", "ROTATION_ERROR", "ROTATION_PROJECTION"]
+__all__ = [
+    "AXIS_LENGTH",
+    "GIMBAL_LOCK",
+    "INERTIA_SYMMETRY",
+    "LAST_ROW_ERROR",
+    "PURE_TRANSLATION_ANGLE",
+    "ROTATION_ERROR",
+    "ROTATION_PROJECTION",
+]
 
 ROTATION_ERROR: Final = 1e-6
 """Largest ‖RᵀR − I‖ (max norm, unitless) accepted as a rotation: a matrix typed with seven digits passes, a
@@ -21,3 +29,16 @@ the direction is made of rounding noise, and the file most likely meant zero."""
 INERTIA_SYMMETRY: Final = 1e-6
 """Largest difference of opposite inertia entries, relative to the largest entry (at least 1 kg·m²): tables
 are printed with six digits; more is a typing error."""
+
+LAST_ROW_ERROR: Final = 1e-9
+"""Largest deviation of the last row of a homogeneous matrix from [0 … 0 1] (unitless): products and inverses
+leave rounding there, a transposed or projective matrix leaves far more."""
+
+GIMBAL_LOCK: Final = 1e-14
+"""Sine (or cosine) of the middle angle of a sequence, unitless, below which the outer two axes count as one
+line: the rounding of a few products of rotations stays below it, and since the angle set to zero there moves
+the rotation by at most this much, the angles still reproduce it."""
+
+PURE_TRANSLATION_ANGLE: Final = 1e-13
+"""Rotation angle [rad] up to which a displacement counts as a pure translation when its pole or screw axis is
+asked for: such an angle is the rounding of the matrix, and the axis would lie 1e13 translations away."""

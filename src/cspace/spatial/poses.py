@@ -1,0 +1,209 @@
+"""Rotations and poses of space made from numbers, inverted, and applied to points."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
+from cspace.spatial.quaternions import matrix_of_wxyz, unit_wxyz
+from cspace.spatial.rotations import exp_so3, matrix_of_axis_angle
+from cspace.spatial.sequences import axes_of, matrix_of_euler, matrix_of_fixed
+from cspace.spatial.vectors import length_and_direction
+
+__all__ = ["inverse_pose", "pose", "rotation", "to_xyz", "transform_directions", "transform_points"]
+
+
+def pose(
+    xyz: npt.ArrayLike | None = None,
+    *,
+    wxyz: npt.ArrayLike | None = None,
+    xyzw: npt.ArrayLike | None = None,
+    rpy: npt.ArrayLike | None = None,
+    rotvec: npt.ArrayLike | None = None,
+    axis_angle: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    euler: tuple[str, npt.ArrayLike] | None = None,
+    fixed: tuple[str, npt.ArrayLike] | None = None,
+    matrix: RotationLike | None = None,
+) -> Array:
+    """Poses from a translation and one form of the rotation, T = [[R, xyz], [0, 1]].
+
+    xyz: (..., 3) [m], zero if left out. The rotation, the identity if left out, in one of the forms of
+    `rotation`: wxyz, xyzw, rpy, rotvec, axis_angle, euler, fixed, matrix. Leading axes broadcast.
+    Returns (..., 4, 4). Raises InputError on numbers that are no rotation, InputTypeError if nothing is given
+    or the rotation is given twice.
+    """
+    forms = dict(
+        wxyz=wxyz,
+        xyzw=xyzw,
+        rpy=rpy,
+        rotvec=rotvec,
+        axis_angle=axis_angle,
+        euler=euler,
+        fixed=fixed,
+        matrix=matrix,
+    )
+    given = [name for name, value in forms.items() if value is not None]
+    if not given and xyz is None:
+        raise InputTypeError(f"pose() needs xyz= or one of {_names(forms)}; the identity is numpy.eye(4)")
+    R = _rotation_of(forms, given, "pose()") if given else np.eye(3)
+    p = np.zeros(3) if xyz is None else as_floats(xyz, "xyz", last=(3,))
+    return assemble(R, p)
+
+
+def rotation(
+    *,
+    wxyz: npt.ArrayLike | None = None,
+    xyzw: npt.ArrayLike | None = None,
+    rpy: npt.ArrayLike | None = None,
+    rotvec: npt.ArrayLike | None = None,
+    axis_angle: tuple[npt.ArrayLike, npt.ArrayLike] | None = None,
+    euler: tuple[str, npt.ArrayLike] | None = None,
+    fixed: tuple[str, npt.ArrayLike] | None = None,
+    matrix: RotationLike | None = None,
+) -> Array:
+    """Rotation matrices from exactly one form.
+
+    wxyz, xyzw: quaternions (..., 4) of any length but zero. rpy: roll, pitch, yaw (..., 3) [rad] about the
+    fixed x, y, z. rotvec: axis times angle (..., 3) [rad]. axis_angle: (axis (..., 3) of any length but zero,
+    angle (...) [rad]). euler, fixed: (sequence, angles (..., 3) [rad]), such as ("ZYX", angles).
+    matrix: (..., 3, 3), checked. Returns (..., 3, 3).
+    Raises InputError on numbers that are no rotation, InputTypeError if none or more than one form is given.
+    """
+    forms = dict(
+        wxyz=wxyz,
+        xyzw=xyzw,
+        rpy=rpy,
+        rotvec=rotvec,
+        axis_angle=axis_angle,
+        euler=euler,
+        fixed=fixed,
+        matrix=matrix,
+    )
+    given = [name for name, value in forms.items() if value is not None]
+    if not given:
+        raise InputTypeError(f"rotation() needs one of {_names(forms)}; the identity is numpy.eye(3)")
+    return _rotation_of(forms, given, "rotation()")
+
+
+def inverse_pose(T: PoseLike) -> Array:
+    """The inverse of poses by transposition, [[Rᵀ, −Rᵀ p], [0, 1]]: faster and more exact than elimination.
+
+    T: T_a_b (..., 4, 4) → T_b_a (..., 4, 4).
+    """
+    return inverse(as_pose(T))
+
+
+def transform_points(T: PoseLike, points: npt.ArrayLike) -> Array:
+    """Points turned and moved, p_a = R p_b + t.
+
+    T: T_a_b (..., 4, 4). points: p_b (..., 3) [m]. Leading axes broadcast: one pose and many points, many
+    poses and one point, or pairs. Returns p_a (..., 3).
+    """
+    T = as_pose(T)
+    points = as_floats(points, "points", last=(3,))
+    return np.asarray(turned(T[..., :3, :3], points) + T[..., :3, 3])
+
+
+def transform_directions(T: PoseLike, directions: npt.ArrayLike) -> Array:
+    """Directions turned but not moved, d_a = R d_b.
+
+    T: T_a_b (..., 4, 4) or rotations (..., 3, 3). directions: d_b (..., 3). Leading axes broadcast.
+    Returns d_a (..., 3).
+    """
+    return turned(as_rotation(T), as_floats(directions, "directions", last=(3,)))
+
+
+def to_xyz(T: PoseLike) -> Array:
+    """The translation of poses, a copy: (..., 4, 4) → (..., 3) [m]."""
+    return as_pose(T)[..., :3, 3].copy()
+
+
+def assemble(R: Array, p: Array) -> Array:
+    """Poses from rotations (..., n, n) and translations (..., n), broadcast, for n = 2 or 3."""
+    n = p.shape[-1]
+    T = np.zeros((*broadcast_batches(R.shape[:-2], p.shape[:-1], "rotation", "translation"), n + 1, n + 1))
+    T[..., :n, :n] = R
+    T[..., :n, n] = p
+    T[..., n, n] = 1.0
+    return T
+
+
+def inverse(T: Array) -> Array:
+    """inverse_pose and inverse_pose_2d without checks."""
+    n = T.shape[-1] - 1
+    R_inverse = np.swapaxes(T[..., :n, :n], -1, -2)
+    return assemble(R_inverse, -turned(R_inverse, T[..., :n, n]))
+
+
+def turned(R: Array, v: Array) -> Array:
+    """R v for (..., n, n) and (..., n), broadcast."""
+    broadcast_batches(R.shape[:-2], v.shape[:-1], "pose", "vector")
+    return np.asarray(np.einsum("...ij,...j->...i", R, v))
+
+
+def broadcast_batches(a: tuple[int, ...], b: tuple[int, ...], of_a: str, of_b: str) -> tuple[int, ...]:
+    """The common leading shape, or an error that names both."""
+    try:
+        return np.broadcast_shapes(a, b)
+    except ValueError:
+        raise InputError(
+            f"leading axes of {of_a} {a} and {of_b} {b} do not broadcast; add axes of length 1 with [:, None]"
+        ) from None
+
+
+def _names(forms: dict[str, Any]) -> str:
+    return ", ".join(f"{name}=" for name in forms)
+
+
+def _rotation_of(forms: dict[str, Any], given: list[str], caller: str) -> Array:
+    if len(given) > 1:
+        raise InputTypeError(
+            f"{caller} got the rotation {len(given)} times: {_names(dict.fromkeys(given))}; give one"
+        )
+    return _FORMS[given[0]](forms[given[0]])
+
+
+def _from_axis_angle(value: Any) -> Array:
+    axis, angle = _pair(value, "axis_angle", "(axis, angle)")
+    length, unit = length_and_direction(as_floats(axis, "axis", last=(3,)))
+    if not (length > 0.0).all():
+        raise InputError(
+            "axis is zero; a rotation axis needs a direction (the identity: any axis with angle 0)"
+        )
+    angle = as_floats(angle, "angle")
+    broadcast_batches(length.shape, angle.shape, "axis", "angle")
+    return matrix_of_axis_angle(unit, angle)
+
+
+def _from_euler(value: Any) -> Array:
+    sequence, angles = _pair(value, "euler", "(sequence, angles)")
+    return matrix_of_euler(axes_of(sequence), as_floats(angles, "Euler angles", last=(3,)))
+
+
+def _from_fixed(value: Any) -> Array:
+    sequence, angles = _pair(value, "fixed", "(sequence, angles)")
+    return matrix_of_fixed(axes_of(sequence), as_floats(angles, "fixed angles", last=(3,)))
+
+
+def _pair(value: Any, name: str, form: str) -> tuple[Any, Any]:
+    if not isinstance(value, (tuple, list)) or len(value) != 2:
+        raise InputTypeError(f"{name}= takes a pair {form}, got {type(value).__name__}")
+    return value[0], value[1]
+
+
+_FORMS: dict[str, Callable[[Any], Array]] = {
+    "wxyz": lambda q: matrix_of_wxyz(unit_wxyz(q, "wxyz")),
+    "xyzw": lambda q: matrix_of_wxyz(np.roll(unit_wxyz(q, "xyzw"), 1, axis=-1)),
+    "rpy": lambda angles: matrix_of_fixed((0, 1, 2), as_floats(angles, "rpy", last=(3,))),
+    "rotvec": exp_so3,
+    "axis_angle": _from_axis_angle,
+    "euler": _from_euler,
+    "fixed": _from_fixed,
+    "matrix": lambda R: as_rotation(R, "matrix").copy(),
+}

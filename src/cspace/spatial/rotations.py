@@ -1,0 +1,123 @@
+"""Rotations of space: skew matrices, the exponential and the logarithm of SO(3), the axis and the angle."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.spatial.checks import RotationLike, as_rotation
+from cspace.spatial.quaternions import wxyz_of_matrix
+from cspace.spatial.vectors import length_and_direction
+
+__all__ = ["exp_so3", "hat_so3", "log_so3", "to_axis_angle", "to_rotvec", "vee_so3"]
+
+
+def hat_so3(w: npt.ArrayLike) -> Array:
+    """The skew matrix [w] of a vector, so that [w] x = w × x.
+
+    w: (..., 3) → (..., 3, 3).
+    """
+    return skew(as_floats(w, "vector", last=(3,)))
+
+
+def vee_so3(W: npt.ArrayLike) -> Array:
+    """The vector of a skew matrix, the inverse of hat_so3: ([w])ᵛ = w.
+
+    W: (..., 3, 3) → (..., 3); of a matrix that is not skew the skew part is read.
+    """
+    W = as_floats(W, "skew matrix", last=(3, 3))
+    return 0.5 * np.stack(
+        [W[..., 2, 1] - W[..., 1, 2], W[..., 0, 2] - W[..., 2, 0], W[..., 1, 0] - W[..., 0, 1]], axis=-1
+    )
+
+
+def exp_so3(rotvec: npt.ArrayLike) -> Array:
+    """The rotation by the angle |w| about the direction of w (Rodrigues).
+
+    exp [w] = cos θ I + sin θ [u] + (1 − cos θ) u uᵀ,  θ = |w|, u = w / θ.
+
+    rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError if |w| overflows.
+    Source: Murray, Li and Sastry 1994, eq. 2.14.
+    """
+    angle, axis = checked_angle_and_axis(as_floats(rotvec, "rotation vector", last=(3,)), "rotation vector")
+    return matrix_of_axis_angle(axis, angle)
+
+
+def log_so3(R: RotationLike) -> Array:
+    """The shortest rotation vector of a rotation: exp_so3(log_so3(R)) = R.
+
+    w = θ u with 0 ≤ θ ≤ π. Of the two vectors of an exact half turn the one whose first entry other than
+    zero is positive is given.
+
+    R: (..., 3, 3), or the rotation of (..., 4, 4) → (..., 3) [rad].
+    The angle is 2 atan2(|v|, w) of the unit quaternion, accurate from 1e-300 to π.
+    """
+    return rotvec_of_matrix(as_rotation(R))
+
+
+def to_rotvec(R: RotationLike) -> Array:
+    """The rotation vector of a rotation or pose: axis times angle, length in [0, π] (see log_so3).
+
+    R: (..., 3, 3) or (..., 4, 4) → (..., 3) [rad].
+    """
+    return rotvec_of_matrix(as_rotation(R))
+
+
+def to_axis_angle(R: RotationLike) -> tuple[Array, Array]:
+    """The unit axis and the angle in [0, π] of a rotation or pose.
+
+    The axis of the identity is free: z is given. Of the two axes of an exact half turn the one whose first
+    entry other than zero is positive is given.
+
+    R: (..., 3, 3) or (..., 4, 4) → axis (..., 3), angle (...) [rad].
+    """
+    q = wxyz_of_matrix(as_rotation(R))
+    sine, axis = length_and_direction(q[..., 1:])
+    axis = np.where((sine == 0.0)[..., None], np.array([0.0, 0.0, 1.0]), axis)
+    return axis, np.asarray(2.0 * np.arctan2(sine, q[..., 0]))[()]
+
+
+def skew(w: Array) -> Array:
+    """hat_so3 without checks."""
+    W = np.zeros((*w.shape[:-1], 3, 3))
+    x, y, z = w[..., 0], w[..., 1], w[..., 2]
+    W[..., 0, 1], W[..., 0, 2] = -z, y
+    W[..., 1, 0], W[..., 1, 2] = z, -x
+    W[..., 2, 0], W[..., 2, 1] = -y, x
+    return W
+
+
+def checked_angle_and_axis(w: Array, subject: str) -> tuple[Array, Array]:
+    """Length and direction of rotation vectors; an overflowing length is refused."""
+    angle, axis = length_and_direction(w)
+    if not np.isfinite(angle).all():
+        raise InputError(f"{subject} is so long that its length overflows; angles must be finite")
+    return angle, axis
+
+
+def matrix_of_axis_angle(axis: Array, angle: Array) -> Array:
+    """Rodrigues' formula for unit axes (..., 3) and angles (...), broadcast; a zero axis needs a zero angle.
+
+    1 − cos θ is written 2 sin²(θ/2): small angles keep all their digits.
+    """
+    x, y, z = axis[..., 0], axis[..., 1], axis[..., 2]
+    s, versine = np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2
+    R = np.empty((*np.broadcast_shapes(x.shape, s.shape), 3, 3))
+    vx, vy, vz = versine * x, versine * y, versine * z
+    sx, sy, sz = s * x, s * y, s * z
+    R[..., 0, 0] = 1.0 - (vy * y + vz * z)
+    R[..., 1, 1] = 1.0 - (vx * x + vz * z)
+    R[..., 2, 2] = 1.0 - (vx * x + vy * y)
+    R[..., 0, 1], R[..., 1, 0] = vx * y - sz, vx * y + sz
+    R[..., 0, 2], R[..., 2, 0] = vx * z + sy, vx * z - sy
+    R[..., 1, 2], R[..., 2, 1] = vy * z - sx, vy * z + sx
+    return R
+
+
+def rotvec_of_matrix(R: Array) -> Array:
+    """log_so3 without checks."""
+    q = wxyz_of_matrix(R)
+    sine, axis = length_and_direction(q[..., 1:])
+    return axis * (2.0 * np.arctan2(sine, q[..., 0]))[..., None]

@@ -1,0 +1,30 @@
+"""Vectors of three numbers, batched over leading axes; lengths that neither overflow nor underflow."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cspace.arrays import Array
+
+__all__ = ["cross", "length_and_direction"]
+
+
+def length_and_direction(v: Array) -> tuple[Array, Array]:
+    """(..., k) → length (...) and unit direction (..., k); the direction of a zero vector is zero.
+
+    The largest entry is divided out first, so that 1e-320 and 1e300 keep their direction.
+    """
+    largest = np.max(np.abs(v), axis=-1)
+    scale = np.where(largest > 0.0, largest, 1.0)
+    scaled = v / scale[..., None]
+    length = np.sqrt(np.sum(scaled * scaled, axis=-1))
+    direction = scaled / np.where(length > 0.0, length, 1.0)[..., None]
+    with np.errstate(over="ignore"):
+        return scale * length, direction
+
+
+def cross(a: Array, b: Array) -> Array:
+    """a × b for (..., 3) and (..., 3), broadcast; numpy's own costs several times as much."""
+    ax, ay, az = a[..., 0], a[..., 1], a[..., 2]
+    bx, by, bz = b[..., 0], b[..., 1], b[..., 2]
+    return np.stack([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx], axis=-1)
