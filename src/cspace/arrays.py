@@ -15,7 +15,7 @@ Array = npt.NDArray[np.float64]
 
 
 def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), finite: bool = True) -> Array:
-    """A float64 array whose trailing axes have the sizes `last` (None: any size), all finite.
+    """A float64 array (..., *last): its trailing axes have the sizes `last` (None: any size), all finite.
 
     value: anything numpy reads as numbers. subject: its name in messages.
     Raises InputTypeError if it is not numeric, InputError on a wrong shape or on NaN or inf.

@@ -1,0 +1,133 @@
+"""The code on the pages runs: README and docs, top to bottom, one namespace per page.
+
+```python blocks are executed in order; ```console blocks run their `$ cspace …` lines and compare the output,
+blank space apart, where the page prints any (a line or a part of a line may be … for "whatever stands here").
+A block with `no-run` after its language is shown only.
+"""
+
+from __future__ import annotations
+
+import fnmatch
+import re
+import shlex
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+from data import ROOT
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+
+
+@dataclass(frozen=True)
+class Block:
+    language: str
+    line: int
+    text: str
+
+
+def blocks(page: Path) -> list[Block]:
+    """The fenced blocks of a page that are to be run, with the number of the line before their text."""
+    found, fence, start, lines = [], None, 0, page.read_text(encoding="utf-8").splitlines()
+    for number, line in enumerate(lines, 1):
+        match = re.match(r"```\s*(\w*)\s*(.*)$", line.strip())
+        if not match:
+            continue
+        if fence is None:
+            fence, start = match.groups(), number
+        else:
+            if "no-run" not in fence[1]:
+                found.append(Block(fence[0], start, "\n".join(lines[start : number - 1])))
+            fence = None
+    assert fence is None, f"{page}:{start}: this block never ends"
+    return found
+
+
+def has(language: str) -> list[Path]:
+    return [page for page in PAGES if any(block.language == language for block in blocks(page))]
+
+
+def name_of(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+@pytest.mark.parametrize("page", has("python"), ids=name_of)
+def test_python_blocks_run(page, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    namespace: dict[str, object] = {"__name__": "page"}
+    ran = 0
+    for block in blocks(page):
+        if block.language == "python":
+            source = "\n" * block.line + block.text
+            exec(compile(source, str(page), "exec"), namespace)  # the page is ours
+            ran += 1
+    assert ran
+
+
+def run_cspace(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "cspace", *words]
+    return subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, encoding="utf-8", timeout=120, check=False
+    )
+
+
+def commands(block: Block) -> list[tuple[str, list[str]]]:
+    """The `$ …` lines of a console block, each with the output lines printed under it."""
+    found: list[tuple[str, list[str]]] = []
+    for line in block.text.splitlines():
+        if line.startswith("$ "):
+            found.append((line[2:], []))
+        elif found and found[-1][0].endswith("\\"):
+            found[-1] = (found[-1][0][:-1] + line, [])
+        elif found and line.strip():
+            found[-1][1].append(" ".join(line.split()))
+    return found
+
+
+def check_output(expected: list[str], output: str, where: str) -> None:
+    """Each expected line appears in the output, in order; … stands for anything."""
+    lines = iter([" ".join(line.split()) for line in output.splitlines()])
+    for wanted in expected:
+        pattern = re.sub(r"([\[\]?*])", r"[\1]", wanted).replace("…", "*")
+        assert any(fnmatch.fnmatchcase(line, pattern) for line in lines), (
+            f"{where}: no {wanted!r} in\n{output}"
+        )
+
+
+@pytest.mark.parametrize("page", has("console"), ids=name_of)
+def test_console_blocks_run(page, tmp_path):
+    for block in blocks(page):
+        if block.language != "console":
+            continue
+        for command, expected in commands(block):
+            words = shlex.split(command.split("#")[0])
+            assert words[0] == "cspace", f"{page}:{block.line}: only cspace runs here: {command}"
+            done = run_cspace(words[1:], tmp_path)
+            negative = re.search(r"#\s*exit (\d+)", command)
+            wanted = int(negative.group(1)) if negative else 0
+            where = f"{page}:{block.line}: {command}"
+            assert done.returncode == wanted, f"{where}\n{done.stdout}{done.stderr}"
+            check_output(expected, done.stdout + done.stderr, where)
+
+
+def test_images_and_links_of_the_pages_exist():
+    for page in PAGES:
+        for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
+            if not re.match(r"[a-z]+:", target):
+                assert (page.parent / target).exists(), f"{name_of(page)} points to {target}"
+
+
+def test_the_runner_sees_what_is_wrong(tmp_path):
+    page = tmp_path / "page.md"
+    page.write_text(
+        "```python\nx = 1\n```\n\n```python no-run\nboom\n```\n\n```console\n$ cspace\nno …\n```\n"
+    )
+    python, console = blocks(page)
+    assert (python.language, python.line, python.text) == ("python", 1, "x = 1")
+    assert commands(console) == [("cspace", ["no …"])]
+    check_output(["no …"], "yes\nno  thing here\n", "page")
+    with pytest.raises(AssertionError):
+        check_output(["no …", "yes"], "yes\nno thing\n", "page")

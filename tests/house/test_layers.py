@@ -1,0 +1,88 @@
+"""Rooms import downward only, siblings never sideways; optional parts only inside functions."""
+
+from __future__ import annotations
+
+import re
+import sys
+
+import pytest
+
+from house import tree
+
+CPP_FILES = sorted(path for ending in ("*.hpp", "*.cpp") for path in (tree.ROOT / "include").rglob(ending))
+KERNEL_FILES = sorted((tree.ROOT / "src/kernels").glob("*.cpp"))
+
+
+def cspace_room(module: str) -> str | None:
+    """The room that a module name of the package points into; None for modules of others."""
+    parts = module.split(".")
+    if parts[0] != "cspace":
+        return None
+    return parts[1] if len(parts) > 1 else "cspace"
+
+
+@pytest.mark.parametrize("path", tree.python_files(), ids=tree.module_name)
+def test_every_file_belongs_to_a_room_of_the_diagram(path):
+    assert tree.room_of(path) in tree.RANK, "give the room its tier in tests/house/tree.py"
+
+
+@pytest.mark.parametrize("path", tree.python_files(), ids=tree.module_name)
+def test_imports_go_downward_and_never_sideways(path):
+    room = tree.room_of(path)
+    for found in tree.imports(path):
+        target = cspace_room(found.module)
+        if target is None or target == room:
+            continue
+        if target not in tree.RANK:
+            assert room == "cspace" or target == "__version__", f"{found.where}: imports {found.module}"
+            continue
+        assert tree.RANK[target] < tree.RANK[room], f"{found.where}: {room} may not import {target}"
+
+
+@pytest.mark.parametrize("path", tree.python_files(), ids=tree.module_name)
+def test_only_numpy_and_the_standard_library_are_imported_at_import(path):
+    optional = tree.OPTIONAL_IMPORTS.get(tree.room_of(path), set())
+    for found in tree.imports(path):
+        package = found.module.split(".")[0]
+        if package in {"cspace", "numpy"} or package in sys.stdlib_module_names:
+            continue
+        assert package in optional, f"{found.where}: {package} is no dependency of this room"
+        assert not found.at_import, f"{found.where}: {package} is optional: import it where it is used"
+
+
+@pytest.mark.parametrize("path", CPP_FILES, ids=lambda path: str(path.relative_to(tree.ROOT)))
+def test_headers_include_the_standard_library_and_lower_rooms_only(path):
+    parts = path.relative_to(tree.ROOT / "include/cspace").parts
+    for line, target in tree.includes(path):
+        where = f"{path.relative_to(tree.ROOT)}:{line}"
+        if target.startswith("<"):
+            assert re.fullmatch(r"<[a-z0-9_]+(\.h)?>", target), f"{where}: no such library here: {target}"
+            continue
+        assert target.startswith('"cspace/'), f"{where}: write the path from cspace/: {target}"
+        room = target.strip('"').split("/")[1]
+        if len(parts) == 1 or room == parts[0] or room.endswith(".hpp"):
+            continue
+        assert tree.RANK[room] < tree.RANK[parts[0]], f"{where}: {parts[0]} may not include {room}"
+
+
+@pytest.mark.parametrize("path", KERNEL_FILES, ids=lambda path: path.name)
+def test_kernels_hold_plain_arrays_and_know_no_python(path):
+    containers = {"vector", "string", "map", "set", "deque", "list", "unordered_map", "functional", "memory"}
+    for line, target in tree.includes(path):
+        name = target.strip('<>"')
+        where = f"{path.relative_to(tree.ROOT)}:{line}"
+        assert name not in containers, f"{where}: a container here is compiled per instruction set and leaks"
+        assert not name.startswith(("Python.h", "nanobind", "numpy")), f"{where}: kernels know no Python"
+
+
+def test_the_walls_hold(tmp_path, monkeypatch):
+    """A sideways import and an optional import at module level are found by the functions used above."""
+    package = tmp_path / "cspace"
+    (package / "ik").mkdir(parents=True)
+    path = package / "ik" / "bad.py"
+    path.write_text("import matplotlib\nfrom cspace import planning\ndef f():\n    import rich\n")
+    monkeypatch.setattr(tree, "ROOT", tmp_path)
+    monkeypatch.setattr(tree, "PACKAGE", package)
+    found = {i.module: i.at_import for i in tree.imports(path)}
+    assert found == {"matplotlib": True, "cspace.planning": True, "rich": False}
+    assert tree.RANK["planning"] == tree.RANK[tree.room_of(path)]

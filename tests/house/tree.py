@@ -1,0 +1,107 @@
+"""The source tree as data: modules, rooms, imports and includes. Shared by the tests of this folder."""
+
+from __future__ import annotations
+
+import ast
+import re
+import subprocess
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGE = ROOT / "src/cspace"
+
+# The rooms from the ground up. A room uses the tiers below its own, never a neighbour in the same tier.
+TIERS: list[set[str]] = [
+    {"errors", "tolerances", "_core"},
+    {"arrays"},
+    {"math"},
+    {"spatial"},
+    {"model", "shapes"},
+    {"kinematics", "dynamics", "collision", "maps", "mobile"},
+    {"ik", "planning", "trajectory", "navigation", "localization"},
+    {"robot"},
+    {"robots", "reach"},
+    {"plot", "lab"},
+    {"cli"},
+    {"cspace", "__main__"},
+]
+RANK = {room: rank for rank, tier in enumerate(TIERS) for room in tier}
+
+# What a room may import besides numpy and the standard library, and only inside its functions.
+OPTIONAL_IMPORTS = {"cli": {"rich"}, "plot": {"matplotlib"}, "lab": {"viser", "websockets"}}
+
+
+@dataclass(frozen=True)
+class Import:
+    """One import: the module it names, where it stands, and whether it runs when its module is imported."""
+
+    module: str
+    where: str
+    at_import: bool
+
+
+def python_files() -> list[Path]:
+    return sorted(PACKAGE.rglob("*.py"))
+
+
+def room_of(path: Path) -> str:
+    """The room a file of the package belongs to: its folder under the package, or its own name."""
+    first = path.relative_to(PACKAGE).parts[0].removesuffix(".py")
+    return "cspace" if first == "__init__" else first
+
+
+def module_name(path: Path) -> str:
+    parts = list(path.relative_to(PACKAGE.parent).with_suffix("").parts)
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def is_type_checking(node: ast.AST) -> bool:
+    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+
+
+def imports(path: Path) -> list[Import]:
+    """Every import of a file. Those under `if TYPE_CHECKING` count as downward imports but do not run."""
+    found: list[Import] = []
+
+    def visit(node: ast.AST, at_import: bool) -> None:
+        where = f"{path.relative_to(ROOT)}:{getattr(node, 'lineno', 0)}"
+        if isinstance(node, ast.Import):
+            found.extend(Import(alias.name, where, at_import) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                package = module_name(path).split(".")
+                keep = len(package) - node.level + (path.name == "__init__.py")
+                base = ".".join([*package[:keep], *([base] if base else [])])
+            names = [f"{base}.{alias.name}" for alias in node.names] if base == "cspace" else [base]
+            found.extend(Import(name, where, at_import) for name in names)
+        inside = isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) or is_type_checking(node)
+        for child in ast.iter_child_nodes(node):
+            visit(child, at_import and not inside)
+
+    visit(ast.parse(path.read_text(encoding="utf-8")), True)
+    return found
+
+
+def includes(path: Path) -> list[tuple[int, str]]:
+    """The line number and target of every #include of a C++ file, quotes and brackets kept."""
+    lines = path.read_text(encoding="utf-8").splitlines()
+    matches = ((n, re.match(r'\s*#\s*include\s*([<"][^>"]+[>"])', line)) for n, line in enumerate(lines, 1))
+    return [(n, match.group(1)) for n, match in matches if match]
+
+
+def tracked_texts() -> Iterator[tuple[str, str]]:
+    """Name and text of every text file that belongs to the project (committed or about to be)."""
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    listing = subprocess.run(command, cwd=ROOT, capture_output=True)
+    names = [n for n in listing.stdout.decode().split("\0") if n]
+    for name in names:
+        path = ROOT / name
+        if not path.is_file():
+            continue
+        try:
+            yield name, path.read_text(encoding="utf-8")
+        except UnicodeDecodeError:
+            continue
