@@ -1,10 +1,14 @@
 """Robots as data: the description and its readers and writers."""
 
+from cspace.model.chain import Chain, chain, default_tip
 from cspace.model.description import Description, Provenance, Source
 from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
+from cspace.model.screws import from_screws, twists
+from cspace.model.tree import Tree, tree
 
 __all__ = [
+    "Chain",
     "Description",
     "Geometry",
     "Inertial",
@@ -16,4 +20,10 @@ __all__ = [
     "Mimic",
     "Provenance",
     "Source",
+    "Tree",
+    "chain",
+    "default_tip",
+    "from_screws",
+    "tree",
+    "twists",
 ]

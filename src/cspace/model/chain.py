@@ -1,0 +1,181 @@
+"""A serial chain from base to tip, as screws at zero: the product of exponentials."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.model.description import Description
+from cspace.model.elementary import Coordinates, Elementary, coordinates_of, elementary_joints
+from cspace.model.joint import Joint, Limits
+from cspace.model.transforms import inverse
+from cspace.model.values import frozen
+
+__all__ = ["Chain", "chain", "default_tip", "path", "rigid_group", "zero_poses"]
+
+
+@dataclass(frozen=True, eq=False)
+class Chain:
+    """The joints between two links, as screws in the base frame at zero.
+
+    T_base_tip(q) = exp(ξ₁ q₁) … exp(ξₙ qₙ) · T_zero, where ξ turns about (or slides along) axes[i] through
+    points[i] (Murray, Li, Sastry 1994, section 3.2).
+
+    joint_names, joint_types: n names and a string of "R" and "P". axes (n, 3): unit directions; points (n, 3)
+    [m]. T_zero (4, 4): tip in base with every joint at zero. coordinates: the independent q behind the joints
+    (fewer than n where joints mimic). frames: each link carried rigidly along the chain, name →
+    (number of joints before it, its pose in base at zero).
+    """
+
+    name: str
+    base: str
+    tip: str
+    joint_names: tuple[str, ...]
+    joint_types: str
+    axes: Array
+    points: Array
+    T_zero: Array
+    coordinates: Coordinates
+    frames: Mapping[str, tuple[int, Array]]
+
+    @property
+    def dof(self) -> int:
+        """The number of independent coordinates."""
+        return len(self.coordinates.names)
+
+    @property
+    def limits(self) -> Limits:
+        """The limits of the coordinates."""
+        return self.coordinates.limits
+
+
+def zero_poses(description: Description, base: str | None = None) -> dict[str, Array]:
+    """The pose (4, 4) of every link in the link `base` (default: the root) with all joints at zero."""
+    poses = {description.root: np.eye(4)}
+    for link in description.ordered_links[1:]:
+        joint = description.parent_joint[link]
+        poses[link] = poses[joint.parent] @ joint.origin
+    if base is not None and base != description.root:
+        T_base_root = inverse(poses[description.link(base).name])
+        poses = {link: T_base_root @ pose for link, pose in poses.items()}
+    return poses
+
+
+def rigid_group(description: Description, link: str) -> tuple[str, ...]:
+    """The links tied to `link` by fixed joints alone, itself first."""
+    group = {link: None}
+    stack = [link]
+    while stack:
+        here = stack.pop()
+        near = [joint.child for joint in description.child_joints[here] if not joint.moving]
+        carrier = description.parent_joint.get(here)
+        if carrier is not None and not carrier.moving:
+            near.append(carrier.parent)
+        stack.extend(other for other in near if other not in group)
+        group.update(dict.fromkeys(near))
+    return tuple(group)
+
+
+def default_tip(description: Description, base: str | None = None) -> str:
+    """The end of the only chain of moving joints that `base` (default: the root) carries.
+
+    Fixed side frames do not count as branches. Behind the last moving joint the tip is the only leaf, or the
+    leaf named "tool0" (the flange frame of ROS-Industrial) where there are several.
+    Raises InputError naming the leaves where there is a choice.
+    """
+    here = description.root if base is None else description.link(base).name
+    while True:
+        carried = _carried(description, here)
+        onward = [joint for link in carried for joint in description.child_joints[link] if joint.moving]
+        if len(onward) != 1:
+            break
+        here = onward[0].child
+    choice = [link for link in carried if not description.child_joints[link]]
+    if onward:
+        choice = [link for link in description.leaves if link not in carried]
+    elif len(choice) == 1:
+        return choice[0]
+    elif "tool0" in choice:
+        return "tool0"
+    shown = ", ".join(repr(leaf) for leaf in choice[:12])
+    more = f" and {len(choice) - 12} more" if len(choice) > 12 else ""
+    raise InputError(
+        f"robot {description.name!r} branches after link {here!r};"
+        f" say which link is the tip (tip=…): {shown}{more}"
+    )
+
+
+def _carried(description: Description, link: str) -> list[str]:
+    """`link` and what it carries behind fixed joints alone, from it outward."""
+    group = [link]
+    for here in group:
+        group.extend(joint.child for joint in description.child_joints[here] if not joint.moving)
+    return group
+
+
+def path(description: Description, base: str, tip: str) -> list[tuple[Joint, bool]]:
+    """The joints from link `base` to link `tip` in order, each with whether it is passed backward."""
+    ancestors = {link: i for i, link in enumerate(_ancestors(description, base))}
+    down: list[Joint] = []
+    here = tip
+    while here not in ancestors:
+        joint = description.parent_joint[here]
+        down.append(joint)
+        here = joint.parent
+    climbed = list(ancestors)[: ancestors[here]]
+    return [(description.parent_joint[link], True) for link in climbed] + [(j, False) for j in reversed(down)]
+
+
+def _ancestors(description: Description, link: str) -> list[str]:
+    """`link`, its parent, its parent's parent … up to the root."""
+    line = [link]
+    while line[-1] in description.parent_joint:
+        line.append(description.parent_joint[line[-1]].parent)
+    return line
+
+
+def chain(description: Description, base: str | None = None, tip: str | None = None) -> Chain:
+    """The chain from `base` to `tip`, any two links of the tree.
+
+    base: a link, default the root. tip: a link, default as in default_tip. Joints passed from child to parent
+    act the other way round: their axes are negated. Links that hang rigidly on the chain are kept as frames,
+    moving side branches are dropped.
+    Raises UnknownNameError for unknown links, InputError where the tip is a choice, DescriptionError where a
+    floating joint lies between.
+    """
+    base = description.root if base is None else description.link(base).name
+    tip = default_tip(description, base) if tip is None else description.link(tip).name
+    poses = zero_poses(description, base)
+    parts: list[Elementary] = []
+    axes: list[Array] = []
+    points: list[Array] = []
+    frames = {link: (0, poses[link]) for link in rigid_group(description, base)}
+    for joint, backward in path(description, base, tip):
+        steps = elementary_joints(joint)
+        frame = poses[joint.child]  # at zero the joint frame is the child frame
+        for step in reversed(steps) if backward else steps:
+            parts.append(step)
+            axes.append(frame[:3, :3] @ (-step.axis if backward else step.axis))
+            points.append(frame[:3, 3])
+        for link in rigid_group(description, joint.parent if backward else joint.child) if steps else ():
+            frames[link] = (len(parts), poses[link])
+    n = len(parts)
+    for _, pose in frames.values():
+        frozen(pose)
+    return Chain(
+        name=description.name,
+        base=base,
+        tip=tip,
+        joint_names=tuple(part.name for part in parts),
+        joint_types="".join(part.kind for part in parts),
+        axes=frozen(np.array(axes).reshape(n, 3)),
+        points=frozen(np.array(points).reshape(n, 3)),
+        T_zero=frames[tip][1],
+        coordinates=coordinates_of(tuple(parts), description.joint_by_name),
+        frames=MappingProxyType(frames),
+    )

@@ -1,0 +1,147 @@
+import numpy as np
+import pytest
+
+from cspace.errors import DescriptionError, InputError, UnknownNameError
+from cspace.model import Description, Joint, Link, Mimic, chain, default_tip, from_screws, twists
+from model.random_robots import random_pose, random_tree, random_values
+from oracles.forward import link_poses, product_of_exponentials
+
+
+def chain_values(robot, values):
+    """The value of each joint of a chain from the values of the coordinates behind them."""
+    c = robot.coordinates
+    return c.multiplier * np.array([values[name] for name in c.names])[c.index] + c.offset
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_chain_between_any_two_links_moves_as_the_tree_does(seed):
+    rng = np.random.default_rng(seed)
+    tree = random_tree(rng)
+    values = random_values(rng, tree)
+    poses = link_poses(tree, values)
+    names = [link.name for link in tree.links]
+    for _ in range(12):
+        base, tip = (str(name) for name in rng.choice(names, 2))
+        c = chain(tree, base, tip)
+        q = chain_values(c, values)
+        T = product_of_exponentials(c.axes, c.points, c.joint_types, c.T_zero, q)
+        np.testing.assert_allclose(T, np.linalg.inv(poses[base]) @ poses[tip], atol=1e-13)
+        for frame, (k, T_zero) in c.frames.items():
+            T = product_of_exponentials(c.axes[:k], c.points[:k], c.joint_types[:k], T_zero, q[:k])
+            np.testing.assert_allclose(T, np.linalg.inv(poses[base]) @ poses[frame], atol=1e-13)
+
+
+def test_a_chain_knows_its_limits_and_its_mimics():
+    joints = (
+        Joint("a", "revolute", "l0", "l1", lower=-1.0, upper=2.0, velocity=3.0),
+        Joint("b", "prismatic", "l1", "l2", mimic=Mimic("a", 0.5, 0.1)),
+        Joint("c", "prismatic", "l2", "l3", mimic=Mimic("b", -2.0, 0.2)),
+        Joint("d", "continuous", "l3", "l4"),
+    )
+    c = chain(Description("r", tuple(Link(f"l{i}") for i in range(5)), joints))
+    assert c.joint_names == ("a", "b", "c", "d")
+    assert c.joint_types == "RPPR"
+    assert c.dof == 2
+    assert c.coordinates.names == ("a", "d")
+    np.testing.assert_array_equal(c.coordinates.index, [0, 0, 0, 1])
+    np.testing.assert_allclose(c.coordinates.multiplier, [1, 0.5, -1.0, 1])
+    np.testing.assert_allclose(c.coordinates.offset, [0, 0.1, 0.0, 0])
+    np.testing.assert_array_equal(c.limits.lower, [-1, -np.inf])
+    np.testing.assert_array_equal(c.limits.velocity, [3, np.inf])
+
+
+def test_a_planar_joint_is_two_slides_and_a_turn():
+    rng = np.random.default_rng(1)
+    robot = Description(
+        "p", (Link("a"), Link("b")), (Joint("j", "planar", "a", "b", random_pose(rng), (0, 0, 1)),)
+    )
+    c = chain(robot)
+    assert c.joint_names == ("j/x", "j/y", "j/turn")
+    assert c.joint_types == "PPR"
+    x, y, turn = 0.3, -0.7, 1.1
+    plane = np.eye(4)
+    plane[:2, :2] = [[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]]
+    plane[:2, 3] = x, y
+    T = product_of_exponentials(c.axes, c.points, c.joint_types, c.T_zero, [x, y, turn])
+    np.testing.assert_allclose(T, robot.joints[0].origin @ plane, atol=1e-15)
+
+
+def robot_of(*joints):
+    ends = dict.fromkeys(name for joint in joints for name in (joint.parent, joint.child))
+    return Description("r", tuple(Link(name) for name in ends), joints)
+
+
+def test_the_tip_is_found_where_there_is_no_choice():
+    arm = robot_of(Joint("j", "revolute", "base", "hand"), Joint("s", "fixed", "base", "sensor"))
+    assert default_tip(arm) == "hand"
+    flange = robot_of(
+        *arm.joints, Joint("f", "fixed", "hand", "tool0"), Joint("g", "fixed", "hand", "camera")
+    )
+    assert default_tip(flange) == "tool0"
+    assert default_tip(robot_of(Joint("f", "fixed", "a", "b"))) == "b"
+
+
+def test_where_the_tip_is_a_choice_the_leaves_are_named():
+    two_arms = robot_of(Joint("l", "revolute", "torso", "left"), Joint("r", "revolute", "torso", "right"))
+    with pytest.raises(InputError, match=r"after link 'torso'.*tip=….*'left', 'right'"):
+        chain(two_arms)
+    assert chain(two_arms, tip="left").joint_names == ("l",)
+    two_frames = robot_of(
+        Joint("j", "revolute", "a", "b"), Joint("x", "fixed", "b", "grip"), Joint("y", "fixed", "b", "camera")
+    )
+    with pytest.raises(InputError, match="'grip', 'camera'"):
+        chain(two_frames)
+
+
+def test_unknown_links_and_floating_joints_are_refused():
+    robot = robot_of(Joint("f", "floating", "world", "body"), Joint("j", "revolute", "body", "wrist_3_link"))
+    with pytest.raises(UnknownNameError, match="did you mean 'wrist_3_link'"):
+        chain(robot, tip="wrist3_link")
+    with pytest.raises(UnknownNameError, match="no link 'bodi'"):
+        chain(robot, base="bodi")
+    with pytest.raises(DescriptionError, match="base='body'"):
+        chain(robot, base="world")
+    assert chain(robot, base="body").joint_names == ("j",)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_screws_go_in_and_come_out(seed):
+    rng = np.random.default_rng(seed)
+    n = int(rng.integers(1, 9))
+    axes, points, T_zero = rng.normal(size=(n, 3)), rng.normal(size=(n, 3)), random_pose(rng)
+    types = "".join(rng.choice(["R", "P"], n))
+    c = chain(from_screws(axes, points, T_zero, joint_types=types))
+    np.testing.assert_allclose(c.axes, axes / np.linalg.norm(axes, axis=1)[:, None], atol=1e-15)
+    np.testing.assert_allclose(c.points, points, atol=1e-14)
+    np.testing.assert_allclose(c.T_zero, T_zero, atol=1e-14)
+    assert c.joint_types == types
+
+
+def test_twists_carry_each_point_of_the_axis_nowhere():
+    rng = np.random.default_rng(3)
+    c = chain(from_screws(rng.normal(size=(3, 3)), rng.normal(size=(3, 3)), np.eye(4), joint_types="RPR"))
+    screws = twists(c.axes, c.points, c.joint_types)
+    velocity = screws[:, :3] + np.cross(screws[:, 3:], c.points)
+    np.testing.assert_allclose(velocity[[0, 2]], 0.0, atol=1e-15)
+    np.testing.assert_array_equal(screws[1], [*c.axes[1], 0, 0, 0])
+
+
+@pytest.mark.parametrize(
+    ("more", "says"),
+    [
+        ({"axes": [[0, 0, 0]]}, "axis must not be zero"),
+        ({"axes": [[0, 0]]}, "expected"),
+        ({"points": [[0, 0, 0], [0, 0, 1]]}, "expected"),
+        ({"points": [[0, 0, np.nan]]}, "finite"),
+        ({"T_zero": np.ones((4, 4))}, "last row"),
+        ({"joint_types": "X"}, "joint_types"),
+        ({"joint_types": "RR"}, "joint_types"),
+        ({"lower": [1], "upper": [-1]}, "upside down"),
+        ({"lower": [1, 2]}, "expected"),
+        ({"joint_names": ["a", "b"]}, "2 names"),
+    ],
+)
+def test_bad_screws_are_refused(more, says):
+    arguments = {"axes": [[0, 0, 1]], "points": [[0, 0, 0]], "T_zero": np.eye(4)} | more
+    with pytest.raises(InputError, match=says):
+        from_screws(**arguments)
