@@ -9,9 +9,11 @@ __all__ = [
     "GIMBAL_LOCK",
     "INERTIA_SYMMETRY",
     "LAST_ROW_ERROR",
+    "MEAN_UNIQUENESS",
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
+    "WHOLE_TURN",
 ]
 
 ROTATION_ERROR: Final = 1e-6
@@ -42,3 +44,11 @@ the rotation by at most this much, the angles still reproduce it."""
 PURE_TRANSLATION_ANGLE: Final = 1e-13
 """Rotation angle [rad] up to which a displacement counts as a pure translation when its pole or screw axis is
 asked for: such an angle is the rounding of the matrix, and the axis would lie 1e13 translations away."""
+
+WHOLE_TURN: Final = 2.0**-52
+"""Largest |sin(θ/2)/(θ/2)|, unitless, that counts as a whole turn θ = 2π, 4π, …, where the Jacobian of the
+exponential has no inverse: the rounding of θ alone gives as much."""
+
+MEAN_UNIQUENESS: Final = 1e-12
+"""Smallest gap of the two largest eigenvalues, relative to the largest, of a mean of rotations that is
+unique: below it rounding picks the mean."""

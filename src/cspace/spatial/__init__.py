@@ -1,6 +1,40 @@
 """Poses: planar and spatial displacements and every way to write their rotations, as arrays."""
 
 from cspace.spatial.checks import as_pose, as_pose_2d, as_rotation, as_rotation_2d
+from cspace.spatial.distances import pose_distance, rotation_distance, translation_distance
+from cspace.spatial.interpolation import interpolate, interpolate_2d, interpolate_decoupled, slerp
+from cspace.spatial.jacobians import (
+    left_jacobian_inv_se3,
+    left_jacobian_inv_so3,
+    left_jacobian_se3,
+    left_jacobian_so3,
+    right_jacobian_inv_se3,
+    right_jacobian_inv_so3,
+    right_jacobian_se3,
+    right_jacobian_so3,
+)
+from cspace.spatial.planar import (
+    embed_pose_2d,
+    inverse_pose_2d,
+    pose_2d,
+    rotation_2d,
+    to_theta,
+    to_xytheta,
+    transform_directions_2d,
+    transform_points_2d,
+)
+from cspace.spatial.planar_twists import (
+    adjoint_2d,
+    exp_se2,
+    exp_so2,
+    hat_se2,
+    hat_so2,
+    log_se2,
+    log_so2,
+    vee_se2,
+    vee_so2,
+)
+from cspace.spatial.pole import Pole, pole_of
 from cspace.spatial.poses import (
     inverse_pose,
     pose,
@@ -9,31 +43,95 @@ from cspace.spatial.poses import (
     transform_directions,
     transform_points,
 )
+from cspace.spatial.projection import mean_rotation, project_pose, project_rotation
 from cspace.spatial.quaternions import to_wxyz, to_xyzw
 from cspace.spatial.rotations import exp_so3, hat_so3, log_so3, to_axis_angle, to_rotvec, vee_so3
+from cspace.spatial.sampling import random_pose, random_pose_2d, random_rotation, random_rotation_2d
+from cspace.spatial.screws import Screw, screw_of, screw_to_twist, twist_to_screw
 from cspace.spatial.sequences import SEQUENCES, to_euler, to_fixed, to_rpy
+from cspace.spatial.twists import (
+    adjoint,
+    coadjoint,
+    exp_se3,
+    hat_se3,
+    log_se3,
+    small_adjoint,
+    vee_se3,
+)
 
 __all__ = [
     "SEQUENCES",
+    "Pole",
+    "Screw",
+    "adjoint",
+    "adjoint_2d",
     "as_pose",
     "as_pose_2d",
     "as_rotation",
     "as_rotation_2d",
+    "coadjoint",
+    "embed_pose_2d",
+    "exp_se2",
+    "exp_se3",
+    "exp_so2",
     "exp_so3",
+    "hat_se2",
+    "hat_se3",
+    "hat_so2",
     "hat_so3",
+    "interpolate",
+    "interpolate_2d",
+    "interpolate_decoupled",
     "inverse_pose",
+    "inverse_pose_2d",
+    "left_jacobian_inv_se3",
+    "left_jacobian_inv_so3",
+    "left_jacobian_se3",
+    "left_jacobian_so3",
+    "log_se2",
+    "log_se3",
+    "log_so2",
     "log_so3",
+    "mean_rotation",
+    "pole_of",
     "pose",
+    "pose_2d",
+    "pose_distance",
+    "project_pose",
+    "project_rotation",
+    "random_pose",
+    "random_pose_2d",
+    "random_rotation",
+    "random_rotation_2d",
+    "right_jacobian_inv_se3",
+    "right_jacobian_inv_so3",
+    "right_jacobian_se3",
+    "right_jacobian_so3",
     "rotation",
+    "rotation_2d",
+    "rotation_distance",
+    "screw_of",
+    "screw_to_twist",
+    "slerp",
+    "small_adjoint",
     "to_axis_angle",
     "to_euler",
     "to_fixed",
     "to_rotvec",
     "to_rpy",
+    "to_theta",
     "to_wxyz",
+    "to_xytheta",
     "to_xyz",
     "to_xyzw",
     "transform_directions",
+    "transform_directions_2d",
     "transform_points",
+    "transform_points_2d",
+    "translation_distance",
+    "twist_to_screw",
+    "vee_se2",
+    "vee_se3",
+    "vee_so2",
     "vee_so3",
 ]

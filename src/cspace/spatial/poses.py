@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
 from cspace.spatial.quaternions import matrix_of_wxyz, unit_wxyz
-from cspace.spatial.rotations import exp_so3, matrix_of_axis_angle
+from cspace.spatial.rotations import matrix_of_axis_angle, matrix_of_rotvec
 from cspace.spatial.sequences import axes_of, matrix_of_euler, matrix_of_fixed
 from cspace.spatial.vectors import length_and_direction
 
@@ -201,7 +201,7 @@ _FORMS: dict[str, Callable[[Any], Array]] = {
     "wxyz": lambda q: matrix_of_wxyz(unit_wxyz(q, "wxyz")),
     "xyzw": lambda q: matrix_of_wxyz(np.roll(unit_wxyz(q, "xyzw"), 1, axis=-1)),
     "rpy": lambda angles: matrix_of_fixed((0, 1, 2), as_floats(angles, "rpy", last=(3,))),
-    "rotvec": exp_so3,
+    "rotvec": lambda w: matrix_of_rotvec(as_floats(w, "rotvec", last=(3,)), "rotvec"),
     "axis_angle": _from_axis_angle,
     "euler": _from_euler,
     "fixed": _from_fixed,

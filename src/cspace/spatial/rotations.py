@@ -27,10 +27,7 @@ def vee_so3(W: npt.ArrayLike) -> Array:
 
     W: (..., 3, 3) → (..., 3); of a matrix that is not skew the skew part is read.
     """
-    W = as_floats(W, "skew matrix", last=(3, 3))
-    return 0.5 * np.stack(
-        [W[..., 2, 1] - W[..., 1, 2], W[..., 0, 2] - W[..., 2, 0], W[..., 1, 0] - W[..., 0, 1]], axis=-1
-    )
+    return unskew(as_floats(W, "skew matrix", last=(3, 3)))
 
 
 def exp_so3(rotvec: npt.ArrayLike) -> Array:
@@ -41,8 +38,7 @@ def exp_so3(rotvec: npt.ArrayLike) -> Array:
     rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError if |w| overflows.
     Source: Murray, Li and Sastry 1994, eq. 2.14.
     """
-    angle, axis = checked_angle_and_axis(as_floats(rotvec, "rotation vector", last=(3,)), "rotation vector")
-    return matrix_of_axis_angle(axis, angle)
+    return matrix_of_rotvec(as_floats(rotvec, "rotation vector", last=(3,)), "rotation vector")
 
 
 def log_so3(R: RotationLike) -> Array:
@@ -89,12 +85,24 @@ def skew(w: Array) -> Array:
     return W
 
 
+def unskew(W: Array) -> Array:
+    """vee_so3 without checks."""
+    twice = [W[..., 2, 1] - W[..., 1, 2], W[..., 0, 2] - W[..., 2, 0], W[..., 1, 0] - W[..., 0, 1]]
+    return 0.5 * np.stack(twice, axis=-1)
+
+
 def checked_angle_and_axis(w: Array, subject: str) -> tuple[Array, Array]:
     """Length and direction of rotation vectors; an overflowing length is refused."""
     angle, axis = length_and_direction(w)
     if not np.isfinite(angle).all():
         raise InputError(f"{subject} is so long that its length overflows; angles must be finite")
     return angle, axis
+
+
+def matrix_of_rotvec(w: Array, subject: str) -> Array:
+    """exp_so3 of checked numbers."""
+    angle, axis = checked_angle_and_axis(w, subject)
+    return matrix_of_axis_angle(axis, angle)
 
 
 def matrix_of_axis_angle(axis: Array, angle: Array) -> Array:

@@ -1,0 +1,83 @@
+"""Between two poses: along the screw that joins them, or turning and moving independently."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.spatial import planar_twists, twists
+from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_pose_2d, as_rotation
+from cspace.spatial.poses import assemble, broadcast_batches, inverse
+from cspace.spatial.rotations import checked_angle_and_axis, matrix_of_axis_angle, rotvec_of_matrix
+
+__all__ = ["interpolate", "interpolate_2d", "interpolate_decoupled", "slerp"]
+
+
+def interpolate(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
+    """The pose at the fraction t of the screw motion from start to end: a helix at a constant twist.
+
+    T(t) = T_start exp(t log(T_start⁻¹ T_end)), the shortest way round. It does not depend on the base frame.
+    If the two are half a turn apart both ways round are equally short: log_so3 says which is taken.
+
+    T_start, T_end: (..., 4, 4). t: (...), 0 at start, 1 at end, beyond them the motion goes on. All leading
+    axes broadcast: one pair and t of shape (m,) give (m, 4, 4); for n pairs at m fractions pass T[:, None].
+    """
+    start, end = as_pose(T_start, "start pose"), as_pose(T_end, "end pose")
+    step, t = _fractions(twists.logarithm(_relative(start, end)), t)
+    return np.asarray(start @ twists.exponential(step * t))
+
+
+def slerp(R_start: RotationLike, R_end: RotationLike, t: npt.ArrayLike) -> Array:
+    """The rotation at the fraction t of the shortest turn from start to end, at constant angular velocity.
+
+    R(t) = R_start exp(t log(R_startᵀ R_end)); shapes and half turns as in interpolate. Source: Shoemake 1985.
+
+    R_start, R_end: (..., 3, 3) or poses, of which the rotation counts. Returns (..., 3, 3).
+    """
+    return _slerp(as_rotation(R_start, "start rotation"), as_rotation(R_end, "end rotation"), t)
+
+
+def interpolate_decoupled(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
+    """The pose at the fraction t with the origin on a straight line and the rotation by slerp.
+
+    Which point goes straight depends on the choice of the moving frame, unlike in interpolate.
+
+    Shapes and half turns as in interpolate. Returns (..., 4, 4).
+    """
+    start, end = as_pose(T_start, "start pose"), as_pose(T_end, "end pose")
+    p_start, p_end = start[..., :3, 3], end[..., :3, 3]
+    R = _slerp(start[..., :3, :3], end[..., :3, :3], t)
+    way, fraction = _fractions(p_end - p_start, t)
+    return assemble(R, p_start + fraction * way)
+
+
+def interpolate_2d(T_start: Any, T_end: Any, t: npt.ArrayLike) -> Array:
+    """The planar pose at the fraction t of the turn about the pole, or of the line, from start to end.
+
+    Shapes as in interpolate, with (..., 3, 3); a half turn goes counter-clockwise.
+    """
+    start, end = as_pose_2d(T_start, "start pose"), as_pose_2d(T_end, "end pose")
+    step, t = _fractions(planar_twists.logarithm(_relative(start, end)), t)
+    return np.asarray(start @ planar_twists.exponential(step * t))
+
+
+def _relative(start: Array, end: Array) -> Array:
+    broadcast_batches(start.shape[:-2], end.shape[:-2], "start", "end")
+    return np.asarray(inverse(start) @ end)
+
+
+def _fractions(step: Array, t: npt.ArrayLike) -> tuple[Array, Array]:
+    """The step (..., k) and the fractions (..., 1), known to broadcast."""
+    fractions = as_floats(t, "t")
+    broadcast_batches(step.shape[:-1], fractions.shape, "start and end", "t")
+    return step, fractions[..., None]
+
+
+def _slerp(start: Array, end: Array, t: npt.ArrayLike) -> Array:
+    broadcast_batches(start.shape[:-2], end.shape[:-2], "start", "end")
+    step, fractions = _fractions(rotvec_of_matrix(np.swapaxes(start, -1, -2) @ end), t)
+    angle, axis = checked_angle_and_axis(step * fractions, "t times the angle")
+    return np.asarray(start @ matrix_of_axis_angle(axis, angle))

@@ -1,0 +1,110 @@
+"""Twists of the plane: exponential and logarithm of SO(2) and SE(2), their matrices, the adjoint."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.spatial.checks import as_pose_2d
+from cspace.spatial.planar import angle_of, matrix_of_angle, to_theta
+from cspace.spatial.poses import assemble
+from cspace.spatial.twists import sinc, x_cot_x
+
+__all__ = [
+    "adjoint_2d",
+    "exp_se2",
+    "exp_so2",
+    "hat_se2",
+    "hat_so2",
+    "log_se2",
+    "log_so2",
+    "vee_se2",
+    "vee_so2",
+]
+
+
+def hat_so2(angle: npt.ArrayLike) -> Array:
+    """The skew matrix [[0, −ω], [ω, 0]]: (...) → (..., 2, 2)."""
+    w = as_floats(angle, "angle")
+    return np.stack([np.stack([0.0 * w, -w], axis=-1), np.stack([w, 0.0 * w], axis=-1)], axis=-2)
+
+
+def vee_so2(matrix: npt.ArrayLike) -> Array:
+    """The number of a 2×2 skew matrix, the inverse of hat_so2: (..., 2, 2) → (...)."""
+    M = as_floats(matrix, "skew matrix", last=(2, 2))
+    return np.asarray(0.5 * (M[..., 1, 0] - M[..., 0, 1]))[()]
+
+
+def exp_so2(angle: npt.ArrayLike) -> Array:
+    """The planar rotation by an angle: (...) [rad] → (..., 2, 2)."""
+    return matrix_of_angle(as_floats(angle, "angle"))
+
+
+def log_so2(R: Any) -> Array:
+    """The angle of a planar rotation in (−π, π]; a half turn is π: (..., 2, 2) → (...) [rad]."""
+    return to_theta(R)
+
+
+def hat_se2(twist: npt.ArrayLike) -> Array:
+    """The 3×3 matrix [[[ω], v], [0, 0]] of a planar twist [v; ω]: (..., 3) → (..., 3, 3)."""
+    xi = as_floats(twist, "planar twist", last=(3,))
+    matrix = np.zeros((*xi.shape[:-1], 3, 3))
+    matrix[..., :2, :2] = hat_so2(xi[..., 2])
+    matrix[..., :2, 2] = xi[..., :2]
+    return matrix
+
+
+def vee_se2(matrix: npt.ArrayLike) -> Array:
+    """The planar twist [v; ω] of a 3×3 matrix, the inverse of hat_se2: (..., 3, 3) → (..., 3)."""
+    M = as_floats(matrix, "planar twist matrix", last=(3, 3))
+    return np.stack([M[..., 0, 2], M[..., 1, 2], 0.5 * (M[..., 1, 0] - M[..., 0, 1])], axis=-1)
+
+
+def exp_se2(twist: npt.ArrayLike) -> Array:
+    """The planar pose reached by moving along a constant twist: an arc about the pole, or a line.
+
+    exp ξ = [[R(ω), V v], [0, 1]],  V = [[a, −b], [b, a]],  a = sin ω/ω,  b = (1 − cos ω)/ω.
+
+    twist: [v; ω] (..., 3) [m, rad] → (..., 3, 3).
+    """
+    return exponential(as_floats(twist, "planar twist", last=(3,)))
+
+
+def log_se2(T: Any) -> Array:
+    """The planar twist with −π < ω ≤ π that reaches a pose: exp_se2(log_se2(T)) = T.
+
+    T: (..., 3, 3) → [v; ω] (..., 3) [m, rad].
+    """
+    return logarithm(as_pose_2d(T))
+
+
+def adjoint_2d(T: Any) -> Array:
+    """The matrix that maps planar twists from frame b to frame a, ξ_a = Ad(T_a_b) ξ_b, order [v; ω].
+
+    Ad(T) = [[R, (y, −x)ᵀ], [0, 1]] with (x, y) the translation.
+
+    T: T_a_b (..., 3, 3) → (..., 3, 3).
+    """
+    Ad = as_pose_2d(T).copy()
+    x, y = Ad[..., 0, 2].copy(), Ad[..., 1, 2].copy()
+    Ad[..., 0, 2], Ad[..., 1, 2] = y, -x
+    return Ad
+
+
+def exponential(xi: Array) -> Array:
+    """exp_se2 without checks."""
+    x, y, angle = xi[..., 0], xi[..., 1], xi[..., 2]
+    half = 0.5 * angle
+    a, b = sinc(angle), np.sin(half) * sinc(half)
+    return assemble(matrix_of_angle(angle), np.stack([a * x - b * y, b * x + a * y], axis=-1))
+
+
+def logarithm(T: Array) -> Array:
+    """log_se2 without checks."""
+    x, y, angle = T[..., 0, 2], T[..., 1, 2], angle_of(T[..., :2, :2])
+    half = 0.5 * angle
+    a = x_cot_x(half)
+    return np.stack([a * x + half * y, a * y - half * x, angle], axis=-1)

@@ -1,0 +1,144 @@
+"""Twists ξ = [v; ω] of space: their 4×4 matrices, the exponential and logarithm of SE(3), adjoints."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.spatial.checks import PoseLike, as_pose
+from cspace.spatial.poses import assemble
+from cspace.spatial.rotations import (
+    checked_angle_and_axis,
+    matrix_of_axis_angle,
+    rotvec_of_matrix,
+    skew,
+    unskew,
+)
+from cspace.spatial.vectors import cross, length_and_direction
+
+__all__ = ["adjoint", "coadjoint", "exp_se3", "hat_se3", "log_se3", "small_adjoint", "vee_se3"]
+
+
+def hat_se3(twist: npt.ArrayLike) -> Array:
+    """The 4×4 matrix of a twist, [[[ω], v], [0, 0]].
+
+    twist: [v; ω] (..., 6), v [m] or [m/s], ω [rad] or [rad/s] → (..., 4, 4).
+    """
+    xi = as_floats(twist, "twist", last=(6,))
+    matrix = np.zeros((*xi.shape[:-1], 4, 4))
+    matrix[..., :3, :3] = skew(xi[..., 3:])
+    matrix[..., :3, 3] = xi[..., :3]
+    return matrix
+
+
+def vee_se3(matrix: npt.ArrayLike) -> Array:
+    """The twist [v; ω] of a 4×4 matrix [[[ω], v], [0, 0]], the inverse of hat_se3.
+
+    matrix: (..., 4, 4) → (..., 6); of an upper left block that is not skew the skew part is read.
+    """
+    M = as_floats(matrix, "twist matrix", last=(4, 4))
+    return np.concatenate([M[..., :3, 3], unskew(M[..., :3, :3])], axis=-1)
+
+
+def exp_se3(twist: npt.ArrayLike) -> Array:
+    """The pose reached by moving along a constant twist for one unit of time.
+
+    exp ξ = [[exp [ω], V v], [0, 1]],  V v = v + (1 − cos θ)/θ (u × v) + (1 − sin θ/θ) (u × (u × v)),
+    with θ = |ω|, u = ω/θ; a twist without rotation moves by v.
+
+    twist: [v; ω] (..., 6) [m, rad] → (..., 4, 4). Raises InputError if |ω| overflows.
+    Source: Murray, Li and Sastry 1994, prop. 2.9.
+    """
+    return exponential(as_floats(twist, "twist", last=(6,)))
+
+
+def log_se3(T: PoseLike) -> Array:
+    """The twist with the smallest rotation that reaches a pose: exp_se3(log_se3(T)) = T.
+
+    ω is log_so3 of the rotation, 0 ≤ |ω| ≤ π, with its rule for half turns, and v = V⁻¹ p,
+    V⁻¹ p = p − θ/2 (u × p) + (1 − θ/2 cot θ/2) (u × (u × p)).
+
+    T: (..., 4, 4) → [v; ω] (..., 6) [m, rad]. Source: Murray, Li and Sastry 1994, prop. 2.9.
+    """
+    return logarithm(as_pose(T))
+
+
+def adjoint(T: PoseLike) -> Array:
+    """The matrix that maps twists from frame b to frame a, ξ_a = Ad(T_a_b) ξ_b, in the order [v; ω].
+
+    Ad(T) = [[R, [p] R], [0, R]]. It multiplies as poses do: Ad(T₁ T₂) = Ad(T₁) Ad(T₂).
+
+    T: T_a_b (..., 4, 4) → (..., 6, 6). Source: Murray, Li and Sastry 1994, eq. 2.58.
+    """
+    T = as_pose(T)
+    R = T[..., :3, :3]
+    Ad = np.zeros((*T.shape[:-2], 6, 6))
+    Ad[..., :3, :3] = Ad[..., 3:, 3:] = R
+    Ad[..., :3, 3:] = skew(T[..., :3, 3]) @ R
+    return Ad
+
+
+def coadjoint(T: PoseLike) -> Array:
+    """The matrix that maps wrenches [f; τ] from frame b to frame a: the power f·v + τ·ω stays the same.
+
+    Ad(T)⁻ᵀ = [[R, 0], [[p] R, R]].
+
+    T: T_a_b (..., 4, 4) → (..., 6, 6).
+    """
+    T = as_pose(T)
+    R = T[..., :3, :3]
+    Ad = np.zeros((*T.shape[:-2], 6, 6))
+    Ad[..., :3, :3] = Ad[..., 3:, 3:] = R
+    Ad[..., 3:, :3] = skew(T[..., :3, 3]) @ R
+    return Ad
+
+
+def small_adjoint(twist: npt.ArrayLike) -> Array:
+    """The matrix of the Lie bracket, ad(ξ) η = [ξ, η], in the order [v; ω].
+
+    ad(ξ) = [[[ω], [v]], [0, [ω]]], the derivative of Ad: Ad(exp ξ) = exp(ad ξ).
+
+    twist: [v; ω] (..., 6) → (..., 6, 6).
+    """
+    xi = as_floats(twist, "twist", last=(6,))
+    ad = np.zeros((*xi.shape[:-1], 6, 6))
+    ad[..., :3, :3] = ad[..., 3:, 3:] = skew(xi[..., 3:])
+    ad[..., :3, 3:] = skew(xi[..., :3])
+    return ad
+
+
+def exponential(xi: Array) -> Array:
+    """exp_se3 without checks but for an overflowing angle.
+
+    Written with the unit axis, no coefficient cancels or overflows, down to the smallest angles.
+    """
+    v = xi[..., :3]
+    angle, axis = checked_angle_and_axis(xi[..., 3:], "the rotation of the twist")
+    half = 0.5 * angle
+    across = np.sin(half) * sinc(half)
+    twice = 1.0 - sinc(angle)
+    u_v = cross(axis, v)
+    p = v + across[..., None] * u_v + twice[..., None] * cross(axis, u_v)
+    return assemble(matrix_of_axis_angle(axis, angle), p)
+
+
+def logarithm(T: Array) -> Array:
+    """log_se3 without checks."""
+    p = T[..., :3, 3]
+    w = rotvec_of_matrix(T[..., :3, :3])
+    angle, axis = length_and_direction(w)
+    half = 0.5 * angle
+    u_p = cross(axis, p)
+    v = p - half[..., None] * u_p + (1.0 - x_cot_x(half))[..., None] * cross(axis, u_p)
+    return np.concatenate([v, w], axis=-1)
+
+
+def sinc(x: Array) -> Array:
+    """sin x / x, 1 at zero."""
+    return np.asarray(np.where(x == 0.0, 1.0, np.sin(x) / np.where(x == 0.0, 1.0, x)))
+
+
+def x_cot_x(x: Array) -> Array:
+    """x cot x for |x| ≤ π/2, 1 at zero."""
+    return np.asarray(np.where(x == 0.0, 1.0, x * np.cos(x) / np.where(x == 0.0, 1.0, np.sin(x))))
