@@ -9,5 +9,5 @@ from cspace.spatial import *  # noqa: F403
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
-__all__ = ["CspaceError", "__version__"]
+__all__ = ["CspaceError", "__version__", "spatial"]
 __all__ += spatial.__all__

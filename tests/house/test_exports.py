@@ -38,7 +38,7 @@ def declared(path: Path) -> set[str]:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             names.add(node.name)
         elif isinstance(node, ast.ImportFrom) and path.name == "__init__.py" and is_ours(node):
-            names.update(alias.asname or alias.name for alias in node.names)
+            names.update(alias.asname or alias.name for alias in node.names if alias.name != "*")
     return {name for name in names if not name.startswith("_")}
 
 

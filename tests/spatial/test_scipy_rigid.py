@@ -12,8 +12,7 @@ transform = pytest.importorskip("scipy.spatial.transform")
 @pytest.fixture(scope="module")
 def rigid():
     if not hasattr(transform, "RigidTransform"):
-        # Older scipy, on older Python: the laws in test_groups.py hold without this second opinion.
-        pytest.xfail("this scipy has no RigidTransform (it came with 1.16)")
+        pytest.skip("this scipy has no RigidTransform (it came with 1.16)")
     return transform.RigidTransform
 
 
@@ -22,17 +21,13 @@ def coordinates(xi):
     return np.concatenate([xi[..., 3:], xi[..., :3]], axis=-1)
 
 
-@pytest.mark.parametrize("angle", [a for a in ANGLES if a not in {"1e-320", "1e-160"}])
+@pytest.mark.parametrize("angle", ANGLES)
 def test_exponential_coordinates_agree(rigid, angle):
     xi = twists(angle, (50,))
     theirs = rigid.from_exp_coords(coordinates(xi))
     close(cs.exp_se3(xi), theirs.as_matrix())
     T = poses(angle, (50,))
-    # Their logarithm loses the digits of v below 1e-5 rad: it is held to what its own exponential confirms.
-    back = rigid.from_exp_coords(coordinates(cs.log_se3(T)))
-    close(back.as_matrix(), T)
-    if angle in {"any", "quarter", "zero"}:
-        close(cs.log_se3(T), coordinates(rigid.from_matrix(T).as_exp_coords()))
+    close(cs.log_se3(T), coordinates(rigid.from_matrix(T).as_exp_coords()))
 
 
 def test_products_inverses_and_points_agree(rigid):

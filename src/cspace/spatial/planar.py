@@ -86,7 +86,11 @@ def transform_points_2d(T: Any, points: npt.ArrayLike) -> Array:
 
 
 def transform_directions_2d(T: Any, directions: npt.ArrayLike) -> Array:
-    """Directions of the plane turned but not moved, d_a = R d_b; shapes as in transform_points_2d."""
+    """Directions of the plane turned but not moved, d_a = R d_b.
+
+    T: T_a_b (..., 3, 3) or rotations (..., 2, 2). directions: d_b (..., 2). Leading axes broadcast.
+    Returns d_a (..., 2).
+    """
     return turned(as_rotation_2d(T), as_floats(directions, "directions", last=(2,)))
 
 

@@ -21,7 +21,7 @@ def random_rotation(size: Size = (), *, rng: int | np.random.Generator | None = 
 
     q = (√(1−u) sin 2πa, √(1−u) cos 2πa, √u sin 2πb, √u cos 2πb) with u, a, b uniform in [0, 1).
 
-    size: how many, an int or a shape; () for one. rng: seed, Generator or None. Returns (*size, 3, 3).
+    size: how many, an int or a shape; () for one. rng: seed, Generator or None. Returns (..., 3, 3), the size first.
     Source: Shoemake 1992.
     """
     return _rotations(_shape(size), as_generator(rng))
@@ -37,7 +37,7 @@ def random_pose(
     """Poses with uniform rotations and translations uniform in a box.
 
     size: how many, an int or a shape; () for one. lower, upper: corners of the box, (3,) or one number [m].
-    rng: seed, Generator or None. Returns (*size, 4, 4).
+    rng: seed, Generator or None. Returns (..., 4, 4), the size first.
     """
     shape, generator = _shape(size), as_generator(rng)
     R = _rotations(shape, generator)
@@ -45,7 +45,10 @@ def random_pose(
 
 
 def random_rotation_2d(size: Size = (), *, rng: int | np.random.Generator | None = None) -> Array:
-    """Planar rotations with the angle uniform in [−π, π): (*size, 2, 2)."""
+    """Planar rotations with the angle uniform in [−π, π).
+
+    size: how many, an int or a shape. rng: seed, Generator or None. Returns (..., 2, 2), the size first.
+    """
     return matrix_of_angle(np.asarray(as_generator(rng).uniform(-np.pi, np.pi, _shape(size))))
 
 
@@ -56,7 +59,11 @@ def random_pose_2d(
     upper: npt.ArrayLike = 1.0,
     rng: int | np.random.Generator | None = None,
 ) -> Array:
-    """Planar poses with uniform headings and translations uniform in a rectangle: (*size, 3, 3)."""
+    """Planar poses with uniform headings and translations uniform in a rectangle.
+
+    size: how many, an int or a shape. lower, upper: corners of the rectangle, (2,) or one number [m].
+    rng: seed, Generator or None. Returns (..., 3, 3), the size first.
+    """
     shape, generator = _shape(size), as_generator(rng)
     R = matrix_of_angle(np.asarray(generator.uniform(-np.pi, np.pi, shape)))
     return assemble(R, _box(shape, 2, lower, upper, generator))
