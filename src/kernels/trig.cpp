@@ -1,44 +1,41 @@
 #include "trig.hpp"
 
+#include "cspace/math/rows.hpp"
 #include "cspace/math/trig.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 namespace {
 
-constexpr int width = 4;
-using V = Pack<width>;
+using V = Pack<native_width>;
 
-// Calls f on packs of the arrays; the last, partial pack is padded with ones.
+// Calls f(first, count) for each pack of n values; the last may be partial.
 template <class F>
-void over_packs(std::size_t n, F f) {
-    for (std::size_t i = 0; i < n; i += width) f(i, n - i < width ? int(n - i) : width);
-}
-V load(const double* x, int count) {
-    V v = fill<V>(1.0);
-    for (int k = 0; k < count; ++k) set_lane(v, k, x[k]);
-    return v;
-}
-void store(double* x, V v, int count) {
-    for (int k = 0; k < count; ++k) x[k] = lane(v, k);
+CSPACE_INLINE void over_packs(std::size_t n, F f) {
+    std::size_t i = 0;
+    for (; i + native_width <= n; i += native_width) f(i, native_width);
+    if (i < n) f(i, int(n - i));
 }
 
 }  // namespace
 
 void sincos_n(const double* x, double* s, double* c, std::size_t n) {
     over_packs(n, [=](std::size_t i, int count) {
-        V sv, cv;
-        sincos(load(x + i, count), sv, cv);
-        store(s + i, sv, count);
-        store(c + i, cv, count);
+        V sine, cosine;
+        sincos(load<V>(x + i, count), sine, cosine);
+        store(s + i, sine, count);
+        store(c + i, cosine, count);
     });
 }
 void atan2_n(const double* y, const double* x, double* angle, std::size_t n) {
     over_packs(n, [=](std::size_t i, int count) {
-        store(angle + i, atan2(load(y + i, count), load(x + i, count)), count);
+        store(angle + i, atan2(load<V>(y + i, count), load<V>(x + i, count)), count);
     });
 }
 void acos_n(const double* x, double* angle, std::size_t n) {
-    over_packs(n, [=](std::size_t i, int count) { store(angle + i, acos(load(x + i, count)), count); });
+    over_packs(n, [=](std::size_t i, int count) { store(angle + i, acos(load<V>(x + i, count)), count); });
+}
+void asin_n(const double* x, double* angle, std::size_t n) {
+    over_packs(n, [=](std::size_t i, int count) { store(angle + i, asin(load<V>(x + i, count)), count); });
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -7,3 +7,4 @@
 CSPACE_KERNEL(void, sincos_n, (const double* x, double* s, double* c, std::size_t n))
 CSPACE_KERNEL(void, atan2_n, (const double* y, const double* x, double* angle, std::size_t n))
 CSPACE_KERNEL(void, acos_n, (const double* x, double* angle, std::size_t n))
+CSPACE_KERNEL(void, asin_n, (const double* x, double* angle, std::size_t n))

@@ -5,7 +5,7 @@
 // keeps the copies apart for the linker; plain data shared between them lives in `cspace`.
 #pragma once
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__)
+#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
 #define CSPACE_ISA avx512
 #elif defined(__AVX2__)
 #define CSPACE_ISA avx2
@@ -22,9 +22,18 @@ inline namespace CSPACE_ISA {}
 #if defined(__GNUC__) || defined(__clang__)
 #define CSPACE_INLINE inline __attribute__((always_inline))
 #define CSPACE_NOINLINE __attribute__((noinline))
-#define CSPACE_VECTOR_EXTENSIONS 1
+// For the rare path of a hot function: out of line and away from the hot code.
+#define CSPACE_COLD __attribute__((noinline, cold))
 #else
 #define CSPACE_INLINE __forceinline
 #define CSPACE_NOINLINE __declspec(noinline)
+#define CSPACE_COLD __declspec(noinline)
+#endif
+
+// Registers of the vector extensions of GCC and Clang; other compilers (or CSPACE_FORCE_ARRAY_LANES, so that
+// their path can be tested anywhere) get arrays.
+#if (defined(__GNUC__) || defined(__clang__)) && !defined(CSPACE_FORCE_ARRAY_LANES)
+#define CSPACE_VECTOR_EXTENSIONS 1
+#else
 #define CSPACE_VECTOR_EXTENSIONS 0
 #endif

@@ -1,45 +1,17 @@
 // Packs of lanes: one lane is one configuration, pose or particle.
 //
-// A kernel is a template over a scalar V. With V = double it serves one call; with V = Pack<4> it serves
-// four at once. Everything a kernel may do with V is in this file (arithmetic, comparison, selection) or in
-// trig.hpp (angles); each operation exists for both.
+// A kernel is a template over a scalar V. With V = double it serves one call; with V = Pack<native_width> it
+// serves as many at once. Everything a kernel may do with V is in this file (arithmetic, comparison,
+// selection), in rows.hpp (memory) or in trig.hpp (angles); each operation exists for both.
+// How a pack is kept is the business of registers.hpp: read lanes with lane(), write them with set_lane().
 #pragma once
 
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 
-#include "cspace/math/isa.hpp"
+#include "cspace/math/registers.hpp"
 
 namespace cspace {
-
-template <int N>
-struct Pack;
-template <int N>
-struct Mask;
-
-#if CSPACE_VECTOR_EXTENSIONS
-template <int N>
-struct Pack {
-    typedef double Raw __attribute__((vector_size(N * 8)));
-    Raw v;
-};
-template <int N>
-struct Mask {
-    typedef std::int64_t Raw __attribute__((vector_size(N * 8)));
-    Raw m;
-};
-#else
-template <int N>
-struct alignas(N * 8) Pack {
-    double v[N];
-};
-template <int N>
-struct alignas(N * 8) Mask {
-    std::int64_t m[N];
-};
-#endif
 
 // What a kernel needs to know of its scalar: how many lanes, and what a comparison yields.
 template <class V>
@@ -66,6 +38,9 @@ template <class V>
 CSPACE_INLINE V fill(double x) {
     if constexpr (Lanes<V>::count == 1) {
         return x;
+    } else if constexpr (is_split<Lanes<V>::count>) {
+        const auto half = fill<Pack<Lanes<V>::count / 2>>(x);
+        return {half, half};
     } else {
         V r;
         for (int i = 0; i < Lanes<V>::count; ++i) r.v[i] = x;
@@ -73,138 +48,133 @@ CSPACE_INLINE V fill(double x) {
     }
 }
 CSPACE_INLINE double lane(double x, int) { return x; }
-template <int N>
-CSPACE_INLINE double lane(Pack<N> x, int i) {
-    return x.v[i];
-}
 CSPACE_INLINE bool lane(bool m, int) { return m; }
 template <int N>
+CSPACE_INLINE double lane(Pack<N> x, int i) {
+    if constexpr (is_split<N>) {
+        return i < N / 2 ? lane(x.low, i) : lane(x.high, i - N / 2);
+    } else {
+        return x.v[i];
+    }
+}
+template <int N>
 CSPACE_INLINE bool lane(Mask<N> m, int i) {
-    return m.m[i] != 0;
+    if constexpr (is_split<N>) {
+        return i < N / 2 ? lane(m.low, i) : lane(m.high, i - N / 2);
+    } else {
+        return m.m[i] != 0;
+    }
 }
 CSPACE_INLINE void set_lane(double& x, int, double value) { x = value; }
 template <int N>
 CSPACE_INLINE void set_lane(Pack<N>& x, int i, double value) {
-    x.v[i] = value;
+    if constexpr (is_split<N>) {
+        i < N / 2 ? set_lane(x.low, i, value) : set_lane(x.high, i - N / 2, value);
+    } else {
+        x.v[i] = value;
+    }
 }
 
-// --- arithmetic ----------------------------------------------------------------------------------------
-#if CSPACE_VECTOR_EXTENSIONS
-#define CSPACE_ARITHMETIC(op)                                 \
-    template <int N>                                          \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, Pack<N> b) { \
-        return {a.v op b.v};                                  \
-    }                                                         \
-    template <int N>                                          \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, double b) {  \
-        return {a.v op b};                                    \
-    }                                                         \
-    template <int N>                                          \
-    CSPACE_INLINE Pack<N> operator op(double a, Pack<N> b) {  \
-        return {a op b.v};                                    \
-    }
-#define CSPACE_COMPARISON(op)                                        \
-    template <int N>                                                 \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, Pack<N> b) {        \
-        return {(typename Mask<N>::Raw)(a.v op b.v)};                \
-    }                                                                \
-    template <int N>                                                 \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, double b) {         \
-        return {(typename Mask<N>::Raw)(a.v op fill<Pack<N>>(b).v)}; \
-    }
-#define CSPACE_LOGIC(op, bitop)                               \
-    template <int N>                                          \
-    CSPACE_INLINE Mask<N> operator op(Mask<N> a, Mask<N> b) { \
-        return {a.m bitop b.m};                               \
-    }
-#else
-#define CSPACE_ARITHMETIC(op)                                  \
+// --- packs wider than a register: every operation on both halves ----------------------------------------
+#define CSPACE_ON_HALVES(Result, name, Operand)                \
     template <int N>                                           \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, Pack<N> b) {  \
-        Pack<N> r;                                             \
-        for (int i = 0; i < N; ++i) r.v[i] = a.v[i] op b.v[i]; \
-        return r;                                              \
-    }                                                          \
+        requires is_split<N>                                   \
+    CSPACE_INLINE Result<N> name(Operand<N> a, Operand<N> b) { \
+        return {name(a.low, b.low), name(a.high, b.high)};     \
+    }
+CSPACE_ON_HALVES(Pack, operator+, Pack)
+CSPACE_ON_HALVES(Pack, operator-, Pack)
+CSPACE_ON_HALVES(Pack, operator*, Pack)
+CSPACE_ON_HALVES(Pack, operator/, Pack)
+CSPACE_ON_HALVES(Mask, operator<, Pack)
+CSPACE_ON_HALVES(Mask, operator<=, Pack)
+CSPACE_ON_HALVES(Mask, operator>, Pack)
+CSPACE_ON_HALVES(Mask, operator>=, Pack)
+CSPACE_ON_HALVES(Mask, operator==, Pack)
+CSPACE_ON_HALVES(Mask, operator!=, Pack)
+CSPACE_ON_HALVES(Mask, operator&&, Mask)
+CSPACE_ON_HALVES(Mask, operator||, Mask)
+CSPACE_ON_HALVES(Pack, bit_and, Pack)
+CSPACE_ON_HALVES(Pack, bit_or, Pack)
+CSPACE_ON_HALVES(Pack, bit_xor, Pack)
+CSPACE_ON_HALVES(Pack, bit_and_not, Pack)
+CSPACE_ON_HALVES(Pack, min, Pack)
+CSPACE_ON_HALVES(Pack, max, Pack)
+#undef CSPACE_ON_HALVES
+template <int N>
+    requires is_split<N>
+CSPACE_INLINE Pack<N> operator-(Pack<N> a) {
+    return {-a.low, -a.high};
+}
+template <int N>
+    requires is_split<N>
+CSPACE_INLINE Mask<N> operator!(Mask<N> a) {
+    return {!a.low, !a.high};
+}
+template <int N>
+    requires is_split<N>
+CSPACE_INLINE Pack<N> sqrt(Pack<N> a) {
+    return {sqrt(a.low), sqrt(a.high)};
+}
+template <int N>
+    requires is_split<N>
+CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {
+    return {mul_add(a.low, b.low, c.low), mul_add(a.high, b.high, c.high)};
+}
+template <int N>
+    requires is_split<N>
+CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {
+    return {select(m.low, yes.low, no.low), select(m.high, yes.high, no.high)};
+}
+template <int count, int N>
+    requires is_split<N>
+CSPACE_INLINE Pack<N> shift_bits_left(Pack<N> a) {
+    return {shift_bits_left<count>(a.low), shift_bits_left<count>(a.high)};
+}
+template <int N>
+    requires is_split<N>
+CSPACE_INLINE Mask<N> lowest_bit(Pack<N> a) {
+    return {lowest_bit(a.low), lowest_bit(a.high)};
+}
+// The lanes of a mask as the low bits of an integer.
+template <int N>
+    requires is_split<N>
+CSPACE_INLINE unsigned bits_of(Mask<N> m) {
+    return bits_of(m.low) | bits_of(m.high) << N / 2;
+}
+
+// --- a pack and a number ---------------------------------------------------------------------------------
+#define CSPACE_WITH_NUMBER(Result, op)                         \
     template <int N>                                           \
-    CSPACE_INLINE Pack<N> operator op(Pack<N> a, double b) {   \
+    CSPACE_INLINE Result<N> operator op(Pack<N> a, double b) { \
         return a op fill<Pack<N>>(b);                          \
     }                                                          \
     template <int N>                                           \
-    CSPACE_INLINE Pack<N> operator op(double a, Pack<N> b) {   \
+    CSPACE_INLINE Result<N> operator op(double a, Pack<N> b) { \
         return fill<Pack<N>>(a) op b;                          \
     }
-#define CSPACE_COMPARISON(op)                                             \
-    template <int N>                                                      \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, Pack<N> b) {             \
-        Mask<N> r;                                                        \
-        for (int i = 0; i < N; ++i) r.m[i] = (a.v[i] op b.v[i]) ? -1 : 0; \
-        return r;                                                         \
-    }                                                                     \
-    template <int N>                                                      \
-    CSPACE_INLINE Mask<N> operator op(Pack<N> a, double b) {              \
-        return a op fill<Pack<N>>(b);                                     \
+#define CSPACE_ASSIGNMENT(op)                                         \
+    CSPACE_WITH_NUMBER(Pack, op)                                      \
+    template <int N>                                                  \
+    CSPACE_INLINE Pack<N>& operator op## = (Pack<N> & a, Pack<N> b) { \
+        return a = a op b;                                            \
+    }                                                                 \
+    template <int N>                                                  \
+    CSPACE_INLINE Pack<N>& operator op## = (Pack<N> & a, double b) {  \
+        return a = a op b;                                            \
     }
-#define CSPACE_LOGIC(op, bitop)                                   \
-    template <int N>                                              \
-    CSPACE_INLINE Mask<N> operator op(Mask<N> a, Mask<N> b) {     \
-        Mask<N> r;                                                \
-        for (int i = 0; i < N; ++i) r.m[i] = a.m[i] bitop b.m[i]; \
-        return r;                                                 \
-    }
-#endif
-CSPACE_ARITHMETIC(+)
-CSPACE_ARITHMETIC(-)
-CSPACE_ARITHMETIC(*)
-CSPACE_ARITHMETIC(/)
-CSPACE_COMPARISON(<)
-CSPACE_COMPARISON(<=)
-CSPACE_COMPARISON(>)
-CSPACE_COMPARISON(>=)
-CSPACE_COMPARISON(==)
-CSPACE_LOGIC(&&, &)
-CSPACE_LOGIC(||, |)
-#undef CSPACE_ARITHMETIC
-#undef CSPACE_COMPARISON
-#undef CSPACE_LOGIC
-
-template <int N>
-CSPACE_INLINE Pack<N> operator-(Pack<N> a) {
-#if CSPACE_VECTOR_EXTENSIONS
-    return {-a.v};
-#else
-    for (int i = 0; i < N; ++i) a.v[i] = -a.v[i];
-    return a;
-#endif
-}
-template <int N>
-CSPACE_INLINE Mask<N> operator!(Mask<N> a) {
-    for (int i = 0; i < N; ++i) a.m[i] = ~a.m[i];
-    return a;
-}
-template <int N>
-CSPACE_INLINE Pack<N>& operator+=(Pack<N>& a, Pack<N> b) {
-    return a = a + b;
-}
-template <int N>
-CSPACE_INLINE Pack<N>& operator-=(Pack<N>& a, Pack<N> b) {
-    return a = a - b;
-}
-template <int N>
-CSPACE_INLINE Pack<N>& operator*=(Pack<N>& a, Pack<N> b) {
-    return a = a * b;
-}
-
-// --- choice --------------------------------------------------------------------------------------------
-CSPACE_INLINE double select(bool m, double yes, double no) { return m ? yes : no; }
-template <int N>
-CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {
-#if CSPACE_VECTOR_EXTENSIONS
-    return {m.m ? yes.v : no.v};
-#else
-    for (int i = 0; i < N; ++i) no.v[i] = m.m[i] ? yes.v[i] : no.v[i];
-    return no;
-#endif
-}
+CSPACE_ASSIGNMENT(+)
+CSPACE_ASSIGNMENT(-)
+CSPACE_ASSIGNMENT(*)
+CSPACE_ASSIGNMENT(/)
+CSPACE_WITH_NUMBER(Mask, <)
+CSPACE_WITH_NUMBER(Mask, <=)
+CSPACE_WITH_NUMBER(Mask, >)
+CSPACE_WITH_NUMBER(Mask, >=)
+CSPACE_WITH_NUMBER(Mask, ==)
+CSPACE_WITH_NUMBER(Mask, !=)
+#undef CSPACE_ASSIGNMENT
+#undef CSPACE_WITH_NUMBER
 template <int N>
 CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, double no) {
     return select(m, yes, fill<Pack<N>>(no));
@@ -213,47 +183,69 @@ template <int N>
 CSPACE_INLINE Pack<N> select(Mask<N> m, double yes, Pack<N> no) {
     return select(m, fill<Pack<N>>(yes), no);
 }
-CSPACE_INLINE bool any(bool m) { return m; }
+
+// --- the same for one double -----------------------------------------------------------------------------
+CSPACE_INLINE double select(bool m, double yes, double no) { return m ? yes : no; }
+CSPACE_INLINE unsigned bits_of(bool m) { return m; }
+CSPACE_INLINE double sqrt(double x) { return std::sqrt(x); }
+CSPACE_INLINE double min(double a, double b) { return a < b ? a : b; }
+CSPACE_INLINE double max(double a, double b) { return a > b ? a : b; }
+// a b + c; rounded once where the instruction set multiplies and adds in one instruction.
+CSPACE_INLINE double mul_add(double a, double b, double c) {
+#if CSPACE_VECTOR_EXTENSIONS && (defined(__FMA__) || defined(__ARM_NEON))
+    return __builtin_fma(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
+#define CSPACE_BITS(name, op)                                                                           \
+    CSPACE_INLINE double name(double a, double b) {                                                     \
+        return std::bit_cast<double>(std::bit_cast<std::int64_t>(a) op std::bit_cast<std::int64_t>(b)); \
+    }
+CSPACE_BITS(bit_and, &)
+CSPACE_BITS(bit_or, |)
+CSPACE_BITS(bit_xor, ^)
+CSPACE_BITS(bit_and_not, &~)
+#undef CSPACE_BITS
+template <int count>
+CSPACE_INLINE double shift_bits_left(double a) {
+    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) << count);
+}
+CSPACE_INLINE bool lowest_bit(double a) { return std::bit_cast<std::uint64_t>(a) & 1; }
+
+// --- what follows from the above, for both ---------------------------------------------------------------
+template <class M>
+CSPACE_INLINE bool any(M m) {
+    return bits_of(m) != 0;
+}
 CSPACE_INLINE bool all(bool m) { return m; }
 template <int N>
-CSPACE_INLINE bool any(Mask<N> m) {
-    std::int64_t r = 0;
-    for (int i = 0; i < N; ++i) r |= m.m[i];
-    return r != 0;
-}
-template <int N>
 CSPACE_INLINE bool all(Mask<N> m) {
-    std::int64_t r = -1;
-    for (int i = 0; i < N; ++i) r &= m.m[i];
-    return r != 0;
+    return bits_of(m) == (1u << N) - 1;
 }
-
-// --- elementary functions ------------------------------------------------------------------------------
-CSPACE_INLINE double sqrt(double x) { return std::sqrt(x); }
-CSPACE_INLINE double abs(double x) { return std::fabs(x); }
-CSPACE_INLINE double copysign(double magnitude, double sign) { return std::copysign(magnitude, sign); }
-template <int N>
-CSPACE_INLINE Pack<N> sqrt(Pack<N> x) {
-    for (int i = 0; i < N; ++i) x.v[i] = std::sqrt(x.v[i]);
-    return x;
+// x where the mask holds, else +0.
+template <class V>
+CSPACE_INLINE V where(mask_of<V> m, V x) {
+    return select(m, x, fill<V>(0.0));
 }
-template <int N>
-CSPACE_INLINE Pack<N> abs(Pack<N> x) {
-    for (int i = 0; i < N; ++i) x.v[i] = std::fabs(x.v[i]);
-    return x;
-}
-template <int N>
-CSPACE_INLINE Pack<N> copysign(Pack<N> magnitude, Pack<N> sign) {
-    for (int i = 0; i < N; ++i) magnitude.v[i] = std::copysign(magnitude.v[i], sign.v[i]);
-    return magnitude;
+// The sign bit alone, +0 or −0; bit_xor with it multiplies by the sign.
+template <class V>
+CSPACE_INLINE V sign_bit(V x) {
+    return bit_and(x, fill<V>(-0.0));
 }
 template <class V>
-CSPACE_INLINE V min(V a, V b) {
-    return select(a < b, a, b);
+CSPACE_INLINE V abs(V x) {
+    return bit_and_not(x, fill<V>(-0.0));
 }
 template <class V>
-CSPACE_INLINE V max(V a, V b) {
-    return select(a > b, a, b);
+CSPACE_INLINE V copysign(V magnitude, V sign) {
+    return bit_or(abs(magnitude), sign_bit(sign));
+}
+// The nearest integer, ties to even. Adding 2⁵² leaves no room for a fraction; what is larger has none.
+template <class V>
+CSPACE_INLINE V round(V x) {
+    const V big = fill<V>(4503599627370496.0), magnitude = abs(x);
+    return bit_or(select(magnitude < big, (magnitude + big) - big, magnitude), sign_bit(x));
 }
 
 }  // namespace cspace::inline CSPACE_ISA
