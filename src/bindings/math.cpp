@@ -20,4 +20,7 @@ void bind_math(nb::module_& m) {
     m.def(
         "acos", [](In x, Out a) { cspace::kernels::acos_n(x.data(), a.data(), x.size()); }, nb::arg("x"),
         nb::arg("angle"), "Inverse cosine of x (n,) [rad], written into angle.");
+    m.def(
+        "asin", [](In x, Out a) { cspace::kernels::asin_n(x.data(), a.data(), x.size()); }, nb::arg("x"),
+        nb::arg("angle"), "Inverse sine of x (n,) [rad], written into angle.");
 }

@@ -19,3 +19,6 @@ def atan2(y: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', de
 
 def acos(x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """Inverse cosine of x (n,) [rad], written into angle."""
+
+def asin(x: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
+    """Inverse sine of x (n,) [rad], written into angle."""
