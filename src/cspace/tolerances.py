@@ -6,6 +6,8 @@ from typing import Final
 
 __all__ = [
     "AXIS_LENGTH",
+    "DESCRIPTION_BYTES",
+    "DESCRIPTION_DEPTH",
     "GIMBAL_LOCK",
     "INERTIA_SYMMETRY",
     "LAST_ROW_ERROR",
@@ -13,6 +15,7 @@ __all__ = [
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
+    "UNLIMITED",
     "WHOLE_TURN",
 ]
 
@@ -52,3 +55,13 @@ exponential has no inverse: the rounding of θ alone gives as much."""
 MEAN_UNIQUENESS: Final = 1e-12
 """Smallest gap of the two largest eigenvalues, relative to the largest, of a mean of rotations that is
 unique: below it rounding picks the mean."""
+
+DESCRIPTION_BYTES: Final = 64 * 2**20
+"""Largest robot file that is read (bytes): a hundred times the largest humanoid."""
+
+DESCRIPTION_DEPTH: Final = 64
+"""Deepest nesting of elements in a robot file: URDF needs five levels, simulator extensions a dozen."""
+
+UNLIMITED: Final = 1e300
+"""What stands for infinity where a file format demands a finite number (rad, m, or their rates): beyond any
+machine, and read back as infinity."""

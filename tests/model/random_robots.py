@@ -36,7 +36,8 @@ def random_tree(rng, n=12, kinds=("revolute", "continuous", "prismatic", "fixed"
         limits = {"lower": -rng.uniform(0, 3), "upper": rng.uniform(0, 3)} if kind != "continuous" else {}
         if kind not in ("revolute", "prismatic"):
             limits = {}
-        limits |= {"velocity": rng.uniform(0, 5), "effort": rng.uniform(0, 50)} if rng.random() < 0.5 else {}
+        if kind != "fixed" and rng.random() < 0.5:
+            limits |= {"velocity": rng.uniform(0, 5), "effort": rng.uniform(0, 50)}
         axis = rng.normal(size=3)
         joints.append(
             Joint(

@@ -140,6 +140,6 @@ def test_unknown_names_get_suggestions():
 
 
 def test_a_missing_mesh_names_every_place_searched_when_asked_for():
-    mesh = Mesh("package://ur/meshes/a.stl", None, ("/a/ur/meshes/a.stl", "/b/ur/meshes/a.stl"))
-    with pytest.raises(DescriptionError, match=r"(?s)/a/ur/meshes/a.stl.*/b/ur/meshes/a.stl.*package_paths"):
+    mesh = Mesh("package://ur/meshes/a.stl", beside="/a", package_paths=("/b",))
+    with pytest.raises(DescriptionError, match=r"(?s)/b/ur/meshes/a.stl.*/a/ur/meshes/a.stl.*package_paths"):
         mesh.file()

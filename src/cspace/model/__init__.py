@@ -6,6 +6,8 @@ from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.screws import from_screws, twists
 from cspace.model.tree import Tree, tree
+from cspace.model.urdf import from_urdf
+from cspace.model.urdf_writer import to_urdf
 
 __all__ = [
     "Chain",
@@ -24,6 +26,8 @@ __all__ = [
     "chain",
     "default_tip",
     "from_screws",
+    "from_urdf",
+    "to_urdf",
     "tree",
     "twists",
 ]

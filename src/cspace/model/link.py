@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import DescriptionError, InputError, suggest
+from cspace.model.packages import locate
 from cspace.model.values import IDENTITY, finite_number, frozen, name_of, placement
 from cspace.tolerances import INERTIA_SYMMETRY
 
@@ -54,14 +55,14 @@ class Inertial:
 class Mesh:
     """A mesh file by reference; nothing is opened until the geometry is asked for.
 
-    uri: as written in the description. path: the file found, or None. searched: every place tried.
-    scale (3,): factors along the axes of the mesh.
+    uri: as written in the description. scale (3,): factors along the axes of the mesh. beside: the folder of
+    the description. package_paths: folders where packages are looked for first.
     """
 
     uri: str
-    path: str | None = None
-    searched: tuple[str, ...] = ()
     scale: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    beside: str | None = None
+    package_paths: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         name_of(self.uri, "mesh file")
@@ -71,15 +72,16 @@ class Mesh:
     def file(self) -> str:
         """The path of the mesh file.
 
-        Raises DescriptionError naming every place searched if the file was not found.
+        Raises DescriptionError naming every place searched if there is no such file.
         """
-        if self.path is None:
-            places = "".join(f"\n  {place}" for place in self.searched) or " nowhere"
+        path, searched = locate(self.uri, self.beside, self.package_paths)
+        if path is None:
+            places = "".join(f"\n  {place}" for place in searched) or " nowhere"
             raise DescriptionError(
                 f"mesh {self.uri!r} not found; searched:{places}\n"
                 "Pass package_paths=[folder that holds the package], or set ROS_PACKAGE_PATH."
             )
-        return self.path
+        return path
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,53 @@
+"""Reading and writing robot files: whole, checked, and never half written."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+
+from cspace.errors import DescriptionError, InputError
+from cspace.tolerances import DESCRIPTION_BYTES
+
+__all__ = ["read_bytes", "write_text"]
+
+
+def read_bytes(path: str | os.PathLike[str]) -> bytes:
+    """The bytes of a regular file of reasonable size.
+
+    Raises DescriptionError naming the path for a missing file, a folder, a device, a file beyond
+    tolerances.DESCRIPTION_BYTES and one that may not be read.
+    """
+    name = os.fspath(path)
+    try:
+        if os.path.isdir(name):
+            raise DescriptionError("this is a folder; give the robot file inside it", path=name)
+        if not os.path.exists(name):
+            raise DescriptionError(f"no such file (looked in {os.getcwd()})", path=name)
+        if not os.path.isfile(name):
+            raise DescriptionError("this is no regular file", path=name)
+        size = os.path.getsize(name)
+        if size > DESCRIPTION_BYTES:
+            message = f"the file holds {size} bytes; more than {DESCRIPTION_BYTES} are refused"
+            raise DescriptionError(message, path=name)
+        with open(name, "rb") as file:
+            return file.read()
+    except OSError as error:
+        raise DescriptionError(f"cannot be read: {error.strerror or error}", path=name) from None
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write `text` as UTF-8 so that the file is either complete or untouched.
+
+    It is written beside its place and moved there. Raises InputError where that is impossible.
+    """
+    target = os.path.abspath(os.fspath(path))
+    folder = os.path.dirname(target)
+    temporary = os.path.join(folder, f".{os.path.basename(target)}.{os.getpid()}.part")
+    try:
+        with open(temporary, "x", encoding="utf-8", newline="\n") as file:
+            file.write(text)
+        os.replace(temporary, target)
+    except OSError as error:
+        with contextlib.suppress(OSError):
+            os.unlink(temporary)
+        raise InputError(f"{target} cannot be written: {error.strerror or error}") from None

@@ -1,0 +1,134 @@
+"""Robots written as URDF, every number with all its digits."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterable, Iterator
+from xml.sax.saxutils import quoteattr
+
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.model.description import Description
+from cspace.model.joint import Joint
+from cspace.model.link import SHAPES, Geometry, Inertial, Link
+from cspace.model.transforms import to_rpy
+from cspace.model.values import IDENTITY
+from cspace.tolerances import UNLIMITED
+
+__all__ = ["to_urdf"]
+
+FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
+"""The characters that XML 1.0 cannot hold."""
+
+
+def to_urdf(description: Description) -> str:
+    """The robot as the text of a URDF file.
+
+    Reading it back gives the same tree, with poses equal to rounding. URDF demands numbers where a limit is
+    unknown: tolerances.UNLIMITED stands for infinity. Named poses and sources have no place in URDF.
+    Raises InputError for a robot with closed loops, or with names that XML cannot hold.
+    """
+    if description.loops:
+        raise InputError(
+            f"robot {description.name!r} has {len(description.loops)} closed loops and URDF holds trees only;"
+            " write it as TOML"
+        )
+    lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<robot name={_quoted(description.name)}>"]
+    for link in description.links:
+        lines.extend(_link(link))
+    for joint in description.joints:
+        lines.extend(_joint(joint))
+    lines.append("</robot>")
+    return "\n".join(lines) + "\n"
+
+
+def _quoted(text: str) -> str:
+    if bad := FORBIDDEN.search(text):
+        raise InputError(f"the name {text!r} holds the character {bad.group()!r}, which XML cannot hold")
+    return quoteattr(text)
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return '"' + " ".join(repr(float(value)) for value in values) + '"'
+
+
+def _origin(T: Array, indent: str) -> Iterator[str]:
+    if T is not IDENTITY:
+        yield f"{indent}<origin xyz={_numbers(T[:3, 3])} rpy={_numbers(to_rpy(T[:3, :3]))}/>"
+
+
+def _link(link: Link) -> Iterator[str]:
+    if link.inertial is None and not link.visual and not link.collision:
+        yield f"  <link name={_quoted(link.name)}/>"
+        return
+    yield f"  <link name={_quoted(link.name)}>"
+    if link.inertial is not None:
+        yield from _inertial(link.inertial)
+    for tag, shapes in (("visual", link.visual), ("collision", link.collision)):
+        for geometry in shapes:
+            yield from _geometry(tag, geometry)
+    yield "  </link>"
+
+
+def _inertial(inertial: Inertial) -> Iterator[str]:
+    (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia.tolist()
+    entries = {"ixx": xx, "ixy": xy, "ixz": xz, "iyy": yy, "iyz": yz, "izz": zz}
+    yield "    <inertial>"
+    yield f'      <origin xyz={_numbers(inertial.com)} rpy="0 0 0"/>'
+    yield f"      <mass value={_numbers([inertial.mass])}/>"
+    yield "      <inertia " + " ".join(f"{key}={_numbers([value])}" for key, value in entries.items()) + "/>"
+    yield "    </inertial>"
+
+
+def _geometry(tag: str, geometry: Geometry) -> Iterator[str]:
+    name = f" name={_quoted(geometry.name)}" if geometry.name else ""
+    yield f"    <{tag}{name}>"
+    yield from _origin(geometry.origin, "      ")
+    yield f"      <geometry>{_shape(geometry)}</geometry>"
+    if geometry.color is not None:
+        yield f'      <material name=""><color rgba={_numbers(geometry.color)}/></material>'
+    yield f"    </{tag}>"
+
+
+def _shape(geometry: Geometry) -> str:
+    if geometry.mesh is not None:
+        scale = geometry.mesh.scale
+        scaled = f" scale={_numbers(scale)}" if scale != (1.0, 1.0, 1.0) else ""
+        return f"<mesh filename={_quoted(geometry.mesh.uri)}{scaled}/>"
+    if geometry.shape == "box":
+        return f"<box size={_numbers(geometry.size)}/>"
+    sizes = zip(SHAPES[geometry.shape], geometry.size, strict=True)
+    return f"<{geometry.shape} " + " ".join(f"{key}={_numbers([value])}" for key, value in sizes) + "/>"
+
+
+def _joint(joint: Joint) -> Iterator[str]:
+    yield f"  <joint name={_quoted(joint.name)} type={_quoted(joint.type)}>"
+    yield from _origin(joint.origin, "    ")
+    yield f"    <parent link={_quoted(joint.parent)}/>"
+    yield f"    <child link={_quoted(joint.child)}/>"
+    if joint.type not in ("fixed", "floating"):
+        yield f"    <axis xyz={_numbers(joint.axis)}/>"
+    yield from _limit(joint)
+    if joint.damping is not None or joint.friction is not None:
+        known = {"damping": joint.damping, "friction": joint.friction}
+        words = [f"{key}={_numbers([value])}" for key, value in known.items() if value is not None]
+        yield f"    <dynamics {' '.join(words)}/>"
+    if joint.mimic is not None:
+        numbers = {"multiplier": joint.mimic.multiplier, "offset": joint.mimic.offset}
+        words = [f"{key}={_numbers([value])}" for key, value in numbers.items()]
+        yield f"    <mimic joint={_quoted(joint.mimic.joint)} {' '.join(words)}/>"
+    yield "  </joint>"
+
+
+def _limit(joint: Joint) -> Iterator[str]:
+    if joint.type == "fixed":
+        return
+    known = {"effort": joint.effort, "velocity": joint.velocity}
+    if joint.type in ("revolute", "prismatic"):
+        known = {"lower": joint.lower, "upper": joint.upper, **known}
+    extra = {"acceleration": joint.acceleration, "jerk": joint.jerk}
+    known |= {key: value for key, value in extra.items() if math.isfinite(value)}
+    if joint.type in ("revolute", "prismatic") or any(math.isfinite(value) for value in known.values()):
+        finite = {key: min(max(value, -UNLIMITED), UNLIMITED) for key, value in known.items()}
+        yield "    <limit " + " ".join(f"{key}={_numbers([value])}" for key, value in finite.items()) + "/>"
