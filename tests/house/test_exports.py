@@ -31,6 +31,12 @@ def is_ours(node: ast.ImportFrom) -> bool:
     return bool(node.level) or (node.module or "").startswith("cspace")
 
 
+def is_module(node: ast.ImportFrom, alias: ast.alias) -> bool:
+    """Whether `from … import name` brings a whole module (or all its names) rather than one thing."""
+    folder = tree.PACKAGE.parent / (node.module or "").replace(".", "/")
+    return alias.name == "*" or (folder / alias.name).exists() or (folder / f"{alias.name}.py").exists()
+
+
 def declared(path: Path) -> set[str]:
     """The public names that the file itself defines or gathers, read from its text."""
     names: set[str] = set()
@@ -38,7 +44,7 @@ def declared(path: Path) -> set[str]:
         if isinstance(node, ast.FunctionDef | ast.ClassDef):
             names.add(node.name)
         elif isinstance(node, ast.ImportFrom) and path.name == "__init__.py" and is_ours(node):
-            names.update(alias.asname or alias.name for alias in node.names if alias.name != "*")
+            names.update(alias.asname or alias.name for alias in node.names if not is_module(node, alias))
     return {name for name in names if not name.startswith("_")}
 
 

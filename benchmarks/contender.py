@@ -1,0 +1,124 @@
+"""One contender in its own process: reads commands as JSON lines, answers as JSON lines.
+
+Usage: python contender.py PEER TASK ARM_FILE PROBLEMS_FILE. Commands: {"do": "single", "seconds": …}, {"do":
+"batch", "count": …}, {"do": "answers", "of": field, "to": file}, {"do": "quit"}.
+"""
+
+from __future__ import annotations
+
+import gc
+import importlib.metadata
+import json
+import os
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+import peers
+from chains import Arm
+from problems import Problems
+
+CHUNK = 10
+"""Calls per timed sample: enough that the clock costs nothing."""
+
+
+def samples(step: Callable[[Any], Any], inputs: list[Any], seconds: float) -> list[float]:
+    """Nanoseconds per call, one number per chunk of calls, until the time is up."""
+    found: list[float] = []
+    clock = time.perf_counter_ns
+    end = clock() + int(seconds * 1e9)
+    while clock() < end:
+        for i in range(0, len(inputs) - CHUNK + 1, CHUNK):
+            chunk = inputs[i : i + CHUNK]
+            start = clock()
+            for x in chunk:
+                step(x)
+            found.append((clock() - start) / CHUNK)
+            if clock() > end:
+                break
+    return found
+
+
+class Contender:
+    """A task of a peer on one arm, ready to be timed."""
+
+    def __init__(self, peer: str, task: str, arm_file: str, problems_file: str) -> None:
+        self.arm, self.problems = Arm.load(arm_file), Problems.load(problems_file)
+        self.poses = task == "ik"
+        module = peers.load(peer)
+        self.version = importlib.metadata.version(module.PACKAGE)
+        factory = getattr(module, task, None)
+        if factory is None:
+            raise peers.Refused("does not offer this")
+        start = time.perf_counter()
+        self.task = factory(self.arm)
+        self.setup_seconds = time.perf_counter() - start
+        self.inputs = [self.task.prepare(np.ascontiguousarray(x)) for x in self.given()[:500]]
+
+    def given(self) -> np.ndarray:
+        return self.problems.T if self.poses else self.problems.q
+
+    def single(self, seconds: float) -> dict[str, list[float]]:
+        call, read = self.task.call, self.task.read
+        for x in self.inputs[:50]:
+            read(call(x))
+        gc.disable()
+        try:
+            return {
+                "call": samples(call, self.inputs, seconds),
+                "read": samples(lambda x: read(call(x)), self.inputs, seconds),
+            }
+        finally:
+            gc.enable()
+
+    def batch(self, count: int) -> dict[str, float | None]:
+        if self.task.batch is None:
+            return {"batch": None}
+        given = self.given()
+        given = np.ascontiguousarray(np.tile(given, (-(-count // len(given)), 1, 1)[: given.ndim])[:count])
+        prepared = self.task.prepare_batch(given)
+        start = time.perf_counter_ns()
+        answer = self.task.batch(prepared)
+        spent = time.perf_counter_ns() - start
+        del answer
+        return {"batch": spent / count}
+
+    def answers(self, of: str, to: str) -> dict[str, str]:
+        task = self.task
+        found = [
+            task.read(task.call(task.prepare(np.ascontiguousarray(x)))) for x in getattr(self.problems, of)
+        ]
+        np.savez(to, counts=[len(a) for a in found], values=np.concatenate(found))
+        return {"to": to}
+
+
+def main() -> None:
+    reply = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # whatever a peer prints goes to the error stream
+
+    def say(**words: object) -> None:
+        print(json.dumps(words), file=reply, flush=True)
+
+    try:
+        contender = Contender(*sys.argv[1:5])
+    except peers.Refused as reason:
+        return say(refused=str(reason))
+    except Exception as error:
+        return say(
+            refused=f"{type(error).__name__}: {str(error).splitlines()[0] if str(error) else ''}"[:160]
+        )
+    say(ready=True, version=contender.version, setup_seconds=contender.setup_seconds)
+    for line in sys.stdin:
+        words = json.loads(line)
+        action = words.pop("do")
+        if action == "quit":
+            return None
+        say(**getattr(contender, action)(**words))
+    return None
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,257 @@
+"""Runs the benchmarks: every contender in a fresh process, the same seeded problems, interleaved repetitions.
+
+Usage: python benchmarks/run.py [--python PEER=interpreter …] [--rounds 7] [--only PEER …] [--arms NAME …]
+Writes benchmarks/results/: measurements.json, tables.md, numbers.json, numbers.md and the plots. The arms
+come from the catalogue of cspace, as numbers; see CONTRIBUTING.md for what the peers need.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+
+import chains
+import peers
+import problems
+import score
+
+HERE = Path(__file__).resolve().parent
+RESULTS = HERE / "results"
+ARMS = ["ur5e", "puma560", "kr6_r900"]
+TASKS = ["ik", "fk", "jacobian"]
+BATCH = 100_000
+
+
+class Process:
+    """A contender's process and the line of talk with it."""
+
+    def __init__(self, peer: str, task: str, folder: Path, python: str) -> None:
+        self.peer = peer
+        command = [
+            python,
+            str(HERE / "contender.py"),
+            peer,
+            task,
+            str(folder / "arm.npz"),
+            str(folder / "q.npz"),
+        ]
+        env = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        self.process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            env=env,
+        )
+        if hasattr(os, "sched_setaffinity"):
+            os.sched_setaffinity(self.process.pid, {max(os.sched_getaffinity(0))})
+        self.first = self.listen()
+        self.samples: dict[str, list[float]] = {"call": [], "read": [], "batch": []}
+
+    def listen(self) -> dict:
+        line = self.process.stdout.readline() if self.process.stdout else ""
+        return json.loads(line) if line else {"refused": f"the process ended with {self.process.wait()}"}
+
+    def ask(self, **words: object) -> dict:
+        assert self.process.stdin
+        self.process.stdin.write(json.dumps(words) + "\n")
+        self.process.stdin.flush()
+        return self.listen()
+
+    def quit(self) -> None:
+        if self.process.poll() is None and self.process.stdin:
+            self.process.stdin.write('{"do": "quit"}\n')
+            self.process.stdin.close()
+        self.process.wait()
+
+
+def answers(process: Process, field: str, folder: Path) -> list[np.ndarray] | None:
+    """What the contender says to each problem of the field; None if it did not survive."""
+    reply = process.ask(do="answers", of=field, to=str(folder / f"{process.peer}.npz"))
+    if "to" not in reply:
+        return None
+    with np.load(reply["to"]) as data:
+        return np.split(data["values"], np.cumsum(data["counts"])[:-1])
+
+
+def judge_ik(
+    arm: chains.Arm, given: problems.Problems, alive: list[Process], folder: Path
+) -> dict[str, dict]:
+    """Found and true solutions and the worst residual, for random poses and for those next to singular
+    ones."""
+    judged: dict[str, dict] = {p.peer: {} for p in alive}
+    sets = [
+        ("random", "T", given.q, given.T, 1e-6),
+        ("near_1e-4", "T_near_4", given.q_near_4, given.T_near_4, 5e-5),
+    ]
+    sets.append(("near_1e-6", "T_near_6", given.q_near_6, given.T_near_6, 5e-7))
+    for label, field, q_true, T, tolerance in sets:
+        said = {p.peer: answers(p, field, folder) for p in alive}
+        said = {peer: found for peer, found in said.items() if found is not None}
+        true = [
+            score.truth(arm, q_true[i], T[i], [found[i] for found in said.values()], tolerance)
+            for i in range(len(T))
+        ]
+        for peer, found in said.items():
+            worst = [score.residuals(arm, found[i], T[i]).max(initial=0.0) for i in range(len(T))]
+            judged[peer][label] = {
+                "found": sum(score.count_found(true[i], found[i], tolerance) for i in range(len(T))),
+                "true": sum(map(len, true)),
+                "residual": float(np.max(worst)),
+                "wrong": int(
+                    sum((score.residuals(arm, found[i], T[i]) > score.VERIFIED).sum() for i in range(len(T)))
+                ),
+            }
+    return judged
+
+
+def judge_forward(
+    arm: chains.Arm, task: str, given: problems.Problems, alive: list[Process], folder: Path
+) -> dict:
+    """The worst difference from the plain forward kinematics or Jacobian."""
+    judge = chains.fk if task == "fk" else chains.jacobian
+    wanted = judge(arm, given.q)
+    judged = {}
+    for process in alive:
+        found = answers(process, "q", folder)
+        if found is not None:
+            error = np.abs(np.concatenate(found).reshape(wanted.shape) - wanted).max()
+            judged[process.peer] = {"random": {"residual": float(error)}}
+    return judged
+
+
+def measure(alive: list[Process], rounds: int, seconds: float) -> None:
+    """Interleaved: in every round each contender has its turn."""
+    for turn in range(rounds):
+        for process in alive:
+            reply = process.ask(do="single", seconds=seconds)
+            for key in ("call", "read"):
+                process.samples[key] += reply.get(key, [])
+            if turn < 3:
+                each = process.ask(do="batch", count=BATCH if process.peer == "cspace_" else BATCH // 10)
+                if each.get("batch") is not None:
+                    process.samples["batch"].append(each["batch"])
+
+
+def summary(samples: Iterable[float]) -> dict[str, float] | None:
+    """Median and 95th percentile in microseconds."""
+    values = np.array(list(samples)) / 1000
+    if len(values) == 0:
+        return None
+    return {"median": float(np.median(values)), "p95": float(np.percentile(values, 95))}
+
+
+def compete(
+    name: str, task: str, names: list[str], pythons: dict[str, str], rounds: int, seconds: float
+) -> list[dict]:
+    """All contenders at one task on one arm."""
+    arm = chains.load_arm(name)
+    given = problems.make(arm, 1000, 200)
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+        arm.save(folder / "arm.npz")
+        given.save(folder / "q.npz")
+        started = [Process(peer, task, folder, pythons.get(peer, sys.executable)) for peer in names]
+        alive = [p for p in started if "ready" in p.first]
+        measure(alive, rounds, seconds)
+        judged = (
+            judge_ik(arm, given, alive, folder)
+            if task == "ik"
+            else judge_forward(arm, task, given, alive, folder)
+        )
+        for process in started:
+            process.quit()
+    rows = []
+    for process in started:
+        row = {"arm": name, "task": task, "contender": process.peer, **process.first}
+        if process in alive:
+            row |= {key: summary(values) for key, values in process.samples.items()}
+            row |= {"judged": judged.get(process.peer)}
+        rows.append(row)
+        print(json.dumps({k: v for k, v in row.items() if k != "judged"}), flush=True)
+    return rows
+
+
+def import_seconds(module: str, python: str) -> float | None:
+    """Wall time of a fresh interpreter that imports the module, less that of one that imports nothing: median
+    of 9."""
+    pairs = []
+    for _ in range(9):
+        times = []
+        for code in ("pass", f"import {module}"):
+            start = time.perf_counter()
+            if subprocess.run([python, "-c", code], capture_output=True).returncode:
+                return None
+            times.append(time.perf_counter() - start)
+        pairs.append(times[1] - times[0])
+    return float(np.median(pairs))
+
+
+def imports(pythons: dict[str, str], names: list[str]) -> dict[str, float | None]:
+    modules = {"numpy": "numpy"}
+    for peer in names:
+        modules[peer] = declared_module(peer)
+    return {
+        peer: import_seconds(module, pythons.get(peer, sys.executable)) for peer, module in modules.items()
+    }
+
+
+def declared_module(peer: str) -> str:
+    """What a user of the peer imports, read from its adapter without importing it."""
+    for line in (HERE / "peers" / f"{peer}.py").read_text().splitlines():
+        if line.startswith("NAME, PACKAGE, MODULE ="):
+            return line.split("=")[1].split(",")[2].strip().strip('"')
+    raise LookupError(f"{peer} declares no MODULE")
+
+
+def machine() -> dict[str, object]:
+    """What the numbers were taken on."""
+    model = platform.processor()
+    cpuinfo = Path("/proc/cpuinfo")
+    if cpuinfo.exists():
+        lines = [line for line in cpuinfo.read_text().splitlines() if line.startswith("model name")]
+        model = lines[0].split(":")[1].strip() if lines else model
+    return {
+        "processor": model,
+        "cores": os.cpu_count(),
+        "system": platform.system(),
+        "python": platform.python_version(),
+        "numpy": np.__version__,
+        "date": time.strftime("%Y-%m-%d"),
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--python", action="append", default=[], metavar="PEER=PATH")
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--seconds", type=float, default=0.3)
+    parser.add_argument("--only", nargs="*", default=peers.NAMES)
+    parser.add_argument("--arms", nargs="*", default=ARMS)
+    parser.add_argument("--tasks", nargs="*", default=TASKS)
+    options = parser.parse_args()
+    pythons = dict(pair.split("=", 1) for pair in options.python)
+    rows = [
+        row
+        for name in options.arms
+        for task in options.tasks
+        for row in compete(name, task, options.only, pythons, options.rounds, options.seconds)
+    ]
+    RESULTS.mkdir(exist_ok=True)
+    measured = {"machine": machine(), "imports": imports(pythons, options.only), "rows": rows}
+    (RESULTS / "measurements.json").write_text(json.dumps(measured, indent=1) + "\n")
+
+
+if __name__ == "__main__":
+    main()
