@@ -14,22 +14,30 @@ namespace {
 // Axes and points as users meet them: general, or parallel, orthogonal, on an axis, zero.
 Vec3d some_axis(Random& random, const Vec3d& other) {
     switch (random.below(6)) {
-        case 0: return other;
-        case 1: return -other;
+        case 0:
+            return other;
+        case 1:
+            return -other;
         case 2: {
             const Vec3d across = cross(other, random.axis());
             return (1.0 / norm(across)) * across;
         }
-        default: return random.axis();
+        default:
+            return random.axis();
     }
 }
 Vec3d some_point(Random& random, const Vec3d& axis, const Vec3d& other) {
     switch (random.below(10)) {
-        case 0: return random.uniform(-1, 1) * axis;
-        case 1: return {0, 0, 0};
-        case 2: return other;
-        case 3: return rotate(axis, turn_by(random.uniform(-3, 3)), other);
-        default: return random.vector();
+        case 0:
+            return random.uniform(-1, 1) * axis;
+        case 1:
+            return {0, 0, 0};
+        case 2:
+            return other;
+        case 3:
+            return rotate(axis, turn_by(random.uniform(-3, 3)), other);
+        default:
+            return random.vector();
     }
 }
 template <class F>
@@ -53,8 +61,10 @@ TEST(subproblem_1_finds_the_smallest_error) {
         const auto f = [&](Turn<double> t) { return norm(rotate(k, t, p1) - p2); };
         const auto r = subproblem_1(k, p1, p2);
         check_answer(f(r.theta), r.error, r.exact, lowest(200, f));
-        if (r.free) CHECK(f(turn_by(1.0)) <= r.error + 1e-13);
-        else CHECK(f(r.theta + turn_by(0.1)) > r.error);
+        if (r.free)
+            CHECK(f(turn_by(1.0)) <= r.error + 1e-13);
+        else
+            CHECK(f(r.theta + turn_by(0.1)) > r.error);
     }
 }
 
@@ -63,7 +73,9 @@ TEST(subproblem_2_finds_the_smallest_error) {
     for (int i = 0; i < 500; ++i) {
         const Vec3d k1 = random.axis(), k2 = some_axis(random, k1);
         const Vec3d p1 = some_point(random, k1, k1), p2 = some_point(random, k2, p1);
-        const auto f = [&](Turn<double> a, Turn<double> b) { return norm(rotate(k1, a, p1) - rotate(k2, b, p2)); };
+        const auto f = [&](Turn<double> a, Turn<double> b) {
+            return norm(rotate(k1, a, p1) - rotate(k2, b, p2));
+        };
         const auto r = subproblem_2(k1, k2, p1, p2);
         const double swept =
             lowest(90, [&](Turn<double> a) { return lowest(90, [&](Turn<double> b) { return f(a, b); }); });

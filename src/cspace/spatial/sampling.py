@@ -21,8 +21,8 @@ def random_rotation(size: Size = (), *, rng: int | np.random.Generator | None = 
 
     q = (√(1−u) sin 2πa, √(1−u) cos 2πa, √u sin 2πb, √u cos 2πb) with u, a, b uniform in [0, 1).
 
-    size: how many, an int or a shape; () for one. rng: seed, Generator or None. Returns (..., 3, 3), the size first.
-    Source: Shoemake 1992.
+    size: how many, an int or a shape; () for one. rng: seed, Generator or None. Returns (..., 3, 3), the size
+    first. Source: Shoemake 1992.
     """
     return _rotations(_shape(size), as_generator(rng))
 

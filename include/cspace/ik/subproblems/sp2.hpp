@@ -35,7 +35,8 @@ struct Sp2 {
 namespace cspace::inline CSPACE_ISA {
 
 template <class V>
-CSPACE_INLINE Sp2<V> subproblem_2(const Vec3<V>& k1, const Vec3<V>& k2, const Vec3<V>& p1, const Vec3<V>& p2) {
+CSPACE_INLINE Sp2<V> subproblem_2(const Vec3<V>& k1, const Vec3<V>& k2, const Vec3<V>& p1,
+                                  const Vec3<V>& p2) {
     const V one = fill<V>(1.0), zero = fill<V>(0.0);
     const V length1 = norm(p1), length2 = norm(p2);
     const auto nothing = length1 == zero || length2 == zero;

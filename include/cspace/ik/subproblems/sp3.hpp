@@ -7,9 +7,9 @@
 // m² = (z1 − z2)² + (ρ1 − ρ2)² at θ = φ to the farthest M² = (z1 − z2)² + (ρ1 + ρ2)² at θ = φ + π. Hence two
 // answers θ = φ ± ψ for m < d < M, one at either end, and beyond an end that end is the best. Subtracting
 // the ends, d² − m² = 4 ρ1 ρ2 sin²(ψ/2) and M² − d² = 4 ρ1 ρ2 cos²(ψ/2), so with S = (d − m)(d + m) and
-// C = (M − d)(M + d): cos ψ = (C − S)/(C + S), sin ψ = 2 √(S C)/(C + S). No difference of nearly equal squares
-// is left, which matters for small d. A point on the axis keeps one distance: every angle serves, 0 is
-// returned and `free` is set.
+// C = (M − d)(M + d): cos ψ = (C − S)/(C + S), sin ψ = 2 √(S C)/(C + S). No difference of nearly equal
+// squares is left, which matters for small d. A point on the axis keeps one distance: every angle serves, 0
+// is returned and `free` is set.
 //
 // Reference: Paden 1986, §4.3; Elias & Wen 2022, §3.3.
 #pragma once

@@ -2,11 +2,11 @@
 //
 //     min over θ of | hᵀ Rot(k, θ) p − d |
 //
-// Proof. Rot(k, θ) p = (k·p) k + cos θ p⊥ + sin θ k × p with p⊥ the part of p across the axis. Its product with
-// h is linear in (cos θ, sin θ):
+// Proof. Rot(k, θ) p = (k·p) k + cos θ p⊥ + sin θ k × p with p⊥ the part of p across the axis. Its product
+// with h is linear in (cos θ, sin θ):
 //     a cos θ + b sin θ = d − (h·k)(k·p),  a = h·p⊥ = (k × h)·(k × p),  b = h·(k × p),
-// solved by cos_sin.hpp: two, one or no angle, and beyond the range the nearer end of it. If the point lies on
-// the axis or the plane is square to it (a = b = 0), every angle serves: 0 is returned and `free` is set.
+// solved by cos_sin.hpp: two, one or no angle, and beyond the range the nearer end of it. If the point lies
+// on the axis or the plane is square to it (a = b = 0), every angle serves: 0 is returned and `free` is set.
 //
 // Reference: Elias & Wen 2022, §3.4.
 #pragma once
@@ -31,7 +31,8 @@ template <class V>
 CSPACE_INLINE Sp4<V> subproblem_4(const Vec3<V>& h, const Vec3<V>& k, const Vec3<V>& p, V d) {
     const Vec3<V> kp = cross(k, p);
     const V size = norm(h) * norm(p);
-    const CosSinRoots<V> roots = cos_sin_roots(dot(cross(k, h), kp), dot(h, kp), d - dot(h, k) * dot(k, p), size);
+    const CosSinRoots<V> roots =
+        cos_sin_roots(dot(cross(k, h), kp), dot(h, kp), d - dot(h, k) * dot(k, p), size);
     Sp4<V> r;
     r.theta[0] = roots.theta[0];
     r.theta[1] = roots.theta[1];
