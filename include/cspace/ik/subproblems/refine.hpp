@@ -1,0 +1,112 @@
+// Gauss–Newton with damping on a few angles: polishes candidates, and finds the least-squares answer where no
+// exact one exists.
+//
+// A System has `angles` and `equations`, and as a function (turns, value, slope) gives the residuals and
+// their derivatives with respect to the angles. Lengths in it are about one.
+#pragma once
+
+#include "cspace/math/turn.hpp"
+#include "cspace/tolerances.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+inline Turn<double> stepped(const Turn<double>& t, double step) {
+    const double length = std::sqrt(1 + step * step);
+    return t + Turn<double>{1 / length, step / length};
+}
+
+template <class System>
+struct Linearised {
+    double value[System::equations], slope[System::equations][System::angles];
+};
+template <class System>
+double linearise(const System& system, const Turn<double>* t, Linearised<System>& at) {
+    system(t, at.value, at.slope);
+    double sum = 0;
+    for (double v : at.value) sum += v * v;
+    return std::sqrt(sum);
+}
+
+// Solves (a + damping) x = b for a symmetric a (lower half used) by Cholesky; b becomes x. Not positive
+// definite: false.
+template <int n>
+bool solve_damped(const double (*a)[n], double damping, double* b) {
+    double l[n][n];
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j <= i; ++j) {
+            double rest = a[i][j] + (i == j ? damping : 0);
+            for (int k = 0; k < j; ++k) rest -= l[i][k] * l[j][k];
+            if (i == j && !(rest > 0)) return false;
+            l[i][j] = i == j ? std::sqrt(rest) : rest / l[j][j];
+        }
+    for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < i; ++k) b[i] -= l[i][k] * b[k];
+        b[i] /= l[i][i];
+    }
+    for (int i = n - 1; i >= 0; --i) {
+        for (int k = i + 1; k < n; ++k) b[i] -= l[k][i] * b[k];
+        b[i] /= l[i][i];
+    }
+    return true;
+}
+
+// JᵀJ and −Jᵀ value; the length of the latter.
+template <class System>
+double normal_equations(const Linearised<System>& at, double (*a)[System::angles], double* down) {
+    double length = 0;
+    for (int i = 0; i < System::angles; ++i) {
+        down[i] = 0;
+        for (int k = 0; k < System::equations; ++k) down[i] -= at.slope[k][i] * at.value[k];
+        length = std::hypot(length, down[i]);
+        for (int j = 0; j <= i; ++j) {
+            a[i][j] = 0;
+            for (int k = 0; k < System::equations; ++k) a[i][j] += at.slope[k][i] * at.slope[k][j];
+        }
+    }
+    return length;
+}
+
+// Moves the turns to a minimum of the residual nearby; returns its length there. A step that does not help is
+// not taken, and damped more the next time (Marquardt 1963), so the residual never grows.
+template <class System>
+double refine(const System& system, Turn<double>* t, int iterations = 30) {
+    constexpr int n = System::angles;
+    Linearised<System> at, ahead;
+    double error = linearise(system, t, at), damping = 1e-3 * error * error;
+    for (int i = 0; i < iterations && error > 2 * std::numeric_limits<double>::epsilon(); ++i) {
+        double normal[n][n], step[n], length = 0;
+        if (normal_equations(at, normal, step) == 0) break;
+        if (!solve_damped<n>(normal, damping, step)) {
+            damping = 8 * damping + 1e-14;
+            continue;
+        }
+        Turn<double> next[n];
+        for (int j = 0; j < n; ++j) next[j] = stepped(t[j], step[j]), length += std::fabs(step[j]);
+        const double next_error = linearise(system, next, ahead);
+        if (next_error >= error) {
+            if (length < 1e-10) break;
+            damping = 8 * damping + 1e-12;
+            continue;
+        }
+        for (int j = 0; j < n; ++j) t[j] = next[j];
+        at = ahead, error = next_error;
+        damping = std::fmin(0.125 * damping, 1e-3 * error * error);
+    }
+    return error;
+}
+
+// Whether the zero t lies on a curve of zeros that leads along the direction `along` of length one: a step
+// away the refinement finds a residual below `zero` close by, whereas towards an isolated multiple zero it
+// must go all the way back.
+template <class System>
+bool continues_along(const System& system, const Turn<double>* t, const double* along, double zero) {
+    constexpr double reach = 1e-3;
+    Turn<double> start[System::angles], found[System::angles];
+    for (int j = 0; j < System::angles; ++j) found[j] = start[j] = stepped(t[j], reach * along[j]);
+    if (refine(system, found) > zero) return false;
+    double drift = 0;
+    for (int j = 0; j < System::angles; ++j) drift = std::hypot(drift, (found[j] - start[j]).s);
+    return drift < 0.5 * reach;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

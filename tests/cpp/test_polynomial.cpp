@@ -1,0 +1,201 @@
+// Real roots against polynomials multiplied out from roots that are known.
+#include <algorithm>
+
+#include "check.hpp"
+#include "cspace/math/polynomial.hpp"
+#include "cspace/math/trig_polynomial.hpp"
+#include "random.hpp"
+
+using namespace cspace;
+using check::Random;
+
+namespace {
+
+// Multiplies the polynomial a (degree n, room for n + 2) by (x − root).
+void times_linear(double* a, int n, double root) {
+    a[n + 1] = a[n];
+    for (int i = n; i > 0; --i) a[i] = a[i - 1] - root * a[i];
+    a[0] *= -root;
+}
+// Multiplies by x² − 2 re x + re² + im².
+void times_pair(double* a, int n, double re, double im) {
+    double b[7] = {};
+    for (int i = 0; i <= n; ++i) {
+        b[i] += a[i] * (re * re + im * im);
+        b[i + 1] -= 2 * re * a[i];
+        b[i + 2] += a[i];
+    }
+    std::copy(b, b + n + 3, a);
+}
+template <int n>
+void check_roots(const double* a, std::vector<double> expected, double tolerance) {
+    std::sort(expected.begin(), expected.end());
+    const RealRoots r = real_roots<n>(a);
+    CHECK(r.count == int(expected.size()));
+    if (r.count != int(expected.size())) return;
+    for (int i = 0; i < r.count; ++i) CHECK_NEAR(r.x[i], expected[i], tolerance * std::fabs(expected[i]));
+}
+bool apart(const std::vector<double>& x, double gap) {
+    for (size_t i = 0; i < x.size(); ++i)
+        for (size_t j = 0; j < i; ++j)
+            if (std::fabs(x[i] - x[j]) < gap) return false;
+    return true;
+}
+
+}  // namespace
+
+TEST(random_roots_come_back_at_every_scale) {
+    Random random{1};
+    for (int repeat = 0; repeat < 20000; ++repeat) {
+        const double unit = std::pow(10.0, random.uniform(-20, 20));
+        const double factor = std::pow(10.0, random.uniform(-150, 150));
+        const int n = 2 + random.below(3), pairs = random.below(n / 2 + 1);
+        double a[7] = {1};
+        std::vector<double> real;
+        int degree = 0;
+        for (; degree < 2 * pairs; degree += 2)
+            times_pair(a, degree, unit * random.uniform(-1, 1), unit * random.uniform(0.05, 1));
+        for (; degree < n; ++degree) {
+            real.push_back(unit * random.uniform(-1, 1));
+            times_linear(a, degree, real.back());
+        }
+        for (double& c : a) c *= factor;
+        bool representable = apart(real, 0.02 * unit) && std::fabs(a[0]) > 1e-280 && std::isfinite(a[0]);
+        for (double x : real) representable = representable && std::fabs(x) > 0.01 * unit;
+        for (int i = 0; i <= n; ++i) representable = representable && std::isfinite(a[i]);
+        if (!representable) continue;
+        if (n == 2) check_roots<2>(a, real, 1e-9);
+        if (n == 3) check_roots<3>(a, real, 1e-9);
+        if (n == 4) check_roots<4>(a, real, 1e-9);
+    }
+}
+
+TEST(roots_of_very_different_sizes_come_back) {
+    for (double small = 1e-3; small > 1e-14; small *= 0.1) {
+        double a[7] = {1};
+        times_linear(a, 0, 1 / small);
+        times_linear(a, 1, -1);
+        times_linear(a, 2, small);
+        times_linear(a, 3, -small * small);
+        check_roots<4>(a, {1 / small, -1, small, -small * small}, 1e-12);
+    }
+}
+
+TEST(clusters_keep_their_multiplicity) {
+    Random random{2};
+    for (int repeat = 0; repeat < 2000; ++repeat) {
+        // Small binary fractions: every coefficient is exact, so is the multiplicity.
+        const double x = random.below(64) / 16.0 - 2, y = x + 1 + random.below(8) / 8.0;
+        double a[7] = {1};
+        const int kind = random.below(5);
+        const int many[5][2] = {{2, 1}, {2, 2}, {3, 1}, {4, 0}, {1, 3}};
+        int degree = 0;
+        for (int i = 0; i < many[kind][0]; ++i) times_linear(a, degree++, x);
+        for (int i = 0; i < many[kind][1]; ++i) times_linear(a, degree++, y);
+        const RealRoots r = degree == 3 ? real_roots<3>(a) : real_roots<4>(a);
+        const double blur = many[kind][0] == 2 || kind == 4 ? 1e-7 : 2e-4;
+        CHECK(r.count == (many[kind][1] ? 2 : 1));
+        CHECK(r.multiplicity[0] == many[kind][0]);
+        CHECK_NEAR(r.x[0], x, blur);
+        if (many[kind][1]) CHECK(r.multiplicity[1] == many[kind][1]);
+        if (many[kind][1]) CHECK_NEAR(r.x[1], y, kind == 4 ? 2e-4 : 1e-7);
+    }
+}
+
+TEST(close_roots_are_told_apart_and_nearly_real_pairs_are_double) {
+    for (double gap = 1e-2; gap > 1e-6; gap *= 0.5) {
+        double a[7] = {1}, b[7] = {1};
+        times_linear(a, 0, 1);
+        times_linear(a, 1, 1 + gap);
+        times_pair(a, 2, -2, 1);
+        CHECK(real_roots<4>(a).count == 2);
+        times_pair(b, 0, 1, gap);
+        times_pair(b, 2, -2, 1);
+        CHECK(real_roots<4>(b).count == 0);
+    }
+    for (double im : {1e-8, 1e-10, 0.0}) {
+        double b[7] = {1};
+        times_pair(b, 0, 0.7, im);
+        times_pair(b, 2, -2, 1);
+        const RealRoots r = real_roots<4>(b);
+        CHECK(r.count == 1 && r.multiplicity[0] == 2);
+        CHECK_NEAR(r.x[0], 0.7, 1e-7);
+    }
+}
+
+TEST(lower_degrees_and_the_zero_polynomial) {
+    const double cubic[5] = {-6, 11, -6, 1, 0}, line[5] = {-3, 2, 0, 0, 0}, zero[5] = {}, one[5] = {1};
+    CHECK(real_roots<4>(cubic).count == 3);
+    CHECK_NEAR(real_roots<4>(line).x[0], 1.5, 1e-15);
+    CHECK(real_roots<4>(zero).everywhere);
+    CHECK(real_roots<4>(one).count == 0 && !real_roots<4>(one).everywhere);
+    const double far[5] = {-1, 1, 0, 0, 1e-320};
+    CHECK_NEAR(real_roots<4>(far).x[real_roots<4>(far).count - 1], 1, 1e-12);
+    const double quartic_zero[5] = {0, 0, 0, 0, 5};
+    CHECK(real_roots<4>(quartic_zero).multiplicity[0] == 4);
+}
+
+TEST(quadratics_on_a_pack_agree_with_one_lane) {
+    Random random{3};
+    using V = Pack<4>;
+    for (int repeat = 0; repeat < 1000; ++repeat) {
+        V a, b, c;
+        for (int i = 0; i < 4; ++i) {
+            set_lane(a, i, random.uniform(-1, 1));
+            set_lane(b, i, random.below(5) ? random.uniform(-1, 1) : 0.0);
+            set_lane(c, i, random.below(5) ? random.uniform(-1, 1) : 0.0);
+        }
+        const auto r = quadratic_roots(a, b, c);
+        for (int i = 0; i < 4; ++i) {
+            const auto one = quadratic_roots(lane(a, i), lane(b, i), lane(c, i));
+            CHECK(lane(r.real, i) == one.real && lane(r.two, i) == one.two);
+            for (int j = 0; j < 2; ++j) {
+                CHECK_NEAR(lane(r.x[j], i), one.x[j], 1e-15 * std::fabs(one.x[j]));
+                const double x = one.x[j], A = lane(a, i) * x * x, B = lane(b, i) * x, C = lane(c, i);
+                if (one.real) CHECK_NEAR(A + B + C, 0, 4e-16 * (std::fabs(A) + std::fabs(B) + std::fabs(C)));
+            }
+        }
+    }
+}
+
+TEST(trigonometric_roots_are_all_found) {
+    Random random{4};
+    for (int repeat = 0; repeat < 5000; ++repeat) {
+        const double factor = std::pow(10.0, random.uniform(-100, 100));
+        const auto any = [&] { return factor * random.uniform(-1, 1); };
+        TrigPolynomial f = {any(), any(), any(), any(), any()};
+        if (random.below(4) == 0) f.a2 = f.b2 = 0;
+        if (random.below(4) == 0) f.a0 = f.a1 - f.a2;  // a root at π
+        const TrigRoots r = trig_roots(f);
+        int roots = 0, crossings = 0;
+        for (int i = 0; i < r.count; ++i) {
+            CHECK_NEAR(evaluate(f, r.theta[i]) / factor, 0, r.multiplicity[i] == 1 ? 3e-15 : 1e-13);
+            CHECK_NEAR(std::hypot(r.theta[i].c, r.theta[i].s), 1, 1e-15);
+            roots += r.multiplicity[i];
+        }
+        double before = evaluate(f, turn_by(1e-3));
+        for (int j = 1; j <= 400; ++j) {
+            const double after = evaluate(f, turn_by(1e-3 + 2 * pi * j / 400));
+            crossings += before * after < 0;
+            before = after;
+        }
+        CHECK(roots % 2 == 0 && roots <= 4 && crossings <= roots);
+    }
+}
+
+TEST(a_touching_trigonometric_polynomial_has_double_roots) {
+    Random random{5};
+    for (int repeat = 0; repeat < 1000; ++repeat) {
+        const double p = random.uniform(-3, 3), q = random.uniform(-3, 3);
+        if (std::fabs(std::sin(0.5 * (p - q))) < 0.4) continue;
+        // (1 − cos(θ − p)) (1 − cos(θ − q)) touches zero at p and q.
+        const TrigRoots r = trig_roots(product(1, -std::cos(p), -std::sin(p), 1, -std::cos(q), -std::sin(q)));
+        CHECK(r.count == 2 && r.multiplicity[0] == 2 && r.multiplicity[1] == 2);
+        for (int i = 0; i < r.count; ++i) {
+            const double to_p = std::hypot(r.theta[i].c - std::cos(p), r.theta[i].s - std::sin(p));
+            const double to_q = std::hypot(r.theta[i].c - std::cos(q), r.theta[i].s - std::sin(q));
+            CHECK_NEAR(std::fmin(to_p, to_q), 0, 1e-7);
+        }
+    }
+    CHECK(trig_roots({1e-17, 0, 0, 0, 1e-17}, 1.0).everywhere);
+}
