@@ -8,6 +8,8 @@ __all__ = [
     "AXIS_LENGTH",
     "DESCRIPTION_BYTES",
     "DESCRIPTION_DEPTH",
+    "DH_COINCIDENT",
+    "DH_PARALLEL",
     "GIMBAL_LOCK",
     "INERTIA_SYMMETRY",
     "LAST_ROW_ERROR",
@@ -65,3 +67,11 @@ DESCRIPTION_DEPTH: Final = 64
 UNLIMITED: Final = 1e300
 """What stands for infinity where a file format demands a finite number (rad, m, or their rates): beyond any
 machine, and read back as infinity."""
+
+DH_PARALLEL: Final = 2.0**-26
+"""Angle [rad] up to which consecutive axes get the parallel row of a Denavit–Hartenberg table: the square
+root of the rounding, where calling them parallel costs as much as their true normal far away."""
+
+DH_COINCIDENT: Final = 1e-13
+"""Distance [m] up to which axes intersect, or lie on one line, in a Denavit–Hartenberg table: ten rows of
+such a loss still keep a pose to 1e-12."""

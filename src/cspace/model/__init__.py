@@ -1,7 +1,16 @@
 """Robots as data: the description and its readers and writers."""
 
 from cspace.model.chain import Chain, chain, default_tip
+from cspace.model.degrees_of_freedom import (
+    body_freedoms,
+    mobility,
+    point_freedoms,
+    task_word,
+    tree_freedoms,
+)
 from cspace.model.description import Description, Provenance, Source
+from cspace.model.dh import DHTable, dh_matrix, from_dh
+from cspace.model.dh_derivation import to_dh
 from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.screws import from_screws, twists
@@ -11,6 +20,7 @@ from cspace.model.urdf_writer import to_urdf
 
 __all__ = [
     "Chain",
+    "DHTable",
     "Description",
     "Geometry",
     "Inertial",
@@ -23,11 +33,19 @@ __all__ = [
     "Provenance",
     "Source",
     "Tree",
+    "body_freedoms",
     "chain",
     "default_tip",
+    "dh_matrix",
+    "from_dh",
     "from_screws",
     "from_urdf",
+    "mobility",
+    "point_freedoms",
+    "task_word",
+    "to_dh",
     "to_urdf",
     "tree",
+    "tree_freedoms",
     "twists",
 ]

@@ -1,0 +1,216 @@
+"""Denavit–Hartenberg tables, standard and modified, and robots made from them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, suggest
+from cspace.model.description import Description
+from cspace.model.joint import Joint
+from cspace.model.link import Link
+from cspace.model.screws import check_joint_types, joint_rows, link_names, one_freedom_type
+from cspace.model.values import IDENTITY, frozen, placement
+
+__all__ = ["COLUMNS", "CONVENTIONS", "DHTable", "dh_matrix", "from_dh"]
+
+CONVENTIONS: Final = ("standard", "modified")
+COLUMNS: Final = ("alpha", "a", "d", "theta")
+
+Z_AXIS: Final[Array] = frozen(np.array([0.0, 0.0, 1.0]))
+
+
+def check_convention(convention: object) -> str:
+    """The convention if it is one of CONVENTIONS, else UnknownNameError."""
+    if convention not in CONVENTIONS:
+        raise suggest("Denavit–Hartenberg convention", convention, CONVENTIONS)
+    return str(convention)
+
+
+def dh_matrix(alpha: Any, a: Any, d: Any, theta: Any, *, convention: str) -> Array:
+    """The transform of one row of a Denavit–Hartenberg table.
+
+    standard: A_i = Rz(θ_i) Tz(d_i) Tx(a_i) Rx(α_i) =
+        [cθ, −sθ cα, sθ sα, a cθ], [sθ, cθ cα, −cθ sα, a sθ], [0, sα, cα, d], with α, a of link i.
+    modified: A_i = Rx(α_{i−1}) Tx(a_{i−1}) Rz(θ_i) Tz(d_i) =
+        [cθ, −sθ, 0, a], [sθ cα, cθ cα, −sα, −d sα], [sθ sα, cθ sα, cα, d cα], with α, a of link i−1.
+
+    alpha, theta [rad], a, d [m]: numbers or arrays (...). Returns (..., 4, 4).
+    Raises UnknownNameError for another convention. Sources: Denavit, Hartenberg 1955; Craig 1986, section
+    3.4.
+    """
+    standard = check_convention(convention) == "standard"
+    alpha, a, d, theta = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (alpha, a, d, theta)))
+    ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
+    zero, one = np.zeros_like(ca), np.ones_like(ca)
+    if standard:
+        rows = [[ct, -st * ca, st * sa, a * ct], [st, ct * ca, -ct * sa, a * st], [zero, sa, ca, d]]
+    else:
+        rows = [[ct, -st, zero, a], [st * ca, ct * ca, -sa, -d * sa], [st * sa, ct * sa, ca, d * ca]]
+    rows.append([zero, zero, zero, one])
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+@dataclass(frozen=True, eq=False)
+class DHTable:
+    """A serial arm as a Denavit–Hartenberg table.
+
+    T_base_tip(q) = T_base · A_1(q_1) … A_n(q_n) · T_tool; A_i as in dh_matrix, with θ_i = theta_offset_i +
+    q_i for a revolute joint and d_i = d_i + q_i for a prismatic one.
+
+    convention: "standard" or "modified". alpha, a, d, theta_offset (n,): in row i of a modified table α and a
+    belong to link i−1. joint_types: n letters "R", "P", or "F" for a row that never moves. T_base, T_tool
+    (4, 4). deviation: bound [m] on how far the tip is from that of the robot the table was derived from.
+    """
+
+    convention: str
+    alpha: Array
+    a: Array
+    d: Array
+    theta_offset: Array
+    joint_types: str
+    T_base: Array = field(default_factory=lambda: IDENTITY)
+    T_tool: Array = field(default_factory=lambda: IDENTITY)
+    joint_names: tuple[str, ...] = ()
+    deviation: float = 0.0
+
+    def __post_init__(self) -> None:
+        store = object.__setattr__
+        store(self, "convention", check_convention(self.convention))
+        n = np.asarray(self.alpha).size
+        for column in ("alpha", "a", "d", "theta_offset"):
+            values = as_floats(getattr(self, column), f"column {column}")
+            if values.shape != (n,):
+                raise InputError(f"column {column} has shape {values.shape}, expected ({n},)")
+            store(self, column, frozen(values.copy()))
+        store(self, "joint_types", check_joint_types(self.joint_types, n, letters="RPF"))
+        store(self, "T_base", placement(self.T_base, "T_base"))
+        store(self, "T_tool", placement(self.T_tool, "T_tool"))
+        names = tuple(self.joint_names) or tuple(f"joint_{i + 1}" for i in range(n))
+        if len(names) != n:
+            raise InputError(f"joint_names holds {len(names)} names, expected {n}")
+        store(self, "joint_names", names)
+
+    def __len__(self) -> int:
+        return len(self.joint_types)
+
+    @property
+    def rows(self) -> Array:
+        """The table (n, 4), columns alpha, a, d, theta offset."""
+        return np.column_stack([self.alpha, self.a, self.d, self.theta_offset])
+
+    def matrices(self, q: Any) -> Array:
+        """The transforms A_i (..., n, 4, 4) at the values q (..., moving joints)."""
+        moving = np.array([kind != "F" for kind in self.joint_types], dtype=bool)
+        values = as_floats(q, "q", last=(int(moving.sum()),))
+        full = np.zeros((*values.shape[:-1], len(self)))
+        full[..., moving] = values
+        turns = np.array([kind == "R" for kind in self.joint_types], dtype=bool)
+        theta = self.theta_offset + np.where(turns, full, 0.0)
+        d = self.d + np.where(turns, 0.0, full)
+        return dh_matrix(self.alpha, self.a, d, theta, convention=self.convention)
+
+    def fk(self, q: Any) -> Array:
+        """The tip in the base, T_base · A_1 … A_n · T_tool, (..., 4, 4); q (..., moving joints)."""
+        matrices = self.matrices(q)
+        T = np.broadcast_to(self.T_base, (*matrices.shape[:-3], 4, 4))
+        for i in range(len(self)):
+            T = T @ matrices[..., i, :, :]
+        return T @ self.T_tool
+
+    def __str__(self) -> str:
+        """The table in words: degrees and metres, q where the joint moves."""
+        indexed = ("α_i", "a_i") if self.convention == "standard" else ("α_i-1", "a_i-1")
+        head = ("i", "joint", f"{indexed[0]} [°]", f"{indexed[1]} [m]", "d_i [m]", "θ_i [°]")
+        cells = [head]
+        for i, (alpha, a, d, theta) in enumerate(self.rows.tolist()):
+            kind = self.joint_types[i]
+            shift, turn = f"{d:.6g}", f"{np.degrees(theta):.6g}"
+            shift += f" + q{i + 1}" if kind == "P" else ""
+            turn += f" + q{i + 1}" if kind == "R" else ""
+            angle = f"{np.degrees(alpha):.6g}"
+            cells.append((str(i + 1), self.joint_names[i], angle, f"{a:.6g}", shift, turn))
+        widths = [max(len(row[k]) for row in cells) for k in range(len(head))]
+        lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in cells]
+        return f"Denavit–Hartenberg, {self.convention}\n" + "\n".join(lines)
+
+
+def from_dh(
+    table: Any,
+    *,
+    convention: str | None = None,
+    joint_types: str | None = None,
+    T_base: Any = None,
+    T_tool: Any = None,
+    lower: Any = None,
+    upper: Any = None,
+    velocity: Any = None,
+    effort: Any = None,
+    name: str = "robot",
+    joint_names: Sequence[str] | None = None,
+    base: str = "base",
+    tip: str = "tip",
+) -> Description:
+    """A serial robot from a Denavit–Hartenberg table.
+
+    table: a DHTable, or rows (n, 4) in the order (alpha, a, d, theta) [rad, m, m, rad], or n mappings with
+    these keys (absent ones count as 0). theta of a revolute row is the offset added to q, d of a prismatic
+    row likewise. convention: "standard" or "modified", demanded for plain rows because the two are never
+    told apart by the numbers. joint_types: n letters "R", "P" or "F" (fixed row), default all "R". T_base,
+    T_tool (4, 4): before the first and after the last row. lower, upper, velocity, effort (n,).
+    Raises InputError for a wrong shape or NaN, UnknownNameError for another convention or column.
+    """
+    if isinstance(table, DHTable):
+        dh = table
+    else:
+        if convention is None:
+            raise InputError("say which convention the table follows: convention='standard' or 'modified'")
+        rows = _rows(table)
+        types = "R" * len(rows) if joint_types is None else joint_types
+        before, after = (IDENTITY if T is None else T for T in (T_base, T_tool))
+        names = () if joint_names is None else tuple(joint_names)
+        alpha, a, d, theta = rows.T
+        dh = DHTable(convention, alpha, a, d, theta, types, before, after, names)
+    limits = joint_rows(len(dh), lower=lower, upper=upper, velocity=velocity, effort=effort)
+    return _describe(dh, limits, name, base, tip)
+
+
+def _rows(table: Any) -> Array:
+    """The rows (n, 4) of a table given as numbers or as mappings."""
+    if isinstance(table, Sequence) and table and all(isinstance(row, Mapping) for row in table):
+        for row in table:
+            for key in row:
+                if key not in COLUMNS:
+                    raise suggest("column", key, COLUMNS, owner="a Denavit–Hartenberg row")
+        table = [[row.get(column, 0.0) for column in COLUMNS] for row in table]
+    rows = as_floats(table, "Denavit–Hartenberg table")
+    if rows.ndim != 2 or rows.shape[1] != 4:
+        raise InputError(
+            f"the Denavit–Hartenberg table has shape {rows.shape}, expected (n, 4)"
+            f" with the columns {', '.join(COLUMNS)}"
+        )
+    return rows
+
+
+def _describe(dh: DHTable, limits: list[dict[str, Any]], name: str, base: str, tip: str) -> Description:
+    """The description of a table: each joint frame stands where its row begins to move, z along the axis."""
+    if dh.convention == "modified":
+        before = dh_matrix(dh.alpha, dh.a, dh.d, dh.theta_offset, convention="modified")
+        after = np.broadcast_to(IDENTITY, before.shape)
+    else:
+        after = dh_matrix(dh.alpha, dh.a, dh.d, dh.theta_offset, convention="standard")
+        before = np.broadcast_to(IDENTITY, after.shape)
+    links = link_names(dh.joint_names, base, tip)
+    carried = dh.T_base
+    joints = []
+    for i, joint in enumerate(dh.joint_names):
+        kind = one_freedom_type(dh.joint_types[i], limits[i])
+        row = limits[i] if kind != "fixed" else {}
+        joints.append(Joint(joint, kind, links[i], links[i + 1], carried @ before[i], Z_AXIS, **row))
+        carried = after[i]
+    joints.append(Joint(f"{tip}_fixed", "fixed", links[-1], tip, carried @ dh.T_tool))
+    return Description(name, tuple(Link(link) for link in (*links, tip)), tuple(joints))
