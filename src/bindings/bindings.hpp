@@ -2,3 +2,4 @@
 #include <nanobind/nanobind.h>
 
 void bind_math(nanobind::module_& m);
+void bind_robot(nanobind::module_& m);

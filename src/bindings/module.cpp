@@ -10,4 +10,5 @@ NB_MODULE(_core, m) {
     m.attr("__version__") = CSPACE_VERSION;
     m.attr("isa") = cspace::kernels::isa() == cspace::kernels::Isa::avx2 ? "avx2" : "baseline";
     bind_math(m);
+    bind_robot(m);
 }

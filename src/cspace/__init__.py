@@ -1,13 +1,35 @@
 """cspace: from a robot's description to its motion."""
 
 import logging
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 from cspace import spatial
 from cspace._core import __version__
 from cspace.errors import CspaceError
 from cspace.spatial import *  # noqa: F403
 
+if TYPE_CHECKING:
+    from cspace import kinematics
+    from cspace.robot import Robot
+
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
-__all__ = ["CspaceError", "__version__", "spatial"]
+__all__ = ["CspaceError", "Robot", "__version__", "kinematics", "spatial"]
 __all__ += spatial.__all__
+
+# Where the names are that are imported when they are first used: their rooms take time to load.
+_LATER = {"Robot": "cspace.robot", "kinematics": ""}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _LATER:
+        raise AttributeError(f"module 'cspace' has no attribute {name!r}")
+    room = _LATER[name]
+    value = getattr(import_module(room), name) if room else import_module(f"cspace.{name}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,0 +1,89 @@
+// The time derivative of the Jacobian at given joint velocities: the part of an acceleration that needs no
+// force, a = J q̈ + J̇ q̇.
+//
+// Each column is differentiated as it stands: with ḋ = ω × d for a direction carried by a link that turns
+// with ω, the derivative of [d × (p − o); d] is [ḋ × (p − o) + d × (ṗ − ȯ); ḋ].
+#pragma once
+
+#include "cspace/kinematics/jacobian.hpp"
+
+namespace cspace {
+// How fast something moves: the velocity of its reference point and its angular velocity.
+template <class V>
+struct Twist {
+    Vec3<V> v, w;
+};
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// The rates of all axes of a chain, and, returned, the twist of the point p at its end. base is the twist
+// of the base at p_base; qd holds the joint velocities by coordinate.
+template <class V>
+CSPACE_INLINE Twist<V> axis_rates(const Chain& chain, const Axis<V>* axes, const Vec3<V>& p, const V* qd,
+                                  const Twist<V>& base, const Vec3<V>& p_base, Axis<V>* rates) {
+    Twist<V> link = base;
+    Vec3<V> from = p_base;
+    for (int i = 0; i < chain.n; ++i) {
+        const Vec3<V>& d = axes[i].direction;
+        link.v = link.v + cross(link.w, axes[i].point - from);
+        from = axes[i].point;
+        rates[i] = {link.v, cross(link.w, d)};
+        const V speed = chain.joints[i].ratio * qd[chain.joints[i].coordinate];
+        if (chain.joints[i].prismatic) {
+            link.v = link.v + speed * d;
+        } else {
+            link.w = link.w + speed * d;
+        }
+    }
+    link.v = link.v + cross(link.w, p - from);
+    return link;
+}
+
+// The columns of the joints of a chain, differentiated; the other columns from `first` on are set to zero.
+template <class V>
+CSPACE_INLINE void joint_column_rates(const Chain& chain, const Axis<V>* axes, const Axis<V>* rates,
+                                      const Vec3<V>& p, const Vec3<V>& p_rate, V* J, int columns, int first) {
+    for (int r = 0; r < 6; ++r) {
+        for (int j = first; j < columns; ++j) J[r * columns + j] = fill<V>(0.0);
+    }
+    for (int i = 0; i < chain.n; ++i) {
+        const ChainJoint& joint = chain.joints[i];
+        const Vec3<V> rate = joint.ratio * rates[i].direction;
+        const int j = first + joint.coordinate;
+        if (joint.prismatic) {
+            add_to_column(J, columns, j, 0, rate);
+            continue;
+        }
+        const Vec3<V> d = joint.ratio * axes[i].direction;
+        add_to_column(J, columns, j, 0, cross(rate, p - axes[i].point) + cross(d, p_rate - rates[i].point));
+        add_to_column(J, columns, j, 3, rate);
+    }
+}
+
+// The columns of a floating base, differentiated: only the arm from its origin to the point changes.
+template <class V>
+CSPACE_INLINE void base_column_rates(const Vec3<V>& arm_rate, V* J, int columns) {
+    const V zero = fill<V>(0.0), one = fill<V>(1.0);
+    const Vec3<V> unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+    for (int j = 0; j < 3; ++j) {
+        put_column(J, columns, j, 0, {zero, zero, zero});
+        put_column(J, columns, j, 3, {zero, zero, zero});
+        put_column(J, columns, 3 + j, 0, cross(unit[j], arm_rate));
+        put_column(J, columns, 3 + j, 3, {zero, zero, zero});
+    }
+}
+
+// The derivative of Rᵀ J, of a frame that turns with w: Rᵀ (J̇ − [w]× J), written over J_rate.
+template <class V>
+CSPACE_INLINE void express_rate_in(const Mat3<V>& R, const Vec3<V>& w, const V* J, V* J_rate, int columns) {
+    for (int j = 0; j < columns; ++j) {
+        for (int half = 0; half < 6; half += 3) {
+            const Vec3<V> turned = cross(w, get_column(J, columns, j, half));
+            put_column(J_rate, columns, j, half,
+                       transpose_times(R, get_column(J_rate, columns, j, half) - turned));
+        }
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

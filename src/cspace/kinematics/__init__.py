@@ -1,0 +1,23 @@
+"""Kinematics: where every frame of a robot is, how it moves with the joints, and where it loses a freedom."""
+
+from cspace.kinematics.assembly import Assembly, add_tool, assemble, mount, screws
+from cspace.kinematics.center_of_mass import center_of_mass, center_of_mass_jacobian
+from cspace.kinematics.configurations import random_configurations
+from cspace.kinematics.forward import forward_kinematics, forward_kinematics_all
+from cspace.kinematics.jacobian import fk_jacobian, jacobian, jacobian_dot
+
+__all__ = [
+    "Assembly",
+    "add_tool",
+    "assemble",
+    "center_of_mass",
+    "center_of_mass_jacobian",
+    "fk_jacobian",
+    "forward_kinematics",
+    "forward_kinematics_all",
+    "jacobian",
+    "jacobian_dot",
+    "mount",
+    "random_configurations",
+    "screws",
+]

@@ -1,0 +1,258 @@
+"""From a description to the arrays of the compiled robot: moving joints alone, their axes turned to z."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, tree
+
+Numbers = npt.NDArray[np.intp]
+
+__all__ = ["Assembly", "add_tool", "assemble", "mount", "screws"]
+
+
+@dataclass
+class Assembly:
+    """The numbers of a robot, every fixed link folded into the joint that carries it.
+
+    Joint k sits at T_parent_joint[k] (n_joints, 4, 4) on joint parent[k] (-1: the base), turns about or
+    slides along its z, and stands at ratio[k] · q[coordinate[k]] + offset[k]. Frame f sits at
+    T_joint_frame[f] (n_frames, 4, 4) on joint frame_joint[f]. mass (n_joints + 1,) [kg] and center
+    (n_joints + 1, 3) [m] are those of the base and of all that is fixed to each joint.
+
+    coordinates: the names behind q, coordinate_types their "R" or "P", limits theirs. frame_index: name →
+    number. base, tip (None: the robot branches), leaves: links. floating: the base moves freely. chain: the
+    path to the tip.
+    """
+
+    base: str
+    tip: str | None
+    leaves: tuple[str, ...]
+    floating: bool
+    coordinates: tuple[str, ...]
+    coordinate_types: str
+    limits: Limits
+    T_parent_joint: Array
+    parent: Numbers
+    coordinate: Numbers
+    ratio: Array
+    offset: Array
+    prismatic: Array
+    T_joint_frame: Array
+    frame_joint: Numbers
+    frame_index: dict[str, int]
+    mass: Array
+    center: Array
+    chain: Chain | None
+
+    @property
+    def n_joints(self) -> int:
+        """How many joints move, mimicking ones included."""
+        return len(self.T_parent_joint)
+
+    @property
+    def n_frames(self) -> int:
+        """How many frames have a name."""
+        return len(self.T_joint_frame)
+
+    @property
+    def n_coordinates(self) -> int:
+        """How many numbers a configuration has."""
+        return len(self.coordinates)
+
+    @property
+    def tip_index(self) -> int:
+        """The number of the tip among the frames, -1 where the tree leaves the choice."""
+        return -1 if self.tip is None else self.frame_index[self.tip]
+
+
+def assemble(
+    description: Description, base: str | None = None, tip: str | None = None, *, floating: bool | None = None
+) -> Assembly:
+    """The chain from `base` to `tip`, or, where the robot branches and nothing is chosen, the whole tree.
+
+    base: a link, the root if None (below a floating joint that carries everything). tip: a link; if None,
+    the end of the only chain there is. Moving joints off the chain are left out with all that they carry.
+    floating: the base moves freely; None: if the description says so. Raises UnknownNameError for a link
+    that is not there, InputError for a base below which the robot branches.
+    """
+    loose = any(joint.type == "floating" for joint in description.joints)
+    start = tree(description).root if base is None and loose else base
+    free = loose and base is None if floating is None else floating
+    end = tip
+    if end is None:
+        try:
+            end = default_tip(description, start)
+        except InputError:
+            if base is not None:
+                raise
+            return _from_tree(tree(description), description, free)
+    return _from_chain(chain(description, start, end), description, free)
+
+
+def _from_tree(source: Tree, description: Description, floating: bool) -> Assembly:
+    turned = _turned(source.axes)
+    carriers = source.parent
+    # From a joint turned to z back to the joint as given; the base first.
+    back = np.array([np.eye(4), *np.swapaxes(turned, -1, -2)])
+    frame_joint = np.array([joint for joint, _ in source.frames.values()])
+    poses = np.array([pose for _, pose in source.frames.values()])
+    return Assembly(
+        base=source.root,
+        tip=None,
+        leaves=description.leaves,
+        floating=floating,
+        T_parent_joint=back[carriers + 1] @ source.placement @ turned,
+        parent=carriers,
+        T_joint_frame=back[frame_joint + 1] @ poses,
+        frame_joint=frame_joint,
+        frame_index={name: i for i, name in enumerate(source.frames)},
+        mass=np.array(source.mass),
+        center=np.einsum("kij,kj->ki", back[:, :3, :3], source.com),
+        chain=None,
+        **_coordinates(source, description),
+    )
+
+
+def _from_chain(source: Chain, description: Description, floating: bool) -> Assembly:
+    n = len(source.axes)
+    T_base_joint = np.array([np.eye(4), *_turned(source.axes)])
+    T_base_joint[1:, :3, 3] = source.points
+    back = np.array([_inverse(T) for T in T_base_joint])
+    frame_joint = np.array([before - 1 for before, _ in source.frames.values()])
+    poses = np.array([pose for _, pose in source.frames.values()])
+    T_joint_frame = back[frame_joint + 1] @ poses
+    mass, center = _lumps(description, source.frames, frame_joint, T_joint_frame, n)
+    return Assembly(
+        base=source.base,
+        tip=source.tip,
+        leaves=(source.tip,),
+        floating=floating,
+        T_parent_joint=back[:-1] @ T_base_joint[1:],
+        parent=np.arange(-1, n - 1),
+        T_joint_frame=T_joint_frame,
+        frame_joint=frame_joint,
+        frame_index={name: i for i, name in enumerate(source.frames)},
+        mass=mass,
+        center=center,
+        chain=source,
+        **_coordinates(source, description),
+    )
+
+
+def _coordinates(source: Tree | Chain, description: Description) -> dict[str, Any]:
+    """What a tree and a chain say about their coordinates in the same words."""
+    law = source.coordinates
+    kinds = dict(zip(source.joint_names, source.joint_types, strict=True))
+    for name in law.names:  # a joint may follow one that is not in the chain
+        if name not in kinds:
+            kinds[name] = "P" if description.joint(name).type == "prismatic" else "R"
+    return {
+        "coordinates": law.names,
+        "coordinate_types": "".join(kinds[name] for name in law.names),
+        "limits": law.limits,
+        "coordinate": law.index,
+        "ratio": law.multiplier,
+        "offset": law.offset,
+        "prismatic": np.array([kind == "P" for kind in source.joint_types], dtype=np.float64),
+    }
+
+
+def _lumps(
+    description: Description,
+    frames: Mapping[str, object],
+    frame_joint: Numbers,
+    T_joint_frame: Array,
+    n: int,
+) -> tuple[Array, Array]:
+    """Mass (n + 1,) and centre of mass (n + 1, 3) of what the base and each joint carry."""
+    mass, moment = np.zeros(n + 1), np.zeros((n + 1, 3))
+    for name, joint, T in zip(frames, frame_joint, T_joint_frame, strict=True):
+        inertial = description.link(name).inertial
+        if inertial is not None:
+            mass[joint + 1] += inertial.mass
+            moment[joint + 1] += inertial.mass * (T[:3, :3] @ inertial.com + T[:3, 3])
+    return mass, moment / np.where(mass > 0.0, mass, 1.0)[:, None]
+
+
+def _turned(axes: Array) -> Array:
+    """Rotations (n, 4, 4) whose third columns are the unit axes (n, 3); coordinate axes are only permuted."""
+    result = np.tile(np.eye(4), (len(axes), 1, 1))
+    for T, axis in zip(result, axes, strict=True):
+        aside = np.zeros(3)
+        aside[int(np.argmin(np.abs(axis)))] = 1.0
+        y = np.cross(axis, aside)
+        y /= np.linalg.norm(y)
+        T[:3, :3] = np.column_stack([np.cross(y, axis), y, axis])
+    return result
+
+
+def _inverse(T: Array) -> Array:
+    result = np.eye(4)
+    result[:3, :3] = T[:3, :3].T
+    result[:3, 3] = -T[:3, :3].T @ T[:3, 3]
+    return result
+
+
+def mount(assembly: Assembly, name: str, T_world_base: Array) -> None:
+    """Put the base at a place in the world, T_world_base (4, 4): all that the base carries moves there.
+
+    Raises InputError for a floating base.
+    """
+    if assembly.floating:
+        raise InputError(f"the base of {name} floats: give T_world_base= in each call instead of mounting it")
+    on_base = assembly.parent < 0
+    assembly.T_parent_joint[on_base] = T_world_base @ assembly.T_parent_joint[on_base]
+    fixed = assembly.frame_joint < 0
+    assembly.T_joint_frame[fixed] = T_world_base @ assembly.T_joint_frame[fixed]
+    R, p = T_world_base[:3, :3], T_world_base[:3, 3]
+    assembly.center[0] = R @ assembly.center[0] + p
+    if assembly.chain is not None:
+        old = assembly.chain
+        assembly.chain = replace(
+            old,
+            axes=old.axes @ R.T,
+            points=old.points @ R.T + p,
+            T_zero=T_world_base @ old.T_zero,
+            frames={link: (before, T_world_base @ T) for link, (before, T) in old.frames.items()},
+        )
+
+
+def add_tool(assembly: Assembly, name: str, T_tip_tool: Array) -> None:
+    """Put a tool on the tip at T_tip_tool (4, 4); it becomes the tip, "tool" ("tool_" if that is taken).
+
+    Raises InputError for a tree without tip.
+    """
+    if assembly.tip is None or assembly.chain is None:
+        raise InputError(
+            f"{name} branches, so a tool has no place; choose tip=, one of {', '.join(assembly.leaves)}"
+        )
+    tool = "tool"
+    while tool in assembly.frame_index:
+        tool += "_"
+    f = assembly.tip_index
+    carrier, T_joint_tool = int(assembly.frame_joint[f]), assembly.T_joint_frame[f] @ T_tip_tool
+    assembly.frame_index[tool] = assembly.n_frames
+    assembly.T_joint_frame = np.concatenate([assembly.T_joint_frame, T_joint_tool[None]])
+    assembly.frame_joint = np.append(assembly.frame_joint, carrier)
+    assembly.tip = tool
+    old, T_zero = assembly.chain, assembly.chain.T_zero @ T_tip_tool
+    frames = {**old.frames, tool: (carrier + 1, T_zero)}
+    assembly.chain = replace(old, tip=tool, T_zero=T_zero, frames=frames)
+
+
+def screws(assembly: Assembly, name: str) -> Chain:
+    """The path from base to tip as screws at zero, tool and mounting included.
+
+    Raises InputError for a tree without tip.
+    """
+    if assembly.chain is None:
+        raise InputError(f"{name} branches; a chain needs tip=, one of {', '.join(assembly.leaves)}")
+    return assembly.chain

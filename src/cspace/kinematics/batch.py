@@ -1,0 +1,181 @@
+"""What the functions of this room are given, checked once and laid out as rows for the compiled loops."""
+
+from __future__ import annotations
+
+import math
+import operator
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.spatial import as_pose
+
+__all__ = ["Batch", "Machine", "frame_number", "output", "rows_of"]
+
+
+class Machine(Protocol):
+    """What these functions need of a robot: its compiled half and its names."""
+
+    name: str
+    mass: float
+    joint_names: tuple[str, ...]
+    frames: tuple[str, ...]
+    leaves: tuple[str, ...]
+    tip: str | None
+    floating: bool
+
+    @property
+    def dof(self) -> int: ...
+    def _chain_rows(self, *arguments: Any) -> bool: ...
+    def _tree_rows(self, *arguments: Any) -> bool: ...
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Configurations as rows: q (rows, n), the leading axes they came with, and for how many threads.
+
+    T_world_base (rows or 1, 4, 4), point (rows or 1, 3), qd (rows, dof): None where not given.
+    """
+
+    q: Array
+    shape: tuple[int, ...]
+    threads: int
+    T_world_base: Array | None = None
+    point: Array | None = None
+    qd: Array | None = None
+
+
+def rows_of(
+    robot: Machine,
+    q: Any,
+    *,
+    T_world_base: Any = None,
+    point: Any = None,
+    qd: Any = None,
+    threads: int | None = None,
+) -> Batch:
+    """The arguments of a call as a Batch, their leading axes broadcast against each other.
+
+    Raises InputError for a wrong shape, NaN or inf in anything but q (the loops look at q themselves; see
+    refuse_infinite), a pose that is none, or leading axes that do not fit; InputTypeError for what is no
+    number.
+    """
+    q = _row_vectors(q, "q", len(robot.joint_names), "one value per joint", robot, finite=False)
+    given: dict[str, tuple[Array, int]] = {"q": (q, 1)}
+    if T_world_base is not None:
+        given["T_world_base"] = (as_pose(T_world_base, "T_world_base"), 2)
+    if point is not None:
+        given["point"] = (as_floats(point, "point", last=(3,)), 1)
+    if qd is not None:
+        what = "[v; ω] of the base, then " if robot.floating else ""
+        given["qd"] = (_row_vectors(qd, "qd", robot.dof, what + "one velocity per joint", robot), 1)
+    leads = {name: array.shape[: array.ndim - own] for name, (array, own) in given.items()}
+    try:
+        shape = np.broadcast_shapes(*leads.values())
+    except ValueError:
+        listed = ", ".join(f"{name} {array.shape}" for name, (array, _) in given.items())
+        raise InputError(f"the leading axes of {listed} do not fit together") from None
+
+    def rows(name: str, *, shared: bool) -> Array | None:
+        if name not in given:
+            return None
+        array, own = given[name]
+        last = array.shape[array.ndim - own :]
+        if shared and leads[name] == ():
+            return np.ascontiguousarray(array.reshape((1, *last)))
+        if leads[name] != shape:
+            array = np.broadcast_to(array, shape + last)
+        return np.ascontiguousarray(array.reshape((math.prod(shape), *last)))
+
+    q_rows = rows("q", shared=False)
+    assert q_rows is not None
+    return Batch(
+        q_rows,
+        shape,
+        _thread_count(threads, shape),
+        rows("T_world_base", shared=True),
+        rows("point", shared=True),
+        rows("qd", shared=False),
+    )
+
+
+def refuse_infinite(batch: Batch) -> None:
+    """Raise the InputError that names the value of q which is not finite."""
+    as_floats(batch.q.reshape((*batch.shape, batch.q.shape[1])), "q")
+
+
+def frame_number(robot: Machine, frame: str | None) -> int:
+    """The number of a frame among `robot.frames`, of the tip if None.
+
+    Raises UnknownNameError for a name that is not there, InputError where a tree leaves the choice.
+    """
+    if frame is None:
+        frame = robot.tip
+    if frame is None:
+        raise InputError(
+            f"{robot.name} branches, so name a frame: frame= in this call, or tip= where the robot is made;"
+            f" its branches end at {', '.join(robot.leaves)}"
+        )
+    if not isinstance(frame, str):
+        raise InputTypeError(f"frame must be a name, got {type(frame).__name__}; see robot.frames")
+    try:
+        return robot.frames.index(frame)
+    except ValueError:
+        raise suggest("frame", frame, robot.frames, owner=robot.name) from None
+
+
+def output(out: Any, shape: tuple[int, ...], subject: str = "out") -> Array:
+    """The array to write into: a new one, or the caller's if it fits.
+
+    Raises InputTypeError unless out is a contiguous float64 array, InputError for another shape.
+    """
+    if out is None:
+        return np.empty(shape)
+    if not isinstance(out, np.ndarray) or out.dtype != np.float64:
+        kind = f"an array of {out.dtype}" if isinstance(out, np.ndarray) else type(out).__name__
+        raise InputTypeError(f"{subject} must be a float64 array to write into, got {kind}")
+    if out.shape != shape:
+        raise InputError(f"{subject} has shape {out.shape}, expected {shape}")
+    if not (out.flags.c_contiguous and out.flags.writeable and out.flags.aligned):
+        raise InputError(f"{subject} must be C-contiguous and writeable; np.empty{shape} is")
+    return out
+
+
+def choice(value: Any, subject: str, known: tuple[str, ...]) -> str:
+    """The value of the argument `subject` if it is one of the known words.
+
+    Raises UnknownNameError, with the nearest word, if not.
+    """
+    if isinstance(value, str) and value in known:
+        return value
+    raise suggest(f"{subject} choice", value, known)
+
+
+def _row_vectors(
+    value: Any, subject: str, n: int, what: str, robot: Machine, *, finite: bool = True
+) -> Array:
+    array = as_floats(value, subject, finite=finite)
+    if array.ndim == 0 or array.shape[-1] != n:
+        names = ", ".join(robot.joint_names)
+        raise InputError(
+            f"{subject} has shape {array.shape}, expected (..., {n}): {what} of {robot.name}"
+            + (f" ({names})" if len(robot.joint_names) <= 12 else "")
+        )
+    return array
+
+
+def _thread_count(threads: int | None, shape: tuple[int, ...]) -> int:
+    """1 for one configuration; 0, which means every processor, for a batch without a wish."""
+    if threads is None:
+        return 0 if shape else 1
+    try:
+        count = operator.index(threads)
+    except TypeError:
+        kind = type(threads).__name__
+        raise InputTypeError(f"threads must be a whole number or None, got {kind}") from None
+    if not 0 <= count <= 1024:
+        raise InputError(f"threads is {count}; it must be 1 to 1024, or 0 or None for every processor")
+    return count

@@ -1,0 +1,49 @@
+"""Configurations drawn at random, within the limits of a robot."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cspace.arrays import Array, as_generator
+from cspace.errors import InputError
+from cspace.model import Limits
+
+if TYPE_CHECKING:
+    Seed = int | np.random.Generator | None
+
+__all__ = ["random_configurations"]
+
+
+def random_configurations(
+    limits: Limits, joint_types: str, n: int | None = None, *, rng: Seed = None, reach: float | None = None
+) -> Array:
+    """Configurations drawn uniformly between the limits.
+
+    limits: of the joints, each (n_joints,). joint_types: "R" or "P" per joint. n: how many; None gives one,
+    without a leading axis. rng: seed or generator. A turning joint without limits is drawn from (−π, π];
+    one without limits on one side from the half turn inside the other; a sliding joint without limits needs
+    reach, the length [m] drawn on the open side.
+
+    Returns q (n, n_joints) or (n_joints,) [rad or m].
+    Raises InputError for a sliding joint that is open on a side and has no reach.
+    """
+    lower, upper = np.array(limits.lower), np.array(limits.upper)
+    for i, kind in enumerate(joint_types):
+        span = np.pi if kind == "R" else reach
+        if np.isfinite(lower[i]) and np.isfinite(upper[i]):
+            continue
+        if span is None:
+            raise InputError(
+                f"joint {i} slides between {lower[i]:g} and {upper[i]:g} m; an open range needs reach="
+            )
+        if not np.isfinite(lower[i]) and not np.isfinite(upper[i]):
+            lower[i], upper[i] = -span, span
+        elif np.isfinite(lower[i]):
+            upper[i] = lower[i] + span
+        else:
+            lower[i] = upper[i] - span
+    shape = (lower.size,) if n is None else (n, lower.size)
+    # From the upper end downward: of a whole turn −π is left out and π is in.
+    return np.asarray(upper - (upper - lower) * as_generator(rng).random(shape))

@@ -1,0 +1,88 @@
+"""Forward kinematics: where the frames of a robot are, at a configuration."""
+
+from __future__ import annotations
+
+from numpy.typing import ArrayLike
+
+from cspace.arrays import Array
+from cspace.kinematics.batch import Batch, Machine, frame_number, output, refuse_infinite, rows_of
+from cspace.spatial.checks import PoseLike
+
+__all__ = ["forward_kinematics", "forward_kinematics_all"]
+
+
+def forward_kinematics(
+    robot: Machine,
+    q: ArrayLike,
+    frame: str | None = None,
+    *,
+    T_world_base: PoseLike | None = None,
+    out: Array | None = None,
+    threads: int | None = None,
+) -> Array:
+    """The pose of a frame at a configuration; see Robot.fk, which is this function.
+
+    q (..., n) [rad or m], T_world_base (..., 4, 4), out (..., 4, 4). Returns T (..., 4, 4), which maps
+    coordinates in the frame to coordinates in the base. Raises InputError for a wrong shape or NaN,
+    UnknownNameError for an unknown frame.
+    """
+    number = frame_number(robot, frame)
+    batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
+    T = output(out, (*batch.shape, 4, 4))
+    compute_chain(robot, number, batch, T=T)
+    return T
+
+
+def forward_kinematics_all(
+    robot: Machine,
+    q: ArrayLike,
+    *,
+    T_world_base: PoseLike | None = None,
+    out: Array | None = None,
+    threads: int | None = None,
+) -> Array:
+    """The poses of all frames at a configuration, in one pass through the tree; see Robot.fk_all.
+
+    q (..., n) [rad or m], T_world_base (..., 4, 4), out (..., frames, 4, 4). Returns T (..., frames, 4, 4)
+    in the order of robot.frames. Raises InputError for a wrong shape or NaN.
+    """
+    batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
+    T = output(out, (*batch.shape, len(robot.frames), 4, 4))
+    if not robot._tree_rows(batch.q, batch.T_world_base, T, None, None, batch.threads):
+        refuse_infinite(batch)
+    return T
+
+
+def compute_chain(
+    robot: Machine,
+    frame: int,
+    batch: Batch,
+    *,
+    T: Array | None = None,
+    J: Array | None = None,
+    J_rate: Array | None = None,
+    sigma: Array | None = None,
+    chosen: int = 63,
+    in_tip: bool = False,
+) -> None:
+    """Fill the arrays given, for one frame: T (..., 4, 4), J and J_rate (..., 6, dof), sigma (..., k).
+
+    chosen: bit r set where row r of the Jacobian counts for the singular values. Raises InputError for NaN
+    in q.
+    """
+    finite = robot._chain_rows(
+        frame,
+        batch.q,
+        batch.qd,
+        batch.T_world_base,
+        batch.point,
+        T,
+        J,
+        J_rate,
+        sigma,
+        chosen,
+        in_tip,
+        batch.threads,
+    )
+    if not finite:
+        refuse_infinite(batch)

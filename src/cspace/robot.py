@@ -1,0 +1,142 @@
+"""The robot: one object with every function of it; each method is one line into its room."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cspace import kinematics
+from cspace._core import RobotBase
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.model import Chain, Description
+from cspace.spatial import as_pose
+from cspace.spatial.checks import PoseLike
+
+if TYPE_CHECKING:
+    Seed = int | np.random.Generator | None
+
+__all__ = ["Robot"]
+
+
+class Robot(RobotBase):
+    """A robot that can be asked where it is and how it moves.
+
+    description: links and joints. base, tip: links; with a tip (or when the joints follow one another
+    anyway) the robot is the chain from base to tip, joints off it are held still and left out; without one
+    it may be a tree, whose frames are then asked for by name. floating: the base moves freely, and six
+    velocities come before those of the joints; None: if the description says so. T_world_base, T_tip_tool
+    (4, 4): where the base is mounted and what is mounted on the tip; both count in every function.
+
+    name: of the robot. dof: number of velocities. joint_names: the n coordinates of a configuration, in
+    order; joint_types: "R" (turns) or "P" (slides) per coordinate. limits: each (n,). frames: every name
+    that fk knows. base, tip, leaves: names of links. mass: of all links it keeps [kg]. floating,
+    description: as given.
+
+    Raises UnknownNameError for a link that is not there, InputError for a base= that leaves a choice of tips.
+    """
+
+    def __init__(
+        self,
+        description: Description,
+        base: str | None = None,
+        tip: str | None = None,
+        *,
+        floating: bool | None = None,
+        T_world_base: PoseLike | None = None,
+        T_tip_tool: PoseLike | None = None,
+    ) -> None:
+        self._made_from = (description, base, tip, floating)
+        self._T_world_base = None if T_world_base is None else _one_pose(T_world_base, "T_world_base")
+        self._T_tip_tool = None if T_tip_tool is None else _one_pose(T_tip_tool, "T_tip_tool")
+        assembly = kinematics.assemble(description, base, tip, floating=floating)
+        if self._T_world_base is not None:
+            kinematics.mount(assembly, description.name, self._T_world_base)
+        if self._T_tip_tool is not None:
+            kinematics.add_tool(assembly, description.name, self._T_tip_tool)
+        super().__init__(assembly)
+        self._assembly = assembly
+        self.description = description
+        self.name = description.name
+        self.base, self.tip, self.floating = assembly.base, assembly.tip, assembly.floating
+        self.leaves = assembly.leaves
+        self.frames = tuple(assembly.frame_index)
+        self.joint_names, self.joint_types = assembly.coordinates, assembly.coordinate_types
+        self.limits = assembly.limits
+        self.mass = float(assembly.mass.sum())
+
+    fk_all = kinematics.forward_kinematics_all
+    jacobian_dot = kinematics.jacobian_dot
+    center_of_mass = kinematics.center_of_mass
+    center_of_mass_jacobian = kinematics.center_of_mass_jacobian
+
+    @property
+    def chain(self) -> Chain:
+        """The path from base to tip as screws at zero, tool and mounting included.
+
+        axes (n, 3), points (n, 3) [m], joint_types, T_zero (4, 4), coordinates: see cspace.model.Chain.
+        Raises InputError for a tree without tip.
+        """
+        return kinematics.screws(self._assembly, self.name)
+
+    def with_tool(self, T_tip_tool: PoseLike) -> Robot:
+        """The same robot with a tool on its tip; the new tip is the frame "tool", and it counts everywhere.
+
+        T_tip_tool (4, 4): the tool in the tip, after tools that are there already.
+        Raises InputError for what is no pose, and for a tree without tip.
+        """
+        tool = _one_pose(T_tip_tool, "T_tip_tool")
+        return self._changed(T_tip_tool=tool if self._T_tip_tool is None else self._T_tip_tool @ tool)
+
+    def with_base(self, T_world_base: PoseLike) -> Robot:
+        """The same robot mounted in the world: its poses are then in the world, in every function.
+
+        T_world_base (4, 4): what was the base, in the world; on a mounted robot the mount itself is moved.
+        Raises InputError for what is no pose, and for a floating base, which is placed in each call instead.
+        """
+        mount = _one_pose(T_world_base, "T_world_base")
+        return self._changed(T_world_base=mount if self._T_world_base is None else mount @ self._T_world_base)
+
+    def random_configuration(
+        self, n: int | None = None, *, rng: Seed = None, reach: float | None = None
+    ) -> Array:
+        """Configurations drawn uniformly between the limits; see kinematics.random_configurations.
+
+        n: how many; None gives one. rng: seed or generator. A turning joint without limits is drawn from
+        (−π, π]; a sliding one needs reach [m]. Returns q (n, n_joints) or (n_joints,) [rad or m].
+        """
+        return kinematics.random_configurations(self.limits, self.joint_types, n, rng=rng, reach=reach)
+
+    def _changed(self, **changes: Any) -> Robot:
+        description, base, tip, floating = self._made_from
+        kept = {"T_world_base": self._T_world_base, "T_tip_tool": self._T_tip_tool}
+        return type(self)(description, base, tip, floating=floating, **(kept | changes))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _again, (type(self), *self._made_from, self._T_world_base, self._T_tip_tool)
+
+    def __repr__(self) -> str:
+        ends = f"{self.base} → {self.tip or '(' + ', '.join(self.leaves) + ')'}"
+        freedom = f"{self.joint_types}, {self.dof} dof" + (" with a floating base" if self.floating else "")
+        mounted = ", mounted in the world" if self._T_world_base is not None else ""
+        return f"<Robot {self.name}: {freedom}, {ends}{mounted}>"
+
+
+def _one_pose(value: PoseLike, subject: str) -> Array:
+    T = as_pose(value, subject)
+    if T.ndim != 2:
+        raise InputError(f"{subject} has shape {T.shape}, expected one pose (4, 4)")
+    return T.copy()
+
+
+def _again(
+    kind: type[Robot],
+    description: Description,
+    base: str | None,
+    tip: str | None,
+    floating: bool | None,
+    T_world_base: Array | None,
+    T_tip_tool: Array | None,
+) -> Robot:
+    return kind(description, base, tip, floating=floating, T_world_base=T_world_base, T_tip_tool=T_tip_tool)

@@ -1,0 +1,205 @@
+#include "kinematics.hpp"
+
+#include "cspace/kinematics/center_of_mass.hpp"
+#include "cspace/kinematics/forward.hpp"
+#include "cspace/kinematics/jacobian.hpp"
+#include "cspace/kinematics/jacobian_rate.hpp"
+#include "cspace/kinematics/singular_values.hpp"
+#include "cspace/math/rows.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+namespace {
+
+// Hands out arrays from memory that the caller owns.
+struct Scratch {
+    char* next;
+};
+template <class T>
+T* take(Scratch& scratch, int n) {
+    T* array = reinterpret_cast<T*>(scratch.next);
+    scratch.next += sizeof(T) * std::size_t(n);
+    return array;
+}
+
+template <class V>
+bool all_finite(const V* values, int n) {
+    V sum = fill<V>(0.0);
+    for (int i = 0; i < n; ++i) sum = sum + 0.0 * values[i];
+    return all(sum == 0.0);
+}
+
+template <class V>
+Pose<V> load_pose(const double* matrix, std::size_t stride, int count) {
+    if (!matrix)
+        return {{{{fill<V>(1.0), fill<V>(0.0), fill<V>(0.0)},
+                  {fill<V>(0.0), fill<V>(1.0), fill<V>(0.0)},
+                  {fill<V>(0.0), fill<V>(0.0), fill<V>(1.0)}}},
+                {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)}};
+    V m[16];
+    load_rows(matrix, stride, count, 16, m);
+    return read_matrix(m);
+}
+
+// The working arrays of one pack of configurations of a chain.
+template <class V>
+struct ChainWork {
+    V *q, *qd, *s, *c, *J, *J_rate;
+    Axis<V>*axes, *rates;
+    int dof, first;
+};
+template <class V>
+ChainWork<V> chain_work(const ChainRows& rows, void* memory) {
+    Scratch scratch{static_cast<char*>(memory)};
+    const int n = rows.chain.n, first = rows.floating ? 6 : 0, dof = first + rows.chain.n_coordinates;
+    return {take<V>(scratch, rows.chain.n_coordinates),
+            take<V>(scratch, dof),
+            take<V>(scratch, n + 3),
+            take<V>(scratch, n + 3),
+            take<V>(scratch, 6 * dof),
+            take<V>(scratch, 6 * dof),
+            take<Axis<V>>(scratch, n),
+            take<Axis<V>>(scratch, n),
+            dof,
+            first};
+}
+
+template <class V>
+void jacobian_rate(const ChainRows& rows, const ChainWork<V>& w, const Pose<V>& T, const Vec3<V>& p,
+                   const Pose<V>& T_world_base, std::size_t i, int count) {
+    load_rows(rows.qd + i * w.dof, w.dof, count, w.dof, w.qd);
+    const V zero = fill<V>(0.0);
+    Twist<V> base{{zero, zero, zero}, {zero, zero, zero}};
+    if (rows.floating) base = {{w.qd[0], w.qd[1], w.qd[2]}, {w.qd[3], w.qd[4], w.qd[5]}};
+    const Twist<V> end = axis_rates(rows.chain, w.axes, p, w.qd + w.first, base, T_world_base.t, w.rates);
+    joint_column_rates(rows.chain, w.axes, w.rates, p, end.v, w.J_rate, w.dof, w.first);
+    if (rows.floating) base_column_rates(end.v - base.v, w.J_rate, w.dof);
+    if (rows.in_tip) express_rate_in(T.R, end.w, w.J, w.J_rate, w.dof);
+    store_rows(w.J_rate, 6 * w.dof, rows.J_rate + i * 6 * w.dof, 6 * w.dof, count);
+}
+
+template <class V>
+void chosen_singular_values(const ChainRows& rows, const ChainWork<V>& w, std::size_t i, int count) {
+    int m = 0;
+    for (int r = 0; r < 6; ++r) {
+        if (!(rows.chosen >> r & 1u)) continue;
+        for (int j = 0; j < w.dof; ++j) w.J[m * w.dof + j] = w.J[r * w.dof + j];
+        ++m;
+    }
+    const int k = m < w.dof ? m : w.dof;
+    V sigma[6];
+    singular_values(w.J, m, w.dof, sigma);
+    store_rows(sigma, k, rows.sigma + i * k, k, count);
+}
+
+// One pack of configurations, from row i on.
+template <class V>
+CSPACE_INLINE bool chain_pack(const ChainRows& rows, const ChainWork<V>& w, std::size_t i, int count) {
+    const int n = rows.chain.n_coordinates;
+    load_rows(rows.q + i * n, n, count, n, w.q);
+    if (!all_finite(w.q, n)) return false;
+    chain_sines(rows.chain, w.q, w.s, w.c);
+    const auto T_world_base = load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
+    auto start = fill_pose<V>(rows.chain.T_base_first);
+    if (rows.T_world_base) start = T_world_base * start;
+    const Pose<V> T = follow_chain(rows.chain, start, w.q, w.s, w.c,
+                                   [&](int k, const Vec3<V>& p, const Vec3<V>& d) { w.axes[k] = {p, d}; });
+    if (rows.T) {
+        V matrix[16];
+        write_matrix(T, matrix);
+        store_rows(matrix, 16, rows.T + i * 16, 16, count);
+    }
+    if (!rows.J && !rows.J_rate && !rows.sigma) return true;
+    Vec3<V> p = T.t;
+    if (rows.point) {
+        V offset[3];
+        load_rows(rows.point + i * rows.point_stride, rows.point_stride, count, 3, offset);
+        p = T * Vec3<V>{offset[0], offset[1], offset[2]};
+    }
+    joint_columns(rows.chain, w.axes, p, w.J, w.dof, w.first);
+    if (rows.floating) base_columns(p - T_world_base.t, w.J, w.dof, 6);
+    if (rows.J_rate) jacobian_rate(rows, w, T, p, T_world_base, i, count);
+    if (rows.in_tip) express_in(T.R, w.J, w.dof);
+    if (rows.J) store_rows(w.J, 6 * w.dof, rows.J + i * 6 * w.dof, 6 * w.dof, count);
+    if (rows.sigma) chosen_singular_values(rows, w, i, count);
+    return true;
+}
+
+template <class V>
+bool tree_pack(const TreeRows& rows, void* memory, std::size_t i, int count) {
+    Scratch scratch{static_cast<char*>(memory)};
+    const Tree& tree = rows.tree;
+    const int n = tree.n_coordinates, first = rows.floating ? 6 : 0, dof = first + n;
+    V* q = take<V>(scratch, n);
+    auto* T_world_joint = take<Pose<V>>(scratch, tree.n_joints);
+    load_rows(rows.q + i * n, n, count, n, q);
+    if (!all_finite(q, n)) return false;
+    const auto T_world_base = load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
+    joint_poses(tree, q, T_world_base, T_world_joint);
+    if (rows.T) {
+        const std::size_t size = 16 * std::size_t(tree.n_frames);
+        for (int f = 0; f < tree.n_frames; ++f) {
+            V matrix[16];
+            write_matrix(frame_pose(tree.frames[f], T_world_base, T_world_joint), matrix);
+            store_rows(matrix, 16, rows.T + i * size + 16 * std::size_t(f), size, count);
+        }
+    }
+    if (!rows.center && !rows.center_columns) return true;
+    auto* moments = take<Vec3<V>>(scratch, tree.n_joints);
+    const Vec3<V> center = center_of_mass(tree, T_world_base, T_world_joint, moments);
+    if (rows.center) store_rows(&center.x, 3, rows.center + i * 3, 3, count);
+    if (!rows.center_columns) return true;
+    V* J = take<V>(scratch, 3 * dof);
+    center_of_mass_columns(tree, T_world_joint, moments, J, dof, first);
+    if (rows.floating) base_columns(center - T_world_base.t, J, dof, 3);
+    store_rows(J, 3 * dof, rows.center_columns + i * 3 * dof, 3 * dof, count);
+    return true;
+}
+
+constexpr int width = 4;
+
+template <class Body>
+bool over_packs(std::size_t begin, std::size_t end, const Body& body) {
+    for (std::size_t i = begin; i < end; i += width) {
+        if (!body(i, end - i < width ? int(end - i) : width)) return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+bool chain_rows(const ChainRows& rows, std::size_t begin, std::size_t end, void* scratch) {
+    const auto work = chain_work<Pack<width>>(rows, scratch);
+    return over_packs(begin, end, [&](std::size_t i, int count) { return chain_pack(rows, work, i, count); });
+}
+
+bool tree_rows(const TreeRows& rows, std::size_t begin, std::size_t end, void* scratch) {
+    return over_packs(begin, end, [&](std::size_t i, int count) {
+        return tree_pack<Pack<width>>(rows, scratch, i, count);
+    });
+}
+
+bool chain_pose(const Chain& chain, const double* q, double* T, void* memory) {
+    if (!all_finite(q, chain.n_coordinates)) return false;
+    Scratch scratch{static_cast<char*>(memory)};
+    double* s = take<double>(scratch, chain.n + 3);
+    double* c = take<double>(scratch, chain.n + 3);
+    chain_sines(chain, q, s, c);
+    write_matrix(follow_chain(chain, chain.T_base_first, q, s, c, [](int, const Vec3d&, const Vec3d&) {}), T);
+    return true;
+}
+
+bool chain_jacobian(const Chain& chain, const double* q, double* T, double* J, void* memory) {
+    if (!all_finite(q, chain.n_coordinates)) return false;
+    Scratch scratch{static_cast<char*>(memory)};
+    double* s = take<double>(scratch, chain.n + 3);
+    double* c = take<double>(scratch, chain.n + 3);
+    auto* axes = take<Axis<double>>(scratch, chain.n);
+    chain_sines(chain, q, s, c);
+    const Posed end = follow_chain(chain, chain.T_base_first, q, s, c,
+                                   [=](int k, const Vec3d& p, const Vec3d& d) { axes[k] = {p, d}; });
+    if (T) write_matrix(end, T);
+    joint_columns(chain, axes, end.t, J, chain.n_coordinates, 0);
+    return true;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

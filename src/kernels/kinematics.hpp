@@ -1,0 +1,60 @@
+#pragma once
+#include <cstddef>
+
+#include "cspace/model/chain.hpp"
+#include "cspace/model/tree.hpp"
+#include "dispatch.hpp"
+
+namespace cspace {
+
+// What is given and what is asked for, for many configurations of one chain. Arrays are row-major with one
+// row per configuration; a stride is in values per row, 0 where all rows share one. An output that is null
+// is not asked for.
+struct ChainRows {
+    Chain chain;
+    const double* q;             // (rows, n_coordinates)
+    const double* qd;            // (rows, dof), for J_rate
+    const double* T_world_base;  // 4×4, or null for the identity
+    std::size_t base_stride;
+    const double* point;  // (3,) in the frame, or null for its origin
+    std::size_t point_stride;
+    bool floating;  // six columns for the base come first
+    bool in_tip;    // the Jacobian in the axes of the frame
+    double* T;      // (rows, 4, 4)
+    double* J;      // (rows, 6, dof)
+    double* J_rate;
+    double* sigma;    // (rows, min(6 or fewer, dof)): singular values of the chosen rows of J
+    unsigned chosen;  // bit r: row r of J counts for sigma
+};
+// The same for what needs the whole tree.
+struct TreeRows {
+    Tree tree;
+    const double* q;
+    const double* T_world_base;
+    std::size_t base_stride;
+    bool floating;
+    double* T;               // (rows, frames, 4, 4)
+    double* center;          // (rows, 3)
+    double* center_columns;  // (rows, 3, dof)
+};
+
+// Bytes of scratch memory, aligned to 64, that one thread needs.
+inline std::size_t scratch_bytes(const ChainRows& rows) {
+    const std::size_t n = rows.chain.n, dof = rows.chain.n_coordinates + 6;
+    return 32 * (14 * (n + 4) + 14 * dof + 64);
+}
+inline std::size_t scratch_bytes(const TreeRows& rows) {
+    const std::size_t n = rows.tree.n_joints, dof = rows.tree.n_coordinates + 6;
+    return 32 * (15 * n + 4 * dof + 64);
+}
+
+}  // namespace cspace
+
+// Rows begin to end. False if a joint value among them is not finite; the outputs are then of no use.
+CSPACE_KERNEL(bool, chain_rows, (const ChainRows& rows, std::size_t begin, std::size_t end, void* scratch))
+CSPACE_KERNEL(bool, tree_rows, (const TreeRows& rows, std::size_t begin, std::size_t end, void* scratch))
+
+// One configuration, as quickly as can be: T (4, 4) and, unless null, J (6, n_coordinates) in the base.
+CSPACE_KERNEL(bool, chain_pose, (const Chain& chain, const double* q, double* T, void* scratch))
+CSPACE_KERNEL(bool, chain_jacobian,
+              (const Chain& chain, const double* q, double* T, double* J, void* scratch))
