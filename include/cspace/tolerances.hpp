@@ -23,4 +23,34 @@ inline constexpr double same_turns = 3e-7;
 // closer than that; the formulas for the singular case then offer their candidates too.
 inline constexpr double degenerate_pair = 1e-5;
 
+// Two axes count as parallel below this angle [rad], as meeting below this distance (times the arm's length):
+// robot files round a right angle to 1.5708, which bends an axis by 4e-6 rad; calibration moves it by 1e-4.
+inline constexpr double axis_relation = 2e-5;
+
+// The closed form of an arm whose true geometry differs by less than this (m and rad, over the arm's length)
+// needs no correction: the difference drowns in rounding.
+inline constexpr double geometry_exact = 2e-14;
+
+// A square root's argument within this band of zero (relative) marks two solutions about to merge: outside it
+// the closed form keeps twelve digits, inside it the careful path decides.
+inline constexpr double fold_band = 1e-8;
+
+// A quantity that fixes a joint (a lever arm over the arm's length, a sine) below this is rounding noise: the
+// joint is free and the pose singular.
+inline constexpr double free_joint = 1e-12;
+
+// A configuration is a solution if forward kinematics meets the goal within this (rad, and m over the arm's
+// length): far above what rounding costs near a singularity, far below what any robot can tell.
+inline constexpr double reached = 1e-9;
+
+// Solutions closer than this [rad] are one, unless conditioning says otherwise (see ik/refine.hpp).
+inline constexpr double same_solution = 1e-9;
+
+
+// Largest entry of RᵀR − I accepted in a goal (ROTATION_ERROR in Python): numbers typed with seven digits pass.
+inline constexpr double rotation_error = 1e-6;
+
+// Largest deviation of a pose's last row from (0, 0, 0, 1): it is written, never computed, up to rounding.
+inline constexpr double last_row = 1e-9;
+
 }  // namespace cspace::tolerance

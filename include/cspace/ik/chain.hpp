@@ -1,0 +1,71 @@
+// A serial arm as its joint axes at zero: what inverse kinematics is built from.
+#pragma once
+
+#include "cspace/math/trig.hpp"
+#include "cspace/math/vec.hpp"
+
+namespace cspace::ik {
+
+inline constexpr int max_joints = 16;
+
+// Product of exponentials (Brockett 1984): T_base_tip(q) = e^{ξ1 q1} … e^{ξn qn} tip.
+struct Chain {
+    int n = 0;
+    Vec3d axis[max_joints];   // unit direction at zero, in base
+    Vec3d point[max_joints];  // any point on the axis at zero, in base [m]
+    bool prismatic[max_joints] = {};
+    Posed tip;  // T_base_tip at zero
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+CSPACE_INLINE Posed identity_pose() { return {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}}; }
+
+// The displacement of joint i by q.
+inline Posed joint_motion(const ik::Chain& chain, int i, double q) {
+    if (chain.prismatic[i]) return {identity_pose().R, q * chain.axis[i]};
+    double s, c;
+    sincos(q, s, c);
+    const Mat3d R = rotation_about(chain.axis[i], c, s);
+    return {R, chain.point[i] - R * chain.point[i]};
+}
+
+inline Posed forward(const ik::Chain& chain, const double* q) {
+    Posed T = identity_pose();
+    for (int i = 0; i < chain.n; ++i) T = T * joint_motion(chain, i, q[i]);
+    return T * chain.tip;
+}
+
+// The same arm read from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.
+inline ik::Chain reversed(const ik::Chain& chain) {
+    const Posed T_tip_base = inverse(chain.tip);
+    ik::Chain back;
+    back.n = chain.n;
+    for (int i = 0; i < chain.n; ++i) {
+        const int k = chain.n - 1 - i;
+        back.axis[i] = -(T_tip_base.R * chain.axis[k]);
+        back.point[i] = T_tip_base * chain.point[k];
+        back.prismatic[i] = chain.prismatic[k];
+    }
+    back.tip = T_tip_base;
+    return back;
+}
+
+// A length typical of the arm [m]: the longest step from axis to axis or to the tip, or 1 if all meet.
+inline double characteristic_length(const ik::Chain& chain) {
+    double longest = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        const Vec3d next = i + 1 < chain.n ? chain.point[i + 1] : chain.tip.t;
+        const Vec3d across = cross(next - chain.point[i], chain.axis[i]);
+        longest = max(longest, norm(across));
+        if (i + 1 < chain.n && !chain.prismatic[i + 1]) {
+            const Vec3d back = cross(next - chain.point[i], chain.axis[i + 1]);
+            longest = max(longest, norm(back));
+        }
+    }
+    return longest > 0 ? longest : 1.0;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,44 @@
+// A plan at work: from the goal T_base_tip to the joint angles of every branch, on lanes.
+#pragma once
+
+#include "cspace/ik/parallel_general.hpp"
+#include "cspace/ik/plan.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// The goal as the closed form sees it.
+template <class V>
+CSPACE_INLINE Pose<V> goal_in_form(const ik::Plan& plan, const Pose<V>& T_base_tip) {
+    const Pose<V> goal = plan.reversed ? inverse(T_base_tip) : T_base_tip;
+    return fill_pose<V>(plan.to_form_left) * goal * fill_pose<V>(plan.to_form_right);
+}
+
+template <class V>
+CSPACE_INLINE Branches<V> closed_form(const ik::Plan& plan, const Pose<V>& goal, const Care& care) {
+    using enum ik::FirstThree;
+    if (plan.family == ik::Family::three_parallel) return solve(plan.parallel, goal, care);
+    if constexpr (Lanes<V>::count == 1) {
+        if (plan.family == ik::Family::middle_parallel) return solve_middle_parallel(plan.form, goal, care);
+        if (plan.family == ik::Family::first_parallel) return solve_first_parallel(plan.form, goal, care);
+    }
+    switch (plan.wrist.first.kind) {
+        case last_parallel:
+            return solve<last_parallel>(plan.wrist, goal, care);
+        case first_meet:
+            return solve<first_meet>(plan.wrist, goal, care);
+        case last_meet:
+            return solve<last_meet>(plan.wrist, goal, care);
+        case first_parallel:
+            return solve<first_parallel>(plan.wrist, goal, care);
+        default:
+            return solve<general>(plan.wrist, goal, care);
+    }
+}
+
+// From an angle of the form to the joint's own, in (−π, π].
+template <class V>
+CSPACE_INLINE V joint_angle(const ik::Plan& plan, int i, V t) {
+    return wrap_once(plan.sign[i] * t - plan.sign[i] * plan.form.offset[i]);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,54 @@
+// Goals as they come from outside: 4×4 matrices that should be poses.
+#pragma once
+
+#include "cspace/math/vec.hpp"
+#include "cspace/tolerances.hpp"
+
+namespace cspace {
+
+template <class V>
+struct ReadGoal {
+    Pose<V> T;
+    mask_of<V> is_pose;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// The rotation nearest to R for an R that is one up to a small error e = RᵀR − I: R (I − e/2), twice.
+template <class V>
+CSPACE_INLINE Mat3<V> straightened(const Mat3<V>& R) {
+    Mat3<V> out = R;
+    for (int step = 0; step < 2; ++step) {
+        const Vec3<V> x = column(out, 0), y = column(out, 1), z = column(out, 2);
+        const V xx = 0.5 * (dot(x, x) - 1.0), yy = 0.5 * (dot(y, y) - 1.0), zz = 0.5 * (dot(z, z) - 1.0);
+        const V xy = 0.5 * dot(x, y), yz = 0.5 * dot(y, z), xz = 0.5 * dot(x, z);
+        out = from_columns(x - xx * x - xy * y - xz * z, y - xy * x - yy * y - yz * z,
+                           z - xz * x - yz * y - zz * z);
+    }
+    return out;
+}
+
+// Checks a pose and takes rounding out of its rotation. m: its 16 entries, row by row.
+template <class V>
+CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
+    ReadGoal<V> out;
+    Mat3<V>& R = out.T.R;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) R.m[i][j] = m[4 * i + j];
+    out.T.t = {m[3], m[7], m[11]};
+    const Vec3<V> x = column(R, 0), y = column(R, 1), z = column(R, 2);
+    const V lengths = max(max(abs(dot(x, x) - 1.0), abs(dot(y, y) - 1.0)), abs(dot(z, z) - 1.0));
+    const V error = max(max(max(abs(dot(x, y)), abs(dot(y, z))), abs(dot(x, z))), lengths);
+    const V last_row = max(max(abs(m[12]), abs(m[13])), max(abs(m[14]), abs(m[15] - 1.0)));
+    const V size = abs(m[3]) + abs(m[7]) + abs(m[11]);
+    // Every comparison with NaN is false, so NaN anywhere refuses the goal.
+    out.is_pose = (abs(dot(x, x) + dot(y, y) + dot(z, z) + dot(x, y) + dot(y, z) + dot(x, z)) <= 100.0) &&
+                  (error <= tolerance::rotation_error) && (last_row <= tolerance::last_row) &&
+                  (size <= 1e100) && (dot(cross(x, y), z) > 0.0);
+    if (any(error > 1e-15)) R = straightened(R);
+    return out;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,132 @@
+// Arms with three parallel axes and no other help: two equations, each linear in the cosines and sines of two
+// angles (subproblem 6), a direction and a planar two-link arm. Up to 4 × 2 solutions.
+//
+// The parallel axes keep one direction n and one height: nothing they do changes n·(position) and n·(a
+// direction). Written for both ends of the remaining joints, these are the two equations.
+#pragma once
+
+#include "cspace/ik/branches.hpp"
+#include "cspace/ik/dh_form.hpp"
+#include "cspace/ik/steps.hpp"
+#include "cspace/ik/subproblems/two_turns.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// Rz(t) Tz(d) Tx(a) Rx(α) of joint i.
+inline Posed link(const ik::DhForm& f, int i, const Turn<double>& t) {
+    return {
+        {{{t.c, -t.s * f.ca[i], t.s * f.sa[i]}, {t.s, t.c * f.ca[i], -t.c * f.sa[i]}, {0, f.sa[i], f.ca[i]}}},
+        {f.a[i] * t.c, f.a[i] * t.s, f.d[i]}};
+}
+
+// The angle of a rotation about z.
+inline Turn<double> turn_about_z(const Mat3d& R) {
+    const double r = std::hypot(R.m[0][0], R.m[1][0]);
+    return r > 0 ? Turn<double>{R.m[0][0] / r, R.m[1][0] / r} : Turn<double>{1, 0};
+}
+
+// `planar` = Rz(t_j) Tx(a_j) Rz(t_k) Tx(a_k) Rz(t_l), the displacement that the parallel joints j, k, l have
+// to make: both elbows, written into rows n and n + 1.
+inline void planar_three(const ik::DhForm& f, int j, const Posed& planar, const Care& care,
+                         Branches<double>& out, int n) {
+    const TwoLink<double> arm = two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], care, care.idle[j]);
+    const Turn<double> all = turn_about_z(planar.R);
+    for (int e = 0; e < 2; ++e) {
+        const Turn<double> elbow = {arm.cos_elbow, e == 0 ? arm.sin_elbow : -arm.sin_elbow};
+        out.t[n + e][j] = angle_of(arm.first[e]);
+        out.t[n + e][j + 1] = angle_of(elbow);
+        out.t[n + e][j + 2] = angle_of(all - (arm.first[e] + elbow));
+        out.ok[n + e] = arm.ok;
+    }
+}
+
+inline TwoTurns both_angles(TwoTurnEquations e) {
+    double largest = 0;
+    for (int i = 0; i < 2; ++i)
+        largest = max(largest, std::fabs(e.alpha[i]) + std::hypot(e.beta[i][0], e.beta[i][1]) +
+                                   std::hypot(e.gamma[i][0], e.gamma[i][1]));
+    for (int i = 0; i < 2; ++i) {
+        e.alpha[i] /= largest;
+        for (int k = 0; k < 2; ++k) {
+            e.beta[i][k] /= largest;
+            e.gamma[i][k] /= largest;
+        }
+    }
+    return solve_two_turns(e);
+}
+
+// Axes 2, 3, 4 parallel, axes 5 and 6 apart: the height of axis 6 and its slope against n fix t1 and t5.
+inline Branches<double> solve_middle_parallel(const ik::DhForm& f, const Posed& goal, const Care& care) {
+    Branches<double> out{};
+    out.doubt = true;
+    const Vec3d p = goal.t, g = column(goal.R, 2);
+    const double length = f.length, height = f.d[1] + f.d[2] + f.d[3] + f.ca[3] * f.d[4];
+    TwoTurnEquations e;
+    e.alpha[0] = (f.ca[0] * p.z - height) / length;
+    e.beta[0][0] = -f.sa[0] * p.y / length;
+    e.beta[0][1] = f.sa[0] * p.x / length;
+    e.gamma[0][0] = 0;
+    e.gamma[0][1] = -f.sa[3] * f.a[4] / length;
+    e.alpha[1] = f.ca[0] * g.z - f.ca[3] * f.ca[4];
+    e.beta[1][0] = -f.sa[0] * g.y;
+    e.beta[1][1] = f.sa[0] * g.x;
+    e.gamma[1][0] = f.sa[3] * f.sa[4];
+    e.gamma[1][1] = 0;
+    const TwoTurns found = both_angles(e);
+    for (int n = 0; n < found.count; ++n) {
+        const Turn<double>&t1 = found.u[n], &t5 = found.w[n];
+        const Posed seen = inverse(link(f, 0, t1)) * goal;  // Rz(t2)…Rz(t4) · rest · Rz(t6)
+        const Posed five = link(f, 4, t5);
+        const Posed rest = Posed{link(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * Posed{five.R, five.t};
+        const Vec3d z = column(rest.R, 2), want = column(seen.R, 2);
+        const Turn<double> t234 = align(z.x, z.y, want.x, want.y, 1.0, care, care.idle[3]).t;
+        const Posed turned = {rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
+        const Turn<double> t6 = turn_about_z(transpose((turned * rest).R) * seen.R);
+        planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, care, out, 2 * n);
+        for (int k = 2 * n; k < 2 * n + 2; ++k) {
+            out.t[k][0] = angle_of(t1);
+            out.t[k][4] = angle_of(t5);
+            out.t[k][5] = angle_of(t6);
+        }
+    }
+    return out;
+}
+
+// Axes 1, 2, 3 parallel: the slope of n against axis 5 and the height of the goal fix t4 and t6.
+inline Branches<double> solve_first_parallel(const ik::DhForm& f, const Posed& goal, const Care& care) {
+    Branches<double> out{};
+    out.doubt = true;
+    const Vec3d r = row(goal.R, 2);
+    const double length = f.length;
+    TwoTurnEquations e;
+    e.alpha[0] = r.z * f.ca[4] - f.ca[2] * f.ca[3];
+    e.beta[0][0] = f.sa[2] * f.sa[3];
+    e.beta[0][1] = 0;
+    e.gamma[0][0] = r.y * f.sa[4];
+    e.gamma[0][1] = r.x * f.sa[4];
+    e.alpha[1] = (f.d[1] + f.d[2] + f.ca[2] * f.d[3] + f.d[4] * f.ca[4] * r.z - goal.t.z) / length;
+    e.beta[1][0] = 0;
+    e.beta[1][1] = f.sa[2] * f.a[3] / length;
+    e.gamma[1][0] = (f.a[4] * r.x + f.d[4] * f.sa[4] * r.y) / length;
+    e.gamma[1][1] = (-f.a[4] * r.y + f.d[4] * f.sa[4] * r.x) / length;
+    const TwoTurns found = both_angles(e);
+    for (int n = 0; n < found.count; ++n) {
+        const Turn<double>&t4 = found.u[n], &t6 = found.w[n];
+        const Posed to_four = Posed{link(f, 2, {1, 0}).R, {f.a[2], 0, 0}} * link(f, 3, t4);
+        const Vec3d k = row(to_four.R, 2);
+        const double x = r.x * t6.c - r.y * t6.s, y = r.x * t6.s + r.y * t6.c;
+        // (k.x, k.y) turned by −t5 is (x, y cos α5 − rz sin α5).
+        const Turn<double> t5 = align(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.idle[4]).t;
+        const Posed rest =
+            to_four * link(f, 4, t5) * Posed{rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
+        planar_three(f, 0, goal * inverse(rest), care, out, 2 * n);
+        for (int m = 2 * n; m < 2 * n + 2; ++m) {
+            out.t[m][3] = angle_of(t4);
+            out.t[m][4] = angle_of(t5);
+            out.t[m][5] = angle_of(t6);
+        }
+    }
+    return out;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,122 @@
+// From a candidate to a solution on the true chain: damped least squares on the pose error (Levenberg 1944,
+// Nakamura & Hanafusa 1986), and what the Jacobian says there about conditioning and freedom.
+#pragma once
+
+#include "cspace/ik/chain.hpp"
+#include "cspace/math/small_svd.hpp"
+#include "cspace/tolerances.hpp"
+
+namespace cspace {
+
+using PoseSvd = SmallSvd<6, ik::max_joints>;
+
+// The error of a configuration against a goal: twist [Δp/length; rotation vector], and the Jacobian of the
+// tip in the same units.
+struct PoseError {
+    double e[6];
+    double position;  // [m]
+    double rotation;  // [rad]
+    PoseSvd jacobian;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// The rotation vector of R; |R − I| small or not, half turns included.
+inline Vec3d rotation_vector(const Mat3d& R) {
+    const Vec3d w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]),
+                     0.5 * (R.m[1][0] - R.m[0][1])};
+    const double s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1);
+    const double angle = std::atan2(s, c);
+    if (s > 1e-6 || c > 0) return (s > 1e-12 ? angle / s : 1.0) * w;
+    // Near a half turn the axis is the largest column of R + I.
+    int k = 0;
+    for (int j = 1; j < 3; ++j)
+        if (R.m[j][j] > R.m[k][k]) k = j;
+    Vec3d axis = column(R, k);
+    (k == 0 ? axis.x : k == 1 ? axis.y : axis.z) += 1;
+    return (angle / norm(axis)) * axis;
+}
+
+inline void measure(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                    PoseError& out) {
+    Posed T = identity_pose();
+    Vec3d axis[ik::max_joints], point[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) {
+        axis[i] = T.R * chain.axis[i];
+        point[i] = T * chain.point[i];
+        T = T * joint_motion(chain, i, q[i]);
+    }
+    T = T * chain.tip;
+    const Vec3d dp = goal.t - T.t, w = rotation_vector(goal.R * transpose(T.R));
+    out.position = norm(dp);
+    out.rotation = norm(w);
+    const double e[6] = {dp.x / length, dp.y / length, dp.z / length, w.x, w.y, w.z};
+    for (int k = 0; k < 6; ++k) out.e[k] = e[k];
+    out.jacobian.rows = 6;
+    out.jacobian.columns = chain.n;
+    for (int i = 0; i < chain.n; ++i) {
+        const Vec3d v = chain.prismatic[i] ? axis[i] : cross(axis[i], T.t - point[i]);
+        const Vec3d h = chain.prismatic[i] ? Vec3d{0, 0, 0} : axis[i];
+        double* const column_i = out.jacobian.us[i];
+        const double col[6] = {v.x / length, v.y / length, v.z / length, h.x, h.y, h.z};
+        for (int k = 0; k < 6; ++k) column_i[k] = col[k];
+    }
+}
+
+inline double size_of_error(const PoseError& error) { return std::sqrt(dot_n(error.e, error.e, 6)); }
+
+// The damped least-squares step from a decomposed Jacobian.
+inline void damped_step(const PoseError& error, double damping, double* dq) {
+    const PoseSvd& J = error.jacobian;
+    for (int i = 0; i < J.columns; ++i) dq[i] = 0;
+    for (int j = 0; j < J.columns; ++j) {
+        const double s2 = J.sigma[j] * J.sigma[j];
+        if (s2 + damping == 0) continue;
+        const double along = dot_n(J.us[j], error.e, 6) / (s2 + damping);
+        for (int i = 0; i < J.columns; ++i) dq[i] += along * J.v[j][i];
+    }
+}
+
+// Walks q to the nearest configuration that meets the goal, or that misses it least nearby; returns the error
+// left. On return `error` belongs to q and its Jacobian is decomposed.
+inline double refine(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
+                     int most_steps = 60) {
+    double damping = 0;
+    measure(chain, goal, length, q, error);
+    double size = size_of_error(error);
+    decompose(error.jacobian);
+    for (int step = 0; step < most_steps && size > 1e-15; ++step) {
+        double dq[ik::max_joints], next[ik::max_joints], reach = 0;
+        damped_step(error, damping, dq);
+        for (int i = 0; i < chain.n; ++i) reach = max(reach, std::fabs(dq[i]));
+        const double keep = reach > 0.3 ? 0.3 / reach : 1.0;
+        for (int i = 0; i < chain.n; ++i) next[i] = q[i] + keep * dq[i];
+        PoseError trial;
+        measure(chain, goal, length, next, trial);
+        const double trial_size = size_of_error(trial);
+        if (trial_size < size) {
+            const bool stalled = trial_size > 0.999 * size;
+            for (int i = 0; i < chain.n; ++i) q[i] = next[i];
+            error = trial;
+            decompose(error.jacobian);
+            size = trial_size;
+            damping = damping < 1e-14 ? 0 : 0.1 * damping;
+            if (stalled) break;
+        } else {
+            if (size < 1e-13 || damping > 1e3) break;
+            damping = damping == 0 ? 1e-10 : 10 * damping;
+        }
+    }
+    return size;
+}
+
+inline int weakest(const PoseSvd& J) {
+    int k = 0;
+    for (int j = 1; j < J.columns; ++j)
+        if (J.sigma[j] < J.sigma[k]) k = j;
+    return k;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

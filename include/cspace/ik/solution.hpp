@@ -1,0 +1,27 @@
+// What inverse kinematics answers for one goal.
+#pragma once
+
+#include "cspace/ik/chain.hpp"
+
+namespace cspace::ik {
+
+inline constexpr int max_solutions = 16;
+inline constexpr int max_arm = 8;  // joints of an arm with a closed form
+
+enum class Status : unsigned char {
+    unreachable,  // no configuration meets the goal
+    exact,        // every configuration that meets it is listed
+    singular,     // some of those listed stand for a family: joints move and the tip does not
+    nearest,      // nothing meets the goal; the least-squares answer, because it was asked for
+};
+
+struct Solutions {
+    int count = 0;
+    Status status = Status::unreachable;
+    double q[max_solutions][max_arm];
+    signed char branch[max_solutions];         // which of the closed form's branches
+    bool family[max_solutions];                // stands for a one-parameter family
+    double direction[max_solutions][max_arm];  // of the family at q, unit; undefined where not a family
+};
+
+}  // namespace cspace::ik

@@ -1,0 +1,125 @@
+// Arms whose last three axes meet in a point: the first three joints place it, the last three turn about it
+// (Pieper 1968). Up to 4 × 2 solutions.
+#pragma once
+
+#include "cspace/ik/any_three.hpp"
+#include "cspace/ik/branches.hpp"
+#include "cspace/ik/dh_form.hpp"
+
+namespace cspace::ik {
+
+struct SphericalWrist {
+    ThreeJoints first;
+    Wrist last;
+    double ca3, sa3;  // from joint 3 to joint 4
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline ik::SphericalWrist make_spherical_wrist(const ik::DhForm& f) {
+    ik::SphericalWrist arm;
+    ik::ThreeJoints& g = arm.first;
+    g = {ik::FirstThree::general,
+         f.a[0],
+         f.ca[0],
+         f.sa[0],
+         f.d[1],
+         f.a[1],
+         f.ca[1],
+         f.sa[1],
+         {},
+         f.length,
+         0,
+         {1, 0}};
+    g.w = {f.a[2], -f.sa[2] * f.d[3], f.d[2] + f.ca[2] * f.d[3]};
+    g.wrist_reach = std::hypot(g.w.x, g.w.y);
+    if (g.wrist_reach > 0) g.w_angle = {g.w.x / g.wrist_reach, g.w.y / g.wrist_reach};
+    // A planar pair of links first: it is the cheapest and the best conditioned.
+    if (f.parallel[1])
+        g.kind = ik::FirstThree::last_parallel;
+    else if (f.parallel[0])
+        g.kind = ik::FirstThree::first_parallel;
+    else if (f.meeting[0])
+        g.kind = ik::FirstThree::first_meet;
+    else if (f.meeting[1])
+        g.kind = ik::FirstThree::last_meet;
+    arm.last = make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]);
+    arm.ca3 = f.ca[2];
+    arm.sa3 = f.sa[2];
+    return arm;
+}
+
+// Rᵀ v for R = Rz(t) Rx(α).
+template <class V>
+CSPACE_INLINE Vec3<V> undo_joint(const Turn<V>& t, double ca, double sa, const Vec3<V>& v) {
+    const V x = t.c * v.x + t.s * v.y, y = t.c * v.y - t.s * v.x;
+    return {x, ca * y + sa * v.z, ca * v.z - sa * y};
+}
+
+template <ik::FirstThree kind, class V>
+CSPACE_INLINE Triples<V> place_wrist(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+    if constexpr (kind == ik::FirstThree::last_parallel) return last_parallel(g, p, care);
+    if constexpr (kind == ik::FirstThree::first_parallel) return first_parallel(g, p, care);
+    if constexpr (kind == ik::FirstThree::first_meet) return first_meet(g, p, care);
+    if constexpr (kind == ik::FirstThree::last_meet) return last_meet(g, p, care);
+    if constexpr (kind == ik::FirstThree::general) return any_three(g, p, care);
+}
+
+// The orientation behind the first three joints, as seen by the wrist.
+template <class V>
+CSPACE_INLINE WristAngles<V> turn_wrist(const ik::SphericalWrist& arm, const Turn<V>& t1, const Turn<V>& t2,
+                                        const Turn<V>& t3, const Mat3<V>& R, const Care& care) {
+    Vec3<V> seen[2];
+    for (int k = 0; k < 2; ++k) {
+        Vec3<V> v = column(R, k == 0 ? 2 : 0);
+        v = undo_joint(t1, arm.first.ca1, arm.first.sa1, v);
+        v = undo_joint(t2, arm.first.ca2, arm.first.sa2, v);
+        seen[k] = undo_joint(t3, arm.ca3, arm.sa3, v);
+    }
+    return wrist(arm.last, seen[0], seen[1], care, care.idle[3]);
+}
+
+// The angles of both wrist solutions behind one triple of the first three.
+template <class V>
+CSPACE_INLINE void write_wrist(const Wrist& w, const WristAngles<V>& r, V* flip_up, V* flip_down) {
+    flip_up[3] = angle_of(r.t4[0]);
+    flip_up[4] = atan2(r.t5[0].s, r.t5[0].c);
+    flip_up[5] = angle_of(r.t6[0]);
+    flip_down[4] = -flip_up[4];
+    if (w.right_angled) {
+        flip_down[3] = flip_up[3] - copysign(fill<V>(pi), flip_up[3]);
+        flip_down[5] = flip_up[5] - copysign(fill<V>(pi), flip_up[5]);
+    } else {
+        flip_down[3] = angle_of(r.t4[1]);
+        flip_down[5] = angle_of(r.t6[1]);
+    }
+}
+
+template <class V>
+CSPACE_INLINE Branches<V> finish_with_wrist(const ik::SphericalWrist& arm, const Triples<V>& first,
+                                            const Mat3<V>& R, const Care& care) {
+    Branches<V> out;
+    out.doubt = first.doubt;
+    for (int n = 0; n < 4; ++n) {
+        const WristAngles<V> r = turn_wrist(arm, first.t1[n], first.t2[n], first.t3[n], R, care);
+        V* up = out.t[2 * n];
+        V* down = out.t[2 * n + 1];
+        up[0] = down[0] = angle_of(first.t1[n]);
+        up[1] = down[1] = angle_of(first.t2[n]);
+        up[2] = down[2] = angle_of(first.t3[n]);
+        write_wrist(arm.last, r, up, down);
+        out.ok[2 * n] = out.ok[2 * n + 1] = first.ok[n] && r.ok;
+        out.doubt = out.doubt || (first.ok[n] && r.doubt);
+    }
+    return out;
+}
+
+// goal: in the base frame of the form, up to its tool frame.
+template <ik::FirstThree kind, class V>
+CSPACE_INLINE Branches<V> solve(const ik::SphericalWrist& arm, const Pose<V>& goal, const Care& care) {
+    return finish_with_wrist(arm, place_wrist<kind>(arm.first, goal.t, care), goal.R, care);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

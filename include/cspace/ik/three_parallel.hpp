@@ -1,0 +1,81 @@
+// Arms whose axes 2, 3 and 4 are parallel and whose axes 5 and 6 meet (the UR class, its reverse, and
+// others): the height of the wrist over the plane of the parallel axes fixes t1; what the plane sees of the
+// orientation is a wrist of angles (t2 + t3 + t4, t5, t6); a planar two-link arm does the rest (Hawkins
+// 2013). Up to 2 × 2 × 2 solutions.
+#pragma once
+
+#include "cspace/ik/branches.hpp"
+#include "cspace/ik/dh_form.hpp"
+#include "cspace/ik/spherical_wrist.hpp"
+
+namespace cspace::ik {
+
+struct ThreeParallel {
+    double a1, ca1, sa1;
+    double height;  // of the wrist over joint 1's normal, along the parallel axes [m]
+    double l2, l3;  // the links of the planar arm [m]
+    double x4, y4;  // from joint 4 to the wrist, in the plane [m]
+    Wrist last;
+    double length;
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline ik::ThreeParallel make_three_parallel(const ik::DhForm& f) {
+    return {f.a[0], f.ca[0], f.sa[0],           f.d[1] + f.d[2] + f.d[3] + f.ca[3] * f.d[4],    f.a[1],
+            f.a[2], f.a[3],  -f.sa[3] * f.d[4], make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]), f.length};
+}
+
+// One shoulder and one wrist solution completed by the planar arm: both elbows.
+template <class V>
+CSPACE_INLINE void finish_in_plane(const ik::ThreeParallel& arm, const Turn<V>& t234, V x, V y,
+                                   V* const out[2], mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
+    const V u = x - (t234.c * arm.x4 - t234.s * arm.y4), v = y - (t234.s * arm.x4 + t234.c * arm.y4);
+    const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, care, care.idle[1]);
+    doubt = doubt || (ok && links.doubt);
+    ok = ok && links.ok;
+    const V elbow = atan2(links.sin_elbow, links.cos_elbow);
+    for (int j = 0; j < 2; ++j) {
+        const Turn<V> t3 = {links.cos_elbow, j == 0 ? links.sin_elbow : -links.sin_elbow};
+        out[j][1] = angle_of(links.first[j]);
+        out[j][2] = j == 0 ? elbow : -elbow;
+        out[j][3] = angle_of(t234 - (links.first[j] + t3));
+    }
+}
+
+template <class V>
+CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goal, const Care& care) {
+    Branches<V> out;
+    const Vec3<V>& p = goal.t;
+    const V k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
+    const TwoAngles<V> shoulder = linear_equation<V>(-p.y, p.x, k, arm.length, care, care.idle[0]);
+    out.doubt = shoulder.doubt;
+    for (int i = 0; i < 2; ++i) {
+        const Turn<V>& t1 = shoulder.root[i];
+        const V angle1 = angle_of(t1);
+        const WristAngles<V> r =
+            wrist(arm.last, undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2)),
+                  undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 0)), care, care.idle[3]);
+        out.doubt = out.doubt || (shoulder.ok && r.doubt);
+        const V x = t1.c * p.x + t1.s * p.y - arm.a1;
+        const V y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
+        for (int j = 0; j < 2; ++j) {
+            const int n = 4 * i + 2 * j;
+            V* const rows[2] = {out.t[n], out.t[n + 1]};
+            mask_of<V> ok = shoulder.ok && r.ok;
+            finish_in_plane(arm, r.t4[j], x, y, rows, ok, out.doubt, care);
+            const V angle5 = atan2(r.t5[j].s, r.t5[j].c), angle6 = angle_of(r.t6[j]);
+            for (V* row : rows) {
+                row[0] = angle1;
+                row[4] = angle5;
+                row[5] = angle6;
+            }
+            out.ok[n] = out.ok[n + 1] = ok;
+        }
+    }
+    return out;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

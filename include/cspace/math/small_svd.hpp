@@ -1,0 +1,64 @@
+// The singular value decomposition of a small matrix by one-sided Jacobi rotations (Hestenes 1958): the
+// columns of A are turned against each other until they are orthogonal, A V = U Σ. Small singular values keep
+// their relative accuracy (Demmel & Veselić 1992), which is what a look near a singularity needs.
+#pragma once
+
+#include <cmath>
+
+#include "cspace/math/isa.hpp"
+
+namespace cspace {
+
+// A (rows × columns) as columns of U Σ; the singular values are unsorted.
+template <int max_rows, int max_columns>
+struct SmallSvd {
+    int rows, columns;
+    double us[max_columns][max_rows];    // column j of U times sigma[j]
+    double v[max_columns][max_columns];  // column j of V
+    double sigma[max_columns];
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// Turns the pairs (a[k], b[k]) by the angle with cosine c and sine s.
+inline void turn_columns(double* a, double* b, int n, double c, double s) {
+    for (int k = 0; k < n; ++k) {
+        const double x = a[k], y = b[k];
+        a[k] = c * x - s * y;
+        b[k] = s * x + c * y;
+    }
+}
+
+inline double dot_n(const double* a, const double* b, int n) {
+    double sum = 0;
+    for (int k = 0; k < n; ++k) sum += a[k] * b[k];
+    return sum;
+}
+
+// On entry us holds the columns of A.
+template <int R, int C>
+void decompose(SmallSvd<R, C>& m) {
+    for (int j = 0; j < m.columns; ++j)
+        for (int k = 0; k < m.columns; ++k) m.v[j][k] = j == k;
+    bool moved = true;
+    for (int sweep = 0; moved && sweep < 40; ++sweep) {
+        moved = false;
+        for (int i = 0; i + 1 < m.columns; ++i)
+            for (int j = i + 1; j < m.columns; ++j) {
+                const double aa = dot_n(m.us[i], m.us[i], m.rows), bb = dot_n(m.us[j], m.us[j], m.rows);
+                const double ab = dot_n(m.us[i], m.us[j], m.rows);
+                if (!(std::fabs(ab) > 1e-15 * std::sqrt(aa * bb))) continue;
+                const double zeta = (bb - aa) / (2 * ab);
+                const double t = std::copysign(1.0, zeta) / (std::fabs(zeta) + std::hypot(1.0, zeta));
+                const double c = 1 / std::sqrt(1 + t * t), s = c * t;
+                turn_columns(m.us[i], m.us[j], m.rows, c, s);
+                turn_columns(m.v[i], m.v[j], m.columns, c, s);
+                moved = true;
+            }
+    }
+    for (int j = 0; j < m.columns; ++j) m.sigma[j] = std::sqrt(dot_n(m.us[j], m.us[j], m.rows));
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,28 @@
+#pragma once
+#include <cstddef>
+#include <cstdint>
+
+#include "cspace/ik/plan.hpp"
+#include "cspace/ik/solution.hpp"
+#include "dispatch.hpp"
+
+namespace cspace::ik {
+
+// What a kernel says of a goal before anybody looks twice.
+enum class Quick : std::uint8_t {
+    settled,   // the branches listed are all there are
+    doubtful,  // the careful path has to decide
+    refused,   // not a pose: a number that is not finite, a wrong last row, no rotation
+};
+
+}  // namespace cspace::ik
+
+// One goal, 16 numbers in row-major order; q takes up to max_branches rows of 6 and branch their numbers.
+CSPACE_KERNEL(cspace::ik::Quick, ik_one,
+              (const cspace::ik::Plan& plan, const double* T, double* q, std::int8_t* branch, int* count))
+
+// n goals of 16 numbers each; q (n, max_branches, 6) is filled up with NaN behind the solutions. `quick`
+// takes a verdict per goal.
+CSPACE_KERNEL(void, ik_many,
+              (const cspace::ik::Plan& plan, const double* T, std::size_t n, double* q, std::int64_t* count,
+               cspace::ik::Quick* quick))
