@@ -17,6 +17,7 @@ __all__ = [
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
+    "TOML_BYTES",
     "UNLIMITED",
     "WHOLE_TURN",
 ]
@@ -75,3 +76,6 @@ root of the rounding, where calling them parallel costs as much as their true no
 DH_COINCIDENT: Final = 1e-13
 """Distance [m] up to which axes intersect, or lie on one line, in a Denavit–Hartenberg table: ten rows of
 such a loss still keep a pose to 1e-12."""
+
+TOML_BYTES: Final = 4 * 2**20
+"""Largest TOML robot file that is read (bytes): the reader of the standard library takes a second for it."""

@@ -30,7 +30,12 @@ TIERS: list[set[str]] = [
 RANK = {room: rank for rank, tier in enumerate(TIERS) for room in tier}
 
 # What a room may import besides numpy and the standard library, and only inside its functions.
-OPTIONAL_IMPORTS = {"cli": {"rich"}, "plot": {"matplotlib"}, "lab": {"viser", "websockets"}}
+OPTIONAL_IMPORTS = {
+    "model": {"tomli"},
+    "cli": {"rich"},
+    "plot": {"matplotlib"},
+    "lab": {"viser", "websockets"},
+}
 
 
 @dataclass(frozen=True)

@@ -14,6 +14,8 @@ from cspace.model.dh_derivation import to_dh
 from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.screws import from_screws, twists
+from cspace.model.toml import from_toml
+from cspace.model.toml_writer import to_toml
 from cspace.model.tree import Tree, tree
 from cspace.model.urdf import from_urdf
 from cspace.model.urdf_writer import to_urdf
@@ -39,11 +41,13 @@ __all__ = [
     "dh_matrix",
     "from_dh",
     "from_screws",
+    "from_toml",
     "from_urdf",
     "mobility",
     "point_freedoms",
     "task_word",
     "to_dh",
+    "to_toml",
     "to_urdf",
     "tree",
     "tree_freedoms",

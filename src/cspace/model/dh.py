@@ -149,6 +149,8 @@ def from_dh(
     lower: Any = None,
     upper: Any = None,
     velocity: Any = None,
+    acceleration: Any = None,
+    jerk: Any = None,
     effort: Any = None,
     name: str = "robot",
     joint_names: Sequence[str] | None = None,
@@ -161,7 +163,8 @@ def from_dh(
     these keys (absent ones count as 0). theta of a revolute row is the offset added to q, d of a prismatic
     row likewise. convention: "standard" or "modified", demanded for plain rows because the two are never
     told apart by the numbers. joint_types: n letters "R", "P" or "F" (fixed row), default all "R". T_base,
-    T_tool (4, 4): before the first and after the last row. lower, upper, velocity, effort (n,).
+    T_tool (4, 4): before the first and after the last row. lower, upper, velocity, acceleration,
+    jerk, effort (n,): limits.
     Raises InputError for a wrong shape or NaN, UnknownNameError for another convention or column.
     """
     if isinstance(table, DHTable):
@@ -175,8 +178,9 @@ def from_dh(
         names = () if joint_names is None else tuple(joint_names)
         alpha, a, d, theta = rows.T
         dh = DHTable(convention, alpha, a, d, theta, types, before, after, names)
-    limits = joint_rows(len(dh), lower=lower, upper=upper, velocity=velocity, effort=effort)
-    return _describe(dh, limits, name, base, tip)
+    limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk, "effort": effort}
+    limited = joint_rows(len(dh), lower=lower, upper=upper, **limits)
+    return _describe(dh, limited, name, base, tip)
 
 
 def _rows(table: Any) -> Array:

@@ -92,7 +92,9 @@ class Joint:
         name_of(self.child, f"child link of {subject}")
         store = object.__setattr__
         store(self, "origin", placement(self.origin, f"origin of {subject}"))
-        if self.type not in ("fixed", "floating") and self.axis is not X_AXIS:
+        if self.type in ("fixed", "floating"):  # neither has an axis
+            store(self, "axis", X_AXIS)
+        elif self.axis is not X_AXIS:
             store(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
         for name in LIMIT_FIELDS:
             store(self, name, number(getattr(self, name), f"{name} limit of {subject}"))

@@ -28,6 +28,8 @@ def from_screws(
     lower: Any = None,
     upper: Any = None,
     velocity: Any = None,
+    acceleration: Any = None,
+    jerk: Any = None,
     effort: Any = None,
     name: str = "robot",
     joint_names: Sequence[str] | None = None,
@@ -41,8 +43,8 @@ def from_screws(
 
     axes (n, 3): directions, made unit; points (n, 3): any point on each axis [m] (of a slide: where its link
     is drawn); T_zero (4, 4): the tip at q = 0. joint_types: "R" and "P", default all "R". lower, upper,
-    velocity, effort (n,): limits, default none. Link frames stand on the points, parallel to the base at
-    zero.
+    velocity, acceleration, jerk, effort (n,): limits, default none. Link frames stand on the points,
+    parallel to the base at zero.
     Raises InputError for wrong shapes, a zero axis, NaN, limits upside down.
     """
     directions = as_floats(axes, "axes", last=(None, 3))
@@ -56,7 +58,8 @@ def from_screws(
     types = check_joint_types("R" * n if joint_types is None else joint_types, n)
     names = _joint_names(joint_names, n)
     links = link_names(names, base, tip)
-    rows = joint_rows(n, lower=lower, upper=upper, velocity=velocity, effort=effort)
+    limits = {"velocity": velocity, "acceleration": acceleration, "jerk": jerk, "effort": effort}
+    rows = joint_rows(n, lower=lower, upper=upper, **limits)
     joints = []
     for i in range(n):
         origin = translation(places[i] - (places[i - 1] if i else 0.0))

@@ -40,7 +40,7 @@ def number(value: Any, subject: str) -> float:
     """A float that is not NaN; infinities pass, for limits."""
     try:
         result = float(value)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise InputTypeError(f"{subject} must be a number, got {value!r}") from None
     if math.isnan(result):
         raise InputError(f"{subject} is NaN; it must be a number")
@@ -106,7 +106,7 @@ def unit_axis(value: Any, subject: str) -> Array:
     length = scale * math.sqrt(sum((x / scale) ** 2 for x in vector.tolist())) if scale > 0.0 else 0.0
     if length < AXIS_LENGTH:
         raise InputError(f"{subject} is {vector.tolist()}, no direction; an axis must not be zero")
-    if length == 1.0:
+    if abs(length - 1.0) <= 2.0**-51:  # a unit vector to rounding stays as it is, bit for bit
         return frozen(np.array(vector))
     scaled: Array = vector / length
     return frozen(scaled)

@@ -1,0 +1,257 @@
+"""Robots from TOML: as a tree of links and joints, as screws at zero, or as a Denavit–Hartenberg table."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Sequence
+from typing import Any, Final, TypeVar
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import CspaceError, DescriptionError
+from cspace.model.description import Description, Provenance, Source
+from cspace.model.dh import DHTable, from_dh
+from cspace.model.files import read_bytes
+from cspace.model.joint import LIMIT_FIELDS, Joint, Loop, Mimic
+from cspace.model.link import Geometry, Inertial, Link, Mesh
+from cspace.model.screws import from_screws
+from cspace.model.structure import ElementError
+from cspace.model.toml_table import Document, Table, parse_toml
+from cspace.model.transforms import from_rpy
+from cspace.model.values import IDENTITY, X_AXIS
+from cspace.tolerances import TOML_BYTES
+
+__all__ = ["FORMAT", "from_toml"]
+
+FORMAT: Final = 1
+"""The version of the file format that is written and read."""
+
+T = TypeVar("T")
+
+ABOUT = ("format", "name", "title", "vendor", "aliases", "missing", "sources", "poses")
+FORMS = {"joints": ("links", "joints", "loops"), "screws": ("screws",), "dh": ("dh",)}
+PLACE = ("origin", "xyz", "rpy")
+ENDS = ("name", "type", "parent", "child")
+JOINT_KEYS = (*ENDS, *PLACE, "axis", *LIMIT_FIELDS, "damping", "friction", "mimic")
+GEOMETRY_KEYS = ("shape", "size", *PLACE, "name", "mesh", "scale", "color")
+LETTERS = {"revolute": "R", "continuous": "R", "prismatic": "P", "fixed": "F"}
+
+
+def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = ()) -> Description:
+    """A robot from TOML.
+
+    source: a path, or the text itself (a string with a line break). package_paths: folders where package://
+    names of meshes are looked for first.
+    The file holds name = …, and one of: [[links]] and [[joints]] (a tree), [screws] with [[screws.joints]]
+    (axis and point of each joint at zero, T_zero), or [dh] with [[dh.rows]]. Unknown keys are refused.
+    Raises DescriptionError with the file, the table and, for syntax, the line.
+    """
+    if isinstance(source, str) and "\n" in source:
+        return _Reader(Document(source, None), package_paths).read()
+    path = os.fspath(source)
+    data = read_bytes(path)
+    if len(data) > TOML_BYTES:
+        raise DescriptionError(
+            f"the file holds {len(data)} bytes; more than {TOML_BYTES} are refused", path=path
+        )
+    try:
+        text = data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise DescriptionError("this is no TOML: not UTF-8 text", path=path, line=line) from None
+    return _Reader(Document(text.replace("\r\n", "\n"), path), package_paths).read()
+
+
+class _Reader:
+    """Reads one document."""
+
+    def __init__(self, document: Document, package_paths: Sequence[Any]) -> None:
+        self.document = document
+        path = document.path
+        self.beside = None if path is None else os.path.dirname(os.path.abspath(path))
+        self.package_paths = tuple(os.fspath(folder) for folder in package_paths)
+
+    def at(self, table: Table, make: Callable[[], T]) -> T:
+        """What `make` returns; its complaint gets the place of `table`."""
+        try:
+            return make()
+        except DescriptionError as error:
+            if error.path is not None or error.line is not None or self.document.path is None:
+                raise
+            raise table.located(error) from None
+        except CspaceError as error:
+            raise table.located(error) from None
+
+    def read(self) -> Description:
+        top = parse_toml(self.document)
+        forms = [form for form in ("screws", "dh") if form in top]
+        forms += ["joints"] if "joints" in top or "links" in top else []
+        if len(forms) != 1:
+            found = " and ".join(forms) or "none of them"
+            raise self.document.fault(
+                f"this is no robot: it must hold one of [[joints]], [screws] and [dh]; it holds {found}"
+            )
+        top.known((*ABOUT, *FORMS[forms[0]]))
+        if top.number("format", FORMAT) != FORMAT:
+            raise top.fault(f"format is {top.values['format']!r}; this version reads format {FORMAT}")
+        name = top.text("name")
+        read = {"joints": self.tree, "screws": self.screws, "dh": self.dh}[forms[0]]
+        plain = self.at(top, lambda: read(top, name))
+        poses = {pose: self.pose(top.table("poses"), pose) for pose in top.table("poses").values}
+        about = self.provenance(top)
+        links, joints, loops = plain.links, plain.joints, plain.loops
+        return self.at(top, lambda: Description(name, links, joints, loops, poses, about))
+
+    def pose(self, poses: Table, pose: str) -> dict[str, float]:
+        values = poses.table(pose)
+        return {joint: values.number(joint) for joint in values.values}
+
+    def provenance(self, top: Table) -> Provenance:
+        sources = {}
+        for group in top.table("sources").values:
+            entry = top.table("sources").table(group)
+            entry.known(("source", "licence"))
+            sources[group] = Source(entry.text("source"), entry.text("licence", ""))
+        return Provenance(
+            top.text("title", ""), top.text("vendor", ""), sources, top.texts("missing"), top.texts("aliases")
+        )
+
+    def origin(self, table: Table, key: str = "origin") -> Array:
+        """The placement under `key` (4 × 4), or under xyz and rpy."""
+        if key in table:
+            if key == "origin" and ("xyz" in table or "rpy" in table):
+                raise table.fault("give either origin or xyz and rpy, not both")
+            return np.array(table.numbers(key, (4, 4)))
+        if key != "origin" or ("xyz" not in table and "rpy" not in table):
+            return IDENTITY
+        xyz: Any = table.numbers("xyz", (3,)) if "xyz" in table else (0.0, 0.0, 0.0)
+        rpy: Any = table.numbers("rpy", (3,)) if "rpy" in table else (0.0, 0.0, 0.0)
+        if not np.isfinite(rpy).all():
+            raise table.fault(f"rpy is {rpy}; every number must be finite")
+        return from_rpy(xyz, rpy)
+
+    def tree(self, top: Table, name: str) -> Description:
+        link_tables, joint_tables = top.tables("links"), top.tables("joints")
+        links = [self.link(table) for table in link_tables]
+        joints = [self.joint(table) for table in joint_tables]
+        loops = [self.loop(table) for table in top.tables("loops")]
+        try:
+            return Description(name, tuple(links), tuple(joints), tuple(loops))
+        except ElementError as error:
+            parts: list[tuple[Link | Joint, Table]] = [
+                *zip(links, link_tables, strict=True),
+                *zip(joints, joint_tables, strict=True),
+            ]
+            kind = Link if error.kind == "link" else Joint
+            culprits = [t for part, t in parts if isinstance(part, kind) and part.name == error.name]
+            if not culprits:
+                raise
+            raise culprits[min(error.occurrence, len(culprits) - 1)].located(error) from None
+
+    def link(self, table: Table) -> Link:
+        table.known(("name", "mass", "com", "inertia", "visual", "collision"))
+        inertial = None
+        if "mass" in table:
+            com = table.numbers("com", (3,)) if "com" in table else [0.0] * 3
+            inertia = table.numbers("inertia", (3, 3)) if "inertia" in table else [[0.0] * 3] * 3
+            inertial = self.at(
+                table, lambda: Inertial(table.number("mass"), np.array(com), np.array(inertia))
+            )
+        elif "com" in table or "inertia" in table:
+            raise table.fault("com and inertia need mass")
+        shapes = [tuple(self.geometry(t) for t in table.tables(key)) for key in ("visual", "collision")]
+        return self.at(table, lambda: Link(table.text("name"), inertial, *shapes))
+
+    def geometry(self, table: Table) -> Geometry:
+        table.known(GEOMETRY_KEYS)
+        mesh = None
+        if "mesh" in table:
+            x, y, z = table.numbers("scale", (3,)) if "scale" in table else (1.0, 1.0, 1.0)
+            mesh = self.at(
+                table, lambda: Mesh(table.text("mesh"), (x, y, z), self.beside, self.package_paths)
+            )
+        size = table.values.get("size", [])
+        count = len(size) if isinstance(size, list) else 0
+        sizes = tuple(table.numbers("size", (count,))) if "size" in table else ()
+        color = tuple(table.numbers("color", (4,))) if "color" in table else None
+        shape, name, origin = table.text("shape"), table.text("name", ""), self.origin(table)
+        return self.at(table, lambda: Geometry(shape, sizes, origin, name, mesh, color))
+
+    def joint(self, table: Table) -> Joint:
+        table.known(JOINT_KEYS)
+        words: dict[str, Any] = {key: table.text(key) for key in ENDS}
+        axis = np.array(table.numbers("axis", (3,))) if "axis" in table else X_AXIS
+        numbers: dict[str, Any] = self.limits(table)
+        numbers |= {key: table.number(key) for key in ("damping", "friction") if key in table}
+        origin, mimic = self.origin(table), self.mimic(table)
+        return self.at(table, lambda: Joint(**words, origin=origin, axis=axis, mimic=mimic, **numbers))
+
+    def limits(self, table: Table) -> dict[str, float]:
+        return {key: table.number(key) for key in LIMIT_FIELDS if key in table}
+
+    def mimic(self, table: Table) -> Mimic | None:
+        if "mimic" not in table:
+            return None
+        entry = table.table("mimic")
+        entry.known(("joint", "multiplier", "offset"))
+        factor, shift = entry.number("multiplier", 1.0), entry.number("offset", 0.0)
+        return self.at(table, lambda: Mimic(entry.text("joint"), factor, shift))
+
+    def loop(self, table: Table) -> Loop:
+        table.known((*ENDS, *PLACE, "child_origin", "axis"))
+        words: dict[str, Any] = {key: table.text(key) for key in ENDS}
+        axis = np.array(table.numbers("axis", (3,))) if "axis" in table else X_AXIS
+        origin, far = self.origin(table), self.origin(table, "child_origin")
+        return self.at(table, lambda: Loop(**words, origin=origin, child_origin=far, axis=axis))
+
+    def screws(self, top: Table, name: str) -> Description:
+        table = top.table("screws")
+        table.known(("base", "tip", "T_zero", "joints"))
+        rows = table.tables("joints")
+        for row in rows:
+            row.known(("name", "type", "axis", "point", *LIMIT_FIELDS))
+        columns = self.columns(rows)
+        return from_screws(
+            np.array([row.numbers("axis", (3,)) for row in rows]).reshape(-1, 3),
+            np.array([row.numbers("point", (3,)) for row in rows]).reshape(-1, 3),
+            self.origin(table, "T_zero"),
+            name=name,
+            base=table.text("base", "base"),
+            tip=table.text("tip", "tip"),
+            **columns,
+        )
+
+    def dh(self, top: Table, name: str) -> Description:
+        table = top.table("dh")
+        table.known(("convention", "base", "tip", "T_base", "T_tool", "rows"))
+        rows = table.tables("rows")
+        for row in rows:
+            row.known(("name", "type", "alpha", "a", "d", "theta", *LIMIT_FIELDS))
+        columns = self.columns(rows)
+        alpha, a, d, theta = (
+            np.array([row.number(key, 0.0) for row in rows]) for key in ("alpha", "a", "d", "theta")
+        )
+        types, names = columns.pop("joint_types"), columns.pop("joint_names")
+        before, after = self.origin(table, "T_base"), self.origin(table, "T_tool")
+        numbers = DHTable(table.text("convention"), alpha, a, d, theta, types, before, after, tuple(names))
+        base, tip = table.text("base", "base"), table.text("tip", "tip")
+        return from_dh(numbers, name=name, base=base, tip=tip, **columns)
+
+    def columns(self, rows: list[Table]) -> dict[str, Any]:
+        """What screws and table rows have in common: names, letters and limits."""
+        letters = []
+        for row in rows:
+            kind = row.text("type", "revolute")
+            if kind not in LETTERS or (kind == "fixed" and "axis" in row):
+                allowed = ", ".join(LETTERS)
+                raise row.fault(f"type is {kind!r}; here a joint is one of {allowed}")
+            letters.append(LETTERS[kind])
+        found = {key: any(key in row for row in rows) for key in LIMIT_FIELDS}
+        limits = {
+            key: np.array([row.number(key, -np.inf if key == "lower" else np.inf) for row in rows])
+            for key in LIMIT_FIELDS
+            if found[key]
+        }
+        names = [row.text("name", f"joint_{i + 1}") for i, row in enumerate(rows)]
+        return {"joint_types": "".join(letters), "joint_names": names, **limits}

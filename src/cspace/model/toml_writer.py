@@ -1,0 +1,149 @@
+"""Robots written as TOML: the whole description, every number with all its digits."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.model.description import Description
+from cspace.model.joint import LIMIT_FIELDS, Joint, Loop
+from cspace.model.link import Geometry, Link
+from cspace.model.toml import FORMAT
+from cspace.model.values import IDENTITY
+
+__all__ = ["to_toml", "toml_value"]
+
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def to_toml(description: Description) -> str:
+    """The robot as the text of a TOML file; reading it back gives the same numbers, bit for bit."""
+    about = description.provenance
+    head: dict[str, Any] = {"format": FORMAT, "name": description.name}
+    head |= {"title": about.title, "vendor": about.vendor} if about.title or about.vendor else {}
+    head |= {"aliases": about.aliases} if about.aliases else {}
+    head |= {"missing": about.missing} if about.missing else {}
+    lines = list(_pairs(head))
+    for group, source in about.sources.items():
+        lines += _section(f"[sources.{_key(group)}]", {"source": source.source, "licence": source.licence})
+    for link in description.links:
+        lines += _link(link)
+    for joint in description.joints:
+        lines += _section("[[joints]]", _joint(joint))
+    for loop in description.loops:
+        lines += _section("[[loops]]", _loop(loop))
+    for pose, values in description.poses.items():
+        lines += _section(f"[poses.{_key(pose)}]", dict(values))
+    return "\n".join(lines) + "\n"
+
+
+def toml_value(value: Any) -> str:
+    """A value as TOML writes it: text, numbers, lists and inline tables."""
+    if isinstance(value, str):
+        return _text(value)
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, np.integer)):
+        return str(int(value))
+    if isinstance(value, (float, np.floating)):
+        return _number(float(value))
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(_pairs(value)) + " }"
+    items = [toml_value(item) for item in value]
+    return "[" + ", ".join(items) + "]"
+
+
+def _number(value: float) -> str:
+    if math.isinf(value):
+        return "inf" if value > 0 else "-inf"
+    return repr(value)
+
+
+def _text(value: str) -> str:
+    try:
+        value.encode()
+    except UnicodeEncodeError:
+        raise InputError(f"the text {value!r} cannot be written as UTF-8") from None
+    return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+
+
+def _key(key: str) -> str:
+    return key if BARE.fullmatch(key) else _text(key)
+
+
+def _pairs(values: Mapping[str, Any]) -> Iterator[str]:
+    for key, value in values.items():
+        yield f"{_key(key)} = {toml_value(value)}"
+
+
+def _section(header: str, values: Mapping[str, Any]) -> list[str]:
+    return ["", header, *_pairs(values)]
+
+
+def _place(T: Array, key: str = "origin") -> dict[str, Any]:
+    """A placement: nothing for the identity, xyz for a translation, else all sixteen numbers."""
+    if T is IDENTITY:
+        return {}
+    if key == "origin" and np.array_equal(T[:3, :3], np.eye(3)):
+        return {"xyz": T[:3, 3]}
+    return {key: T}
+
+
+def _link(link: Link) -> Iterable[str]:
+    values: dict[str, Any] = {"name": link.name}
+    if link.inertial is not None:
+        values |= {"mass": link.inertial.mass, "com": link.inertial.com, "inertia": link.inertial.inertia}
+    lines = _section("[[links]]", values)
+    for key, shapes in (("visual", link.visual), ("collision", link.collision)):
+        for geometry in shapes:
+            lines += _section(f"[[links.{key}]]", _geometry(geometry))
+    return lines
+
+
+def _geometry(geometry: Geometry) -> dict[str, Any]:
+    values: dict[str, Any] = {"shape": geometry.shape}
+    values |= {"size": geometry.size} if geometry.size else {}
+    values |= _place(geometry.origin)
+    values |= {"name": geometry.name} if geometry.name else {}
+    if geometry.mesh is not None:
+        values |= {"mesh": geometry.mesh.uri, "scale": geometry.mesh.scale}
+    values |= {"color": geometry.color} if geometry.color is not None else {}
+    return values
+
+
+def _joint(joint: Joint) -> dict[str, Any]:
+    values: dict[str, Any] = {
+        "name": joint.name,
+        "type": joint.type,
+        "parent": joint.parent,
+        "child": joint.child,
+        **_place(joint.origin),
+    }
+    if joint.type not in ("fixed", "floating"):
+        values["axis"] = joint.axis
+    values |= {key: getattr(joint, key) for key in LIMIT_FIELDS if math.isfinite(getattr(joint, key))}
+    known = {"damping": joint.damping, "friction": joint.friction}
+    values |= {key: value for key, value in known.items() if value is not None}
+    if joint.mimic is not None:
+        mimic = joint.mimic
+        values["mimic"] = {"joint": mimic.joint, "multiplier": mimic.multiplier, "offset": mimic.offset}
+    return values
+
+
+def _loop(loop: Loop) -> dict[str, Any]:
+    return {
+        "name": loop.name,
+        "type": loop.type,
+        "parent": loop.parent,
+        "child": loop.child,
+        **_place(loop.origin),
+        **_place(loop.child_origin, "child_origin"),
+        "axis": loop.axis,
+    }
