@@ -11,4 +11,5 @@ NB_MODULE(_core, m) {
     m.attr("isa") = cspace::kernels::isa() == cspace::kernels::Isa::avx2 ? "avx2" : "baseline";
     bind_math(m);
     bind_robot(m);
+    bind_subproblems(m);
 }

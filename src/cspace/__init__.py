@@ -11,15 +11,16 @@ from cspace.spatial import *  # noqa: F403
 
 if TYPE_CHECKING:
     from cspace import kinematics
+    from cspace.ik import subproblems
     from cspace.robot import Robot
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
-__all__ = ["CspaceError", "Robot", "__version__", "kinematics", "spatial"]
+__all__ = ["CspaceError", "Robot", "__version__", "kinematics", "spatial", "subproblems"]
 __all__ += spatial.__all__
 
 # Where the names are that are imported when they are first used: their rooms take time to load.
-_LATER = {"Robot": "cspace.robot", "kinematics": ""}
+_LATER = {"Robot": "cspace.robot", "kinematics": "", "subproblems": "cspace.ik"}
 
 
 def __getattr__(name: str) -> Any:

@@ -12,8 +12,6 @@
 // by Newton's method on the two equations, where pairs of answers that share θ lie apart in φ.
 #pragma once
 
-#include <utility>
-
 #include "cspace/ik/subproblems/refine.hpp"
 #include "cspace/math/cos_sin.hpp"
 #include "cspace/math/trig_polynomial.hpp"
@@ -208,7 +206,11 @@ inline TwoTurns solve_two_turns(const TwoTurnEquations& given) {
     if (!singular) by_quartic(used, found);
     if (regular < tolerance::degenerate_pair) by_lines(used, singular, found);
     if (exchange)
-        for (int i = 0; i < found.count; ++i) std::swap(found.u[i], found.w[i]);
+        for (int i = 0; i < found.count; ++i) {
+            const Turn<double> u = found.u[i];
+            found.u[i] = found.w[i];
+            found.w[i] = u;
+        }
     return found;
 }
 

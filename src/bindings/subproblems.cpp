@@ -1,0 +1,76 @@
+#include "subproblems.hpp"
+
+#include <nanobind/ndarray.h>
+
+#include "bindings.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+
+namespace {
+
+template <class T, class... Traits>
+using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
+using Vectors = Array<const double, nb::shape<-1, 3>>;
+using Scalars = Array<const double, nb::shape<-1>>;
+using Theta = Array<double, nb::ndim<3>>;
+using Residual = Array<double, nb::shape<-1>>;
+using Count = Array<std::int32_t, nb::shape<-1>>;
+using Flags = Array<bool, nb::shape<-1>>;
+
+cspace::SubproblemAnswers answers(Theta& theta, Residual& residual, Count& count, Flags& exact, Flags& free) {
+    return {theta.data(), residual.data(), count.data(), exact.data(), free.data()};
+}
+
+}  // namespace
+
+#define ANSWERS_OUT Theta theta, Residual residual, Count count, Flags exact, Flags free
+#define ANSWERS_ARGS "theta"_a, "residual"_a, "count"_a, "exact"_a, "free"_a
+#define SOLVE(kernel, ...)                                         \
+    const auto out = answers(theta, residual, count, exact, free); \
+    nb::gil_scoped_release released;                               \
+    cspace::kernels::kernel(__VA_ARGS__, residual.size(), out)
+
+void bind_subproblems(nb::module_& m) {
+    m.def(
+        "subproblem_1",
+        [](Vectors k, Vectors p1, Vectors p2, ANSWERS_OUT) {
+            SOLVE(subproblem_1_n, k.data(), p1.data(), p2.data());
+        },
+        "k"_a, "p1"_a, "p2"_a, ANSWERS_ARGS,
+        "Subproblem 1 for rows (n, 3), answers written into the last five.");
+    m.def(
+        "subproblem_2",
+        [](Vectors k1, Vectors k2, Vectors p1, Vectors p2, ANSWERS_OUT) {
+            SOLVE(subproblem_2_n, k1.data(), k2.data(), p1.data(), p2.data());
+        },
+        "k1"_a, "k2"_a, "p1"_a, "p2"_a, ANSWERS_ARGS,
+        "Subproblem 2 for rows (n, 3), answers written into the last five.");
+    m.def(
+        "subproblem_3",
+        [](Vectors k, Vectors p1, Vectors p2, Scalars d, ANSWERS_OUT) {
+            SOLVE(subproblem_3_n, k.data(), p1.data(), p2.data(), d.data());
+        },
+        "k"_a, "p1"_a, "p2"_a, "d"_a, ANSWERS_ARGS,
+        "Subproblem 3 for rows (n, 3) and d (n,), answers written into the last five.");
+    m.def(
+        "subproblem_4",
+        [](Vectors h, Vectors k, Vectors p, Scalars d, ANSWERS_OUT) {
+            SOLVE(subproblem_4_n, h.data(), k.data(), p.data(), d.data());
+        },
+        "h"_a, "k"_a, "p"_a, "d"_a, ANSWERS_ARGS,
+        "Subproblem 4 for rows (n, 3) and d (n,), answers written into the last five.");
+    m.def(
+        "subproblem_5",
+        [](Array<const double, nb::shape<-1, 5, 3>> points, Array<const double, nb::shape<-1, 3, 3>> axes,
+           ANSWERS_OUT) { SOLVE(subproblem_5_n, points.data(), axes.data()); },
+        "points"_a, "axes"_a, ANSWERS_ARGS,
+        "Subproblem 5 for points (n, 5, 3) and axes (n, 3, 3), answers written into the last five.");
+    m.def(
+        "subproblem_6",
+        [](Array<const double, nb::shape<-1, 4, 3>> h, Array<const double, nb::shape<-1, 4, 3>> k,
+           Array<const double, nb::shape<-1, 4, 3>> p, Array<const double, nb::shape<-1, 2>> d,
+           ANSWERS_OUT) { SOLVE(subproblem_6_n, h.data(), k.data(), p.data(), d.data()); },
+        "h"_a, "k"_a, "p"_a, "d"_a, ANSWERS_ARGS,
+        "Subproblem 6 for h, k, p (n, 4, 3) and d (n, 2), answers written into the last five.");
+}
