@@ -69,6 +69,15 @@ def test_small_parts_keep_their_digits(group, angle):
     np.testing.assert_allclose(log(exp(x)), x, rtol=1e-13, atol=1e-15)
 
 
+@pytest.mark.parametrize("angle", ANGLES)
+def test_a_batch_is_the_single_calls_stacked(group, angle):
+    exp, log, draw, _, _ = group
+    x = draw(angle, (2, 4))
+    X = exp(x)
+    close(X, np.stack([[exp(item) for item in row] for row in x]), atol=4e-15)
+    close(log(X), np.stack([[log(item) for item in row] for row in X]), atol=4e-15)
+
+
 def test_one_parameter_subgroups(group):
     exp, _, draw, _, _ = group
     x = draw("any", (5,))

@@ -32,6 +32,8 @@ def as_pose(value: PoseLike, subject: str = "pose") -> Array:
     T, from_method = _held_matrix(value, subject)
     if from_method and T.shape[-2:] == (3, 3):
         return _with_zero_translation(as_rotation(T, subject))
+    if T.shape == (4, 4) and _is_pose(T):
+        return T
     if T.shape[-2:] != (4, 4):
         raise InputError(f"{subject} has shape {T.shape}, expected (..., 4, 4){_shape_hint(T.shape)}")
     _check_homogeneous(T, subject)
@@ -48,6 +50,8 @@ def as_rotation(value: RotationLike, subject: str = "rotation") -> Array:
     R, _ = _held_matrix(value, subject)
     if R.shape[-2:] == (4, 4):
         return as_pose(R, subject)[..., :3, :3]
+    if R.shape == (3, 3) and _is_rotation(*R.ravel().tolist()):
+        return R
     if R.shape[-2:] != (3, 3):
         raise InputError(f"{subject} has shape {R.shape}, expected (..., 3, 3) or a pose (..., 4, 4)")
     _check_finite(R, subject)
@@ -80,12 +84,21 @@ def as_rotation_2d(value: Any, subject: str = "planar rotation") -> Array:
 def _is_pose(T: Array) -> bool:
     """One 4×4, quickly, in Python numbers: True if it is a pose; False lets the full check speak."""
     (a, b, c, x), (d, e, f, y), (g, h, i, z), (k, l, m, n) = T.tolist()
-    tol = tolerances.ROTATION_ERROR
     return bool(
         k == l == m == 0.0
         and n == 1.0
         and x - x == y - y == z - z == 0.0
-        and abs(a * a + d * d + g * g - 1.0) <= tol
+        and _is_rotation(a, b, c, d, e, f, g, h, i)
+    )
+
+
+def _is_rotation(
+    a: float, b: float, c: float, d: float, e: float, f: float, g: float, h: float, i: float
+) -> bool:
+    """Nine numbers, row by row: orthogonal columns of unit length, determinant +1; False for NaN and inf."""
+    tol = tolerances.ROTATION_ERROR
+    return (
+        abs(a * a + d * d + g * g - 1.0) <= tol
         and abs(b * b + e * e + h * h - 1.0) <= tol
         and abs(c * c + f * f + i * i - 1.0) <= tol
         and abs(a * b + d * e + g * h) <= tol

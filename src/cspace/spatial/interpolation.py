@@ -11,7 +11,7 @@ from cspace.arrays import Array, as_floats
 from cspace.spatial import planar_twists, twists
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_pose_2d, as_rotation
 from cspace.spatial.poses import assemble, broadcast_batches, inverse
-from cspace.spatial.rotations import checked_angle_and_axis, matrix_of_axis_angle, rotvec_of_matrix
+from cspace.spatial.rotations import matrix_of_rotvec, rotvec_of_matrix
 
 __all__ = ["interpolate", "interpolate_2d", "interpolate_decoupled", "slerp"]
 
@@ -79,5 +79,4 @@ def _fractions(step: Array, t: npt.ArrayLike) -> tuple[Array, Array]:
 def _slerp(start: Array, end: Array, t: npt.ArrayLike) -> Array:
     broadcast_batches(start.shape[:-2], end.shape[:-2], "start", "end")
     step, fractions = _fractions(rotvec_of_matrix(np.swapaxes(start, -1, -2) @ end), t)
-    angle, axis = checked_angle_and_axis(step * fractions, "t times the angle")
-    return np.asarray(start @ matrix_of_axis_angle(axis, angle))
+    return np.asarray(start @ matrix_of_rotvec(step * fractions, "t times the angle"))

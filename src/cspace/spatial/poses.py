@@ -10,8 +10,9 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
+from cspace.spatial import single
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
-from cspace.spatial.quaternions import matrix_of_wxyz, unit_wxyz
+from cspace.spatial.quaternions import matrix_of_wxyz, rolled, unit_wxyz
 from cspace.spatial.rotations import matrix_of_axis_angle, matrix_of_rotvec
 from cspace.spatial.sequences import axes_of, matrix_of_euler, matrix_of_fixed
 from cspace.spatial.vectors import length_and_direction
@@ -136,6 +137,8 @@ def assemble(R: Array, p: Array) -> Array:
 
 def inverse(T: Array) -> Array:
     """inverse_pose and inverse_pose_2d without checks."""
+    if T.shape == (4, 4):
+        return single.inverse(T)
     n = T.shape[-1] - 1
     R_inverse = np.swapaxes(T[..., :n, :n], -1, -2)
     return assemble(R_inverse, -turned(R_inverse, T[..., :n, n]))
@@ -199,7 +202,7 @@ def _pair(value: Any, name: str, form: str) -> tuple[Any, Any]:
 
 _FORMS: dict[str, Callable[[Any], Array]] = {
     "wxyz": lambda q: matrix_of_wxyz(unit_wxyz(q, "wxyz")),
-    "xyzw": lambda q: matrix_of_wxyz(np.roll(unit_wxyz(q, "xyzw"), 1, axis=-1)),
+    "xyzw": lambda q: matrix_of_wxyz(rolled(unit_wxyz(q, "xyzw"), 1)),
     "rpy": lambda angles: matrix_of_fixed((0, 1, 2), as_floats(angles, "rpy", last=(3,))),
     "rotvec": lambda w: matrix_of_rotvec(as_floats(w, "rotvec", last=(3,)), "rotvec"),
     "axis_angle": _from_axis_angle,

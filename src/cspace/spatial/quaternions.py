@@ -6,6 +6,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.spatial import single
 from cspace.spatial.checks import RotationLike, as_rotation
 from cspace.spatial.vectors import length_and_direction
 
@@ -28,12 +29,23 @@ def to_xyzw(R: RotationLike) -> Array:
 
     R: (..., 3, 3) or (..., 4, 4) → (..., 4), order x, y, z, w.
     """
-    return np.roll(wxyz_of_matrix(as_rotation(R)), -1, axis=-1)
+    return rolled(wxyz_of_matrix(as_rotation(R)), -1)
+
+
+def rolled(q: Array, shift: int) -> Array:
+    """Quaternions with the four numbers shifted round: 1 makes wxyz of xyzw, −1 the reverse."""
+    result = np.empty(q.shape)
+    for k in range(4):
+        result[..., k] = q[..., (k - shift) % 4]
+    return result
 
 
 def unit_wxyz(q: object, subject: str) -> Array:
     """Quaternions (..., 4) scaled to unit length; a zero quaternion is refused."""
-    length, unit = length_and_direction(as_floats(q, subject, last=(4,)))
+    numbers = as_floats(q, subject, last=(4,))
+    if numbers.ndim == 1 and (split := single.direction(numbers.tolist())):
+        return np.array(split[1])
+    length, unit = length_and_direction(numbers)
     if not (length > 0.0).all():
         raise InputError(f"{subject} is zero; a rotation needs a quaternion of non-zero length")
     return unit
@@ -41,7 +53,9 @@ def unit_wxyz(q: object, subject: str) -> Array:
 
 def matrix_of_wxyz(q: Array) -> Array:
     """The rotation matrices (..., 3, 3) of unit quaternions (..., 4), scalar first."""
-    w, x, y, z = q[..., 0], q[..., 1], q[..., 2], q[..., 3]
+    if q.ndim == 1:
+        return single.matrix(single.quaternion(*q.tolist()))
+    w, x, y, z = (q[..., k] for k in range(4))
     x2, y2, z2 = x + x, y + y, z + z
     xx, yy, zz = x * x2, y * y2, z * z2
     xy, xz, yz = x * y2, x * z2, y * z2
@@ -59,23 +73,29 @@ def wxyz_of_matrix(R: Array) -> Array:
     4 q qᵀ is linear in R. Of its four columns, each a multiple of q, the one with the largest diagonal entry
     (at least 1) is taken, so that nothing cancels. Source: Shepperd 1978.
     """
+    if R.ndim == 2:
+        return np.array(single.wxyz(R))
     a, b, c = R[..., 0, 0], R[..., 1, 1], R[..., 2, 2]
-    K = np.empty((*R.shape[:-2], 4, 4))
-    K[..., 0, 0], K[..., 1, 1] = 1.0 + (a + b + c), 1.0 + (a - b - c)
-    K[..., 2, 2], K[..., 3, 3] = 1.0 + (b - a - c), 1.0 + (c - a - b)
-    K[..., 0, 1] = K[..., 1, 0] = R[..., 2, 1] - R[..., 1, 2]
-    K[..., 0, 2] = K[..., 2, 0] = R[..., 0, 2] - R[..., 2, 0]
-    K[..., 0, 3] = K[..., 3, 0] = R[..., 1, 0] - R[..., 0, 1]
-    K[..., 1, 2] = K[..., 2, 1] = R[..., 0, 1] + R[..., 1, 0]
-    K[..., 1, 3] = K[..., 3, 1] = R[..., 0, 2] + R[..., 2, 0]
-    K[..., 2, 3] = K[..., 3, 2] = R[..., 1, 2] + R[..., 2, 1]
-    best = np.argmax(np.diagonal(K, axis1=-2, axis2=-1), axis=-1)
-    q = np.take_along_axis(K, best[..., None, None], axis=-2)[..., 0, :]
-    q = q / np.sqrt(np.sum(q * q, axis=-1, keepdims=True))
-    return np.asarray(q * _sign(q)[..., None])
+    squares = [1.0 + (a + b + c), 1.0 + (a - b - c), 1.0 + (b - a - c), 1.0 + (c - a - b)]
+    wx, wy, wz = R[..., 2, 1] - R[..., 1, 2], R[..., 0, 2] - R[..., 2, 0], R[..., 1, 0] - R[..., 0, 1]
+    xy, xz, yz = R[..., 0, 1] + R[..., 1, 0], R[..., 0, 2] + R[..., 2, 0], R[..., 1, 2] + R[..., 2, 1]
+    columns = [
+        (squares[0], wx, wy, wz),
+        (wx, squares[1], xy, xz),
+        (wy, xy, squares[2], yz),
+        (wz, xz, yz, squares[3]),
+    ]
+    best = _largest_of_four(squares)
+    w, x, y, z = (np.choose(best, row) for row in columns)
+    first = np.where(w != 0.0, w, np.where(x != 0.0, x, np.where(y != 0.0, y, z)))
+    scale = np.copysign(1.0, first) / np.sqrt(w * w + x * x + y * y + z * z)
+    q = np.empty((*R.shape[:-2], 4))
+    q[..., 0], q[..., 1], q[..., 2], q[..., 3] = w * scale, x * scale, y * scale, z * scale
+    return q
 
 
-def _sign(q: Array) -> Array:
-    """−1 where q must be turned: the first of w, x, y, z other than zero is to be positive."""
-    first = np.take_along_axis(q, np.argmax(q != 0.0, axis=-1)[..., None], axis=-1)[..., 0]
-    return np.where(first < 0.0, -1.0, 1.0)
+def _largest_of_four(values: list[Array]) -> np.ndarray[tuple[int, ...], np.dtype[np.intp]]:
+    """Which of four arrays is the largest, entry by entry."""
+    low, high = values[1] > values[0], values[3] > values[2]
+    upper = np.maximum(values[2], values[3]) > np.maximum(values[0], values[1])
+    return np.where(upper, 2 + high, low.astype(np.intp))

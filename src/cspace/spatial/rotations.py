@@ -7,6 +7,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.spatial import single
 from cspace.spatial.checks import RotationLike, as_rotation
 from cspace.spatial.quaternions import wxyz_of_matrix
 from cspace.spatial.vectors import length_and_direction
@@ -101,6 +102,8 @@ def checked_angle_and_axis(w: Array, subject: str) -> tuple[Array, Array]:
 
 def matrix_of_rotvec(w: Array, subject: str) -> Array:
     """exp_so3 of checked numbers."""
+    if w.ndim == 1 and (split := single.direction(w.tolist())):
+        return single.matrix(single.turn(split[1], split[0]))
     angle, axis = checked_angle_and_axis(w, subject)
     return matrix_of_axis_angle(axis, angle)
 
@@ -126,6 +129,8 @@ def matrix_of_axis_angle(axis: Array, angle: Array) -> Array:
 
 def rotvec_of_matrix(R: Array) -> Array:
     """log_so3 without checks."""
+    if R.ndim == 2 and (split := single.rotvec(R)):
+        return np.array([split[0] * x for x in split[1]])
     q = wxyz_of_matrix(R)
     sine, axis = length_and_direction(q[..., 1:])
     return axis * (2.0 * np.arctan2(sine, q[..., 0]))[..., None]

@@ -14,6 +14,7 @@ import numpy as np
 from cspace import tolerances
 from cspace.arrays import Array
 from cspace.errors import InputTypeError, UnknownNameError, suggest
+from cspace.spatial import single
 from cspace.spatial.checks import RotationLike, as_rotation
 
 __all__ = ["SEQUENCES", "to_euler", "to_fixed", "to_rpy"]
@@ -78,6 +79,8 @@ def axes_of(sequence: str) -> tuple[int, int, int]:
 
 def matrix_of_euler(axes: tuple[int, int, int], angles: Array) -> Array:
     """R_i(a) R_j(b) R_k(c) for angles (..., 3)."""
+    if angles.ndim == 1:
+        return single.matrix(single.euler(axes, angles.tolist()))
     R = np.zeros((*angles.shape[:-1], 3, 3))
     cos, sin = np.cos(angles), np.sin(angles)
     i = axes[0]
@@ -114,6 +117,8 @@ def euler_angles(R: Array, axes: tuple[int, int, int], *, middle: float) -> Arra
     The row i of R holds only the middle and the last angle. The first is then read from R R_k(−c), whose
     column j it alone turns: so it makes up for any noise in c, and the angles reproduce R near gimbal lock.
     """
+    if R.ndim == 2:
+        return np.array(single.angles(R, axes, middle))
     i, j, k = axes
     third = 3 - i - j
     parity = 1.0 if (j - i) % 3 == 1 else -1.0

@@ -6,6 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats
+from cspace.spatial import single
 from cspace.spatial.checks import PoseLike, as_pose
 from cspace.spatial.poses import assemble
 from cspace.spatial.rotations import (
@@ -113,6 +114,8 @@ def exponential(xi: Array) -> Array:
 
     Written with the unit axis, no coefficient cancels or overflows, down to the smallest angles.
     """
+    if xi.ndim == 1 and (split := single.direction(xi[3:].tolist())):
+        return single.pose(single.turn(split[1], split[0]), single.helix(split[1], split[0], xi[:3].tolist()))
     v = xi[..., :3]
     angle, axis = checked_angle_and_axis(xi[..., 3:], "the rotation of the twist")
     half = 0.5 * angle
@@ -125,6 +128,10 @@ def exponential(xi: Array) -> Array:
 
 def logarithm(T: Array) -> Array:
     """log_se3 without checks."""
+    if T.ndim == 2 and (split := single.rotvec(T[:3, :3])):
+        angle_of_one, axis_of_one = split
+        linear = single.straightened(axis_of_one, angle_of_one, T[:3, 3].tolist())
+        return np.array(linear + [angle_of_one * x for x in axis_of_one])
     p = T[..., :3, 3]
     w = rotvec_of_matrix(T[..., :3, :3])
     angle, axis = length_and_direction(w)

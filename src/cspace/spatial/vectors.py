@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 
 from cspace.arrays import Array
@@ -14,13 +16,17 @@ def length_and_direction(v: Array) -> tuple[Array, Array]:
 
     The largest entry is divided out first, so that 1e-320 and 1e300 keep their direction.
     """
-    largest = np.max(np.abs(v), axis=-1)
+    parts = [v[..., k] for k in range(v.shape[-1])]
+    largest = reduce(np.maximum, map(np.abs, parts))
     scale = np.where(largest > 0.0, largest, 1.0)
-    scaled = v / scale[..., None]
-    length = np.sqrt(np.sum(scaled * scaled, axis=-1))
-    direction = scaled / np.where(length > 0.0, length, 1.0)[..., None]
+    scaled = [part / scale for part in parts]
+    length = np.sqrt(sum(part * part for part in scaled))
+    safe = np.where(largest > 0.0, length, 1.0)
+    direction = np.empty(v.shape)
+    for k, part in enumerate(scaled):
+        direction[..., k] = part / safe
     with np.errstate(over="ignore"):
-        return scale * length, direction
+        return np.asarray(scale * length), direction
 
 
 def cross(a: Array, b: Array) -> Array:

@@ -1,0 +1,179 @@
+"""The formulas of this room for one rotation, in Python numbers: numpy costs a microsecond per operation.
+
+Rotations come and go as nine numbers, row by row. The tests hold these against the batched formulas.
+"""
+
+from __future__ import annotations
+
+from math import atan2, cos, hypot, inf, pi, sin, sqrt, tan
+
+import numpy as np
+
+from cspace import tolerances
+from cspace.arrays import Array
+
+__all__ = [
+    "Nine",
+    "angles",
+    "direction",
+    "euler",
+    "helix",
+    "inverse",
+    "matrix",
+    "pose",
+    "quaternion",
+    "rotvec",
+    "straightened",
+    "turn",
+    "wxyz",
+]
+
+Nine = tuple[float, float, float, float, float, float, float, float, float]
+"""The entries of a 3×3 matrix, row by row."""
+
+
+def matrix(entries: Nine) -> Array:
+    """The 3×3 array of nine numbers."""
+    return np.array(entries).reshape(3, 3)
+
+
+def pose(entries: Nine, p: list[float]) -> Array:
+    """The 4×4 array of a rotation and a translation."""
+    (a, b, c, d, e, f, g, h, i), (x, y, z) = entries, p
+    return np.array([[a, b, c, x], [d, e, f, y], [g, h, i, z], [0.0, 0.0, 0.0, 1.0]])
+
+
+def inverse(T: Array) -> Array:
+    """The inverse of one 4×4 pose by transposition."""
+    (a, b, c, x), (d, e, f, y), (g, h, i, z), _ = T.tolist()
+    p = [-(a * x + d * y + g * z), -(b * x + e * y + h * z), -(c * x + f * y + i * z)]
+    return pose((a, d, g, b, e, h, c, f, i), p)
+
+
+def direction(v: list[float]) -> tuple[float, list[float]] | None:
+    """Length and unit direction, step by step as length_and_direction; None for zero or on overflow."""
+    largest = max(map(abs, v))
+    if largest == 0.0:
+        return None
+    scaled = [x / largest for x in v]
+    square = 0.0
+    for x in scaled:
+        square += x * x
+    norm = sqrt(square)
+    length = largest * norm
+    return (length, [x / norm for x in scaled]) if length < inf else None
+
+
+def turn(axis: list[float], angle: float) -> Nine:
+    """Rodrigues' formula for a unit axis."""
+    x, y, z = axis
+    s, versine = sin(angle), 2.0 * sin(0.5 * angle) ** 2
+    vx, vy, vz = versine * x, versine * y, versine * z
+    sx, sy, sz = s * x, s * y, s * z
+    return (
+        *(1.0 - (vy * y + vz * z), vx * y - sz, vx * z + sy),
+        *(vx * y + sz, 1.0 - (vx * x + vz * z), vy * z - sx),
+        *(vx * z - sy, vy * z + sx, 1.0 - (vx * x + vy * y)),
+    )
+
+
+def quaternion(w: float, x: float, y: float, z: float) -> Nine:
+    """The rotation of a unit quaternion."""
+    x2, y2, z2 = x + x, y + y, z + z
+    xx, yy, zz, xy, xz, yz = x * x2, y * y2, z * z2, x * y2, x * z2, y * z2
+    wx, wy, wz = w * x2, w * y2, w * z2
+    return (
+        *(1.0 - (yy + zz), xy - wz, xz + wy),
+        *(xy + wz, 1.0 - (xx + zz), yz - wx),
+        *(xz - wy, yz + wx, 1.0 - (xx + yy)),
+    )
+
+
+def wxyz(R: Array) -> tuple[float, float, float, float]:
+    """The unit quaternion of a 3×3 array (Shepperd), with the sign of to_wxyz."""
+    (a, b, c), (d, e, f), (g, h, i) = R.tolist()
+    largest = max(a, e, i)
+    trace = a + e + i
+    if trace >= largest:
+        q = (1.0 + trace, h - f, c - g, d - b)
+    elif a == largest:
+        q = (h - f, 1.0 + (a - e - i), b + d, c + g)
+    elif e == largest:
+        q = (c - g, b + d, 1.0 + (e - a - i), f + h)
+    else:
+        q = (d - b, c + g, f + h, 1.0 + (i - a - e))
+    w, x, y, z = q
+    first = w or x or y or z
+    scale = 1.0 / sqrt(w * w + x * x + y * y + z * z)
+    if first < 0.0:
+        scale = -scale
+    return w * scale, x * scale, y * scale, z * scale
+
+
+def rotvec(R: Array) -> tuple[float, list[float]] | None:
+    """Angle in [0, π] and unit axis of a 3×3 array; None for the identity."""
+    w, *v = wxyz(R)
+    split = direction(v)
+    if split is None:
+        return None
+    sine, axis = split
+    return 2.0 * atan2(sine, w), axis
+
+
+def euler(axes: tuple[int, int, int], angles: list[float]) -> Nine:
+    """R_i(a) R_j(b) R_k(c): each turn mixes two columns of what stands there."""
+    columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    for axis, angle in zip(axes, angles, strict=True):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        c, s = cos(angle), sin(angle)
+        p, q = columns[u], columns[v]
+        columns[u] = [c * p[0] + s * q[0], c * p[1] + s * q[1], c * p[2] + s * q[2]]
+        columns[v] = [c * q[0] - s * p[0], c * q[1] - s * p[1], c * q[2] - s * p[2]]
+    (a, d, g), (b, e, h), (c, f, i) = columns
+    return a, b, c, d, e, f, g, h, i
+
+
+def angles(R: Array, axes: tuple[int, int, int], middle: float) -> list[float]:
+    """The Euler angles of a 3×3 array, as sequences.euler_angles explains."""
+    i, j, k = axes
+    third = 3 - i - j
+    parity = 1.0 if (j - i) % 3 == 1 else -1.0
+    rows = R.tolist()
+    row = rows[i]
+    if i == k:
+        sine = hypot(row[j], row[third])
+        locked, b = sine <= tolerances.GIMBAL_LOCK, atan2(middle * sine, row[i])
+        c, other, sign = atan2(middle * row[j], middle * parity * row[third]), third, -parity
+    else:
+        cosine = hypot(row[i], row[j])
+        locked, b = cosine <= tolerances.GIMBAL_LOCK, atan2(parity * row[k], cosine)
+        c, other, sign = atan2(-parity * row[j], row[i]), i, parity
+    c = 0.0 if locked else c
+    cos_c, sin_c = cos(c), sign * sin(c)
+    across = cos_c * rows[third][j] + sin_c * rows[third][other]
+    along = cos_c * rows[j][j] + sin_c * rows[j][other]
+    return [pi if x == -pi else x + 0.0 for x in (atan2(parity * across, along), b, c)]
+
+
+def helix(axis: list[float], angle: float, v: list[float]) -> list[float]:
+    """V v of exp_se3: where the origin gets to on a twist."""
+    half = 0.5 * angle
+    return _spun(axis, v, sin(half) * (sin(half) / half), 1.0 - sin(angle) / angle)
+
+
+def straightened(axis: list[float], angle: float, p: list[float]) -> list[float]:
+    """V⁻¹ p of log_se3: the v of the twist that gets the origin to p."""
+    half = 0.5 * angle
+    return _spun(axis, p, -half, 1.0 - half / tan(half))
+
+
+def _spun(u: list[float], v: list[float], first: float, second: float) -> list[float]:
+    """v + first (u × v) + second (u × (u × v))."""
+    a, b, c = u
+    x, y, z = v
+    l, m, n = b * z - c * y, c * x - a * z, a * y - b * x
+    return [
+        x + first * l + second * (b * n - c * m),
+        y + first * m + second * (c * l - a * n),
+        z + first * n + second * (a * m - b * l),
+    ]
