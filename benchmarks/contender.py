@@ -88,9 +88,8 @@ class Contender:
 
     def answers(self, of: str, to: str) -> dict[str, str]:
         task = self.task
-        found = [
-            task.read(task.call(task.prepare(np.ascontiguousarray(x)))) for x in getattr(self.problems, of)
-        ]
+        read = task.exact or task.read
+        found = [read(task.call(task.prepare(np.ascontiguousarray(x)))) for x in getattr(self.problems, of)]
         np.savez(to, counts=[len(a) for a in found], values=np.concatenate(found))
         return {"to": to}
 

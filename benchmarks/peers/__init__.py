@@ -32,6 +32,7 @@ class Task:
     prepare: a problem (pose (4, 4) or configuration (n,)) in the contender's favourite form (not timed).
     call: the timed call. read: from what the call returned to an array a user can index: (k, n)
     configurations, a pose (4, 4) or a Jacobian (6, n); timed as well, in a column of its own.
+    exact: as read, for the judge and not timed: only what the contender itself calls a solution.
     batch: the same for all problems at once on one core, from what prepare_batch made of the stacked
     problems.
     """
@@ -39,6 +40,7 @@ class Task:
     prepare: Callable[[Array], Any]
     call: Callable[[Any], Any]
     read: Callable[[Any], Array]
+    exact: Callable[[Any], Array] | None = None
     batch: Callable[[Any], Any] | None = None
     prepare_batch: Callable[[Array], Any] = lambda problems: problems
 

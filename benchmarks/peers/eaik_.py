@@ -23,10 +23,15 @@ def ik(arm):
     def batch(poses):
         return robot.IK_batched(poses, 1)
 
+    def exact(solution):
+        """Its answers less those that it marks as least-squares."""
+        return np.asarray(solution.Q).reshape(-1, arm.dof)[~np.asarray(solution.is_LS, dtype=bool)]
+
     return Task(
         prepare,
         robot.IK,
-        lambda solution: np.asarray(solution.Q).reshape(-1, arm.dof),
+        lambda solution: np.asarray(solution.Q),
+        exact=exact,
         batch=batch,
         prepare_batch=lambda Ts: [prepare(T) for T in Ts],
     )

@@ -1,0 +1,230 @@
+"""Writes the tables, the plot and docs/benchmarks.md from what the benchmarks left in benchmarks/results/.
+
+Usage: python benchmarks/report.py [--check]
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).resolve().parent
+RESULTS = HERE / "results"
+PAGE = HERE.parent / "docs/benchmarks.md"
+sys.path.insert(0, str(HERE))
+
+import numbers_table  # noqa: E402
+
+NAMES = {
+    "cspace_": "**cspace**",
+    "eaik_": "EAIK",
+    "ik_geo_": "ik-geo",
+    "ssik_": "ssik",
+    "ur_analytic": "ur-analytic-ik",
+    "pinocchio_": "Pinocchio",
+    "toolbox": "Robotics Toolbox",
+}
+
+
+def load() -> dict[str, Any]:
+    """Everything measured, by the name of its file; what was not measured is empty."""
+
+    def read(name: str) -> Any:
+        path = RESULTS / f"{name}.json"
+        return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+
+    results = {name: read(name) for name in ("measurements", "cpp", "recorded", "install")}
+    results["measurements"] = results["measurements"] or {"machine": {}, "imports": {}, "rows": []}
+    return results
+
+
+def markdown(header: list[str], rows: list[list[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+
+
+def verdict(row: numbers_table.Row) -> str:
+    if row.holds is None:
+        return "not measured"
+    return ("aim reached" if row.aimed else "holds") if row.holds else "**missed**"
+
+
+def numbers_section(results: dict[str, Any]) -> str:
+    rows = [[r.what, r.must, r.aim, r.measured, verdict(r)] for r in numbers_table.table(results)]
+    return markdown(["what", "must", "aim", "measured", "verdict"], rows)
+
+
+def microseconds(entry: dict[str, float] | None, key: str = "median") -> str:
+    return "—" if not entry else f"{entry[key]:.3g}"
+
+
+def share(entry: dict[str, Any] | None) -> str:
+    return "—" if not entry else f"{100 * entry['found'] / entry['true']:.2f} %"
+
+
+def ik_cells(row: dict[str, Any]) -> list[str]:
+    name = NAMES[row["contender"]]
+    if "refused" in row:
+        return [name, f"refused: {row['refused']}", *["—"] * 9]
+    judged = row.get("judged") or {}
+    random = judged.get("random")
+    return [
+        f"{name} {row['version']}",
+        microseconds(row["call"]),
+        microseconds(row["call"], "p95"),
+        microseconds(row["read"]),
+        microseconds(row["batch"]),
+        share(random),
+        share(judged.get("near_1e-4")),
+        share(judged.get("near_1e-6")),
+        "—" if not random else f"{random['residual']:.0e}",
+        "—" if not random else str(random["wrong"]),
+        f"{1000 * row['setup_seconds']:.2g}",
+    ]
+
+
+def forward_cells(row: dict[str, Any]) -> list[str]:
+    judged = (row.get("judged") or {}).get("random")
+    return [
+        f"{NAMES[row['contender']]} {row['version']}",
+        microseconds(row["call"]),
+        microseconds(row["call"], "p95"),
+        microseconds(row["read"]),
+        microseconds(row["batch"]),
+        "—" if not judged else f"{judged['residual']:.0e}",
+    ]
+
+
+def sections(results: dict[str, Any]) -> str:
+    """The tables of all contenders, task by task and arm by arm."""
+    rows = results["measurements"]["rows"]
+    head = ["contender", "call", "p95", "call + read", "batch", "found", "found at 1e-4", "found at 1e-6"]
+    head += ["residual", "wrong answers", "set-up [ms]"]
+    texts = []
+    for arm, title in numbers_table.ARMS.items():
+        shown = [r for r in rows if (r["arm"], r["task"]) == (arm, "ik") and offered(r)]
+        if shown:
+            texts.append(
+                f"### Inverse kinematics, {title}\n\n" + markdown(head, [ik_cells(r) for r in shown])
+            )
+    for task, title in (("fk", "Forward kinematics"), ("jacobian", "Jacobian")):
+        for arm, name in numbers_table.ARMS.items():
+            shown = [r for r in rows if (r["arm"], r["task"]) == (arm, task) and "ready" in r]
+            if shown:
+                columns = ["contender", "call", "p95", "call + read", "batch", "error"]
+                texts.append(
+                    f"### {title}, {name}\n\n" + markdown(columns, [forward_cells(r) for r in shown])
+                )
+    return "\n\n".join(texts)
+
+
+def offered(row: dict[str, Any]) -> bool:
+    return row.get("refused") != "does not offer this"
+
+
+def imports_section(results: dict[str, Any]) -> str:
+    found = results["measurements"]["imports"]
+    cells = [
+        [NAMES.get(k, k), "—" if v is None else f"{v:.3f}"] for k, v in sorted(found.items(), key=by_value)
+    ]
+    return markdown(["package", "import [s]"], cells)
+
+
+def by_value(item: tuple[str, float | None]) -> float:
+    return item[1] if item[1] is not None else float("inf")
+
+
+def cpp_section(results: dict[str, Any]) -> str:
+    cells = [[name, f"{e['median']:.3g}", f"{e['p95']:.3g}"] for name, e in results["cpp"].items()]
+    return markdown(["C++ benchmark", "median [ns]", "p95 [ns]"], cells) if cells else "Not measured."
+
+
+def page(results: dict[str, Any]) -> str:
+    """The text of docs/benchmarks.md."""
+    machine = ", ".join(f"{k} {v}" for k, v in results["measurements"]["machine"].items())
+    return f"""# Benchmarks
+
+Generated by `benchmarks/report.py` from `benchmarks/results/`; do not edit. Each contender runs in a
+process of its own, pinned to one core, on the same seeded problems (1000 random poses, 200 poses at each
+distance from a singularity), turn by turn after a warm-up. Times are medians in µs per call. "call" is the
+bare call with input in the contender's favourite form; "call + read" also turns its answer into arrays.
+"batch" is the time per item of one call with many on one core. "found" is the share of true solutions among
+the answers, where the true ones are what any contender found and Newton's method confirmed; "wrong answers"
+do not reach the pose within 1e-6. All answers are judged by a plain numpy forward kinematics that belongs
+to no contender. Our own losses stand here too.
+
+Machine: {machine}.
+
+## What must hold
+
+{numbers_section(results)}
+
+## Contenders
+
+![Time per call and share of the solutions found](../benchmarks/results/ik.png)
+
+{sections(results)}
+
+## Import
+
+Wall time of a fresh interpreter that imports the package, less that of one that imports nothing.
+
+{imports_section(results)}
+
+## C++
+
+{cpp_section(results)}
+"""
+
+
+def plot(results: dict[str, Any], path: Path) -> None:
+    """Inverse kinematics: time per call against the share of solutions found next to singularities."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    colours = dict(zip(NAMES, plt.rcParams["axes.prop_cycle"].by_key()["color"], strict=False))
+    figure, panels = plt.subplots(1, 3, figsize=(11, 3.4), sharey=True, layout="constrained")
+    for axes, (arm, title) in zip(panels, numbers_table.ARMS.items(), strict=True):
+        rows = [
+            r
+            for r in results["measurements"]["rows"]
+            if (r["arm"], r["task"]) == (arm, "ik") and r.get("judged")
+        ]
+        rows.sort(key=lambda r: r["read"]["median"], reverse=True)
+        for place, row in enumerate(rows):
+            near = row["judged"]["near_1e-6"]
+            text = f" {row['read']['median']:.3g} µs, {100 * near['found'] / near['true']:.1f} %"
+            axes.barh(place, row["read"]["median"], color=colours[row["contender"]])
+            axes.text(row["read"]["median"], place, text, va="center", fontsize=8)
+            name = NAMES[row["contender"]].strip("*")
+            axes.text(0.11, place, name, va="center", ha="left", fontsize=8, color="white", weight="bold")
+        axes.set(title=title, xscale="log", yticks=[], xlim=(0.1, 3e4), xlabel="µs per pose, answers read")
+        axes.spines[["top", "right", "left"]].set_visible(False)
+    figure.suptitle(
+        "All solutions of a pose: time, and share found at 1e-6 rad from a singularity", fontsize=11
+    )
+    figure.savefig(path, dpi=150)
+    plt.close(figure)
+
+
+def main() -> int:
+    results = load()
+    text = page(results)
+    if "--check" in sys.argv[1:]:
+        return int(PAGE.read_text(encoding="utf-8") != text)
+    PAGE.write_text(text, encoding="utf-8")
+    rows = [asdict(row) for row in numbers_table.table(results)]
+    (RESULTS / "numbers.json").write_text(
+        json.dumps(rows, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
+    )
+    plot(results, RESULTS / "ik.png")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,70 @@
+"""The pages say what the library is: generated parts are current, every public name is on some page."""
+
+from __future__ import annotations
+
+import importlib
+import re
+
+import pytest
+
+from data import ROOT
+
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
+# Each room and the page that documents it.
+ROOMS = {
+    "spatial": "poses",
+    "model": "robots",
+    "robots": "robots",
+    "kinematics": "kinematics",
+    "ik": "inverse-kinematics",
+    "plot": "plot",
+}
+
+
+def test_generated_parts_are_current(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    import pages
+
+    for page, text in pages.generated().items():
+        assert page.read_text(encoding="utf-8") == text, f"{page.name}: run tools/pages.py"
+
+
+def exports(module: str) -> list[str]:
+    """The documented names of a module; empty where the room does not exist yet."""
+    try:
+        return [name for name in importlib.import_module(module).__all__ if not name.startswith("__")]
+    except ModuleNotFoundError as error:
+        if error.name != module:
+            raise
+        return []
+
+
+def public_names() -> list[str]:
+    """What the rooms export by dotted name, then what `import cspace` adds of its own."""
+    rooms = [room for room, page in ROOMS.items() if (ROOT / f"docs/{page}.md").exists()]
+    found = [f"cspace.{room}.{name}" for room in rooms for name in exports(f"cspace.{room}")]
+    in_rooms = {name for room in ROOMS for name in exports(f"cspace.{room}")} | set(ROOMS)
+    return found + [f"cspace.{name}" for name in exports("cspace") if name not in in_rooms]
+
+
+@pytest.mark.parametrize("name", public_names())
+def test_every_public_name_is_on_a_page(name):
+    word = re.compile(rf"\b{re.escape(name.split('.')[-1])}\b")
+    assert any(word.search(page.read_text(encoding="utf-8")) for page in PAGES), "document it in docs/"
+
+
+def test_errors_of_the_library_are_on_the_page_of_conventions():
+    from cspace import errors
+
+    page = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
+    for name in errors.__all__:
+        if name != "suggest":
+            assert re.search(rf"\b{name}\b", page), f"{name} is not explained"
+
+
+def test_the_benchmark_page_is_what_the_results_say(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import report
+
+    page = (ROOT / "docs/benchmarks.md").read_text(encoding="utf-8")
+    assert page == report.page(report.load()), "run benchmarks/report.py"

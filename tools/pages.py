@@ -1,0 +1,72 @@
+"""Writes the generated parts of docs/: the index of rooms and the index of the lectures.
+
+Usage: python tools/pages.py [--check]
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+DOCS = Path(__file__).resolve().parent.parent / "docs"
+NOT_ROOMS = {"index", "conventions", "status", "lectures", "benchmarks"}
+
+
+def heading(page: Path) -> str:
+    return page.read_text(encoding="utf-8").splitlines()[0].lstrip("# ")
+
+
+def first_sentence(page: Path) -> str:
+    """The first sentence of the first paragraph under the title."""
+    paragraph = page.read_text(encoding="utf-8").split("\n\n")[1]
+    return re.split(r"(?<=[.!?:])\s", " ".join(paragraph.split()))[0].rstrip(".:")
+
+
+def rooms() -> str:
+    """A table of the room pages with their first sentences."""
+    pages = [page for page in sorted(DOCS.glob("*.md")) if page.stem not in NOT_ROOMS]
+    rows = [f"| [{heading(page)}]({page.name}) | {first_sentence(page)} |" for page in pages]
+    return "\n".join(["| page | what |", "|---|---|", *rows])
+
+
+def anchor(title: str) -> str:
+    """The anchor that GitHub gives a heading."""
+    kept = re.sub(r"[^\w\- ]", "", title.lower())
+    return kept.replace(" ", "-")
+
+
+def lectures() -> str:
+    """A list of the lecture pages and their sections, each section a worked example."""
+    lines = []
+    for page in sorted((DOCS / "lectures").glob("*.md")):
+        lines.append(f"- [{heading(page)}](lectures/{page.name})")
+        sections = re.findall(r"^## (.+)$", page.read_text(encoding="utf-8"), re.M)
+        lines += [f"  - [{title}](lectures/{page.name}#{anchor(title)})" for title in sections]
+    return "\n".join(lines)
+
+
+def filled(page: Path, marker: str, text: str) -> str:
+    """The page with the part between its marker and the next end marker replaced."""
+    pattern = rf"(<!-- {marker} -->\n).*?(<!-- end -->)"
+    return re.sub(pattern, lambda m: f"{m[1]}{text}\n{m[2]}", page.read_text(encoding="utf-8"), flags=re.S)
+
+
+def generated() -> dict[Path, str]:
+    """Each page with generated parts and the text it should have."""
+    index, examples = DOCS / "index.md", DOCS / "lectures.md"
+    return {index: filled(index, "rooms", rooms()), examples: filled(examples, "lectures", lectures())}
+
+
+def main() -> int:
+    drifted = [(page, text) for page, text in generated().items() if page.read_text(encoding="utf-8") != text]
+    for page, text in drifted:
+        if "--check" in sys.argv[1:]:
+            print(f"{page.name} has drifted; run tools/pages.py")
+        else:
+            page.write_text(text, encoding="utf-8")
+    return int(bool(drifted) and "--check" in sys.argv[1:])
+
+
+if __name__ == "__main__":
+    sys.exit(main())
