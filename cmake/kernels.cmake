@@ -1,10 +1,11 @@
-# Compiles each file of src/kernels for the baseline of the platform and, on x86-64, for AVX2 with FMA.
+# Compiles each file of src/kernels for the baseline of the platform and, on x86-64, for AVX2 with FMA and for
+# AVX-512. Whoever links cspace_kernels gets the definitions by which src/kernels/dispatch.hpp declares the copies.
 file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/*.cpp)
-
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
 
 add_library(cspace_kernels STATIC src/kernels/dispatch.cpp)
-set_target_properties(cspace_kernels PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+set_target_properties(cspace_kernels PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+                                                LINKER_LANGUAGE CXX)
 target_link_libraries(cspace_kernels PUBLIC cspace PRIVATE cspace_flags)
 target_include_directories(cspace_kernels PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels)
 
@@ -12,21 +13,32 @@ function(add_kernels isa)
   add_library(cspace_kernels_${isa} OBJECT ${kernel_files})
   set_target_properties(cspace_kernels_${isa} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
   target_compile_options(cspace_kernels_${isa} PRIVATE ${ARGN})
-  target_compile_definitions(cspace_kernels_${isa} PRIVATE CSPACE_COMPILING_KERNELS)
+  target_compile_definitions(cspace_kernels_${isa} PRIVATE CSPACE_COMPILING_KERNELS
+                                                           ${kernel_copies})
   target_link_libraries(cspace_kernels_${isa} PRIVATE cspace cspace_flags)
   target_sources(cspace_kernels PRIVATE $<TARGET_OBJECTS:cspace_kernels_${isa}>)
+  set_property(GLOBAL APPEND PROPERTY cspace_kernel_copies ${isa})
 endfunction()
 
+set(kernel_copies)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_OSX_ARCHITECTURES MATCHES "arm64")
-  set(has_avx2 TRUE)
-  add_compile_definitions(CSPACE_HAS_AVX2)
+  list(APPEND kernel_copies CSPACE_HAS_AVX2)
+  if(NOT MSVC)  # without vector extensions a pack is an array, to which AVX-512 adds nothing
+    list(APPEND kernel_copies CSPACE_HAS_AVX512)
+  endif()
 endif()
+target_compile_definitions(cspace_kernels PUBLIC ${kernel_copies})
+
 add_kernels(baseline)
-if(has_avx2)
+if("CSPACE_HAS_AVX2" IN_LIST kernel_copies)
   if(MSVC)
     add_kernels(avx2 /arch:AVX2)
   else()
     add_kernels(avx2 -mavx2 -mfma)
   endif()
 endif()
-set_target_properties(cspace_kernels PROPERTIES LINKER_LANGUAGE CXX)
+if("CSPACE_HAS_AVX512" IN_LIST kernel_copies)
+  # GCC 12 finds its own AVX-512 headers uninitialised; the other copies keep these warnings.
+  add_kernels(avx512 -mavx512f -mavx512dq -mavx512vl -mfma
+              $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+endif()

@@ -8,7 +8,7 @@
 NB_MODULE(_core, m) {
     m.doc() = "The compiled core of cspace; use it through the package.";
     m.attr("__version__") = CSPACE_VERSION;
-    m.attr("isa") = cspace::kernels::isa() == cspace::kernels::Isa::avx2 ? "avx2" : "baseline";
+    m.attr("isa") = cspace::kernels::isa_name();
     bind_math(m);
     bind_robot(m);
     bind_subproblems(m);

@@ -1,19 +1,18 @@
 // Angles on lanes: sine and cosine together, the angle of a vector, the inverse cosine and sine.
 //
-// Errors, measured over the whole range by tests/math/test_trig.py against 80-bit arithmetic: sine and cosine
-// 0.8 ulp, atan2 1.4 ulp, acos and asin 1.2 ulp, with and without fused multiply-add. Special values are
+// Errors, bounded over the whole range by tests/math/test_trig.py against 80-bit arithmetic: sine and cosine
+// 0.85 ulp, atan2 1.5 ulp, acos and asin 1.15 ulp, with and without fused multiply-add. Special values are
 // those of C (Annex F). One double is served by a pack of two, where every choice is a selection, not a
 // branch.
 //
-// The polynomials are minimax fits of relative error (Remez exchange in 80 digits; the coefficients rounded
-// to double from the lowest on, those above refitted each time); docs/trigonometry.md tells how to repeat
-// them.
+// The polynomials are minimax fits of relative error by tools/minimax.py.
 #pragma once
 
 #include <bit>
 #include <cmath>
 #include <type_traits>
 
+#include "cspace/math/far_angle.hpp"
 #include "cspace/math/lanes.hpp"
 
 namespace cspace {
@@ -70,64 +69,64 @@ inline constexpr double arcsine[] = {0x1.5555555555577p-3, 0x1.333333332e130p-4,
                                      0x1.e5f069fd94e3fp-9, 0x1.639e0fd471ee4p-6, -0x1.57ffdacc99460p-6,
                                      0x1.0b4781f40221ep-5};
 
+// |x| = k π/2 + u + rest with |u| ≤ π/4. The low bits of `shifted` are those of k.
 template <class V>
-struct SinCos {
-    V s, c;
+struct Reduced {
+    V u, rest, shifted;
 };
+inline constexpr double shift = 0x1.8p+52;  // adding it leaves the nearest integer in the low bits
 
-// For lanes beyond the cheap reduction, infinities and NaN among them: rare, and left to the C library.
+// For |x| ≤ cheap_range, after Cody & Waite (1980). Two parts of π/2 have 37 bits and k has 16, so both
+// products are exact, fused or not; so are both differences, but for the last rounding, which `rest` takes
+// back. For the double nearest to a multiple of π/2 in this range (45.55…, 6e-19 away) the remainder is still
+// right to 2⁻⁵⁶.
+inline constexpr double cheap_range = 1e5;
 template <class V>
-CSPACE_COLD SinCos<V> library_sincos(V x) {
-    SinCos<V> r;
-    for (int i = 0; i < Lanes<V>::count; ++i) {
-        set_lane(r.s, i, std::sin(lane(x, i)));
-        set_lane(r.c, i, std::cos(lane(x, i)));
-    }
-    return r;
-}
-
-// Reduction after Cody & Waite (1980): x = k π/2 + u + rest with |u| ≤ π/4, for 0 ≤ x ≤ 10⁵.
-// Two parts of π/2 have 37 bits and k has 16, so both products are exact, fused or not; so are both
-// differences, but for the last rounding, which `rest` takes back. For the double nearest to a multiple of
-// π/2 in this range (45.55…, 6e-19 away) what remains is still right to 2⁻⁵⁶.
-template <class V>
-CSPACE_INLINE void sincos_reduced(V x, V& s, V& c) {
+CSPACE_INLINE Reduced<V> reduce(V magnitude) {
     constexpr double part_1 = 0x1.921fb54440000p+0, part_2 = 0x1.68c234c4c0000p-39,
                      part_3 = 0x1.98a2e03707345p-77;
     constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
-    constexpr double shift = 0x1.8p+52;  // adding it leaves the nearest integer in the low bits
-    const V magnitude = abs(x);
     const V shifted = mul_add(magnitude, fill<V>(two_over_pi), fill<V>(shift));
     const V k = shifted - shift;
     const V t = magnitude - k * part_1;
     const V w = k * part_2;
     const V u = t - w;
-    const V rest = mul_add(k, fill<V>(-part_3), (t - u) - w);
+    return {u, mul_add(k, fill<V>(-part_3), (t - u) - w), shifted};
+}
 
-    const V z = u * u;
-    const V half = 0.5 * z;
-    const V sine_tail = mul_add(u * z, polynomial(sine, z), mul_add(-rest, half, rest));
-    const V sine_u = u + sine_tail;
-    const V one = 1.0 - half;
-    const V cosine_rest = mul_add(-u, rest, (1.0 - one) - half);
-    const V cosine_u = one + mul_add(z * z, polynomial(cosine, z), cosine_rest);
-
-    // The quadrant k mod 4 chooses the function by its low bit and the signs by both.
-    const auto odd = lowest_bit(shifted);
-    const V second_bit = shift_bits_left<62>(shifted), first_bit = shift_bits_left<63>(shifted);
-    s = bit_xor(select(odd, cosine_u, sine_u), sign_bit(bit_xor(second_bit, x)));
-    c = bit_xor(select(odd, sine_u, cosine_u), sign_bit(bit_xor(second_bit, first_bit)));
+// Puts right the lanes beyond the cheap range; infinities and NaN become NaN.
+template <class V>
+CSPACE_COLD Reduced<V> mend(V magnitude, Reduced<V> r) {
+    for (int i = 0; i < Lanes<V>::count; ++i) {
+        const double x = lane(magnitude, i);
+        if (x <= cheap_range) continue;
+        const FarAngle far = std::isfinite(x) ? reduce_far(x) : FarAngle{x - x, 0.0, 0};
+        set_lane(r.u, i, far.u);
+        set_lane(r.rest, i, far.rest);
+        set_lane(r.shifted, i, shift + far.quadrant);
+    }
+    return r;
 }
 
 template <class V>
 CSPACE_INLINE void sincos_lanes(V x, V& s, V& c) {
-    if (any(!(abs(x) <= 1e5))) [[unlikely]] {
-        const SinCos<V> r = library_sincos(x);
-        s = r.s;
-        c = r.c;
-    } else {
-        sincos_reduced(x, s, c);
-    }
+    const V magnitude = abs(x);
+    Reduced<V> r = reduce(magnitude);
+    if (!all(magnitude <= cheap_range)) [[unlikely]]
+        r = mend(magnitude, r);
+
+    const V u = r.u, z = u * u, half = 0.5 * z;
+    const V sine_tail = mul_add(u * z, polynomial(sine, z), mul_add(-r.rest, half, r.rest));
+    const V sine_u = u + sine_tail;
+    const V one = 1.0 - half;
+    const V cosine_rest = mul_add(-u, r.rest, (1.0 - one) - half);
+    const V cosine_u = one + mul_add(z * z, polynomial(cosine, z), cosine_rest);
+
+    // The quadrant k mod 4 chooses the function by its low bit and the signs by both.
+    const auto odd = lowest_bit(r.shifted);
+    const V second_bit = shift_bits_left<62>(r.shifted), first_bit = shift_bits_left<63>(r.shifted);
+    s = bit_xor(select(odd, cosine_u, sine_u), sign_bit(bit_xor(second_bit, x)));
+    c = bit_xor(select(odd, sine_u, cosine_u), sign_bit(bit_xor(second_bit, first_bit)));
 }
 
 template <class V>
