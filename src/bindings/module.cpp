@@ -12,4 +12,5 @@ NB_MODULE(_core, m) {
     bind_math(m);
     bind_robot(m);
     bind_subproblems(m);
+    bind_ik(m);
 }

@@ -184,6 +184,7 @@ PyMethodDef methods[] = {
     {"fk", as_method(&fk), METH_FASTCALL | METH_KEYWORDS, robot_fk_doc},
     {"jacobian", as_method(&jacobian), METH_FASTCALL | METH_KEYWORDS, robot_jacobian_doc},
     {"fk_jacobian", as_method(&fk_jacobian), METH_FASTCALL | METH_KEYWORDS, robot_fk_jacobian_doc},
+    {"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, robot_ik_doc},
     {"_chain_rows", as_method(&robot_chain_rows), METH_FASTCALL, robot_chain_rows_doc},
     {"_tree_rows", as_method(&robot_tree_rows), METH_FASTCALL, robot_tree_rows_doc},
     {nullptr, nullptr, 0, nullptr}};

@@ -19,6 +19,10 @@ struct RobotObject {
     std::shared_ptr<void> ik;  // the solver, built by the first call of ik
 };
 
+// robot.ik, in ik.cpp.
+PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
+extern const char robot_ik_doc[];
+
 // The largest number of coordinates and of joints on a path for which a single call works on the stack.
 inline constexpr int robot_stack_joints = 32;
 

@@ -73,6 +73,21 @@ class RobotBase:
         Returns (T, J): T (..., 4, 4) as of fk, J (..., 6, dof) as of jacobian.
         """
 
+    def ik(self, goal: Any, /, *, near: ArrayLike | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+        """
+        Every configuration q with fk(q) = goal.
+
+        goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. near (dof,) [rad, m]: the answer is the one
+        solution nearest to it, and joints that the pose leaves free take its values. least_squares: where nothing
+        reaches the goal, answer with the configuration that misses it least. threads: of a batch, all cores unless
+        given.
+
+        Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, residual, branch,
+        within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns SolutionsBatch for many: q
+        (..., k_max, dof) padded with NaN, count (...). Raises InputError for what is no pose, NoClosedFormError for an
+        arm that this version does not solve.
+        """
+
     @property
     def dof(self) -> int:
         """Number of velocities: one per coordinate, and six more for a floating base."""
@@ -105,3 +120,34 @@ def subproblem_6(h: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 3), o
     """
     Subproblem 6 for h, k, p (n, 4, 3) and d (n, 2), answers written into the last five.
     """
+
+class SolutionsBase:
+    """The compiled half of cspace.ik.Solutions."""
+
+    @property
+    def q(self) -> NDArray[numpy.float64]: ...
+    @property
+    def goal(self) -> NDArray[numpy.float64]: ...
+    @property
+    def robot(self) -> Any: ...
+    @property
+    def _verdict(self) -> int: ...
+    @property
+    def _note(self) -> str | None: ...
+    @property
+    def _branch_numbers(self) -> tuple[int, ...]: ...
+    @property
+    def _is_family(self) -> tuple[bool, ...]: ...
+    def __len__(self) -> int: ...
+    def __bool__(self) -> bool: ...
+
+AXIS_RELATION: float
+
+def _ik_build(*arguments: Any) -> bool: ...
+def _ik_careful(*arguments: Any) -> Any: ...
+def _ik_geometry(robot: Any) -> Any: ...
+def _ik_make(*arguments: Any) -> Any: ...
+def _ik_many(*arguments: Any) -> int: ...
+def _ik_miss(*arguments: Any) -> tuple[NDArray[numpy.float64], float, float]: ...
+def _ik_results(cls: type) -> None: ...
+def _ik_single(*arguments: Any) -> Any: ...

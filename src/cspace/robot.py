@@ -66,6 +66,8 @@ class Robot(RobotBase):
         self.limits = assembly.limits
         self.mass = float(assembly.mass.sum())
 
+    _ik_ready = False
+
     fk_all = kinematics.forward_kinematics_all
     jacobian_dot = kinematics.jacobian_dot
     center_of_mass = kinematics.center_of_mass

@@ -17,19 +17,24 @@ inline double wrapped_distance(const double* a, const double* b, int n) {
     return worst;
 }
 
-// Moving along `direction` and coming back to the goal: true if the arm has moved, which is a self-motion; at
-// a fold it slides back to where it was, or cannot return.
+// Whether the arm can move along `direction` with its tip at rest: it goes a stride that way and comes back
+// to the goal. In a family it has moved by about the stride, whatever the stride; at a fold it slides back,
+// or over to a neighbouring solution, whose distance is one and the same.
 inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                          const double* direction) {
-    constexpr double stride = 0.02;
-    for (const double way : {stride, -stride}) {
-        double moved[ik::max_joints];
-        for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + way * direction[i];
-        PoseError error;
-        if (refine(chain, goal, length, moved, error) > 1e-12) continue;
-        if (wrapped_distance(moved, q, chain.n) > 0.25 * stride) return true;
+    for (const double stride : {0.02, 0.05}) {
+        bool moved_on = false;
+        for (const double way : {stride, -stride}) {
+            double moved[ik::max_joints], along = 0;
+            for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + way * direction[i];
+            PoseError error;
+            if (refine(chain, goal, length, moved, error) > 1e-12) continue;
+            for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
+            moved_on = moved_on || along / way > 0.8;
+        }
+        if (!moved_on) return false;
     }
-    return false;
+    return true;
 }
 
 // Adds q to the solutions unless it is no solution or already there.

@@ -1,5 +1,18 @@
-"""Inverse kinematics: which joint values bring the tip to a goal."""
+"""Inverse kinematics: every configuration that reaches a goal, or why there is none."""
 
 from cspace.ik import subproblems
+from cspace.ik.geometry import Geometry, NoClosedFormError, geometry
+from cspace.ik.solutions import Family, Solutions
+from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.solve import inverse_kinematics
 
-__all__ = ["subproblems"]
+__all__ = [
+    "Family",
+    "Geometry",
+    "NoClosedFormError",
+    "Solutions",
+    "SolutionsBatch",
+    "geometry",
+    "inverse_kinematics",
+    "subproblems",
+]

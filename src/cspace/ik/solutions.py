@@ -1,0 +1,238 @@
+"""What inverse kinematics answers for one goal: the configurations, and everything one may ask about them."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, suggest
+from cspace.ik.branches import branch_labels
+from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
+
+if TYPE_CHECKING:
+    from cspace.model import Limits
+
+__all__ = ["Family", "Solutions"]
+
+UNREACHABLE: Final = 0
+EXACT: Final = 1
+SINGULAR: Final = 2
+NEAREST: Final = 3
+VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
+METRICS: Final = ("euclidean", "max")
+
+
+def verdict_name(verdict: int) -> str:
+    return VERDICTS[verdict]
+
+
+@dataclass(frozen=True)
+class Family:
+    """A one-parameter family of configurations: the joints move, the tip stays.
+
+    row: the solution that stands for it. q: that configuration (dof,). direction: the unit joint velocity
+    (dof,) along the family at q. joints: the names of the joints that move.
+    """
+
+    row: int
+    q: Array
+    direction: Array
+    joints: tuple[str, ...]
+
+
+class Solutions(_core.SolutionsBase):
+    """Every configuration that reaches one goal.
+
+    q: (k, dof) [rad, m], revolute joints in (−π, π]. goal: T_base_tip (4, 4). Truthy if there is a solution;
+    `status` is "exact", "singular", "unreachable" or "least_squares", and `reason` says it in a sentence. The
+    filters `within`, `nearest`, `wrapped` return the same kind of object.
+    """
+
+    __slots__ = ()
+
+    @property
+    def status(self) -> str:
+        """ "exact", "singular" (some rows stand for a family), "unreachable" or "least_squares"."""
+        return verdict_name(self._verdict)
+
+    @property
+    def complete(self) -> bool:
+        """Whether every solution is listed, families by a representative; a closed form always lists them
+        all.
+        """
+        return self._verdict != NEAREST
+
+    @property
+    def residual(self) -> Array:
+        """How far fk(q) is from the goal, (k,): the larger of the position error [m] and the angle [rad]."""
+        return pose_errors(self.robot, self.q, self.goal)
+
+    @property
+    def branch(self) -> tuple[str, ...]:
+        """A name for each solution: shoulder, elbow and wrist where the arm has them, else its branch
+        number.
+        """
+        return branch_labels(self.robot, self.q, self._branch_numbers)
+
+    @property
+    def missing(self) -> float:
+        """By how much the goal is out of reach [m]: the shortest way it would have to move, orientation
+        kept.
+        """
+        if self._verdict != UNREACHABLE:
+            return 0.0
+        return float(_core._ik_miss(self.robot, self.goal, 1e4)[1])
+
+    @property
+    def reason(self) -> str:
+        """The verdict in a sentence."""
+        if self._note is not None:
+            return self._note
+        if self._verdict == UNREACHABLE:
+            return unreachable_reason(self)
+        text = how_many(len(self)) + " the goal"
+        if self._verdict == SINGULAR:
+            moving = sorted({name for family in self.families for name in family.joints})
+            text += f"; the pose is singular: {', '.join(moving)} can move while the tip stays"
+        return text
+
+    @property
+    def families(self) -> tuple[Family, ...]:
+        """The one-parameter families among the solutions, empty unless the pose is singular."""
+        rows = [row for row, is_family in enumerate(self._is_family) if is_family]
+        return tuple(family_at(self.robot, row, self.q[row]) for row in rows)
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter(self.q)
+
+    def __getitem__(self, row: int) -> Array:
+        return cast(Array, self.q[row])
+
+    def within(self, limits: Limits | None = None, *, windings: bool = False) -> Solutions:
+        """The solutions inside the limits, each joint first moved by whole turns to where it fits.
+
+        limits: the robot's own unless given. windings: every combination of whole turns that fits, not only
+        one.
+        """
+        bounds = self.robot.limits if limits is None else limits
+        kinds = self.robot.joint_types
+        if windings:
+            rows, q = all_windings(self.q, kinds, bounds.lower, bounds.upper)
+        else:
+            moved, fits = into_limits(self.q, kinds, bounds.lower, bounds.upper)
+            rows, q = np.flatnonzero(fits), moved[fits]
+        note = None
+        if len(rows) == 0 and len(self):
+            note = limits_reason(self, bounds.lower, bounds.upper)
+        return self._take(rows, q, note)
+
+    def nearest(self, q: Any, metric: str = "euclidean") -> Solutions:
+        """The one solution nearest to q (dof,), each revolute joint taken by the turn that brings it closest.
+
+        metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Turns that
+        would leave the robot's limits are not taken where another one stays inside.
+        """
+        seed = as_floats(q, "q", last=(self.robot.dof,))
+        if seed.ndim != 1:
+            raise InputError(f"q has shape {seed.shape}, expected ({self.robot.dof},): one configuration")
+        if metric not in METRICS:
+            raise suggest("metric", metric, METRICS)
+        if not self:
+            return self
+        limits = self.robot.limits
+        moved = nearest_winding(self.q, seed, self.robot.joint_types, limits.lower, limits.upper)
+        gap = np.abs(moved - seed)
+        distance = gap.max(axis=1) if metric == "max" else np.linalg.norm(gap, axis=1)
+        row = int(np.argmin(distance))
+        return self._take(np.array([row]), moved[[row]], None)
+
+    def wrapped(self) -> Solutions:
+        """The same solutions with revolute joints in (−π, π]."""
+        return self._take(np.arange(len(self)), wrap(self.q, self.robot.joint_types), self._note)
+
+    def violations(self, limits: Limits | None = None) -> tuple[dict[str, float], ...]:
+        """Per solution, the joints that no whole turn brings into the limits, and by how much [rad, m]."""
+        bounds = self.robot.limits if limits is None else limits
+        excess = violations(self.q, self.robot.joint_types, bounds.lower, bounds.upper)
+        names = self.robot.joint_names
+        return tuple({name: float(e) for name, e in zip(names, row, strict=True) if e > 0} for row in excess)
+
+    def _take(self, rows: Any, q: Array, note: str | None) -> Solutions:
+        branches = tuple(self._branch_numbers[row] for row in rows)
+        families = tuple(self._is_family[row] for row in rows)
+        made = _core._ik_make(
+            self.robot,
+            self.goal,
+            self._verdict,
+            np.ascontiguousarray(q, dtype=np.float64),
+            branches,
+            families,
+            note,
+        )
+        return cast(Solutions, made)
+
+    def __repr__(self) -> str:
+        lines = [f"Solutions({self.status}: {self.reason})"]
+        if len(self):
+            for label, q in zip(self.branch, self.q, strict=True):
+                lines.append("  [" + ", ".join(f"{angle: .4f}" for angle in q) + f"]  {label}")
+        return "\n".join(lines)
+
+
+def pose_errors(robot: Any, q: Array, goal: Array) -> Array:
+    """Per configuration the larger of the position error [m] and the rotation angle [rad] between fk(q) and
+    goal.
+    """
+    if q.size == 0:
+        return np.zeros(q.shape[:-1])
+    T = robot.fk(q)
+    away = np.linalg.norm(T[..., :3, 3] - goal[..., :3, 3], axis=-1)
+    # ‖R − R_goal‖_F = 2√2 sin(angle/2), which keeps its digits for small angles.
+    gap = np.linalg.norm(T[..., :3, :3] - goal[..., :3, :3], axis=(-2, -1))
+    turned = 2 * np.arcsin(np.minimum(gap / (2 * np.sqrt(2)), 1.0))
+    return cast(Array, np.maximum(away, turned))
+
+
+def how_many(k: int) -> str:
+    return "1 configuration reaches" if k == 1 else f"{k} configurations reach"
+
+
+def unreachable_reason(found: Solutions) -> str:
+    missing = found.missing
+    if missing < 1e-6:
+        return (
+            f"no configuration of {found.robot.name} has this orientation here: the position alone can be "
+            "reached, or nearly so"
+        )
+    return (
+        f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, for "
+        f"{found.robot.name} to reach it"
+    )
+
+
+def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:
+    excess = violations(found.q, found.robot.joint_types, lower, upper)
+    best = int(np.argmin(excess.max(axis=1)))
+    joint = int(np.argmax(excess[best]))
+    unit = "rad" if found.robot.joint_types[joint] == "R" else "m"
+    return (
+        f"{how_many(len(found))} the goal, none within limits; the nearest one has "
+        f" {found.robot.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
+    )
+
+
+def family_at(robot: Any, row: int, q: Array) -> Family:
+    direction = np.linalg.svd(robot.jacobian(q))[2][-1]
+    direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
+    moving = np.abs(direction) > 1e-6
+    names = tuple(itertools.compress(robot.joint_names, moving))
+    return Family(row, q, np.where(moving, direction, 0.0), names)
+
+
+_core._ik_results(Solutions)

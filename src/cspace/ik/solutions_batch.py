@@ -1,0 +1,132 @@
+"""What inverse kinematics answers for many goals: arrays, padded with NaN."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, suggest
+from cspace.ik.solutions import METRICS, UNREACHABLE, VERDICTS, Solutions, pose_errors
+from cspace.ik.windings import into_limits, nearest_winding, wrap
+
+if TYPE_CHECKING:
+    from cspace.model import Limits
+
+__all__ = ["SolutionsBatch"]
+
+
+class SolutionsBatch:
+    """Every configuration that reaches each of n goals.
+
+    q: (..., k_max, dof) [rad, m], the solutions of each goal first, NaN behind them. count: (...,)
+    solutions per goal. goal: (..., 4, 4). status: (...,) strings as of `Solutions`. Index with one goal's
+    index to get its `Solutions` with branch names and reasons.
+    """
+
+    def __init__(
+        self, robot: Any, goal: Array, q: Array, count: npt.NDArray[np.int64], verdict: npt.NDArray[np.uint8]
+    ) -> None:
+        self.robot = robot
+        self.goal = goal
+        self.q = q
+        self.count = count
+        self._verdict = verdict
+
+    def __len__(self) -> int:
+        return len(self.count)
+
+    @property
+    def status(self) -> npt.NDArray[np.str_]:
+        """ "exact", "singular" or "unreachable" per goal, (...,)."""
+        return np.array(VERDICTS)[self._verdict]
+
+    @property
+    def reachable(self) -> npt.NDArray[np.bool_]:
+        """Whether each goal has a solution, (...,)."""
+        return self.count > 0
+
+    @property
+    def residual(self) -> Array:
+        """How far fk(q) is from the goal, (..., k_max): the larger of position [m] and angle [rad]; NaN
+        padded.
+        """
+        goal = np.broadcast_to(self.goal[..., None, :, :], (*self.q.shape[:-1], 4, 4))
+        out = np.full(self.q.shape[:-1], np.nan)
+        real = self._real
+        out[real] = pose_errors(self.robot, self.q[real], goal[real])
+        return out
+
+    @property
+    def _real(self) -> npt.NDArray[np.bool_]:
+        return np.asarray(np.arange(self.q.shape[-2]) < self.count[..., None])
+
+    def __getitem__(self, index: Any) -> Solutions:
+        goal = self.goal[index]
+        if goal.shape != (4, 4):
+            raise InputError(
+                f"index {index!r} picks {goal.shape[:-2]} goals, expected one: use .q for slices"
+            )
+        rows = self.q[index][: int(self.count[index])]
+        full = _core._ik_single(self.robot, np.ascontiguousarray(goal))
+        if len(full) == len(rows) and np.array_equal(full.q, rows):
+            return cast(Solutions, full)
+        branches = tuple(
+            int(full._branch_numbers[int(np.argmin(np.abs(np.sin((full.q - row) / 2)).max(axis=1)))])
+            for row in rows
+        )
+        made = _core._ik_make(
+            self.robot,
+            np.ascontiguousarray(goal),
+            int(self._verdict[index]),
+            np.ascontiguousarray(rows),
+            branches,
+            (False,) * len(rows),
+            None if len(rows) or not len(full) else "solutions exist, the filters left none",
+        )
+        return cast(Solutions, made)
+
+    def within(self, limits: Limits | None = None) -> SolutionsBatch:
+        """The solutions inside the limits, each joint first moved by whole turns to where it fits."""
+        bounds = self.robot.limits if limits is None else limits
+        moved, fits = into_limits(self.q, self.robot.joint_types, bounds.lower, bounds.upper)
+        return self._keep(moved, fits & self._real)
+
+    def wrapped(self) -> SolutionsBatch:
+        """The same solutions with revolute joints in (−π, π]."""
+        return SolutionsBatch(
+            self.robot, self.goal, wrap(self.q, self.robot.joint_types), self.count, self._verdict
+        )
+
+    def nearest(self, q: Any, metric: str = "euclidean") -> Array:
+        """Per goal the configuration nearest to q (dof,) or (..., dof), (..., dof); NaN where there is
+        none.
+        """
+        if metric not in METRICS:
+            raise suggest("metric", metric, METRICS)
+        seed = as_floats(q, "q", last=(self.robot.dof,))
+        seed = np.broadcast_to(seed, (*self.count.shape, self.robot.dof))[..., None, :]
+        limits = self.robot.limits
+        moved = nearest_winding(self.q, seed, self.robot.joint_types, limits.lower, limits.upper)
+        gap = np.abs(moved - seed)
+        distance = gap.max(axis=-1) if metric == "max" else np.linalg.norm(gap, axis=-1)
+        row = np.argmin(np.where(self._real, distance, np.inf), axis=-1)
+        return np.take_along_axis(moved, row[..., None, None], axis=-2)[..., 0, :]
+
+    def _keep(self, q: Array, keep: npt.NDArray[np.bool_]) -> SolutionsBatch:
+        order = np.argsort(~keep, axis=-1, kind="stable")
+        sorted_q = np.take_along_axis(q, order[..., None], axis=-2)
+        count = keep.sum(axis=-1)
+        sorted_q[np.arange(q.shape[-2]) >= count[..., None]] = np.nan
+        return SolutionsBatch(self.robot, self.goal, sorted_q, count, self._verdict)
+
+    def __repr__(self) -> str:
+        reached = int(np.count_nonzero(self.count))
+        unreachable = int(np.count_nonzero(self._verdict == UNREACHABLE))
+        return (
+            f"SolutionsBatch({self.robot.name}: {self.count.size} goals, {reached} with solutions, "
+            f"{unreachable} unreachable, {int(self.count.sum())} configurations)"
+        )

@@ -1,0 +1,118 @@
+"""The words around inverse kinematics: what is asked, whether it makes sense, who answers."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, cast
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.geometry import NoClosedFormError, explain_missing_form
+from cspace.ik.solutions import NEAREST, Solutions
+from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.spatial import as_pose
+
+__all__ = ["inverse_kinematics"]
+
+MAX_BRANCHES = 8
+
+
+def prepare(robot: Any) -> None:
+    """Build the solver of `robot` once: its axes, points and tip at zero go to the core, which looks for a
+    form.
+    """
+    if robot._ik_ready:
+        return
+    chain = robot.chain
+    if chain.dof != len(chain.joint_types) or robot.floating:
+        raise NoClosedFormError(explain_missing_form(robot))
+    prismatic = np.array([kind == "P" for kind in chain.joint_types], dtype=np.float64)
+    found = _core._ik_build(
+        robot,
+        np.ascontiguousarray(chain.axes, dtype=np.float64),
+        np.ascontiguousarray(chain.points, dtype=np.float64),
+        prismatic,
+        np.ascontiguousarray(chain.T_zero, dtype=np.float64),
+    )
+    if not found:
+        raise NoClosedFormError(explain_missing_form(robot))
+    robot._ik_ready = True
+
+
+def inverse_kinematics(
+    robot: Any,
+    goal: Any = None,
+    *,
+    near: Any = None,
+    least_squares: bool = False,
+    threads: int | None = None,
+) -> Solutions | SolutionsBatch:
+    """Every configuration q with fk(q) = goal.
+
+    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. near: (dof,), a configuration; the
+    answer is the one solution nearest to it, and joints that the pose leaves free take its values.
+    least_squares: where nothing reaches the goal, answer with the configuration that misses it least (a
+    radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
+    answer does not depend on it.
+
+    Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
+    with the reason); a goal that is no pose raises InputError, an arm without a closed form
+    NoClosedFormError.
+    """
+    prepare(robot)
+    if goal is None:
+        raise InputTypeError("ik needs a goal: robot.ik(T) with T the pose of the tip in the base")
+    T = np.ascontiguousarray(as_pose(goal, "goal"))
+    if T.ndim > 2:
+        if near is not None or least_squares:
+            raise InputTypeError("near= and least_squares= are for one goal; a batch has .nearest(q)")
+        return solve_many(robot, T, threads)
+    found = solve_one(robot, T, near)
+    if least_squares and not found:
+        return least_squares_answer(robot, T)
+    return found if near is None else found.nearest(near)
+
+
+def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
+    if near is None:
+        found = _core._ik_single(robot, T)
+        if found is None:
+            raise InputError(f"goal is no pose the solver can use: {T.tolist()}")
+        return cast(Solutions, found)
+    seed = as_floats(near, "near", last=(robot.dof,))
+    if seed.ndim != 1:
+        raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
+    return cast(Solutions, _core._ik_careful(robot, T, np.ascontiguousarray(seed)))
+
+
+def solve_many(robot: Any, T: Array, threads: int | None) -> SolutionsBatch:
+    leading = T.shape[:-2]
+    n = int(np.prod(leading))
+    q = np.empty((n, MAX_BRANCHES, robot.dof))
+    count = np.empty(n, dtype=np.int64)
+    verdict = np.empty(n, dtype=np.uint8)
+    workers = (os.cpu_count() or 1) if threads is None else threads
+    if workers < 1:
+        raise InputError(f"threads is {threads}, expected a positive number or None for all cores")
+    bad = _core._ik_many(robot, T.reshape(n, 4, 4), q, count, verdict, workers)
+    if bad < n:
+        raise InputError(f"goal {np.unravel_index(bad, leading)} is no pose the solver can use")
+    return SolutionsBatch(
+        robot,
+        T,
+        q.reshape(*leading, MAX_BRANCHES, robot.dof),
+        count.reshape(leading),
+        verdict.reshape(leading),
+    )
+
+
+def least_squares_answer(robot: Any, T: Array) -> Solutions:
+    q, position, rotation = _core._ik_miss(robot, T, 1.0)
+    note = (
+        f"nothing reaches the goal; the nearest configuration misses it by {position:.4g} m "
+        f"and {np.degrees(rotation):.4g}°"
+    )
+    return cast(Solutions, _core._ik_make(robot, T, NEAREST, q[None, :], (-1,), (False,), note))

@@ -1,0 +1,98 @@
+"""Whole turns of revolute joints: the same pose, other numbers.
+
+q: (k, dof) configurations; kinds: one "R" or "P" per joint; lower, upper: (dof,) limits, infinite where
+absent.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array
+
+__all__ = ["all_windings", "into_limits", "nearest_winding", "violations", "wrap"]
+
+Flags = npt.NDArray[np.bool_]
+TURN = 2 * np.pi
+
+
+def turns_of(kinds: Sequence[str]) -> Array:
+    """2π for a revolute joint, 0 for a prismatic one."""
+    return np.array([TURN if kind == "R" else 0.0 for kind in kinds])
+
+
+def wrap(q: Array, kinds: Sequence[str]) -> Array:
+    """Revolute joints in (−π, π]."""
+    turn = turns_of(kinds)
+    outside = (turn > 0) & ((q > np.pi) | (q <= -np.pi))
+    return np.where(outside, np.pi - np.mod(np.pi - q, TURN), q)
+
+
+def fewest_turns(q: Array, kinds: Sequence[str], lower: Array, upper: Array, wanted: Array) -> Array:
+    """The whole number of turns nearest to `wanted` that brings each joint inside; `wanted` where none
+    does.
+    """
+    with np.errstate(invalid="ignore"):
+        least, most = np.ceil((lower - q) / TURN), np.floor((upper - q) / TURN)
+    turns = np.where(least <= most, np.clip(wanted, least, most), wanted)
+    return np.asarray(np.where(turns_of(kinds) > 0, turns, 0.0))
+
+
+def into_limits(q: Array, kinds: Sequence[str], lower: Array, upper: Array) -> tuple[Array, Flags]:
+    """Each joint moved by the fewest whole turns that bring it inside; per row whether all joints are
+    inside.
+    """
+    moved = q + TURN * fewest_turns(q, kinds, lower, upper, np.zeros_like(q))
+    fits = (moved >= lower) & (moved <= upper)
+    return moved, np.asarray(fits.all(axis=-1))
+
+
+def violations(q: Array, kinds: Sequence[str], lower: Array, upper: Array) -> Array:
+    """By how much each joint stays outside its limits whatever turn is taken, (k, dof), zero where inside."""
+    turn = turns_of(kinds)
+    span = np.where(np.isfinite(upper - lower), upper - lower, np.inf)
+    below, above = lower - q, q - upper
+    outside = np.maximum(np.maximum(below, above), 0.0)
+    # A revolute joint outside sits in the gap of the circle between upper and lower + 2π.
+    with np.errstate(invalid="ignore"):
+        past_upper = np.mod(q - upper, TURN)
+        to_lower = np.mod(lower - q, TURN)
+        around = np.where(np.mod(q - lower, TURN) <= span, 0.0, np.minimum(past_upper, to_lower))
+    return np.where(turn > 0, np.where(outside > 0, around, 0.0), outside)
+
+
+def nearest_winding(q: Array, seed: Array, kinds: Sequence[str], lower: Array, upper: Array) -> Array:
+    """Each revolute joint by the turn that brings it closest to the seed, inside its limits if one is."""
+    return q + TURN * fewest_turns(q, kinds, lower, upper, np.round((seed - q) / TURN))
+
+
+def all_windings(
+    q: Array, kinds: Sequence[str], lower: Array, upper: Array
+) -> tuple[npt.NDArray[np.intp], Array]:
+    """Every combination of whole turns inside the limits: the row each comes from, and the configurations.
+
+    A joint without limits is kept in (−π, π]: it has infinitely many copies.
+    """
+    rows: list[int] = []
+    out: list[Array] = []
+    for row, configuration in enumerate(q):
+        choices = [
+            joint_windings(angle, kind, lo, hi)
+            for angle, kind, lo, hi in zip(configuration, kinds, lower, upper, strict=True)
+        ]
+        for combination in itertools.product(*choices):
+            rows.append(row)
+            out.append(np.array(combination))
+    return np.array(rows, dtype=np.intp), np.array(out).reshape(len(out), q.shape[1])
+
+
+def joint_windings(angle: float, kind: str, lower: float, upper: float) -> list[float]:
+    if kind == "P" or not np.isfinite(upper - lower):
+        return [angle] if lower <= angle <= upper else []
+    first = int(np.ceil((lower - angle) / TURN))
+    last = int(np.floor((upper - angle) / TURN))
+    return [angle + k * TURN for k in range(first, last + 1)]
