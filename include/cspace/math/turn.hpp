@@ -43,6 +43,10 @@ template <class V>
 CSPACE_INLINE Turn<V> select(mask_of<V> m, const Turn<V>& yes, const Turn<V>& no) {
     return {select(m, yes.c, no.c), select(m, yes.s, no.s)};
 }
+template <class V>
+CSPACE_INLINE Vec3<V> select(mask_of<V> m, const Vec3<V>& yes, const Vec3<V>& no) {
+    return {select(m, yes.x, no.x), select(m, yes.y, no.y), select(m, yes.z, no.z)};
+}
 // Rot(k, θ) p about the unit axis k through the origin (Rodrigues 1840).
 template <class V>
 CSPACE_INLINE Vec3<V> rotate(const Vec3<V>& k, const Turn<V>& t, const Vec3<V>& p) {
