@@ -21,10 +21,7 @@ def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), fi
     value: anything numpy reads as numbers. subject: its name in messages.
     Raises InputTypeError if it is not numeric, InputError on a wrong shape or on NaN or inf.
     """
-    try:
-        array = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
+    array = value if type(value) is np.ndarray and value.dtype == np.float64 else _converted(value, subject)
     shape = array.shape[array.ndim - len(last) :] if last else ()
     if shape != last and not _fits(shape, last):
         wanted = "(..., " + ", ".join("k" if n is None else str(n) for n in last) + ")"
@@ -35,6 +32,17 @@ def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), fi
             f"{subject} holds {array[tuple(bad)]} at index {tuple(map(int, bad))}; all must be finite"
         )
     return array
+
+
+def _converted(value: Any, subject: str) -> Array:
+    """The numbers of anything as float64; text that looks like numbers, complex ones and dates are refused."""
+    try:
+        array = np.asarray(value)
+        if array.dtype.kind in "biufO":
+            return array.astype(np.float64, copy=False)
+    except (TypeError, ValueError) as error:
+        raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
+    raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")
 
 
 def _fits(shape: tuple[int, ...], last: tuple[int | None, ...]) -> bool:

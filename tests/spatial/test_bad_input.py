@@ -1,5 +1,8 @@
 """What is refused, and that the message names the subject, the rule and the remedy."""
 
+from decimal import Decimal
+from fractions import Fraction
+
 import numpy as np
 import pytest
 
@@ -42,9 +45,18 @@ def test_nan_and_inf_are_refused_by_name(subject, value):
 
 
 @pytest.mark.parametrize("subject", MAKERS)
-def test_words_are_not_numbers(subject):
+@pytest.mark.parametrize("value", ["one", "1.0", 1.0 + 1.0j, np.datetime64("2020-01-01")])
+def test_what_is_not_a_real_number_is_refused(subject, value):
     with pytest.raises(InputTypeError, match=f"^{subject} must be numbers"):
-        MAKERS[subject]("one")
+        MAKERS[subject](value)
+
+
+def test_exact_numbers_are_numbers():
+    third = Fraction(1, 3)
+    assert cs.pose([third, 0, Decimal("0.5")])[:3, 3].tolist() == [1 / 3, 0.0, 0.5]
+    assert cs.rotation_2d(np.float32(0.5)).dtype == np.float64
+    with pytest.raises(InputError, match="xyz holds nan"):
+        cs.pose([None, 0, 0])
 
 
 @pytest.mark.parametrize(
