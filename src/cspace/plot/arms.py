@@ -1,0 +1,178 @@
+"""A robot in one configuration, and all configurations that reach a pose."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.plot import colors, planar, stage
+from cspace.plot.axes import space_axes
+from cspace.plot.scene import Group, artist_type, scene_of
+from cspace.plot.skeleton import Skeleton, planar_basis, size_of, skeleton
+from cspace.plot.solids import Solid, capsule, cylinder
+
+__all__ = ["robot", "solutions"]
+
+
+def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: str = "") -> list[Any]:
+    """Draw a robot in one configuration, its base and tip frames and its shadow.
+
+    arm: a Robot that is a chain. q: (dof,) [rad, m]. ax: 3-D axes, or 2-D ones for a planar arm; None makes a
+    figure. color: of the links (RGB), light grey by default. A planar arm is drawn in its plane.
+    Returns the artists.
+    Raises InputError on a wrong shape, MissingExtraError without matplotlib.
+    """
+    q = as_floats(q, "q", last=(arm.dof,))
+    if q.ndim != 1:
+        raise InputError(f"q has shape {q.shape}; one picture shows one configuration, expected ({arm.dof},)")
+    basis = planar_basis(arm.chain)
+    if basis is not None and not hasattr(ax, "get_proj"):
+        return planar.draw(
+            arm, q[None], basis, ax=ax, solid=0, tints=[colors.JOINT if color is None else color], title=title
+        )
+    axes = space_axes(ax)
+    drawn = skeleton(arm, q)
+    set_stage(axes, arm, [drawn], drawn.T_tip)
+    size = 0.14 * size_of(arm.chain.points, arm.chain.T_zero)
+    link = np.array(colors.LINK if color is None else color, dtype=np.float64)[:3]
+    frames = Group(stage.triads(np.stack([np.eye(4), drawn.T_tip]), size), shadow=False)
+    artists = put(axes, [Group(solids_of(drawn, link, np.array(colors.JOINT))), frames])
+    return artists + stage.write_title(axes, title)
+
+
+def solutions(
+    arm: Any,
+    answer: Any,
+    goal: Any | None = None,
+    *,
+    near: Any | None = None,
+    labels: Sequence[str] | None = None,
+    ax: Any | None = None,
+    title: str = "",
+) -> list[Any]:
+    """Draw every configuration of an answer as a ghost, the one nearest to `near` (or the first) solid.
+
+    arm: a Robot that is a chain. answer: a result of `arm.ik`, or configurations (k, dof). goal: the pose
+    (4, 4) or point they reach; by default where the tip of the first one is. near: (dof,) [rad, m].
+    labels: k texts for the legend; by default the branches of the answer. Returns the artists.
+    Raises InputError if there is nothing to draw, MissingExtraError without matplotlib.
+    """
+    q = as_floats(getattr(answer, "q", answer), "configurations", last=(arm.dof,))
+    if q.ndim != 2 or not len(q):
+        raise InputError(f"nothing to draw: the configurations have shape {q.shape}, expected (k, {arm.dof})")
+    names = list(labels) if labels is not None else branch_names(answer, len(q))
+    solid = 0 if near is None else nearest(q, as_floats(near, "near", last=(arm.dof,)), arm)
+    tints = list(colors.palette(len(q)))
+    basis = planar_basis(arm.chain)
+    if basis is not None and not hasattr(ax, "get_proj"):
+        return planar.draw(
+            arm, q, basis, ax=ax, solid=solid, tints=tints, names=names, goal=goal, title=title
+        )
+    axes = space_axes(ax, aside=min(0.30, 0.07 + 0.0085 * max(map(len, names))))
+    drawn = [skeleton(arm, each) for each in q]
+    T_goal = drawn[solid].T_tip if goal is None else stage.goal_pose(goal, drawn[solid].T_tip)
+    set_stage(axes, arm, drawn, T_goal)
+    white = (1.0, 1.0, 1.0)
+    groups = [
+        Group(solids_of(drawn[k], colors.mix(tints[k], white, 0.25), tints[k]), opacity=0.40)
+        for k in range(len(q))
+        if k != solid
+    ]
+    groups.append(Group(solids_of(drawn[solid], np.array(colors.LINK), tints[solid])))
+    size = size_of(arm.chain.points, arm.chain.T_zero)
+    groups.append(Group(stage.triads(T_goal[None], 0.20 * size, thickness=0.045), shadow=False))
+    artists = put(axes, groups)
+    artists += write_legend(axes, names, tints, solid)
+    return artists + stage.write_title(axes, title)
+
+
+def branch_names(answer: Any, count: int) -> list[str]:
+    """The branches of an answer as texts, or numbers."""
+    branch = getattr(answer, "branch", None)
+    if branch is None or len(branch) != count:
+        return [f"solution {k + 1}" for k in range(count)]
+    return [str(each) or f"solution {k + 1}" for k, each in enumerate(branch)]
+
+
+def nearest(q: Array, near: Array, arm: Any) -> int:
+    """The row of q nearest to `near`; turning joints are compared around the circle."""
+    away = q - near
+    turning = np.array([kind == "R" for kind in arm.chain.joint_types])
+    away = np.where(turning, (away + np.pi) % (2 * np.pi) - np.pi, away)
+    return int(np.argmin((away**2).sum(axis=1)))
+
+
+def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:
+    """The empty stage for these skeletons: view, limits, floor; axes that have a stage keep it."""
+    if any(type(artist) is artist_type() for artist in ax.get_children()):
+        return
+    points = np.concatenate([each.points for each in drawn])
+    thick = drawn[0].radii[-1]
+    moving = np.concatenate([path for each in drawn for path in each.paths[1:]])
+    low = min(0.0, float(moving[:, 2].min()) - thick)
+    arrows = T_goal[:3, 3] + 0.2 * size_of(arm.chain.points, arm.chain.T_zero) * T_goal[:3, :3].T
+    around = np.concatenate([points + thick, points - thick, arrows])
+    ground = np.concatenate([around[:, :2], np.zeros((1, 2))])
+    center = 0.5 * (ground.min(axis=0) + ground.max(axis=0))
+    foot = float(np.linalg.norm(center)) + 3.0 * drawn[0].radii[0]
+    widest = 1.04 * float(np.linalg.norm(ground - center, axis=1).max())
+    floor = stage.floor_under(center, max(widest, foot, 0.4 * float(np.ptp(around[:, 2]))), low)
+    elevation, azimuth = stage.choose_view(points, T_goal[None, :3, 3])
+    stage.set_up(ax, around, floor, elevation=elevation, azimuth=azimuth)
+
+
+def put(ax: Any, groups: list[Group]) -> list[Any]:
+    """Add groups of solids to the picture of the axes."""
+    artist = scene_of(ax)
+    artist.scene.groups += groups
+    return [artist]
+
+
+def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
+    """The bodies of the links and joints of one configuration."""
+    radii = drawn.radii
+    up = np.array([0.0, 0.0, 1.0])
+    solids = [cylinder(0.3 * radii[0] * up, up, 1.7 * radii[0], 0.3 * radii[0], joint)]
+    for i, path in enumerate(drawn.paths):
+        ends = np.linspace(radii[i], radii[i + 1], len(path))
+        for k in range(len(path) - 1):
+            if np.linalg.norm(path[k + 1] - path[k]) > 1e-9:
+                if i == 0 and k == 0 and path[1][2] > path[0][2]:  # the pillar stands on the floor, flat
+                    solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
+                solids.append(
+                    capsule(path[k], path[k + 1], ends[k] if i or k else 0.5 * ends[k], ends[k + 1], link)
+                )
+    for rail in drawn.rails:
+        if np.linalg.norm(rail[1] - rail[0]) > 1e-9:
+            solids.append(capsule(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
+    for i, (place, axis) in enumerate(zip(drawn.joints, drawn.axes, strict=True)):
+        r = radii[i + 1]
+        solids.append(cylinder(place, axis, 1.2 * r, (1.4 if drawn.types[i] == "R" else 2.2) * r, joint))
+    return solids
+
+
+def write_legend(ax: Any, names: list[str], tints: Sequence[Any], solid: int) -> list[Any]:
+    """The branches and their colours; the solid one is marked."""
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D(
+            [], [], linestyle="none", marker="o", markersize=8 if k == solid else 7,
+            markerfacecolor=(*tint, 1.0 if k == solid else 0.45), markeredgecolor=tint, label=name,
+        )
+        for k, (name, tint) in enumerate(zip(names, tints, strict=True))
+    ]  # fmt: skip
+    own_figure = len(ax.figure.axes) == 1
+    legend = ax.legend(
+        handles=handles, loc="upper left", frameon=False, fontsize=9, labelcolor=colors.INK,
+        handletextpad=0.3, borderaxespad=0.0, labelspacing=0.55,
+        bbox_to_anchor=(0.025, 0.915) if own_figure else (0.0, 1.0),
+        bbox_transform=ax.figure.transFigure if own_figure else ax.transAxes,
+    )  # fmt: skip
+    for k, text in enumerate(legend.get_texts()):
+        text.set_fontweight("bold" if k == solid else "normal")
+    return [legend]

@@ -1,0 +1,157 @@
+"""From joint axes and a configuration to what is drawn: the path of each link, the place of each joint."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.spatial import rotation
+
+__all__ = ["Skeleton", "planar_basis", "skeleton"]
+
+PARALLEL: Final = 0.08
+"""Sine of the angle below which two axes are routed as parallel: their common normal would lie far away."""
+DETOUR: Final = 1.9
+"""A route along axes and common normal longer than this many straight distances is drawn straight."""
+SHORT: Final = 0.012
+"""Pieces of a route below this share of the arm's length are left out."""
+
+
+@dataclass(frozen=True)
+class Skeleton:
+    """What is drawn of one configuration, in the base frame.
+
+    paths: one polyline (m, 3) [m] per link, base link first, each from its joint to the next (or to the tip).
+    radii: (n + 2,) [m], the thickness at the base, at each joint and at the tip.
+    joints: (n, 3) [m], where the joint bodies are drawn, on their axes. axes: (n, 3), unit.
+    types: "R" and "P". T_tip: (4, 4). rails: for prismatic joints the piece (2, 3) they have travelled.
+    """
+
+    paths: list[Array]
+    radii: Array
+    joints: Array
+    axes: Array
+    types: str
+    T_tip: Array
+    rails: list[Array]
+
+    @property
+    def points(self) -> Array:
+        """Every corner of every path, (m, 3)."""
+        return np.concatenate([*self.paths, *self.rails])
+
+
+def skeleton(robot: Any, q: Array) -> Skeleton:
+    """The skeleton of `robot` (anything with a `chain`) at the configuration `q` (dof,)."""
+    chain = robot.chain
+    types = str(chain.joint_types)
+    before, after, axes, T_tip = move(chain.axes, chain.points, types, chain.T_zero, q)
+    length = size_of(chain.points, chain.T_zero)
+    n = len(types)
+    paths = [route(np.zeros(3), np.array([0.0, 0.0, 1.0]), before[0], axes[0], length)]
+    for i in range(n - 1):
+        paths.append(route(after[i], axes[i], before[i + 1], axes[i + 1], length))
+    paths.append(route(after[-1], axes[-1], T_tip[:3, 3], axes[-1], length))
+    radii = length * np.linspace(0.046, 0.019, n + 2)
+    joints = np.array([body_place(i, before, axes, paths, radii) for i in range(n)])
+    rails = [np.array([before[i], after[i]]) for i in range(n) if types[i] == "P"]
+    return Skeleton(paths, radii, joints, axes, types, T_tip, rails)
+
+
+def move(
+    axes: Array, points: Array, types: str, T_zero: Array, q: Array
+) -> tuple[Array, Array, Array, Array]:
+    """The joints carried along: points before and after their own motion, axes, the tip (exponentials)."""
+    T = np.eye(4)
+    before, after, turned = (np.empty((len(types), 3)) for _ in range(3))
+    for i, kind in enumerate(types):
+        before[i] = T[:3, :3] @ points[i] + T[:3, 3]
+        turned[i] = T[:3, :3] @ axes[i]
+        step = np.eye(4)
+        if kind == "R":
+            step[:3, :3] = rotation(axis_angle=(axes[i], q[i]))
+            step[:3, 3] = points[i] - step[:3, :3] @ points[i]
+        else:
+            step[:3, 3] = axes[i] * q[i]
+        T = T @ step
+        after[i] = T[:3, :3] @ points[i] + T[:3, 3]
+    return before, after, turned, T @ T_zero
+
+
+def size_of(points: Array, T_zero: Array) -> float:
+    """The length of the way from the base over the joints to the tip at zero [m]; it scales what is drawn."""
+    way = np.concatenate([np.zeros((1, 3)), points, T_zero[None, :3, 3]])
+    length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
+    return length if length > 1e-9 else 1.0
+
+
+def route(p: Array, a: Array, r: Array, b: Array, length: float) -> Array:
+    """The way of a link from point p on axis a to point r on axis b, as a builder would make it: along the
+    first axis, across by the common normal, along the second; straight where that would be a detour.
+    """
+    d = r - p
+    straight = float(np.linalg.norm(d))
+    if straight < SHORT * length:
+        return np.array([p, r])
+    normal = np.cross(a, b)
+    sine = float(np.linalg.norm(normal))
+    if sine < PARALLEL:
+        corners = [p, p + (d @ a) * a, r]
+    else:
+        t = np.linalg.det([d, b, normal]) / sine**2
+        u = np.linalg.det([d, a, normal]) / sine**2
+        corners = [p, p + t * a, r + u * b, r]
+    if np.linalg.norm(np.diff(corners, axis=0), axis=1).sum() > DETOUR * straight:
+        return np.array([p, r])
+    return without_short_pieces(corners, SHORT * length)
+
+
+def without_short_pieces(corners: list[Array], shortest: float) -> Array:
+    """The corners without those that follow another too closely; both ends stay."""
+    kept = [corners[0]]
+    for corner in corners[1:-1]:
+        if np.linalg.norm(corner - kept[-1]) > shortest and np.linalg.norm(corner - corners[-1]) > shortest:
+            kept.append(corner)
+    return np.array([*kept, corners[-1]])
+
+
+def body_place(i: int, before: Array, axes: Array, paths: list[Array], radii: Array) -> Array:
+    """Where the body of joint i is drawn: at its point, or slid along its axis where joints share a point.
+
+    In a spherical wrist the first joint sits back in the forearm, the last one forward in the flange.
+    """
+    place, room = before[i], 2.6 * radii[i + 1]
+    crowded_ahead = i + 1 < len(before) and np.linalg.norm(before[i + 1] - place) < room
+    crowded_behind = i > 0 and np.linalg.norm(before[i - 1] - place) < room
+    arriving, leaving = paths[i][-2] - paths[i][-1], paths[i + 1][1] - paths[i + 1][0]
+    for crowded, way in ((crowded_ahead, arriving), (crowded_behind, leaving)):
+        long = float(np.linalg.norm(way))
+        if crowded and long > radii[i + 1] and abs(way @ axes[i]) > 0.98 * long:
+            return np.asarray(place + way / long * min(0.5 * long, 1.3 * room))
+    return np.asarray(place)
+
+
+def planar_basis(chain: Any) -> Array | None:
+    """The plane of a planar arm as rows x, y of a (2, 3) array, or None if the arm leaves every plane.
+
+    Planar: revolute axes all parallel, prismatic axes across them, all in the base frame at zero.
+    """
+    axes, types = np.asarray(chain.axes), str(chain.joint_types)
+    turning = [axes[i] for i, kind in enumerate(types) if kind == "R"]
+    if not turning:
+        return None
+    normal = turning[0]
+    for axis, kind in zip(axes, types, strict=True):
+        off = np.linalg.norm(np.cross(axis, normal)) if kind == "R" else abs(axis @ normal)
+        if off > 1e-6:
+            return None
+    x = np.eye(3)[0] if abs(normal[0]) < 0.9 else np.eye(3)[2]
+    x = x - (x @ normal) * normal
+    x = x / np.linalg.norm(x)
+    y = np.cross(normal, x)
+    if normal.sum() < 0:  # seen from the side where the base's own axes point up and right
+        y = -y
+    return np.array([x, y])
