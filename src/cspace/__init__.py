@@ -10,17 +10,28 @@ from cspace.errors import CspaceError
 from cspace.spatial import *  # noqa: F403
 
 if TYPE_CHECKING:
-    from cspace import ik, kinematics, plot
+    from cspace import ik, kinematics, model, plot, robots
     from cspace.ik import subproblems
     from cspace.robot import Robot
+    from cspace.robots import load_robot
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
-__all__ = ["CspaceError", "Robot", "__version__", "ik", "kinematics", "plot", "spatial", "subproblems"]
+__all__ = ["CspaceError", "Robot", "__version__", "ik", "kinematics", "load_robot", "model", "plot"]
+__all__ += ["robots", "spatial", "subproblems"]
 __all__ += spatial.__all__
 
 # Where the names are that are imported when they are first used: their rooms take time to load.
-_LATER = {"Robot": "cspace.robot", "ik": "", "kinematics": "", "plot": "", "subproblems": "cspace.ik"}
+_LATER = {
+    "Robot": "cspace.robot",
+    "ik": "",
+    "kinematics": "",
+    "load_robot": "cspace.robots",
+    "model": "",
+    "plot": "",
+    "robots": "",
+    "subproblems": "cspace.ik",
+}
 
 
 def __getattr__(name: str) -> Any:

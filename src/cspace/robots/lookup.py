@@ -1,0 +1,99 @@
+"""The catalogue: robots that come with the library, one TOML file each, found by any of their names."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Final
+
+from cspace.errors import UnknownNameError, suggest
+from cspace.model import Description, from_toml
+from cspace.robots.index import PLAIN_NAMES, ROWS
+
+__all__ = ["CatalogueRow", "catalogue_description", "find", "names", "rows", "search"]
+
+FOLDER: Final = Path(__file__).parent / "catalogue"
+
+
+@dataclass(frozen=True)
+class CatalogueRow:
+    """What the catalogue says about a robot without opening its file.
+
+    name: as in load_robot. dof: joints that move. joints: their word, "6R" or "RRPRRR". title, vendor: in
+    plain words. source, licence: of the joint frames. aliases: other names. missing: what nobody published.
+    """
+
+    name: str
+    dof: int
+    joints: str
+    title: str
+    vendor: str
+    source: str
+    licence: str
+    aliases: tuple[str, ...]
+    missing: tuple[str, ...]
+
+
+def rows() -> tuple[CatalogueRow, ...]:
+    """Every robot of the catalogue, by name."""
+    return tuple(CatalogueRow(*row) for row in ROWS)
+
+
+def names() -> tuple[str, ...]:
+    """The names of the robots in the catalogue, in order, without aliases."""
+    return tuple(row[0] for row in ROWS)
+
+
+def find(name: str) -> str:
+    """The catalogue name of a robot called by any of its names; capitals, spaces, dashes do not count.
+
+    Raises UnknownNameError with the nearest names.
+    """
+    found = PLAIN_NAMES.get(plain(name))
+    if found is not None:
+        return found
+    known = [known for row in ROWS for known in (row[0], *row[7])]
+    error = suggest("robot", name, known, owner="the catalogue")
+    raise UnknownNameError(f"{error}; give one of cs.robots.names(), or the path of a .urdf or .toml file")
+
+
+def catalogue_description(name: str) -> Description:
+    """The description of a robot of the catalogue; raises as `find`."""
+    return from_toml(FOLDER / f"{find(name)}.toml")
+
+
+def search(text: str) -> tuple[CatalogueRow, ...]:
+    """The robots for which every word of `text` fits, the best first.
+
+    A word fits where it stands in the name, an alias, the title or the vendor, or equals the number of
+    joints ("7") or their word ("7r", "rrprrr"). Whole words count more than parts. An empty text fits all.
+    """
+    words = re.findall(r"[^\s,;]+", text.lower())
+    scored = [(min((_fit(row, word) for word in words), default=1), row) for row in rows()]
+    fitting = [(score, row) for score, row in scored if score > 0]
+    return tuple(row for _, row in sorted(fitting, key=lambda pair: (-pair[0], pair[1].name)))
+
+
+def plain(name: str) -> str:
+    """A name as it is compared: small letters and digits alone."""
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def _fit(row: CatalogueRow, word: str) -> int:
+    """How well a word fits: 2 as a whole, 1 as a part, 0 not at all."""
+    whole = set(_words(row)) | {str(row.dof), row.joints.lower()}
+    if word in whole or plain(word) in {plain(part) for part in whole} - {""}:
+        return 2
+    texts = (row.name, *row.aliases, row.title, row.vendor)
+    if word.isdecimal():  # a number fits where it stands alone: 7 fits iiwa7, not kr210_r2700
+        return int(any(re.search(rf"(?<!\d){word}(?!\d)", text) for text in texts))
+    key = plain(word)
+    return int(bool(key) and any(key in plain(text) for text in texts))
+
+
+def _words(row: CatalogueRow) -> Iterator[str]:
+    yield from (row.name, *row.aliases)
+    for text in (row.title, row.vendor):
+        yield from re.findall(r"[^\s,;()]+", text.lower())

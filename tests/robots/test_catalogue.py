@@ -1,0 +1,241 @@
+import importlib.util
+import json
+
+import numpy as np
+import pytest
+
+from cspace.errors import UnknownNameError
+from cspace.model import chain, dh_matrix, from_dh, from_urdf, to_dh, to_urdf
+from cspace.robots import find, load_description, load_robot, names, rows, search
+from cspace.robots.lookup import FOLDER, plain
+from data import ROOT, shared_data
+from oracles.forward import product_of_exponentials
+
+
+def maker():
+    spec = importlib.util.spec_from_file_location("catalogue_tool", ROOT / "tools" / "catalogue.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def chain_fk(c, q):
+    return product_of_exponentials(c.axes, c.points, c.joint_types, c.T_zero, q)
+
+
+def test_the_index_and_the_page_are_made_from_the_files():
+    for path, text in maker().outputs().items():
+        assert path.read_text(encoding="utf-8") == text, f"run tools/catalogue.py: {path.name} has drifted"
+
+
+def test_every_file_is_named_as_its_robot_and_every_name_is_found_once():
+    assert sorted(path.stem for path in FOLDER.glob("*.toml")) == list(names())
+    owner = {}
+    for row in rows():
+        assert load_description(row.name).name == row.name
+        for name in {plain(n) for n in (row.name, *row.aliases)}:
+            assert name not in owner, f"{name} is both {owner[name]} and {row.name}"
+            owner[name] = row.name
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_robot_says_what_it_is_and_what_it_lacks(name):
+    robot = load_description(name)
+    about = robot.provenance
+    assert about.title
+    assert about.vendor
+    assert about.sources["joints"].source
+    assert about.sources["joints"].licence
+    limited = [j for j in robot.moving_joints if np.isfinite([j.lower, j.upper]).any()]
+    assert ("limits" in about.sources) == bool(limited)
+    assert ("limits" in about.missing) != bool(limited)
+    for field in ("velocity", "acceleration", "effort"):
+        known = [j for j in robot.moving_joints if np.isfinite(getattr(j, field))]
+        assert (field in about.missing) != bool(known)
+    assert ("inertia" in about.missing) != any(link.inertial for link in robot.links)
+    assert ("collision" in about.missing) != any(link.collision for link in robot.links)
+    assert ("visual" in about.missing) != any(link.visual for link in robot.links)
+    assert ("poses" in about.missing) != bool(robot.poses)
+
+
+@pytest.mark.parametrize("name", names())
+def test_urdf_and_both_tables_of_a_robot_move_alike(name):
+    robot = load_description(name)
+    c = chain(robot)
+    rng = np.random.default_rng(0)
+    q = rng.uniform(-3, 3, (3, len(c.joint_types)))
+    tables = [to_dh(c, convention=convention) for convention in ("standard", "modified")]
+    others = [chain(from_urdf(to_urdf(robot))), *(chain(from_dh(table)) for table in tables)]
+    allowed = [1e-12, *(max(1e-12, table.deviation) for table in tables)]
+    for values in q:
+        expected = chain_fk(c, values)
+        for other, atol in zip(others, allowed, strict=True):
+            np.testing.assert_allclose(chain_fk(other, values), expected, atol=atol)
+        for table in tables:
+            np.testing.assert_allclose(table.fk(values), expected, atol=max(1e-12, table.deviation))
+
+
+def test_one_arm_alone_pays_for_nearly_parallel_axes_in_its_table():
+    beyond = [
+        n for n in names() if to_dh(chain(load_description(n)), convention="standard").deviation > 1e-12
+    ]
+    assert beyond == ["gen3_lite"]
+
+
+@pytest.mark.data
+def test_the_arms_of_the_shared_data_are_here_to_rounding():
+    arms = json.loads((shared_data() / "arms" / "chains.json").read_text())
+    assert len(arms) == 81
+    for arm in arms:
+        c = chain(load_description(arm["name"]))
+        n = len(arm["joints"])
+        assert c.joint_names == tuple(joint["name"] for joint in arm["joints"])
+        kinds = {"prismatic": "P", "revolute": "R"}
+        assert c.joint_types == "".join(kinds[joint["type"]] for joint in arm["joints"])
+        axes = np.array([joint["axis"] for joint in arm["joints"]])
+        axes /= np.linalg.norm(axes, axis=1)[:, None]
+        np.testing.assert_allclose(c.axes, axes, atol=1e-15, rtol=0)
+        np.testing.assert_allclose(c.T_zero, arm["tool_zero"], atol=1e-15, rtol=0)
+        gap = np.cross(c.points - [joint["point"] for joint in arm["joints"]], c.axes)
+        turning = np.array([kind == "R" for kind in c.joint_types])
+        np.testing.assert_allclose(gap[turning], 0, atol=1e-15)
+        for i in range(n):
+            lower, upper = (arm["joints"][i][key] for key in ("lower", "upper"))
+            assert c.limits.lower[i] == (-np.inf if lower is None else lower)
+            assert c.limits.upper[i] == (np.inf if upper is None else upper)
+
+
+def cos_sin(*angles):
+    return [f(a) for a in angles for f in (np.cos, np.sin)]
+
+
+def test_the_planar_arms_of_the_lectures():
+    t1, t2, t3 = 0.3, -1.1, 0.7
+    a, b, c = t1, t1 + t2, t1 + t2 + t3
+    expected = {
+        "planar_1r": (np.cos(a), np.sin(a), a),
+        "planar_2r": (np.cos(a) + np.cos(b), np.sin(a) + np.sin(b), b),
+        "planar_3r": (np.cos(a) + np.cos(b) + np.cos(c) / 2, np.sin(a) + np.sin(b) + np.sin(c) / 2, c),
+    }
+    for name, (x, y, heading) in expected.items():
+        robot = load_robot(name)
+        T = robot.fk(np.array([t1, t2, t3])[: robot.dof])
+        np.testing.assert_allclose(T[:3, 3], [x, y, 0], atol=1e-15)
+        np.testing.assert_allclose(T[:2, 0], [np.cos(heading), np.sin(heading)], atol=1e-15)
+
+
+def test_the_simplified_puma_of_the_lectures():
+    l1, l2 = 1.0, 0.8
+    q = np.array([0.4, -0.7, 1.3])
+    c1, s1, c2, s2, c23, s23 = cos_sin(q[0], q[1], q[1] + q[2])
+    gamma = c2 * l1 + c23 * l2
+    p = [c1 * gamma, s1 * gamma, -(s2 * l1 + s23 * l2)]
+    np.testing.assert_allclose(load_robot("simplified_puma").fk(q)[:3, 3], p, atol=1e-15)
+
+
+def test_the_rpr_arm_of_the_lectures():
+    l4 = 0.5
+    t1, d2, t3 = 0.4, 0.9, 1.3
+    c1, s1, c3, s3 = cos_sin(t1, t3)
+    gamma = d2 - l4 * s3
+    p = [-s1 * gamma, c1 * gamma, l4 * c3]
+    np.testing.assert_allclose(load_robot("rpr").fk(np.array([t1, d2, t3]))[:3, 3], p, atol=1e-15)
+
+
+def test_the_puma_style_arm_of_the_lectures():
+    a2, a3, d6 = 0.45, 0.4, 0.1
+    q = np.array([0.3, 0.5, -0.8, 0.6, 0.9, -1.2])
+    T = load_robot("puma_style").fk(q)
+    wrist = T[:3, 3] - d6 * T[:3, 2]
+    assert wrist @ wrist == pytest.approx(a2**2 + a3**2 + 2 * a2 * a3 * np.cos(q[2]), abs=1e-15)
+    assert np.arctan2(wrist[1], wrist[0]) == pytest.approx(q[0], abs=1e-15)
+    c = chain(load_description("puma_style"))
+    R_3 = chain_fk(c, [*q[:3], 0, 0, 0])[:3, :3]
+    c4, s4, c5, s5, c6, s6 = cos_sin(*q[3:])
+    Rz4 = np.array([[c4, -s4, 0], [s4, c4, 0], [0, 0, 1]])
+    Ry5 = np.array([[c5, 0, s5], [0, 1, 0], [-s5, 0, c5]])
+    Rz6 = np.array([[c6, -s6, 0], [s6, c6, 0], [0, 0, 1]])
+    np.testing.assert_allclose(R_3.T @ T[:3, :3], Rz4 @ Ry5 @ Rz6, atol=1e-15)
+
+
+def test_the_elbow_arm_of_the_lectures_has_its_invariant_points():
+    c = chain(load_description("elbow"))
+    shoulder, wrist = np.array([0, 0, 0.4]), c.T_zero[:3, 3]
+    for joints, point in (((0, 1), shoulder), ((3, 4, 5), wrist)):
+        for i in joints:
+            np.testing.assert_allclose(np.cross(point - c.points[i], c.axes[i]), 0, atol=1e-15)
+    np.testing.assert_allclose(wrist - shoulder, [0, 0.9, 0], atol=1e-15)
+
+
+def test_the_scara_of_the_textbook():
+    t1, t2, d3, t4 = 0.3, 0.8, 0.2, -0.5
+    c1, s1, c12, s12 = cos_sin(t1, t1 + t2)
+    T = load_robot("scara").fk(np.array([t1, t2, d3, t4]))
+    np.testing.assert_allclose(T[:3, 3], [0.4 * c1 + 0.3 * c12, 0.4 * s1 + 0.3 * s12, -d3 - 0.05], atol=1e-15)
+    np.testing.assert_allclose(T[:3, 2], [0, 0, -1], atol=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("name", "types", "table"),
+    [
+        (
+            "puma560_dh",
+            "RRRRRR",
+            [
+                (90, 0, 0.67183),
+                (0, 0.4318, 0),
+                (-90, 0.0203, 0.15005),
+                (90, 0, 0.4318),
+                (-90, 0, 0),
+                (0, 0, 0),
+            ],
+        ),
+        (
+            "stanford",
+            "RRPRRR",
+            [(-90, 0, 0.412), (90, 0, 0.154), (0, 0.0203, 0, -90), (-90, 0, 0), (90, 0, 0), (0, 0, 0)],
+        ),
+    ],
+)
+def test_the_published_tables(name, types, table):
+    q = np.random.default_rng(0).uniform(-1, 1, 6)
+    T = np.eye(4)
+    for (alpha, a, d, *offset), kind, value in zip(table, types, q, strict=True):
+        theta = np.radians(offset[0]) if offset else 0.0
+        turn, slide = (value, 0.0) if kind == "R" else (0.0, value)
+        T = T @ dh_matrix(np.radians(alpha), a, d + slide, theta + turn, convention="standard")
+    np.testing.assert_allclose(load_robot(name).fk(q), T, atol=1e-15)
+
+
+@pytest.mark.parametrize("name", names())
+def test_every_robot_loads_as_a_chain_within_its_limits(name):
+    robot = load_robot(name)
+    q = robot.random_configuration(rng=1, reach=1.0)
+    c = robot.chain
+    np.testing.assert_allclose(robot.fk(q), chain_fk(c, q), atol=1e-13)
+
+
+def test_names_are_forgiving_and_unknown_ones_get_suggestions():
+    assert find("UR-5e") == find("ur 5E") == "ur5e"
+    assert find("kr6") == "kr6_r900"
+    assert find("franka_panda") == find("Franka") == "panda"
+    with pytest.raises(UnknownNameError, match=r"did you mean .*'ur5e'.*cs.robots.names\(\)"):
+        find("ur6e")
+
+
+def found(text):
+    return [row.name for row in search(text)]
+
+
+def test_search_finds_by_words():
+    assert {"iiwa7", "iiwa14"} <= set(found("kuka 7"))
+    assert "kr210_r2700" not in found("kuka 7")
+    assert all("KUKA" in row.vendor for row in search("kuka"))
+    assert found("ur5")[0] == "ur5"
+    assert set(found("ur5")) >= {"ur5", "ur5e", "ur5_dh"}
+    assert {"stanford"} == set(found("RRPRRR"))
+    assert "scara" in found("scara")
+    assert found("universal robots") == found("Universal, ROBOTS")
+    assert len(found("")) == len(names())
+    assert found("no such robot at all") == []
+    assert found("((") == []

@@ -1,0 +1,102 @@
+import os
+
+import numpy as np
+import pytest
+
+from cspace.errors import CspaceError, DescriptionError, InputError, InputTypeError, UnknownNameError
+from cspace.model import to_toml, to_urdf
+from cspace.robots import load_description, load_robot
+
+
+def test_a_name_and_its_files_give_the_same_robot(tmp_path):
+    robot = load_robot("ur5e")
+    q = np.array([0.1, -0.7, 1.1, 0.4, -0.2, 0.9])
+    written = {"a.urdf": to_urdf, "b.xml": to_urdf, "c.toml": to_toml, "d": to_urdf, "E.URDF": to_urdf}
+    for name, write in written.items():
+        path = tmp_path / name
+        path.write_text(write(robot.description))
+        for source in (path, str(path)):
+            np.testing.assert_allclose(load_robot(source).fk(q), robot.fk(q), atol=1e-12)
+
+
+def test_base_and_tip_choose_the_chain():
+    robot = load_robot("ur5e", base="shoulder_pan_link", tip="wrist_1_link")
+    assert robot.dof == 3
+    assert (robot.base, robot.tip) == ("shoulder_pan_link", "wrist_1_link")
+    with pytest.raises(UnknownNameError, match="did you mean 'wrist_1_link'"):
+        load_robot("ur5e", tip="wrist1_link")
+
+
+def test_a_file_beside_is_found_without_a_separator(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.urdf").write_text(to_urdf(load_description("planar_2r")))
+    (tmp_path / "plain").write_text(to_urdf(load_description("planar_2r")))
+    assert load_robot("mine.urdf").dof == load_robot("plain").dof == 2
+    os.mkdir(tmp_path / "ur5e")  # a folder of the same name does not hide the robot
+    assert load_robot("ur5e").dof == 6
+
+
+@pytest.mark.parametrize(
+    ("name", "says"),
+    [
+        ("nothing.urdf", "no such file"),
+        ("nothing.toml", "no such file"),
+        ("arm.xacro", "expand it first"),
+        ("arm.urdf.xacro", "expand it first"),
+        ("arm.mjcf", "convert it to URDF"),
+        ("arm.srdf", "give the URDF"),
+        ("a/b/c", "no such file"),
+    ],
+)
+def test_a_path_that_cannot_be_read_says_why(name, says, tmp_path):
+    with pytest.raises(DescriptionError, match=says) as caught:
+        load_robot(str(tmp_path / name))
+    assert caught.value.path == str(tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("a.png", b"\x89PNG\r\n\x1a\n\x00", r"starts with b'\\x89PNG.*URDF .*or TOML"),
+        ("a.json", b'{"a": 1}', "starts with b'{"),
+        ("a.txt", b"", "starts with b''"),
+        ("a.xml", b"<mujoco/>", "MJCF"),
+        ("a.xml", b"<html/>", "root element is <html>"),
+        ("a.urdf", b'<robot name="x"><link name="a"/></robo>', "a.urdf:1: malformed XML"),
+        ("a.toml", b"a = 1", "must hold one of"),
+    ],
+)
+def test_a_file_that_is_no_robot_says_so(name, content, says, tmp_path):
+    path = tmp_path / name
+    path.write_bytes(content)
+    with pytest.raises(DescriptionError, match=says):
+        load_robot(path)
+
+
+def test_a_folder_and_a_branching_robot_and_other_types_are_refused(tmp_path):
+    with pytest.raises(DescriptionError, match="this is a folder"):
+        load_robot(tmp_path)
+    with pytest.raises(InputTypeError, match="name or a path, got int"):
+        load_robot(7)
+    with pytest.raises(InputTypeError, match="got NoneType"):
+        load_robot(None)
+    with pytest.raises(CspaceError):
+        load_robot("a\0b")
+    with pytest.raises(CspaceError):
+        load_robot("a\0b.urdf")
+    with pytest.raises(UnknownNameError):
+        load_robot("")
+
+
+def test_where_the_tip_is_a_choice_ik_would_need_it_and_the_leaves_are_named(tmp_path):
+    text = """<robot name="two"><link name="a"/><link name="b"/><link name="c"/>
+      <joint name="l" type="continuous"><parent link="a"/><child link="b"/><axis xyz="0 0 1"/></joint>
+      <joint name="r" type="continuous"><parent link="a"/><child link="c"/><axis xyz="0 0 1"/></joint>
+      </robot>"""
+    path = tmp_path / "two.urdf"
+    path.write_text(text)
+    tree = load_robot(path)
+    assert tree.tip is None
+    assert load_robot(path, tip="c").dof == 1
+    with pytest.raises(InputError, match="'b', 'c'"):
+        load_robot(path, base="a")

@@ -1,0 +1,121 @@
+"""Writes what is made from the catalogue files: src/cspace/robots/index.py and docs/catalogue.md.
+
+Run it after a change in src/cspace/robots/catalogue: python tools/catalogue.py
+"""
+
+from __future__ import annotations
+
+import re
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+sys.path.insert(0, str(ROOT / "src"))
+
+from cspace.model import Description, chain, from_toml  # noqa: E402
+
+FOLDER = ROOT / "src/cspace/robots/catalogue"
+
+
+def descriptions() -> list[Description]:
+    """Every robot of the catalogue, in the order of the names."""
+    return [from_toml(path) for path in sorted(FOLDER.glob("*.toml"))]
+
+
+def plain(name: str) -> str:
+    """A name as it is compared: small letters and digits alone."""
+    return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def plain_names(robot: Description) -> tuple[str, ...]:
+    """The name and the aliases as they are compared, each once."""
+    return tuple(dict.fromkeys(map(plain, (robot.name, *robot.provenance.aliases))))
+
+
+def joint_word(types: str) -> str:
+    """6R for six turns, else the letters."""
+    return f"{len(types)}R" if set(types) == {"R"} else types
+
+
+def row(robot: Description) -> tuple[object, ...]:
+    about = robot.provenance
+    types = chain(robot).joint_types
+    source = about.sources["joints"]
+    return (
+        robot.name,
+        len(types),
+        joint_word(types),
+        about.title,
+        about.vendor,
+        source.source,
+        source.licence,
+        about.aliases,
+        about.missing,
+    )
+
+
+def index_text(robots: list[Description]) -> str:
+    """The module cspace.robots.index."""
+    lines = [
+        '"""The rows of the catalogue, made from its files by tools/catalogue.py; change those."""',
+        "",
+        "from __future__ import annotations",
+        "",
+        "# fmt: off",
+        "# ruff: noqa: E501",
+        "Row = tuple[str, int, str, str, str, str, str, tuple[str, ...], tuple[str, ...]]",
+        '"""name, dof, joints, title, vendor, source, licence, aliases, missing."""',
+        "",
+        "ROWS: tuple[Row, ...] = (",
+        *(f"    {row(robot)!r}," for robot in robots),
+        ")",
+        "",
+        "PLAIN_NAMES: dict[str, str] = {",
+        *(f"    {name!r}: {robot.name!r}," for robot in robots for name in plain_names(robot)),
+        "}",
+        '"""Every name and alias in small letters and digits alone, with the name it stands for."""',
+    ]
+    return "\n".join(lines) + "\n"
+
+
+def page_text(robots: list[Description]) -> str:
+    """The page docs/catalogue.md."""
+    lines = [
+        "# The catalogue",
+        "",
+        f"{len(robots)} robots come with the library; `cs.load_robot(name)` takes any of their names.",
+        "Capitals, spaces, dashes and underscores do not count: `UR-5e` is `ur5e`. This page is made by",
+        "`tools/catalogue.py` from the files in `src/cspace/robots/catalogue`, where every number is.",
+        "",
+        "These are joint axes and ranges. Velocity, acceleration and effort limits, inertias, shapes and",
+        "named poses are absent; each file lists what it lacks under `missing`. Base and tip are links of",
+        "the source; the link frames between stand on the joint axes, parallel to the base at zero (where a",
+        "file holds a Denavit–Hartenberg table: where that table puts them).",
+        "",
+        "| name | joints | robot | vendor | other names | source | licence |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    for robot in robots:
+        name, _, joints, title, vendor, source, licence, aliases, _ = map(str_or_tuple, row(robot))
+        cells = [f"`{name}`", joints, title, vendor, aliases, source, licence]
+        lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
+    return "\n".join(lines) + "\n"
+
+
+def str_or_tuple(value: object) -> str:
+    return ", ".join(f"`{item}`" for item in value) if isinstance(value, tuple) else str(value)
+
+
+def outputs() -> dict[Path, str]:
+    """Each file that is made, and its text."""
+    robots = descriptions()
+    return {
+        ROOT / "src/cspace/robots/index.py": index_text(robots),
+        ROOT / "docs/catalogue.md": page_text(robots),
+    }
+
+
+if __name__ == "__main__":
+    for path, text in outputs().items():
+        path.write_text(text, encoding="utf-8", newline="\n")
+        print(f"{path.relative_to(ROOT)}: {len(text.splitlines())} lines")
