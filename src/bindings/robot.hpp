@@ -32,3 +32,6 @@ bool robot_read_configuration(const RobotObject* robot, PyObject* value, double*
 // Calls the free function of that name in a Python module, with the robot before the arguments.
 PyObject* robot_call_python(const char* module, const char* function, PyObject* self, PyObject* const* args,
                             Py_ssize_t nargs, PyObject* kwnames);
+
+// Inverse kinematics, in its own file.
+PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);

@@ -110,7 +110,7 @@ PyObject* robot_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nar
     const int n = model->n_coordinates(), dof = n + (floating ? 6 : 0);
     Reader read{row_count(args[1], n)};
     if (read.rows < 0) return nullptr;
-    const int counted = count_bits(unsigned(chosen) & 63u), k = counted < dof ? counted : dof;
+    const int counted = count_bits(unsigned(chosen) & 63u), k = counted < n ? counted : n;
     ChainRows rows{};
     rows.chain = model->chain(int(frame));
     rows.q = read.array(args[1], n, "q");

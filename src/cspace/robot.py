@@ -72,6 +72,11 @@ class Robot(RobotBase):
     jacobian_dot = kinematics.jacobian_dot
     center_of_mass = kinematics.center_of_mass
     center_of_mass_jacobian = kinematics.center_of_mass_jacobian
+    singular_values = kinematics.singular_values
+    manipulability = kinematics.manipulability
+    manipulability_ellipsoid = kinematics.manipulability_ellipsoid
+    distance_to_singularity = kinematics.distance_to_singularity
+    singularity = kinematics.singularity
 
     @property
     def chain(self) -> Chain:

@@ -17,6 +17,8 @@ __all__ = [
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
+    "SINGULAR_ROUNDING",
+    "SINGULAR_VALUE",
     "TOML_BYTES",
     "UNLIMITED",
     "WHOLE_TURN",
@@ -79,3 +81,10 @@ such a loss still keep a pose to 1e-12."""
 
 TOML_BYTES: Final = 4 * 2**20
 """Largest TOML robot file that is read (bytes): the reader of the standard library takes a second for it."""
+
+SINGULAR_VALUE: Final = 1e-9
+"""Smallest singular value of a Jacobian (m or rad, per rad or m) that is not zero: angles known to 1e-9 rad
+cannot be told from singular ones below it, and rounding is far below."""
+
+SINGULAR_ROUNDING: Final = 1e-14
+"""Singular value of a Jacobian (as SINGULAR_VALUE) below which all are alike: what is left is rounding."""

@@ -79,15 +79,16 @@ void jacobian_rate(const ChainRows& rows, const ChainWork<V>& w, const Pose<V>& 
 
 template <class V>
 void chosen_singular_values(const ChainRows& rows, const ChainWork<V>& w, std::size_t i, int count) {
+    const int n = rows.chain.n_coordinates;
     int m = 0;
     for (int r = 0; r < 6; ++r) {
         if (!(rows.chosen >> r & 1u)) continue;
-        for (int j = 0; j < w.dof; ++j) w.J[m * w.dof + j] = w.J[r * w.dof + j];
+        for (int j = 0; j < n; ++j) w.J[m * n + j] = w.J[r * w.dof + w.first + j];
         ++m;
     }
-    const int k = m < w.dof ? m : w.dof;
+    const int k = m < n ? m : n;
     V sigma[6];
-    singular_values(w.J, m, w.dof, sigma);
+    singular_values(w.J, m, n, sigma);
     store_rows(sigma, k, rows.sigma + i * k, k, count);
 }
 

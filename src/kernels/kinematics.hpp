@@ -23,7 +23,7 @@ struct ChainRows {
     double* T;      // (rows, 4, 4)
     double* J;      // (rows, 6, dof)
     double* J_rate;
-    double* sigma;    // (rows, min(6 or fewer, dof)): singular values of the chosen rows of J
+    double* sigma;    // (rows, min(chosen, n)): singular values of the chosen rows and the joint columns of J
     unsigned chosen;  // bit r: row r of J counts for sigma
 };
 // The same for what needs the whole tree.

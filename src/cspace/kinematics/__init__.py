@@ -5,19 +5,34 @@ from cspace.kinematics.center_of_mass import center_of_mass, center_of_mass_jaco
 from cspace.kinematics.configurations import random_configurations
 from cspace.kinematics.forward import forward_kinematics, forward_kinematics_all
 from cspace.kinematics.jacobian import fk_jacobian, jacobian, jacobian_dot
+from cspace.kinematics.manipulability import (
+    Ellipsoid,
+    distance_to_singularity,
+    manipulability,
+    manipulability_ellipsoid,
+    singular_values,
+)
+from cspace.kinematics.singularity import Singularity, singularity
 
 __all__ = [
     "Assembly",
+    "Ellipsoid",
+    "Singularity",
     "add_tool",
     "assemble",
     "center_of_mass",
     "center_of_mass_jacobian",
+    "distance_to_singularity",
     "fk_jacobian",
     "forward_kinematics",
     "forward_kinematics_all",
     "jacobian",
     "jacobian_dot",
+    "manipulability",
+    "manipulability_ellipsoid",
     "mount",
     "random_configurations",
     "screws",
+    "singular_values",
+    "singularity",
 ]

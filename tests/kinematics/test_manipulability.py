@@ -1,0 +1,142 @@
+"""Singular values, manipulability, ellipsoids and singularities, against LAPACK and against what is known."""
+
+import numpy as np
+import pytest
+
+from cspace.errors import InputError, UnknownNameError
+from cspace.model import from_screws
+from cspace.robot import Robot
+from kinematics import robots
+from model.random_robots import random_pose
+
+X, Y, Z = np.eye(3)
+
+
+def spherical_wrist_arm():
+    """A PUMA-like arm: shoulder, elbow, three wrist axes through one point, tip beyond it."""
+    axes = [Z, Y, Y, X, Y, X]
+    wrist = [0.9, 0.1, 0.8]
+    points = [[0, 0, 0], [0, 0, 0.4], [0.5, 0, 0.4], wrist, wrist, wrist]
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = [1.0, 0.1, 0.8]
+    return Robot(from_screws(axes, points, T_zero, name="puma"))
+
+
+@pytest.mark.parametrize("joint_types", ["R", "RR", "RPR", "RRRRR", "RRRRRR", "RRPRRRR", "R" * 9])
+@pytest.mark.parametrize("rows", ["all", "linear", "angular", ("vx", "vy"), ("vy", "wz", "vx"), "wz"])
+def test_singular_values_are_those_of_lapack(joint_types, rows):
+    robot = robots.arm(len(joint_types), joint_types)
+    q = robots.random_q(robot, np.random.default_rng(1), 50)
+    names = {"all": range(6), "linear": range(3), "angular": range(3, 6)}
+    words = ("vx", "vy", "vz", "wx", "wy", "wz")
+    chosen = (
+        names.get(rows)
+        if isinstance(rows, str) and rows in names
+        else [words.index(w) for w in ([rows] if isinstance(rows, str) else rows)]
+    )
+    J = robot.jacobian(q)[:, list(chosen)]
+    expected = np.linalg.svd(J, compute_uv=False)
+    got = robot.singular_values(q, rows=rows)
+    np.testing.assert_allclose(got, expected, atol=5e-15)
+    np.testing.assert_allclose(robot.manipulability(q, rows=rows), expected.prod(axis=-1), atol=1e-14)
+    np.testing.assert_array_equal(robot.distance_to_singularity(q, rows=rows), got[:, -1])
+    if len(joint_types) >= len(list(chosen)):
+        volume = np.sqrt(np.maximum(np.linalg.det(J @ J.swapaxes(1, 2)), 0.0))
+        np.testing.assert_allclose(robot.manipulability(q, rows=rows), volume, atol=1e-7)
+
+
+def test_small_singular_values_keep_their_digits():
+    """Where q5 = ε the smallest singular value is proportional to ε, down to where a float ends."""
+    robot = spherical_wrist_arm()
+    q = np.array([0.3, -0.4, 0.9, 0.5, 0.0, 0.7])
+    ratio = []
+    for eps in (1e-3, 1e-5, 1e-7, 1e-9, 1e-11):
+        q[4] = eps
+        ratio.append(robot.distance_to_singularity(q) / eps)
+    np.testing.assert_allclose(ratio, ratio[-1], rtol=2e-3)
+    np.testing.assert_allclose(ratio[1:], ratio[-1], rtol=1e-4)
+
+
+def test_the_planar_arm_is_singular_where_it_is_stretched_or_folded():
+    l1, l2 = 0.8, 0.5
+    robot = robots.planar(l1, l2)
+    angles = np.linspace(-np.pi, np.pi, 41)
+    q = np.stack(np.meshgrid(angles, angles), axis=-1)
+    w = robot.manipulability(q, rows=("vx", "vy"))
+    np.testing.assert_allclose(w, l1 * l2 * np.abs(np.sin(q[..., 1])), atol=1e-15)
+
+
+def test_ellipsoid_holds_exactly_the_twists_of_unit_joint_velocities():
+    rng = np.random.default_rng(0)
+    for joint_types in ("RR", "RRRR", "RRRRRRR"):
+        robot = robots.arm(3, joint_types)
+        q = robots.random_q(robot, rng, 4)
+        directions, radii = robot.manipulability_ellipsoid(q)
+        assert directions.shape == (4, 3, 3)
+        assert radii.shape == (4, 3)
+        J = robot.jacobian(q)[:, :3]
+        rebuilt = directions * radii[:, None] ** 2 @ directions.swapaxes(1, 2)
+        np.testing.assert_allclose(rebuilt, J @ J.swapaxes(1, 2), atol=1e-14)
+        np.testing.assert_allclose(
+            directions @ directions.swapaxes(1, 2), np.tile(np.eye(3), (4, 1, 1)), atol=1e-14
+        )
+
+
+@pytest.mark.parametrize("offset", [0.0, 1e-6, 1e-3])
+def test_each_singularity_of_a_wristed_arm_names_its_joints(offset):
+    robot = spherical_wrist_arm()
+    rng = np.random.default_rng(4)
+    for _ in range(5):
+        q = rng.uniform(-1, 1, 6)
+        q[4] = offset
+        found = robot.singularity(q)
+        assert found.joints == ("joint_4", "joint_6")
+        assert bool(found) == (offset == 0.0)
+        assert found.distance == pytest.approx(robot.distance_to_singularity(q), rel=1e-6, abs=1e-15)
+        J = robot.jacobian(q)
+        np.testing.assert_allclose(np.linalg.norm(J @ found.motion), found.moves, atol=1e-15)
+        np.testing.assert_allclose(np.linalg.norm(found.direction @ J), found.distance, atol=1e-14)
+        assert found.rank == (5 if offset == 0.0 else 6)
+        assert "joint_4 and joint_6" in str(found)
+
+
+def test_a_stretched_elbow_and_a_wrist_over_the_shoulder_name_theirs():
+    """Elbow: joints 2 and 3 and the wrist centre on one line; the wrist then makes good the orientation."""
+    robot = spherical_wrist_arm()
+    reach = np.array([0.4, 0.4])  # from elbow to wrist at zero, in x and z; the upper arm lies along x
+    q = np.array([0.2, -0.3, np.arctan2(reach[1], reach[0]), 0.4, 0.8, -0.5])
+    assert robot.singularity(q)
+    assert {"joint_2", "joint_3"} < set(robot.singularity(q).joints)
+    assert "joint_1" not in robot.singularity(q).joints
+    assert robot.singularity(q, point=[-0.1, 0, 0], rows="linear").joints == ("joint_2", "joint_3")
+
+
+def test_of_a_redundant_arm_only_the_joints_in_line_are_named():
+    axes, points = [Z, Y, Z, Y, Z, Y, Z], np.array([[0, 0, h] for h in (0, 0.3, 0.3, 0.7, 0.7, 1.1, 1.1)])
+    robot = Robot(from_screws(axes, points, random_pose(np.random.default_rng(0))))
+    q = np.array([0.3, 0.7, -0.4, 0.0, 0.5, 0.6, 0.2])
+    assert robot.singularity(q).joints == ("joint_3", "joint_5")
+    assert not robot.singularity(q + 0.3)
+
+
+def test_a_base_that_floats_does_not_hide_a_singularity():
+    made = spherical_wrist_arm()
+    robot = Robot(made.description, floating=True)
+    q = np.array([0.1, 0.2, 0.3, 0.4, 0.0, 0.6])
+    assert robot.distance_to_singularity(q) < 1e-15
+    assert robot.singularity(q, T_world_base=random_pose(np.random.default_rng(0))).joints == (
+        "joint_4",
+        "joint_6",
+    )
+
+
+def test_rows_and_batches_that_make_no_sense_are_refused():
+    robot = robots.arm(1)
+    with pytest.raises(UnknownNameError, match="no row 'vw' in the Jacobian; did you mean"):
+        robot.manipulability(np.zeros(6), rows="vw")
+    with pytest.raises(InputError, match="once"):
+        robot.singular_values(np.zeros(6), rows=("vx", "vx"))
+    with pytest.raises(InputError, match="distance_to_singularity takes batches"):
+        robot.singularity(np.zeros((3, 6)))
+    with pytest.raises(InputError, match="no joint of arm 1 moves this frame"):
+        robot.singularity(np.zeros(6), frame="link_0")
