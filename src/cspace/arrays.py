@@ -35,7 +35,7 @@ def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), fi
 
 
 def _converted(value: Any, subject: str) -> Array:
-    """The numbers of anything as float64; text that looks like numbers, complex ones and dates are refused."""
+    """The numbers of anything as float64; text, complex numbers and dates are refused."""
     try:
         array = np.asarray(value)
         if array.dtype.kind in "biufO":
