@@ -12,6 +12,7 @@ __all__ = [
     "DH_PARALLEL",
     "GIMBAL_LOCK",
     "INERTIA_SYMMETRY",
+    "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
     "MEAN_UNIQUENESS",
     "PURE_TRANSLATION_ANGLE",
@@ -88,3 +89,7 @@ cannot be told from singular ones below it, and rounding is far below."""
 
 SINGULAR_ROUNDING: Final = 1e-14
 """Singular value of a Jacobian (as SINGULAR_VALUE) below which all are alike: what is left is rounding."""
+
+LARGEST_NUMBER: Final = 1e12
+"""Largest length, mass, inertia or ratio of a robot (SI units): products of a few stay far from overflow, and
+the longest link of a Denavit–Hartenberg table of nearly parallel axes fits."""

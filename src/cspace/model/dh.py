@@ -14,7 +14,7 @@ from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
 from cspace.model.screws import check_joint_types, joint_rows, link_names, one_freedom_type
-from cspace.model.values import IDENTITY, frozen, placement
+from cspace.model.values import IDENTITY, frozen, placement, sane
 
 __all__ = ["COLUMNS", "CONVENTIONS", "DHTable", "dh_matrix", "from_dh"]
 
@@ -86,7 +86,7 @@ class DHTable:
             values = as_floats(getattr(self, column), f"column {column}")
             if values.shape != (n,):
                 raise InputError(f"column {column} has shape {values.shape}, expected ({n},)")
-            store(self, column, frozen(values.copy()))
+            store(self, column, frozen(sane(values, f"column {column}").copy()))
         store(self, "joint_types", check_joint_types(self.joint_types, n, letters="RPF"))
         store(self, "T_base", placement(self.T_base, "T_base"))
         store(self, "T_tool", placement(self.T_tool, "T_tool"))

@@ -10,7 +10,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.errors import DescriptionError, InputError, suggest
 from cspace.model.packages import locate
-from cspace.model.values import IDENTITY, finite_number, frozen, name_of, placement
+from cspace.model.values import IDENTITY, finite_number, frozen, name_of, placement, sane
 from cspace.tolerances import INERTIA_SYMMETRY
 
 __all__ = ["SHAPES", "Geometry", "Inertial", "Link", "Mesh"]
@@ -133,4 +133,4 @@ def _exactly(value: Any, subject: str, shape: tuple[int, ...]) -> Array:
     array = as_floats(value, subject, last=shape)
     if array.ndim != len(shape):
         raise InputError(f"{subject} has shape {array.shape}, expected {shape}")
-    return array
+    return sane(array, subject)

@@ -14,7 +14,7 @@ from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
 from cspace.model.transforms import translation
-from cspace.model.values import placement, unit_axis
+from cspace.model.values import placement, sane, unit_axis
 
 __all__ = ["check_joint_types", "from_screws", "joint_rows", "link_names", "twists"]
 
@@ -49,7 +49,7 @@ def from_screws(
     """
     directions = as_floats(axes, "axes", last=(None, 3))
     n = len(directions)
-    places = as_floats(points, "points", last=(n, 3))
+    places = sane(as_floats(points, "points", last=(n, 3)), "points")
     if directions.ndim != 2 or places.ndim != 2:
         raise InputError(
             f"axes and points have the shapes {directions.shape}, {places.shape}; expected (n, 3)"

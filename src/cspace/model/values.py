@@ -9,9 +9,21 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
-from cspace.tolerances import AXIS_LENGTH, ROTATION_ERROR
+from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER, ROTATION_ERROR
 
-__all__ = ["IDENTITY", "X_AXIS", "finite_number", "frozen", "name_of", "number", "placement", "unit_axis"]
+__all__ = [
+    "IDENTITY",
+    "X_AXIS",
+    "finite_number",
+    "frozen",
+    "name_of",
+    "number",
+    "placement",
+    "sane",
+    "unit_axis",
+]
+
+BEYOND = f"no robot has numbers beyond {LARGEST_NUMBER:g} in SI units"
 
 
 def frozen(array: Array) -> Array:
@@ -48,11 +60,21 @@ def number(value: Any, subject: str) -> float:
 
 
 def finite_number(value: Any, subject: str) -> float:
-    """A float that is neither NaN nor infinite."""
+    """A float that is neither NaN nor infinite nor beyond tolerances.LARGEST_NUMBER."""
     result = number(value, subject)
     if math.isinf(result):
         raise InputError(f"{subject} is {result}; it must be finite")
+    if abs(result) > LARGEST_NUMBER:
+        raise InputError(f"{subject} is {result:g}; {BEYOND}")
     return result
+
+
+def sane(array: Array, subject: str) -> Array:
+    """The array itself, if no number is beyond tolerances.LARGEST_NUMBER."""
+    if array.size and float(np.abs(array).max()) > LARGEST_NUMBER:
+        largest = float(array.flat[int(np.abs(array).argmax())])
+        raise InputError(f"{subject} holds {largest:g}; {BEYOND}")
+    return array
 
 
 def placement(value: object, subject: str) -> Array:
@@ -68,6 +90,7 @@ def placement(value: object, subject: str) -> Array:
         raise InputError(f"{subject} has shape {pose.shape}, expected (4, 4)")
     if pose[3, 0] != 0.0 or pose[3, 1] != 0.0 or pose[3, 2] != 0.0 or pose[3, 3] != 1.0:
         raise InputError(f"{subject} has the last row {pose[3].tolist()}, expected [0, 0, 0, 1]")
+    sane(pose[:3, 3], subject)
     error = _rotation_error(pose)
     if error > ROTATION_ERROR:
         raise InputError(
