@@ -120,3 +120,25 @@ def test_planar_poses_are_checked_alike():
         cs.as_rotation_2d([[1.0, 0.0], [0.0, -1.0]])
     with pytest.raises(InputError, match=r"expected \(..., 3, 3\)"):
         cs.as_pose_2d(np.eye(4))
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_no_entry_is_overlooked(value):
+    for row, column in np.ndindex(4, 4):
+        for T in (with_entry(row, column, value), np.stack([T_GOOD, with_entry(row, column, value)])):
+            with pytest.raises(InputError, match=f"pose holds {value} at index"):
+                cs.as_pose(T)
+
+
+@pytest.mark.parametrize(("i", "j"), [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)])
+def test_no_column_is_overlooked(i, j):
+    """One column stretched or leaning towards another by twice what is allowed, one pose and a batch."""
+    lean = np.eye(4)
+    lean[i, j] += 2e-6
+    for T in (T_GOOD @ lean, np.stack([T_GOOD, T_GOOD @ lean])):
+        with pytest.raises(InputError, match="no rotation"):
+            cs.as_pose(T)
+        with pytest.raises(InputError, match="no rotation"):
+            cs.as_rotation(T[..., :3, :3])
+    lean[i, j] = np.eye(4)[i, j] + 2e-7
+    assert cs.as_pose(T_GOOD @ lean).shape == (4, 4)

@@ -196,3 +196,10 @@ def test_the_coupling_is_smooth_where_its_series_ends():
 def test_at_whole_turns_the_jacobian_has_no_inverse(turns):
     with pytest.raises(cs.CspaceError, match="whole turns"):
         cs.left_jacobian_inv_so3([0.0, 0.0, 2.0 * np.pi * turns])
+
+
+def test_a_half_turn_of_the_plane_is_plus_pi_from_either_side():
+    for sine in (0.0, -0.0, 1e-17, -1e-17):
+        R = np.array([[-1.0, -sine], [sine, -1.0]])
+        assert cs.log_so2(R) == np.pi
+        assert cs.to_xytheta(cs.pose_2d((1.0, 2.0), matrix=R)).tolist() == [1.0, 2.0, np.pi]
