@@ -37,8 +37,8 @@ int valleys(const System& system, int most, Turn<double> (*at)[2]) {
 
 // Newton's method on half the squared residual, its second derivatives taken as differences of the gradient:
 // where the residual stays large, Gauss–Newton alone converges slowly.
-template <class System>
-double descend(const System& system, Turn<double>* t) {
+template <class System, class Unknown>
+double descend(const System& system, Unknown* t) {
     constexpr int n = System::angles;
     constexpr double h = 1e-5;
     double error = refine(system, t), damping = 0;
@@ -48,7 +48,7 @@ double descend(const System& system, Turn<double>* t) {
         linearise(system, t, at);
         normal_equations(at, normal, down);
         for (int j = 0; j < n; ++j) {
-            Turn<double> aside[n];
+            Unknown aside[n];
             double sides[2][n];
             for (int side = 0; side < 2; ++side) {
                 for (int i = 0; i < n; ++i) aside[i] = i == j ? stepped(t[i], side ? h : -h) : t[i];
@@ -59,7 +59,7 @@ double descend(const System& system, Turn<double>* t) {
         }
         for (int i = 0; i < n; ++i) step[i] = down[i];
         const bool convex = solve_damped<n>(hessian, damping, step);
-        Turn<double> next[n];
+        Unknown next[n];
         for (int i = 0; i < n; ++i) next[i] = stepped(t[i], step[i]), length += std::fabs(step[i]);
         const double next_error = convex ? linearise(system, next, at) : error + 1;
         if (next_error > error * (1 + 4 * std::numeric_limits<double>::epsilon())) {

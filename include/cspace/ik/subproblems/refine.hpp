@@ -14,13 +14,16 @@ inline Turn<double> stepped(const Turn<double>& t, double step) {
     const double length = std::sqrt(1 + step * step);
     return t + Turn<double>{1 / length, step / length};
 }
+inline double stepped(double q, double step) { return q + step; }
+inline double difference(const Turn<double>& a, const Turn<double>& b) { return (a - b).s; }
+inline double difference(double a, double b) { return a - b; }
 
 template <class System>
 struct Linearised {
     double value[System::equations], slope[System::equations][System::angles];
 };
-template <class System>
-double linearise(const System& system, const Turn<double>* t, Linearised<System>& at) {
+template <class System, class Unknown>
+double linearise(const System& system, const Unknown* t, Linearised<System>& at) {
     system(t, at.value, at.slope);
     double sum = 0;
     for (double v : at.value) sum += v * v;
@@ -66,21 +69,23 @@ double normal_equations(const Linearised<System>& at, double (*a)[System::angles
     return length;
 }
 
-// Moves the turns to a minimum of the residual nearby; returns its length there. A step that does not help is
-// not taken, and damped more the next time (Marquardt 1963), so the residual never grows.
-template <class System>
-double refine(const System& system, Turn<double>* t, int iterations = 30) {
+// Moves the unknowns to a minimum of the residual nearby; returns its length there. A step that does not help
+// is not taken, and damped more the next time (Marquardt 1963), so the residual never grows.
+template <class System, class Unknown>
+double refine(const System& system, Unknown* t, int iterations = 30) {
     constexpr int n = System::angles;
+    // A slope that is only rounding must not throw an unknown about.
+    constexpr double least = tolerance::exact * tolerance::exact;
     Linearised<System> at, ahead;
-    double error = linearise(system, t, at), damping = 1e-3 * error * error;
+    double error = linearise(system, t, at), damping = std::fmax(1e-3 * error * error, least);
     for (int i = 0; i < iterations && error > 2 * std::numeric_limits<double>::epsilon(); ++i) {
         double normal[n][n], step[n], length = 0;
         if (normal_equations(at, normal, step) == 0) break;
         if (!solve_damped<n>(normal, damping, step)) {
-            damping = 8 * damping + 1e-14;
+            damping *= 8;
             continue;
         }
-        Turn<double> next[n];
+        Unknown next[n];
         for (int j = 0; j < n; ++j) next[j] = stepped(t[j], step[j]), length += std::fabs(step[j]);
         const double next_error = linearise(system, next, ahead);
         if (next_error >= error) {
@@ -90,7 +95,7 @@ double refine(const System& system, Turn<double>* t, int iterations = 30) {
         }
         for (int j = 0; j < n; ++j) t[j] = next[j];
         at = ahead, error = next_error;
-        damping = std::fmin(0.125 * damping, 1e-3 * error * error);
+        damping = std::fmax(std::fmin(0.125 * damping, 1e-3 * error * error), least);
     }
     return error;
 }
@@ -98,14 +103,14 @@ double refine(const System& system, Turn<double>* t, int iterations = 30) {
 // Whether the zero t lies on a curve of zeros that leads along the direction `along` of length one: a step
 // away the refinement finds a residual below `zero` close by, whereas towards an isolated multiple zero it
 // must go all the way back.
-template <class System>
-bool continues_along(const System& system, const Turn<double>* t, const double* along, double zero) {
+template <class System, class Unknown>
+bool continues_along(const System& system, const Unknown* t, const double* along, double zero) {
     constexpr double reach = 1e-3;
-    Turn<double> start[System::angles], found[System::angles];
+    Unknown start[System::angles], found[System::angles];
     for (int j = 0; j < System::angles; ++j) found[j] = start[j] = stepped(t[j], reach * along[j]);
     if (refine(system, found) > zero) return false;
     double drift = 0;
-    for (int j = 0; j < System::angles; ++j) drift = std::hypot(drift, (found[j] - start[j]).s);
+    for (int j = 0; j < System::angles; ++j) drift = std::hypot(drift, difference(found[j], start[j]));
     return drift < 0.5 * reach;
 }
 

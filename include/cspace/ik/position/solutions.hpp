@@ -1,0 +1,23 @@
+// What a position goal answers.
+#pragma once
+
+#include "cspace/ik/chain.hpp"
+
+namespace cspace::ik {
+
+inline constexpr int max_position_joints = 3, max_position_solutions = 8;
+
+struct PositionSolutions {
+    int count = 0;
+    double q[max_position_solutions][max_position_joints] = {};
+    double residual[max_position_solutions] = {};  // ‖tip − goal‖ [m]
+    // Whether solution i belongs to a family, and the unit direction in which its joints move without the
+    // tip.
+    bool free[max_position_solutions] = {};
+    double direction[max_position_solutions][max_position_joints] = {};
+    // Without a solution: the distance that is missing [m], and the joints that come nearest.
+    double missing = 0;
+    double nearest[max_position_joints] = {};
+};
+
+}  // namespace cspace::ik

@@ -1,0 +1,116 @@
+// Every configuration of an arm of one, two or three joints that brings its tip to a point.
+//
+// Three joints: e^{ξ2 q2} (e^{ξ3 q3} tip) = e^{−ξ1 q1} goal. Joint 2 turns one point into another exactly
+// when both have the same height along its axis and the same distance from a point of it; it slides one into
+// the other when both have the same two coordinates across it. Either way two conditions are left for q1 and
+// q3 (pair.hpp), and q2 follows. Two joints: the same with goal itself in place of e^{−ξ1 q1} goal, two
+// conditions for one joint, of which each gives candidates. Candidates are refined on the arm and kept if
+// they reach the goal.
+#pragma once
+
+#include "cspace/ik/position/nearest.hpp"
+#include "cspace/ik/position/pair.hpp"
+#include "cspace/ik/position/solutions.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+namespace position {
+
+inline Vec3d any_perpendicular(const Vec3d& h) {
+    const Vec3d e = std::fabs(h.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    const Vec3d n = cross(h, e);
+    return (1 / norm(n)) * n;
+}
+// The two functions of a point on a curve that a joint cannot change.
+template <int n>
+void invariants(const TipGap<n>& g, int joint, const Curve& curve, OnCurve f[2]) {
+    const Vec3d &h = g.axis[joint], &o = g.point[joint];
+    const Vec3d across = any_perpendicular(h);
+    f[0] = height(curve, g.prismatic[joint] ? across : h, o);
+    f[1] = g.prismatic[joint] ? height(curve, cross(h, across), o) : squared_distance(curve, o);
+}
+template <int n>
+Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction) {
+    return curve_of(g.prismatic[joint], g.axis[joint], g.point[joint], x, direction);
+}
+
+// Refines a candidate and keeps it if it reaches the goal and is new; members of families only if `families`.
+template <int n>
+void propose(const TipGap<n>& g, double* q, bool families, ik::PositionSolutions& found) {
+    if (refine(g, q) > g.reached || found.count == ik::max_position_solutions) return;
+    for (int i = 0; i < n; ++i)
+        if (!g.prismatic[i]) q[i] = angle_of(turn_by(q[i]));
+    for (int i = 0; i < found.count; ++i)
+        if (same_joints(g, q, found.q[i])) return;
+    for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
+    found.free[found.count] = is_free(g, q, found.direction[found.count]);
+    found.count += families || !found.free[found.count];
+}
+
+inline void candidates(const TipGap<1>& g, ik::PositionSolutions& found) {
+    double q[1] = {joint_between(g, 0, g.tip, g.goal)};
+    propose(g, q, true, found);
+}
+inline void candidates(const TipGap<2>& g, ik::PositionSolutions& found) {
+    const Curve curve = tip_curve(g, 1, g.tip, 1);
+    const Curve goal = {true, g.goal, {0, 0, 0}, {0, 0, 0}};
+    OnCurve f[2], target[2];
+    invariants(g, 0, curve, f);
+    invariants(g, 0, goal, target);
+    const auto complete = [&](double last) {
+        double q[2] = {joint_between(g, 0, at(curve, last), g.goal), last};
+        propose(g, q, true, found);
+    };
+    bool idle = true;
+    for (int i = 0; i < 2; ++i) {
+        double last[2];
+        const int n = pair::weight(f[i]) > tolerance::rounding ? pair::values(f[i], target[i].k, last) : 0;
+        for (int j = 0; j < n; ++j) complete(last[j]);
+        idle = idle && n == 0;
+    }
+    if (idle) complete(0);
+}
+inline void candidates(const TipGap<3>& g, ik::PositionSolutions& found) {
+    const Curve behind = tip_curve(g, 2, g.tip, 1), before = tip_curve(g, 0, g.goal, -1);
+    OnCurve f[2], h[2];
+    invariants(g, 1, before, f);
+    invariants(g, 1, behind, h);
+    const PairCandidates pairs = solve_pair(f, h);
+    bool families = true;
+    for (int i = 0; i < pairs.count; ++i) {
+        // One stage of candidates that meets families has said enough about them.
+        if (i > 0 && pairs.stage[i] > pairs.stage[i - 1])
+            for (int k = 0; k < found.count; ++k) families = families && !found.free[k];
+        const double first = pairs.first[i], last = pairs.last[i];
+        double q[3] = {first, joint_between(g, 1, at(behind, last), at(before, first)), last};
+        propose(g, q, families, found);
+    }
+}
+
+template <int n>
+void solve(const ik::Chain& chain, const Vec3d& goal, ik::PositionSolutions& found) {
+    const PositionScale scale = position_scale(chain, goal);
+    const double size = scale.size;
+    const TipGap<n> g = tip_gap<n>(chain, goal, scale);
+    candidates(g, found);
+    if (found.count == 0) found.missing = size * nearest_configuration(g, found.nearest);
+    for (int i = 0; i < n; ++i) {
+        if (!g.prismatic[i]) continue;
+        found.nearest[i] *= size;
+        for (int k = 0; k < found.count; ++k) found.q[k][i] *= size;
+    }
+    for (int k = 0; k < found.count; ++k) found.residual[k] = norm(forward(chain, found.q[k]).t - goal);
+}
+
+}  // namespace position
+
+// The tip of the chain (n ≤ 3) to p, in base. Without a solution, what is missing.
+inline ik::PositionSolutions solve_position(const ik::Chain& chain, const Vec3d& p) {
+    ik::PositionSolutions found;
+    if (chain.n == 1) position::solve<1>(chain, p, found);
+    if (chain.n == 2) position::solve<2>(chain, p, found);
+    if (chain.n == 3) position::solve<3>(chain, p, found);
+    return found;
+}
+
+}  // namespace cspace::inline CSPACE_ISA
