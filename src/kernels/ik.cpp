@@ -2,29 +2,32 @@
 
 #include "cspace/ik/evaluate.hpp"
 #include "cspace/ik/goal.hpp"
+#include "cspace/math/rows.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 namespace {
 
-constexpr int width = 4;
-using V = Pack<width>;
+using V = Pack<native_width>;
 
-// Four rows of `stride` numbers, entries 0…15 of each, as lanes.
-CSPACE_INLINE void load_goals(const double* T, std::size_t rows, V* m) {
-    for (int k = 0; k < 16; ++k)
-        for (int l = 0; l < width; ++l) set_lane(m[k], l, T[16 * (std::size_t(l) < rows ? l : 0) + k]);
-}
-
-// One lane's solutions, those that hold first, NaN behind them.
-CSPACE_INLINE int write_lane(const V (*q)[6], const mask_of<V>* ok, int l, double* out) {
+// Moves the rows that hold to the front; NaN behind them. Returns how many there are.
+CSPACE_INLINE int compact(unsigned ok, double* rows) {
+    constexpr unsigned all = (1u << max_branches) - 1;
+    if (ok == all) return max_branches;
     int count = 0;
     for (int k = 0; k < max_branches; ++k) {
-        for (int i = 0; i < 6; ++i) out[6 * count + i] = lane(q[k][i], l);
-        count += lane(ok[k], l);
-        if (count == max_branches) return count;
+        if (!(ok >> k & 1)) continue;
+        if (count != k)
+            for (int i = 0; i < 6; ++i) rows[6 * count + i] = rows[6 * k + i];
+        ++count;
     }
-    for (int i = 6 * count; i < 6 * max_branches; ++i) out[i] = std::numeric_limits<double>::quiet_NaN();
+    for (int i = 6 * count; i < 6 * max_branches; ++i) rows[i] = std::numeric_limits<double>::quiet_NaN();
     return count;
+}
+
+CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
+    unsigned bits = 0;
+    for (int k = 0; k < max_branches; ++k) bits |= unsigned(lane(ok[k], l)) << k;
+    return bits;
 }
 
 }  // namespace
@@ -34,12 +37,18 @@ ik::Quick ik_one(const ik::Plan& plan, const double* T, double* q, std::int8_t* 
     *count = 0;
     if (!goal.is_pose) return ik::Quick::refused;
     if (plan.virtual_joints || plan.polish || !plan.on_lanes) return ik::Quick::doubtful;
-    const Branches<double> b = closed_form(plan, goal_in_form(plan, goal.T), Care{});
-    if (b.doubt) return ik::Quick::doubtful;
+    const Abreast found = closed_form_abreast(plan, goal_in_form(plan, goal.T));
+    if (found.doubt) return ik::Quick::doubtful;
+    Pack<4> angles[2][6];
+    for (int e = 0; e < 2; ++e)
+        for (int i = 0; i < 6; ++i) angles[e][plan.joint[i]] = joint_angle(plan, i, found.t[e][i]);
+    // Branch 2 l + e is lane l of angles[e].
+    for (int e = 0; e < 2; ++e) store_rows(angles[e], 6, q + 6 * e, 12, 4);
     int n = 0;
     for (int k = 0; k < max_branches; ++k) {
-        if (!b.ok[k]) continue;
-        for (int i = 0; i < 6; ++i) q[6 * n + plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
+        if (!lane(found.ok[k & 1], k >> 1)) continue;
+        if (n != k)
+            for (int i = 0; i < 6; ++i) q[6 * n + i] = q[6 * k + i];
         branch[n++] = static_cast<std::int8_t>(k);
     }
     *count = n;
@@ -49,21 +58,23 @@ ik::Quick ik_one(const ik::Plan& plan, const double* T, double* q, std::int8_t* 
 void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, std::int64_t* count,
              ik::Quick* quick) {
     const Care care;
-    for (std::size_t first = 0; first < n; first += width) {
-        const std::size_t rows = n - first < width ? n - first : width;
+    constexpr std::size_t row = max_branches * 6;
+    for (std::size_t first = 0; first < n; first += native_width) {
+        const int lanes = int(n - first < native_width ? n - first : native_width);
         V m[16];
-        load_goals(T + 16 * first, rows, m);
+        load_rows(T + 16 * first, 16, lanes, 16, m);
         const ReadGoal<V> goal = read_goal(m);
         const Branches<V> b = closed_form(plan, goal_in_form(plan, goal.T), care);
-        V angles[max_branches][6];
-        for (int k = 0; k < max_branches; ++k)
-            for (int i = 0; i < 6; ++i) angles[k][plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
-        for (std::size_t l = 0; l < rows; ++l) {
-            const std::size_t row = first + l;
-            count[row] = write_lane(angles, b.ok, int(l), q + row * max_branches * 6);
-            quick[row] = !lane(goal.is_pose, int(l))            ? ik::Quick::refused
-                         : lane(b.doubt, int(l)) || plan.polish ? ik::Quick::doubtful
-                                                                : ik::Quick::settled;
+        for (int k = 0; k < max_branches; ++k) {
+            V angles[6];
+            for (int i = 0; i < 6; ++i) angles[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
+            store_rows(angles, 6, q + row * first + 6 * k, row, lanes);
+        }
+        for (int l = 0; l < lanes; ++l) {
+            count[first + l] = compact(branches_of_lane(b.ok, l), q + row * (first + l));
+            quick[first + l] = !lane(goal.is_pose, l)            ? ik::Quick::refused
+                               : lane(b.doubt, l) || plan.polish ? ik::Quick::doubtful
+                                                                 : ik::Quick::settled;
         }
     }
 }

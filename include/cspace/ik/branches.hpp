@@ -16,4 +16,11 @@ struct Branches {
     mask_of<V> doubt;
 };
 
+// The same of one goal, its branches side by side: branch 2 k + i is lane k of t[i].
+struct Abreast {
+    Pack<4> t[2][6];
+    Mask<4> ok[2];
+    bool doubt;
+};
+
 }  // namespace cspace

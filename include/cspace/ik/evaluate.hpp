@@ -35,6 +35,24 @@ CSPACE_INLINE Branches<V> closed_form(const ik::Plan& plan, const Pose<V>& goal,
     }
 }
 
+// One goal, for the families that have a kernel.
+CSPACE_INLINE Abreast closed_form_abreast(const ik::Plan& plan, const Posed& goal) {
+    using enum ik::FirstThree;
+    if (plan.family == ik::Family::three_parallel) return solve_abreast(plan.parallel, goal);
+    switch (plan.wrist.first.kind) {
+        case last_parallel:
+            return solve_abreast<last_parallel>(plan.wrist, goal);
+        case first_meet:
+            return solve_abreast<first_meet>(plan.wrist, goal);
+        case last_meet:
+            return solve_abreast<last_meet>(plan.wrist, goal);
+        case first_parallel:
+            return solve_abreast<first_parallel>(plan.wrist, goal);
+        default:
+            return solve_abreast<general>(plan.wrist, goal);
+    }
+}
+
 // From an angle of the form to the joint's own, in (−π, π].
 template <class V>
 CSPACE_INLINE V joint_angle(const ik::Plan& plan, int i, V t) {

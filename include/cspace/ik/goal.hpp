@@ -47,7 +47,7 @@ CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     out.is_pose = (abs(dot(x, x) + dot(y, y) + dot(z, z) + dot(x, y) + dot(y, z) + dot(x, z)) <= 100.0) &&
                   (error <= tolerance::rotation_error) && (last_row <= tolerance::last_row) &&
                   (size <= 1e100) && (dot(cross(x, y), z) > 0.0);
-    if (any(error > 1e-15)) R = straightened(R);
+    if (any(error > 1e-14)) R = straightened(R);
     return out;
 }
 

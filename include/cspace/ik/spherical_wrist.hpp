@@ -122,4 +122,38 @@ CSPACE_INLINE Branches<V> solve(const ik::SphericalWrist& arm, const Pose<V>& go
     return finish_with_wrist(arm, place_wrist<kind>(arm.first, goal.t, care), goal.R, care);
 }
 
+// --- one goal: its four triples side by side on lanes ---------------------------------------------------
+using Four = Pack<4>;
+
+CSPACE_INLINE Turn<Four> side_by_side(const Turn<double>* t) {
+    Turn<Four> out{};
+    for (int k = 0; k < 4; ++k) {
+        set_lane(out.c, k, t[k].c);
+        set_lane(out.s, k, t[k].s);
+    }
+    return out;
+}
+CSPACE_INLINE Four side_by_side(const bool* ok) {
+    Four out{};
+    for (int k = 0; k < 4; ++k) set_lane(out, k, ok[k]);
+    return out;
+}
+
+template <ik::FirstThree kind>
+CSPACE_INLINE Abreast solve_abreast(const ik::SphericalWrist& arm, const Posed& goal) {
+    const Care care;
+    const Triples<double> first = place_wrist<kind>(arm.first, goal.t, care);
+    const Turn<Four> t1 = side_by_side(first.t1), t2 = side_by_side(first.t2), t3 = side_by_side(first.t3);
+    const WristAngles<Four> r = turn_wrist(arm, t1, t2, t3, fill33<Four>(goal.R), care);
+    Abreast out;
+    out.t[0][0] = out.t[1][0] = angle_of(t1);
+    out.t[0][1] = out.t[1][1] = angle_of(t2);
+    out.t[0][2] = out.t[1][2] = angle_of(t3);
+    write_wrist(arm.last, r, out.t[0], out.t[1]);
+    const Mask<4> ok = (side_by_side(first.ok) > 0.0) && r.ok;
+    out.ok[0] = out.ok[1] = ok;
+    out.doubt = first.doubt || any(ok && r.doubt);
+    return out;
+}
+
 }  // namespace cspace::inline CSPACE_ISA

@@ -134,35 +134,59 @@ CSPACE_INLINE V cosine_gap(V ca, V sa2, double cb, double sb) {
     return select(abs(total) > 0.5, by_sines, ca - cb);
 }
 
+// What both solutions share: cos t5 and |sin t5|, and the third and first column of M.
 template <class V>
-CSPACE_INLINE WristAngles<V> wrist(const Wrist& w, const Vec3<V>& z, const Vec3<V>& x, const Care& care,
-                                   const Turn<double>& idle) {
-    WristAngles<V> out;
+struct WristView {
+    Vec3<V> z, x;
+    V c5, s5, inverse_rho2;
+    mask_of<V> ok, doubt, t4_is_free;
+};
+template <class V>
+CSPACE_INLINE WristView<V> look_at_wrist(const Wrist& w, const Vec3<V>& z, const Vec3<V>& x,
+                                         const Care& care) {
+    WristView<V> view;
+    view.z = z;
+    view.x = x;
     const V rho2 = z.x * z.x + z.y * z.y;
     // 1 − cos t5 and 1 + cos t5, each without cancellation near zero (spherical law of cosines).
     const V low = cosine_gap(z.z, rho2, w.c_sum, w.s_sum) * w.inv;
     const V high = -cosine_gap(z.z, rho2, w.c_diff, w.s_diff) * w.inv;
     const V least = min(low, high);
-    const V c5 = 0.5 * (high - low), s5 = root_above(low * high, fill<V>(care.spread));
-    const mask_of<V> is_free = rho2 <= tolerance::free_joint * tolerance::free_joint;
-    const V scale = 1.0 / select(is_free, fill<V>(1.0), rho2);
-    for (int k = 0; k < 2; ++k) {
-        const V s = k == 0 ? s5 : -s5;
-        // z = Rz(t4) (p, q, ·) fixes t4.
-        const V p = w.sa5 * s, q = -w.ca4 * w.sa5 * c5 - w.sa4 * w.ca5;
-        Turn<V> t4 = {(z.x * p + z.y * q) * scale, (z.y * p - z.x * q) * scale};
-        t4 = choose(is_free, idle, t4);
-        // The first column of Rz(t4) Rx(α4) Rz(t5) Rx(α5) and the second, against x, fix t6.
-        const V y1 = t4.c * x.x + t4.s * x.y, y2 = t4.c * x.y - t4.s * x.x;
-        const V along = w.ca4 * y2 + w.sa4 * x.z, across = w.ca4 * x.z - w.sa4 * y2;
-        const V c6 = c5 * y1 + s * along, s6 = w.ca5 * (c5 * along - s * y1) + w.sa5 * across;
-        out.t4[k] = t4;
-        out.t5[k] = {c5, s};
-        out.t6[k] = {c6, s6};
-    }
-    out.ok = least >= -care.band;
-    out.doubt = out.ok && ((least <= care.band) || (rho2 <= care.band));
-    return out;
+    view.c5 = 0.5 * (high - low);
+    view.s5 = root_above(low * high, fill<V>(care.spread));
+    view.t4_is_free = rho2 <= tolerance::free_joint * tolerance::free_joint;
+    view.inverse_rho2 = 1.0 / select(view.t4_is_free, fill<V>(1.0), rho2);
+    view.ok = least >= -care.band;
+    view.doubt = view.ok && ((least <= care.band) || (rho2 <= care.band));
+    return view;
+}
+
+template <class V>
+struct WristSide {
+    Turn<V> t4, t5, t6;
+};
+// The solution with sin t5 = s.
+template <class V>
+CSPACE_INLINE WristSide<V> wrist_side(const Wrist& w, const WristView<V>& view, V s,
+                                      const Turn<double>& idle) {
+    const Vec3<V>&z = view.z, &x = view.x;
+    // z = Rz(t4) (p, q, ·) fixes t4.
+    const V p = w.sa5 * s, q = -w.ca4 * w.sa5 * view.c5 - w.sa4 * w.ca5;
+    const Turn<V> turned = {(z.x * p + z.y * q) * view.inverse_rho2, (z.y * p - z.x * q) * view.inverse_rho2};
+    const Turn<V> t4 = choose(view.t4_is_free, idle, turned);
+    // The first column of Rz(t4) Rx(α4) Rz(t5) Rx(α5) and the second, against x, fix t6.
+    const V y1 = t4.c * x.x + t4.s * x.y, y2 = t4.c * x.y - t4.s * x.x;
+    const V along = w.ca4 * y2 + w.sa4 * x.z, across = w.ca4 * x.z - w.sa4 * y2;
+    return {
+        t4, {view.c5, s}, {view.c5 * y1 + s * along, w.ca5 * (view.c5 * along - s * y1) + w.sa5 * across}};
+}
+
+template <class V>
+CSPACE_INLINE WristAngles<V> wrist(const Wrist& w, const Vec3<V>& z, const Vec3<V>& x, const Care& care,
+                                   const Turn<double>& idle) {
+    const WristView<V> view = look_at_wrist(w, z, x, care);
+    const WristSide<V> up = wrist_side(w, view, view.s5, idle), down = wrist_side(w, view, -view.s5, idle);
+    return {{up.t4, down.t4}, {up.t5, down.t5}, {up.t6, down.t6}, view.ok, view.doubt};
 }
 
 // Brings an angle that is off by at most one turn back into (−π, π].

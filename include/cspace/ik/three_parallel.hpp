@@ -78,4 +78,36 @@ CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goa
     return out;
 }
 
+// One goal: lanes are (shoulder, wrist) = (0, 0), (0, 1), (1, 0), (1, 1), and the elbow tells t[0] from t[1].
+CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& goal) {
+    const Care care;
+    const Vec3d& p = goal.t;
+    const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
+    const TwoAngles<double> shoulder = linear_equation<double>(-p.y, p.x, k, arm.length, care, care.idle[0]);
+    const Turn<double> each[4] = {shoulder.root[0], shoulder.root[0], shoulder.root[1], shoulder.root[1]};
+    const Turn<Four> t1 = side_by_side(each);
+    const Mat3<Four> R = fill33<Four>(goal.R);
+    const WristView<Four> view = look_at_wrist(arm.last, undo_joint(t1, arm.ca1, arm.sa1, column(R, 2)),
+                                               undo_joint(t1, arm.ca1, arm.sa1, column(R, 0)), care);
+    Four side = fill<Four>(1.0);
+    set_lane(side, 1, -1.0);
+    set_lane(side, 3, -1.0);
+    const WristSide<Four> r = wrist_side(arm.last, view, side * view.s5, care.idle[3]);
+    const Four x = t1.c * p.x + t1.s * p.y - arm.a1, y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
+    Abreast out;
+    const Mask<4> reached = shoulder.ok ? view.ok : fill<Four>(0.0) > 1.0;
+    Mask<4> ok = reached, doubt = reached && view.doubt;
+    Four* const rows[2] = {out.t[0], out.t[1]};
+    finish_in_plane(arm, r.t4, x, y, rows, ok, doubt, care);
+    const Four angle1 = angle_of(t1), angle5 = atan2(r.t5.s, r.t5.c), angle6 = angle_of(r.t6);
+    for (Four* row : rows) {
+        row[0] = angle1;
+        row[4] = angle5;
+        row[5] = angle6;
+    }
+    out.ok[0] = out.ok[1] = ok;
+    out.doubt = shoulder.doubt || any(doubt);
+    return out;
+}
+
 }  // namespace cspace::inline CSPACE_ISA

@@ -65,7 +65,7 @@ def inverse_kinematics(
     prepare(robot)
     if goal is None:
         raise InputTypeError("ik needs a goal: robot.ik(T) with T the pose of the tip in the base")
-    T = np.ascontiguousarray(as_pose(goal, "goal"))
+    T = goal_array(goal)
     if T.ndim > 2:
         if near is not None or least_squares:
             raise InputTypeError("near= and least_squares= are for one goal; a batch has .nearest(q)")
@@ -74,6 +74,13 @@ def inverse_kinematics(
     if least_squares and not found:
         return least_squares_answer(robot, T)
     return found if near is None else found.nearest(near)
+
+
+def goal_array(goal: Any) -> Array:
+    """The goals as contiguous float64; a plain batch goes on unchecked, for the core checks every goal itself."""
+    if type(goal) is np.ndarray and goal.dtype == np.float64 and goal.ndim > 2 and goal.shape[-2:] == (4, 4):
+        return np.ascontiguousarray(goal)
+    return np.ascontiguousarray(as_pose(goal, "goal"))
 
 
 def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
@@ -99,6 +106,7 @@ def solve_many(robot: Any, T: Array, threads: int | None) -> SolutionsBatch:
         raise InputError(f"threads is {threads}, expected a positive number or None for all cores")
     bad = _core._ik_many(robot, T.reshape(n, 4, 4), q, count, verdict, workers)
     if bad < n:
+        as_pose(T, "goal")  # finds the words for what is wrong
         raise InputError(f"goal {np.unravel_index(bad, leading)} is no pose the solver can use")
     return SolutionsBatch(
         robot,
