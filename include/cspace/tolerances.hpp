@@ -39,6 +39,10 @@ inline constexpr double fold_band = 1e-8;
 // joint is free and the pose singular.
 inline constexpr double free_joint = 1e-12;
 
+// Smallest singular value of the Jacobian (lengths over the arm's length) below which in every configuration
+// an arm has a joint to spare: rounding leaves 1e-16, and the worst of real arms reaches 1e-3 somewhere.
+inline constexpr double always_singular = 1e-9;
+
 // A configuration is a solution if forward kinematics meets the goal within this (rad, and m over the arm's
 // length): far above what rounding costs near a singularity, far below what any robot can tell.
 inline constexpr double reached = 1e-9;
@@ -46,8 +50,8 @@ inline constexpr double reached = 1e-9;
 // Solutions closer than this [rad] are one, unless conditioning says otherwise (see ik/refine.hpp).
 inline constexpr double same_solution = 1e-9;
 
-
-// Largest entry of RᵀR − I accepted in a goal (ROTATION_ERROR in Python): numbers typed with seven digits pass.
+// Largest entry of RᵀR − I accepted in a goal (ROTATION_ERROR in Python): numbers typed with seven digits
+// pass.
 inline constexpr double rotation_error = 1e-6;
 
 // Largest deviation of a pose's last row from (0, 0, 0, 1): it is written, never computed, up to rounding.

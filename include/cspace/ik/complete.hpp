@@ -75,22 +75,35 @@ inline ik::Chain with_axis(const ik::Chain& c, int at, const Axis& axis) {
     return longer;
 }
 
+// The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some configurations
+// without a pattern; virtual joints stay at zero.
+inline double conditioning(const ik::Chain& six, const int* source, double length, int k) {
+    double q[6];
+    spread_configuration(k, 6, q);
+    for (int i = 0; i < 6; ++i)
+        if (source[i] < 0) q[i] = 0;
+    PoseError error;
+    measure(six, six.tip, length, q, error);
+    decompose(error.jacobian);
+    return error.jacobian.sigma[weakest(error.jacobian)];
+}
+
 // Whether the completed arm is regular where its virtual joints are zero: only there its branches are the
 // arm's.
 inline bool is_regular(const ik::Chain& six, const int* source, double length) {
     int regular = 0;
     constexpr int trials = 5;
-    for (int k = 0; k < trials; ++k) {
-        double q[6];
-        spread_configuration(k, 6, q);
-        for (int i = 0; i < 6; ++i)
-            if (source[i] < 0) q[i] = 0;
-        PoseError error;
-        measure(six, six.tip, length, q, error);
-        decompose(error.jacobian);
-        regular += error.jacobian.sigma[weakest(error.jacobian)] > 1e-3;
-    }
+    for (int k = 0; k < trials; ++k) regular += conditioning(six, source, length, k) > 1e-3;
     return 2 * regular > trials;
+}
+
+// Whether an arm of six joints has one to spare (two wrists, a wrist on axis 3, four parallel axes): each of
+// its poses is singular.
+inline bool is_always_singular(const ik::Plan& plan, const int* source) {
+    const double blind = max(tolerance::always_singular, 10 * plan.form.deviation);
+    for (int k = 0; k < 8; ++k)
+        if (conditioning(plan.chain, source, plan.form.length, k) > blind) return false;
+    return true;
 }
 
 // `source[i]`: the arm's joint behind joint i of c, or −1 for one put in before.
@@ -115,7 +128,10 @@ inline bool make_plan(ik::Plan& plan, const ik::Chain& chain) {
         if (chain.prismatic[i]) return false;
     const int source[6] = {0, 1, 2, 3, 4, 5};
     plan.virtual_joints = 6 - chain.n;
-    return chain.n == 6 ? plan_six(plan, chain, source) : complete(plan, chain, source);
+    if (chain.n < 6) return complete(plan, chain, source);
+    if (plan_six(plan, chain, source) && !is_always_singular(plan, source)) return true;
+    plan.family = ik::Family::none;
+    return false;
 }
 
 }  // namespace cspace::inline CSPACE_ISA

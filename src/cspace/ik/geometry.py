@@ -121,6 +121,17 @@ def conditions(robot: Any) -> tuple[Condition, ...]:
     return tuple(out)
 
 
+def best_conditioning(robot: Any) -> float:
+    """The largest, over some configurations, of the Jacobian's smallest singular value (lengths over the
+    arm's length).
+    """
+    n = len(robot.chain.axes)
+    steps = np.arange(1, 9)[:, None] * np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0])[:n]
+    J = np.array(robot.jacobian(2 * np.pi * (steps - np.floor(steps)) - np.pi))
+    J[:, :3] /= arm_length(robot)
+    return float(np.linalg.svd(J, compute_uv=False)[:, -1].max())
+
+
 def explain_missing_form(robot: Any) -> str:
     kinds = robot.chain.joint_types
     subject = f"no closed form for {robot.name} ({kinds}, {len(kinds)} joints)"
@@ -130,6 +141,12 @@ def explain_missing_form(robot: Any) -> str:
         return f"{subject}: arms with prismatic joints are not solved by this version"
     if len(kinds) > 6:
         return f"{subject}: this version solves full poses for four to six revolute joints"
+    best = best_conditioning(robot)
+    if best < _core.AXIS_RELATION:
+        return (
+            f"{subject}: every configuration is singular, two of its joints do one's work (the Jacobian's "
+            f"smallest singular value is {best:.2g} at best); hold one joint still"
+        )
     tested = "; ".join(str(c) for c in conditions(robot) if not c.holds)
     return (
         f"{subject}: it needs the first or last three axes to meet in a point, or three neighbouring axes "
