@@ -166,6 +166,23 @@ bool over_packs(std::size_t begin, std::size_t end, const Body& body) {
     return true;
 }
 
+// The working arrays of a single configuration.
+struct OneWork {
+    double *s, *c;
+    Axis<double>* axes;
+};
+OneWork one_work(const Chain& chain, void* memory) {
+    Scratch scratch{static_cast<char*>(memory)};
+    return {take<double>(scratch, chain.n + 3), take<double>(scratch, chain.n + 3),
+            take<Axis<double>>(scratch, chain.n)};
+}
+// Compiled once for pose and Jacobian, so that both round alike.
+CSPACE_NOINLINE Posed follow_one(const Chain& chain, const double* q, const OneWork& work) {
+    chain_sines(chain, q, work.s, work.c);
+    return follow_chain(chain, chain.T_base_first, q, work.s, work.c,
+                        [&](int k, const Vec3d& p, const Vec3d& d) { work.axes[k] = {p, d}; });
+}
+
 }  // namespace
 
 bool chain_rows(const ChainRows& rows, std::size_t begin, std::size_t end, void* scratch) {
@@ -181,25 +198,16 @@ bool tree_rows(const TreeRows& rows, std::size_t begin, std::size_t end, void* s
 
 bool chain_pose(const Chain& chain, const double* q, double* T, void* memory) {
     if (!all_finite(q, chain.n_coordinates)) return false;
-    Scratch scratch{static_cast<char*>(memory)};
-    double* s = take<double>(scratch, chain.n + 3);
-    double* c = take<double>(scratch, chain.n + 3);
-    chain_sines(chain, q, s, c);
-    write_matrix(follow_chain(chain, chain.T_base_first, q, s, c, [](int, const Vec3d&, const Vec3d&) {}), T);
+    write_matrix(follow_one(chain, q, one_work(chain, memory)), T);
     return true;
 }
 
 bool chain_jacobian(const Chain& chain, const double* q, double* T, double* J, void* memory) {
     if (!all_finite(q, chain.n_coordinates)) return false;
-    Scratch scratch{static_cast<char*>(memory)};
-    double* s = take<double>(scratch, chain.n + 3);
-    double* c = take<double>(scratch, chain.n + 3);
-    auto* axes = take<Axis<double>>(scratch, chain.n);
-    chain_sines(chain, q, s, c);
-    const Posed end = follow_chain(chain, chain.T_base_first, q, s, c,
-                                   [=](int k, const Vec3d& p, const Vec3d& d) { axes[k] = {p, d}; });
+    const OneWork work = one_work(chain, memory);
+    const Posed end = follow_one(chain, q, work);
     if (T) write_matrix(end, T);
-    joint_columns(chain, axes, end.t, J, chain.n_coordinates, 0);
+    joint_columns(chain, work.axes, end.t, J, chain.n_coordinates, 0);
     return true;
 }
 

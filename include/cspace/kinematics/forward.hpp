@@ -8,6 +8,13 @@
 #include "cspace/model/chain.hpp"
 #include "cspace/model/tree.hpp"
 
+namespace cspace {
+template <class V>
+struct FrameAxes {
+    Vec3<V> x, y, z, origin;
+};
+}  // namespace cspace
+
 namespace cspace::inline CSPACE_ISA {
 
 // The sine and cosine of each joint angle of a chain; s and c hold n rounded up to four.
@@ -37,43 +44,61 @@ CSPACE_INLINE void chain_sines(const Chain& chain, const V* q, V* s, V* c) {
     }
 }
 
-// Turns the first two columns: R · Rz(angle).
-template <class V, class S>
-CSPACE_INLINE void turn_about_z(Mat3<V>& R, const S& s, const S& c) {
-    for (int r = 0; r < 3; ++r) {
-        const V x = R.m[r][0], y = R.m[r][1];
-        R.m[r][0] = c * x + s * y;
-        R.m[r][1] = c * y - s * x;
-    }
+// A frame by its axes and its origin. Without arrays inside, a compiler keeps all of it in registers.
+template <class V>
+CSPACE_INLINE FrameAxes<V> frame_axes(const Pose<V>& T) {
+    return {column(T.R, 0), column(T.R, 1), column(T.R, 2), T.t};
 }
-// Turns the last two columns: R · Rx(angle).
+template <class V>
+CSPACE_INLINE Pose<V> to_pose(const FrameAxes<V>& frame) {
+    return {from_columns(frame.x, frame.y, frame.z), frame.origin};
+}
+// Turns the frame about its own z.
 template <class V, class S>
-CSPACE_INLINE void turn_about_x(Mat3<V>& R, const S& s, const S& c) {
-    for (int r = 0; r < 3; ++r) {
-        const V y = R.m[r][1], z = R.m[r][2];
-        R.m[r][1] = c * y + s * z;
-        R.m[r][2] = c * z - s * y;
+CSPACE_INLINE void turn_about_z(FrameAxes<V>& frame, const S& s, const S& c) {
+    const Vec3<V> x = frame.x;
+    frame.x = c * x + s * frame.y;
+    frame.y = c * frame.y - s * x;
+}
+// Turns the frame about its own x by the α of a joint.
+template <class V>
+CSPACE_INLINE void tilt(FrameAxes<V>& frame, const ChainJoint& joint) {
+    const Vec3<V> y = frame.y;
+    switch (joint.tilt) {
+        case Tilt::none:
+            return;
+        case Tilt::quarter:
+            frame.y = frame.z;
+            frame.z = -y;
+            return;
+        case Tilt::half:
+            frame.y = -y;
+            frame.z = -frame.z;
+            return;
+        case Tilt::any:
+            frame.y = joint.cos_alpha * y + joint.sin_alpha * frame.z;
+            frame.z = joint.cos_alpha * frame.z - joint.sin_alpha * y;
     }
 }
 
-// Follows a chain from T, the pose of the frame of its first joint, to its own frame, which it returns.
-// visit(i, point, direction) sees each joint: a point on its axis and the direction of the axis.
+// Follows a chain from the frame of its first joint to its own frame, which it returns. visit(i, point,
+// direction) sees each joint: a point on its axis and the direction of the axis.
 template <class V, class Visit>
-CSPACE_INLINE Pose<V> follow_chain(const Chain& chain, Pose<V> T, const V* q, const V* s, const V* c,
-                                   const Visit& visit) {
+CSPACE_INLINE Pose<V> follow_chain(const Chain& chain, const Pose<V>& first, const V* q, const V* s,
+                                   const V* c, const Visit& visit) {
+    FrameAxes<V> frame = frame_axes(first);
     for (int i = 0; i < chain.n; ++i) {
         const ChainJoint& joint = chain.joints[i];
-        visit(i, T.t, column(T.R, 2));
-        turn_about_z(T.R, s[i], c[i]);
+        visit(i, frame.origin, frame.z);
+        turn_about_z(frame, s[i], c[i]);
         const V z = joint.slide * q[joint.coordinate] + joint.z;
-        for (int r = 0; r < 3; ++r) {
-            V& t = r == 0 ? T.t.x : r == 1 ? T.t.y : T.t.z;
-            t += T.R.m[r][0] * joint.x + T.R.m[r][1] * joint.y + T.R.m[r][2] * z;
-        }
-        turn_about_x(T.R, joint.sin_alpha, joint.cos_alpha);
+        if (joint.x != 0.0) frame.origin = frame.origin + joint.x * frame.x;
+        if (joint.y != 0.0) frame.origin = frame.origin + joint.y * frame.y;
+        frame.origin = frame.origin + z * frame.z;
+        tilt(frame, joint);
     }
-    if (chain.n > 0) turn_about_z(T.R, chain.sin_last, chain.cos_last);
-    return T;
+    if (chain.n > 0) turn_about_z(frame, chain.sin_last, chain.cos_last);
+    return to_pose(frame);
 }
 
 // The moving frames of all joints of a tree, in the base.
@@ -90,7 +115,9 @@ CSPACE_INLINE void joint_poses(const Tree& tree, const V* q, const Pose<V>& T_wo
         } else {
             V s, c;
             sincos(value, s, c);
-            turn_about_z(T.R, s, c);
+            FrameAxes<V> frame = frame_axes(T);
+            turn_about_z(frame, s, c);
+            T = to_pose(frame);
         }
         T_world_joint[k] = T;
     }

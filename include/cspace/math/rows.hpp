@@ -107,6 +107,18 @@ CSPACE_INLINE void store_column_pair(Pack<N> a, Pack<N> b, double* rows, std::si
     }
 }
 
+#if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
+// Four neighbouring columns of four rows: half as many stores as by pairs.
+CSPACE_INLINE void store_column_quad(const Pack<4>* v, double* rows, std::size_t stride) {
+    const __m256d a = _mm256_unpacklo_pd(v[0].v, v[1].v), b = _mm256_unpackhi_pd(v[0].v, v[1].v);
+    const __m256d c = _mm256_unpacklo_pd(v[2].v, v[3].v), d = _mm256_unpackhi_pd(v[2].v, v[3].v);
+    _mm256_storeu_pd(rows, _mm256_permute2f128_pd(a, c, 0x20));
+    _mm256_storeu_pd(rows + stride, _mm256_permute2f128_pd(b, d, 0x20));
+    _mm256_storeu_pd(rows + 2 * stride, _mm256_permute2f128_pd(a, c, 0x31));
+    _mm256_storeu_pd(rows + 3 * stride, _mm256_permute2f128_pd(b, d, 0x31));
+}
+#endif
+
 // Reads `width` values of `count` rows, `stride` values apart; lanes beyond them repeat the last row.
 template <class V>
 CSPACE_INLINE void load_rows(const double* rows, std::size_t stride, int count, int width, V* values) {
@@ -129,6 +141,11 @@ CSPACE_INLINE void store_rows(const V* values, int width, double* rows, std::siz
     int j = 0;
     if constexpr (Lanes<V>::count > 1) {
         if (count >= Lanes<V>::count) {
+#if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
+            if constexpr (Lanes<V>::count == 4) {
+                for (; j + 4 <= width; j += 4) store_column_quad(values + j, rows + j, stride);
+            }
+#endif
             for (; j + 2 <= width; j += 2) store_column_pair(values[j], values[j + 1], rows + j, stride);
         }
     }

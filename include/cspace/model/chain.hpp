@@ -13,6 +13,9 @@
 
 namespace cspace {
 
+// Most arms have axes that are parallel or perpendicular: their turns by α cost nothing.
+enum class Tilt : unsigned char { none, quarter, half, any };
+
 struct ChainJoint {
     double turn, angle;     // turn is 0 for a joint that slides
     double slide, x, y, z;  // slide is 0 for a joint that turns
@@ -20,6 +23,7 @@ struct ChainJoint {
     double ratio;  // of the joint to its coordinate, whatever its kind
     int coordinate;
     bool prismatic;
+    Tilt tilt;
 };
 struct Chain {
     const ChainJoint* joints;

@@ -11,6 +11,7 @@
 
 #include "cspace/model/chain.hpp"
 #include "cspace/model/tree.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace {
 
@@ -26,6 +27,13 @@ inline TurnTiltTurn turn_tilt_turn(const Mat3d& R) {
     const double c = std::cos(first), s = std::sin(first);
     const double last = std::atan2(-(c * R.m[0][1] + s * R.m[1][1]), c * R.m[0][0] + s * R.m[1][0]);
     return {first, R.m[2][2], sine, last};
+}
+
+// Whether the tilt is one of those that only permute axes, up to the rounding of the rotation it was read
+// from.
+inline Tilt tilt_of(double cos_alpha, double sin_alpha) {
+    if (std::fabs(sin_alpha) <= tolerance::right_angle) return cos_alpha > 0.0 ? Tilt::none : Tilt::half;
+    return std::fabs(cos_alpha) <= tolerance::right_angle ? Tilt::quarter : Tilt::any;
 }
 
 class RobotModel {
@@ -95,7 +103,8 @@ class RobotModel {
                 r.sin_alpha,
                 joint.ratio,
                 joint.coordinate,
-                joint.prismatic};
+                joint.prismatic,
+                tilt_of(r.cos_alpha, r.sin_alpha)};
     }
 
     std::vector<Joint> joints_;
