@@ -1,4 +1,4 @@
-// What a position goal answers.
+// What a goal answers for an arm of up to three joints.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -7,6 +7,7 @@ namespace cspace::ik {
 
 inline constexpr int max_position_joints = 3, max_position_solutions = 8;
 
+// What a position goal answers.
 struct PositionSolutions {
     int count = 0;
     double q[max_position_solutions][max_position_joints] = {};
@@ -18,6 +19,16 @@ struct PositionSolutions {
     // Without a solution: the distance that is missing [m], and the joints that come nearest.
     double missing = 0;
     double nearest[max_position_joints] = {};
+};
+
+// What a pose goal answers for such an arm.
+struct ShortPoseSolutions {
+    int count = 0;
+    double q[max_position_solutions][max_position_joints] = {};
+    double position_error[max_position_solutions] = {};  // [m]
+    double rotation_error[max_position_solutions] = {};  // [rad]
+    bool free[max_position_solutions] = {};
+    double direction[max_position_solutions][max_position_joints] = {};
 };
 
 }  // namespace cspace::ik

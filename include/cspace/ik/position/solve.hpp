@@ -8,6 +8,7 @@
 // they reach the goal.
 #pragma once
 
+#include "cspace/ik/position/families.hpp"
 #include "cspace/ik/position/nearest.hpp"
 #include "cspace/ik/position/pair.hpp"
 #include "cspace/ik/position/solutions.hpp"
@@ -34,17 +35,10 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
     return curve_of(g.prismatic[joint], g.axis[joint], g.point[joint], x, direction);
 }
 
-// Refines a candidate and keeps it if it reaches the goal and is new; members of families only if `families`.
+// Refines a candidate and keeps it if it reaches the goal.
 template <int n>
 void propose(const TipGap<n>& g, double* q, bool families, ik::PositionSolutions& found) {
-    if (refine(g, q) > g.reached || found.count == ik::max_position_solutions) return;
-    for (int i = 0; i < n; ++i)
-        if (!g.prismatic[i]) q[i] = angle_of(turn_by(q[i]));
-    for (int i = 0; i < found.count; ++i)
-        if (same_joints(g, q, found.q[i])) return;
-    for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
-    found.free[found.count] = is_free(g, q, found.direction[found.count]);
-    found.count += families || !found.free[found.count];
+    if (refine(g, q) <= g.reached) keep(g, q, families, found);
 }
 
 inline void candidates(const TipGap<1>& g, ik::PositionSolutions& found) {

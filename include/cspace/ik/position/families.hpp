@@ -1,0 +1,80 @@
+// Solutions of a small system of joints: which are the same, and which belong to a family.
+//
+// A System is as in refine.hpp, over joints as numbers, with `prismatic[i]` and the residual `reached` that
+// counts as zero.
+#pragma once
+
+#include "cspace/ik/position/solutions.hpp"
+#include "cspace/ik/subproblems/refine.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// Whether joints a and b are the same configuration, angles counted modulo a turn.
+template <class System>
+bool same_joints(const System& g, const double* a, const double* b) {
+    for (int i = 0; i < System::angles; ++i) {
+        const double d = a[i] - b[i];
+        if (std::fabs(g.prismatic[i] ? d : 2 * std::sin(0.5 * d)) > tolerance::same_turns) return false;
+    }
+    return true;
+}
+
+// Eigenvectors of a symmetric matrix as columns of v, eigenvalues on the diagonal of a (Jacobi 1846).
+template <int n>
+void eigenvectors(double (*a)[n], double (*v)[n]) {
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) v[i][j] = i == j;
+    for (int sweep = 0; sweep < 12; ++sweep)
+        for (int i = 0; i < n; ++i)
+            for (int j = i + 1; j < n; ++j) {
+                if (a[i][j] == 0) continue;
+                const double half = 0.5 * std::atan2(2 * a[i][j], a[j][j] - a[i][i]);
+                const double c = std::cos(half), s = std::sin(half);
+                for (int k = 0; k < n; ++k) {
+                    const double x = a[k][i], y = a[k][j];
+                    a[k][i] = c * x - s * y, a[k][j] = s * x + c * y;
+                }
+                for (int k = 0; k < n; ++k) {
+                    const double x = a[i][k], y = a[j][k], p = v[k][i], r = v[k][j];
+                    a[i][k] = c * x - s * y, a[j][k] = s * x + c * y;
+                    v[k][i] = c * p - s * r, v[k][j] = s * p + c * r;
+                }
+            }
+}
+
+// Whether the solution q is one of a family; its direction, of length one, is written to `along`.
+template <class System>
+bool is_free(const System& g, const double* q, double* along) {
+    constexpr int n = System::angles;
+    Linearised<System> at;
+    linearise(g, q, at);
+    double normal[n][n], down[n], v[n][n], largest = 0;
+    normal_equations(at, normal, down);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < i; ++j) normal[j][i] = normal[i][j];
+    eigenvectors<n>(normal, v);
+    for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
+    const double floor = std::fmax(tolerance::degenerate_pair * std::sqrt(largest), tolerance::rounding);
+    for (int i = 0; i < n; ++i) {
+        if (normal[i][i] > floor * floor) continue;
+        for (int j = 0; j < n; ++j) along[j] = v[j][i];
+        if (continues_along(g, q, along, g.reached)) return true;
+    }
+    return false;
+}
+
+// Keeps the refined solution q of a system if it is new; members of families only if `families`.
+template <class System, class Solutions>
+void keep(const System& g, double* q, bool families, Solutions& found) {
+    constexpr int n = System::angles;
+    if (found.count == ik::max_position_solutions) return;
+    for (int i = 0; i < n; ++i)
+        if (!g.prismatic[i]) q[i] = angle_of(turn_by(q[i]));
+    for (int i = 0; i < found.count; ++i)
+        if (same_joints(g, q, found.q[i])) return;
+    for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
+    found.free[found.count] = is_free(g, q, found.direction[found.count]);
+    found.count += families || !found.free[found.count];
+}
+
+}  // namespace cspace::inline CSPACE_ISA

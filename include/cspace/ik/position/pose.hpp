@@ -1,0 +1,160 @@
+// Every configuration of an arm of one, two or three joints that brings its tip to a pose.
+//
+// The pose asks for the motion G = T tip⁻¹ of the base frame. A revolute joint at the end of the chain leaves
+// the points of its own axis where they are, so the other joints alone must bring each of them, x, to G x: a
+// position goal of one joint less, and the last angle follows from the rotation that remains. Two points of
+// the axis are tried, as one of them may lie on a neighbouring axis. A revolute joint at the beginning is the
+// end of the arm read backwards. Arms with at most one revolute joint: its angle is that of G, the slides
+// follow linearly. All candidates are refined on position and rotation together and kept if they meet both.
+#pragma once
+
+#include "cspace/ik/position/solve.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// The gap of pose: that of the tip, and half the sum of g × r over the axes g of the goal and r of the tip,
+// which is the rotation vector between them to first order.
+template <int n>
+struct PoseGap {
+    static constexpr int angles = n, equations = 6;
+    TipGap<n> tip;
+    Mat3d R_tip, R_goal;
+    bool prismatic[n];
+    double reached;
+
+    void operator()(const double* q, double* value, double (*slope)[n]) const {
+        tip(q, value, slope);
+        Vec3d axes[n], columns[3];
+        for (int k = 0; k < 3; ++k) columns[k] = column(R_tip, k);
+        for (int i = n - 1; i >= 0; --i) {
+            axes[i] = prismatic[i] ? Vec3d{0, 0, 0} : tip.axis[i];
+            if (prismatic[i]) continue;
+            const Turn<double> t = turn_by(q[i]);
+            for (int j = i + 1; j < n; ++j) axes[j] = rotate(tip.axis[i], t, axes[j]);
+            for (Vec3d& c : columns) c = rotate(tip.axis[i], t, c);
+        }
+        Vec3d turn = {0, 0, 0};
+        for (int k = 0; k < 3; ++k) turn = turn + 0.5 * cross(column(R_goal, k), columns[k]);
+        value[3] = turn.x, value[4] = turn.y, value[5] = turn.z;
+        for (int j = 0; j < n; ++j) slope[3][j] = axes[j].x, slope[4][j] = axes[j].y, slope[5][j] = axes[j].z;
+    }
+};
+
+namespace short_pose {
+
+inline double rotation_between(const Mat3d& A, const Mat3d& B) {
+    Vec3d sine = {0, 0, 0};
+    double cosine = -0.5;
+    for (int k = 0; k < 3; ++k) {
+        sine = sine + 0.5 * cross(column(A, k), column(B, k));
+        cosine += 0.5 * dot(column(A, k), column(B, k));
+    }
+    return std::atan2(norm(sine), cosine);
+}
+// The angle of R about h, if it is a rotation about h; otherwise the nearest one.
+inline double angle_about(const Vec3d& h, const Mat3d& R) {
+    const Vec3d axial = {R.m[2][1] - R.m[1][2], R.m[0][2] - R.m[2][0], R.m[1][0] - R.m[0][1]};
+    const double trace = R.m[0][0] + R.m[1][1] + R.m[2][2];
+    return std::atan2(dot(h, axial), trace - dot(h, R * h));
+}
+
+template <int n>
+struct Search {
+    const ik::Chain& chain;
+    const Posed& goal;
+    PoseGap<n> gap;
+    double size;
+    ik::ShortPoseSolutions& found;
+
+    // q in units of the chain; refined in units of its size.
+    void propose(const double* q) {
+        double scaled[n];
+        for (int i = 0; i < n; ++i) scaled[i] = chain.prismatic[i] ? q[i] / size : q[i];
+        if (refine(gap, scaled) > gap.reached) return;
+        Linearised<PoseGap<n>> at;
+        if (linearise(gap, scaled, at) > gap.reached || opposed(scaled)) return;
+        keep(gap, scaled, true, found);
+    }
+    // Half a turn away from the goal the sum of g × r vanishes too.
+    bool opposed(const double* scaled) const {
+        double q[n];
+        for (int i = 0; i < n; ++i) q[i] = chain.prismatic[i] ? scaled[i] * size : scaled[i];
+        return rotation_between(forward(chain, q).R, goal.R) > 1;
+    }
+};
+
+// Joint angles for at most one revolute joint: its own from G, the slides by least squares.
+template <int n>
+void by_slides(Search<n>& search, const Posed& G) {
+    double q[n] = {};
+    for (int i = 0; i < n; ++i)
+        if (!search.chain.prismatic[i]) q[i] = angle_about(search.chain.axis[i], G.R);
+    for (int i = 0; i < n; ++i) q[i] = search.chain.prismatic[i] ? q[i] / search.size : q[i];
+    nearest::slide(search.gap.tip, q);
+    for (int i = 0; i < n; ++i) q[i] = search.chain.prismatic[i] ? q[i] * search.size : q[i];
+    search.propose(q);
+}
+
+// The last joint is revolute: the others bring points of its axis to their place.
+template <int n>
+void by_last_axis(const ik::Chain& chain, const Posed& G, double size, bool backwards, Search<n>& search) {
+    ik::Chain others = chain;
+    others.n = n - 1;
+    const Vec3d h = chain.axis[n - 1];
+    for (double along : {0.0, size}) {
+        others.tip = {identity_pose().R, foot_of_tip(chain, n - 1) + along * h};
+        const ik::PositionSolutions placed = solve_position(others, G * others.tip.t);
+        for (int k = 0; k < placed.count; ++k) {
+            double q[n];
+            Posed rest = G;
+            for (int i = 0; i < n - 1; ++i) {
+                q[i] = placed.q[k][i];
+                rest = inverse(joint_motion(chain, i, q[i])) * rest;
+            }
+            q[n - 1] = angle_about(h, rest.R);
+            double forwards[n];
+            for (int i = 0; i < n; ++i) forwards[i] = q[backwards ? n - 1 - i : i];
+            search.propose(forwards);
+        }
+    }
+}
+
+template <int n>
+void solve(const ik::Chain& chain, const Posed& T, ik::ShortPoseSolutions& found) {
+    const PositionScale scale = position_scale(chain, T.t);
+    PoseGap<n> gap{tip_gap<n>(chain, T.t, scale), chain.tip.R, T.R, {}, scale.reached};
+    for (int i = 0; i < n; ++i) gap.prismatic[i] = chain.prismatic[i];
+    Search<n> search{chain, T, gap, scale.size, found};
+    int revolute = 0;
+    for (int i = 0; i < n; ++i) revolute += !chain.prismatic[i];
+    const Posed G = T * inverse(chain.tip);
+    if (revolute < 2) by_slides(search, G);
+    if constexpr (n > 1) {
+        if (revolute > 1 && !chain.prismatic[n - 1]) {
+            by_last_axis<n>(chain, G, scale.size, false, search);
+        } else if (revolute > 1) {
+            const ik::Chain back = reversed(chain);
+            by_last_axis<n>(back, inverse(T) * inverse(back.tip), scale.size, true, search);
+        }
+    }
+    for (int k = 0; k < found.count; ++k) {
+        for (int i = 0; i < n; ++i)
+            if (chain.prismatic[i]) found.q[k][i] *= scale.size;
+        const Posed reached = forward(chain, found.q[k]);
+        found.position_error[k] = norm(reached.t - T.t);
+        found.rotation_error[k] = rotation_between(reached.R, T.R);
+    }
+}
+
+}  // namespace short_pose
+
+// The tip of the chain (n ≤ 3) to T, in base.
+inline ik::ShortPoseSolutions solve_short_pose(const ik::Chain& chain, const Posed& T) {
+    ik::ShortPoseSolutions found;
+    if (chain.n == 1) short_pose::solve<1>(chain, T, found);
+    if (chain.n == 2) short_pose::solve<2>(chain, T, found);
+    if (chain.n == 3) short_pose::solve<3>(chain, T, found);
+    return found;
+}
+
+}  // namespace cspace::inline CSPACE_ISA
