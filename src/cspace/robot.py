@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cspace import kinematics
+from cspace import kinematics, model
 from cspace._core import RobotBase
 from cspace.arrays import Array
 from cspace.errors import InputError
-from cspace.model import Chain, Description
+from cspace.model import Chain, Description, DHTable
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 
@@ -67,6 +69,71 @@ class Robot(RobotBase):
         self.mass = float(assembly.mass.sum())
 
     _ik_ready = False
+
+    @classmethod
+    def from_urdf(
+        cls,
+        source: str | os.PathLike[str] | bytes,
+        base: str | None = None,
+        tip: str | None = None,
+        *,
+        package_paths: Sequence[Any] = (),
+    ) -> Robot:
+        """A robot from a URDF file or its text; see model.from_urdf, which also names the errors."""
+        return cls(model.from_urdf(source, package_paths=package_paths), base, tip)
+
+    @classmethod
+    def from_toml(
+        cls,
+        source: str | os.PathLike[str],
+        base: str | None = None,
+        tip: str | None = None,
+        *,
+        package_paths: Sequence[Any] = (),
+    ) -> Robot:
+        """A robot from a TOML file or its text; see model.from_toml, which also names the errors."""
+        return cls(model.from_toml(source, package_paths=package_paths), base, tip)
+
+    @classmethod
+    def from_dh(cls, table: Any, **options: Any) -> Robot:
+        """A serial robot from a Denavit–Hartenberg table (n, 4), columns alpha, a, d, theta.
+
+        options: convention="standard" or "modified", joint_types, T_base, T_tool, limits, names, as in
+        model.from_dh, which also names the errors.
+        """
+        return cls(model.from_dh(table, **options))
+
+    @classmethod
+    def from_screws(cls, axes: Any, points: Any, T_zero: PoseLike, **options: Any) -> Robot:
+        """A serial robot from its joint axes at zero: axes (n, 3), points (n, 3) [m], T_zero (4, 4).
+
+        options: joint_types, limits, names, as in model.from_screws, which also names the errors.
+        """
+        return cls(model.from_screws(axes, points, _one_pose(T_zero, "T_zero"), **options))
+
+    def to_urdf(self) -> str:
+        """The text of a URDF file: the whole description, tool and mounting included; see model.to_urdf."""
+        return model.to_urdf(self._whole())
+
+    def to_toml(self) -> str:
+        """The text of a TOML file: the whole description, tool and mounting included; see model.to_toml."""
+        return model.to_toml(self._whole())
+
+    def to_dh(self, *, convention: str) -> DHTable:
+        """The Denavit–Hartenberg table from base to tip, tool and mounting included; see model.to_dh."""
+        return model.to_dh(self.chain, convention=convention)
+
+    def to_screws(self) -> Chain:
+        """The joint axes at zero from base to tip, tool and mounting included; the same as chain."""
+        return self.chain
+
+    def _whole(self) -> Description:
+        """The description with the tool as a link on the tip and the mounting under a new root."""
+        whole = self.description
+        if self._T_tip_tool is not None:
+            tip = self._changed(T_tip_tool=None).tip
+            whole = model.with_frame(whole, str(tip), self._T_tip_tool)
+        return whole if self._T_world_base is None else model.mounted(whole, self.base, self._T_world_base)
 
     fk_all = kinematics.forward_kinematics_all
     jacobian_dot = kinematics.jacobian_dot

@@ -13,6 +13,7 @@ from cspace.model.dh import DHTable, dh_matrix, from_dh
 from cspace.model.dh_derivation import to_dh
 from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
+from cspace.model.mounting import mounted, with_frame
 from cspace.model.screws import from_screws, twists
 from cspace.model.toml import from_toml
 from cspace.model.toml_writer import to_toml
@@ -44,6 +45,7 @@ __all__ = [
     "from_toml",
     "from_urdf",
     "mobility",
+    "mounted",
     "point_freedoms",
     "task_word",
     "to_dh",
@@ -52,4 +54,5 @@ __all__ = [
     "tree",
     "tree_freedoms",
     "twists",
+    "with_frame",
 ]

@@ -1,0 +1,53 @@
+"""A robot with what stands before its base and after its tip, as one description."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.model.chain import rigid_group, zero_poses
+from cspace.model.description import Description
+from cspace.model.joint import Joint
+from cspace.model.link import Link
+from cspace.model.transforms import inverse
+
+__all__ = ["mounted", "with_frame"]
+
+
+def with_frame(
+    description: Description, parent: str, T_parent_frame: Array, name: str = "tool"
+) -> Description:
+    """The robot with one more link, fixed to `parent` at T_parent_frame (4, 4).
+
+    name: of the new link, with "_" added where it is taken. Raises UnknownNameError for an unknown parent.
+    """
+    link = free_name(name, description.link_by_name)
+    joint = free_name(f"{link}_fixed", description.joint_by_name)
+    fixed = Joint(joint, "fixed", description.link(parent).name, link, T_parent_frame)
+    return replace(description, links=(*description.links, Link(link)), joints=(*description.joints, fixed))
+
+
+def mounted(description: Description, base: str, T_world_base: Array, name: str = "world") -> Description:
+    """The robot on a new root link, in which its link `base` stands at T_world_base (4, 4).
+
+    Raises InputError where `base` moves against the root: a tree can be mounted at its root only.
+    """
+    if base not in rigid_group(description, description.root):
+        raise InputError(
+            f"link {base!r} moves against the root {description.root!r} of robot {description.name!r},"
+            " so the file has no place for where it is mounted; write the robot without with_base"
+        )
+    T_world_root = T_world_base @ inverse(zero_poses(description)[base])
+    link = free_name(name, description.link_by_name)
+    joint = free_name(f"{link}_fixed", description.joint_by_name)
+    fixed = Joint(joint, "fixed", link, description.root, T_world_root)
+    return replace(description, links=(Link(link), *description.links), joints=(fixed, *description.joints))
+
+
+def free_name(name: str, taken: Collection[str]) -> str:
+    """`name`, with as many "_" after it as it needs to be new."""
+    while name in taken:
+        name += "_"
+    return name
