@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 import os
 from collections.abc import Callable, Sequence
@@ -127,6 +128,13 @@ class _Reader:
         return numbers
 
     def number(self, element: Element, attribute: str, default: float | None = None) -> float:
+        """One finite number; the plain case first, since a humanoid has a thousand of them."""
+        text = element.attributes.get(attribute, "_")
+        if "_" not in text:
+            with contextlib.suppress(ValueError):
+                value = float(text)
+                if math.isfinite(value):
+                    return value
         return self.floats(element, attribute, None if default is None else [default], 1)[0]
 
     def text(self, element: Element, attribute: str) -> str:

@@ -71,8 +71,8 @@ def finite_number(value: Any, subject: str) -> float:
 
 def sane(array: Array, subject: str) -> Array:
     """The array itself, if no number is beyond tolerances.LARGEST_NUMBER."""
-    if array.size and float(np.abs(array).max()) > LARGEST_NUMBER:
-        largest = float(array.flat[int(np.abs(array).argmax())])
+    largest = max(array.ravel().tolist(), key=abs, default=0.0)
+    if abs(largest) > LARGEST_NUMBER:
         raise InputError(f"{subject} holds {largest:g}; {BEYOND}")
     return array
 

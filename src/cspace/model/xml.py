@@ -46,7 +46,7 @@ class _Builder:
         self.parser.EntityDeclHandler = self.refuse_entity
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        element = Element(tag, attributes, self.line())
+        element = Element(tag, attributes, self.parser.CurrentLineNumber + self.lines_before)
         if self.stack:
             self.stack[-1].children.append(element)
         else:
