@@ -227,5 +227,7 @@ def test_the_printed_table_says_what_moves():
     assert text.splitlines()[0] == "Denavit–Hartenberg, modified"
     assert "α_i-1 [°]" in text
     assert "0 + q1" in text
+    noise = str(DHTable("standard", [-1e-17], [1e-16], [-0.0], [1e-24], "R"))
+    assert noise.split()[-7:] == ["joint_1", "0", "0", "0", "0", "+", "q1"]
     assert "0.2 + q2" in text
     assert " 90 " in text

@@ -129,14 +129,19 @@ class DHTable:
         cells = [head]
         for i, (alpha, a, d, theta) in enumerate(self.rows.tolist()):
             kind = self.joint_types[i]
-            shift, turn = f"{d:.6g}", f"{np.degrees(theta):.6g}"
+            shift, turn = _shown(d), _shown(np.degrees(theta))
             shift += f" + q{i + 1}" if kind == "P" else ""
             turn += f" + q{i + 1}" if kind == "R" else ""
-            angle = f"{np.degrees(alpha):.6g}"
-            cells.append((str(i + 1), self.joint_names[i], angle, f"{a:.6g}", shift, turn))
+            angle = _shown(np.degrees(alpha))
+            cells.append((str(i + 1), self.joint_names[i], angle, _shown(a), shift, turn))
         widths = [max(len(row[k]) for row in cells) for k in range(len(head))]
         lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in cells]
         return f"Denavit–Hartenberg, {self.convention}\n" + "\n".join(lines)
+
+
+def _shown(value: float) -> str:
+    """Six digits, and nothing of the rounding around zero."""
+    return f"{round(float(value), 12) + 0.0:.6g}"
 
 
 def from_dh(
