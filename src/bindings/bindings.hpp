@@ -3,5 +3,6 @@
 
 void bind_math(nanobind::module_& m);
 void bind_robot(nanobind::module_& m);
+void bind_short_arms(nanobind::module_& m);
 void bind_subproblems(nanobind::module_& m);
 void bind_ik(nanobind::module_& m);

@@ -1,0 +1,110 @@
+"""Arms of up to three joints of every kind: complete against many Newton starts, honest about misses."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+
+from cspace.errors import InputError
+from cspace.ik import short_arms
+from cspace.spatial import pose
+from oracles import many_starts
+
+WORDS = ["".join(w) for n in (1, 2, 3) for w in itertools.product("RP", repeat=n)]
+
+
+def random_arm(rng, word, wild):
+    """Axes, points and tip; wild: parallel, square or meeting axes."""
+    n = len(word)
+    axes, points = rng.normal(size=(n, 3)), rng.uniform(-1, 1, (n, 3))
+    for i in range(1, n if wild else 1):
+        kind = rng.integers(4)
+        if kind == 0:
+            axes[i] = axes[i - 1]
+        elif kind == 1:
+            axes[i] = np.cross(axes[i - 1], axes[i])
+        if rng.integers(2):
+            points[i] = points[i - 1]
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    T_zero = pose(rng.uniform(-1, 1, 3), rpy=rng.uniform(-3, 3, 3))
+    return axes, points, T_zero
+
+
+def reached(arm, word, q):
+    axes, points, T_zero = arm
+    slides = [c == "P" for c in word]
+    return many_starts.tip_and_jacobian(axes, points, slides, T_zero[:3, 3], np.atleast_2d(q))[0]
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_every_solution_is_listed(word):
+    rng = np.random.default_rng(WORDS.index(word))
+    turns = np.array([c == "R" for c in word])
+    compared = 0
+    for case in range(16):
+        arm = random_arm(rng, word, case % 2)
+        axes, points, T_zero = arm
+        goal = reached(arm, word, rng.uniform(-1.5, 1.5, len(word)))[0]
+        s = short_arms.position_solutions(axes, points, word, T_zero, goal)
+        assert s
+        assert np.abs(reached(arm, word, s.q[: s.count]) - goal).max() < 1e-11
+        if s.free.any():
+            continue
+        truth = many_starts.position_roots(axes, points, ~turns, T_zero[:3, 3], goal, rng)
+        for q in truth:
+            apart = np.abs(many_starts.wrapped(s.q[: s.count] - q, turns)).max(axis=1)
+            assert apart.min() < 1e-6
+        assert len(truth) <= s.count
+        compared += 1
+    assert compared >= 4
+
+
+@pytest.mark.parametrize("word", WORDS)
+def test_poses_come_back(word):
+    rng = np.random.default_rng(100 + WORDS.index(word))
+    for case in range(20):
+        axes, points, T_zero = random_arm(rng, word, case % 2)
+        made = rng.uniform(-1.5, 1.5, len(word))
+        T = T_zero
+        for i in reversed(range(len(word))):
+            if word[i] == "P":
+                T = pose(made[i] * axes[i]) @ T
+            else:
+                turn = pose((0, 0, 0), rotvec=made[i] * axes[i])
+                T = pose(points[i]) @ turn @ pose(-points[i]) @ T
+        s = short_arms.pose_solutions(axes, points, word, T_zero, T)
+        assert s
+        near = np.abs(s.q[: s.count] - made).max(axis=1).min()
+        assert s.free.any() or near < 1e-6
+
+
+def test_a_batch_agrees_with_its_goals():
+    rng = np.random.default_rng(5)
+    axes, points, T_zero = random_arm(rng, "RRR", False)
+    p = rng.uniform(-1.5, 1.5, (3, 4, 3))
+    batch = short_arms.position_solutions(axes, points, "RRR", T_zero, p)
+    assert batch.q.shape == (3, 4, 8, 3)
+    for i in np.ndindex(3, 4):
+        one = short_arms.position_solutions(axes, points, "RRR", T_zero, p[i])
+        np.testing.assert_array_equal(batch.q[i], one.q)
+        assert batch.missing[i] == one.missing
+        if not one:
+            gap = reached((axes, points, T_zero), "RRR", one.nearest)[0] - p[i]
+            assert abs(np.linalg.norm(gap) - one.missing) < 1e-12
+    assert 0 < np.count_nonzero(batch.count) < 12
+
+
+def test_misuse_is_named():
+    z, o = [[0, 0, 1.0]], [[0, 0, 0.0]]
+    with pytest.raises(InputError, match="one to three joints"):
+        short_arms.position_solutions(z * 4, o * 4, "RRRR", np.eye(4), [0, 0, 0])
+    with pytest.raises(InputError, match="each R or P"):
+        short_arms.position_solutions(z, o, "X", np.eye(4), [0, 0, 0])
+    with pytest.raises(InputError, match="unit vectors"):
+        short_arms.position_solutions([[0, 0, 2.0]], o, "R", np.eye(4), [0, 0, 0])
+    with pytest.raises(InputError, match="axes has shape"):
+        short_arms.position_solutions(z, o, "RR", np.eye(4), [0, 0, 0])
+    with pytest.raises(InputError, match="p holds nan"):
+        short_arms.position_solutions(z, o, "R", np.eye(4), [0, 0, np.nan])
