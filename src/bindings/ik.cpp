@@ -40,6 +40,8 @@ const ik::Arm* arm_of(PyObject* robot) {
     return static_cast<const ik::Arm*>(reinterpret_cast<RobotObject*>(robot)->ik.get());
 }
 
+bool can_solve(const ik::Arm& arm) { return arm.has_plan || arm.is_short; }
+
 Posed pose_from(const double* m) {
     return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
 }
@@ -78,7 +80,7 @@ SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, i
 
 PyObject* from_careful(PyObject* robot, const ik::Arm& arm, const double* goal, const double* idle) {
     const ReadGoal<double> read = read_goal(goal);
-    const ik::Solutions found = solve_carefully(arm.plan, read.T, idle);
+    const ik::Solutions found = solve_pose(arm, read.T, idle);
     const int dof = arm.plan.chain.n;
     SolutionsObject* made = new_solutions(robot, goal, found.count, dof, found.status);
     if (!made) return nullptr;
@@ -107,12 +109,15 @@ PyObject* get_q(PyObject* self, void*) {
                     sizeof(double) * std::size_t(s->count * s->dof));
     return array;
 }
+// A position goal is kept as a pose whose rotation is NaN.
 PyObject* get_goal(PyObject* self, void*) {
-    npy_intp shape[2] = {4, 4};
-    PyObject* array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
-    if (array)
-        std::memcpy(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)),
-                    reinterpret_cast<SolutionsObject*>(self)->goal, 16 * sizeof(double));
+    const double* goal = reinterpret_cast<SolutionsObject*>(self)->goal;
+    const bool is_position = goal[0] != goal[0];
+    npy_intp shape[2] = {is_position ? 3 : 4, 4};
+    PyObject* array = PyArray_SimpleNew(is_position ? 1 : 2, shape, NPY_DOUBLE);
+    if (!array) return nullptr;
+    auto* out = static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)));
+    for (int i = 0; i < (is_position ? 3 : 16); ++i) out[i] = goal[is_position ? 4 * i + 3 : i];
     return array;
 }
 PyObject* get_robot(PyObject* self, void*) {
@@ -161,7 +166,9 @@ PyObject* answer_single(PyObject* robot, const ik::Arm& arm, const double* goal)
     double q[max_branches * 6];
     std::int8_t branch[max_branches];
     int count;
-    const ik::Quick quick = kernels::ik_one(arm.plan, goal, q, branch, &count);
+    const ik::Quick quick = arm.has_plan ? kernels::ik_one(arm.plan, goal, q, branch, &count)
+                            : read_goal(goal).is_pose ? ik::Quick::doubtful
+                                                      : ik::Quick::refused;
     if (quick == ik::Quick::refused) return nullptr;
     if (quick == ik::Quick::doubtful) return from_careful(robot, arm, goal, nullptr);
     SolutionsObject* made =
@@ -180,7 +187,7 @@ PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
     double copy[16];
     const ik::Arm* arm = arm_of(self);
     const double* goal =
-        arm && arm->has_plan && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
+        arm && can_solve(*arm) && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
     if (goal) {
         PyObject* answer = answer_single(self, *arm, goal);
         if (answer || PyErr_Occurred()) return answer;
@@ -220,9 +227,9 @@ PyObject* build(PyObject*, PyObject* args) {
     }
     chain.tip = pose_from(data_of(tip));
     auto arm = std::make_shared<ik::Arm>(make_arm(chain));
-    const bool has_plan = arm->has_plan;
+    const bool solvable = can_solve(*arm);
     reinterpret_cast<RobotObject*>(robot)->ik = std::move(arm);
-    return PyBool_FromLong(has_plan);
+    return PyBool_FromLong(solvable);
 }
 
 // _ik_careful(robot, goal (4, 4), idle (n,)) → solutions
@@ -230,7 +237,7 @@ PyObject* careful(PyObject*, PyObject* args) {
     PyObject *robot, *goal, *idle;
     if (!PyArg_ParseTuple(args, "OOO", &robot, &goal, &idle)) return nullptr;
     const ik::Arm* arm = arm_of(robot);
-    if (!arm || !arm->has_plan || !is_doubles(goal, 16) || !is_doubles(idle, arm->plan.chain.n)) {
+    if (!arm || !can_solve(*arm) || !is_doubles(goal, 16) || !is_doubles(idle, arm->plan.chain.n)) {
         PyErr_SetString(PyExc_TypeError,
                         "_ik_careful takes a robot with a solver and contiguous float64 arrays");
         return nullptr;
@@ -244,7 +251,7 @@ PyObject* miss(PyObject*, PyObject* args) {
     double stiffness;
     if (!PyArg_ParseTuple(args, "OOd", &robot, &goal, &stiffness)) return nullptr;
     const ik::Arm* arm = arm_of(robot);
-    if (!arm || !arm->has_plan || !is_doubles(goal, 16)) {
+    if (!arm || !can_solve(*arm) || !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError,
                         "_ik_miss takes a robot with a solver and a contiguous float64 goal");
         return nullptr;
@@ -255,6 +262,31 @@ PyObject* miss(PyObject*, PyObject* args) {
     if (!q) return nullptr;
     std::memcpy(data_of(q), best.q, sizeof(double) * std::size_t(n));
     return Py_BuildValue("Ndd", q, best.position, best.rotation);
+}
+
+// _ik_position(robot, p (3,)) → (status, q (k, n), families (k), missing [m], q that comes nearest (n,))
+PyObject* position(PyObject*, PyObject* args) {
+    PyObject *robot, *goal;
+    if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
+    const ik::Arm* arm = arm_of(robot);
+    if (!arm || !arm->is_short || !is_doubles(goal, 3)) {
+        PyErr_SetString(PyExc_TypeError, "_ik_position takes an arm of up to three joints and a float64 point (3,)");
+        return nullptr;
+    }
+    const double* p = data_of(goal);
+    const ik::PositionSolutions found = solve_position(arm->plan.chain, {p[0], p[1], p[2]});
+    const ik::Solutions all = from_short(arm->plan.chain, found);
+    npy_intp shape[2] = {all.count, arm->plan.chain.n};
+    PyObject* q = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+    PyObject* nearest = PyArray_SimpleNew(1, shape + 1, NPY_DOUBLE);
+    PyObject* families = PyTuple_New(all.count);
+    if (!q || !nearest || !families) return nullptr;
+    for (int k = 0; k < all.count; ++k) {
+        std::copy(all.q[k], all.q[k] + shape[1], data_of(q) + k * shape[1]);
+        PyTuple_SET_ITEM(families, k, PyBool_FromLong(all.family[k]));
+    }
+    std::copy(found.nearest, found.nearest + shape[1], data_of(nearest));
+    return Py_BuildValue("iNNdN", int(all.status), q, families, found.missing, nearest);
 }
 
 // _ik_make(robot, goal (4, 4), status, q (k, dof), branches (k), families (k), note) → solutions
@@ -292,7 +324,7 @@ PyObject* single(PyObject*, PyObject* args) {
     double copy[16];
     const ik::Arm* arm = arm_of(robot);
     const double* T = goal_in_place(goal, copy);
-    if (!arm || !arm->has_plan || !T) {
+    if (!arm || !can_solve(*arm) || !T) {
         PyErr_SetString(PyExc_TypeError, "_ik_single takes a robot with a solver and a float64 (4, 4) goal");
         return nullptr;
     }
@@ -306,7 +338,7 @@ PyObject* single(PyObject*, PyObject* args) {
 std::size_t solve_slice(const ik::Arm& arm, const double* T, std::size_t n, double* q, std::int64_t* count,
                         unsigned char* status) {
     auto* quick = reinterpret_cast<ik::Quick*>(status);
-    const bool has_kernel = arm.plan.on_lanes && arm.plan.virtual_joints == 0;
+    const bool has_kernel = arm.has_plan && arm.plan.on_lanes && arm.plan.virtual_joints == 0;
     if (has_kernel) kernels::ik_many(arm.plan, T, n, q, count, quick);
     const int dof = arm.plan.chain.n, row = max_branches * dof;
     for (std::size_t i = 0; i < n; ++i) {
@@ -316,7 +348,7 @@ std::size_t solve_slice(const ik::Arm& arm, const double* T, std::size_t n, doub
             status[i] = static_cast<unsigned char>(count[i] ? ik::Status::exact : ik::Status::unreachable);
             continue;
         }
-        const ik::Solutions found = solve_carefully(arm.plan, read_goal(T + 16 * i).T, nullptr);
+        const ik::Solutions found = solve_pose(arm, read_goal(T + 16 * i).T, nullptr);
         double* out = q + i * std::size_t(row);
         std::fill(out, out + row, std::numeric_limits<double>::quiet_NaN());
         count[i] = std::min(found.count, max_branches);
@@ -334,7 +366,7 @@ PyObject* many(PyObject*, PyObject* args) {
     if (!PyArg_ParseTuple(args, "OOOOOn", &robot, &goals, &q, &count, &status, &threads)) return nullptr;
     const ik::Arm* arm = arm_of(robot);
     const npy_intp n = PyArray_Check(count) ? PyArray_SIZE(reinterpret_cast<PyArrayObject*>(count)) : -1;
-    if (!arm || !arm->has_plan || n < 0 || !is_doubles(goals, 16 * n) ||
+    if (!arm || !can_solve(*arm) || n < 0 || !is_doubles(goals, 16 * n) ||
         !is_doubles(q, n * max_branches * arm->plan.chain.n)) {
         PyErr_SetString(PyExc_TypeError,
                         "_ik_many takes a robot with a solver and contiguous float64 arrays");
@@ -375,7 +407,8 @@ PyObject* geometry(PyObject*, PyObject* robot) {
     const ik::Arm* arm = arm_of(robot);
     if (!arm) Py_RETURN_NONE;
     const ik::Plan& plan = arm->plan;
-    return Py_BuildValue("{s:i,s:i,s:i,s:O,s:O,s:d,s:d}", "family", int(plan.family), "virtual_joints",
+    return Py_BuildValue("{s:i,s:i,s:i,s:O,s:O,s:d,s:d}", "family",
+                         arm->has_plan ? int(plan.family) : -1, "virtual_joints",
                          plan.virtual_joints, "first_three", int(plan.wrist.first.kind), "reversed",
                          plan.reversed ? Py_True : Py_False, "polish", plan.polish ? Py_True : Py_False,
                          "deviation", plan.form.deviation, "length", plan.form.length);
@@ -385,6 +418,7 @@ PyMethodDef functions[] = {
     {"_ik_build", build, METH_VARARGS, "Builds the solver of a robot from its screws at zero."},
     {"_ik_careful", careful, METH_VARARGS, "Solves one goal by the careful path, free joints as given."},
     {"_ik_miss", miss, METH_VARARGS, "The configuration that comes nearest to a goal out of reach."},
+    {"_ik_position", position, METH_VARARGS, "Solves a position goal of an arm of up to three joints."},
     {"_ik_make", make, METH_VARARGS, "A result from its parts."},
     {"_ik_single", single, METH_VARARGS, "Solves one goal."},
     {"_ik_many", many, METH_VARARGS, "Solves many goals."},

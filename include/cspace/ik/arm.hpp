@@ -3,12 +3,15 @@
 
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/complete.hpp"
+#include "cspace/ik/position/pose.hpp"
+#include "cspace/ik/position/solve.hpp"
 
 namespace cspace::ik {
 
 struct Arm {
-    Plan plan;
-    bool has_plan = false;
+    Plan plan;              // plan.chain is the arm, plan or no plan
+    bool has_plan = false;  // four to six revolute joints with a closed form
+    bool is_short = false;  // up to three joints of any kind, solved directly
 };
 
 // The configuration that comes nearest to a goal that nothing reaches.
@@ -25,7 +28,32 @@ namespace cspace::inline CSPACE_ISA {
 inline ik::Arm make_arm(const ik::Chain& chain) {
     ik::Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
+    arm.is_short = chain.n <= ik::max_position_joints;
+    if (!arm.has_plan) arm.plan.form.length = characteristic_length(chain);
     return arm;
+}
+
+// The solutions of a short arm for a position or a pose, in the common shape.
+template <class Found>
+ik::Solutions from_short(const ik::Chain& chain, const Found& found) {
+    ik::Solutions out;
+    out.count = found.count;
+    out.status = found.count ? ik::Status::exact : ik::Status::unreachable;
+    for (int k = 0; k < found.count; ++k) {
+        for (int i = 0; i < chain.n; ++i) {
+            out.q[k][i] = found.q[k][i];
+            out.direction[k][i] = found.direction[k][i];
+        }
+        out.branch[k] = static_cast<signed char>(k);
+        out.family[k] = found.free[k];
+        if (found.free[k]) out.status = ik::Status::singular;
+    }
+    return out;
+}
+
+inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
+    if (arm.has_plan) return solve_carefully(arm.plan, goal, idle);
+    return from_short(arm.plan.chain, solve_short_pose(arm.plan.chain, goal));
 }
 
 // Minimises ‖Δp‖² + (stiffness · length · angle)²: stiffness 1 weighs a radian like the arm's length, a large
@@ -35,7 +63,8 @@ inline ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double stiff
     const ik::Plan& plan = arm.plan;
     Care care;
     care.band = std::numeric_limits<double>::infinity();
-    const Branches<double> b = closed_form(plan, goal_in_form(plan, goal), care);
+    Branches<double> b{};
+    if (arm.has_plan) b = closed_form(plan, goal_in_form(plan, goal), care);
     ik::Miss best{{}, std::numeric_limits<double>::infinity(), 0};
     double least = std::numeric_limits<double>::infinity();
     const double length = plan.form.length * stiffness;
@@ -43,7 +72,7 @@ inline ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double stiff
     for (int k = 0; k < max_branches + spread; ++k) {
         double q[ik::max_joints] = {};
         spread_configuration(k, plan.chain.n, q);
-        for (int i = 0; i < 6 && k < max_branches; ++i)
+        for (int i = 0; arm.has_plan && i < 6 && k < max_branches; ++i)
             if (plan.joint[i] >= 0 && std::isfinite(b.t[k][i]))
                 q[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
         PoseError error;
@@ -52,7 +81,7 @@ inline ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double stiff
         least = size;
         best.position = error.position;
         best.rotation = error.rotation;
-        for (int i = 0; i < plan.chain.n; ++i) best.q[i] = wrap_once(std::remainder(q[i], 2 * pi));
+        for (int i = 0; i < plan.chain.n; ++i) best.q[i] = plan.chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
     }
     return best;
 }

@@ -26,6 +26,10 @@ SINGULAR: Final = 2
 NEAREST: Final = 3
 VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
 METRICS: Final = ("euclidean", "max")
+ORIENTATION_FIRST: Final = 1e4
+"""Weight of a radian, in lengths of the arm, in the search for the way that is missing: it stays put."""
+ORIENTATION_KEPT: Final = 1e-3
+"""Largest angle [rad] left by that search at which the orientation counts as kept."""
 
 
 def verdict_name(verdict: int) -> str:
@@ -87,7 +91,9 @@ class Solutions(_core.SolutionsBase):
         """
         if self._verdict != UNREACHABLE:
             return 0.0
-        return float(_core._ik_miss(self.robot, self.goal, 1e4)[1])
+        if self.goal.shape == (3,):
+            return float(_core._ik_position(self.robot, self.goal)[3])
+        return float(_core._ik_miss(self.robot, self.goal, ORIENTATION_FIRST)[1])
 
     @property
     def reason(self) -> str:
@@ -99,14 +105,16 @@ class Solutions(_core.SolutionsBase):
         text = how_many(len(self)) + " the goal"
         if self._verdict == SINGULAR:
             moving = sorted({name for family in self.families for name in family.joints})
-            text += f"; the pose is singular: {', '.join(moving)} can move while the tip stays"
+            cause = "the pose is singular" if self.goal.shape == (4, 4) else "the goal leaves freedom"
+            text += f"; {cause}: {', '.join(moving)} can move while the tip stays"
         return text
 
     @property
     def families(self) -> tuple[Family, ...]:
         """The one-parameter families among the solutions, empty unless the pose is singular."""
         rows = [row for row, is_family in enumerate(self._is_family) if is_family]
-        return tuple(family_at(self.robot, row, self.q[row]) for row in rows)
+        held = 6 if self.goal.shape == (4, 4) else 3
+        return tuple(family_at(self.robot, row, self.q[row], held) for row in rows)
 
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
@@ -163,12 +171,16 @@ class Solutions(_core.SolutionsBase):
         names = self.robot.joint_names
         return tuple({name: float(e) for name, e in zip(names, row, strict=True) if e > 0} for row in excess)
 
+    @property
+    def _goal_pose(self) -> Array:
+        return self.goal if self.goal.shape == (4, 4) else position_goal(self.goal)
+
     def _take(self, rows: Any, q: Array, note: str | None) -> Solutions:
         branches = tuple(self._branch_numbers[row] for row in rows)
         families = tuple(self._is_family[row] for row in rows)
         made = _core._ik_make(
             self.robot,
-            self.goal,
+            self._goal_pose,
             self._verdict,
             np.ascontiguousarray(q, dtype=np.float64),
             branches,
@@ -192,6 +204,8 @@ def pose_errors(robot: Any, q: Array, goal: Array) -> Array:
     if q.size == 0:
         return np.zeros(q.shape[:-1])
     T = robot.fk(q)
+    if goal.shape == (3,):
+        return cast(Array, np.linalg.norm(T[..., :3, 3] - goal, axis=-1))
     away = np.linalg.norm(T[..., :3, 3] - goal[..., :3, 3], axis=-1)
     # ‖R − R_goal‖_F = 2√2 sin(angle/2), which keeps its digits for small angles.
     gap = np.linalg.norm(T[..., :3, :3] - goal[..., :3, :3], axis=(-2, -1))
@@ -203,16 +217,26 @@ def how_many(k: int) -> str:
     return "1 configuration reaches" if k == 1 else f"{k} configurations reach"
 
 
+def position_goal(p: Array) -> Array:
+    """A position goal (3,) in the shape of a pose, its rotation unknown."""
+    T = np.full((4, 4), np.nan)
+    T[:3, 3] = p
+    return T
+
+
 def unreachable_reason(found: Solutions) -> str:
-    missing = found.missing
-    if missing < 1e-6:
+    name = found.robot.name
+    if found.goal.shape == (3,):
+        return f"out of reach: the goal would have to move {found.missing:.4g} m for {name} to reach it"
+    _, missing, turned = _core._ik_miss(found.robot, found.goal, ORIENTATION_FIRST)
+    if turned > ORIENTATION_KEPT:
         return (
-            f"no configuration of {found.robot.name} has this orientation here: the position alone can be "
-            "reached, or nearly so"
+            f"{name} ({found.robot.dof} joints) cannot take this orientation: the nearest configuration "
+            f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"
         )
     return (
-        f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, for "
-        f"{found.robot.name} to reach it"
+        f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
+        f"for {name} to reach it"
     )
 
 
@@ -227,8 +251,9 @@ def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:
     )
 
 
-def family_at(robot: Any, row: int, q: Array) -> Family:
-    direction = np.linalg.svd(robot.jacobian(q))[2][-1]
+def family_at(robot: Any, row: int, q: Array, held: int) -> Family:
+    """The family through q: the joint velocity that leaves the first `held` rows of the tip's twist at zero."""
+    direction = np.linalg.svd(robot.jacobian(q)[:held])[2][-1]
     direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
     moving = np.abs(direction) > 1e-6
     names = tuple(itertools.compress(robot.joint_names, moving))

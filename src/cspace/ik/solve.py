@@ -11,13 +11,15 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.geometry import NoClosedFormError, explain_missing_form
-from cspace.ik.solutions import NEAREST, Solutions
+from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.windings import wrap
 from cspace.spatial import as_pose
 
 __all__ = ["inverse_kinematics"]
 
 MAX_BRANCHES = 8
+MAX_POSITION_JOINTS = 3
 
 
 def prepare(robot: Any) -> None:
@@ -46,13 +48,15 @@ def inverse_kinematics(
     robot: Any,
     goal: Any = None,
     *,
+    position: Any = None,
     near: Any = None,
     least_squares: bool = False,
     threads: int | None = None,
 ) -> Solutions | SolutionsBatch:
     """Every configuration q with fk(q) = goal.
 
-    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. near: (dof,), a configuration; the
+    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. position: (3,) the tip alone [m], or
+    (2,) for an arm in the plane; for arms of up to three joints. near: (dof,), a configuration; the
     answer is the one solution nearest to it, and joints that the pose leaves free take its values.
     least_squares: where nothing reaches the goal, answer with the configuration that misses it least (a
     radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
@@ -63,21 +67,60 @@ def inverse_kinematics(
     NoClosedFormError.
     """
     prepare(robot)
-    if goal is None:
-        raise InputTypeError("ik needs a goal: robot.ik(T) with T the pose of the tip in the base")
-    T = goal_array(goal)
-    if T.ndim > 2:
+    if (goal is None) == (position is None):
+        raise InputTypeError(
+            "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or robot.ik(position=p)"
+        )
+    if position is not None:
+        p = position_in_base(robot, position)
+        found: Solutions | SolutionsBatch = solve_position(robot, p)
+    else:
+        T = goal_array(goal)
+        found = solve_many(robot, T, threads) if T.ndim > 2 else solve_one(robot, T, near)
+    if isinstance(found, SolutionsBatch):
         if near is not None or least_squares:
             raise InputTypeError("near= and least_squares= are for one goal; a batch has .nearest(q)")
-        return solve_many(robot, T, threads)
-    found = solve_one(robot, T, near)
+        return found
     if least_squares and not found:
-        return least_squares_answer(robot, T)
+        return least_squares_answer(robot, found)
     return found if near is None else found.nearest(near)
 
 
+def position_in_base(robot: Any, position: Any) -> Array:
+    """One point in the base (3,); a point of the plane (2,) is lifted to the height that a planar arm
+    keeps.
+    """
+    if len(robot.chain.joint_types) > MAX_POSITION_JOINTS:
+        raise NoClosedFormError(
+            f"position goals are for arms of up to {MAX_POSITION_JOINTS} joints; {robot.name} has "
+            f"{len(robot.chain.joint_types)}, which leaves freedom: give a full pose"
+        )
+    p = as_floats(position, "position", last=(None,))
+    if p.shape == (2,):
+        chain = robot.chain
+        turns = np.array([kind == "R" for kind in chain.joint_types])
+        in_plane = np.where(turns, np.abs(chain.axes[:, 2]) > 1 - 1e-12, np.abs(chain.axes[:, 2]) < 1e-6)
+        if not in_plane.all():
+            raise InputError(
+                f"position has shape (2,), but {robot.name} does not move in a plane z = constant"
+            )
+        p = np.append(p, chain.T_zero[2, 3])
+    if p.shape != (3,):
+        raise InputError(f"position has shape {p.shape}, expected (3,), or (2,) for an arm in the plane")
+    return np.ascontiguousarray(p)
+
+
+def solve_position(robot: Any, p: Array) -> Solutions:
+    verdict, q, families, _, _ = _core._ik_position(robot, p)
+    return cast(
+        Solutions, _core._ik_make(robot, position_goal(p), verdict, q, tuple(range(len(q))), families, None)
+    )
+
+
 def goal_array(goal: Any) -> Array:
-    """The goals as contiguous float64; a plain batch goes on unchecked, for the core checks every goal itself."""
+    """The goals as contiguous float64; a plain batch goes on unchecked, for the core checks every goal
+    itself.
+    """
     if type(goal) is np.ndarray and goal.dtype == np.float64 and goal.ndim > 2 and goal.shape[-2:] == (4, 4):
         return np.ascontiguousarray(goal)
     return np.ascontiguousarray(as_pose(goal, "goal"))
@@ -117,10 +160,14 @@ def solve_many(robot: Any, T: Array, threads: int | None) -> SolutionsBatch:
     )
 
 
-def least_squares_answer(robot: Any, T: Array) -> Solutions:
-    q, position, rotation = _core._ik_miss(robot, T, 1.0)
-    note = (
-        f"nothing reaches the goal; the nearest configuration misses it by {position:.4g} m "
-        f"and {np.degrees(rotation):.4g}°"
-    )
-    return cast(Solutions, _core._ik_make(robot, T, NEAREST, q[None, :], (-1,), (False,), note))
+def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
+    goal = found.goal
+    if goal.shape == (3,):
+        _, _, _, missing, q = _core._ik_position(robot, goal)
+        goal, text = position_goal(goal), f"{missing:.4g} m"
+    else:
+        q, away, turned = _core._ik_miss(robot, goal, 1.0)
+        text = f"{away:.4g} m and {np.degrees(turned):.4g}°"
+    q = wrap(q, robot.joint_types)
+    note = f"nothing reaches the goal; the nearest configuration misses it by {text}"
+    return cast(Solutions, _core._ik_make(robot, goal, NEAREST, q[None, :], (-1,), (False,), note))
