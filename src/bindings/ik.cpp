@@ -166,7 +166,7 @@ PyObject* answer_single(PyObject* robot, const ik::Arm& arm, const double* goal)
     double q[max_branches * 6];
     std::int8_t branch[max_branches];
     int count;
-    const ik::Quick quick = arm.has_plan ? kernels::ik_one(arm.plan, goal, q, branch, &count)
+    const ik::Quick quick = arm.has_plan              ? kernels::ik_one(arm.plan, goal, q, branch, &count)
                             : read_goal(goal).is_pose ? ik::Quick::doubtful
                                                       : ik::Quick::refused;
     if (quick == ik::Quick::refused) return nullptr;
@@ -270,7 +270,8 @@ PyObject* position(PyObject*, PyObject* args) {
     if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
     const ik::Arm* arm = arm_of(robot);
     if (!arm || !arm->is_short || !is_doubles(goal, 3)) {
-        PyErr_SetString(PyExc_TypeError, "_ik_position takes an arm of up to three joints and a float64 point (3,)");
+        PyErr_SetString(PyExc_TypeError,
+                        "_ik_position takes an arm of up to three joints and a float64 point (3,)");
         return nullptr;
     }
     const double* p = data_of(goal);
@@ -407,11 +408,11 @@ PyObject* geometry(PyObject*, PyObject* robot) {
     const ik::Arm* arm = arm_of(robot);
     if (!arm) Py_RETURN_NONE;
     const ik::Plan& plan = arm->plan;
-    return Py_BuildValue("{s:i,s:i,s:i,s:O,s:O,s:d,s:d}", "family",
-                         arm->has_plan ? int(plan.family) : -1, "virtual_joints",
-                         plan.virtual_joints, "first_three", int(plan.wrist.first.kind), "reversed",
-                         plan.reversed ? Py_True : Py_False, "polish", plan.polish ? Py_True : Py_False,
-                         "deviation", plan.form.deviation, "length", plan.form.length);
+    return Py_BuildValue("{s:i,s:i,s:i,s:O,s:O,s:d,s:d}", "family", arm->has_plan ? int(plan.family) : -1,
+                         "virtual_joints", plan.virtual_joints, "first_three", int(plan.wrist.first.kind),
+                         "reversed", plan.reversed ? Py_True : Py_False, "polish",
+                         plan.polish ? Py_True : Py_False, "deviation", plan.form.deviation, "length",
+                         plan.form.length);
 }
 
 PyMethodDef functions[] = {

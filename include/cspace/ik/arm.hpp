@@ -81,7 +81,8 @@ inline ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double stiff
         least = size;
         best.position = error.position;
         best.rotation = error.rotation;
-        for (int i = 0; i < plan.chain.n; ++i) best.q[i] = plan.chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
+        for (int i = 0; i < plan.chain.n; ++i)
+            best.q[i] = plan.chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
     }
     return best;
 }

@@ -22,12 +22,6 @@ struct AxisChoices {
 
 namespace cspace::inline CSPACE_ISA {
 
-inline Vec3d some_perpendicular(const Vec3d& h) {
-    const Vec3d other = std::fabs(h.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-    const Vec3d n = cross(h, other);
-    return (1 / norm(n)) * n;
-}
-
 inline void offer(AxisChoices& choices, const Vec3d& direction, const Vec3d& point) {
     const double size = norm(direction);
     if (size > 0.1 && choices.count < AxisChoices::most)
@@ -37,8 +31,8 @@ inline void offer(AxisChoices& choices, const Vec3d& direction, const Vec3d& poi
 // Directions worth trying at a point on axis h whose neighbour is k.
 inline void offer_at(AxisChoices& choices, const Vec3d& point, const Vec3d& h, const Vec3d& k) {
     offer(choices, cross(h, k), point);
-    offer(choices, some_perpendicular(h), point);
-    offer(choices, cross(h, some_perpendicular(h)), point);
+    offer(choices, any_perpendicular(h), point);
+    offer(choices, cross(h, any_perpendicular(h)), point);
     offer(choices, k, point);
 }
 
@@ -50,7 +44,7 @@ inline AxisChoices axes_to_insert(const ik::Chain& c, int at) {
         const int near = side < 0 ? at - 1 : at, far = near + side;
         if (near < 0 || near >= c.n) continue;
         if (far < 0 || far >= c.n) {
-            offer_at(choices, c.point[near], c.axis[near], some_perpendicular(c.axis[near]));
+            offer_at(choices, c.point[near], c.axis[near], any_perpendicular(c.axis[near]));
             continue;
         }
         const bool is_parallel = norm(cross(c.axis[near], c.axis[far])) < tolerance::axis_relation;
@@ -59,7 +53,7 @@ inline AxisChoices axes_to_insert(const ik::Chain& c, int at) {
         offer_at(choices, normal.from, c.axis[near], c.axis[far]);
         if (normal.a > 0) offer_at(choices, normal.to, c.axis[near], c.axis[far]);
     }
-    if (at == c.n) offer(choices, some_perpendicular(c.axis[c.n - 1]), c.tip.t);
+    if (at == c.n) offer(choices, any_perpendicular(c.axis[c.n - 1]), c.tip.t);
     return choices;
 }
 

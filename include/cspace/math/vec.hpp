@@ -109,6 +109,12 @@ template <class V>
 CSPACE_INLINE Pose<V> fill_pose(const Pose<double>& T) {
     return {fill33<V>(T.R), fill3<V>(T.t)};
 }
+// A unit vector square to the unit vector h.
+inline Vec3d any_perpendicular(const Vec3d& h) {
+    const Vec3d other = abs(h.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
+    const Vec3d n = cross(h, other);
+    return (1 / norm(n)) * n;
+}
 // Rotation about a unit axis by the angle with cosine c and sine s (Rodrigues 1840).
 template <class V>
 CSPACE_INLINE Mat3<V> rotation_about(const Vec3<V>& k, V c, V s) {

@@ -17,11 +17,6 @@ namespace cspace::inline CSPACE_ISA {
 
 namespace position {
 
-inline Vec3d any_perpendicular(const Vec3d& h) {
-    const Vec3d e = std::fabs(h.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
-    const Vec3d n = cross(h, e);
-    return (1 / norm(n)) * n;
-}
 // The two functions of a point on a curve that a joint cannot change.
 template <int n>
 void invariants(const TipGap<n>& g, int joint, const Curve& curve, OnCurve f[2]) {
