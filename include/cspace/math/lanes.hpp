@@ -190,14 +190,6 @@ CSPACE_INLINE unsigned bits_of(bool m) { return m; }
 CSPACE_INLINE double sqrt(double x) { return std::sqrt(x); }
 CSPACE_INLINE double min(double a, double b) { return a < b ? a : b; }
 CSPACE_INLINE double max(double a, double b) { return a > b ? a : b; }
-// a b + c; rounded once where the instruction set multiplies and adds in one instruction.
-CSPACE_INLINE double mul_add(double a, double b, double c) {
-#if CSPACE_VECTOR_EXTENSIONS && (defined(__FMA__) || defined(__ARM_NEON))
-    return __builtin_fma(a, b, c);
-#else
-    return a * b + c;
-#endif
-}
 #define CSPACE_BITS(name, op)                                                                           \
     CSPACE_INLINE double name(double a, double b) {                                                     \
         return std::bit_cast<double>(std::bit_cast<std::int64_t>(a) op std::bit_cast<std::int64_t>(b)); \

@@ -69,6 +69,15 @@ struct Mask<N> {
 
 namespace cspace::inline CSPACE_ISA {
 
+// a b + c; rounded once where the instruction set multiplies and adds in one instruction.
+CSPACE_INLINE double mul_add(double a, double b, double c) {
+#if (defined(__GNUC__) || defined(__clang__)) && (defined(__FMA__) || defined(__ARM_NEON))
+    return __builtin_fma(a, b, c);
+#else
+    return a * b + c;
+#endif
+}
+
 #define CSPACE_REGISTER_OPERATION(Result, name, Operand) \
     template <int N>                                     \
         requires(!is_split<N>)                           \
@@ -232,8 +241,12 @@ CSPACE_REGISTER_OPERATION(Pack, max, Pack) { return select(a > b, a, b); }
 template <int N>
     requires(!is_split<N>)
 CSPACE_INLINE Pack<N> sqrt(Pack<N> a) {
+#if CSPACE_VECTOR_EXTENSIONS && defined(__ARM_NEON)
+    return {(typename Pack<N>::Raw)vsqrtq_f64(a.v)};
+#else
     for (int i = 0; i < N; ++i) a.v[i] = std::sqrt(a.v[i]);
     return a;
+#endif
 }
 template <int N>
     requires(!is_split<N>)
@@ -241,7 +254,8 @@ CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {
 #if CSPACE_VECTOR_EXTENSIONS && defined(__ARM_NEON)
     return {(typename Pack<N>::Raw)vfmaq_f64(c.v, a.v, b.v)};
 #else
-    return a * b + c;
+    for (int i = 0; i < N; ++i) c.v[i] = mul_add(a.v[i], b.v[i], c.v[i]);
+    return c;
 #endif
 }
 template <int N>

@@ -1,0 +1,129 @@
+// Small dense systems on lanes: in place, without allocation, without branches where V is a pack.
+//
+// The unknowns of each lane are its own, and so are its pivots. Singular lanes are told by the mask that each
+// function returns; their numbers are finite where the input is, and mean nothing.
+#pragma once
+
+#include <limits>
+
+#include "cspace/math/lanes.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+namespace linear {
+
+// Swaps the rows k and i, from column k on, of those lanes where row i has the larger entry in column k.
+template <int n, class V>
+CSPACE_INLINE void lift_pivot(V (&A)[n][n], V (&b)[n], int k, int i) {
+    const auto larger = abs(A[i][k]) > abs(A[k][k]);
+    if constexpr (Lanes<V>::count == 1) {
+        if (!larger) return;
+    }
+    const auto swap = [&](V& upper, V& lower) {
+        const V kept = upper;
+        upper = select(larger, lower, upper);
+        lower = select(larger, kept, lower);
+    };
+    for (int j = k; j < n; ++j) swap(A[k][j], A[i][j]);
+    swap(b[k], b[i]);
+}
+
+// 1/x, and 1 in the lanes where x is zero.
+template <class V>
+CSPACE_INLINE V safe_inverse(V x) {
+    return 1.0 / select(x == 0.0, fill<V>(1.0), x);
+}
+// Whether no diagonal entry is lost in the rounding of the largest.
+template <int n, class V>
+CSPACE_INLINE mask_of<V> full_rank(const V (&diagonal)[n]) {
+    V largest = abs(diagonal[0]), smallest = largest;
+    for (int k = 1; k < n; ++k) {
+        largest = max(largest, abs(diagonal[k]));
+        smallest = min(smallest, abs(diagonal[k]));
+    }
+    return smallest > (n * std::numeric_limits<double>::epsilon()) * largest;
+}
+
+// The triangle and the reflections of A = Q R (Householder 1958; Golub & Van Loan 2013, section 5.2): R above
+// the diagonal of A and in `diagonal`, the vectors v_k on and below it, I − factor_k v_k v_kᵀ.
+template <int m, int n, class V>
+CSPACE_INLINE void factor_qr(V (&A)[m][n], V (&diagonal)[n], V (&factor)[n]) {
+    for (int k = 0; k < n; ++k) {
+        V square = A[k][k] * A[k][k];
+        for (int i = k + 1; i < m; ++i) square = mul_add(A[i][k], A[i][k], square);
+        diagonal[k] = -copysign(sqrt(square), A[k][k]);
+        A[k][k] = A[k][k] - diagonal[k];
+        factor[k] = -safe_inverse(diagonal[k] * A[k][k]);
+        for (int j = k + 1; j < n; ++j) {
+            V along = A[k][k] * A[k][j];
+            for (int i = k + 1; i < m; ++i) along = mul_add(A[i][k], A[i][j], along);
+            along = along * factor[k];
+            for (int i = k; i < m; ++i) A[i][j] = mul_add(-along, A[i][k], A[i][j]);
+        }
+    }
+}
+// b := (I − factor_k v_k v_kᵀ) b
+template <int m, int n, class V>
+CSPACE_INLINE void reflect(const V (&A)[m][n], const V (&factor)[n], int k, V (&b)[m]) {
+    V along = A[k][k] * b[k];
+    for (int i = k + 1; i < m; ++i) along = mul_add(A[i][k], b[i], along);
+    along = along * factor[k];
+    for (int i = k; i < m; ++i) b[i] = mul_add(-along, A[i][k], b[i]);
+}
+
+}  // namespace linear
+
+// A x = b by elimination with partial pivoting in each lane (Golub & Van Loan 2013, section 3.4). A is used
+// up, b becomes x; true where A is regular.
+template <int n, class V>
+CSPACE_INLINE mask_of<V> solve(V (&A)[n][n], V (&b)[n]) {
+    V diagonal[n], inverse[n];
+    for (int k = 0; k < n; ++k) {
+        for (int i = k + 1; i < n; ++i) linear::lift_pivot(A, b, k, i);
+        diagonal[k] = A[k][k];
+        inverse[k] = linear::safe_inverse(A[k][k]);
+        for (int i = k + 1; i < n; ++i) {
+            const V multiple = -A[i][k] * inverse[k];
+            for (int j = k + 1; j < n; ++j) A[i][j] = mul_add(multiple, A[k][j], A[i][j]);
+            b[i] = mul_add(multiple, b[k], b[i]);
+        }
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        for (int j = k + 1; j < n; ++j) b[k] = mul_add(-A[k][j], b[j], b[k]);
+        b[k] = b[k] * inverse[k];
+    }
+    return linear::full_rank(diagonal);
+}
+
+// The x of least |A x − b| for m ≥ n, the least x with A x = b for m < n, by reflections. A and b are used
+// up; true where A has full rank.
+template <int m, int n, class V>
+CSPACE_INLINE mask_of<V> least_squares(V (&A)[m][n], V (&b)[m], V (&x)[n]) {
+    if constexpr (m >= n) {
+        V diagonal[n], factor[n];
+        linear::factor_qr(A, diagonal, factor);
+        for (int k = 0; k < n; ++k) linear::reflect(A, factor, k, b);
+        for (int k = n - 1; k >= 0; --k) {
+            x[k] = b[k];
+            for (int j = k + 1; j < n; ++j) x[k] = mul_add(-A[k][j], x[j], x[k]);
+            x[k] = x[k] * linear::safe_inverse(diagonal[k]);
+        }
+        return linear::full_rank(diagonal);
+    } else {
+        // Aᵀ = Q R: Rᵀ y = b, and x = Q y has no part outside the rows of A.
+        V transposed[n][m], diagonal[m], factor[m];
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < m; ++j) transposed[i][j] = A[j][i];
+        }
+        linear::factor_qr(transposed, diagonal, factor);
+        for (int i = 0; i < n; ++i) x[i] = fill<V>(0.0);
+        for (int k = 0; k < m; ++k) {
+            x[k] = b[k];
+            for (int j = 0; j < k; ++j) x[k] = mul_add(-transposed[j][k], x[j], x[k]);
+            x[k] = x[k] * linear::safe_inverse(diagonal[k]);
+        }
+        for (int k = m - 1; k >= 0; --k) linear::reflect(transposed, factor, k, x);
+        return linear::full_rank(diagonal);
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

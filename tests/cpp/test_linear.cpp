@@ -1,0 +1,182 @@
+// Laws of the small systems: residuals of the size of rounding, orthogonality, agreement of the lanes.
+#include <algorithm>
+
+#include "check.hpp"
+#include "cspace/math/linear.hpp"
+#include "random.hpp"
+
+namespace {
+
+template <int m, int n, class V>
+struct System {
+    V A[m][n], b[m];
+};
+
+// Rows of very different sizes, and zeros on the diagonal, so that pivots must be chosen lane by lane.
+template <int m, int n, class V>
+System<m, n, V> random_system(check::Random& random) {
+    System<m, n, V> s{};
+    for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
+        for (int i = 0; i < m; ++i) {
+            const double size = std::ldexp(1.0, random.below(12) - 6);
+            for (int j = 0; j < n; ++j) {
+                const bool zero = i == j && random.below(3) == 0;
+                cspace::set_lane(s.A[i][j], k, zero ? 0.0 : size * random.uniform(-1, 1));
+            }
+            cspace::set_lane(s.b[i], k, size * random.uniform(-1, 1));
+        }
+    }
+    return s;
+}
+
+// row i of A times x, less b; and the sum of the sizes that went into it
+template <int m, int n, class V>
+double residual(const System<m, n, V>& s, const V (&x)[n], int i, int k, double& size) {
+    double r = -cspace::lane(s.b[i], k);
+    size = std::fabs(r);
+    for (int j = 0; j < n; ++j) {
+        const double term = cspace::lane(s.A[i][j], k) * cspace::lane(x[j], k);
+        r += term;
+        size += std::fabs(term);
+    }
+    return r;
+}
+template <int m, int n, class V>
+double largest_size(const System<m, n, V>& s, const V (&x)[n], int k) {
+    double largest = 0, size;
+    for (int i = 0; i < m; ++i) {
+        residual(s, x, i, k, size);
+        largest = std::max(largest, size);
+    }
+    return largest;
+}
+
+template <int n, class V>
+void check_solve() {
+    check::Random random{11 * n};
+    int told_regular = 0;
+    for (int round = 0; round < 300; ++round) {
+        const auto s = random_system<n, n, V>(random);
+        auto used = s;
+        const auto regular = cspace::solve(used.A, used.b);
+        for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
+            if (!cspace::lane(regular, k)) continue;
+            ++told_regular;
+            const double largest = largest_size(s, used.b, k);
+            for (int i = 0; i < n; ++i) {
+                double size;
+                CHECK_NEAR(residual(s, used.b, i, k, size), 0.0, 1e-13 * largest);
+            }
+        }
+    }
+    CHECK(told_regular > (n == 1 ? 150 : 250) * cspace::Lanes<V>::count);
+}
+
+// Whatever the shape: A x − b is orthogonal to the columns of A, and no smaller x does as well.
+template <int m, int n, class V>
+void check_least_squares() {
+    check::Random random{13 * m + n};
+    for (int round = 0; round < 100; ++round) {
+        const auto s = random_system<m, n, V>(random);
+        auto used = s;
+        V x[n];
+        const auto full = cspace::least_squares(used.A, used.b, x);
+        for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
+            if (!cspace::lane(full, k)) continue;
+            const double largest = largest_size(s, x, k);
+            double size;
+            for (int j = 0; j < n; ++j) {
+                double along = 0, length = 0;
+                for (int i = 0; i < m; ++i) {
+                    const double a = cspace::lane(s.A[i][j], k);
+                    along += a * residual(s, x, i, k, size);
+                    length += std::fabs(a);
+                }
+                CHECK_NEAR(along, 0.0, 1e-13 * largest * length);
+            }
+        }
+        if constexpr (m < n) {
+            // A vector of the null space: a random one less the least vector with the same image.
+            System<m, n, V> image = s;
+            V w[n], same_image[n];
+            for (int j = 0; j < n; ++j) w[j] = cspace::fill<V>(random.uniform(-1, 1));
+            for (int i = 0; i < m; ++i) {
+                image.b[i] = cspace::fill<V>(0.0);
+                for (int j = 0; j < n; ++j) image.b[i] = image.b[i] + s.A[i][j] * w[j];
+            }
+            const auto full_too = cspace::least_squares(image.A, image.b, same_image);
+            for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
+                if (!cspace::lane(full_too, k)) continue;
+                double inner = 0, length = 0, x_length = 0;
+                for (int j = 0; j < n; ++j) {
+                    const double z = cspace::lane(w[j], k) - cspace::lane(same_image[j], k);
+                    inner += z * cspace::lane(x[j], k);
+                    length = std::max(length, std::fabs(z));
+                    x_length = std::max(x_length, std::fabs(cspace::lane(x[j], k)));
+                }
+                CHECK_NEAR(inner, 0.0, 1e-10 * length * x_length);
+            }
+        }
+    }
+}
+
+template <class V>
+void check_all() {
+    check_solve<1, V>();
+    check_solve<3, V>();
+    check_solve<6, V>();
+    check_solve<8, V>();
+    check_least_squares<6, 6, V>();
+    check_least_squares<6, 3, V>();
+    check_least_squares<8, 6, V>();
+    check_least_squares<6, 7, V>();
+    check_least_squares<3, 8, V>();
+}
+
+}  // namespace
+
+TEST(systems_of_one) { check_all<double>(); }
+TEST(systems_on_lanes) {
+    check_all<cspace::Pack<2>>();
+    check_all<cspace::Pack<4>>();
+    check_all<cspace::Pack<8>>();
+}
+
+TEST(permutations_are_solved_exactly) {
+    int order[] = {0, 1, 2, 3, 4};
+    do {
+        double A[5][5] = {}, b[5];
+        for (int i = 0; i < 5; ++i) {
+            A[i][order[i]] = 1 << i;
+            b[i] = (order[i] + 1) * (1 << i);
+        }
+        CHECK(cspace::solve(A, b));
+        for (int i = 0; i < 5; ++i) CHECK(b[i] == i + 1);
+    } while (std::next_permutation(order, order + 5));
+}
+
+TEST(a_singular_lane_is_told_and_harms_no_other) {
+    check::Random random{5};
+    for (int round = 0; round < 100; ++round) {
+        auto s = random_system<6, 6, cspace::Pack<4>>(random);
+        for (int j = 0; j < 6; ++j) cspace::set_lane(s.A[3][j], 2, 2 * cspace::lane(s.A[5][j], 2));
+        auto eliminated = s, reflected = s;
+        cspace::Pack<4> x[6];
+        const auto regular = cspace::solve(eliminated.A, eliminated.b);
+        const auto full = cspace::least_squares(reflected.A, reflected.b, x);
+        CHECK(!cspace::lane(regular, 2) && !cspace::lane(full, 2));
+        for (int k : {0, 1, 3}) {
+            double A[6][6], b[6];
+            for (int i = 0; i < 6; ++i) {
+                for (int j = 0; j < 6; ++j) A[i][j] = cspace::lane(s.A[i][j], k);
+                b[i] = cspace::lane(s.b[i], k);
+            }
+            CHECK(cspace::solve(A, b) == cspace::lane(regular, k));
+            for (int i = 0; i < 6; ++i) {
+                CHECK_NEAR(b[i], cspace::lane(eliminated.b[i], k), 1e-8 * (1 + std::fabs(b[i])));
+                CHECK(std::isfinite(cspace::lane(x[i], 2)) &&
+                      std::isfinite(cspace::lane(eliminated.b[i], 2)));
+            }
+        }
+    }
+}
