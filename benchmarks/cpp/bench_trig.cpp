@@ -1,8 +1,10 @@
-// The elementary functions: nanoseconds per element, ours on packs through the chosen kernel and the C library.
+// The elementary functions: nanoseconds per element, ours on packs through the chosen kernel and the C
+// library.
 #include <cmath>
 #include <vector>
 
 #include "bench.hpp"
+#include "cspace/math/trig.hpp"
 #include "trig.hpp"
 
 int main() {
@@ -27,5 +29,23 @@ int main() {
         bench::keep(s[0]);
     });
     bench::measure("acos", n, repetitions, [&] { kernels::acos_n(y.data(), s.data(), n); });
+    bench::measure("acos of the C library", n, repetitions, [&] {
+        for (int i = 0; i < n; ++i) s[i] = std::acos(y[i]);
+        bench::keep(s[0]);
+    });
+    bench::measure("asin", n, repetitions, [&] { kernels::asin_n(y.data(), s.data(), n); });
+    // One double at a time, compiled as this file is (-DCMAKE_CXX_FLAGS="-mavx2 -mfma" for the AVX2 column).
+    bench::measure("sincos of one double", n, repetitions, [&] {
+        for (int i = 0; i < n; ++i) cspace::sincos(x[i], s[i], c[i]);
+        bench::keep(s[0]);
+    });
+    bench::measure("atan2 of one double", n, repetitions, [&] {
+        for (int i = 0; i < n; ++i) s[i] = cspace::atan2(y[i], x[i]);
+        bench::keep(s[0]);
+    });
+    bench::measure("acos of one double", n, repetitions, [&] {
+        for (int i = 0; i < n; ++i) s[i] = cspace::acos(y[i]);
+        bench::keep(s[0]);
+    });
     return 0;
 }
