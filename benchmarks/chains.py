@@ -20,7 +20,7 @@ class Arm:
     """A serial arm by its screws at zero: axes (n, 3), a point on each (n, 3) [m], T_zero (4, 4), limits
     (n,).
 
-    dh: (n, 4) rows a, alpha, d, theta offset (standard convention) between T_base and T_tool (4, 4), for
+    dh: (n, 4) rows alpha, a, d, theta offset (standard convention) between T_base and T_tool (4, 4), for
     peers that take nothing else.
     """
 
@@ -50,9 +50,11 @@ class Arm:
 def load_arm(name: str) -> Arm:
     """The arm of this name in the catalogue of cspace, as numbers."""
     import cspace as cs
+    import cspace.model
 
     robot = cs.load_robot(name)
-    chain, table = robot.chain, robot.to_dh(convention="standard")
+    chain = robot.chain
+    table = cspace.model.to_dh(chain, convention="standard")
     return Arm(
         name=name,
         axes=chain.axes,

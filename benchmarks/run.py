@@ -28,7 +28,7 @@ import score
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
 ARMS = ["ur5e", "puma560", "kr6_r900"]
-TASKS = ["ik", "fk", "jacobian"]
+TASKS = ["ik", "fk", "jacobian", "fk_jacobian"]
 BATCH = 100_000
 
 
@@ -120,7 +120,7 @@ def judge_forward(
     arm: chains.Arm, task: str, given: problems.Problems, alive: list[Process], folder: Path
 ) -> dict:
     """The worst difference from the plain forward kinematics or Jacobian."""
-    judge = chains.fk if task == "fk" else chains.jacobian
+    judge = chains.fk if task == "fk" else chains.jacobian  # of fk_jacobian the Jacobian is read
     wanted = judge(arm, given.q)
     judged = {}
     for process in alive:
@@ -138,7 +138,7 @@ def measure(alive: list[Process], rounds: int, seconds: float) -> None:
             reply = process.ask(do="single", seconds=seconds)
             for key in ("call", "read"):
                 process.samples[key] += reply.get(key, [])
-            if turn < 3:
+            if turn < 5:
                 each = process.ask(do="batch", count=BATCH if process.peer == "cspace_" else BATCH // 10)
                 if each.get("batch") is not None:
                     process.samples["batch"].append(each["batch"])
@@ -165,11 +165,10 @@ def compete(
         started = [Process(peer, task, folder, pythons.get(peer, sys.executable)) for peer in names]
         alive = [p for p in started if "ready" in p.first]
         measure(alive, rounds, seconds)
-        judged = (
-            judge_ik(arm, given, alive, folder)
-            if task == "ik"
-            else judge_forward(arm, task, given, alive, folder)
-        )
+        if task == "ik":
+            judged = judge_ik(arm, given, alive, folder)
+        else:
+            judged = judge_forward(arm, task, given, alive, folder)
         for process in started:
             process.quit()
     rows = []

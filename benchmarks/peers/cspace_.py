@@ -1,15 +1,16 @@
 """cspace itself, through its public face."""
 
 import cspace as cs
+import cspace.model
 from peers import Task
 
 NAME, PACKAGE, MODULE = "cspace", "cspace", "cspace"
+VERSION = cs.__version__
 
 
 def robot(arm):
-    return cs.Robot.from_screws(
-        arm.axes, arm.points, arm.T_zero, joint_types="R" * arm.dof, lower=arm.lower, upper=arm.upper
-    )
+    screws = cs.model.from_screws(arm.axes, arm.points, arm.T_zero, lower=arm.lower, upper=arm.upper)
+    return cs.Robot(screws)
 
 
 def ik(arm):
@@ -25,3 +26,8 @@ def fk(arm):
 def jacobian(arm):
     solve = robot(arm).jacobian
     return Task(lambda q: q, solve, lambda J: J, batch=lambda qs: solve(qs, threads=1))
+
+
+def fk_jacobian(arm):
+    solve = robot(arm).fk_jacobian
+    return Task(lambda q: q, solve, lambda both: both[1], batch=lambda qs: solve(qs, threads=1))

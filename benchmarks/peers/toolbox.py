@@ -13,7 +13,7 @@ NAME, PACKAGE, MODULE = "Robotics Toolbox", "roboticstoolbox-python", "roboticst
 def dh_robot(arm):
     links = [
         rtb.RevoluteDH(a=a, alpha=alpha, d=d, offset=offset, qlim=[-np.pi, np.pi])
-        for a, alpha, d, offset in arm.dh
+        for alpha, a, d, offset in arm.dh
     ]
     robot = rtb.DHRobot(links, base=SE3(arm.T_dh_base), tool=SE3(arm.T_dh_tool), name=arm.name)
     q = np.linspace(0.3, 1.3, arm.dof)
