@@ -27,12 +27,8 @@ def main() -> None:
     with np.load(folder / "solutions.npz") as data:
         for name in (name for name, entry in classes.items() if entry["klass"] in FAMILIES):
             joints = chains[name]["joints"]
-            robot = cs.Robot.from_screws(
-                [joint["axis"] for joint in joints],
-                [joint["point"] for joint in joints],
-                chains[name]["tool_zero"],
-                joint_types="R" * len(joints),
-            )
+            axes, points = ([joint[key] for joint in joints] for key in ("axis", "point"))
+            robot = cs.Robot(cs.model.from_screws(axes, points, chains[name]["tool_zero"]))
             found = true = 0
             for T, count, Q in zip(data[f"{name}/T"], data[f"{name}/nsol"], data[f"{name}/Q"], strict=True):
                 known = Q[:count]

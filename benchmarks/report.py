@@ -174,7 +174,7 @@ Machine: {machine}.
 
 ## Import
 
-Wall time of a fresh interpreter that imports the package, less that of one that imports nothing.
+Processor time of a fresh interpreter that imports the package, less that of one that imports nothing.
 
 {imports_section(results)}
 

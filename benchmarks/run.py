@@ -11,6 +11,7 @@ import argparse
 import json
 import os
 import platform
+import resource
 import subprocess
 import sys
 import tempfile
@@ -45,7 +46,7 @@ class Process:
             str(folder / "arm.npz"),
             str(folder / "q.npz"),
         ]
-        env = {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+        env = one_thread()
         self.process = subprocess.Popen(
             command,
             stdin=subprocess.PIPE,
@@ -183,18 +184,26 @@ def compete(
 
 
 def import_seconds(module: str, python: str) -> float | None:
-    """Wall time of a fresh interpreter that imports the module, less that of one that imports nothing: median
-    of 9."""
+    """Processor time of a fresh interpreter that imports the module, less that of one that imports nothing.
+
+    The median of 9 pairs [s]; an import runs on one core, so on a quiet machine this is its wall time too.
+    """
     pairs = []
     for _ in range(9):
         times = []
         for code in ("pass", f"import {module}"):
-            start = time.perf_counter()
-            if subprocess.run([python, "-c", code], capture_output=True).returncode:
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            if subprocess.run([python, "-c", code], capture_output=True, env=one_thread()).returncode:
                 return None
-            times.append(time.perf_counter() - start)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            times.append(after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime)
         pairs.append(times[1] - times[0])
     return float(np.median(pairs))
+
+
+def one_thread() -> dict[str, str]:
+    """The environment with one thread for linear algebra."""
+    return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
 
 
 def imports(pythons: dict[str, str], names: list[str]) -> dict[str, float | None]:

@@ -57,8 +57,8 @@ inline constexpr double rotation_error = 1e-6;
 // Largest deviation of a pose's last row from (0, 0, 0, 1): it is written, never computed, up to rounding.
 inline constexpr double last_row = 1e-9;
 
-// Sine of the angle by which a fixed rotation may miss a multiple of 90° and still be taken for it: the rounding
-// of a rotation that somebody wrote as 1.5707963267948966.
+// Sine of the angle by which a fixed rotation may miss a multiple of 90° and still be taken for it: the
+// rounding of a rotation that somebody wrote as 1.5707963267948966.
 inline constexpr double right_angle = 2.5e-16;
 
 }  // namespace cspace::tolerance

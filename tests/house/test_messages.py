@@ -1,4 +1,5 @@
-"""What bad input gets: the right class and a message that names the subject, the value, the rule and the remedy."""
+"""What bad input gets: the right class and a message that names the subject, the value, the rule and the
+remedy."""
 
 from __future__ import annotations
 
@@ -48,7 +49,11 @@ CALLS = {
         errors.UnknownNameError,
         ["'wrist4'", "ur5e"],
     ),
-    "NaN in a goal": (lambda: cs.load_robot("ur5e").ik(nan_pose()), errors.InputError, ["goal", "nan", "finite"]),
+    "NaN in a goal": (
+        lambda: cs.load_robot("ur5e").ik(nan_pose()),
+        errors.InputError,
+        ["goal", "nan", "finite"],
+    ),
     "a goal that is no rotation": (
         lambda: cs.load_robot("ur5e").ik(slanted()),
         errors.InputError,
@@ -96,7 +101,9 @@ CALLS = {
         ["'standart'", "'standard'"],
     ),
     "unknown metric": (
-        lambda: cs.load_robot("ur5e").ik(cs.load_robot("ur5e").fk(np.ones(6))).nearest(np.ones(6), metric="max2"),
+        lambda: (
+            cs.load_robot("ur5e").ik(cs.load_robot("ur5e").fk(np.ones(6))).nearest(np.ones(6), metric="max2")
+        ),
         errors.UnknownNameError,
         ["'max2'", "'max'"],
     ),
