@@ -252,7 +252,7 @@ def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:
 
 
 def family_at(robot: Any, row: int, q: Array, held: int) -> Family:
-    """The family through q: the joint velocity that keeps the first `held` rows of the tip's twist at zero."""
+    """The family through q: the joint velocity keeping the first `held` rows of the tip's twist at zero."""
     direction = np.linalg.svd(robot.jacobian(q)[:held])[2][-1]
     direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
     moving = np.abs(direction) > 1e-6
