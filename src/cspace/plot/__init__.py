@@ -6,7 +6,8 @@ Needs the extra `[plot]` (matplotlib), which is imported when a function is firs
 from __future__ import annotations
 
 from cspace.plot.arms import robot, solutions
+from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
 
-__all__ = ["frames", "manipulability", "robot", "solutions", "workspace"]
+__all__ = ["frames", "manipulability", "robot", "save", "solutions", "workspace"]

@@ -66,13 +66,13 @@ def solutions(
         raise InputError(f"nothing to draw: the configurations have shape {q.shape}, expected (k, {arm.dof})")
     names = list(labels) if labels is not None else branch_names(answer, len(q))
     solid = 0 if near is None else nearest(q, as_floats(near, "near", last=(arm.dof,)), arm)
-    tints = list(colors.palette(len(q)))
+    tints = list(np.roll(colors.palette(len(q)), solid, axis=0))  # the solid one is blue
     basis = planar_basis(arm.chain)
     if basis is not None and not hasattr(ax, "get_proj"):
         return planar.draw(
             arm, q, basis, ax=ax, solid=solid, tints=tints, names=names, goal=goal, title=title
         )
-    axes = space_axes(ax, aside=min(0.30, 0.07 + 0.0085 * max(map(len, names))))
+    axes = space_axes(ax, aside=0.7 + 0.063 * max(map(len, names)))
     drawn = [skeleton(arm, each) for each in q]
     T_goal = drawn[solid].T_tip if goal is None else stage.goal_pose(goal, drawn[solid].T_tip)
     set_stage(axes, arm, drawn, T_goal)
@@ -122,7 +122,11 @@ def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:
     widest = 1.04 * float(np.linalg.norm(ground - center, axis=1).max())
     floor = stage.floor_under(center, max(widest, foot, 0.4 * float(np.ptp(around[:, 2]))), low)
     elevation, azimuth = stage.choose_view(points, T_goal[None, :3, 3])
-    stage.set_up(ax, around, floor, elevation=elevation, azimuth=azimuth)
+    artist = stage.set_up(ax, around, floor, elevation=elevation, azimuth=azimuth)
+    if low < -1e-9:
+        up, half, width = np.array([0.0, 0.0, 1.0]), -0.5 * low, 0.8 * drawn[0].radii[0]
+        stand = cylinder(-half * up, up, width, half, np.array(colors.STAND))
+        artist.scene.groups.append(Group([stand]))
 
 
 def put(ax: Any, groups: list[Group]) -> list[Any]:
@@ -170,7 +174,7 @@ def write_legend(ax: Any, names: list[str], tints: Sequence[Any], solid: int) ->
     legend = ax.legend(
         handles=handles, loc="upper left", frameon=False, fontsize=9, labelcolor=colors.INK,
         handletextpad=0.3, borderaxespad=0.0, labelspacing=0.55,
-        bbox_to_anchor=(0.025, 0.915) if own_figure else (0.0, 1.0),
+        bbox_to_anchor=(0.02, 0.90) if own_figure else (0.0, 1.0),
         bbox_transform=ax.figure.transFigure if own_figure else ax.transAxes,
     )  # fmt: skip
     for k, text in enumerate(legend.get_texts()):

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from cspace.errors import InputError, MissingExtraError
 
 __all__ = ["flat_axes", "space_axes"]
+
+SQUARE: Final = 6.4
+"""Width of a picture in space [inch], without what stands aside."""
 
 
 def need_matplotlib() -> None:
@@ -18,13 +21,14 @@ def need_matplotlib() -> None:
 
 
 def space_axes(ax: Any | None, *, aside: float = 0.0) -> Any:
-    """The given 3-D axes, or new ones; `aside`: the share of the figure left free at the left."""
+    """The given 3-D axes, or new ones in a figure that leaves `aside` inches free at the left."""
     need_matplotlib()
     import matplotlib.pyplot as plt
 
     if ax is None:
-        figure = plt.figure(figsize=(8.0, 5.8), dpi=120)
-        return figure.add_axes((aside, 0.0, 1.0 - aside, 0.94), projection="3d")
+        width = SQUARE + aside
+        figure = plt.figure(figsize=(width, SQUARE - 0.6), dpi=120)
+        return figure.add_axes((aside / width, 0.0, SQUARE / width, 0.94), projection="3d")
     if not hasattr(ax, "get_proj"):
         raise InputError("this picture needs 3-D axes; make them with plt.subplot(projection='3d')")
     return ax

@@ -37,7 +37,7 @@ def frames(
         raise InputError("nothing to draw: there is no pose")
     points = T[:, :3, 3]
     extent = float(np.ptp(points, axis=0).max())
-    length = size if size is not None else (0.18 * extent or 1.0)
+    length = size if size is not None else (0.28 * extent or 1.0)
     axes = space_axes(ax)
     ends = points[:, None] + length * np.swapaxes(T[:, :3, :3], 1, 2)
     everything = np.concatenate([points, ends.reshape(-1, 3)])
@@ -51,7 +51,7 @@ def frames(
     artist.scene.groups.append(Group(stage.triads(T, length)))
     artists: list[Any] = [artist]
     for k, name in enumerate(names or ()):
-        place = points[k] - 0.12 * length * T[k, :3, :3].sum(axis=1)
+        place = points[k] - 0.10 * length * T[k, :3, :3].sum(axis=1)
         text = axes.text(*place, name, fontsize=10, color=colors.INK, ha="center", va="top", zorder=40)
         artists.append(text)
     return artists + stage.write_title(axes, title)

@@ -1,0 +1,7 @@
+"""`python -m cspace` is the command `cspace`."""
+
+import sys
+
+from cspace.cli import main
+
+sys.exit(main())

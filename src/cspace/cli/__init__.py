@@ -1,0 +1,5 @@
+"""The command line: one file per verb, loaded only when its verb is asked for."""
+
+from cspace.cli.app import main
+
+__all__ = ["main"]

@@ -1,0 +1,106 @@
+"""From the words of a command line to an exit code: the only place that catches everything."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import sys
+from collections.abc import Sequence
+
+from cspace.cli.exits import Exit, UsageError, exit_of
+from cspace.cli.registry import VERBS, load
+from cspace.errors import CspaceError, suggest
+
+__all__ = ["main"]
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line `argv` (default: the process's) and return its exit code."""
+    words = list(sys.argv[1:] if argv is None else argv)
+    debug = "--debug" in words
+    try:
+        code = dispatch(words)
+        sys.stdout.flush()
+        return code
+    except BrokenPipeError:
+        return closed_pipe()
+    except KeyboardInterrupt:
+        say("interrupted")
+        return Exit.INTERRUPTED
+    except CspaceError as error:
+        if debug:
+            raise
+        say(str(error))
+        return exit_of(error)
+    except Exception as error:
+        if debug:
+            raise
+        first_line = (str(error).splitlines() or [""])[0]
+        say(f"internal error: {type(error).__name__}: {first_line}")
+        say("run the same command with --debug to see where; please report it with that traceback")
+        return Exit.INTERNAL
+
+
+def dispatch(words: list[str]) -> int:
+    """Find the verb among the words and run it."""
+    if not words or words[0] in ("-h", "--help", "help"):
+        print(overview())
+        return Exit.DONE
+    if words[0] in ("-V", "--version"):
+        from cspace import __version__
+
+        print(f"cspace {__version__}")
+        return Exit.DONE
+    verb, *rest = words
+    if verb.startswith("-"):
+        raise UsageError(f"the verb comes first: cspace VERB {verb} …; verbs: {', '.join(VERBS)}")
+    if verb not in VERBS:
+        raise suggest("verb", verb, VERBS)
+    return run_verb(verb, rest)
+
+
+def run_verb(verb: str, words: list[str]) -> int:
+    """Parse the words of one verb and run its file."""
+    from cspace.cli.arguments import Parser, guard_negative_numbers
+    from cspace.cli.output import Output
+
+    module = load(verb)
+    parser = Parser(verb, VERBS[verb], module.EXAMPLES)
+    module.arguments(parser)
+    try:
+        args = parser.parse_intermixed_args(guard_negative_numbers(words))
+    except SystemExit as stop:  # argparse leaves this way after --help; faults are raised by Parser.error
+        return int(stop.code or 0)
+    return module.run(args, Output(as_json=args.json))
+
+
+def overview() -> str:
+    """The text of `cspace --help`."""
+    width = max(map(len, VERBS))
+    verbs = "\n".join(f"  {name:<{width}}  {summary}" for name, summary in VERBS.items())
+    return (
+        "usage: cspace VERB …\n\n"
+        "From a robot's description to its motion.\n\n"
+        f"verbs:\n{verbs}\n\n"
+        "cspace VERB --help    the arguments of a verb, with examples\n"
+        "cspace --version      the version\n\n"
+        "A robot is a name of the catalogue (cspace robots) or a file. Every verb takes --json."
+    )
+
+
+def say(message: str) -> None:
+    """One message for people, on the error stream."""
+    with contextlib.suppress(OSError, ValueError):
+        print(f"cspace: {message}", file=sys.stderr)
+
+
+def closed_pipe() -> Exit:
+    """The reader of our output has left (`cspace robots | head`): leave too, without a word.
+
+    Python flushes the standard streams once more at exit; they are pointed at the null device so that this
+    cannot fail a second time.
+    """
+    null = os.open(os.devnull, os.O_WRONLY)
+    with contextlib.suppress(OSError, ValueError):
+        os.dup2(null, sys.stdout.fileno())
+    return Exit.CLOSED_PIPE

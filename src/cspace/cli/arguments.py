@@ -1,0 +1,103 @@
+"""The words that verbs share: numbers as people type them, robots, poses, formats."""
+
+from __future__ import annotations
+
+import argparse
+import math
+import re
+from collections.abc import Sequence
+from typing import Final, NoReturn
+
+from cspace.cli.exits import UsageError
+
+__all__ = [
+    "Parser",
+    "add_chain",
+    "add_degrees",
+    "add_joints",
+    "add_robot",
+    "guard_negative_numbers",
+    "number",
+]
+
+OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?))?")
+"""Multiples of π: pi, -pi/2, 3pi/4, 0.5*pi."""
+
+
+class Parser(argparse.ArgumentParser):
+    """The parser of one verb: --json and --debug for all, faults raised as UsageError."""
+
+    def __init__(self, verb: str, summary: str, examples: str) -> None:
+        super().__init__(
+            prog=f"cspace {verb}",
+            description=summary[0].upper() + summary[1:] + ".",
+            epilog="examples:\n" + "\n".join("  " + line for line in examples.strip().splitlines()),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+            allow_abbrev=False,
+        )
+        self.add_argument("--json", action="store_true", help="machine-readable output: radians, metres")
+        self.add_argument("--debug", action="store_true", help="show the traceback of an error")
+
+    def error(self, message: str) -> NoReturn:
+        """Raise the fault instead of printing the usage and leaving the process."""
+        unguarded = re.sub(r"(?<=[\s'])\s+(?=-)", "", message)
+        raise UsageError(f"{unguarded}; see {self.prog} --help")
+
+
+def number(text: str) -> float:
+    """A finite number, or a multiple of π: 0.5, -1e-3, pi, -pi/2, 3pi/4."""
+    word = text.strip()
+    match = OF_PI.fullmatch(word.lower())
+    if match:
+        sign, factor, divisor = match.groups()
+        value = math.pi * float(factor or 1) / float(divisor or 1) if float(divisor or 1) else math.inf
+        value = -value if sign == "-" else value
+    else:
+        try:
+            value = float(word)
+        except ValueError:
+            raise argparse.ArgumentTypeError(f"{word!r} is not a number") from None
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"{word!r} is not a finite number")
+    return value
+
+
+def guard_negative_numbers(words: Sequence[str]) -> list[str]:
+    """Put a blank before words such as -1e-3 or -pi/2: argparse then takes them as values, not as options."""
+    return [" " + word if word.startswith("-") and is_number(word) else word for word in words]
+
+
+def is_number(word: str) -> bool:
+    """Whether a word reads as a number, finite or not."""
+    if OF_PI.fullmatch(word.lower()):
+        return True
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return True
+
+
+def add_robot(parser: argparse.ArgumentParser) -> None:
+    """The robot: a name of the catalogue or a file."""
+    parser.add_argument("robot", metavar="ROBOT", help="a name of the catalogue (cspace robots) or a file")
+
+
+def add_chain(parser: argparse.ArgumentParser) -> None:
+    """The ends of the chain, for files that leave the choice."""
+    parser.add_argument("--base", metavar="LINK", help="the link where the chain begins")
+    parser.add_argument("--tip", metavar="LINK", help="the link where the chain ends")
+
+
+def add_joints(parser: argparse.ArgumentParser) -> None:
+    """One value per joint."""
+    parser.add_argument(
+        "q", metavar="Q", nargs="*", type=number, help="one value per joint [rad, m]; pi/2 can be typed so"
+    )
+
+
+def add_degrees(parser: argparse.ArgumentParser) -> None:
+    """Degrees instead of radians, typed and read; --json stays in radians."""
+    group = parser.add_mutually_exclusive_group()
+    group.add_argument("--deg", action="store_true", help="type and read angles in degrees")
+    group.add_argument("--rad", action="store_false", dest="deg", help="angles in radians (the default)")

@@ -1,0 +1,44 @@
+"""The verbs: a name and one line each. The verb `x` lives in verbs/x.py, which is imported only to run it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final, Protocol, cast
+
+if TYPE_CHECKING:
+    import argparse
+
+    from cspace.cli.output import Output
+
+__all__ = ["VERBS", "VerbModule", "load"]
+
+VERBS: Final[Mapping[str, str]] = MappingProxyType(
+    {
+        "robots": "list the robots of the catalogue, or search it",
+        "info": "a robot's joints, limits, frames, geometry and degrees of freedom",
+        "fk": "the pose of the tip, or of any frame, at given joints",
+        "ik": "every joint configuration that reaches a pose",
+        "jacobian": "the Jacobian, its singular values and the distance to singularity",
+        "dh": "the Denavit-Hartenberg table and the link matrices",
+        "doctor": "versions, optional parts and a self-check",
+    }
+)
+
+
+class VerbModule(Protocol):
+    """What a file of verbs/ offers."""
+
+    EXAMPLES: str
+
+    def arguments(self, parser: argparse.ArgumentParser) -> None:
+        """Declare the arguments of the verb."""
+
+    def run(self, args: argparse.Namespace, out: Output) -> int:
+        """Do the work, write the answer to `out`, return the exit code."""
+
+
+def load(verb: str) -> VerbModule:
+    """Import the file of one verb."""
+    return cast(VerbModule, import_module(f"cspace.cli.verbs.{verb}"))

@@ -1,0 +1,66 @@
+"""The robot of a command line, and configurations typed for it."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.cli.exits import UsageError
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+
+__all__ = ["angle_unit", "configuration", "headings", "joint_texts", "load", "need_chain"]
+
+
+def load(args: argparse.Namespace) -> Robot:
+    """The robot that the words name, with the chosen ends."""
+    from cspace.robots import load_robot
+
+    return load_robot(args.robot, base=getattr(args, "base", None), tip=getattr(args, "tip", None))
+
+
+def need_chain(robot: Robot) -> None:
+    """Refuse a tree where a verb speaks of one tip, naming the links that could be it."""
+    if robot.tip is None:
+        raise UsageError(
+            f"{robot.name} branches, so its tip has to be named: --tip with one of {', '.join(robot.leaves)}"
+        )
+
+
+def configuration(values: Sequence[float], robot: Robot, subject: str, *, degrees: bool) -> Array:
+    """Typed values as a configuration (n,) [rad, m]; with `degrees` turning joints were typed in degrees."""
+    n = len(robot.joint_names)
+    if len(values) != n:
+        names = ", ".join(robot.joint_names)
+        raise UsageError(f"{robot.name} has {n} joints, {subject} has {len(values)} values; joints: {names}")
+    q = np.array(values, dtype=np.float64)
+    return np.where(turning(robot), np.radians(q), q) if degrees else q
+
+
+def turning(robot: Robot) -> Array:
+    """Which coordinates are angles, (n,)."""
+    return np.array([kind == "R" for kind in robot.joint_types])
+
+
+def angle_unit(degrees: bool) -> str:
+    """How angles are printed."""
+    return "deg" if degrees else "rad"
+
+
+def headings(robot: Robot) -> list[str]:
+    """Column headings of the joints: their names where they are short, else q1, q2, …"""
+    names = list(robot.joint_names)
+    return names if max(map(len, names), default=0) <= 8 else [f"q{k + 1}" for k in range(len(names))]
+
+
+def joint_texts(q: Array, robot: Robot, *, degrees: bool) -> list[str]:
+    """A configuration (n,) as texts: angles as asked, slides in metres."""
+    return [
+        f"{np.degrees(value):.3f}" if kind == "R" and degrees else f"{value:.5f}"
+        for value, kind in zip(q, robot.joint_types, strict=True)
+    ]

@@ -1,0 +1,49 @@
+"""Tasks: how many numbers a goal has, and how many dimensions an arm's tip moves in."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+
+__all__ = ["TASKS", "default_task", "motion_rank", "rows_of_task"]
+
+TASKS: Final[Mapping[str, int]] = MappingProxyType(
+    {"pose": 6, "position": 3, "direction": 2, "planar": 3, "planar-position": 2}
+)
+"""A task and its numbers: planar is x, y and a heading; planar-position x and y."""
+
+SAMPLES: Final = 8
+"""Configurations whose Jacobians are looked at; a rank is lost at all of them only if it is never there."""
+RANK: Final = 1e-9
+"""Share of the largest singular value below which a direction counts as impossible."""
+
+
+def motion_rank(robot: Robot) -> int:
+    """In how many of the six dimensions the tip moves, at configurations in general position."""
+    if not len(robot.joint_names):
+        return 0
+    q = np.random.default_rng(1).uniform(-1.3, 1.3, size=(SAMPLES, len(robot.joint_names)))
+    s = np.linalg.svd(robot.jacobian(q), compute_uv=False)
+    return int((s > RANK * s[:, :1]).sum(axis=1).max())
+
+
+def default_task(robot: Robot) -> str:
+    """The task that an arm's shape suggests: a planar arm's is planar, three joints place a point."""
+    if robot.tip is None:
+        return "pose"
+    from cspace.plot.skeleton import planar_basis
+
+    if planar_basis(robot.chain) is not None:
+        return "planar" if robot.dof >= 3 else "planar-position"
+    return "position" if robot.dof <= 3 else "pose"
+
+
+def rows_of_task(robot: Robot) -> str:
+    """The rows of the Jacobian that count: the linear ones for an arm that only places a point."""
+    return "linear" if default_task(robot) in ("position", "planar-position") else "all"

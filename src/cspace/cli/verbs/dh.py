@@ -1,0 +1,191 @@
+"""`cspace dh`: the Denavit-Hartenberg table of an arm and its link matrices."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from cspace.cli.arguments import add_chain, add_degrees, add_robot
+from cspace.cli.exits import Exit
+from cspace.cli.output import Output, Table
+from cspace.cli.robot import load, need_chain
+from cspace.cli.symbols import ZERO, angle_text, entry_texts, link_matrix
+
+if TYPE_CHECKING:
+    from cspace.model import DHTable
+
+__all__ = ["EXAMPLES", "arguments", "run"]
+
+EXAMPLES: Final = """
+cspace dh ur5e
+cspace dh puma560 --convention modified --deg
+cspace dh scara --latex
+"""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_robot(parser)
+    parser.add_argument(
+        "--convention",
+        choices=("standard", "modified"),
+        default="standard",
+        help="standard (Denavit, Hartenberg 1955; the default) or modified (Craig 1986)",
+    )
+    form = parser.add_mutually_exclusive_group()
+    form.add_argument("--latex", action="store_true", help="print LaTeX")
+    form.add_argument("--markdown", action="store_true", help="print Markdown")
+    add_degrees(parser)
+    add_chain(parser)
+
+
+def run(args: argparse.Namespace, out: Output) -> int:
+    """Print the table and the matrix of every link, as symbols and, with q = 0, as numbers."""
+    from cspace.model import to_dh
+
+    robot = load(args)
+    need_chain(robot)
+    table = to_dh(robot.chain, convention=args.convention)
+    if out.as_json:
+        out.document(document(robot.name, table))
+    elif args.latex:
+        latex(out, table, degrees=args.deg)
+    elif args.markdown:
+        markdown(out, table, degrees=args.deg)
+    else:
+        show(out, robot.name, table, degrees=args.deg)
+    return Exit.DONE
+
+
+def document(name: str, table: DHTable) -> dict[str, Any]:
+    """The table as JSON data, [rad] and [m]."""
+    columns = zip(
+        table.joint_names, table.joint_types, table.alpha, table.a, table.d, table.theta_offset, strict=True
+    )
+    rows = [
+        {
+            "joint": joint,
+            "type": kind,
+            "alpha": float(alpha),
+            "a": float(a),
+            "d": float(d),
+            "theta": float(theta),
+        }
+        for joint, kind, alpha, a, d, theta in columns
+    ]
+    return {
+        "schema": "cspace.dh/1",
+        "robot": name,
+        "convention": table.convention,
+        "rows": rows,
+        "base": table.T_base.tolist(),
+        "tool": table.T_tool.tolist(),
+        "deviation": float(table.deviation),
+        "matrices": [link_matrix(table, i).tolist() for i in range(len(table))],
+        "symbols": [entry_texts(table, i) for i in range(len(table))],
+    }
+
+
+def headings(convention: str) -> list[str]:
+    """Column headings; a modified row has the alpha and a of the link before."""
+    before = "(i-1)" if convention == "modified" else "(i)"
+    return ["i", f"alpha{before}", f"a{before}", "d(i)", "theta(i)", "joint"]
+
+
+def row_texts(table: DHTable, i: int, *, degrees: bool) -> list[str]:
+    """One row of the table as texts; the variable is written into the column that it moves."""
+    turning = table.joint_types[i] == "R"
+    theta, d = angle_text(table.theta_offset[i], degrees=degrees), length_text(table.d[i])
+    if turning:
+        theta = f"q{i + 1}" if theta == "0" else f"q{i + 1} {signed(theta)}"
+    elif table.joint_types[i] == "P":
+        d = f"q{i + 1}" if d == "0" else f"q{i + 1} {signed(d)}"
+    alpha = angle_text(table.alpha[i], degrees=degrees)
+    return [f"{i + 1}", alpha, length_text(table.a[i]), d, theta, table.joint_names[i]]
+
+
+def length_text(length: float) -> str:
+    """A length [m] without rounding noise."""
+    return "0" if abs(length) < ZERO else f"{length:.6g}"
+
+
+def signed(text: str) -> str:
+    """A number as it follows a sum: + 0.5, - 0.5."""
+    return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
+
+
+def show(out: Output, name: str, table: DHTable, *, degrees: bool) -> None:
+    """The table and the matrices for people."""
+    out.heading(
+        f"{name}, {table.convention} convention, angles in {'deg' if degrees else 'rad'}, lengths in m"
+    )
+    drawn = Table(headings(table.convention), left=frozenset({5}))
+    for i in range(len(table)):
+        drawn.add(*row_texts(table, i, degrees=degrees))
+    out.table(drawn)
+    if table.deviation > ZERO:
+        moved = f"the tip moves by up to {table.deviation:.1g} m"
+        out.line(f"axes that almost are parallel or meet are taken as such: {moved}")
+    for T, text in ((table.T_base, "base: before the first row"), (table.T_tool, "tool: after the last row")):
+        if np.abs(T - np.eye(4)).max() > ZERO:
+            out.matrix(T, text)
+    out.line()
+    out.line("ck and sk stand for cos and sin of theta(k)")
+    for i in range(len(table)):
+        texts = entry_texts(table, i)
+        widths = [max(len(row[j]) for row in texts) for j in range(4)]
+        out.heading(f"A{i + 1}")
+        for symbols, numbers in zip(texts, link_matrix(table, i), strict=True):
+            left = "  ".join(f"{text:>{width}}" for text, width in zip(symbols, widths, strict=True))
+            right = "  ".join(f"{x:9.5f}" for x in np.where(np.abs(numbers) < 5e-6, 0.0, numbers))
+            out.line(f"  {left}      q = 0: {right}")
+
+
+def latex(out: Output, table: DHTable, *, degrees: bool) -> None:
+    """The table as a LaTeX array and the matrices."""
+    index = "i-1" if table.convention == "modified" else "i"
+    lines = [
+        r"\begin{array}{c|cccc}",
+        rf"i & \alpha_{{{index}}} & a_{{{index}}} & d_i & \theta_i \\ \hline",
+    ]
+    for i in range(len(table)):
+        cells = [with_index(cell).replace("pi", r"\pi") for cell in row_texts(table, i, degrees=degrees)[:5]]
+        if degrees:
+            cells[1] += r"^\circ"
+            cells[4] += "" if cells[4].startswith("q_") and " " not in cells[4] else r"^\circ"
+        lines.append(" & ".join(cells) + r" \\")
+    lines.append(r"\end{array}")
+    lines += [matrix_latex(table, i) for i in range(len(table))]
+    for line in lines:
+        out.line(line)
+
+
+def matrix_latex(table: DHTable, i: int) -> str:
+    """One link matrix in LaTeX."""
+    rows = r" \\ ".join(" & ".join(with_index(text) for text in row) for row in entry_texts(table, i))
+    upper = f"{{}}^{{{i}}}A_{{{i + 1}}}"
+    return rf"{upper} = \begin{{bmatrix}} {rows} \end{{bmatrix}}"
+
+
+def with_index(text: str) -> str:
+    """c1 as c_{1}, s12 as s_{12}, q3 as q_{3}."""
+    return " ".join(
+        f"{sign}{word[0]}_{{{word[1:]}}}" if word[:1] in "csq" and word[1:].isdigit() else sign + word
+        for sign, word in (
+            ("-", w[1:]) if w.startswith("-") and len(w) > 1 else ("", w) for w in text.split(" ")
+        )
+    )
+
+
+def markdown(out: Output, table: DHTable, *, degrees: bool) -> None:
+    """The table as a Markdown table and the matrices as formulas."""
+    titles = headings(table.convention)
+    out.line("| " + " | ".join(titles) + " |")
+    out.line("|" + "---|" * len(titles))
+    for i in range(len(table)):
+        out.line("| " + " | ".join(row_texts(table, i, degrees=degrees)) + " |")
+    for i in range(len(table)):
+        out.line()
+        out.line(f"$${matrix_latex(table, i)}$$")

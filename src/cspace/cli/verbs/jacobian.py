@@ -1,0 +1,91 @@
+"""`cspace jacobian`: how the tip moves with the joints, and how near it is to losing a freedom."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any, Final
+
+from cspace.arrays import Array
+from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
+from cspace.cli.exits import Exit
+from cspace.cli.output import Output, Table
+from cspace.cli.robot import configuration, headings, load, need_chain
+from cspace.cli.tasks import rows_of_task
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+
+__all__ = ["EXAMPLES", "arguments", "run"]
+
+EXAMPLES: Final = """
+cspace jacobian ur5e 0 -90 90 0 90 0 --deg
+cspace jacobian puma560 0 0.3 0.2 0 0.5 0 --expressed-in tip --json
+"""
+
+ROWS: Final = ("vx", "vy", "vz", "wx", "wy", "wz")
+"""The rows of a Jacobian: linear velocity of the frame's origin, angular velocity."""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_robot(parser)
+    add_joints(parser)
+    parser.add_argument("--frame", metavar="LINK", help="another frame than the tip")
+    parser.add_argument(
+        "--expressed-in", choices=("base", "tip"), default="base", help="the axes of the rows (default: base)"
+    )
+    parser.add_argument(
+        "--rows",
+        choices=("all", "linear", "angular"),
+        help="the rows that count for singularity (default: linear for arms that only place a point)",
+    )
+    add_degrees(parser)
+    add_chain(parser)
+
+
+def run(args: argparse.Namespace, out: Output) -> int:
+    """Print the Jacobian and what it says about singularity."""
+    from cspace import kinematics
+
+    robot = load(args)
+    if args.frame is None:
+        need_chain(robot)
+    q = configuration(args.q, robot, "q", degrees=args.deg)
+    rows = args.rows or rows_of_task(robot)
+    more: dict[str, Any] = {"expressed_in": args.expressed_in, "rows": rows}
+    J = robot.jacobian(q, args.frame, expressed_in=args.expressed_in)
+    near = kinematics.singularity(robot, q, args.frame, **more)
+    facts: dict[str, Any] = {
+        "rows": rows,
+        "singular_values": kinematics.singular_values(robot, q, args.frame, **more).tolist(),
+        "manipulability": float(kinematics.manipulability(robot, q, args.frame, **more)),
+        "distance_to_singularity": near.distance,
+        "singular": bool(near),
+        "lost_direction": near.direction.tolist(),
+        "lost_by": list(near.joints),
+    }
+    if out.as_json:
+        ends = {"robot": robot.name, "base": robot.base, "frame": args.frame or robot.tip}
+        given = {"expressed_in": args.expressed_in, "q": q.tolist(), "joints": list(robot.joint_names)}
+        out.document({"schema": "cspace.jacobian/1", **ends, **given, "jacobian": J.tolist(), **facts})
+    else:
+        show(out, robot, J, facts, str(near))
+    return Exit.DONE
+
+
+def show(out: Output, robot: Robot, J: Array, facts: dict[str, Any], text: str) -> None:
+    """The matrix and the facts for people."""
+    table = Table(["", *headings(robot)])
+    for name, row in zip(ROWS, J, strict=True):
+        table.add(name, *(f"{0.0 if abs(x) < 5e-7 else x:.6f}" for x in row))
+    out.table(table)
+    out.line()
+    out.facts(
+        {
+            "rows that count": facts["rows"],
+            "singular values": "  ".join(f"{x:.6f}" for x in facts["singular_values"]),
+            "manipulability": f"{facts['manipulability']:.6g}",
+            "distance to singularity": f"{facts['distance_to_singularity']:.6g}",
+            "nearest singularity": text,
+        }
+    )

@@ -1,0 +1,26 @@
+"""Pictures as files."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from cspace.errors import InputError
+
+__all__ = ["save"]
+
+
+def save(artists: Sequence[Any], path: str | Path, *, dpi: float = 150.0) -> None:
+    """Write the figure that some artists belong to, and close it.
+
+    artists: what a function of this room returned. path: a file; its ending names the format (png, svg, pdf).
+    dpi: pixels per inch. Raises InputError if there are no artists.
+    """
+    if not artists:
+        raise InputError("nothing to save: there are no artists")
+    import matplotlib.pyplot as plt
+
+    figure = artists[0].figure
+    figure.savefig(path, dpi=dpi)
+    plt.close(figure)

@@ -1,0 +1,151 @@
+"""The JSON that every verb promises, as docs/cli.md documents it: keys and what stands behind them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+NUMBER = (int, float)
+TEXT = str
+TEXT_OR_NULL = (str, type(None))
+NUMBER_OR_NULL = (int, float, type(None))
+VECTOR = [NUMBER]
+MATRIX = [[NUMBER]]
+
+SCHEMAS: dict[str, dict[str, Any]] = {
+    "cspace.robots/1": {
+        "robots": [
+            {
+                "name": TEXT,
+                "dof": int,
+                "joints": TEXT,
+                "title": TEXT,
+                "vendor": TEXT,
+                "source": TEXT,
+                "licence": TEXT,
+                "aliases": [TEXT],
+                "missing": [TEXT],
+            }
+        ]
+    },
+    "cspace.info/1": {
+        "robot": TEXT,
+        "title": TEXT,
+        "maker": TEXT,
+        "aliases": [TEXT],
+        "sources": dict,
+        "missing": [TEXT],
+        "base": TEXT,
+        "tip": TEXT_OR_NULL,
+        "leaves": [TEXT],
+        "joints": [
+            {
+                "name": TEXT,
+                "type": TEXT,
+                "lower": NUMBER_OR_NULL,
+                "upper": NUMBER_OR_NULL,
+                "velocity": NUMBER_OR_NULL,
+                "effort": NUMBER_OR_NULL,
+            }
+        ],
+        "frames": [TEXT],
+        "poses": dict,
+        "geometry": (dict, type(None)),
+        "freedoms": {
+            "dof": int,
+            "description": int,
+            "mobility": int,
+            "rank": (int, type(None)),
+            "task": TEXT,
+            "task_numbers": int,
+            "verdict": TEXT,
+        },
+    },
+    "cspace.fk/1": {
+        "robot": TEXT,
+        "base": TEXT,
+        "frame": TEXT,
+        "q": VECTOR,
+        "matrix": MATRIX,
+        "xyz": VECTOR,
+        "rpy": VECTOR,
+        "wxyz": VECTOR,
+        "xyzw": VECTOR,
+    },
+    "cspace.jacobian/1": {
+        "robot": TEXT,
+        "base": TEXT,
+        "frame": TEXT,
+        "expressed_in": TEXT,
+        "q": VECTOR,
+        "joints": [TEXT],
+        "jacobian": MATRIX,
+        "rows": TEXT,
+        "singular_values": VECTOR,
+        "manipulability": NUMBER,
+        "distance_to_singularity": NUMBER,
+        "singular": bool,
+        "lost_direction": VECTOR,
+        "lost_by": [TEXT],
+    },
+    "cspace.dh/1": {
+        "robot": TEXT,
+        "convention": TEXT,
+        "rows": [{"joint": TEXT, "type": TEXT, "alpha": NUMBER, "a": NUMBER, "d": NUMBER, "theta": NUMBER}],
+        "base": MATRIX,
+        "tool": MATRIX,
+        "deviation": NUMBER,
+        "matrices": [MATRIX],
+        "symbols": [[[TEXT]]],
+    },
+    "cspace.ik/1": {
+        "robot": TEXT,
+        "base": TEXT,
+        "tip": TEXT,
+        "joints": [TEXT],
+        "goal": {"matrix": (list, type(None)), "position": (list, type(None))},
+        "status": TEXT,
+        "reason": TEXT,
+        "missing": NUMBER,
+        "solutions": [
+            {
+                "q": VECTOR,
+                "branch": TEXT,
+                "within_limits": (bool, type(None)),
+                "out_of_limits": dict,
+                "singularity": NUMBER,
+                "residual": NUMBER,
+                "distance": NUMBER_OR_NULL,
+            }
+        ],
+    },
+    "cspace.doctor/1": {
+        "versions": dict,
+        "extras": dict,
+        "checks": [{"robot": TEXT, "poses": int, "solutions": int, "worst": NUMBER, "passed": bool}],
+        "healthy": bool,
+    },
+}
+
+
+def check(document: Any, schema: str | None = None) -> None:
+    """The document is what its schema says: the same keys, the right kinds of values."""
+    assert schema is None or document["schema"] == schema
+    body = {key: value for key, value in document.items() if key != "schema"}
+    check_value(body, SCHEMAS[document["schema"]], document["schema"])
+
+
+def check_value(value: Any, kind: Any, where: str) -> None:
+    if isinstance(kind, dict):
+        assert isinstance(value, dict), where
+        assert set(value) == set(kind), f"{where}: {set(value) ^ set(kind)}"
+        for key, inner in kind.items():
+            check_value(value[key], inner, f"{where}.{key}")
+    elif isinstance(kind, list):
+        assert isinstance(value, list), where
+        for i, item in enumerate(value):
+            check_value(item, kind[0], f"{where}[{i}]")
+    else:
+        assert isinstance(value, kind), f"{where} is {value!r}"
+        assert (
+            kind is bool or not isinstance(value, bool) or bool in (kind if isinstance(kind, tuple) else ())
+        )

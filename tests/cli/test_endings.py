@@ -1,0 +1,268 @@
+"""How a command line ends: every exit code, with a message that helps and nothing half written."""
+
+from __future__ import annotations
+
+import io
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from cli.run import command, cspace, environment
+from cspace.cli import app
+from cspace.cli.exits import Exit
+from cspace.cli.files import whole_file
+from cspace.cli.output import Output
+from cspace.cli.registry import VERBS
+from cspace.errors import MissingExtraError
+
+BAD_LINES = [
+    ("nosuchverb", "no verb 'nosuchverb'"),
+    ("fkk ur5e", "did you mean 'fk'"),
+    ("--json fk", "the verb comes first"),
+    ("fk", "required: ROBOT"),
+    ("fk ur5f 0 0 0 0 0 0", "'ur5e'"),
+    ("fk ur5e 0 0 0", "has 6 joints, q has 3 values"),
+    ("fk ur5e 0 0 0 0 0 nan", "'nan' is not a finite number"),
+    ("fk ur5e 0 0 0 0 0 -inf", "'-inf' is not a finite number"),
+    ("fk ur5e 0 0 0 0 0 pi/0", "not a finite number"),
+    ("fk ur5e 0 0 0 0 0 zero", "'zero' is not a number"),
+    ("fk ur5e 0 0 0 0 0 0 --frame wrist_9_link", "wrist_3_link"),
+    ("fk ur5e 0 0 0 0 0 0 --tip nolink", "nolink"),
+    ("fk ur5e 0 0 0 0 0 0 --nonsense", "unrecognized arguments: --nonsense"),
+    ("ik ur5e", "one of --xyz, --xy and --matrix"),
+    ("ik ur5e --xyz 1 2", "expected 3 arguments"),
+    ("ik ur5e --xyz 1 2 3 --xy 1 2", "--xyz and --xy"),
+    ("ik ur5e --xyz 1 2 3 --rpy 0 0 0 --wxyz 1 0 0 0", "one orientation only"),
+    ("ik ur5e --xyz 1 2 3 --wxyz 0 0 0 0", "quaternion"),
+    ("ik ur5e --matrix 2 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "rotation"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --near 1 2", "--near has 2 values"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --limits maybe", "invalid choice: 'maybe'"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --plot /nosuchfolder/x.png", "there is no folder"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --plot picture.bmp", ".png, .svg, .pdf"),
+    ("info ur5e --task lots", "no task 'lots'"),
+    ("dh ur5e --convention classic", "invalid choice: 'classic'"),
+    ("dh ur5e --latex --markdown", "not allowed with"),
+    ("jacobian ur5e 0 0 0 0 0 0 --expressed-in world", "invalid choice"),
+]
+
+
+@pytest.mark.parametrize(("line", "message"), BAD_LINES, ids=[line for line, _ in BAD_LINES])
+def test_a_bad_line_is_refused_with_code_2(line, message):
+    result = cspace(line)
+    assert result.code == Exit.USAGE
+    assert message in result.err
+    assert result.out == ""
+    assert result.err.startswith("cspace: ")
+    assert "Traceback" not in result.err
+
+
+BAD_FILES = [
+    ("broken.urdf", "<robot name='r'>\n<link name='a'/>\n<link></robot>", ":3:"),
+    ("type.urdf", "<robot name='r'>\n<link name='a'/><link name='b'/>\n"
+     "<joint name='j' type='revolvy'><parent link='a'/><child link='b'/></joint></robot>", ":3:"),
+    ("cycle.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n"
+     "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n"
+     "<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>", "cycle.urdf"),
+    ("axis.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n"
+     "<joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 0'/></joint>\n"
+     "</robot>", ":2:"),
+    ("limits.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='j' type='revolute'>"
+     "<parent link='a'/><child link='b'/><limit lower='1' upper='-1' effort='1' velocity='1'/></joint>\n"
+     "</robot>", "upside down"),
+    ("nan.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='j' type='fixed'>"
+     "<parent link='a'/><child link='b'/><origin xyz='nan 0 0'/></joint></robot>", "nan"),
+    ("recipe.urdf", "two eggs and some flour", "recipe.urdf"),
+    ("empty.urdf", "", "empty.urdf"),
+    ("broken.toml", "name = [", "broken.toml"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "text", "message"), BAD_FILES, ids=[row[0] for row in BAD_FILES])
+@pytest.mark.parametrize("verb", ["info", "dh", "fk"])
+def test_a_bad_file_is_refused_with_code_3(tmp_path, verb, name, text, message):
+    path = tmp_path / name
+    path.write_text(text)
+    result = cspace(verb, str(path))
+    assert result.code == Exit.BAD_FILE, result.err
+    assert name in result.err
+    assert message in result.err
+    assert result.out == ""
+
+
+def test_a_file_that_is_not_there_is_a_bad_file(tmp_path):
+    result = cspace("info", str(tmp_path / "gone.urdf"))
+    assert result.code == Exit.BAD_FILE
+    assert "gone.urdf" in result.err
+
+
+class Terminal(io.StringIO):
+    """A stream that says it is a terminal."""
+
+    def isatty(self) -> bool:
+        return True
+
+
+def test_a_terminal_gets_a_table_with_lines(monkeypatch):
+    pytest.importorskip("rich")
+    monkeypatch.setenv("COLUMNS", "160")
+    monkeypatch.setattr("sys.stdout", stream := Terminal())
+    assert app.main(["ik", "ur5e", "--xyz", "0.4", "0.1", "0.3", "--rpy", "0", "pi", "0"]) == Exit.DONE
+    shown = stream.getvalue()
+    assert "─" in shown
+    assert "shoulder" in shown
+    monkeypatch.setattr("sys.stdout", stream := Terminal())
+    for line in ("info ur5e", "dh scara", "jacobian ur5e 0 1 1 1 1 1", "robots", "fk ur5e 0 0 0 0 0 0"):
+        assert app.main(line.split()) == Exit.DONE
+
+
+def test_a_terminal_without_rich_is_told_what_to_install(monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "rich.console", None)
+    monkeypatch.setattr("sys.stdout", Terminal())
+    assert app.main(["robots"]) == Exit.MISSING_EXTRA
+    assert "pip install 'cspace[cli]'" in capsys.readouterr().err
+    with pytest.raises(MissingExtraError):
+        Output(stream=Terminal())
+
+
+def test_pipes_and_json_do_without_rich(monkeypatch):
+    monkeypatch.setitem(sys.modules, "rich", None)
+    monkeypatch.setitem(sys.modules, "rich.console", None)
+    assert cspace("robots").code == Exit.DONE
+    assert cspace("robots --json").code == Exit.DONE
+
+
+def test_a_missing_matplotlib_is_told(monkeypatch, tmp_path):
+    monkeypatch.setitem(sys.modules, "matplotlib.pyplot", None)
+    result = cspace("ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 pi 0 --plot", str(tmp_path / "x.png"))
+    assert result.code == Exit.MISSING_EXTRA
+    assert "pip install 'cspace[plot]'" in result.err
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_unexpected_fault_is_one_line_and_code_70(monkeypatch, capsys):
+    def fail(verb: str) -> None:
+        raise ZeroDivisionError("the sky\nfell")
+
+    monkeypatch.setattr(app, "load", fail)
+    assert app.main(["fk", "ur5e"]) == Exit.INTERNAL
+    message = capsys.readouterr().err
+    assert "ZeroDivisionError: the sky" in message
+    assert "--debug" in message
+    with pytest.raises(ZeroDivisionError):
+        app.main(["fk", "ur5e", "--debug"])
+
+
+def test_an_interrupt_is_code_130(monkeypatch, capsys):
+    def interrupt(verb: str) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(app, "load", interrupt)
+    assert app.main(["fk", "ur5e"]) == Exit.INTERRUPTED
+    assert capsys.readouterr().err == "cspace: interrupted\n"
+
+
+def test_nothing_half_written_is_left(tmp_path):
+    path = tmp_path / "answer.txt"
+    path.write_text("old")
+
+    def write_and_fail() -> None:
+        with whole_file(path) as draft:
+            draft.write_text("half")
+            raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        write_and_fail()
+    assert path.read_text() == "old"
+    assert list(tmp_path.iterdir()) == [path]
+    with whole_file(path) as draft:
+        draft.write_text("whole")
+    assert path.read_text() == "whole"
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_help_and_version():
+    assert cspace("").code == cspace("--help").code == cspace("help").code == Exit.DONE
+    for verb, summary in VERBS.items():
+        assert f"{verb} " in cspace("--help").out
+        assert summary in cspace("--help").out
+    assert cspace("--version").out.startswith("cspace ")
+
+
+def test_a_reader_that_leaves_is_no_error():
+    """`cspace robots | head -1`: one line is read, then the pipe is closed; not a word of complaint."""
+    process = subprocess.Popen(
+        [sys.executable, "-m", "cspace", "dh", "ur5e", "--markdown"],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=environment(PYTHONUNBUFFERED="1"),
+    )
+    process.stdout.close()
+    error = process.stderr.read()
+    process.stderr.close()
+    assert process.wait(timeout=60) == Exit.CLOSED_PIPE
+    assert error == b""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="signals are sent otherwise there")
+def test_control_c_ends_quietly(tmp_path):
+    """A run is interrupted in the middle of its work, by the signal that Ctrl-C sends."""
+    script = (
+        "import sys, time, cspace.cli.app as app\n"
+        "def load(verb):\n    print('ready', flush=True)\n    time.sleep(60)\n"
+        "app.load = load\nsys.exit(app.main(['fk', 'ur5e']))\n"
+    )
+    process = subprocess.Popen(
+        [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment()
+    )
+    assert process.stdout.readline() == b"ready\n"
+    time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=30)
+    assert process.returncode == Exit.INTERRUPTED
+    assert error == b"cspace: interrupted\n"
+
+
+def test_a_terminal_that_cannot_show_a_character_is_no_error():
+    done = subprocess.run(
+        [sys.executable, "-m", "cspace", "info", "ur5e"],
+        capture_output=True,
+        timeout=60,
+        env=environment(PYTHONIOENCODING="ascii"),
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, b"")
+
+
+@pytest.mark.parametrize(
+    ("words", "unwanted"),
+    [
+        (["--help"], {"numpy", "argparse", "rich", "matplotlib"}),
+        (["fk", "--help"], {"rich", "matplotlib", "scipy", "cspace.robots"}),
+        (
+            ["ik", "ur5e", "--xyz", "0.4", "0.1", "0.3", "--rpy", "0", "3", "0"],
+            {"rich", "matplotlib", "scipy"},
+        ),
+    ],
+)
+def test_only_what_a_verb_needs_is_imported(words, unwanted):
+    script = (
+        "import sys; from cspace.cli import main; code = main(sys.argv[1:]);"
+        "print(*sys.modules, file=sys.stderr); sys.exit(code)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script, *words], capture_output=True, text=True, env=environment(), check=False
+    )
+    assert done.returncode == 0
+    others = {verb for verb in VERBS if verb != words[0]}
+    loaded = set(done.stderr.split())
+    assert not loaded & (unwanted - {"numpy"})
+    assert not {f"cspace.cli.verbs.{verb}" for verb in others} & loaded
+
+
+def test_the_module_runs_as_a_command():
+    done = command("fk", "ur5e", "0", "0", "0", "0", "0", "-1e-3", "--json")
+    assert done.returncode == 0
+    assert done.stdout.startswith('{"schema": "cspace.fk/1"')

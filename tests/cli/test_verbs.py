@@ -1,0 +1,216 @@
+"""Every verb: the JSON it promises, the text it prints, and that both say what the library says."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cli import schema
+from cli.run import ROOT, cspace
+from cspace.cli.registry import VERBS, load
+
+LINES = {
+    "robots": "robots --search ur5",
+    "info": "info ur5e",
+    "fk": "fk ur5e 0.1 -1.2 1 0.2 0.4 0.3",
+    "ik": "ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 pi 0",
+    "jacobian": "jacobian ur5e 0.1 -1.2 1 0.2 0.4 0.3",
+    "dh": "dh ur5e",
+    "doctor": "doctor",
+}
+Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]
+
+
+def typed(q) -> list[str]:
+    return [repr(float(x)) for x in q]
+
+
+def test_every_verb_is_tested():
+    assert set(LINES) == set(VERBS)
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_json_is_what_the_schema_says(verb):
+    result = cspace(LINES[verb], "--json")
+    assert (result.code, result.err) == (0, "")
+    assert result.out.count("\n") == 1, "one document on one line"
+    schema.check(result.json, f"cspace.{verb}/1")
+
+
+@pytest.mark.parametrize("name", schema.SCHEMAS)
+def test_the_page_documents_every_key(name):
+    text = (ROOT / "docs/cli.md").read_text(encoding="utf-8")
+    section = text.split(f"### `{name}`")[1].split("\n### ")[0]
+
+    def keys(kind):
+        if isinstance(kind, dict):
+            for key, inner in kind.items():
+                yield key
+                yield from keys(inner)
+        elif isinstance(kind, list):
+            yield from keys(kind[0])
+
+    for key in keys(schema.SCHEMAS[name]):
+        assert f"`{key}`" in section, f"docs/cli.md, {name}: {key} is missing"
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_help_has_examples_that_parse(verb):
+    result = cspace(f"{verb} --help")
+    assert result.code == 0
+    assert f"usage: cspace {verb}" in result.out
+    examples = load(verb).EXAMPLES.strip().splitlines()
+    assert examples
+    for line in examples:
+        assert line in result.out
+        assert line.startswith(f"cspace {verb}")
+
+
+def test_examples_of_the_help_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for verb in VERBS:
+        for line in load(verb).EXAMPLES.strip().splitlines():
+            if not any(word in line for word in ("arm.urdf", "--plot", "--xy ")):
+                result = cspace(line.removeprefix("cspace "))
+                assert result.code == 0, f"{line}\n{result.err}"
+
+
+@pytest.mark.parametrize("verb", VERBS)
+def test_plain_text_has_neither_colours_nor_boxes(verb):
+    result = cspace(LINES[verb])
+    assert result.code == 0
+    assert result.out
+    assert "\x1b" not in result.out
+    assert not set(result.out) & set("│─┌└├━┃╭╰║═")
+    assert all(line == line.rstrip() for line in result.out.splitlines())
+
+
+def test_fk_says_what_the_library_says():
+    T = cs.load_robot("ur5e").fk(Q)
+    found = cspace("fk ur5e --json", *typed(Q)).json
+    np.testing.assert_allclose(found["matrix"], T, atol=1e-15)
+    np.testing.assert_allclose(cs.pose(found["xyz"], rpy=found["rpy"]), T, atol=1e-12)
+    np.testing.assert_allclose(cs.pose(found["xyz"], wxyz=found["wxyz"]), T, atol=1e-12)
+    np.testing.assert_allclose(cs.pose(found["xyz"], xyzw=found["xyzw"]), T, atol=1e-12)
+
+
+def test_degrees_are_typed_and_read():
+    rad = cspace("fk ur5e --json", *typed(Q)).json
+    deg = cspace("fk ur5e --deg --json", *typed(np.degrees(Q))).json
+    np.testing.assert_allclose(deg["matrix"], rad["matrix"], atol=1e-14)
+    np.testing.assert_allclose(deg["rpy"], rad["rpy"], atol=1e-14)
+    assert "rpy [deg]" in cspace("fk ur5e --deg", *typed(np.degrees(Q))).out
+
+
+def test_fk_of_another_frame():
+    robot = cs.load_robot("ur5e")
+    for frame in robot.frames:
+        found = cspace(f"fk ur5e --frame {frame} --json", *typed(Q)).json
+        np.testing.assert_allclose(found["matrix"], robot.fk(Q, frame=frame), atol=1e-15)
+
+
+def test_jacobian_says_what_the_library_says():
+    robot = cs.load_robot("ur5e")
+    for axes in ("base", "tip"):
+        found = cspace(f"jacobian ur5e --expressed-in {axes} --json", *typed(Q)).json
+        J = robot.jacobian(Q, expressed_in=axes)
+        np.testing.assert_allclose(found["jacobian"], J, atol=1e-15)
+        sigma = np.linalg.svd(J, compute_uv=False)
+        np.testing.assert_allclose(found["singular_values"], sigma, atol=1e-12)
+        np.testing.assert_allclose(found["manipulability"], np.prod(sigma), atol=1e-12)
+
+
+def test_a_stretched_arm_is_singular_and_the_wrist_is_to_blame():
+    found = cspace("jacobian ur5e 0.3 -1.2 1 0.2 0 0.3 --json").json
+    assert found["singular"]
+    assert found["distance_to_singularity"] < 1e-12
+    assert not cspace("jacobian planar_2r 0.3 0.4 --json").json["singular"]
+    assert cspace("jacobian planar_2r 0.3 0 --json").json["singular"], "position is what a 2R arm is for"
+
+
+def test_dh_matrices_multiply_to_the_pose():
+    for robot in ("ur5e", "puma560", "scara"):
+        for convention in ("standard", "modified"):
+            found = cspace(f"dh {robot} --convention {convention} --json").json
+            T = np.array(found["base"])
+            for matrix in found["matrices"]:
+                T = T @ matrix
+            arm = cs.load_robot(robot)
+            allowed = 1e-12 + 2 * found["deviation"]
+            np.testing.assert_allclose(T @ found["tool"], arm.fk(np.zeros(arm.dof)), atol=allowed)
+
+
+@pytest.mark.parametrize("convention", ["standard", "modified"])
+@pytest.mark.parametrize("robot", ["ur5e", "puma560", "scara", "stanford"])
+def test_dh_symbols_mean_the_numbers(robot, convention):
+    """The symbols, evaluated at any angle, are the matrix at that angle."""
+    from cspace.model import to_dh
+
+    arm = cs.load_robot(robot)
+    table = to_dh(arm.chain, convention=convention)
+    symbols = cspace(f"dh {robot} --convention {convention} --json").json["symbols"]
+    q = np.random.default_rng(5).uniform(-1, 1, size=arm.dof)
+    for i, (texts, A) in enumerate(zip(symbols, table.matrices(q), strict=True)):
+        theta = table.theta_offset[i] + (q[i] if table.joint_types[i] == "R" else 0.0)
+        values = {f"c{i + 1}": np.cos(theta), f"s{i + 1}": np.sin(theta), f"q{i + 1}": q[i]}
+        got = [
+            [eval(text.replace(" c", "*c").replace(" s", "*s"), {}, values) for text in row] for row in texts
+        ]
+        np.testing.assert_allclose(got, A, atol=1e-5)
+
+
+def test_dh_as_latex_and_markdown():
+    latex = cspace("dh puma560 --latex").out
+    assert latex.startswith("\\begin{array}")
+    assert latex.count("\\begin{bmatrix}") == 6
+    markdown = cspace("dh puma560 --markdown").out
+    assert markdown.startswith("| i |")
+    assert markdown.count("$$") == 12
+
+
+def test_robots_finds_by_word_and_by_joints():
+    names = {row["name"] for row in cspace("robots --search universal --json").json["robots"]}
+    assert {"ur5e", "ur10e", "ur3e"} <= names
+    assert all(row["dof"] == 7 for row in cspace("robots --dof 7 --json").json["robots"])
+    assert cspace("robots").out.count("\n") > 81
+    nothing = cspace("robots --search nosuchthing")
+    assert (nothing.code, nothing.err) == (1, "")
+    assert "no robot" in nothing.out
+    assert cspace("robots --search nosuchthing --json").json["robots"] == []
+
+
+@pytest.mark.parametrize(
+    ("line", "verdict", "numbers"),
+    [
+        ("info ur5e", "exact", 6),
+        ("info ur5e --task position", "redundant", 3),
+        ("info panda", "redundant", 6),
+        ("info planar_2r", "exact", 2),
+        ("info planar_2r --task planar", "over-constrained", 3),
+        ("info planar_3r", "exact", 3),
+        ("info simplified_puma", "exact", 3),
+        ("info scara", "over-constrained", 6),
+        ("info ur5e --task 5", "redundant", 5),
+    ],
+)
+def test_info_counts_freedoms_against_the_task(line, verdict, numbers):
+    freedoms = cspace(line, "--json").json["freedoms"]
+    assert (freedoms["verdict"], freedoms["task_numbers"]) == (verdict, numbers)
+    assert verdict in cspace(line).out
+
+
+def test_info_tells_the_geometry():
+    facts = cspace("info ur5e --json").json
+    assert facts["geometry"]["closed_form"]
+    assert "parallel" in facts["geometry"]["family"]
+    assert cspace("info scara --json").json["freedoms"]["rank"] == 4
+    limits = [joint["upper"] for joint in facts["joints"]]
+    np.testing.assert_allclose(limits, cs.load_robot("ur5e").limits.upper)
+
+
+def test_doctor_is_well_and_says_what_runs():
+    result = cspace("doctor")
+    assert result.code == 0
+    assert cs.__version__ in result.out
+    assert cs._core.isa in result.out
