@@ -144,6 +144,7 @@ class Robot(RobotBase):
     manipulability_ellipsoid = kinematics.manipulability_ellipsoid
     distance_to_singularity = kinematics.distance_to_singularity
     singularity = kinematics.singularity
+    workspace = kinematics.workspace
 
     @property
     def chain(self) -> Chain:

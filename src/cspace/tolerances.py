@@ -15,9 +15,11 @@ __all__ = [
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
     "MEAN_UNIQUENESS",
+    "PLANAR_AXES",
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
+    "SAME_PLACE",
     "SINGULAR_ROUNDING",
     "SINGULAR_VALUE",
     "TOML_BYTES",
@@ -93,3 +95,11 @@ SINGULAR_ROUNDING: Final = 1e-14
 LARGEST_NUMBER: Final = 1e12
 """Largest length, mass, inertia or ratio of a robot (SI units): products of a few stay far from overflow, and
 the longest link of a Denavit–Hartenberg table of nearly parallel axes fits."""
+
+PLANAR_AXES: Final = 1e-9
+"""Sine of the angle between axes, and length of a link relative to all, up to which an arm counts as planar
+with that link missing: its tip then leaves the plane by less than anybody measures."""
+
+SAME_PLACE: Final = 1e-10
+"""Angle [rad], and distance relative to the reach of an arm, below which two ends of arcs on the boundary of
+a workspace are one: a few trigonometric functions cost 1e-15 each."""

@@ -13,11 +13,13 @@ from cspace.kinematics.manipulability import (
     singular_values,
 )
 from cspace.kinematics.singularity import Singularity, singularity
+from cspace.kinematics.workspace import Workspace, workspace
 
 __all__ = [
     "Assembly",
     "Ellipsoid",
     "Singularity",
+    "Workspace",
     "add_tool",
     "assemble",
     "center_of_mass",
@@ -35,4 +37,5 @@ __all__ = [
     "screws",
     "singular_values",
     "singularity",
+    "workspace",
 ]

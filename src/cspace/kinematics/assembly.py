@@ -183,15 +183,20 @@ def _lumps(
 
 
 def _turned(axes: Array) -> Array:
-    """Rotations (n, 4, 4) whose third columns are the unit axes (n, 3); coordinate axes are only permuted."""
+    """Rotations (n, 4, 4) whose third columns are the unit axes (n, 3)."""
     result = np.tile(np.eye(4), (len(axes), 1, 1))
     for T, axis in zip(result, axes, strict=True):
-        aside = np.zeros(3)
-        aside[int(np.argmin(np.abs(axis)))] = 1.0
-        y = np.cross(axis, aside)
-        y /= np.linalg.norm(y)
-        T[:3, :3] = np.column_stack([np.cross(y, axis), y, axis])
+        T[:3, :3] = turned_to(axis)
     return result
+
+
+def turned_to(axis: Array) -> Array:
+    """A rotation (3, 3) whose third column is the unit axis (3,); a coordinate axis is only permuted."""
+    aside = np.zeros(3)
+    aside[int(np.argmin(np.abs(axis)))] = 1.0
+    y = np.cross(axis, aside)
+    y /= np.linalg.norm(y)
+    return np.column_stack([np.cross(y, axis), y, axis])
 
 
 def _inverse(T: Array) -> Array:

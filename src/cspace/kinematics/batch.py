@@ -11,6 +11,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.model import Chain, Limits
 from cspace.spatial import as_pose
 
 __all__ = ["Batch", "Machine", "frame_number", "output", "rows_of"]
@@ -26,7 +27,11 @@ class Machine(Protocol):
     leaves: tuple[str, ...]
     tip: str | None
     floating: bool
+    joint_types: str
+    limits: Limits
 
+    @property
+    def chain(self) -> Chain: ...
     @property
     def dof(self) -> int: ...
     def _chain_rows(self, *arguments: Any) -> bool: ...
@@ -171,11 +176,19 @@ def _thread_count(threads: int | None, shape: tuple[int, ...]) -> int:
     """1 for one configuration; 0, which means every processor, for a batch without a wish."""
     if threads is None:
         return 0 if shape else 1
+    return whole_number(threads, "threads", 0, 1024, "0 or None for every processor")
+
+
+def whole_number(value: Any, subject: str, least: int, most: int, note: str = "") -> int:
+    """The value as an int between two bounds.
+
+    Raises InputTypeError for what is no whole number, InputError outside the bounds.
+    """
     try:
-        count = operator.index(threads)
+        count = operator.index(value)
     except TypeError:
-        kind = type(threads).__name__
-        raise InputTypeError(f"threads must be a whole number or None, got {kind}") from None
-    if not 0 <= count <= 1024:
-        raise InputError(f"threads is {count}; it must be 1 to 1024, or 0 or None for every processor")
+        raise InputTypeError(f"{subject} must be a whole number, got {type(value).__name__}") from None
+    if not least <= count <= most:
+        also = f"; {note}" if note else ""
+        raise InputError(f"{subject} is {count}; it must be {least} to {most}{also}")
     return count

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TypeAlias
 
 import numpy as np
 
@@ -10,8 +10,7 @@ from cspace.arrays import Array, as_generator
 from cspace.errors import InputError
 from cspace.model import Limits
 
-if TYPE_CHECKING:
-    Seed = int | np.random.Generator | None
+Seed: TypeAlias = "int | np.random.Generator | None"
 
 __all__ = ["random_configurations"]
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from types import MappingProxyType
+from typing import Any
 
 from cspace.errors import suggest
 from cspace.model.joint import Joint, Loop
@@ -43,6 +44,10 @@ class Provenance:
         object.__setattr__(self, "missing", tuple(self.missing))
         object.__setattr__(self, "aliases", tuple(self.aliases))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Read-only mappings cannot be pickled; what they were made from can."""
+        return type(self), (self.title, self.vendor, dict(self.sources), self.missing, self.aliases)
+
 
 @dataclass(frozen=True, eq=False)
 class Description:
@@ -78,6 +83,12 @@ class Description:
                     error = suggest("link", end, self.link_by_name, owner=f"robot {self.name!r}")
                     raise ElementError(f"loop {loop.name!r}: {error}", "joint", loop.name)
         store(self, "poses", MappingProxyType({k: self._checked_pose(k, v) for k, v in self.poses.items()}))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Read-only mappings cannot be pickled; what they were made from can."""
+        poses = {pose: dict(values) for pose, values in self.poses.items()}
+        fields = (self.name, self.links, self.joints, self.loops, poses, self.provenance)
+        return type(self), fields
 
     def _checked_pose(self, pose: str, values: Mapping[str, float]) -> Mapping[str, float]:
         for joint in values:

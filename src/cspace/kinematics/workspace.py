@@ -1,0 +1,112 @@
+"""What a robot can reach: sampled for any robot, with its exact boundary for planar arms."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.kinematics.assembly import turned_to
+from cspace.kinematics.batch import Machine, frame_number, whole_number
+from cspace.kinematics.configurations import Seed, random_configurations
+from cspace.kinematics.forward import forward_kinematics
+from cspace.kinematics.planar_boundary import TURN, PlanarArm, boundary
+from cspace.model import Chain
+from cspace.tolerances import PLANAR_AXES
+
+__all__ = ["Workspace", "workspace"]
+
+
+@dataclass(frozen=True, eq=False)
+class Workspace:
+    """Reachable positions of a frame.
+
+    points (n, 3): positions [m] in the base. q (n, n_joints): the configurations [rad or m] that reach them.
+    boundary: closed curves (m, 3) [m], the first point repeated, for a planar arm of turning joints; empty
+    for other robots. area: what they enclose [m²], None without a boundary.
+    """
+
+    points: Array
+    q: Array
+    boundary: tuple[Array, ...] = ()
+    area: float | None = None
+
+    @property
+    def bounds(self) -> tuple[Array, Array]:
+        """The corners (3,), (3,) of the box around the points and the boundary [m]."""
+        everything = np.concatenate([self.points, *self.boundary])
+        return everything.min(axis=0), everything.max(axis=0)
+
+
+def workspace(
+    robot: Machine,
+    n: int = 10_000,
+    frame: str | None = None,
+    *,
+    rng: Seed = None,
+    reach: float | None = None,
+    threads: int | None = None,
+) -> Workspace:
+    """Positions that a frame reaches, drawn through the joints; of a planar arm also the boundary.
+
+    The configurations are uniform between the limits, so the points crowd where many configurations lead to
+    one place: they show reach, not density. The boundary is that of the tip of a serial arm whose joints
+    all turn about parallel axes: of up to three joints with any limits, or of any number without limits.
+
+    n: how many points. frame: its name; without it the tip. rng: seed or generator. reach [m]: range drawn
+    from where a sliding joint has no limits. threads: as in fk.
+
+    Returns a Workspace: points (n, 3), q (n, n_joints), boundary curves (m, 3).
+    Raises InputError for an n below 1 and for a sliding joint without limits and reach.
+
+    Kumar and Waldron 1981.
+    """
+    frame_number(robot, frame)
+    limits, kinds = robot.limits, robot.joint_types
+    q = random_configurations(limits, kinds, whole_number(n, "n", 1, 10**9), rng=rng, reach=reach)
+    points = forward_kinematics(robot, q, frame, threads=threads)[:, :3, 3].copy()
+    curves: tuple[Array, ...] = ()
+    area = None
+    if robot.tip is not None and frame in (None, robot.tip) and not robot.floating:
+        plane = _planar(robot.chain, limits.lower, limits.upper)
+        if plane is not None:
+            arm, R, origin = plane
+            flat = boundary(arm)
+            area = float(sum(_enclosed(curve) for curve in flat))
+            curves = tuple(origin + curve @ R[:, :2].T for curve in flat)
+    return Workspace(points, q, curves, area)
+
+
+def _planar(chain: Chain, lower: Array, upper: Array) -> tuple[PlanarArm, Array, Array] | None:
+    """The arm in its plane, the axes (3, 3) of the plane, its origin (3,); None for other robots."""
+    n = len(chain.axes)
+    free = np.isinf(lower).all() and np.isinf(upper).all()
+    if n < 2 or chain.joint_types != "R" * n or len(chain.coordinates.names) != n or (n > 3 and not free):
+        return None
+    R = turned_to(chain.axes[0])
+    normal = R[:, 2]
+    if np.abs(np.cross(chain.axes, normal)).max() > PLANAR_AXES:
+        return None
+    tip = chain.T_zero[:3, 3]
+    places = (np.vstack([chain.points, tip]) - chain.points[0]) @ R[:, :2]
+    links = np.diff(places, axis=0)
+    lengths = np.hypot(links[:, 0], links[:, 1])
+    if lengths.min() <= PLANAR_AXES * lengths.sum():
+        return None
+    headings = np.arctan2(links[:, 1], links[:, 0])
+    at_zero = np.diff(headings, prepend=0.0)
+    signs = np.sign(chain.axes @ normal)
+    law = chain.coordinates
+    ends = law.multiplier[:, None] * np.column_stack([lower, upper])[law.index] + law.offset[:, None]
+    ends = np.sort(ends * signs[:, None], axis=1)
+    width = np.minimum(ends[:, 1] - ends[:, 0], TURN)
+    start = np.where(width < TURN, at_zero + np.where(width < TURN, ends[:, 0], 0.0), -np.pi)
+    origin = chain.points[0] + normal * ((tip - chain.points[0]) @ normal)
+    return PlanarArm(lengths, np.column_stack([start, width])), R, origin
+
+
+def _enclosed(curve: Array) -> float:
+    """The area [m²] within a closed plane curve (m, 2), negative if it runs clockwise (Gauss's formula)."""
+    x, y = curve[:, 0], curve[:, 1]
+    return float(0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))
