@@ -22,6 +22,7 @@ __all__ = [
     "SAME_PLACE",
     "SINGULAR_ROUNDING",
     "SINGULAR_VALUE",
+    "TANGENT_PLACE",
     "TOML_BYTES",
     "UNLIMITED",
     "WHOLE_TURN",
@@ -103,3 +104,8 @@ with that link missing: its tip then leaves the plane by less than anybody measu
 SAME_PLACE: Final = 1e-10
 """Angle [rad], and distance relative to the reach of an arm, below which two ends of arcs on the boundary of
 a workspace are one: a few trigonometric functions cost 1e-15 each."""
+
+TANGENT_PLACE: Final = 1e-6
+"""Angle [rad] up to which a piece of the boundary of a workspace is nothing; pieces meet within a hundred
+of it times the reach. Circles that touch cross at places known to the square root of the rounding, 1e-8,
+and lie within SAME_PLACE of each other for the square root of that, 1e-5."""

@@ -74,7 +74,7 @@ def test_with_limits_the_boundary_of_a_2r_arm_is_made_of_the_four_arcs_everybody
     assert inside([curve], space.points).mean() > 0.98  # the rest lies between the chords and the arcs
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", range(12))
 def test_the_boundary_separates_what_is_reached_from_what_is_not(seed):
     """Random limits, two and three joints: the even-odd rule of the curves against the joints themselves."""
     rng = np.random.default_rng(seed)
@@ -85,6 +85,12 @@ def test_the_boundary_separates_what_is_reached_from_what_is_not(seed):
     space = robot.workspace(3000, rng=seed)
     reach = lengths.sum()
     edge = np.concatenate(space.boundary)[:, :2]
+
+    for curve in space.boundary:
+        x, y = curve[:, 0], curve[:, 1]
+        assert abs(np.sum(x[:-1] * y[1:] - x[1:] * y[:-1])) > 1e-6 * reach**2, "a curve that encloses nothing"
+        steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
+        assert steps.max() <= 1.01 * reach * 2 * np.pi / 256, "a gap closed by a chord"
 
     def clear_of_edge(points):
         gaps = np.min(np.linalg.norm(points[:, None] - edge[None], axis=2), axis=1)
@@ -157,3 +163,14 @@ def test_random_configurations_stay_within_limits_and_turn_all_the_way_without()
         slide.workspace(0)
     with pytest.raises(InputTypeError, match="whole number"):
         robots.planar(1.0).workspace(2.5)
+
+
+def test_arcs_that_overlap_are_drawn_once():
+    """Equal limits on both sides make the inner arcs of both elbows parts of one circle."""
+    third = np.pi / 3
+    space = limited((0.4, 0.3, 0.25), [-third] * 3, [third] * 3).workspace(100, rng=1)
+    (curve,) = space.boundary
+    inner = np.hypot(curve[:, 0], curve[:, 1]).min()
+    bent = 0.4 + 0.3 * np.exp(1j * third) + 0.25 * np.exp(2j * third)
+    assert inner == pytest.approx(abs(bent), rel=1e-9)
+    np.testing.assert_allclose(curve[:, 1].min(), -curve[:, 1].max(), atol=1e-4)

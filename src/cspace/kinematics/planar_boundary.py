@@ -19,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.tolerances import SAME_PLACE
+from cspace.tolerances import SAME_PLACE, TANGENT_PLACE
 
 __all__ = ["PlanarArm", "boundary", "reachable"]
 
@@ -172,24 +172,19 @@ def boundary(arm: PlanarArm, *, step: float = TURN / 256) -> list[Array]:
             hole = Arc((0.0, 0.0), inner, 0.0, TURN)
             rings.append(_closed(_points(hole, 0.0, TURN, step)[::-1]))
         return rings
-    arcs = _distinct(critical_arcs(arm))
-    pieces = []
+    arcs = critical_arcs(arm)
+    pieces: dict[tuple[int, ...], Array] = {}
     for arc in arcs:
         for low, high in _split(arc, arcs):
+            middle = arc.at(np.array([(low + high) / 2.0]))[0]
+            place = tuple(np.rint(middle / (TANGENT_PLACE * arm.reach)).astype(int).tolist())
+            if place in pieces:  # arcs of one circle overlap; they were cut at each other's ends
+                continue
             side = _side(arm, arc, low, high)
             if side:
                 points = _points(arc, low, high, step)
-                pieces.append(points if side > 0 else points[::-1])
-    return _joined(pieces, SAME_PLACE * arm.reach)
-
-
-def _distinct(arcs: list[Arc]) -> list[Arc]:
-    """Without arcs that are given twice."""
-    kept: dict[tuple[float, ...], Arc] = {}
-    for arc in arcs:
-        key = (*arc.center, arc.radius, arc.start % TURN if arc.width < TURN else 0.0, arc.width)
-        kept.setdefault(tuple(round(x, 9) for x in key), arc)
-    return list(kept.values())
+                pieces[place] = points if side > 0 else points[::-1]
+    return _joined(list(pieces.values()), 100.0 * TANGENT_PLACE * arm.reach)
 
 
 def _split(arc: Arc, others: list[Arc]) -> list[tuple[float, float]]:
@@ -208,7 +203,7 @@ def _split(arc: Arc, others: list[Arc]) -> list[tuple[float, float]]:
             bearing = float(np.arctan2(offset[1], offset[0]))
             cuts |= {_onto(arc, bearing + opening), _onto(arc, bearing - opening)}
     ordered = sorted(cut for cut in cuts if cut <= arc.start + arc.width)
-    return [(a, b) for a, b in pairwise(ordered) if b - a > 10.0 * SAME_PLACE]
+    return [(a, b) for a, b in pairwise(ordered) if b - a > TANGENT_PLACE]
 
 
 def _onto(arc: Arc, angle: float) -> float:
@@ -219,7 +214,7 @@ def _onto(arc: Arc, angle: float) -> float:
 def _side(arm: PlanarArm, arc: Arc, low: float, high: float) -> int:
     """+1 if beside the middle of a piece only the inside is reachable, −1 only the outside, or 0."""
     middle = np.array([(low + high) / 2.0])
-    aside = min(1e-5 * arm.reach, 1e-2 * (high - low) * arc.radius, 0.5 * arc.radius)
+    aside = min(10.0 * SAME_PLACE * arm.reach, 0.5 * arc.radius)
     near = [Arc(arc.center, arc.radius + shift, 0.0, TURN).at(middle)[0] for shift in (-aside, aside)]
     inside, outside = reachable(arm, np.array(near))
     return int(inside) - int(outside)
@@ -235,15 +230,16 @@ def _closed(curve: Array) -> Array:
 
 
 def _joined(pieces: list[Array], gap: float) -> list[Array]:
-    """Directed pieces linked end to start into closed curves."""
+    """Directed pieces linked end to start, where they are within a gap, into closed curves."""
     left, curves = list(pieces), []
     while left:
         curve = left.pop()
-        while left and np.abs(curve[0] - curve[-1]).max() > 1e3 * gap:
+        while left and np.abs(curve[0] - curve[-1]).max() > gap:
             distances = [float(np.abs(piece[0] - curve[-1]).max()) for piece in left]
             nearest = int(np.argmin(distances))
-            if distances[nearest] > 1e3 * gap:
+            if distances[nearest] > gap:
                 break
             curve = np.concatenate([curve, left.pop(nearest)[1:]])
-        curves.append(_closed(curve))
+        if np.ptp(curve, axis=0).max() > gap:  # what is smaller is left over where circles touch
+            curves.append(_closed(curve))
     return curves
