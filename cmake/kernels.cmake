@@ -23,7 +23,7 @@ endfunction()
 set(kernel_copies)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_OSX_ARCHITECTURES MATCHES "arm64")
   list(APPEND kernel_copies CSPACE_HAS_AVX2)
-  if(NOT MSVC)  # without vector extensions a pack is an array, to which AVX-512 adds nothing
+  if(CSPACE_AVX512 AND NOT MSVC)  # without vector extensions a pack is an array, to which AVX-512 adds nothing
     list(APPEND kernel_copies CSPACE_HAS_AVX512)
   endif()
 endif()
