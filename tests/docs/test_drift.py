@@ -17,7 +17,7 @@ ROOMS = {
     "robots": "robots",
     "kinematics": "kinematics",
     "ik": "inverse-kinematics",
-    "plot": "plot",
+    "plot": "plots",
 }
 
 
