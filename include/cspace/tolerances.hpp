@@ -61,4 +61,8 @@ inline constexpr double last_row = 1e-9;
 // rounding of a rotation that somebody wrote as 1.5707963267948966.
 inline constexpr double right_angle = 2.5e-16;
 
+// Gap, relative to the arm, below which a candidate of the algebra is surely meant: a double root is off by
+// 1e-8, a wrong pairing of the two conditions by a good part of the arm.
+inline constexpr double sure_candidate = 1e-3;
+
 }  // namespace cspace::tolerance

@@ -88,8 +88,10 @@ def test_subproblem_2_finds_what_it_was_made_from(k1, k2, p1, a, b):
     s = sp.subproblem_2(k1, k2, p1, p2)
     assert s.exact
     if not s.free:
-        near = np.abs(np.exp(1j * answers(s, 2)) - np.exp(1j * np.array([a, b]))).max(axis=1).min()
-        assert near < 1e-6
+        # An angle is known as well as it moves its point: a small circle leaves it vague.
+        levers = [np.linalg.norm(np.cross(k, p)) / np.linalg.norm(k) for k, p in ((k1, p1), (k2, p2))]
+        moved = np.abs(np.exp(1j * answers(s, 2)) - np.exp(1j * np.array([a, b]))) * levers
+        assert moved.max(axis=1).min() < 1e-6
 
 
 @pytest.mark.parametrize("number", [3, 4])

@@ -27,7 +27,7 @@ void eigenvectors(double (*a)[n], double (*v)[n]) {
     for (int sweep = 0; sweep < 12; ++sweep)
         for (int i = 0; i < n; ++i)
             for (int j = i + 1; j < n; ++j) {
-                if (a[i][j] == 0) continue;
+                if (std::fabs(a[i][j]) <= 1e-18 * (std::fabs(a[i][i]) + std::fabs(a[j][j]))) continue;
                 const double half = 0.5 * std::atan2(2 * a[i][j], a[j][j] - a[i][i]);
                 const double c = std::cos(half), s = std::sin(half);
                 for (int k = 0; k < n; ++k) {
@@ -42,6 +42,22 @@ void eigenvectors(double (*a)[n], double (*v)[n]) {
             }
 }
 
+// No eigenvalue of a positive matrix is below its determinant divided by the other eigenvalues, each at most
+// n times the largest diagonal entry: a cheap way to say that nothing is singular here.
+template <int n>
+bool surely_regular(const double (*a)[n], double largest) {
+    double determinant = a[0][0];
+    if constexpr (n == 2) determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+    if constexpr (n == 3)
+        determinant = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+                      a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                      a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    double scale = largest;
+    for (int i = 1; i < n; ++i) scale *= n * largest;
+    return determinant > n * tolerance::degenerate_pair * tolerance::degenerate_pair * scale &&
+           largest > tolerance::sure_candidate;
+}
+
 // Whether the solution q is one of a family; its direction, of length one, is written to `along`.
 template <class System>
 bool is_free(const System& g, const double* q, double* along) {
@@ -52,7 +68,10 @@ bool is_free(const System& g, const double* q, double* along) {
     normal_equations(at, normal, down);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < i; ++j) normal[j][i] = normal[i][j];
+    for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
+    if (surely_regular<n>(normal, largest)) return false;
     eigenvectors<n>(normal, v);
+    largest = 0;
     for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
     const double floor = std::fmax(tolerance::degenerate_pair * std::sqrt(largest), tolerance::rounding);
     for (int i = 0; i < n; ++i) {
@@ -63,9 +82,9 @@ bool is_free(const System& g, const double* q, double* along) {
     return false;
 }
 
-// Keeps the refined solution q of a system if it is new; members of families only if `families`.
+// Keeps the refined solution q of a system if it is new.
 template <class System, class Solutions>
-void keep(const System& g, double* q, bool families, Solutions& found) {
+void keep(const System& g, double* q, Solutions& found) {
     constexpr int n = System::angles;
     if (found.count == ik::max_position_solutions) return;
     for (int i = 0; i < n; ++i)
@@ -74,7 +93,7 @@ void keep(const System& g, double* q, bool families, Solutions& found) {
         if (same_joints(g, q, found.q[i])) return;
     for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
     found.free[found.count] = is_free(g, q, found.direction[found.count]);
-    found.count += families || !found.free[found.count];
+    ++found.count;
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -73,7 +73,7 @@ struct Search {
         if (refine(gap, scaled) > gap.reached) return;
         Linearised<PoseGap<n>> at;
         if (linearise(gap, scaled, at) > gap.reached || opposed(scaled)) return;
-        keep(gap, scaled, true, found);
+        keep(gap, scaled, found);
     }
     // Half a turn away from the goal the sum of g × r vanishes too.
     bool opposed(const double* scaled) const {

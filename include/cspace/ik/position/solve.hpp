@@ -32,13 +32,13 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
 
 // Refines a candidate and keeps it if it reaches the goal.
 template <int n>
-void propose(const TipGap<n>& g, double* q, bool families, ik::PositionSolutions& found) {
-    if (refine(g, q) <= g.reached) keep(g, q, families, found);
+void propose(const TipGap<n>& g, double* q, ik::PositionSolutions& found) {
+    if (refine(g, q) <= g.reached) keep(g, q, found);
 }
 
 inline void candidates(const TipGap<1>& g, ik::PositionSolutions& found) {
     double q[1] = {joint_between(g, 0, g.tip, g.goal)};
-    propose(g, q, true, found);
+    propose(g, q, found);
 }
 inline void candidates(const TipGap<2>& g, ik::PositionSolutions& found) {
     const Curve curve = tip_curve(g, 1, g.tip, 1);
@@ -48,7 +48,7 @@ inline void candidates(const TipGap<2>& g, ik::PositionSolutions& found) {
     invariants(g, 0, goal, target);
     const auto complete = [&](double last) {
         double q[2] = {joint_between(g, 0, at(curve, last), g.goal), last};
-        propose(g, q, true, found);
+        propose(g, q, found);
     };
     bool idle = true;
     for (int i = 0; i < 2; ++i) {
@@ -65,14 +65,18 @@ inline void candidates(const TipGap<3>& g, ik::PositionSolutions& found) {
     invariants(g, 1, before, f);
     invariants(g, 1, behind, h);
     const PairCandidates pairs = solve_pair(f, h);
-    bool families = true;
-    for (int i = 0; i < pairs.count; ++i) {
-        // One stage of candidates that meets families has said enough about them.
-        if (i > 0 && pairs.stage[i] > pairs.stage[i - 1])
-            for (int k = 0; k < found.count; ++k) families = families && !found.free[k];
-        const double first = pairs.first[i], last = pairs.last[i];
-        double q[3] = {first, joint_between(g, 1, at(behind, last), at(before, first)), last};
-        propose(g, q, families, found);
+    // Sure candidates first; the doubtful ones (false pairings of the two conditions, or true ones spoilt
+    // where the elimination degenerates) and those that represent families only while nothing is found.
+    for (int stage = 0; stage < 5; ++stage) {
+        if (found.count > 0) return;
+        for (int i = 0; i < pairs.count; ++i) {
+            if (pairs.stage[i] != (stage < 2 ? 0 : stage - 1)) continue;
+            const double first = pairs.first[i], last = pairs.last[i];
+            double q[3] = {first, joint_between(g, 1, at(behind, last), at(before, first)), last};
+            Linearised<TipGap<3>> start;
+            const bool sure = linearise(g, q, start) < tolerance::sure_candidate;
+            if (stage >= 2 || sure == (stage == 0)) propose(g, q, found);
+        }
     }
 }
 
