@@ -3,10 +3,10 @@
 // true chain, judged by its residual, told from its twins by the conditioning, and tested for self-motion.
 #pragma once
 
-#include <initializer_list>
-
 #include "cspace/ik/evaluate.hpp"
+#include "cspace/ik/free_wrist.hpp"
 #include "cspace/ik/refine.hpp"
+#include "cspace/ik/self_motion.hpp"
 #include "cspace/ik/solution.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -15,26 +15,6 @@ inline double wrapped_distance(const double* a, const double* b, int n) {
     double worst = 0;
     for (int i = 0; i < n; ++i) worst = max(worst, std::fabs(std::remainder(a[i] - b[i], 2 * pi)));
     return worst;
-}
-
-// Whether the arm can move along `direction` with its tip at rest: it goes a stride that way and comes back
-// to the goal. In a family it has moved by about the stride, whatever the stride; at a fold it slides back,
-// or over to a neighbouring solution, whose distance is one and the same.
-inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
-                         const double* direction) {
-    for (const double stride : {0.02, 0.05}) {
-        bool moved_on = false;
-        for (const double way : {stride, -stride}) {
-            double moved[ik::max_joints], along = 0;
-            for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + way * direction[i];
-            PoseError error;
-            if (refine(chain, goal, length, moved, error) > 1e-12) continue;
-            for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
-            moved_on = moved_on || along / way > 0.8;
-        }
-        if (!moved_on) return false;
-    }
-    return true;
 }
 
 // Adds q to the solutions unless it is no solution or already there.
@@ -49,21 +29,23 @@ inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal,
     for (int k = 0; k < out.count; ++k)
         if (wrapped_distance(out.q[k], q, chain.n) < same) return;
     const int n = out.count++;
-    for (int i = 0; i < chain.n; ++i) {
+    for (int i = 0; i < chain.n; ++i)
         out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
-        out.direction[n][i] = error.jacobian.v[weak][i];
-    }
     out.branch[n] = static_cast<signed char>(branch);
-    out.family[n] = error.jacobian.sigma[weak] < 1e-7 &&
-                    moves_freely(chain, goal, length, out.q[n], error.jacobian.v[weak]);
+    out.family[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
 }
 
+// Which of the plan's branches to try, and how far virtual joints may be off zero [rad].
+struct Search {
+    int first = 0, last = max_branches;
+    double stray = 1e-3;
+};
+
 // The plan's branches for one choice of idle joints, as configurations of the chain.
-inline int candidates(const ik::Plan& plan, const Posed& goal_form, const Care& care, ik::Solutions& out,
-                      const Posed& goal) {
+inline void candidates(const ik::Plan& plan, const Posed& goal_form, const Care& care, ik::Solutions& out,
+                       const Posed& goal, const Search& search = {}) {
     const Branches<double> b = closed_form(plan, goal_form, care);
-    int tried = 0;
-    for (int k = 0; k < max_branches; ++k) {
+    for (int k = search.first; k < search.last; ++k) {
         if (!b.ok[k]) continue;
         double q[ik::max_joints] = {};
         bool real = true;
@@ -72,13 +54,81 @@ inline int candidates(const ik::Plan& plan, const Posed& goal_form, const Care& 
             if (plan.joint[i] >= 0)
                 q[plan.joint[i]] = angle;
             else
-                real = real && std::fabs(angle) < 1e-3;
+                real = real && std::fabs(angle) <= search.stray;
         }
         if (!real) continue;
-        ++tried;
         admit(out, plan.chain, goal, plan.form.length, q, k);
     }
-    return tried;
+}
+
+// The angles t_i that free joints take, from the chain's joints; the free sum of three parallel joints is
+// theirs.
+inline void set_idle(const ik::Plan& plan, const double* idle, Care& care, double* t) {
+    for (int i = 0; i < 6; ++i) {
+        const double q = plan.joint[i] >= 0 && idle ? idle[plan.joint[i]] : 0.0;
+        t[i] = plan.sign[i] * q + plan.form.offset[i];
+    }
+    if (plan.family == ik::Family::three_parallel) t[3] += t[1] + t[2];
+    for (int i = 0; i < 6; ++i) care.idle[i] = {std::cos(t[i]), std::sin(t[i])};
+}
+
+// Whether the branches depend on the angle that joint i takes when it is free.
+inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
+    const Branches<double> b = closed_form(plan, goal_form, care);
+    Care other = care;
+    other.idle[i] = {std::cos(t + 2.4), std::sin(t + 2.4)};
+    const Branches<double> moved = closed_form(plan, goal_form, other);
+    for (int k = 0; k < max_branches; ++k) {
+        if (b.ok[k] != moved.ok[k]) return true;
+        for (int j = 0; j < 6 && b.ok[k]; ++j)
+            if (std::fabs(std::remainder(b.t[k][j] - moved.t[k][j], 2 * pi)) > 1e-3) return true;
+    }
+    return false;
+}
+
+// Where the form's joint is free but the arm's is not (it is idealised, or completed by virtual joints), the
+// solutions lie somewhere along the family: start from angles all around.
+inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, const Care& care, const double* t,
+                              ik::Solutions& out, const Posed& goal) {
+    constexpr int turns = 32;
+    for (int i = 0; i < 6; ++i) {
+        if (!is_free(plan, goal_form, care, t[i], i)) continue;
+        for (int k = 1; k < turns; ++k) {
+            Care turned = care;
+            const double angle = t[i] + k * (2 * pi / turns);
+            turned.idle[i] = {std::cos(angle), std::sin(angle)};
+            candidates(plan, goal_form, turned, out, goal, {0, max_branches, pi});
+        }
+    }
+}
+
+// Near a singularity of the completed arm that the arm itself does not have, the error of the idealised form
+// grows to its square root: start from branches that far beside the goal.
+inline void try_beside(const ik::Plan& plan, const Posed& goal_form, Care care, ik::Solutions& out,
+                       const Posed& goal) {
+    care.band = std::sqrt(care.band);
+    if (closed_form(plan, goal_form, care).doubt)
+        candidates(plan, goal_form, care, out, goal, {0, max_branches, pi});
+}
+
+// Where the wrist of three parallel axes is free and its idle turn carries the goal out of the planar arm's
+// reach, the nearest turn that does not.
+inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care care, double idle,
+                            ik::Solutions& out, const Posed& goal) {
+    care.free =
+        max(care.free, 1e-6);  // behind two shoulders that merge, the wrist is seen through their error
+    constexpr int half = max_branches / 2;
+    for (int i = 0; i < 2; ++i) {
+        bool found = false;
+        for (int k = 0; k < out.count; ++k) found = found || out.branch[k] / half == i;
+        if (found) continue;
+        const ik::FreeSums sums = free_sums(plan.parallel, goal_form, i, idle, care);
+        const int before = out.count;
+        for (int k = 0; k < sums.count && out.count == before; ++k) {
+            care.idle[3] = {std::cos(sums.sum[k]), std::sin(sums.sum[k])};
+            candidates(plan, goal_form, care, out, goal, {half * i, half * (i + 1)});
+        }
+    }
 }
 
 // `idle`: the angles of the chain's joints that free joints take.
@@ -87,26 +137,20 @@ inline ik::Solutions solve_carefully(const ik::Plan& plan, const Posed& goal, co
     Care care;
     const double slack = 4 * plan.form.deviation;
     care.band = max(tolerance::fold_band, slack);
+    care.free = max(tolerance::free_joint, slack);
     double t[6];
-    for (int i = 0; i < 6; ++i) {
-        const double q = plan.joint[i] >= 0 && idle ? idle[plan.joint[i]] : 0.0;
-        t[i] = plan.sign[i] * q + plan.form.offset[i];
-        care.idle[i] = {std::cos(t[i]), std::sin(t[i])};
-    }
+    set_idle(plan, idle, care, t);
     const Posed goal_form = goal_in_form(plan, goal);
-    candidates(plan, goal_form, care, out, goal);
+    // Near singularities of the completed arm an idealised form leaves virtual joints far from zero.
+    const Search search = {0, max_branches, plan.polish ? 0.1 : 1e-3};
+    candidates(plan, goal_form, care, out, goal, search);
     if (plan.polish) {
         care.spread = slack;
-        candidates(plan, goal_form, care, out, goal);
+        candidates(plan, goal_form, care, out, goal, search);
     }
-    // A free wrist of the three-parallel class turns the planar arm's target: look for a turn that it can
-    // reach.
-    constexpr int turns = 128;
-    for (int k = 1; plan.family == ik::Family::three_parallel && out.count == 0 && k <= turns; ++k) {
-        const double turn = (k % 2 ? 1 : -1) * ((k + 1) / 2) * (2 * pi / turns);
-        care.idle[3] = {std::cos(t[3] + turn), std::sin(t[3] + turn)};
-        candidates(plan, goal_form, care, out, goal);
-    }
+    if (plan.polish && plan.virtual_joints && out.count == 0) try_beside(plan, goal_form, care, out, goal);
+    if (plan.polish || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
+    if (plan.family == ik::Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
     out.status = out.count == 0 ? ik::Status::unreachable : ik::Status::exact;
     for (int k = 0; k < out.count; ++k)
         if (out.family[k]) out.status = ik::Status::singular;

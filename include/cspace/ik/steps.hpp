@@ -9,11 +9,12 @@
 namespace cspace {
 
 // What a careful second look changes: how wide the band is in which two solutions may merge, how far merging
-// solutions are held apart, and the angles t_i (as cosine and sine) that joints take when the pose leaves
-// them free.
+// solutions are held apart, below which size a lever counts as zero and its joint as free, and the angles t_i
+// (as cosine and sine) that joints take when the pose leaves them free.
 struct Care {
     double band = tolerance::fold_band;
     double spread = 0;
+    double free = tolerance::free_joint;
     Turn<double> idle[6] = {{1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}};
 };
 
@@ -40,7 +41,7 @@ struct Aligned {
 template <class V>
 CSPACE_INLINE Aligned<V> align(V x, V y, V u, V v, double unit, const Care& care, const Turn<double>& idle) {
     const V n2 = u * u + v * v;
-    const mask_of<V> is_free = n2 <= tolerance::free_joint * tolerance::free_joint * unit * unit;
+    const mask_of<V> is_free = n2 <= care.free * care.free * unit * unit;
     const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
     const Turn<V> t = {(x * u + y * v) * scale, (x * v - y * u) * scale};
     return {choose(is_free, idle, t), n2 <= care.band * unit * unit};
@@ -59,7 +60,7 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
     const V n2 = a * a + b * b;
     const V room = n2 - r * r;
     const double unit2 = unit * unit;
-    const mask_of<V> is_free = n2 <= tolerance::free_joint * tolerance::free_joint * unit2;
+    const mask_of<V> is_free = n2 <= care.free * care.free * unit2;
     const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
     const V h = root_above(room, care.spread * n2);
     TwoAngles<V> out;
@@ -89,7 +90,7 @@ CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, const Care& ca
     out.cos_elbow = 0.5 * (room_in - room_out);
     out.sin_elbow = root_above(room_out * room_in, fill<V>(care.spread));
     const V along = l1 + l2 * out.cos_elbow, across = l2 * out.sin_elbow;
-    const mask_of<V> is_free = r2 <= tolerance::free_joint * tolerance::free_joint * size2;
+    const mask_of<V> is_free = r2 <= care.free * care.free * size2;
     const V scale = 1.0 / select(is_free, fill<V>(1.0), r2);
     out.first[0] = {(x * along + y * across) * scale, (y * along - x * across) * scale};
     out.first[1] = {(x * along - y * across) * scale, (y * along + x * across) * scale};
@@ -154,7 +155,7 @@ CSPACE_INLINE WristView<V> look_at_wrist(const Wrist& w, const Vec3<V>& z, const
     const V least = min(low, high);
     view.c5 = 0.5 * (high - low);
     view.s5 = root_above(low * high, fill<V>(care.spread));
-    view.t4_is_free = rho2 <= tolerance::free_joint * tolerance::free_joint;
+    view.t4_is_free = rho2 <= care.free * care.free;
     view.inverse_rho2 = 1.0 / select(view.t4_is_free, fill<V>(1.0), rho2);
     view.ok = least >= -care.band;
     view.doubt = view.ok && ((least <= care.band) || (rho2 <= care.band));

@@ -1,0 +1,125 @@
+// Whether an arm can move at a configuration while its tip stays: the null space of the Jacobian proposes,
+// a stride along it decides.
+#pragma once
+
+#include "cspace/ik/refine.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// Steps that a stride may take to come back to the goal: along a family it needs three, beside one (a fold
+// on top of a family) the error halves in each.
+inline constexpr int steps_back = 30;
+
+// Whether the arm can move along `direction` with its tip at rest: it goes a stride that way and comes back
+// to the goal. In a family it has moved by about the stride, whatever the stride; at a fold it slides back,
+// or over to a neighbouring solution, whose distance is one and the same.
+inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                         const double* direction) {
+    for (const double stride : {0.02, 0.05}) {
+        bool moved_on = false;
+        for (const double way : {stride, -stride}) {
+            if (moved_on) break;
+            double moved[ik::max_joints], along = 0;
+            for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + way * direction[i];
+            PoseError error;
+            if (refine(chain, goal, length, moved, error, steps_back) > 1e-12) continue;
+            for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
+            moved_on = along / way > 0.8;
+        }
+        if (!moved_on) return false;
+    }
+    return true;
+}
+
+// The part of v in the span of the orthonormal vectors basis[0 … k), made unit.
+inline bool project(const double* const* basis, int k, int n, double* v) {
+    double out[ik::max_joints] = {};
+    for (int j = 0; j < k; ++j) {
+        const double along = dot_n(basis[j], v, n);
+        for (int i = 0; i < n; ++i) out[i] += along * basis[j][i];
+    }
+    const double size = std::sqrt(dot_n(out, out, n));
+    for (int i = 0; i < n; ++i) v[i] = size > 0 ? out[i] / size : 0;
+    return size > 0;
+}
+
+// Where a stride along `trial` leads, as a direction of the null space; false if it leads back.
+inline bool led_away(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                     const double* const* basis, int k, double* trial) {
+    constexpr double stride = 0.03;
+    double moved[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * trial[i];
+    PoseError error;
+    if (refine(chain, goal, length, moved, error, steps_back) > 1e-12) return false;
+    double away = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        trial[i] = moved[i] - q[i];
+        away += trial[i] * trial[i];
+    }
+    return away > 0.25 * stride * stride && project(basis, k, chain.n, trial);
+}
+
+// The vectors of a null space of dimension 2 or 3 that leave one or two joints alone: families of real arms
+// move few joints (a wrist rolling against the forearm), and lie among these where the null space holds more
+// than the family. basis[0 … k): orthonormal, length n.
+struct SparseDirections {
+    int count = 0;
+    double d[2 + ik::max_joints * ik::max_joints][ik::max_joints];
+};
+inline SparseDirections sparse_directions(const double* const* basis, int k, int n) {
+    SparseDirections out;
+    for (int i = 0; i < n; ++i)
+        for (int j = k == 2 ? n - 1 : i + 1; j < n; ++j) {
+            // The weights that cancel joint i (and j).
+            const double a = basis[0][i], b = basis[1][i], c = k == 2 ? 0 : basis[2][i];
+            const double e = k == 2 ? 0 : basis[0][j], f = k == 2 ? 0 : basis[1][j],
+                         g = k == 2 ? 1 : basis[2][j];
+            const double w[3] = {b * g - c * f, c * e - a * g, a * f - b * e};
+            double* const d = out.d[out.count];
+            double size2 = 0;
+            for (int m = 0; m < n; ++m) {
+                d[m] = w[0] * basis[0][m] + w[1] * basis[1][m] + (k == 2 ? 0 : w[2] * basis[2][m]);
+                size2 += d[m] * d[m];
+            }
+            if (size2 < 1e-8) continue;
+            for (int m = 0; m < n; ++m) d[m] /= std::sqrt(size2);
+            ++out.count;
+        }
+    return out;
+}
+
+// Looks for a self-motion at q, whose decomposed Jacobian is J; on success `direction` is its unit velocity.
+// Where freedom is lost twice or more (an elbow stretched over a wrist), the null space has more dimensions
+// than the motion: its sparse directions are tried, then some all around it.
+inline bool find_self_motion(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                             const PoseSvd& J, double* direction) {
+    constexpr double lost = 1e-7;
+    const double* basis[ik::max_joints];
+    int k = 0;
+    for (int j = 0; j < J.columns; ++j)
+        if (J.sigma[j] < lost) basis[k++] = J.v[j];
+    if (k == 0) return false;
+    const auto accept = [&](const double* d) {
+        if (!moves_freely(chain, goal, length, q, d)) return false;
+        for (int i = 0; i < chain.n; ++i) direction[i] = d[i];
+        return true;
+    };
+    if (k == 1) return accept(basis[0]);
+    if (k <= 3) {
+        const SparseDirections sparse = sparse_directions(basis, k, chain.n);
+        for (int m = 0; m < sparse.count; ++m)
+            if (accept(sparse.d[m])) return true;
+    }
+    constexpr int around = 6;
+    for (int a = 0; a < k; ++a)
+        for (int b = a + 1; b < k; ++b)
+            for (int m = 0; m < around; ++m) {
+                const double c = std::cos(pi * m / around), s = std::sin(pi * m / around);
+                double trial[ik::max_joints];
+                for (int i = 0; i < chain.n; ++i) trial[i] = c * basis[a][i] + s * basis[b][i];
+                if (led_away(chain, goal, length, q, basis, k, trial) && accept(trial)) return true;
+            }
+    return false;
+}
+
+}  // namespace cspace::inline CSPACE_ISA
