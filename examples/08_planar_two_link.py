@@ -24,13 +24,14 @@ def main(folder: Path) -> None:
     assert np.allclose(arm.fk(q)[:2, 3], p)
     assert np.isclose(np.linalg.det(J), np.sin(q[1]))
 
-    # The other elbow: the triangle of the two links, mirrored at the line from the base to the tip.
-    bearing = np.arctan2(p[1], p[0])
-    mirrored = np.array([2 * bearing - q[0], -q[1]])
-    assert np.allclose(arm.fk(mirrored)[:2, 3], p)
+    # Four cases: two elbows, one when stretched, none beyond, and infinitely many at the base.
+    for point in (p, [2.0, 0.0], [3.0, 0.0], [0.0, 0.0]):
+        print(np.round(point, 3), arm.ik(position=point).reason)
+    elbows = arm.ik(position=p)
+    assert np.allclose(arm.fk(elbows.q)[:, :2, 3], p)
+    assert np.allclose(elbows.nearest(q).q[0], q)
 
-    both = plot.solutions(arm, [q, mirrored], p, labels=["elbow down", "elbow up"])
-    plot.save(both, folder / "two_elbows.png")
+    plot.save(plot.solutions(arm, elbows, p), folder / "two_elbows.png")
     plot.save(plot.workspace(arm), folder / "workspace.png")
     plot.save(plot.manipulability(arm, q), folder / "manipulability.png")
 

@@ -53,10 +53,8 @@ def frames() -> Sequence[Any]:
 def planar_2r_solutions() -> Sequence[Any]:
     """Both ways of a planar arm to a point."""
     robot = cs.load_robot("planar_2r")
-    r, phi = np.hypot(1.2, 0.7), np.arctan2(0.7, 1.2)
-    bend = np.arccos(r / 2)
-    q = [[phi - bend, 2 * bend], [phi + bend, -2 * bend]]
-    return plot.solutions(robot, q, [1.2, 0.7], labels=["elbow down", "elbow up"])
+    point = [1.2, 0.7]
+    return plot.solutions(robot, robot.ik(position=point), point, labels=["elbow down", "elbow up"])
 
 
 def workspace() -> Sequence[Any]:
