@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import signal
 import subprocess
 import sys
@@ -116,6 +117,17 @@ def test_a_terminal_gets_a_table_with_lines(monkeypatch):
     monkeypatch.setattr("sys.stdout", stream := Terminal())
     for line in ("info ur5e", "dh scara", "jacobian ur5e 0 1 1 1 1 1", "robots", "fk ur5e 0 0 0 0 0 0"):
         assert app.main(line.split()) == Exit.DONE
+
+
+def test_a_narrow_terminal_loses_no_digits(monkeypatch):
+    pytest.importorskip("rich")
+    monkeypatch.setenv("COLUMNS", "60")
+    monkeypatch.setattr("sys.stdout", stream := Terminal())
+    assert app.main(["ik", "ur5e", "--xyz", "0.4", "0.1", "0.3", "--rpy", "0", "pi", "0"]) == Exit.DONE
+    piped = cspace("ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 pi 0").out.splitlines()[2:]
+    plain = re.sub(r"\x1b\[[0-9;]*m", "", stream.getvalue())
+    shown = [line for line in plain.splitlines() if " ok " in line]
+    assert [line.split()[:7] for line in shown] == [row.split()[:7] for row in piped]
 
 
 def test_a_terminal_without_rich_is_told_what_to_install(monkeypatch, capsys):

@@ -6,11 +6,14 @@ import json
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, TextIO
+from typing import Any, Final, TextIO
 
 from cspace.arrays import Array
 
 __all__ = ["Cell", "Output", "Table"]
+
+MOST_COLUMNS: Final = 400
+"""The widest table: one that a terminal is too narrow for runs over its edge rather than lose digits."""
 
 
 @dataclass(frozen=True)
@@ -83,7 +86,12 @@ class Output:
     def table(self, table: Table) -> None:
         """A table."""
         if self._console is not None:
-            self._console.print(_rich_table(table))
+            drawn = _rich_table(table)
+            wide = self._console.options.update(max_width=MOST_COLUMNS)
+            needed = self._console.measure(drawn, options=wide).minimum
+            if needed > self._console.width:
+                self._console.width = needed
+            self._console.print(drawn, crop=False)
         else:
             self.stream.write(_plain_table(table))
 
