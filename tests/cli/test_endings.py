@@ -222,7 +222,8 @@ def test_a_reader_that_leaves_is_no_error():
 def test_control_c_ends_quietly(tmp_path):
     """A run is interrupted in the middle of its work, by the signal that Ctrl-C sends."""
     script = (
-        "import sys, time, cspace.cli.app as app\n"
+        "import signal, sys, time, cspace.cli.app as app\n"
+        "signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it\n"
         "def load(verb):\n    print('ready', flush=True)\n    time.sleep(60)\n"
         "app.load = load\nsys.exit(app.main(['fk', 'ur5e']))\n"
     )
