@@ -2,6 +2,7 @@
 
 #include "cspace/ik/evaluate.hpp"
 #include "cspace/ik/goal.hpp"
+#include "cspace/ik/polish.hpp"
 #include "cspace/math/rows.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -30,18 +31,30 @@ CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
     return bits;
 }
 
+// Corrects angles on the true chain; false where that did not settle.
+template <class W>
+CSPACE_INLINE mask_of<W> polished_angles(const ik::Plan& plan, const Pose<W>& goal, W* q) {
+    const mask_of<W> settled = polish(plan.chain, goal, plan.form.length, q);
+    for (int i = 0; i < 6; ++i) q[i] = wrap_once(q[i]);
+    return settled;
+}
+
 }  // namespace
 
 ik::Quick ik_one(const ik::Plan& plan, const double* T, double* q, std::int8_t* branch, int* count) {
     const ReadGoal<double> goal = read_goal(T);
     *count = 0;
     if (!goal.is_pose) return ik::Quick::refused;
-    if (plan.virtual_joints || plan.polish || !plan.on_lanes) return ik::Quick::doubtful;
-    const Abreast found = closed_form_abreast(plan, goal_in_form(plan, goal.T));
+    if (plan.virtual_joints || !plan.on_lanes) return ik::Quick::doubtful;
+    const Abreast found = closed_form_abreast(plan, goal_in_form(plan, goal.T), care_of(plan));
     if (found.doubt) return ik::Quick::doubtful;
     Pack<4> angles[2][6];
     for (int e = 0; e < 2; ++e)
         for (int i = 0; i < 6; ++i) angles[e][plan.joint[i]] = joint_angle(plan, i, found.t[e][i]);
+    if (plan.polish)
+        for (int e = 0; e < 2; ++e)
+            if (any(found.ok[e] && !polished_angles(plan, fill_pose<Pack<4>>(goal.T), angles[e])))
+                return ik::Quick::doubtful;
     // Branch 2 l + e is lane l of angles[e].
     for (int e = 0; e < 2; ++e) store_rows(angles[e], 6, q + 6 * e, 12, 4);
     int n = 0;
@@ -57,24 +70,25 @@ ik::Quick ik_one(const ik::Plan& plan, const double* T, double* q, std::int8_t* 
 
 void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, std::int64_t* count,
              ik::Quick* quick) {
-    const Care care;
+    const Care care = care_of(plan);
     constexpr std::size_t row = max_branches * 6;
     for (std::size_t first = 0; first < n; first += native_width) {
         const int lanes = int(n - first < native_width ? n - first : native_width);
         V m[16];
         load_rows(T + 16 * first, 16, lanes, 16, m);
         const ReadGoal<V> goal = read_goal(m);
-        const Branches<V> b = closed_form(plan, goal_in_form(plan, goal.T), care);
+        Branches<V> b = closed_form(plan, goal_in_form(plan, goal.T), care);
         for (int k = 0; k < max_branches; ++k) {
             V angles[6];
             for (int i = 0; i < 6; ++i) angles[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
+            if (plan.polish) b.doubt = b.doubt || (b.ok[k] && !polished_angles(plan, goal.T, angles));
             store_rows(angles, 6, q + row * first + 6 * k, row, lanes);
         }
         for (int l = 0; l < lanes; ++l) {
             count[first + l] = compact(branches_of_lane(b.ok, l), q + row * (first + l));
-            quick[first + l] = !lane(goal.is_pose, l)            ? ik::Quick::refused
-                               : lane(b.doubt, l) || plan.polish ? ik::Quick::doubtful
-                                                                 : ik::Quick::settled;
+            quick[first + l] = !lane(goal.is_pose, l) ? ik::Quick::refused
+                               : lane(b.doubt, l)     ? ik::Quick::doubtful
+                                                      : ik::Quick::settled;
         }
     }
 }

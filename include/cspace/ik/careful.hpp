@@ -134,22 +134,21 @@ inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care c
 // `idle`: the angles of the chain's joints that free joints take.
 inline ik::Solutions solve_carefully(const ik::Plan& plan, const Posed& goal, const double* idle) {
     ik::Solutions out;
-    Care care;
+    Care care = care_of(plan);
     const double slack = 4 * plan.form.deviation;
-    care.band = max(tolerance::fold_band, slack);
     care.free = max(tolerance::free_joint, slack);
     double t[6];
     set_idle(plan, idle, care, t);
     const Posed goal_form = goal_in_form(plan, goal);
     // Near singularities of the completed arm an idealised form leaves virtual joints far from zero.
-    const Search search = {0, max_branches, plan.polish ? 0.1 : 1e-3};
+    const Search search = {0, max_branches, plan.idealised ? 0.1 : 1e-3};
     candidates(plan, goal_form, care, out, goal, search);
-    if (plan.polish) {
+    if (plan.idealised) {
         care.spread = slack;
         candidates(plan, goal_form, care, out, goal, search);
     }
-    if (plan.polish && plan.virtual_joints && out.count == 0) try_beside(plan, goal_form, care, out, goal);
-    if (plan.polish || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
+    if (plan.idealised && plan.virtual_joints && out.count == 0) try_beside(plan, goal_form, care, out, goal);
+    if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
     if (plan.family == ik::Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
     out.status = out.count == 0 ? ik::Status::unreachable : ik::Status::exact;
     for (int k = 0; k < out.count; ++k)

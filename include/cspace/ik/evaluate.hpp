@@ -35,21 +35,28 @@ CSPACE_INLINE Branches<V> closed_form(const ik::Plan& plan, const Pose<V>& goal,
     }
 }
 
+// How far from a fold the closed form may be trusted: an idealised geometry shifts the folds.
+inline Care care_of(const ik::Plan& plan) {
+    Care care;
+    care.band = max(tolerance::fold_band, 4 * plan.form.deviation);
+    return care;
+}
+
 // One goal, for the families that have a kernel.
-CSPACE_INLINE Abreast closed_form_abreast(const ik::Plan& plan, const Posed& goal) {
+CSPACE_INLINE Abreast closed_form_abreast(const ik::Plan& plan, const Posed& goal, const Care& care) {
     using enum ik::FirstThree;
-    if (plan.family == ik::Family::three_parallel) return solve_abreast(plan.parallel, goal);
+    if (plan.family == ik::Family::three_parallel) return solve_abreast(plan.parallel, goal, care);
     switch (plan.wrist.first.kind) {
         case last_parallel:
-            return solve_abreast<last_parallel>(plan.wrist, goal);
+            return solve_abreast<last_parallel>(plan.wrist, goal, care);
         case first_meet:
-            return solve_abreast<first_meet>(plan.wrist, goal);
+            return solve_abreast<first_meet>(plan.wrist, goal, care);
         case last_meet:
-            return solve_abreast<last_meet>(plan.wrist, goal);
+            return solve_abreast<last_meet>(plan.wrist, goal, care);
         case first_parallel:
-            return solve_abreast<first_parallel>(plan.wrist, goal);
+            return solve_abreast<first_parallel>(plan.wrist, goal, care);
         default:
-            return solve_abreast<general>(plan.wrist, goal);
+            return solve_abreast<general>(plan.wrist, goal, care);
     }
 }
 

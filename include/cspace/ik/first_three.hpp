@@ -51,7 +51,7 @@ CSPACE_INLINE Triples<V> last_parallel(const ik::ThreeJoints& g, const Vec3<V>& 
         const Turn<V>& t1 = shoulder.root[i];
         const V x = t1.c * p.x + t1.s * p.y - g.a1;
         const V y = g.ca1 * (t1.c * p.y - t1.s * p.x) + g.sa1 * p.z;
-        const TwoLink<V> arm = two_link(x, y, g.a2, g.wrist_reach, care, care.idle[1]);
+        const TwoLink<V> arm = two_link(x, y, g.a2, g.wrist_reach, g.length, care, care.idle[1]);
         out.doubt = out.doubt || (shoulder.ok && arm.doubt);
         for (int j = 0; j < 2; ++j) {
             const int n = 2 * i + j;

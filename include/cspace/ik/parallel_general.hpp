@@ -29,7 +29,8 @@ inline Turn<double> turn_about_z(const Mat3d& R) {
 // to make: both elbows, written into rows n and n + 1.
 inline void planar_three(const ik::DhForm& f, int j, const Posed& planar, const Care& care,
                          Branches<double>& out, int n) {
-    const TwoLink<double> arm = two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], care, care.idle[j]);
+    const TwoLink<double> arm =
+        two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], f.length, care, care.idle[j]);
     const Turn<double> all = turn_about_z(planar.R);
     for (int e = 0; e < 2; ++e) {
         const Turn<double> elbow = {arm.cos_elbow, e == 0 ? arm.sin_elbow : -arm.sin_elbow};

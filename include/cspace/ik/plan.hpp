@@ -30,8 +30,9 @@ struct Plan {
     ThreeParallel parallel;
     Posed to_form_left, to_form_right;  // goal in the form: left · T (or T⁻¹) · right
     int virtual_joints = 0;
-    bool on_lanes = false;  // the family has a kernel; the others are solved one goal at a time
-    bool polish = false;    // the form idealises the geometry: solutions are corrected on the chain
+    bool on_lanes = false;   // the family has a kernel; the others are solved one goal at a time
+    bool idealised = false;  // the form differs from the true geometry
+    bool polish = false;     // its angles are corrected on the true chain
 };
 
 }  // namespace cspace::ik
@@ -75,7 +76,10 @@ inline bool plan_in_direction(ik::Plan& plan, const ik::Chain& arm, bool backwar
     plan.on_lanes = plan.family == ik::Family::spherical_wrist || plan.family == ik::Family::three_parallel;
     plan.to_form_left = inverse(plan.form.base);
     plan.to_form_right = inverse(plan.form.tool);
-    plan.polish = plan.form.deviation > tolerance::geometry_exact;
+    const bool quartic =
+        plan.family == ik::Family::spherical_wrist && plan.wrist.first.kind == ik::FirstThree::general;
+    plan.idealised = plan.form.deviation > tolerance::geometry_exact;
+    plan.polish = quartic || plan.idealised;
     return true;
 }
 

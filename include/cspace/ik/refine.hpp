@@ -79,44 +79,88 @@ inline void damped_step(const PoseError& error, double damping, double* dq) {
     }
 }
 
-// Walks q to the nearest configuration that meets the goal, or that misses it least nearby; returns the error
-// left. On return `error` belongs to q and its Jacobian is decomposed.
-inline double refine(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
-                     int most_steps = 60) {
-    double damping = 0;
-    measure(chain, goal, length, q, error);
-    double size = size_of_error(error);
-    decompose(error.jacobian);
-    for (int step = 0; step < most_steps && size > 1e-15; ++step) {
-        double dq[ik::max_joints], next[ik::max_joints], reach = 0;
-        damped_step(error, damping, dq);
-        for (int i = 0; i < chain.n; ++i) reach = max(reach, std::fabs(dq[i]));
-        const double keep = reach > 0.3 ? 0.3 / reach : 1.0;
-        for (int i = 0; i < chain.n; ++i) next[i] = q[i] + keep * dq[i];
-        PoseError trial;
-        measure(chain, goal, length, next, trial);
-        const double trial_size = size_of_error(trial);
-        if (trial_size < size) {
-            const bool stalled = trial_size > 0.999 * size;
-            for (int i = 0; i < chain.n; ++i) q[i] = next[i];
-            error = trial;
-            decompose(error.jacobian);
-            size = trial_size;
-            damping = damping < 1e-14 ? 0 : 0.1 * damping;
-            if (stalled) break;
-        } else {
-            if (size < 1e-13 || damping > 1e3) break;
-            damping = damping == 0 ? 1e-10 : 10 * damping;
-        }
-    }
-    return size;
-}
-
 inline int weakest(const PoseSvd& J) {
     int k = 0;
     for (int j = 1; j < J.columns; ++j)
         if (J.sigma[j] < J.sigma[k]) k = j;
     return k;
+}
+
+// Applies a step, cut to a stride; returns the error it leaves.
+inline double take_step(const ik::Chain& chain, const Posed& goal, double length, const double* from,
+                        const double* dq, double* to, PoseError& error) {
+    constexpr double stride = 0.3;
+    double reach = 0;
+    for (int i = 0; i < chain.n; ++i) reach = max(reach, std::fabs(dq[i]));
+    const double keep = reach > stride ? stride / reach : 1.0;
+    for (int i = 0; i < chain.n; ++i) to[i] = from[i] + keep * dq[i];
+    measure(chain, goal, length, to, error);
+    return size_of_error(error);
+}
+
+// Newton's method, which may leave the valley of small errors on its way: beside a singularity the solution
+// lies further along it than any descent would walk. True if it arrived; q is then a solution, else
+// untouched.
+inline bool newton(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
+    constexpr int most_steps = 16;
+    constexpr double settled = 1e-15, arrived = 1e-12;
+    double best[ik::max_joints], at[ik::max_joints], least = 1;
+    for (int i = 0; i < chain.n; ++i) at[i] = q[i];
+    measure(chain, goal, length, at, error);
+    for (int step = 0; step < most_steps; ++step) {
+        double dq[ik::max_joints];
+        decompose(error.jacobian);
+        damped_step(error, 0, dq);
+        const double size = take_step(chain, goal, length, at, dq, at, error);
+        const bool better = size < least;
+        if (better) {
+            least = size;
+            for (int i = 0; i < chain.n; ++i) best[i] = at[i];
+        }
+        if (least < settled || (least < arrived && !better)) break;
+    }
+    if (!(least < arrived)) return false;
+    for (int i = 0; i < chain.n; ++i) q[i] = best[i];
+    return true;
+}
+
+// Walks q to the nearest configuration that meets the goal, or that misses it least nearby, by damped least
+// squares; returns the error left. On return `error` belongs to q and its Jacobian is decomposed. Damping
+// starts at the square of the smallest singular value, where it begins to hold the weakest direction back.
+inline double descend(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
+                      int most_steps) {
+    constexpr double settled = 1e-15, noise = 1e-13;
+    double damping = 0;
+    int stalls = 0;
+    measure(chain, goal, length, q, error);
+    double size = size_of_error(error);
+    decompose(error.jacobian);
+    for (int step = 0; step < most_steps && size > settled && stalls < 6; ++step) {
+        double dq[ik::max_joints], next[ik::max_joints];
+        PoseError trial;
+        damped_step(error, damping, dq);
+        const double trial_size = take_step(chain, goal, length, q, dq, next, trial);
+        if (trial_size < size) {
+            stalls = trial_size > 0.99 * size ? stalls + 1 : 0;
+            for (int i = 0; i < chain.n; ++i) q[i] = next[i];
+            error = trial;
+            decompose(error.jacobian);
+            size = trial_size;
+            damping *= 0.1;
+        } else {
+            const double sigma = error.jacobian.sigma[weakest(error.jacobian)];
+            if (size < noise || damping > 1e3) break;
+            damping = max(4 * damping, max(0.1 * sigma * sigma, 1e-20));
+        }
+    }
+    return size;
+}
+
+// A candidate made a solution, or as near to one as descent brings it.
+inline double refine(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
+                     int most_steps = 60) {
+    const bool arrived = newton(chain, goal, length, q, error);
+    return descend(chain, goal, length, q, error, arrived ? 2 : most_steps);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

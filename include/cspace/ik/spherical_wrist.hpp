@@ -140,8 +140,7 @@ CSPACE_INLINE Four side_by_side(const bool* ok) {
 }
 
 template <ik::FirstThree kind>
-CSPACE_INLINE Abreast solve_abreast(const ik::SphericalWrist& arm, const Posed& goal) {
-    const Care care;
+CSPACE_INLINE Abreast solve_abreast(const ik::SphericalWrist& arm, const Posed& goal, const Care& care) {
     const Triples<double> first = place_wrist<kind>(arm.first, goal.t, care);
     const Turn<Four> t1 = side_by_side(first.t1), t2 = side_by_side(first.t2), t3 = side_by_side(first.t3);
     const WristAngles<Four> r = turn_wrist(arm, t1, t2, t3, fill33<Four>(goal.R), care);

@@ -67,8 +67,10 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
     out.root[0] = {(a * r - b * h) * scale, (b * r + a * h) * scale};
     out.root[1] = {(a * r + b * h) * scale, (b * r - a * h) * scale};
     for (auto& t : out.root) t = choose(is_free, idle, t);
-    out.ok = (room >= -care.band * n2) || (is_free && (abs(r) <= tolerance::reached * unit));
-    out.doubt = (out.ok && (room <= care.band * n2)) || (n2 <= care.band * unit2);
+    // A short lever feels an error of r more: the band is one of lengths of the arm, not of the lever.
+    const V band = care.band * (n2 + unit2);
+    out.ok = (room >= -band) || (is_free && (abs(r) <= tolerance::reached * unit));
+    out.doubt = (out.ok && (room <= band)) || (n2 <= band);
     return out;
 }
 
@@ -80,7 +82,7 @@ struct TwoLink {
     mask_of<V> ok, doubt;
 };
 template <class V>
-CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, const Care& care,
+CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, double unit, const Care& care,
                                   const Turn<double>& idle) {
     const V r2 = x * x + y * y;
     const double product = 2 * l1 * l2, size2 = (l1 + l2) * (l1 + l2);
@@ -96,8 +98,9 @@ CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, const Care& ca
     out.first[1] = {(x * along - y * across) * scale, (y * along + x * across) * scale};
     for (auto& t : out.first) t = choose(is_free, idle, t);
     const V least = min(room_out, room_in);
-    out.ok = least >= -care.band;
-    out.doubt = out.ok && ((least <= care.band) || (r2 <= care.band * size2));
+    const double band = care.band * (size2 + unit * unit) / product;
+    out.ok = least >= -band;
+    out.doubt = out.ok && ((least <= band) || (r2 <= band * size2));
     return out;
 }
 
@@ -157,8 +160,9 @@ CSPACE_INLINE WristView<V> look_at_wrist(const Wrist& w, const Vec3<V>& z, const
     view.s5 = root_above(low * high, fill<V>(care.spread));
     view.t4_is_free = rho2 <= care.free * care.free;
     view.inverse_rho2 = 1.0 / select(view.t4_is_free, fill<V>(1.0), rho2);
-    view.ok = least >= -care.band;
-    view.doubt = view.ok && ((least <= care.band) || (rho2 <= care.band));
+    const double band = care.band * (1 + std::fabs(w.inv));
+    view.ok = least >= -band;
+    view.doubt = view.ok && ((least <= band) || (rho2 <= band));
     return view;
 }
 

@@ -33,7 +33,7 @@ template <class V>
 CSPACE_INLINE void finish_in_plane(const ik::ThreeParallel& arm, const Turn<V>& t234, V x, V y,
                                    V* const out[2], mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
     const V u = x - (t234.c * arm.x4 - t234.s * arm.y4), v = y - (t234.s * arm.x4 + t234.c * arm.y4);
-    const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, care, care.idle[1]);
+    const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, arm.length, care, care.idle[1]);
     doubt = doubt || (ok && links.doubt);
     ok = ok && links.ok;
     const V elbow = atan2(links.sin_elbow, links.cos_elbow);
@@ -79,8 +79,7 @@ CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goa
 }
 
 // One goal: lanes are (shoulder, wrist) = (0, 0), (0, 1), (1, 0), (1, 1), and the elbow tells t[0] from t[1].
-CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& goal) {
-    const Care care;
+CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& goal, const Care& care) {
     const Vec3d& p = goal.t;
     const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
     const TwoAngles<double> shoulder = linear_equation<double>(-p.y, p.x, k, arm.length, care, care.idle[0]);

@@ -1,0 +1,55 @@
+// Two Newton steps on the true chain, on lanes: what the closed form of an idealised or ill-conditioned
+// geometry leaves is taken out. The second step says whether the first has done its work.
+#pragma once
+
+#include "cspace/ik/chain.hpp"
+#include "cspace/math/linear.hpp"
+#include "cspace/tolerances.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// One step of q towards the goal; returns the largest change of a joint [rad]. All joints are revolute.
+template <class V>
+CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, double length, V* q) {
+    Mat3<V> R = fill33<V>(identity_pose().R);
+    Vec3<V> t = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)};
+    Vec3<V> axis[6], point[6];
+    for (int i = 0; i < 6; ++i) {
+        const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
+        axis[i] = R * h;
+        point[i] = R * p + t;
+        V s, c;
+        sincos(q[i], s, c);
+        R = R * rotation_about(h, c, s);
+        t = point[i] - R * p;
+    }
+    const Vec3<V> tip = R * fill3<V>(chain.tip.t) + t;
+    const Mat3<V> Q = R * fill33<V>(chain.tip.R);
+    const Vec3<V> dp = (1 / length) * (goal.t - tip);
+    // Half the sum of the cross products of the axes is the rotation that is missing, to first order.
+    Vec3<V> w = 0.5 * cross(column(Q, 0), column(goal.R, 0));
+    for (int k = 1; k < 3; ++k) w = w + 0.5 * cross(column(Q, k), column(goal.R, k));
+    V A[6][6], b[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
+    for (int i = 0; i < 6; ++i) {
+        const Vec3<V> v = (1 / length) * cross(axis[i], tip - point[i]);
+        const V col[6] = {v.x, v.y, v.z, axis[i].x, axis[i].y, axis[i].z};
+        for (int k = 0; k < 6; ++k) A[k][i] = col[k];
+    }
+    solve(A, b);
+    V largest = fill<V>(0.0);
+    for (int i = 0; i < 6; ++i) {
+        q[i] = q[i] + b[i];
+        largest = max(largest, abs(b[i]));
+    }
+    return largest;
+}
+
+// True where q, a candidate near a solution, has become one.
+template <class V>
+CSPACE_INLINE mask_of<V> polish(const ik::Chain& chain, const Pose<V>& goal, double length, V* q) {
+    const V first = newton_step(chain, goal, length, q);
+    const V second = newton_step(chain, goal, length, q);
+    return (first < tolerance::polish_reach) && (second < tolerance::polished);
+}
+
+}  // namespace cspace::inline CSPACE_ISA
