@@ -73,7 +73,7 @@ class RobotBase:
         Returns (T, J): T (..., 4, 4) as of fk, J (..., 6, dof) as of jacobian.
         """
 
-    def ik(self, goal: Any, /, *, near: ArrayLike | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, /, *, position: ArrayLike | None = None, near: ArrayLike | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
         Every configuration q with fk(q) = goal.
 
