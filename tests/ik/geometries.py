@@ -21,7 +21,6 @@ CLASSES = {
     "wrist_12_meet_23_meet": "MMXMS",
     "wrist_34_meet": "XPMMS",
     "wrist_34_parallel": "XXPMS",
-    "wrist_shoulder": "MSXMS",
     "shoulder_skew": "MSXXX",
     "shoulder_45_parallel": "MSXPX",
     "parallel_234_56_meet": "XPPXM",

@@ -253,7 +253,8 @@ def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:
 
 def family_at(robot: Any, row: int, q: Array, held: int) -> Family:
     """The family through q: the joint velocity keeping the first `held` rows of the tip's twist at zero."""
-    direction = np.linalg.svd(robot.jacobian(q)[:held])[2][-1]
+    found = _core._ik_direction(robot, np.ascontiguousarray(q)) if held == 6 else None
+    direction = np.linalg.svd(robot.jacobian(q)[:held])[2][-1] if found is None else found
     direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
     moving = np.abs(direction) > 1e-6
     names = tuple(itertools.compress(robot.joint_names, moving))
