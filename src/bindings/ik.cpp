@@ -46,21 +46,20 @@ Posed pose_from(const double* m) {
     return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
 }
 
-// Branches times the windings that limits of a few turns allow.
-constexpr int most_rows = 64;
-
 // --- the result ----------------------------------------------------------------------------------------
-// Followed in memory by count rows of dof angles.
+// Followed in memory by count rows of dof angles, count branch numbers and count flags (families).
 struct SolutionsObject {
     PyObject_VAR_HEAD PyObject* robot;
     PyObject* note;  // why rows are missing, where a filter removed them; or null
     double goal[16];
     int count, dof;
     ik::Status status;
-    std::int8_t branch[most_rows];
-    bool family[most_rows];
     double q[1];
 };
+std::int8_t* branches_of(SolutionsObject* s) {
+    return reinterpret_cast<std::int8_t*>(s->q + std::ptrdiff_t(s->count) * s->dof);
+}
+std::int8_t* families_of(SolutionsObject* s) { return branches_of(s) + s->count; }
 
 SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, int dof, ik::Status status) {
     if (!solutions_type) {
@@ -68,7 +67,8 @@ SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, i
         if (!room) return nullptr;
         Py_DECREF(room);
     }
-    auto* made = reinterpret_cast<SolutionsObject*>(solutions_type->tp_alloc(solutions_type, count * dof));
+    auto* made = reinterpret_cast<SolutionsObject*>(
+        solutions_type->tp_alloc(solutions_type, count * dof + (2 * count + 7) / 8));
     if (!made) return nullptr;
     made->robot = Py_NewRef(robot);
     std::memcpy(made->goal, goal, sizeof made->goal);
@@ -86,8 +86,8 @@ PyObject* from_careful(PyObject* robot, const ik::Arm& arm, const double* goal, 
     if (!made) return nullptr;
     for (int k = 0; k < found.count; ++k) {
         std::memcpy(made->q + k * dof, found.q[k], dof * sizeof(double));
-        made->branch[k] = found.branch[k];
-        made->family[k] = found.family[k];
+        branches_of(made)[k] = found.branch[k];
+        families_of(made)[k] = found.family[k];
     }
     return reinterpret_cast<PyObject*>(made);
 }
@@ -133,13 +133,13 @@ PyObject* get_verdict(PyObject* self, void*) {
 PyObject* get_branch_numbers(PyObject* self, void*) {
     auto* s = reinterpret_cast<SolutionsObject*>(self);
     PyObject* list = PyTuple_New(s->count);
-    for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyLong_FromLong(s->branch[k]));
+    for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyLong_FromLong(branches_of(s)[k]));
     return list;
 }
 PyObject* get_is_family(PyObject* self, void*) {
     auto* s = reinterpret_cast<SolutionsObject*>(self);
     PyObject* list = PyTuple_New(s->count);
-    for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyBool_FromLong(s->family[k]));
+    for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyBool_FromLong(families_of(s)[k]));
     return list;
 }
 Py_ssize_t length(PyObject* self) { return reinterpret_cast<SolutionsObject*>(self)->count; }
@@ -175,7 +175,7 @@ PyObject* answer_single(PyObject* robot, const ik::Arm& arm, const double* goal)
         new_solutions(robot, goal, count, 6, count ? ik::Status::exact : ik::Status::unreachable);
     if (!made) return nullptr;
     std::memcpy(made->q, q, sizeof(double) * std::size_t(6 * count));
-    std::memcpy(made->branch, branch, std::size_t(count));
+    std::memcpy(branches_of(made), branch, std::size_t(count));
     return reinterpret_cast<PyObject*>(made);
 }
 
@@ -324,7 +324,7 @@ PyObject* make(PyObject*, PyObject* args) {
     const Py_ssize_t k = PyTuple_GET_SIZE(branches);
     const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
     const npy_intp dof = shaped ? PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 1) : -1;
-    if (!shaped || k > most_rows || PyTuple_GET_SIZE(families) != k || !is_doubles(q, k * dof) ||
+    if (!shaped || k > 1 << 24 || PyTuple_GET_SIZE(families) != k || !is_doubles(q, k * dof) ||
         !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes contiguous float64 arrays and tuples of one length");
         return nullptr;
@@ -334,8 +334,8 @@ PyObject* make(PyObject*, PyObject* args) {
     if (!made) return nullptr;
     std::memcpy(made->q, data_of(q), sizeof(double) * std::size_t(k * dof));
     for (Py_ssize_t i = 0; i < k; ++i) {
-        made->branch[i] = static_cast<std::int8_t>(PyLong_AsLong(PyTuple_GET_ITEM(branches, i)));
-        made->family[i] = PyObject_IsTrue(PyTuple_GET_ITEM(families, i)) == 1;
+        branches_of(made)[i] = static_cast<std::int8_t>(PyLong_AsLong(PyTuple_GET_ITEM(branches, i)));
+        families_of(made)[i] = PyObject_IsTrue(PyTuple_GET_ITEM(families, i)) == 1;
     }
     made->note = note == Py_None ? nullptr : Py_NewRef(note);
     if (PyErr_Occurred()) Py_CLEAR(made);

@@ -15,6 +15,7 @@ __all__ = [
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
     "MEAN_UNIQUENESS",
+    "MOST_WINDINGS",
     "PLANAR_AXES",
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
@@ -109,3 +110,7 @@ TANGENT_PLACE: Final = 1e-6
 """Angle [rad] up to which a piece of the boundary of a workspace is nothing; pieces meet within a hundred
 of it times the reach. Circles that touch cross at places known to the square root of the rounding, 1e-8,
 and lie within SAME_PLACE of each other for the square root of that, 1e-5."""
+
+MOST_WINDINGS: Final = 100_000
+"""Most copies of the solutions of one goal by whole turns that are listed: limits of ±2π on six joints give
+512, and a list beyond this one is no answer any more."""

@@ -4,11 +4,11 @@ import os
 
 import numpy as np
 import pytest
+
+from data import shared_data
 from ik.arms import ALL, has_closed_form, load, robot_from_chain, shared_chains
 from ik.geometries import CLASSES, angle_gap, random_arm, random_q
 from oracles.ik_many_starts import all_solutions
-
-from data import shared_data
 
 THOROUGH = os.environ.get("CSPACE_THOROUGH") == "1"
 POSES, STARTS = (10, 600) if THOROUGH else (2, 150)

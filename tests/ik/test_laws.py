@@ -2,13 +2,23 @@
 
 import numpy as np
 import pytest
-from ik.arms import ALL, PARALLEL, SHORT, SHOULDER, SPHERICAL, has_closed_form, load, robot_from_chain, shared_chains
-from ik.geometries import CLASSES, angle_gap, random_arm, random_pose, random_q, random_screws
-from oracles.ik_many_starts import forward
 
 from cspace.ik import geometry
 from cspace.model import from_screws
 from cspace.robot import Robot
+from ik.arms import (
+    ALL,
+    PARALLEL,
+    SHORT,
+    SHOULDER,
+    SPHERICAL,
+    has_closed_form,
+    load,
+    robot_from_chain,
+    shared_chains,
+)
+from ik.geometries import CLASSES, angle_gap, random_arm, random_pose, random_q, random_screws
+from oracles.ik_many_starts import forward
 
 
 def expect_roundtrip(robot, q, *, gap=1e-6, residual=1e-12):
@@ -79,7 +89,9 @@ def test_random_geometries_of_each_class(name, square):
 
 
 @pytest.mark.parametrize("joints", [4, 5])
-@pytest.mark.parametrize("name", ["wrist_23_parallel", "wrist_12_meet", "parallel_234_56_meet", "parallel_234_ur"])
+@pytest.mark.parametrize(
+    "name", ["wrist_23_parallel", "wrist_12_meet", "parallel_234_56_meet", "parallel_234_ur"]
+)
 def test_arms_with_joints_left_out(name, joints):
     """Four and five joints of a six-joint class: fk still comes back, whichever joint is missing."""
     rng = np.random.default_rng([4, joints, *map(ord, name)])

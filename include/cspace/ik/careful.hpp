@@ -19,9 +19,9 @@ inline double wrapped_distance(const double* a, const double* b, int n) {
 
 // Adds q to the solutions unless it is no solution or already there.
 inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal, double length, double* q,
-                  int branch) {
+                  int branch, int most_steps) {
     PoseError error;
-    const double size = refine(chain, goal, length, q, error);
+    const double size = refine(chain, goal, length, q, error, most_steps);
     if (!(size <= tolerance::reached) || out.count == ik::max_solutions) return;
     const int weak = weakest(error.jacobian);
     const double conditioning = max(error.jacobian.sigma[weak], 1e-9);
@@ -35,10 +35,12 @@ inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal,
     out.family[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
 }
 
-// Which of the plan's branches to try, and how far virtual joints may be off zero [rad].
+// Which of the plan's branches to try, how far virtual joints may be off zero [rad], and how many steps a
+// candidate gets.
 struct Search {
     int first = 0, last = max_branches;
     double stray = 1e-3;
+    int most_steps = 60;  // of the refinement
 };
 
 // The plan's branches for one choice of idle joints, as configurations of the chain.
@@ -57,7 +59,7 @@ inline void candidates(const ik::Plan& plan, const Posed& goal_form, const Care&
                 real = real && std::fabs(angle) <= search.stray;
         }
         if (!real) continue;
-        admit(out, plan.chain, goal, plan.form.length, q, k);
+        admit(out, plan.chain, goal, plan.form.length, q, k, search.most_steps);
     }
 }
 
@@ -90,14 +92,14 @@ inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& ca
 // solutions lie somewhere along the family: start from angles all around.
 inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, const Care& care, const double* t,
                               ik::Solutions& out, const Posed& goal) {
-    constexpr int turns = 32;
+    constexpr int turns = 16;
     for (int i = 0; i < 6; ++i) {
         if (!is_free(plan, goal_form, care, t[i], i)) continue;
         for (int k = 1; k < turns; ++k) {
             Care turned = care;
             const double angle = t[i] + k * (2 * pi / turns);
             turned.idle[i] = {std::cos(angle), std::sin(angle)};
-            candidates(plan, goal_form, turned, out, goal, {0, max_branches, pi});
+            candidates(plan, goal_form, turned, out, goal, {0, max_branches, pi, 20});
         }
     }
 }

@@ -11,7 +11,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, InputTypeError, suggest
 from cspace.ik.branches import branch_labels
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
 
@@ -128,7 +128,7 @@ class Solutions(_core.SolutionsBase):
         limits: the robot's own unless given. windings: every combination of whole turns that fits, not only
         one.
         """
-        bounds = self.robot.limits if limits is None else limits
+        bounds = bounds_of(self.robot, limits)
         kinds = self.robot.joint_types
         if windings:
             rows, q = all_windings(self.q, kinds, bounds.lower, bounds.upper)
@@ -166,7 +166,7 @@ class Solutions(_core.SolutionsBase):
 
     def violations(self, limits: Limits | None = None) -> tuple[dict[str, float], ...]:
         """Per solution, the joints that no whole turn brings into the limits, and by how much [rad, m]."""
-        bounds = self.robot.limits if limits is None else limits
+        bounds = bounds_of(self.robot, limits)
         excess = violations(self.q, self.robot.joint_types, bounds.lower, bounds.upper)
         names = self.robot.joint_names
         return tuple({name: float(e) for name, e in zip(names, row, strict=True) if e > 0} for row in excess)
@@ -189,12 +189,35 @@ class Solutions(_core.SolutionsBase):
         )
         return cast(Solutions, made)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        numbers = (self._branch_numbers, self._is_family, self._note)
+        return again, (self.robot, self._goal_pose, self._verdict, self.q, *numbers)
+
     def __repr__(self) -> str:
         lines = [f"Solutions({self.status}: {self.reason})"]
         if len(self):
             for label, q in zip(self.branch, self.q, strict=True):
                 lines.append("  [" + ", ".join(f"{angle: .4f}" for angle in q) + f"]  {label}")
         return "\n".join(lines)
+
+
+def again(robot: Any, *parts: Any) -> Solutions:
+    """A result out of its pickle."""
+    from cspace.ik.solve import prepare
+
+    prepare(robot)
+    return cast(Solutions, _core._ik_make(robot, *parts))
+
+
+def bounds_of(robot: Any, limits: Limits | None) -> Limits:
+    """The limits that count: the robot's own unless others are given, which must have as many joints."""
+    bounds: Limits = robot.limits if limits is None else limits
+    sizes = [getattr(getattr(bounds, side, None), "shape", None) for side in ("lower", "upper")]
+    if None in sizes:
+        raise InputTypeError(f"limits is a {type(limits).__name__}, expected cspace.model.Limits")
+    if sizes != [(robot.dof,)] * 2:
+        raise InputError(f"limits are for {sizes[0]} joints, {robot.name} has ({robot.dof},)")
+    return bounds
 
 
 def pose_errors(robot: Any, q: Array, goal: Array) -> Array:
@@ -247,7 +270,7 @@ def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:
     unit = "rad" if found.robot.joint_types[joint] == "R" else "m"
     return (
         f"{how_many(len(found))} the goal, none within limits; the nearest one has "
-        f" {found.robot.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
+        f"{found.robot.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
     )
 
 

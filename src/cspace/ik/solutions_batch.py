@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
-from cspace.ik.solutions import METRICS, UNREACHABLE, VERDICTS, Solutions, pose_errors
+from cspace.ik.solutions import METRICS, UNREACHABLE, VERDICTS, Solutions, bounds_of, pose_errors
 from cspace.ik.windings import into_limits, nearest_winding, wrap
 
 if TYPE_CHECKING:
@@ -91,7 +91,7 @@ class SolutionsBatch:
 
     def within(self, limits: Limits | None = None) -> SolutionsBatch:
         """The solutions inside the limits, each joint first moved by whole turns to where it fits."""
-        bounds = self.robot.limits if limits is None else limits
+        bounds = bounds_of(self.robot, limits)
         moved, fits = into_limits(self.q, self.robot.joint_types, bounds.lower, bounds.upper)
         return self._keep(moved, fits & self._real)
 

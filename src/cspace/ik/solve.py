@@ -19,6 +19,8 @@ from cspace.spatial import as_pose
 __all__ = ["inverse_kinematics"]
 
 MAX_BRANCHES = 8
+FARTHEST = 1e100
+"""Largest sum of a goal's coordinates [m]: their squares still fit a double."""
 MAX_POSITION_JOINTS = 3
 
 
@@ -67,6 +69,7 @@ def inverse_kinematics(
     NoClosedFormError.
     """
     prepare(robot)
+    workers = count_of_threads(threads)
     if (goal is None) == (position is None):
         raise InputTypeError(
             "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or robot.ik(position=p)"
@@ -76,7 +79,7 @@ def inverse_kinematics(
         found: Solutions | SolutionsBatch = solve_position(robot, p)
     else:
         T = goal_array(goal)
-        found = solve_many(robot, T, threads) if T.ndim > 2 else solve_one(robot, T, near)
+        found = solve_many(robot, T, workers) if T.ndim > 2 else solve_one(robot, T, near)
     if isinstance(found, SolutionsBatch):
         if near is not None or least_squares:
             raise InputTypeError("near= and least_squares= are for one goal; a batch has .nearest(q)")
@@ -130,27 +133,43 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
     if near is None:
         found = _core._ik_single(robot, T)
         if found is None:
-            raise InputError(f"goal is no pose the solver can use: {T.tolist()}")
+            raise too_far("goal", T)
         return cast(Solutions, found)
     seed = as_floats(near, "near", last=(robot.dof,))
     if seed.ndim != 1:
         raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
+    if np.abs(T[:3, 3]).sum() > FARTHEST:
+        raise too_far("goal", T)
     return cast(Solutions, _core._ik_careful(robot, T, np.ascontiguousarray(seed)))
 
 
-def solve_many(robot: Any, T: Array, threads: int | None) -> SolutionsBatch:
+def too_far(subject: str, T: Array) -> InputError:
+    return InputError(f"{subject} lies at {T[:3, 3].tolist()} m; goals up to {FARTHEST:g} m away make sense")
+
+
+def count_of_threads(threads: int | None) -> int:
+    if threads is None:
+        return os.cpu_count() or 1
+    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)):
+        raise InputTypeError(
+            f"threads is a {type(threads).__name__}, expected a number or None for all cores"
+        )
+    if threads < 1:
+        raise InputError(f"threads is {threads}, expected a positive number or None for all cores")
+    return int(threads)
+
+
+def solve_many(robot: Any, T: Array, workers: int) -> SolutionsBatch:
     leading = T.shape[:-2]
     n = int(np.prod(leading))
     q = np.empty((n, MAX_BRANCHES, robot.dof))
     count = np.empty(n, dtype=np.int64)
     verdict = np.empty(n, dtype=np.uint8)
-    workers = (os.cpu_count() or 1) if threads is None else threads
-    if workers < 1:
-        raise InputError(f"threads is {threads}, expected a positive number or None for all cores")
     bad = _core._ik_many(robot, T.reshape(n, 4, 4), q, count, verdict, workers)
     if bad < n:
         as_pose(T, "goal")  # finds the words for what is wrong
-        raise InputError(f"goal {np.unravel_index(bad, leading)} is no pose the solver can use")
+        index = tuple(map(int, np.unravel_index(bad, leading)))
+        raise too_far(f"goal {index}", T[index])
     return SolutionsBatch(
         robot,
         T,

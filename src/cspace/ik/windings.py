@@ -7,12 +7,15 @@ absent.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.tolerances import MOST_WINDINGS
 
 __all__ = ["all_windings", "into_limits", "nearest_winding", "violations", "wrap"]
 
@@ -75,7 +78,8 @@ def all_windings(
 ) -> tuple[npt.NDArray[np.intp], Array]:
     """Every combination of whole turns inside the limits: the row each comes from, and the configurations.
 
-    A joint without limits is kept in (−π, π]: it has infinitely many copies.
+    A joint without limits is kept in (−π, π], one with a limit on one side as near to it as the limit lets it:
+    it has infinitely many copies. Raises InputError for more than tolerances.MOST_WINDINGS of them.
     """
     rows: list[int] = []
     out: list[Array] = []
@@ -84,6 +88,11 @@ def all_windings(
             joint_windings(angle, kind, lo, hi)
             for angle, kind, lo, hi in zip(configuration, kinds, lower, upper, strict=True)
         ]
+        if math.prod(map(len, choices)) + len(out) > MOST_WINDINGS:
+            raise InputError(
+                f"the limits leave room for more than {MOST_WINDINGS} whole-turn copies of the solutions; "
+                "narrow them, or leave out windings=True"
+            )
         for combination in itertools.product(*choices):
             rows.append(row)
             out.append(np.array(combination))
@@ -91,8 +100,11 @@ def all_windings(
 
 
 def joint_windings(angle: float, kind: str, lower: float, upper: float) -> list[float]:
-    if kind == "P" or not np.isfinite(upper - lower):
+    if kind == "P":
         return [angle] if lower <= angle <= upper else []
-    first = int(np.ceil((lower - angle) / TURN))
-    last = int(np.floor((upper - angle) / TURN))
-    return [angle + k * TURN for k in range(first, last + 1)]
+    least, most = np.ceil((lower - angle) / TURN), np.floor((upper - angle) / TURN)
+    if least > most:
+        return []
+    if not np.isfinite(most - least):
+        return [angle + TURN * float(np.clip(0.0, least, most))]
+    return [angle + TURN * k for k in range(int(least), int(most) + 1)]
