@@ -15,9 +15,49 @@ from data import shared_data
 
 # The families of this room among the named arms, as their makers describe them; that the classification finds
 # each of them is a test of its own.
-SPHERICAL = ["puma560", "puma560_dh", "puma560_urdf", "puma_style", "elbow", "kr6_r900", "irb120", "irb1600", "irb140_dh", "kr120_r2500", "kr210_l150", "kr210_r2700", "lrmate200id", "m710ic", "rv4fr", "j2s6s200", "j2s6s300", "viperx300s", "widowx250s"]
+SPHERICAL = [
+    "puma560",
+    "puma560_dh",
+    "puma560_urdf",
+    "puma_style",
+    "elbow",
+    "kr6_r900",
+    "irb120",
+    "irb1600",
+    "irb140_dh",
+    "kr120_r2500",
+    "kr210_l150",
+    "kr210_r2700",
+    "lrmate200id",
+    "m710ic",
+    "rv4fr",
+    "j2s6s200",
+    "j2s6s300",
+    "viperx300s",
+    "widowx250s",
+]
 SHOULDER = ["icub_left_leg", "romeo_left_leg", "talos_left_leg"]
-PARALLEL = ["ur3", "ur3e", "ur5", "ur5e", "ur10", "ur10e", "ur15", "ur16e", "ur20", "ur7e", "ur3_dh", "ur5_dh", "ur10_dh", "cr5", "standardbots_spark", "standardbots_thor", "yam", "z1", "z1_urdf"]
+PARALLEL = [
+    "ur3",
+    "ur3e",
+    "ur5",
+    "ur5e",
+    "ur10",
+    "ur10e",
+    "ur15",
+    "ur16e",
+    "ur20",
+    "ur7e",
+    "ur3_dh",
+    "ur5_dh",
+    "ur10_dh",
+    "cr5",
+    "standardbots_spark",
+    "standardbots_thor",
+    "yam",
+    "z1",
+    "z1_urdf",
+]
 SHORT = ["al5d", "so101"]
 ALL = SPHERICAL + SHOULDER + PARALLEL + SHORT
 # Few arms that stand for the families in slow tests; the last four have rounded axes or few joints.
