@@ -33,7 +33,7 @@ def main() -> None:
             for T, count, Q in zip(data[f"{name}/T"], data[f"{name}/nsol"], data[f"{name}/Q"], strict=True):
                 known = Q[:count]
                 answer = robot.ik(T).q
-                found += score.count_found(known, answer, 1e-6)
+                found += sum(bool(len(answer)) and bool(score.same(answer, q, 1e-6).any()) for q in known)
                 true += int(count)
             results[name] = {"found": found, "true": true}
     (HERE / "results/recorded.json").write_text(json.dumps(results, indent=1) + "\n")

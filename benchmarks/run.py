@@ -107,7 +107,7 @@ def judge_ik(
         for peer, found in said.items():
             worst = [score.residuals(arm, found[i], T[i]).max(initial=0.0) for i in range(len(T))]
             judged[peer][label] = {
-                "found": sum(score.count_found(true[i], found[i], tolerance) for i in range(len(T))),
+                "found": sum(score.count_found(arm, true[i], found[i], tolerance) for i in range(len(T))),
                 "true": sum(map(len, true)),
                 "residual": float(np.max(worst)),
                 "wrong": int(

@@ -70,6 +70,17 @@ def truth(arm: Arm, q_true: Array, T: Array, answers: list[Array], tolerance: fl
     return distinct(np.concatenate([q_true[None], polish(arm, pool, T)]), tolerance)
 
 
-def count_found(true: Array, answer: Array, tolerance: float) -> int:
-    """How many rows of true (k, n) are among the rows of answer."""
-    return sum(bool(len(answer)) and bool(same(answer, row, tolerance).any()) for row in true)
+def resolution(arm: Arm, q: Array) -> Array:
+    """How far q (k, n) may be off when the goal is off by its rounding: four units in the last place over the
+    smallest singular value of the Jacobian. Closer configurations are one to anybody who computes in double
+    precision."""
+    weakest = np.linalg.svd(jacobian(arm, q), compute_uv=False)[:, -1]
+    return 4 * np.finfo(float).eps / np.maximum(weakest, 1e-12)
+
+
+def count_found(arm: Arm, true: Array, answer: Array, tolerance: float) -> int:
+    """How many rows of true (k, n) are among the rows of answer, as far as double precision can tell."""
+    if len(answer) == 0 or len(true) == 0:
+        return 0
+    limits = np.maximum(tolerance, resolution(arm, true))
+    return sum(bool(same(answer, row, limit).any()) for row, limit in zip(true, limits, strict=True))

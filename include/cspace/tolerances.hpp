@@ -33,7 +33,7 @@ inline constexpr double geometry_exact = 2e-14;
 
 // A square root's argument within this band of zero (relative) marks two solutions about to merge: outside it
 // the closed form keeps twelve digits, inside it the careful path decides.
-inline constexpr double fold_band = 1e-8;
+inline constexpr double fold_band = 1e-10;
 
 // A quantity that fixes a joint (a lever arm over the arm's length, a sine) below this is rounding noise: the
 // joint is free and the pose singular.

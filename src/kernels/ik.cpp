@@ -25,6 +25,24 @@ CSPACE_INLINE int compact(unsigned ok, double* rows) {
     return count;
 }
 
+// Results larger than the caches go past them: writing a line need not read it first.
+constexpr std::size_t rows_past_cache = 16384;
+
+CSPACE_INLINE void write_out(double* to, const double* from, std::size_t size, bool past_cache) {
+#if defined(CSPACE_X86_REGISTERS)
+    if (past_cache) {
+        for (std::size_t i = 0; i < size; i += 2) _mm_stream_pd(to + i, _mm_load_pd(from + i));
+        return;
+    }
+#endif
+    for (std::size_t i = 0; i < size; ++i) to[i] = from[i];
+}
+CSPACE_INLINE void finish_streams() {
+#if defined(CSPACE_X86_REGISTERS)
+    _mm_sfence();
+#endif
+}
+
 CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
     unsigned bits = 0;
     for (int k = 0; k < max_branches; ++k) bits |= unsigned(lane(ok[k], l)) << k;
@@ -72,6 +90,8 @@ void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, st
              ik::Quick* quick) {
     const Care care = care_of(plan);
     constexpr std::size_t row = max_branches * 6;
+    alignas(64) double stage[native_width * row];
+    const bool past_cache = n >= rows_past_cache && reinterpret_cast<std::uintptr_t>(q) % 16 == 0;
     for (std::size_t first = 0; first < n; first += native_width) {
         const int lanes = int(n - first < native_width ? n - first : native_width);
         V m[16];
@@ -82,15 +102,17 @@ void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, st
             V angles[6];
             for (int i = 0; i < 6; ++i) angles[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
             if (plan.polish) b.doubt = b.doubt || (b.ok[k] && !polished_angles(plan, goal.T, angles));
-            store_rows(angles, 6, q + row * first + 6 * k, row, lanes);
+            store_rows(angles, 6, stage + 6 * k, row, lanes);
         }
         for (int l = 0; l < lanes; ++l) {
-            count[first + l] = compact(branches_of_lane(b.ok, l), q + row * (first + l));
+            count[first + l] = compact(branches_of_lane(b.ok, l), stage + row * l);
             quick[first + l] = !lane(goal.is_pose, l) ? ik::Quick::refused
                                : lane(b.doubt, l)     ? ik::Quick::doubtful
                                                       : ik::Quick::settled;
         }
+        write_out(q + row * first, stage, row * std::size_t(lanes), past_cache);
     }
+    if (past_cache) finish_streams();
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -13,6 +13,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.geometry import NoClosedFormError, explain_missing_form
 from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.spare import spare_array
 from cspace.ik.windings import wrap
 from cspace.spatial import as_pose
 
@@ -162,7 +163,7 @@ def count_of_threads(threads: int | None) -> int:
 def solve_many(robot: Any, T: Array, workers: int) -> SolutionsBatch:
     leading = T.shape[:-2]
     n = int(np.prod(leading))
-    q = np.empty((n, MAX_BRANCHES, robot.dof))
+    q = spare_array((n, MAX_BRANCHES, robot.dof))
     count = np.empty(n, dtype=np.int64)
     verdict = np.empty(n, dtype=np.uint8)
     bad = _core._ik_many(robot, T.reshape(n, 4, 4), q, count, verdict, workers)
