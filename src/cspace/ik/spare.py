@@ -16,8 +16,15 @@ SMALLEST, LARGEST = 1 << 16, 1 << 26
 
 _lock = threading.Lock()
 _last: list[Array] = []
-# What getrefcount says of an array that only `_last` holds: the list, the local name, the argument.
-_UNUSED = 3
+
+
+def holders(blocks: list[Array]) -> int:
+    """How many references to the first block there are, as this very function counts them."""
+    return sys.getrefcount(blocks[0])
+
+
+UNUSED = holders([np.empty(1)])
+"""What `holders` says of a block that nobody but its list holds."""
 
 
 def spare_array(shape: tuple[int, ...]) -> Array:
@@ -26,8 +33,6 @@ def spare_array(shape: tuple[int, ...]) -> Array:
     if not SMALLEST <= 8 * size <= LARGEST:
         return np.empty(shape)
     with _lock:
-        block = _last[0] if _last else None
-        if block is None or sys.getrefcount(block) > _UNUSED or not size <= block.size <= 4 * size:
-            block = np.empty(size)
-            _last[:] = [block]
-        return block[:size].reshape(shape)
+        if not (_last and holders(_last) == UNUSED and size <= _last[0].size <= 4 * size):
+            _last[:] = [np.empty(size)]
+        return _last[0][:size].reshape(shape)
