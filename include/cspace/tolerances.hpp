@@ -65,9 +65,9 @@ inline constexpr double right_angle = 2.5e-16;
 // 1e-8, a wrong pairing of the two conditions by a good part of the arm.
 inline constexpr double sure_candidate = 1e-3;
 
-// Largest joint change [rad] of the first and of the second Newton step of a polished solution: a first step of
-// 1e-3 leaves 1e-6, a second one of 1e-6 leaves 1e-12. Larger steps come near singularities, which the careful
-// path looks at.
+// Largest joint change [rad] of the first and of the second Newton step of a polished solution: a first step
+// of 1e-3 leaves 1e-6, a second one of 1e-6 leaves 1e-12. Larger steps come near singularities, which the
+// careful path looks at.
 inline constexpr double polish_reach = 1e-3, polished = 1e-7;
 
 }  // namespace cspace::tolerance

@@ -78,8 +78,8 @@ def all_windings(
 ) -> tuple[npt.NDArray[np.intp], Array]:
     """Every combination of whole turns inside the limits: the row each comes from, and the configurations.
 
-    A joint without limits is kept in (−π, π], one with a limit on one side as near to it as the limit lets it:
-    it has infinitely many copies. Raises InputError for more than tolerances.MOST_WINDINGS of them.
+    A joint without limits is kept in (−π, π], one with a limit on one side as near to it as the limit lets
+    it: it has infinitely many copies. Raises InputError for more than tolerances.MOST_WINDINGS of them.
     """
     rows: list[int] = []
     out: list[Array] = []
