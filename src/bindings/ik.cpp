@@ -3,14 +3,15 @@
 #include "ik.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
-#include <new>
-#include <thread>
-#include <vector>
+#include <limits>
+#include <memory>
 
 #include "bindings.hpp"
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/goal.hpp"
+#include "cspace/math/threads.hpp"
 #include "robot.hpp"
 
 using namespace cspace;
@@ -35,8 +36,11 @@ const char robot_ik_doc[] =
 namespace {
 
 PyTypeObject* solutions_type = nullptr;  // the Python class that results are made of
+PyTypeObject* base_type = nullptr;       // SolutionsBase
 
+// The solver of a robot that has one; null for every other object.
 const ik::Arm* arm_of(PyObject* robot) {
+    if (!PyObject_TypeCheck(robot, robot_type)) return nullptr;
     return static_cast<const ik::Arm*>(reinterpret_cast<RobotObject*>(robot)->ik.get());
 }
 
@@ -66,6 +70,10 @@ SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, i
         PyObject* room = PyImport_ImportModule("cspace.ik.solutions");
         if (!room) return nullptr;
         Py_DECREF(room);
+        if (!solutions_type) {
+            PyErr_SetString(PyExc_ImportError, "cspace.ik.solutions has not named the class of results");
+            return nullptr;
+        }
     }
     auto* made = reinterpret_cast<SolutionsObject*>(
         solutions_type->tp_alloc(solutions_type, count * dof + (2 * count + 7) / 8));
@@ -92,10 +100,22 @@ PyObject* from_careful(PyObject* robot, const ik::Arm& arm, const double* goal, 
     return reinterpret_cast<PyObject*>(made);
 }
 
-void destroy(PyObject* self) {
-    PyTypeObject* type = Py_TYPE(self);
+// A robot may hold its own results as an attribute, so results take part in the search for cycles.
+int traverse(PyObject* self, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(self));
+    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->robot);
+    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->note);
+    return 0;
+}
+int clear(PyObject* self) {
     Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->robot);
     Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->note);
+    return 0;
+}
+void destroy(PyObject* self) {
+    PyTypeObject* type = Py_TYPE(self);
+    PyObject_GC_UnTrack(self);
+    clear(self);
     type->tp_free(self);
     Py_DECREF(type);
 }
@@ -185,7 +205,7 @@ const char words[] = "cspace.ik.solve";
 
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     double copy[16];
-    const ik::Arm* arm = arm_of(self);
+    const auto* arm = static_cast<const ik::Arm*>(reinterpret_cast<RobotObject*>(self)->ik.get());
     const double* goal =
         arm && can_solve(*arm) && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
     if (goal) {
@@ -200,11 +220,14 @@ namespace {
 double* data_of(PyObject* array) {
     return static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)));
 }
-bool is_doubles(PyObject* value, npy_intp size) {
+bool is_plain(PyObject* value, int type, npy_intp size) {
     if (!PyArray_Check(value)) return false;
     auto* array = reinterpret_cast<PyArrayObject*>(value);
-    return PyArray_TYPE(array) == NPY_DOUBLE && PyArray_IS_C_CONTIGUOUS(array) && PyArray_SIZE(array) == size;
+    return PyArray_EquivTypenums(PyArray_TYPE(array), type) && PyArray_ISCARRAY_RO(array) &&
+           PyArray_SIZE(array) == size;
 }
+bool is_doubles(PyObject* value, npy_intp size) { return is_plain(value, NPY_DOUBLE, size); }
+bool is_writable(PyObject* array) { return PyArray_ISWRITEABLE(reinterpret_cast<PyArrayObject*>(array)); }
 
 // _ik_build(robot, axes (n, 3), points (n, 3), prismatic (n,), T_zero (4, 4)) → bool: is there a closed form?
 PyObject* build(PyObject*, PyObject* args) {
@@ -217,6 +240,12 @@ PyObject* build(PyObject*, PyObject* args) {
         PyErr_SetString(PyExc_TypeError, "_ik_build takes contiguous float64 arrays of matching sizes");
         return nullptr;
     }
+    if (!PyObject_TypeCheck(robot, robot_type)) {
+        PyErr_SetString(PyExc_TypeError, "_ik_build takes a robot");
+        return nullptr;
+    }
+    // Two threads may both come here first: the later one takes what the earlier one built and may be using.
+    if (const ik::Arm* built = arm_of(robot)) return PyBool_FromLong(can_solve(*built));
     ik::Chain chain;
     chain.n = int(n);
     for (int i = 0; i < chain.n; ++i) {
@@ -314,6 +343,8 @@ PyObject* position(PyObject*, PyObject* args) {
     return Py_BuildValue("iNNdN", int(all.status), q, families, found.missing, nearest);
 }
 
+constexpr int last_status = static_cast<int>(ik::Status::nearest);
+
 // _ik_make(robot, goal (4, 4), status, q (k, dof), branches (k), families (k), note) → solutions
 PyObject* make(PyObject*, PyObject* args) {
     PyObject *robot, *goal, *q, *branches, *families, *note;
@@ -324,6 +355,10 @@ PyObject* make(PyObject*, PyObject* args) {
     const Py_ssize_t k = PyTuple_GET_SIZE(branches);
     const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
     const npy_intp dof = shaped ? PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 1) : -1;
+    if (!PyObject_TypeCheck(robot, robot_type) || status < 0 || status > last_status) {
+        PyErr_SetString(PyExc_TypeError, "_ik_make takes a robot and a status it knows");
+        return nullptr;
+    }
     if (!shaped || k > 1 << 24 || PyTuple_GET_SIZE(families) != k || !is_doubles(q, k * dof) ||
         !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes contiguous float64 arrays and tuples of one length");
@@ -357,6 +392,9 @@ PyObject* single(PyObject*, PyObject* args) {
     if (answer || PyErr_Occurred()) return answer;
     Py_RETURN_NONE;
 }
+
+constexpr Py_ssize_t most_threads = 1024;
+constexpr std::size_t rows_worth_a_thread = 256;
 
 // --- batches -------------------------------------------------------------------------------------------
 // The kernel over a slice, then the careful path where it hesitated. Returns the first goal refused, or n.
@@ -392,37 +430,42 @@ PyObject* many(PyObject*, PyObject* args) {
     const ik::Arm* arm = arm_of(robot);
     const npy_intp n = PyArray_Check(count) ? PyArray_SIZE(reinterpret_cast<PyArrayObject*>(count)) : -1;
     if (!arm || !can_solve(*arm) || n < 0 || !is_doubles(goals, 16 * n) ||
-        !is_doubles(q, n * max_branches * arm->plan.chain.n)) {
+        !is_doubles(q, n * max_branches * arm->plan.chain.n) || !is_plain(count, NPY_INT64, n) ||
+        !is_plain(status, NPY_UINT8, n) || !is_writable(q) || !is_writable(count) || !is_writable(status)) {
         PyErr_SetString(PyExc_TypeError,
-                        "_ik_many takes a robot with a solver and contiguous float64 arrays");
+                        "_ik_many takes a robot with a solver and contiguous arrays: float64, count int64, "
+                        "status uint8");
         return nullptr;
     }
     const double* T = data_of(goals);
     double* out = data_of(q);
     auto* counts = static_cast<std::int64_t*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(count)));
     auto* verdicts = static_cast<unsigned char*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(status)));
-    const std::size_t total = std::size_t(n),
-                      workers = std::clamp<std::size_t>(std::size_t(threads), 1, total / 256 + 1);
-    const std::size_t per = (total + workers - 1) / workers;
-    std::vector<std::size_t> bad(workers, total);
+    const std::size_t total = std::size_t(n), row = std::size_t(max_branches * arm->plan.chain.n);
+    std::atomic<std::size_t> bad = total;
     Py_BEGIN_ALLOW_THREADS;
-    auto work = [&](std::size_t w) {
-        const std::size_t from = std::min(w * per, total), size = std::min(per, total - from);
-        const std::size_t row = std::size_t(max_branches * arm->plan.chain.n);
+    const auto work = [&](std::size_t from, std::size_t to) {
+        const std::size_t size = to - from;
         const std::size_t stopped =
             solve_slice(*arm, T + 16 * from, size, out + row * from, counts + from, verdicts + from);
-        if (stopped < size) bad[w] = from + stopped;
+        if (stopped == size) return true;
+        std::size_t first = bad;
+        while (from + stopped < first && !bad.compare_exchange_weak(first, from + stopped)) {
+        }
+        return false;
     };
-    std::vector<std::thread> pool;
-    for (std::size_t w = 1; w < workers; ++w) pool.emplace_back(work, w);
-    work(0);
-    for (auto& thread : pool) thread.join();
+    over_rows(total, int(std::clamp<Py_ssize_t>(threads, 1, most_threads)), 1, rows_worth_a_thread, work);
     Py_END_ALLOW_THREADS;
-    return PyLong_FromSize_t(*std::min_element(bad.begin(), bad.end()));
+    return PyLong_FromSize_t(bad);
 }
 
 // _ik_results(cls): results are made of this class from now on.
 PyObject* results(PyObject*, PyObject* cls) {
+    if (!PyType_Check(cls) || !PyType_IsSubtype(reinterpret_cast<PyTypeObject*>(cls), base_type)) {
+        PyErr_SetString(PyExc_TypeError, "_ik_results takes a subclass of SolutionsBase");
+        return nullptr;
+    }
+    Py_XDECREF(solutions_type);
     solutions_type = reinterpret_cast<PyTypeObject*>(Py_NewRef(cls));
     Py_RETURN_NONE;
 }
@@ -463,13 +506,17 @@ PyGetSetDef attributes[] = {
     {"_is_family", get_is_family, nullptr, "Which rows stand for a family.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
+                       {Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
+                       {Py_tp_clear, reinterpret_cast<void*>(&clear)},
                        {Py_tp_getset, attributes},
                        {Py_sq_length, reinterpret_cast<void*>(&length)},
                        {Py_nb_bool, reinterpret_cast<void*>(&truth)},
                        {Py_tp_doc, const_cast<char*>("The compiled half of cspace.ik.Solutions.")},
                        {0, nullptr}};
 PyType_Spec spec = {"cspace._core.SolutionsBase", offsetof(SolutionsObject, q), sizeof(double),
-                    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_DISALLOW_INSTANTIATION, slots};
+                    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_HAVE_GC |
+                        Py_TPFLAGS_DISALLOW_INSTANTIATION,
+                    slots};
 
 }  // namespace
 
@@ -478,6 +525,6 @@ void bind_ik(nanobind::module_& m) {
     if (!type || PyModule_AddObjectRef(m.ptr(), "SolutionsBase", type) < 0 ||
         PyModule_AddFunctions(m.ptr(), functions) < 0)
         throw nanobind::python_error();
-    Py_DECREF(type);
+    base_type = reinterpret_cast<PyTypeObject*>(type);  // kept for good
     m.attr("AXIS_RELATION") = tolerance::axis_relation;
 }

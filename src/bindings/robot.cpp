@@ -11,6 +11,8 @@
 
 using namespace cspace;
 
+PyTypeObject* robot_type = nullptr;
+
 // --- reading arguments ---------------------------------------------------------------------------------
 bool robot_read_configuration(const RobotObject* robot, PyObject* value, double* copy, const double*& q) {
     if (!PyArray_CheckExact(value)) return false;
@@ -213,5 +215,6 @@ void bind_robot(nanobind::module_& m) {
     if (fill_numpy_api() < 0) throw nanobind::python_error();
     PyObject* type = PyType_FromSpec(&spec);
     if (!type) throw nanobind::python_error();
+    robot_type = reinterpret_cast<PyTypeObject*>(Py_NewRef(type));
     m.attr("RobotBase") = nanobind::steal(type);
 }

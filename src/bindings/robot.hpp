@@ -16,8 +16,10 @@ struct RobotObject {
     PyObject* frame_index;                                          // dict: name of a frame → its number
     int tip;  // the frame meant where none is named, or -1
     bool floating;
-    std::shared_ptr<void> ik;  // the solver, built by the first call of ik
+    std::shared_ptr<void> ik;  // the solver, built by the first call of ik; never replaced: threads may be in it
 };
+
+extern PyTypeObject* robot_type;  // RobotBase; null until the module is filled
 
 // robot.ik, in ik.cpp.
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);

@@ -1,5 +1,6 @@
 #include "robot_load.hpp"
 
+#include <climits>
 #include <vector>
 
 #include "robot.hpp"
@@ -56,6 +57,16 @@ bool indices_fit(const std::vector<Joint>& joints, const std::vector<Frame>& fra
     return tip >= -1 && tip < int(frames.size());
 }
 
+// Every value of the dict is the number of a frame.
+bool names_fit(PyObject* names, long n_frames) {
+    PyObject *name, *number;
+    for (Py_ssize_t at = 0; PyDict_Next(names, &at, &name, &number);) {
+        const long frame = PyLong_Check(number) ? PyLong_AsLong(number) : -1;
+        if (frame < 0 || frame >= n_frames) return false;
+    }
+    return !PyErr_Occurred();
+}
+
 std::unique_ptr<const RobotModel> read_model(PyObject* assembly, long n_joints, long n_frames, long n,
                                              long tip) {
     const Column T_joint(assembly, "T_parent_joint", 16 * n_joints), parent(assembly, "parent", n_joints),
@@ -110,10 +121,11 @@ int robot_load(PyObject* self, PyObject* args, PyObject* kwargs) {
     if (PyErr_Occurred()) return -1;
     PyObject* names = PyObject_GetAttrString(assembly, "frame_index");
     if (!names) return -1;
-    robot->frame_index = PyDict_Check(names) ? PyDict_Copy(names) : nullptr;
+    Py_XSETREF(robot->frame_index, PyDict_Check(names) ? PyDict_Copy(names) : nullptr);
     Py_DECREF(names);
-    if (!robot->frame_index) {
-        if (!PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "frame_index must be a dict");
+    if (!robot->frame_index || n < 0 || n > INT_MAX || !names_fit(robot->frame_index, n_frames)) {
+        if (!PyErr_Occurred())
+            PyErr_SetString(PyExc_TypeError, "frame_index must be a dict of names to numbers of frames");
         return -1;
     }
     try {

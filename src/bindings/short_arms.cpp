@@ -33,6 +33,17 @@ ik::Chain chain_of(const Rows& axes, const Rows& points, const Array<const bool,
     return chain;
 }
 
+// Every array that is written must have a row per goal; the last axis of q and direction counts joints.
+template <class... Arrays>
+void one_row_per_goal(std::size_t rows, const Arrays&... arrays) {
+    if (((arrays.shape(0) != rows) || ...)) throw nb::value_error("every array needs one row per goal");
+}
+template <class... Arrays>
+void one_column_per_joint(int n, const Arrays&... arrays) {
+    if (((arrays.shape(arrays.ndim() - 1) != std::size_t(n)) || ...))
+        throw nb::value_error("the last axis must have one entry per joint");
+}
+
 // Rows of `most` answers of n joints, NaN beyond count.
 template <class Found>
 void put(const Found& found, int n, double* q, double* direction, bool* free, std::int32_t* count) {
@@ -63,6 +74,8 @@ void bind_short_arms(nb::module_& m) {
            Array<double, nb::shape<-1, -1>> nearest) {
             const ik::Chain chain = chain_of(axes, points, prismatic, T_zero.data());
             const std::size_t rows = goals.shape(0), row = 8 * std::size_t(chain.n);
+            one_row_per_goal(rows, q, direction, free, count, missing, nearest);
+            one_column_per_joint(chain.n, q, direction, nearest);
             nb::gil_scoped_release released;
             for (std::size_t k = 0; k < rows; ++k) {
                 const ik::PositionSolutions found = solve_position(chain, vector(goals.data() + 3 * k));
@@ -83,6 +96,8 @@ void bind_short_arms(nb::module_& m) {
            Count count) {
             const ik::Chain chain = chain_of(axes, points, prismatic, T_zero.data());
             const std::size_t rows = goals.shape(0), row = 8 * std::size_t(chain.n);
+            one_row_per_goal(rows, q, direction, free, count);
+            one_column_per_joint(chain.n, q, direction);
             nb::gil_scoped_release released;
             for (std::size_t k = 0; k < rows; ++k)
                 put(solve_short_pose(chain, pose(goals.data() + 16 * k)), chain.n, q.data() + k * row,

@@ -22,6 +22,8 @@ def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), fi
     Raises InputTypeError if it is not numeric, InputError on a wrong shape or on NaN or inf.
     """
     array = value if type(value) is np.ndarray and value.dtype == np.float64 else _converted(value, subject)
+    if not array.flags.aligned:  # the compiled loops read numbers in place
+        array = array.copy()
     shape = array.shape[array.ndim - len(last) :] if last else ()
     if shape != last and not _fits(shape, last):
         wanted = "(..., " + ", ".join("k" if n is None else str(n) for n in last) + ")"
@@ -40,6 +42,8 @@ def _converted(value: Any, subject: str) -> Array:
         array = np.asarray(value)
         if array.dtype.kind in "biufO":
             return array.astype(np.float64, copy=False)
+    except OverflowError:
+        raise InputError(f"{subject} holds an integer that no float64 can hold; all must be finite") from None
     except (TypeError, ValueError) as error:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
     raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")

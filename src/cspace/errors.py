@@ -56,9 +56,9 @@ class MissingExtraError(CspaceError, ImportError):
 
 def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = "") -> UnknownNameError:
     """The error for an unknown name: what was asked, the nearest known names, and the list if it is short."""
-    names = sorted(known)
-    near = difflib.get_close_matches(str(name), names, n=3, cutoff=0.5)
-    text = f"no {subject} {str(name)!r}" + (f" in {owner}" if owner else "")
+    names, asked = sorted(known), _short(str(name))
+    near = difflib.get_close_matches(asked, names, n=3, cutoff=0.5)
+    text = f"no {subject} {asked!r}" + (f" in {owner}" if owner else "")
     if near:
         text += "; did you mean " + " or ".join(repr(n) for n in near) + "?"
     if len(names) <= 30:
@@ -66,3 +66,8 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     else:
         text += f" ({len(names)} {subject}s known)"
     return UnknownNameError(text)
+
+
+def _short(text: str, most: int = 80) -> str:
+    """A text that fits into a message: of a whole file given as a name, the beginning says enough."""
+    return text if len(text) <= most else text[: most - 1] + "…"

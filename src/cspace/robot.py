@@ -11,7 +11,7 @@ import numpy as np
 from cspace import kinematics, model
 from cspace._core import RobotBase
 from cspace.arrays import Array
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.model import Chain, Description, DHTable
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
@@ -49,6 +49,11 @@ class Robot(RobotBase):
         T_world_base: PoseLike | None = None,
         T_tip_tool: PoseLike | None = None,
     ) -> None:
+        if not isinstance(description, Description):
+            raise InputTypeError(
+                f"Robot takes a Description, got {type(description).__name__};"
+                " cspace.load_robot takes a name or a path"
+            )
         self._made_from = (description, base, tip, floating)
         self._T_world_base = None if T_world_base is None else _one_pose(T_world_base, "T_world_base")
         self._T_tip_tool = None if T_tip_tool is None else _one_pose(T_tip_tool, "T_tip_tool")

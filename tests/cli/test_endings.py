@@ -279,3 +279,12 @@ def test_the_module_runs_as_a_command():
     done = command("fk", "ur5e", "0", "0", "0", "0", "0", "-1e-3", "--json")
     assert done.returncode == 0
     assert done.stdout.startswith('{"schema": "cspace.fk/1"')
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a shell that closes streams")
+def test_a_closed_output_is_no_error():
+    words = [sys.executable, "-m", "cspace", "info", "ur5e"]
+    done = subprocess.run(
+        ["sh", "-c", 'exec "$@" >&-', "sh", *words], stderr=subprocess.PIPE, env=environment(), check=False
+    )
+    assert (done.returncode, done.stderr) == (0, b"")

@@ -20,7 +20,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     debug = "--debug" in words
     try:
         code = dispatch(words)
-        sys.stdout.flush()
+        if sys.stdout is not None:  # None: closed by the caller
+            sys.stdout.flush()
         return code
     except BrokenPipeError:
         return closed_pipe()

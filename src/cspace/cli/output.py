@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import sys
 from collections.abc import Mapping, Sequence
@@ -42,7 +43,7 @@ class Output:
     """Where a verb writes its answer; a terminal gets rich tables, a pipe plain text, --json one document."""
 
     def __init__(self, *, as_json: bool = False, stream: TextIO | None = None) -> None:
-        self.stream = sys.stdout if stream is None else stream
+        self.stream = stream or sys.stdout or io.StringIO()  # a closed standard output is None: write nowhere
         self.as_json = as_json
         self.rich = not as_json and self.stream.isatty()
         reconfigure = getattr(self.stream, "reconfigure", None)

@@ -137,6 +137,8 @@ def explain_missing_form(robot: Any) -> str:
     subject = f"no closed form for {robot.name} ({kinds}, {len(kinds)} joints)"
     if robot.chain.dof != len(kinds):
         return f"{subject}: joints that mimic others are not solved by this version"
+    if not kinds:
+        return f"{subject}: no joint moves"
     if "P" in kinds:
         return f"{subject}: arms with prismatic joints are not solved by this version"
     if len(kinds) > 6:

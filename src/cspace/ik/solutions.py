@@ -11,9 +11,10 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError
 from cspace.ik.branches import branch_labels
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
+from cspace.kinematics.batch import choice
 
 if TYPE_CHECKING:
     from cspace.model import Limits
@@ -149,8 +150,7 @@ class Solutions(_core.SolutionsBase):
         seed = as_floats(q, "q", last=(self.robot.dof,))
         if seed.ndim != 1:
             raise InputError(f"q has shape {seed.shape}, expected ({self.robot.dof},): one configuration")
-        if metric not in METRICS:
-            raise suggest("metric", metric, METRICS)
+        choice(metric, "metric", METRICS)
         if not self:
             return self
         limits = self.robot.limits

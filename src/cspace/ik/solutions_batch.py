@@ -9,9 +9,10 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError
 from cspace.ik.solutions import METRICS, UNREACHABLE, VERDICTS, Solutions, bounds_of, pose_errors
 from cspace.ik.windings import into_limits, nearest_winding, wrap
+from cspace.kinematics.batch import choice
 
 if TYPE_CHECKING:
     from cspace.model import Limits
@@ -105,8 +106,7 @@ class SolutionsBatch:
         """Per goal the configuration nearest to q (dof,) or (..., dof), (..., dof); NaN where there is
         none.
         """
-        if metric not in METRICS:
-            raise suggest("metric", metric, METRICS)
+        choice(metric, "metric", METRICS)
         seed = as_floats(q, "q", last=(self.robot.dof,))
         seed = np.broadcast_to(seed, (*self.count.shape, self.robot.dof))[..., None, :]
         limits = self.robot.limits

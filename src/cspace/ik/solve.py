@@ -22,6 +22,8 @@ __all__ = ["inverse_kinematics"]
 MAX_BRANCHES = 8
 FARTHEST = 1e100
 """Largest sum of a goal's coordinates [m]: their squares still fit a double."""
+MAX_JOINTS = 6
+MOST_THREADS = 1024
 MAX_POSITION_JOINTS = 3
 
 
@@ -32,7 +34,8 @@ def prepare(robot: Any) -> None:
     if robot._ik_ready:
         return
     chain = robot.chain
-    if chain.dof != len(chain.joint_types) or robot.floating:
+    joints = len(chain.joint_types)
+    if chain.dof != joints or robot.floating or not 1 <= joints <= MAX_JOINTS:
         raise NoClosedFormError(explain_missing_form(robot))
     prismatic = np.array([kind == "P" for kind in chain.joint_types], dtype=np.float64)
     found = _core._ik_build(
@@ -71,6 +74,8 @@ def inverse_kinematics(
     """
     prepare(robot)
     workers = count_of_threads(threads)
+    if not isinstance(least_squares, (bool, np.bool_)):
+        raise InputTypeError(f"least_squares must be True or False, got {type(least_squares).__name__}")
     if (goal is None) == (position is None):
         raise InputTypeError(
             "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or robot.ik(position=p)"
@@ -111,6 +116,8 @@ def position_in_base(robot: Any, position: Any) -> Array:
         p = np.append(p, chain.T_zero[2, 3])
     if p.shape != (3,):
         raise InputError(f"position has shape {p.shape}, expected (3,), or (2,) for an arm in the plane")
+    if np.abs(p).sum() > FARTHEST:
+        raise InputError(f"position is {p.tolist()}; goals up to {FARTHEST:g} m away make sense")
     return np.ascontiguousarray(p)
 
 
@@ -126,8 +133,8 @@ def goal_array(goal: Any) -> Array:
     itself.
     """
     if type(goal) is np.ndarray and goal.dtype == np.float64 and goal.ndim > 2 and goal.shape[-2:] == (4, 4):
-        return np.ascontiguousarray(goal)
-    return np.ascontiguousarray(as_pose(goal, "goal"))
+        return np.require(goal, requirements=["C", "A"])
+    return np.require(as_pose(goal, "goal"), requirements=["C", "A"])
 
 
 def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
@@ -155,8 +162,8 @@ def count_of_threads(threads: int | None) -> int:
         raise InputTypeError(
             f"threads is a {type(threads).__name__}, expected a number or None for all cores"
         )
-    if threads < 1:
-        raise InputError(f"threads is {threads}, expected a positive number or None for all cores")
+    if not 1 <= threads <= MOST_THREADS:
+        raise InputError(f"threads is {threads}, expected 1 to {MOST_THREADS}, or None for all cores")
     return int(threads)
 
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from typing import TypeAlias
 
 import numpy as np
 
-from cspace.arrays import Array, as_generator
+from cspace.arrays import Array, as_floats, as_generator
 from cspace.errors import InputError
+from cspace.kinematics.batch import whole_number
 from cspace.model import Limits
 
 Seed: TypeAlias = "int | np.random.Generator | None"
@@ -26,8 +28,13 @@ def random_configurations(
     reach, the length [m] drawn on the open side.
 
     Returns q (n, n_joints) or (n_joints,) [rad or m].
-    Raises InputError for a sliding joint that is open on a side and has no reach.
+    Raises InputError for a sliding joint that is open on a side and has no reach, a negative n or reach;
+    InputTypeError for what is no number.
     """
+    if n is not None:
+        n = whole_number(n, "n", 0, sys.maxsize)
+    if reach is not None:
+        reach = _length(reach)
     lower, upper = np.array(limits.lower), np.array(limits.upper)
     for i, kind in enumerate(joint_types):
         span = np.pi if kind == "R" else reach
@@ -46,3 +53,10 @@ def random_configurations(
     shape = (lower.size,) if n is None else (n, lower.size)
     # From the upper end downward: of a whole turn −π is left out and π is in.
     return np.asarray(upper - (upper - lower) * as_generator(rng).random(shape))
+
+
+def _length(reach: object) -> float:
+    value = as_floats(reach, "reach")
+    if value.shape != () or value < 0:
+        raise InputError(f"reach is {reach!r}; it must be one length [m], 0 or more")
+    return float(value)

@@ -95,6 +95,8 @@ def jacobian_dot(
 
     Siciliano et al. 2009, section 3.8 (without the detour over angles).
     """
+    if qd is None:
+        raise InputTypeError("qd is None; the derivative needs the velocities (..., dof)")
     number, in_tip = frame_number(robot, frame), choice(expressed_in, "expressed_in", AXES) == "tip"
     batch = rows_of(robot, q, qd=qd, point=point, T_world_base=T_world_base, threads=threads)
     J_rate = output(out, (*batch.shape, 6, robot.dof))

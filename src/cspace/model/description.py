@@ -144,7 +144,7 @@ class Description:
 
     def link(self, name: str) -> Link:
         """The link of that name, or UnknownNameError with the nearest names."""
-        if name not in self.link_by_name:
+        if not isinstance(name, str) or name not in self.link_by_name:
             raise suggest("link", name, self.link_by_name, owner=f"robot {self.name!r}")
         return self.link_by_name[name]
 

@@ -26,7 +26,7 @@ Z_AXIS: Final[Array] = frozen(np.array([0.0, 0.0, 1.0]))
 
 def check_convention(convention: object) -> str:
     """The convention if it is one of CONVENTIONS, else UnknownNameError."""
-    if convention not in CONVENTIONS:
+    if not isinstance(convention, str) or convention not in CONVENTIONS:
         raise suggest("Denavit–Hartenberg convention", convention, CONVENTIONS)
     return str(convention)
 

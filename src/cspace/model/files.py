@@ -4,11 +4,21 @@ from __future__ import annotations
 
 import contextlib
 import os
+from typing import Any
 
-from cspace.errors import DescriptionError, InputError
+from cspace.errors import DescriptionError, InputError, InputTypeError
 from cspace.tolerances import DESCRIPTION_BYTES
 
-__all__ = ["read_bytes", "write_text"]
+__all__ = ["path_of", "read_bytes", "write_text"]
+
+
+def path_of(source: Any) -> str:
+    """The path that `source` is; InputTypeError for what is none."""
+    try:
+        return os.fsdecode(source)
+    except TypeError:
+        message = f"a robot file is given by its path or its text, got {type(source).__name__}"
+        raise InputTypeError(message) from None
 
 
 def read_bytes(path: str | os.PathLike[str]) -> bytes:
@@ -30,7 +40,7 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
             message = f"the file holds {size} bytes; more than {DESCRIPTION_BYTES} are refused"
             raise DescriptionError(message, path=name)
         with open(name, "rb") as file:
-            return file.read()
+            return file.read(DESCRIPTION_BYTES)  # no more, should the file be growing
     except OSError as error:
         raise DescriptionError(f"cannot be read: {error.strerror or error}", path=name) from None
 

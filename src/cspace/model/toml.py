@@ -12,7 +12,7 @@ from cspace.arrays import Array
 from cspace.errors import CspaceError, DescriptionError
 from cspace.model.description import Description, Provenance, Source
 from cspace.model.dh import DHTable, from_dh
-from cspace.model.files import read_bytes
+from cspace.model.files import path_of, read_bytes
 from cspace.model.joint import LIMIT_FIELDS, Joint, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.screws import from_screws
@@ -49,7 +49,7 @@ def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = 
     """
     if isinstance(source, str) and "\n" in source:
         return _Reader(Document(source, None), package_paths).read()
-    path = os.fspath(source)
+    path = path_of(source)
     data = read_bytes(path)
     if len(data) > TOML_BYTES:
         raise DescriptionError(

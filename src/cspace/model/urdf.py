@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from cspace.arrays import Array
 from cspace.errors import CspaceError, DescriptionError, suggest
 from cspace.model.description import Description
-from cspace.model.files import read_bytes
+from cspace.model.files import path_of, read_bytes
 from cspace.model.joint import JOINT_TYPES, Joint, Mimic
 from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
 from cspace.model.structure import ElementError
@@ -50,7 +50,7 @@ def from_urdf(source: str | os.PathLike[str] | bytes, *, package_paths: Sequence
         return _Reader(None, package_paths, source.count("\n", 0, blank)).read(data, "robot")
     if isinstance(source, bytes):
         return _Reader(None, package_paths, 0).read(source, "robot")
-    path = os.fspath(source)
+    path = path_of(source)
     return _Reader(path, package_paths, 0).read(read_bytes(path), Path(path).stem)
 
 

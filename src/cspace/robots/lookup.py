@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Final
 
-from cspace.errors import UnknownNameError, suggest
+from cspace.errors import InputTypeError, UnknownNameError, suggest
 from cspace.model import Description, from_toml
 from cspace.robots.index import PLAIN_NAMES, ROWS
 
@@ -51,6 +51,7 @@ def find(name: str) -> str:
 
     Raises UnknownNameError with the nearest names.
     """
+    _check_text(name, "a robot of the catalogue")
     found = PLAIN_NAMES.get(plain(name))
     if found is not None:
         return found
@@ -70,6 +71,7 @@ def search(text: str) -> tuple[CatalogueRow, ...]:
     A word fits where it stands in the name, an alias, the title or the vendor, or equals the number of
     joints ("7") or their word ("7r", "rrprrr"). Whole words count more than parts. An empty text fits all.
     """
+    _check_text(text, "a search")
     words = re.findall(r"[^\s,;]+", text.lower())
     scored = [(min((_fit(row, word) for word in words), default=1), row) for row in rows()]
     fitting = [(score, row) for score, row in scored if score > 0]
@@ -79,6 +81,11 @@ def search(text: str) -> tuple[CatalogueRow, ...]:
 def plain(name: str) -> str:
     """A name as it is compared: small letters and digits alone."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def _check_text(value: object, subject: str) -> None:
+    if not isinstance(value, str):
+        raise InputTypeError(f"{subject} is given by a text, got {type(value).__name__}")
 
 
 def _fit(row: CatalogueRow, word: str) -> int:

@@ -1,0 +1,93 @@
+"""Arguments of wrong types and sizes, through the Python face: an error of cspace that says what is wrong."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.errors import CspaceError, InputError, InputTypeError, UnknownNameError
+from cspace.model import Limits
+
+ARM = cs.load_robot("ur5e")
+GOAL = ARM.fk(np.full(6, 0.5))
+FOUND = ARM.ik(GOAL)
+MANY = ARM.ik(np.stack([GOAL, GOAL]))
+THREE = Limits(np.zeros(3), np.ones(3))
+HUGE = [[10**400] * 4] * 4
+
+CALLS = [
+    (lambda: ARM.ik(HUGE), InputError, "no float64 can hold"),
+    (lambda: ARM.ik(GOAL, least_squares=GOAL), InputTypeError, "least_squares must be True or False"),
+    (lambda: ARM.ik(np.stack([GOAL]), threads="2"), InputTypeError, "threads is a str"),
+    (lambda: ARM.ik(np.stack([GOAL]), threads=1.5), InputTypeError, "threads is a float"),
+    (lambda: ARM.ik(np.stack([GOAL]), threads=10**30), InputError, "expected 1 to 1024"),
+    (lambda: ARM.ik(np.stack([GOAL]), threads=-1), InputError, "threads is -1"),
+    (lambda: FOUND.within("upper"), InputTypeError, "limits is a str, expected cspace.model.Limits"),
+    (lambda: MANY.within([0, 1]), InputTypeError, "limits is a list, expected cspace.model.Limits"),
+    (lambda: FOUND.violations({}), InputTypeError, "limits is a dict, expected cspace.model.Limits"),
+    (lambda: FOUND.within(THREE), InputError, r"limits are for \(3,\) joints"),
+    (lambda: FOUND.nearest(np.zeros(6), GOAL), UnknownNameError, "no metric"),
+    (lambda: MANY.nearest(np.zeros(6), "max_"), UnknownNameError, "did you mean 'max'"),
+    (lambda: ARM.jacobian_dot(np.zeros(6), None), InputTypeError, "qd is None"),
+    (lambda: ARM.to_dh(convention=np.eye(3)), UnknownNameError, "no Denavit–Hartenberg convention"),
+    (lambda: ARM.random_configuration("3"), InputTypeError, "n must be a whole number"),
+    (lambda: ARM.random_configuration(-1), InputError, "n is -1"),
+    (lambda: ARM.random_configuration(reach=[1, 2]), InputError, "reach is"),
+    (lambda: ARM.random_configuration(reach="far"), InputTypeError, "reach must be numbers"),
+    (lambda: ARM.random_configuration(reach=-1.0), InputError, "reach is -1"),
+    (lambda: cs.Robot("ur5e"), InputTypeError, "Robot takes a Description, got str; cspace.load_robot"),
+    (lambda: cs.Robot.from_urdf(None), InputTypeError, "path or its text, got NoneType"),
+    (lambda: cs.Robot.from_toml([]), InputTypeError, "path or its text, got list"),
+    (lambda: cs.load_robot("ur5e", tip=["tool0"]), UnknownNameError, "no link"),
+    (
+        lambda: cs.load_robot("planar_2r").ik(position=(1e300, 1e300)),
+        InputError,
+        "position is .* make sense",
+    ),
+    (lambda: cs.robots.find(5), InputTypeError, "given by a text, got int"),
+    (lambda: cs.robots.search(None), InputTypeError, "given by a text, got NoneType"),
+]
+
+
+@pytest.mark.parametrize(("call", "error", "words"), CALLS)
+def test_wrong_arguments_are_refused_in_words(call, error, words):
+    with pytest.raises(error, match=words):
+        call()
+
+
+@pytest.mark.parametrize("name", ["../x", "..", "ur5e/../kuka", "", "/dev/zero", "/", "x" * 10**5])
+def test_names_with_tricks_are_refused_in_a_short_message(name):
+    with pytest.raises(CspaceError) as caught:
+        cs.load_robot(name)
+    assert len(str(caught.value)) < 400
+
+
+@pytest.mark.parametrize(
+    "goal",
+    [
+        GOAL.astype(">f8"),
+        GOAL.astype(object),
+        GOAL.astype(np.longdouble),
+        np.asfortranarray(GOAL),
+        np.ma.masked_array(GOAL),
+        np.stack([GOAL, GOAL], axis=-1)[..., 1],
+        np.frombuffer(b"." + GOAL.tobytes(), dtype=np.float64, offset=1, count=16).reshape(4, 4),
+        GOAL.tolist(),
+    ],
+)
+def test_every_layout_of_the_same_numbers_has_the_same_answer(goal):
+    assert np.array_equal(ARM.ik(goal).q, FOUND.q)
+    assert np.array_equal(ARM.ik(np.asarray(goal)[None])[0].q, FOUND.q)
+
+
+@pytest.mark.parametrize("n", [0, 7, 40])
+def test_a_chain_of_no_joints_or_too_many_has_no_closed_form_and_says_so(n):
+    links = "".join(f"<link name='l{i}'/>" for i in range(n + 1))
+    joints = "".join(
+        f"<joint name='j{i}' type='continuous'><parent link='l{i}'/><child link='l{i + 1}'/></joint>"
+        for i in range(n)
+    )
+    robot = cs.Robot.from_urdf(f"<robot name='r'>{links}{joints}</robot>")
+    with pytest.raises(CspaceError, match="no closed form for r"):
+        robot.ik(np.eye(4))
