@@ -1,6 +1,7 @@
 """cspace: from a robot's description to its motion."""
 
 import logging
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +37,10 @@ _LATER = {
 
 def __getattr__(name: str) -> Any:
     if name not in _LATER:
-        raise AttributeError(f"module 'cspace' has no attribute {name!r}")
+        # With name and obj Python itself adds the nearest name to the message that a person sees.
+        raise AttributeError(
+            f"module 'cspace' has no attribute {name!r}", name=name, obj=sys.modules[__name__]
+        )
     room = _LATER[name]
     value = getattr(import_module(room), name) if room else import_module(f"cspace.{name}")
     globals()[name] = value
@@ -44,4 +48,4 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return sorted({*__all__, "errors", "tolerances", *(name for name in globals() if name.startswith("__"))})

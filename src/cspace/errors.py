@@ -62,7 +62,7 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     if near:
         text += "; did you mean " + " or ".join(repr(n) for n in near) + "?"
     if len(names) <= 30:
-        text += f" {subject}s: " + (", ".join(names) if names else "none")
+        text += ("" if near else ";") + f" {subject}s: " + (", ".join(names) if names else "none")
     else:
         text += f" ({len(names)} {subject}s known)"
     return UnknownNameError(text)

@@ -51,8 +51,8 @@ class Robot(RobotBase):
     ) -> None:
         if not isinstance(description, Description):
             raise InputTypeError(
-                f"Robot takes a Description, got {type(description).__name__};"
-                " cspace.load_robot takes a name or a path"
+                f"Robot takes a Description, got {type(description).__name__}; load_robot takes names and"
+                " paths, Robot.from_urdf, from_dh, from_screws and from_toml what their names say"
             )
         self._made_from = (description, base, tip, floating)
         self._T_world_base = None if T_world_base is None else _one_pose(T_world_base, "T_world_base")

@@ -29,6 +29,12 @@ def load_text(text, tmp_path):
     return cs.load_robot(path)
 
 
+def load_branching():
+    fingers = [cs.model.Joint(side, "prismatic", "hand", side, axis=(0, 1, 0)) for side in ("left", "right")]
+    links = [cs.model.Link(name) for name in ("hand", "left", "right")]
+    return cs.Robot(cs.model.Description("gripper", links=links, joints=fingers))
+
+
 def nan_pose():
     T = np.eye(4)
     T[0, 3] = np.nan
@@ -126,6 +132,31 @@ CALLS = {
         lambda: cs.Robot(cs.load_robot("ur5e").description, tip="hand"),
         errors.UnknownNameError,
         ["'hand'", "ur5e"],
+    ),
+    "a table of a robot instead of its chain": (
+        lambda: cs.model.to_dh(cs.load_robot("ur5e"), convention="standard"),
+        errors.InputTypeError,
+        ["Robot", "robot.to_dh()", "robot.chain"],
+    ),
+    "a robot made of a name": (
+        lambda: cs.Robot("ur5e"),
+        errors.InputTypeError,
+        ["Description", "str", "load_robot"],
+    ),
+    "a frame unlike all others": (
+        lambda: cs.load_robot("planar_2r").fk([0, 0], frame="xyzzy"),
+        errors.UnknownNameError,
+        ["no frame 'xyzzy' in planar_2r; frames: "],
+    ),
+    "a robot unlike all others": (
+        lambda: cs.load_robot("!!!"),
+        errors.UnknownNameError,
+        ["no robot '!!!' in the catalogue; cs.robots.names() lists all", f"{len(cs.robots.names())}, "],
+    ),
+    "inverse kinematics of a robot with a gripper": (
+        lambda: load_branching().ik(np.eye(4)),
+        errors.InputError,
+        ["tip=", "left, right", "any other link"],
     ),
 }
 

@@ -28,7 +28,8 @@ def need_chain(robot: Robot) -> None:
     """Refuse a tree where a verb speaks of one tip, naming the links that could be it."""
     if robot.tip is None:
         raise UsageError(
-            f"{robot.name} branches, so its tip has to be named: --tip with one of {', '.join(robot.leaves)}"
+            f"{robot.name} branches, so its tip has to be named: --tip with one of {', '.join(robot.leaves)},"
+            " or any other link, such as the one that carries a gripper"
         )
 
 

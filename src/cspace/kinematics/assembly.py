@@ -237,7 +237,7 @@ def add_tool(assembly: Assembly, name: str, T_tip_tool: Array) -> None:
     """
     if assembly.tip is None or assembly.chain is None:
         raise InputError(
-            f"{name} branches, so a tool has no place; choose tip=, one of {', '.join(assembly.leaves)}"
+            f"{name} branches, so a tool has no place; choose a tip=: {tip_choices(assembly.leaves)}"
         )
     tool = "tool"
     while tool in assembly.frame_index:
@@ -259,5 +259,10 @@ def screws(assembly: Assembly, name: str) -> Chain:
     Raises InputError for a tree without tip.
     """
     if assembly.chain is None:
-        raise InputError(f"{name} branches; a chain needs tip=, one of {', '.join(assembly.leaves)}")
+        raise InputError(f"{name} branches; a chain needs a tip=: {tip_choices(assembly.leaves)}")
     return assembly.chain
+
+
+def tip_choices(leaves: tuple[str, ...]) -> str:
+    """What may be the tip of a robot that branches, in words."""
+    return f"{', '.join(leaves)}, or any other link, such as the one that carries a gripper"

@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.errors import InputTypeError
 from cspace.model.chain import Chain
 from cspace.model.dh import DHTable, check_convention, dh_matrix
 from cspace.model.transforms import inverse
@@ -44,6 +45,10 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
     2006, section 3.2.
     """
     check_convention(convention)
+    if not isinstance(chain, Chain):
+        raise InputTypeError(
+            f"to_dh takes a Chain, got {type(chain).__name__}; a robot has robot.to_dh() and robot.chain"
+        )
     n = len(chain.joint_types)
     T_base = _first_frame(chain)
     frame = T_base

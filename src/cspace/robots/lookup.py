@@ -56,8 +56,13 @@ def find(name: str) -> str:
     if found is not None:
         return found
     known = [known for row in ROWS for known in (row[0], *row[7])]
-    error = suggest("robot", name, known, owner="the catalogue")
-    raise UnknownNameError(f"{error}; give one of cs.robots.names(), or the path of a .urdf or .toml file")
+    near = str(suggest("robot", name, known, owner="the catalogue"))
+    text = near.replace(f" ({len(known)} robots known)", "")
+    text += "" if text.endswith("?") else ";"
+    raise UnknownNameError(
+        f"{text} cs.robots.names() lists all {len(ROWS)}, cs.robots.search() finds one;"
+        " the path of a .urdf or .toml file will do as well"
+    )
 
 
 def catalogue_description(name: str) -> Description:
