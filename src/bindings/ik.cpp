@@ -513,10 +513,9 @@ PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
                        {Py_nb_bool, reinterpret_cast<void*>(&truth)},
                        {Py_tp_doc, const_cast<char*>("The compiled half of cspace.ik.Solutions.")},
                        {0, nullptr}};
-PyType_Spec spec = {"cspace._core.SolutionsBase", offsetof(SolutionsObject, q), sizeof(double),
-                    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_HAVE_GC |
-                        Py_TPFLAGS_DISALLOW_INSTANTIATION,
-                    slots};
+PyType_Spec spec = {
+    "cspace._core.SolutionsBase", offsetof(SolutionsObject, q), sizeof(double),
+    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_DISALLOW_INSTANTIATION, slots};
 
 }  // namespace
 

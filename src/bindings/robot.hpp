@@ -16,7 +16,8 @@ struct RobotObject {
     PyObject* frame_index;                                          // dict: name of a frame → its number
     int tip;  // the frame meant where none is named, or -1
     bool floating;
-    std::shared_ptr<void> ik;  // the solver, built by the first call of ik; never replaced: threads may be in it
+    std::shared_ptr<void>
+        ik;  // the solver, built by the first call of ik; never replaced: threads may be in it
 };
 
 extern PyTypeObject* robot_type;  // RobotBase; null until the module is filled

@@ -76,16 +76,19 @@ void bind_subproblems(nb::module_& m) {
     m.def(
         "subproblem_5",
         [](Array<const double, nb::shape<-1, 5, 3>> points, Array<const double, nb::shape<-1, 3, 3>> axes,
-           ANSWERS_OUT) { same_rows(theta, 4, 3, residual.size(), points, axes, count, exact, free);
-            SOLVE(subproblem_5_n, points.data(), axes.data()); },
+           ANSWERS_OUT) {
+            same_rows(theta, 4, 3, residual.size(), points, axes, count, exact, free);
+            SOLVE(subproblem_5_n, points.data(), axes.data());
+        },
         "points"_a, "axes"_a, ANSWERS_ARGS,
         "Subproblem 5 for points (n, 5, 3) and axes (n, 3, 3), answers written into the last five.");
     m.def(
         "subproblem_6",
         [](Array<const double, nb::shape<-1, 4, 3>> h, Array<const double, nb::shape<-1, 4, 3>> k,
-           Array<const double, nb::shape<-1, 4, 3>> p, Array<const double, nb::shape<-1, 2>> d,
-           ANSWERS_OUT) { same_rows(theta, 4, 2, residual.size(), h, k, p, d, count, exact, free);
-            SOLVE(subproblem_6_n, h.data(), k.data(), p.data(), d.data()); },
+           Array<const double, nb::shape<-1, 4, 3>> p, Array<const double, nb::shape<-1, 2>> d, ANSWERS_OUT) {
+            same_rows(theta, 4, 2, residual.size(), h, k, p, d, count, exact, free);
+            SOLVE(subproblem_6_n, h.data(), k.data(), p.data(), d.data());
+        },
         "h"_a, "k"_a, "p"_a, "d"_a, ANSWERS_ARGS,
         "Subproblem 6 for h, k, p (n, 4, 3) and d (n, 2), answers written into the last five.");
 }

@@ -36,7 +36,7 @@ CALLS = [
     (lambda: ARM.random_configuration(reach=[1, 2]), InputError, "reach is"),
     (lambda: ARM.random_configuration(reach="far"), InputTypeError, "reach must be numbers"),
     (lambda: ARM.random_configuration(reach=-1.0), InputError, "reach is -1"),
-    (lambda: cs.Robot("ur5e"), InputTypeError, "Robot takes a Description, got str; cspace.load_robot"),
+    (lambda: cs.Robot("ur5e"), InputTypeError, "Robot takes a Description, got str; load_robot"),
     (lambda: cs.Robot.from_urdf(None), InputTypeError, "path or its text, got NoneType"),
     (lambda: cs.Robot.from_toml([]), InputTypeError, "path or its text, got list"),
     (lambda: cs.load_robot("ur5e", tip=["tool0"]), UnknownNameError, "no link"),

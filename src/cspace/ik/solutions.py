@@ -197,7 +197,9 @@ class Solutions(_core.SolutionsBase):
         lines = [f"Solutions({self.status}: {self.reason})"]
         if len(self):
             for label, q in zip(self.branch, self.q, strict=True):
-                lines.append("  [" + ", ".join(f"{angle: .4f}" for angle in np.round(q, 4) + 0.0) + f"]  {label}")
+                lines.append(
+                    "  [" + ", ".join(f"{angle: .4f}" for angle in np.round(q, 4) + 0.0) + f"]  {label}"
+                )
         return "\n".join(lines)
 
 
