@@ -1,6 +1,20 @@
+import subprocess
+import sys
+
 import pytest
 
 import cspace
+from cli.run import environment
+
+BEFORE = set(
+    subprocess.run(
+        [sys.executable, "-c", "import sys, logging; print(*sys.modules)"],
+        capture_output=True,
+        text=True,
+        check=True,
+    ).stdout.split()
+)
+"""What an interpreter that never heard of cspace has loaded: sites add modules of their own."""
 
 
 def test_the_compiled_core_and_the_package_have_one_version():
@@ -18,3 +32,34 @@ def test_an_unknown_name_carries_what_python_needs_to_suggest_another():
         _ = cspace.load_robt
     assert caught.value.name == "load_robt"
     assert caught.value.obj is cspace
+
+
+def fresh(script: str) -> str:
+    """What a fresh interpreter prints."""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, env=environment(), check=False
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_the_import_alone_loads_no_room_and_no_numpy():
+    loaded = set(fresh("import sys, cspace; print(*sys.modules)").split())
+    assert not loaded & {"numpy", "cspace.spatial", "cspace._core", "difflib", "dataclasses", "re"} - BEFORE
+    assert {name for name in loaded if name.startswith("cspace")} == {"cspace", "cspace.errors"}
+
+
+def test_a_robot_is_loaded_without_the_network_half_of_the_standard_library():
+    loaded = set(fresh("import sys, cspace; cspace.load_robot('ur5e'); print(*sys.modules)").split())
+    assert not loaded & {"ssl", "http.client", "urllib.request", "email", "xml.sax", "socket"} - BEFORE
+
+
+def test_a_star_import_brings_every_public_name():
+    names = fresh("from cspace import *; print(*[name for name in dir()])").split()
+    assert set(cspace.__all__) <= set(names)
+    assert set(cspace.spatial.__all__) < set(cspace.__all__)
+
+
+def test_questions_for_private_names_load_nothing():
+    script = "import sys, cspace; print(hasattr(cspace, '__wrapped__'), 'numpy' in sys.modules)"
+    assert fresh(script).split() == ["False", "False"]

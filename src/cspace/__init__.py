@@ -5,47 +5,59 @@ import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from cspace import spatial
-from cspace._core import __version__
 from cspace.errors import CspaceError
-from cspace.spatial import *  # noqa: F403
 
 if TYPE_CHECKING:
-    from cspace import ik, kinematics, model, plot, robots
+    from cspace import ik, kinematics, model, plot, robots, spatial
+    from cspace._core import __version__
     from cspace.ik import subproblems
     from cspace.robot import Robot
     from cspace.robots import load_robot
+    from cspace.spatial import *  # noqa: F403
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
 __all__ = ["CspaceError", "Robot", "__version__", "ik", "kinematics", "load_robot", "model", "plot"]
 __all__ += ["robots", "spatial", "subproblems"]
-__all__ += spatial.__all__
+if TYPE_CHECKING:
+    __all__ += spatial.__all__
+# __getattr__ makes the whole list: it holds the names of spatial, and spatial needs numpy.
+_OWN: list[str] = globals().pop("__all__")
 
-# Where the names are that are imported when they are first used: their rooms take time to load.
+# Where the names are that are imported when they are first used: numpy and the rooms take time to load. The
+# names that are not here are those of spatial.
 _LATER = {
     "Robot": "cspace.robot",
+    "__version__": "cspace._core",
     "ik": "",
     "kinematics": "",
     "load_robot": "cspace.robots",
     "model": "",
     "plot": "",
     "robots": "",
+    "spatial": "",
     "subproblems": "cspace.ik",
+    "tolerances": "",
 }
 
 
 def __getattr__(name: str) -> Any:
-    if name not in _LATER:
+    if name in _LATER:
+        room = _LATER[name]
+        value = getattr(import_module(room), name) if room else import_module(f"cspace.{name}")
+    elif name == "__all__":
+        value = [*_OWN, *import_module("cspace.spatial").__all__]
+    elif not name.startswith("_") and name in (spatial := import_module("cspace.spatial")).__all__:
+        value = getattr(spatial, name)
+    else:
         # With name and obj Python itself adds the nearest name to the message that a person sees.
         raise AttributeError(
             f"module 'cspace' has no attribute {name!r}", name=name, obj=sys.modules[__name__]
         )
-    room = _LATER[name]
-    value = getattr(import_module(room), name) if room else import_module(f"cspace.{name}")
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*__all__, "errors", "tolerances", *(name for name in globals() if name.startswith("__"))})
+    listed = {*__getattr__("__all__"), "__all__", "errors", "tolerances"}
+    return sorted(listed | {name for name in globals() if name.startswith("__")})

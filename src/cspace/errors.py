@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 
 __all__ = [
@@ -56,16 +55,28 @@ class MissingExtraError(CspaceError, ImportError):
 
 def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = "") -> UnknownNameError:
     """The error for an unknown name: what was asked, the nearest known names, and the list if it is short."""
+    import difflib  # costs a millisecond, which `import cspace` does not pay
+
     names, asked = sorted(known), _short(str(name))
-    near = difflib.get_close_matches(asked, names, n=3, cutoff=0.5)
+    near = [repr(n) for n in difflib.get_close_matches(asked, names, n=3, cutoff=0.5)]
     text = f"no {subject} {asked!r}" + (f" in {owner}" if owner else "")
     if near:
-        text += "; did you mean " + " or ".join(repr(n) for n in near) + "?"
-    if len(names) <= 30:
-        text += ("" if near else ";") + f" {subject}s: " + (", ".join(names) if names else "none")
+        text += "; did you mean " + " or ".join(filter(None, [", ".join(near[:-1]), near[-1]])) + "?"
+    if not names:
+        text += f"; there are no {_plural(subject)}"
+    elif len(names) <= 30:
+        text += ("" if near else ";") + f" {_plural(subject)}: " + ", ".join(names)
+    elif near:
+        text += f" {len(names)} {_plural(subject)} are known"
     else:
-        text += f" ({len(names)} {subject}s known)"
+        text += f"; {len(names)} {_plural(subject)} are known"
     return UnknownNameError(text)
+
+
+def _plural(noun: str) -> str:
+    if noun.endswith("is"):
+        return noun[:-2] + "es"
+    return noun + ("es" if noun.endswith(("s", "x", "ch", "sh")) else "s")
 
 
 def _short(text: str, most: int = 80) -> str:

@@ -82,10 +82,11 @@ class Robot(RobotBase):
         base: str | None = None,
         tip: str | None = None,
         *,
+        floating: bool | None = None,
         package_paths: Sequence[Any] = (),
     ) -> Robot:
         """A robot from a URDF file or its text; see model.from_urdf, which also names the errors."""
-        return cls(model.from_urdf(source, package_paths=package_paths), base, tip)
+        return cls(model.from_urdf(source, package_paths=package_paths), base, tip, floating=floating)
 
     @classmethod
     def from_toml(
@@ -94,10 +95,11 @@ class Robot(RobotBase):
         base: str | None = None,
         tip: str | None = None,
         *,
+        floating: bool | None = None,
         package_paths: Sequence[Any] = (),
     ) -> Robot:
         """A robot from a TOML file or its text; see model.from_toml, which also names the errors."""
-        return cls(model.from_toml(source, package_paths=package_paths), base, tip)
+        return cls(model.from_toml(source, package_paths=package_paths), base, tip, floating=floating)
 
     @classmethod
     def from_dh(cls, table: Any, **options: Any) -> Robot:
@@ -116,13 +118,19 @@ class Robot(RobotBase):
         """
         return cls(model.from_screws(axes, points, _one_pose(T_zero, "T_zero"), **options))
 
-    def to_urdf(self) -> str:
-        """The text of a URDF file: the whole description, tool and mounting included; see model.to_urdf."""
-        return model.to_urdf(self._whole())
+    def to_urdf(self, path: str | os.PathLike[str] | None = None) -> str:
+        """The text of a URDF file, written to `path` if there is one; see model.to_urdf.
 
-    def to_toml(self) -> str:
-        """The text of a TOML file: the whole description, tool and mounting included; see model.to_toml."""
-        return model.to_toml(self._whole())
+        It holds the whole description, tool and mounting included.
+        """
+        return model.to_urdf(self._whole(), path)
+
+    def to_toml(self, path: str | os.PathLike[str] | None = None) -> str:
+        """The text of a TOML file, written to `path` if there is one; see model.to_toml.
+
+        It holds the whole description, tool and mounting included.
+        """
+        return model.to_toml(self._whole(), path)
 
     def to_dh(self, *, convention: str) -> DHTable:
         """The Denavit–Hartenberg table from base to tip, tool and mounting included; see model.to_dh."""

@@ -8,16 +8,16 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
 from cli.run import command, cspace, environment
 from cspace.cli import app
 from cspace.cli.exits import Exit
-from cspace.cli.files import whole_file
-from cspace.cli.output import Output
+from cspace.cli.output import Output, Table
 from cspace.cli.registry import VERBS
-from cspace.errors import MissingExtraError
+from cspace.model.files import whole_file
 
 BAD_LINES = [
     ("nosuchverb", "no verb 'nosuchverb'"),
@@ -46,6 +46,8 @@ BAD_LINES = [
     ("info ur5e --task lots", "no task 'lots'"),
     ("dh ur5e --convention classic", "invalid choice: 'classic'"),
     ("dh ur5e --latex --markdown", "not allowed with"),
+    ("dh ur5e --time-limit 0", "'0' is no time to wait"),
+    ("dh ur5e --time-limit 1e30", "no time to wait"),
     ("jacobian ur5e 0 0 0 0 0 0 --expressed-in world", "invalid choice"),
 ]
 
@@ -130,13 +132,109 @@ def test_a_narrow_terminal_loses_no_digits(monkeypatch):
     assert [line.split()[:7] for line in shown] == [row.split()[:7] for row in piped]
 
 
-def test_a_terminal_without_rich_is_told_what_to_install(monkeypatch, capsys):
+def test_a_terminal_without_rich_gets_plain_tables_and_is_told_once_what_draws_them(monkeypatch):
     monkeypatch.setitem(sys.modules, "rich.console", None)
-    monkeypatch.setattr("sys.stdout", Terminal())
-    assert app.main(["robots"]) == Exit.MISSING_EXTRA
-    assert "pip install 'cspace[cli]'" in capsys.readouterr().err
-    with pytest.raises(MissingExtraError):
-        Output(stream=Terminal())
+    monkeypatch.setattr("sys.stdout", stream := Terminal())
+    out = Output()
+    table = Table(["name", "value"])
+    table.add("x", "1")
+    out.table(table)
+    out.table(table)
+    assert stream.getvalue().count("pip install 'cspace[cli]'") == 1
+    assert stream.getvalue().count("x         1\n") == 2
+
+
+def test_a_terminal_gets_colours_unless_it_or_its_user_does_not_want_them(monkeypatch):
+    for name, value in (("NO_COLOR", "1"), ("TERM", "dumb"), ("TERM", "xterm")):
+        with monkeypatch.context() as patch:
+            patch.delenv("NO_COLOR", raising=False)
+            patch.setenv("TERM", "xterm")
+            patch.setenv("WT_SESSION", "1")
+            patch.setenv(name, value)
+            patch.setattr("sys.stdout", stream := Terminal())
+            assert app.main(["fk", "ur5e", "0", "0", "0", "0", "0", "0"]) == Exit.DONE
+            assert ("\x1b[" in stream.getvalue()) == (value == "xterm")
+
+
+FULL = "/dev/full"
+"""The device on which every write meets a full disk."""
+
+
+@pytest.mark.skipif(not Path(FULL).exists(), reason="needs the device /dev/full")
+@pytest.mark.parametrize(
+    "line",
+    [
+        *("--help", "--version", "fk --help", "robots", "robots --json", "info ur5e", "info ur5e --json"),
+        *("fk ur5e 0 0 0 0 0 0", "ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 3 0", "jacobian ur5e 0 1 1 1 1 1"),
+        *("dh ur5e", "dh ur5e --latex", "doctor"),
+    ],
+)
+def test_a_full_disk_is_told_and_is_no_internal_error(line):
+    with open(FULL, "w") as full:
+        done = subprocess.run(
+            [sys.executable, "-m", "cspace", *line.split()],
+            stdout=full,
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment(),
+            check=False,
+        )
+    assert done.returncode == Exit.USAGE
+    assert done.stderr.startswith("cspace: the answer cannot be written: No space left on device")
+    assert len(done.stderr.splitlines()) == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a limit on the size of files")
+def test_a_picture_for_which_there_is_no_room_leaves_what_was_there(tmp_path):
+    pytest.importorskip("matplotlib.pyplot")
+    path = tmp_path / "x.png"
+    path.write_text("old")
+    script = (
+        "import resource, signal, sys\n"
+        "signal.signal(signal.SIGXFSZ, signal.SIG_IGN)\n"
+        "import matplotlib.pyplot  # which writes caches of its own\n"
+        "resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))\n"
+        "from cspace.cli import main\n"
+        "sys.exit(main(sys.argv[1:]))"
+    )
+    words = [
+        sys.executable,
+        "-c",
+        script,
+        *["ik", "ur5e", "--xyz", "0.4", "0.1", "0.3", "--rpy", "0", "3", "0", "--plot"],
+        str(path),
+    ]
+    done = subprocess.run(words, capture_output=True, text=True, env=environment(), check=False)
+    assert (done.returncode, path.read_text(), list(tmp_path.iterdir())) == (Exit.USAGE, "old", [path])
+    assert f"{path} cannot be written: File too large" in done.stderr
+
+
+def test_a_time_limit_ends_a_verb_with_code_5(monkeypatch, capsys):
+    def sleep(args: object, out: object) -> int:
+        time.sleep(30)
+        return Exit.DONE
+
+    before = signal.getsignal(signal.SIGINT)
+    monkeypatch.setattr("cspace.cli.verbs.doctor.run", sleep)
+    start = time.perf_counter()
+    assert app.main(["doctor", "--time-limit", "0.05"]) == Exit.TIME_LIMIT
+    assert time.perf_counter() - start < 10
+    assert capsys.readouterr().err == "cspace: stopped after 0.05 s (--time-limit)\n"
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_a_time_limit_that_is_not_reached_changes_nothing():
+    line = "fk ur5e 0 0 0 0 0 0"
+    assert cspace(line, "--time-limit", "60") == cspace(line)
+
+
+def test_an_interrupt_within_a_time_limit_is_an_interrupt(monkeypatch):
+    monkeypatch.setattr("cspace.cli.verbs.doctor.run", lambda args, out: signal.raise_signal(signal.SIGINT))
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        assert app.main(["doctor", "--time-limit", "60"]) == Exit.INTERRUPTED
+    finally:
+        signal.signal(signal.SIGINT, previous)
 
 
 def test_pipes_and_json_do_without_rich(monkeypatch):

@@ -65,6 +65,17 @@ def test_python_blocks_run(page, tmp_path, monkeypatch):
             exec(compile(source, str(page), "exec"), namespace)  # the page is ours
             ran += 1
     assert ran
+    assert open_figures() == [], "a page saves the pictures that it draws, which also closes them"
+
+
+def open_figures() -> list[int]:
+    """The numbers of the figures that are open; they are closed, so that no other test meets them."""
+    plt = sys.modules.get("matplotlib.pyplot")
+    if plt is None:
+        return []
+    numbers = list(plt.get_fignums())
+    plt.close("all")
+    return numbers
 
 
 def run_cspace(words: list[str], folder: Path) -> subprocess.CompletedProcess[str]:

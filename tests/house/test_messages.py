@@ -47,6 +47,26 @@ def slanted():
     return T
 
 
+@pytest.mark.parametrize(
+    ("name", "known", "text"),
+    [
+        ("x", [], "no frame 'x' in r; there are no frames"),
+        ("x", ["abc"], "no frame 'x' in r; frames: abc"),
+        ("abd", ["abc"], "no frame 'abd' in r; did you mean 'abc'? frames: abc"),
+        ("ab", ["abc", "abd"], "no frame 'ab' in r; did you mean 'abd' or 'abc'? frames: abc, abd"),
+        ("x", map(str, range(31)), "no frame 'x' in r; 31 frames are known"),
+        ("tol", ["tool", *map(str, range(30))], "; did you mean 'tool'? 31 frames are known"),
+    ],
+)
+def test_a_suggestion_is_a_sentence(name, known, text):
+    assert text in str(errors.suggest("frame", name, known, owner="r"))
+
+
+@pytest.mark.parametrize(("noun", "plural"), [("link", "links"), ("branch", "branches"), ("axis", "axes")])
+def test_the_plural_of_a_subject_is_right(noun, plural):
+    assert str(errors.suggest(noun, "x", ["a"])).endswith(f"; {plural}: a")
+
+
 # What is done, the class of the error, and what its message must hold.
 CALLS = {
     "unknown robot": (lambda: cs.load_robot("ur5w"), errors.UnknownNameError, ["'ur5w'", "'ur5e'"]),

@@ -2,8 +2,9 @@ import numpy as np
 import pytest
 
 from cspace.errors import InputError, UnknownNameError
-from cspace.model import chain, dh_matrix, from_dh, from_screws, from_urdf, to_dh, to_urdf
+from cspace.model import Limits, chain, dh_matrix, from_dh, from_screws, from_urdf, to_dh, to_urdf
 from cspace.model.dh import DHTable
+from cspace.spatial import pose
 from model.random_robots import random_pose
 from oracles.forward import motion, product_of_exponentials
 
@@ -231,3 +232,25 @@ def test_the_printed_table_says_what_moves():
     assert noise.split()[-7:] == ["joint_1", "0", "0", "0", "0", "+", "q1"]
     assert "0.2 + q2" in text
     assert " 90 " in text
+
+
+def test_a_table_is_read_as_a_table():
+    tool = pose((0, 0, -0.25))
+    table = DHTable("standard", [np.pi / 2, 0], [0, 0.5], [0.1, 0], [0, -np.pi / 2], "RP", T_tool=tool)
+    assert str(table) == repr(table)
+    head, titles, first, second, name, *rows = repr(table).splitlines()
+    assert head == "Denavit–Hartenberg, standard"
+    assert titles.split() == ["i", "joint", "α_i", "[°]", "a_i", "[m]", "d_i", "[m]", "θ_i", "[°]"]
+    assert first.split() == ["1", "joint_1", "90", "0", "0.1", "0", "+", "q1"]
+    assert second.split() == ["2", "joint_2", "0", "0.5", "0", "+", "q2", "-90"]
+    assert name == "T_tool"
+    np.testing.assert_allclose([[float(x) for x in row.split()] for row in rows], tool)
+    assert "T_base" not in repr(table)
+
+
+def test_limits_are_read_as_a_table():
+    limits = Limits([-1.0, -np.inf], [2.5, np.inf], velocity=[np.inf, 0.25])
+    _, titles, *rows = repr(limits).splitlines()
+    assert titles.split() == ["i", "lower", "upper", "velocity"]
+    assert [row.split() for row in rows] == [["0", "-1", "2.5", "-"], ["1", "-", "-", "0.25"]]
+    assert repr(Limits([], [])).splitlines()[1].split() == ["i", "lower", "upper"]

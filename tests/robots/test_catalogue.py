@@ -223,6 +223,21 @@ def test_names_are_forgiving_and_unknown_ones_get_suggestions():
         find("ur6e")
 
 
+NOBODY = ["ur@5e!", "ur5e?", "ur5(e)", "urü5e", "ur5e\0", "@", "ur5e;panda", "u/r5e", "", " "]
+UNUSUAL = ["ur5e\n", "u.r.5.e", "UR_5-e", "KR 6", "Franka Emika Panda", "pr2 right.torso"]
+
+
+@pytest.mark.parametrize("name", NOBODY)
+def test_what_is_no_separator_counts_in_a_name(name):
+    with pytest.raises(UnknownNameError, match=r"^no robot '.*[?;] cs.robots.names\(\) lists all \d+, "):
+        find(name)
+
+
+@pytest.mark.parametrize("name", UNUSUAL)
+def test_separators_and_capitals_do_not_count(name):
+    assert find(name) in names()
+
+
 def found(text):
     return [row.name for row in search(text)]
 

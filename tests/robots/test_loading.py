@@ -5,7 +5,9 @@ import pytest
 
 from cspace.errors import CspaceError, DescriptionError, InputError, InputTypeError, UnknownNameError
 from cspace.model import to_toml, to_urdf
+from cspace.robot import Robot
 from cspace.robots import load_description, load_robot
+from cspace.spatial import pose
 
 
 def test_a_name_and_its_files_give_the_same_robot(tmp_path):
@@ -25,6 +27,40 @@ def test_base_and_tip_choose_the_chain():
     assert (robot.base, robot.tip) == ("shoulder_pan_link", "wrist_1_link")
     with pytest.raises(UnknownNameError, match="did you mean 'wrist_1_link'"):
         load_robot("ur5e", tip="wrist1_link")
+
+
+def test_a_base_that_floats_is_asked_for(tmp_path):
+    path = tmp_path / "arm.urdf"
+    fixed = load_robot("ur5e")
+    fixed.to_urdf(path)
+    q, T_world_base = np.linspace(-1, 1, 6), pose((1, 2, 3), rpy=(0.1, 0.2, 0.3))
+    for robot in (
+        load_robot("ur5e", floating=True),
+        load_robot(path, floating=True),
+        Robot.from_urdf(path, floating=True),
+        Robot.from_toml(fixed.to_toml(), floating=True),
+    ):
+        assert (robot.floating, robot.dof, len(robot.joint_names)) == (True, 12, 6)
+        expected = T_world_base @ fixed.fk(q)
+        np.testing.assert_allclose(robot.fk(q, T_world_base=T_world_base), expected, atol=1e-14)
+    assert load_robot("ur5e", floating=False).dof == load_robot("ur5e").dof == 6
+
+
+@pytest.mark.parametrize("name", ["arm.urdf", "arm.toml"])
+def test_a_robot_is_written_to_a_path_whole_or_not_at_all(name, tmp_path):
+    path, robot = tmp_path / name, load_robot("ur5e")
+    write = robot.to_urdf if name.endswith("urdf") else robot.to_toml
+    for target in (path, str(path)):
+        assert write(target) == write() == path.read_text(encoding="utf-8")
+    q = np.linspace(-1, 1, 6)
+    np.testing.assert_allclose(load_robot(path).fk(q), robot.fk(q), atol=1e-14)
+    with pytest.raises(InputError, match=r"nowhere.*cannot be written: No such file"):
+        write(tmp_path / "nowhere" / name)
+    with pytest.raises(InputError, match="cannot be written"):
+        write(tmp_path)
+    with pytest.raises(InputTypeError, match="given by its path"):
+        write(3.5)
+    assert [entry.name for entry in tmp_path.iterdir()] == [name]
 
 
 def test_a_file_beside_is_found_without_a_separator(tmp_path, monkeypatch):

@@ -1,5 +1,7 @@
 """Every way in and every way out of a robot, tools and mountings included, keeps its poses to 1e-12."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -44,6 +46,12 @@ def test_limits_survive_where_the_format_holds_them():
         assert back.joint_names == robot.joint_names
         np.testing.assert_array_equal(back.limits.lower, robot.limits.lower)
         np.testing.assert_array_equal(back.limits.upper, robot.limits.upper)
+
+
+@pytest.mark.parametrize("name", ARMS)
+def test_no_zero_is_written_with_a_sign(name):
+    text = load_robot(name).with_tool(-np.diag([1.0, 1.0, -1.0, -1.0])).to_urdf()
+    assert not re.search(r"-0\.0\b(?!e)", text)
 
 
 def test_new_names_do_not_clash():

@@ -7,7 +7,7 @@ import os
 import sys
 from collections.abc import Sequence
 
-from cspace.cli.exits import Exit, UsageError, exit_of
+from cspace.cli.exits import Exit, TimeLimitReached, UsageError, exit_of
 from cspace.cli.registry import VERBS, load
 from cspace.errors import CspaceError, suggest
 
@@ -23,8 +23,12 @@ def main(argv: Sequence[str] | None = None) -> int:
         if sys.stdout is not None:  # None: closed by the caller
             sys.stdout.flush()
         return code
-    except BrokenPipeError:
-        return closed_pipe()
+    except BrokenPipeError:  # the reader of our output has left (`cspace robots | head`): leave too
+        silence()
+        return Exit.CLOSED_PIPE
+    except TimeLimitReached as stop:
+        say(str(stop))
+        return Exit.TIME_LIMIT
     except KeyboardInterrupt:
         say("interrupted")
         return Exit.INTERRUPTED
@@ -36,6 +40,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except Exception as error:
         if debug:
             raise
+        if isinstance(error, OSError) and error.filename is None:  # a stream; files are named
+            say(f"the answer cannot be written: {error.strerror or error}; free space, or write elsewhere")
+            silence()
+            return Exit.USAGE
         first_line = (str(error).splitlines() or [""])[0]
         say(f"internal error: {type(error).__name__}: {first_line}")
         say("run the same command with --debug to see where; please report it with that traceback")
@@ -64,6 +72,7 @@ def run_verb(verb: str, words: list[str]) -> int:
     """Parse the words of one verb and run its file."""
     from cspace.cli.arguments import Parser, guard_negative_numbers
     from cspace.cli.output import Output
+    from cspace.cli.timing import limit
 
     module = load(verb)
     parser = Parser(verb, VERBS[verb], module.EXAMPLES)
@@ -72,7 +81,8 @@ def run_verb(verb: str, words: list[str]) -> int:
         args = parser.parse_intermixed_args(guard_negative_numbers(words))
     except SystemExit as stop:  # argparse leaves this way after --help; faults are raised by Parser.error
         return int(stop.code or 0)
-    return module.run(args, Output(as_json=args.json))
+    with limit(args.time_limit):
+        return module.run(args, Output(as_json=args.json))
 
 
 def overview() -> str:
@@ -95,13 +105,9 @@ def say(message: str) -> None:
         print(f"cspace: {message}", file=sys.stderr)
 
 
-def closed_pipe() -> Exit:
-    """The reader of our output has left (`cspace robots | head`): leave too, without a word.
-
-    Python flushes the standard streams once more at exit; they are pointed at the null device so that this
-    cannot fail a second time.
-    """
+def silence() -> None:
+    """Point the standard output at the null device: Python's flush at exit would fail a second time."""
     null = os.open(os.devnull, os.O_WRONLY)
     with contextlib.suppress(OSError, ValueError):
         os.dup2(null, sys.stdout.fileno())
-    return Exit.CLOSED_PIPE
+    os.close(null)

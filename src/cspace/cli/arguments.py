@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import io
 import math
 import re
+import sys
+import threading
 from collections.abc import Sequence
-from typing import Final, NoReturn
+from typing import Any, Final, NoReturn
 
 from cspace.cli.exits import UsageError
 
@@ -18,6 +21,7 @@ __all__ = [
     "add_robot",
     "guard_negative_numbers",
     "number",
+    "seconds",
 ]
 
 OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?))?")
@@ -37,6 +41,13 @@ class Parser(argparse.ArgumentParser):
         )
         self.add_argument("--json", action="store_true", help="machine-readable output: radians, metres")
         self.add_argument("--debug", action="store_true", help="show the traceback of an error")
+        self.add_argument(
+            "--time-limit", type=seconds, metavar="S", help="give up after S seconds, with exit code 5"
+        )
+
+    def print_help(self, file: Any = None) -> None:
+        """Write the help; argparse's own would say nothing if that fails, as on a full disk."""
+        (file or sys.stdout or io.StringIO()).write(self.format_help())
 
     def error(self, message: str) -> NoReturn:
         """Raise the fault instead of printing the usage and leaving the process."""
@@ -59,6 +70,14 @@ def number(text: str) -> float:
             raise argparse.ArgumentTypeError(f"{word!r} is not a number") from None
     if not math.isfinite(value):
         raise argparse.ArgumentTypeError(f"{word!r} is not a finite number")
+    return value
+
+
+def seconds(text: str) -> float:
+    """A time [s] that is not over at once."""
+    value = number(text)
+    if value <= 0.0 or value > threading.TIMEOUT_MAX:
+        raise argparse.ArgumentTypeError(f"{text.strip()!r} is no time to wait; it must be above 0")
     return value
 
 

@@ -6,7 +6,7 @@ from enum import IntEnum
 
 from cspace.errors import CspaceError, DescriptionError, MissingExtraError
 
-__all__ = ["Exit", "UsageError", "exit_of"]
+__all__ = ["Exit", "TimeLimitReached", "UsageError", "exit_of"]
 
 
 class Exit(IntEnum):
@@ -25,6 +25,10 @@ class Exit(IntEnum):
 
 class UsageError(CspaceError):
     """A command line that cannot be carried out as written."""
+
+
+class TimeLimitReached(BaseException):
+    """The seconds of --time-limit are over; like an interrupt, no handler of errors on the way stops it."""
 
 
 def exit_of(error: CspaceError) -> Exit:

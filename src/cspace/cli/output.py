@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Any, Final, TextIO
 
 from cspace.arrays import Array
@@ -15,6 +17,10 @@ __all__ = ["Cell", "Output", "Table"]
 
 MOST_COLUMNS: Final = 400
 """The widest table: one that a terminal is too narrow for runs over its edge rather than lose digits."""
+
+
+STYLES: Final[Mapping[str, int]] = MappingProxyType({"bold": 1, "dim": 2, "yellow": 33, "cyan": 36})
+"""The styles of lines and the numbers by which terminals know them (ECMA-48)."""
 
 
 @dataclass(frozen=True)
@@ -42,14 +48,16 @@ class Table:
 class Output:
     """Where a verb writes its answer; a terminal gets rich tables, a pipe plain text, --json one document."""
 
+    _told = False
+
     def __init__(self, *, as_json: bool = False, stream: TextIO | None = None) -> None:
         self.stream = stream or sys.stdout or io.StringIO()  # a closed standard output is None: write nowhere
         self.as_json = as_json
-        self.rich = not as_json and self.stream.isatty()
+        self.at_terminal = not as_json and self.stream.isatty()
+        self.colours = self.at_terminal and _knows_colours()
         reconfigure = getattr(self.stream, "reconfigure", None)
         if reconfigure is not None:  # a terminal that cannot show a character shows a question mark instead
             reconfigure(errors="replace")
-        self._console = self._new_console() if self.rich else None
 
     def document(self, document: Mapping[str, Any]) -> None:
         """The answer for machines: one JSON document, numbers with all their digits, NaN never."""
@@ -57,11 +65,8 @@ class Output:
         self.stream.write("\n")
 
     def line(self, text: str = "", style: str = "") -> None:
-        """One line of text."""
-        if self._console is not None:
-            self._console.print(text, style=style or None, markup=False, highlight=False, soft_wrap=True)
-        else:
-            self.stream.write(text + "\n")
+        """One line of text, at a terminal in a style of STYLES."""
+        self.stream.write(self._styled(text, style) + "\n")
 
     def heading(self, text: str) -> None:
         """A heading above a block."""
@@ -69,32 +74,27 @@ class Output:
 
     def hint(self, text: str) -> None:
         """A remark for people at a terminal; pipes stay quiet."""
-        if self._console is not None:
+        if self.at_terminal:
             self.line(text, style="dim")
 
     def facts(self, facts: Mapping[str, str]) -> None:
         """Names and values, one pair a line."""
         width = max(map(len, facts), default=0)
         for name, value in facts.items():
-            if self._console is not None:
-                from rich.text import Text
-
-                pair = Text(f"{name:<{width}}  ", style="cyan")
-                self._console.print(pair.append(value, style="default"), soft_wrap=True, highlight=False)
-            else:
-                self.stream.write(f"{name:<{width}}  {value}".rstrip() + "\n")
+            shown = f"{name:<{width}}  " if value else name
+            self.stream.write(self._styled(shown, "cyan") + value.rstrip() + "\n")
 
     def table(self, table: Table) -> None:
-        """A table."""
-        if self._console is not None:
-            drawn = _rich_table(table)
-            wide = self._console.options.update(max_width=MOST_COLUMNS)
-            needed = self._console.measure(drawn, options=wide).minimum
-            if needed > self._console.width:
-                self._console.width = needed
-            self._console.print(drawn, crop=False)
-        else:
+        """A table; a terminal gets lines and colours if rich is there."""
+        console = self._console() if self.at_terminal else None
+        if console is None:
             self.stream.write(_plain_table(table))
+            return
+        drawn = _rich_table(table)
+        needed = console.measure(drawn, options=console.options.update(max_width=MOST_COLUMNS)).minimum
+        if needed > console.width:
+            console.width = needed
+        console.print(drawn, crop=False)
 
     def matrix(self, values: Array, name: str) -> None:
         """A matrix under its name, digits aligned."""
@@ -103,14 +103,25 @@ class Output:
         for row in texts:
             self.line("  " + "  ".join(f"{text:>10}" for text in row))
 
-    def _new_console(self) -> Any:
+    def _styled(self, text: str, style: str) -> str:
+        return f"\x1b[{STYLES[style]}m{text}\x1b[0m" if style and text and self.colours else text
+
+    def _console(self) -> Any:
+        """The console of rich, which takes longer to import than most verbs to answer; None without rich."""
         try:
             from rich.console import Console
         except ImportError:
-            from cspace.errors import MissingExtraError
-
-            raise MissingExtraError("cli", "a table at a terminal (a pipe and --json do without)") from None
+            if not self._told:
+                self.hint("tables come with lines and colours after: pip install 'cspace[cli]'")
+            self._told = True
+            return None
         return Console(file=self.stream)
+
+
+def _knows_colours() -> bool:
+    """Whether a terminal takes the codes of ECMA-48 and its user wants them."""
+    plain = "NO_COLOR" in os.environ or os.environ.get("TERM") == "dumb"
+    return not plain and (sys.platform != "win32" or "WT_SESSION" in os.environ)
 
 
 def _tidy(x: float) -> float:

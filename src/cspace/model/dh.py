@@ -14,6 +14,7 @@ from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
 from cspace.model.screws import check_joint_types, joint_rows, link_names, one_freedom_type
+from cspace.model.text import aligned, shown
 from cspace.model.values import IDENTITY, frozen, placement, sane
 
 __all__ = ["COLUMNS", "CONVENTIONS", "DHTable", "dh_matrix", "from_dh"]
@@ -122,26 +123,21 @@ class DHTable:
             T = T @ matrices[..., i, :, :]
         return T @ self.T_tool
 
-    def __str__(self) -> str:
+    def __repr__(self) -> str:
         """The table in words: degrees and metres, q where the joint moves."""
         indexed = ("α_i", "a_i") if self.convention == "standard" else ("α_i-1", "a_i-1")
-        head = ("i", "joint", f"{indexed[0]} [°]", f"{indexed[1]} [m]", "d_i [m]", "θ_i [°]")
-        cells = [head]
+        cells = [("i", "joint", f"{indexed[0]} [°]", f"{indexed[1]} [m]", "d_i [m]", "θ_i [°]")]
         for i, (alpha, a, d, theta) in enumerate(self.rows.tolist()):
             kind = self.joint_types[i]
-            shift, turn = _shown(d), _shown(np.degrees(theta))
+            shift, turn = shown(d), shown(np.degrees(theta))
             shift += f" + q{i + 1}" if kind == "P" else ""
             turn += f" + q{i + 1}" if kind == "R" else ""
-            angle = _shown(np.degrees(alpha))
-            cells.append((str(i + 1), self.joint_names[i], angle, _shown(a), shift, turn))
-        widths = [max(len(row[k]) for row in cells) for k in range(len(head))]
-        lines = ["  ".join(cell.rjust(w) for cell, w in zip(row, widths, strict=True)) for row in cells]
-        return f"Denavit–Hartenberg, {self.convention}\n" + "\n".join(lines)
-
-
-def _shown(value: float) -> str:
-    """Six digits, and nothing of the rounding around zero."""
-    return f"{round(float(value), 12) + 0.0:.6g}"
+            cells.append((str(i + 1), self.joint_names[i], shown(np.degrees(alpha)), shown(a), shift, turn))
+        text = f"Denavit–Hartenberg, {self.convention}\n{aligned(cells)}"
+        for name, T in (("T_base", self.T_base), ("T_tool", self.T_tool)):
+            if not np.array_equal(T, IDENTITY):
+                text += f"\n{name}\n" + aligned([["", *map(shown, row)] for row in T.tolist()])
+        return text
 
 
 def from_dh(

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
 from typing import Any
 
 from cspace.errors import DescriptionError, InputError, InputTypeError
 from cspace.tolerances import DESCRIPTION_BYTES
 
-__all__ = ["path_of", "read_bytes", "write_text"]
+__all__ = ["path_of", "read_bytes", "whole_file", "write_text"]
 
 
 def path_of(source: Any) -> str:
@@ -45,19 +47,25 @@ def read_bytes(path: str | os.PathLike[str]) -> bytes:
         raise DescriptionError(f"cannot be read: {error.strerror or error}", path=name) from None
 
 
-def write_text(path: str | os.PathLike[str], text: str) -> None:
-    """Write `text` as UTF-8 so that the file is either complete or untouched.
+@contextmanager
+def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
+    """A temporary name beside `path`, moved there when the block ends well, removed when it does not.
 
-    It is written beside its place and moved there. Raises InputError where that is impossible.
+    So the file is either complete or untouched. Raises InputError where writing is impossible.
     """
-    target = os.path.abspath(os.fspath(path))
-    folder = os.path.dirname(target)
-    temporary = os.path.join(folder, f".{os.path.basename(target)}.{os.getpid()}.part")
+    target = Path(os.path.abspath(path_of(path)))
+    draft = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:
-        with open(temporary, "x", encoding="utf-8", newline="\n") as file:
-            file.write(text)
-        os.replace(temporary, target)
+        yield draft
+        os.replace(draft, target)
     except OSError as error:
-        with contextlib.suppress(OSError):
-            os.unlink(temporary)
         raise InputError(f"{target} cannot be written: {error.strerror or error}") from None
+    finally:
+        with suppress(OSError):
+            draft.unlink()
+
+
+def write_text(path: str | os.PathLike[str], text: str) -> None:
+    """Write `text` as UTF-8 so that the file is either complete or untouched; errors as in whole_file."""
+    with whole_file(path) as draft:
+        draft.write_text(text, encoding="utf-8", newline="\n")

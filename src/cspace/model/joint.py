@@ -10,6 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
+from cspace.model.text import aligned, shown
 from cspace.model.values import IDENTITY, X_AXIS, finite_number, frozen, name_of, number, placement, unit_axis
 
 __all__ = ["FREEDOMS", "JOINT_TYPES", "LIMIT_FIELDS", "Joint", "Limits", "Loop", "Mimic"]
@@ -182,6 +183,14 @@ class Limits:
 
     def __len__(self) -> int:
         return int(self.lower.size)
+
+    def __repr__(self) -> str:
+        """A row per coordinate; a dash where there is no limit, no column for what nothing limits."""
+        fields = {name: getattr(self, name) for name in LIMIT_FIELDS}
+        always = ("lower", "upper")
+        columns = {name: row for name, row in fields.items() if name in always or np.isfinite(row).any()}
+        rows = [[str(i), *(shown(row[i]) for row in columns.values())] for i in range(len(self))]
+        return f"limits [rad or m, s, N·m or N]\n{aligned([['i', *columns], *rows])}"
 
     @classmethod
     def of(cls, joints: tuple[Joint, ...] | list[Joint]) -> Limits:

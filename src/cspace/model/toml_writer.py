@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -13,6 +14,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model.description import Description
+from cspace.model.files import write_text
 from cspace.model.joint import LIMIT_FIELDS, Joint, Loop
 from cspace.model.link import Geometry, Link
 from cspace.model.toml import FORMAT
@@ -23,8 +25,12 @@ __all__ = ["to_toml", "toml_value"]
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 
-def to_toml(description: Description) -> str:
-    """The robot as the text of a TOML file; reading it back gives the same numbers, bit for bit."""
+def to_toml(description: Description, path: str | os.PathLike[str] | None = None) -> str:
+    """The robot as the text of a TOML file, written to `path` as well if there is one.
+
+    Reading it back gives the same numbers, bit for bit. A file is written whole or not at all.
+    Raises InputError for a path that cannot be written.
+    """
     about = description.provenance
     head: dict[str, Any] = {"format": FORMAT, "name": description.name}
     head |= {"title": about.title, "vendor": about.vendor} if about.title or about.vendor else {}
@@ -41,7 +47,10 @@ def to_toml(description: Description) -> str:
         lines += _section("[[loops]]", _loop(loop))
     for pose, values in description.poses.items():
         lines += _section(f"[poses.{_key(pose)}]", dict(values))
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    if path is not None:
+        write_text(path, text)
+    return text
 
 
 def toml_value(value: Any) -> str:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from collections.abc import Iterable, Iterator
-from xml.sax.saxutils import quoteattr
 
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model.description import Description
+from cspace.model.files import write_text
 from cspace.model.joint import Joint
 from cspace.model.link import SHAPES, Geometry, Inertial, Link
 from cspace.model.transforms import to_rpy
@@ -18,16 +19,21 @@ from cspace.tolerances import UNLIMITED
 
 __all__ = ["to_urdf"]
 
-FORBIDDEN = re.compile("[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
-"""The characters that XML 1.0 cannot hold."""
+FORBIDDEN = "[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
+"""The characters that XML 1.0 cannot hold; a text, because the pattern takes milliseconds to compile."""
+
+ESCAPES = {ord(c): f"&{name};" for c, name in {"&": "amp", "<": "lt", ">": "gt", '"': "quot"}.items()}
+ESCAPES |= {ord(c): f"&#{ord(c)};" for c in "\t\n\r"}
+"""How characters are written inside the quotation marks of an attribute; readers would blank bare breaks."""
 
 
-def to_urdf(description: Description) -> str:
-    """The robot as the text of a URDF file.
+def to_urdf(description: Description, path: str | os.PathLike[str] | None = None) -> str:
+    """The robot as the text of a URDF file, written to `path` as well if there is one.
 
     Reading it back gives the same tree, with poses equal to rounding. URDF demands numbers where a limit is
     unknown: tolerances.UNLIMITED stands for infinity. Named poses and sources have no place in URDF.
-    Raises InputError for a robot with closed loops, or with names that XML cannot hold.
+    A file is written whole or not at all. Raises InputError for a robot with closed loops, for names that XML
+    cannot hold and for a path that cannot be written.
     """
     if description.loops:
         raise InputError(
@@ -40,17 +46,20 @@ def to_urdf(description: Description) -> str:
     for joint in description.joints:
         lines.extend(_joint(joint))
     lines.append("</robot>")
-    return "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n"
+    if path is not None:
+        write_text(path, text)
+    return text
 
 
 def _quoted(text: str) -> str:
-    if bad := FORBIDDEN.search(text):
+    if bad := re.search(FORBIDDEN, text):
         raise InputError(f"the name {text!r} holds the character {bad.group()!r}, which XML cannot hold")
-    return quoteattr(text)
+    return f'"{text.translate(ESCAPES)}"'
 
 
 def _numbers(values: Iterable[float]) -> str:
-    return '"' + " ".join(repr(float(value)) for value in values) + '"'
+    return '"' + " ".join(repr(float(value) + 0.0) for value in values) + '"'
 
 
 def _origin(T: Array, indent: str) -> Iterator[str]:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from cspace.errors import InputError
+from cspace.model.files import whole_file
 
 __all__ = ["save"]
 
@@ -15,12 +16,16 @@ def save(artists: Sequence[Any], path: str | Path, *, dpi: float = 150.0) -> Non
     """Write the figure that some artists belong to, and close it.
 
     artists: what a function of this room returned. path: a file; its ending names the format (png, svg, pdf).
-    dpi: pixels per inch. Raises InputError if there are no artists.
+    dpi: pixels per inch. The file is written whole or not at all.
+    Raises InputError if there are no artists or the file cannot be written.
     """
     if not artists:
         raise InputError("nothing to save: there are no artists")
     import matplotlib.pyplot as plt
 
     figure = artists[0].figure
-    figure.savefig(path, dpi=dpi)
-    plt.close(figure)
+    try:
+        with whole_file(path) as draft:
+            figure.savefig(draft, dpi=dpi)
+    finally:
+        plt.close(figure)

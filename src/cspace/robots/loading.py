@@ -30,17 +30,19 @@ def load_robot(
     base: str | None = None,
     tip: str | None = None,
     *,
+    floating: bool | None = None,
     package_paths: Sequence[Any] = (),
 ) -> Robot:
     """A robot of the catalogue or of a file, ready to be asked.
 
     name_or_path: a name ("ur5e", see cspace.robots.names()) or the path of a .urdf, .xml or .toml file.
-    base, tip: links between which it moves, where the file leaves the choice. package_paths: folders where
-    package:// names of meshes are looked for first.
+    base, tip: links between which it moves, where the file leaves the choice. floating: whether the base
+    moves freely, its six velocities before those of the joints; None: if the file says so. package_paths:
+    folders where package:// names of meshes are looked for first.
     Raises UnknownNameError for a name that is not in the catalogue, DescriptionError for a file that cannot
     be read, InputError where the tip is a choice that must be made.
     """
-    return Robot(load_description(name_or_path, package_paths=package_paths), base, tip)
+    return Robot(load_description(name_or_path, package_paths=package_paths), base, tip, floating=floating)
 
 
 def load_description(

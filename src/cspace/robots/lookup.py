@@ -15,6 +15,8 @@ from cspace.robots.index import PLAIN_NAMES, ROWS
 __all__ = ["CatalogueRow", "catalogue_description", "find", "names", "rows", "search"]
 
 FOLDER: Final = Path(__file__).parent / "catalogue"
+SEPARATORS: Final = r"[\s._-]"
+"""What may stand anywhere in a robot's name."""
 
 
 @dataclass(frozen=True)
@@ -47,18 +49,18 @@ def names() -> tuple[str, ...]:
 
 
 def find(name: str) -> str:
-    """The catalogue name of a robot called by any of its names; capitals, spaces, dashes do not count.
+    """The catalogue name of a robot called by any of its names.
 
-    Raises UnknownNameError with the nearest names.
+    Capitals count as small letters; blanks, dashes, underscores and full stops do not count: "UR-5e" is ur5e.
+    Every other character counts: "ur@5e" is nobody's name. Raises UnknownNameError with the nearest names.
     """
     _check_text(name, "a robot of the catalogue")
-    found = PLAIN_NAMES.get(plain(name))
+    found = PLAIN_NAMES.get(re.sub(SEPARATORS, "", name.lower()))
     if found is not None:
         return found
     known = [known for row in ROWS for known in (row[0], *row[7])]
-    near = str(suggest("robot", name, known, owner="the catalogue"))
-    text = near.replace(f" ({len(known)} robots known)", "")
-    text += "" if text.endswith("?") else ";"
+    text = str(suggest("robot", name, known, owner="the catalogue"))
+    text = text[: text.rindex(f" {len(known)} robots")]
     raise UnknownNameError(
         f"{text} cs.robots.names() lists all {len(ROWS)}, cs.robots.search() finds one;"
         " the path of a .urdf or .toml file will do as well"
@@ -84,7 +86,7 @@ def search(text: str) -> tuple[CatalogueRow, ...]:
 
 
 def plain(name: str) -> str:
-    """A name as it is compared: small letters and digits alone."""
+    """A text as a search compares it: small letters and digits alone."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
 

@@ -59,7 +59,7 @@ from cspace.spatial.twists import (
     vee_se3,
 )
 
-__all__ = [
+__all__: list[str] = [
     "SEQUENCES",
     "Pole",
     "Screw",

@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot, number
 from cspace.cli.exits import Exit
-from cspace.cli.files import check_writable, whole_file
+from cspace.cli.files import check_writable
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.pictures import check_format
 from cspace.cli.poses import add_goal, goal_of
@@ -201,6 +201,5 @@ def draw(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, title: str
     """Write the picture of all solutions, the first row solid."""
     from cspace import plot
 
-    with whole_file(path) as draft:
-        labels = [f"{k + 1}  {branch}" for k, branch in enumerate(rows.branch)]
-        plot.save(plot.solutions(robot, rows.q, goal, labels=labels, title=title), draft)
+    labels = [f"{k + 1}  {branch}" for k, branch in enumerate(rows.branch)]
+    plot.save(plot.solutions(robot, rows.q, goal, labels=labels, title=title), path)
