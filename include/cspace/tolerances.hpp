@@ -70,4 +70,12 @@ inline constexpr double sure_candidate = 1e-3;
 // careful path looks at.
 inline constexpr double polish_reach = 1e-3, polished = 1e-7;
 
+// Squares of lengths between these bounds neither lost digits to underflow (below 2e-308) nor overflowed, and
+// their inverses do not either.
+inline constexpr double least_square = 1e-280, largest_square = 1e280;
+
+// Length [rad] up to which the last digit of a rotation vector's length does not show in its matrix: somewhat
+// more than a full turn.
+inline constexpr double one_turn = 6.3;
+
 }  // namespace cspace::tolerance

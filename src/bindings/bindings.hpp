@@ -3,6 +3,7 @@
 
 void bind_math(nanobind::module_& m);
 void bind_robot(nanobind::module_& m);
+void bind_rotations(nanobind::module_& m);
 void bind_short_arms(nanobind::module_& m);
 void bind_subproblems(nanobind::module_& m);
 void bind_ik(nanobind::module_& m);

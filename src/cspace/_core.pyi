@@ -95,6 +95,21 @@ class RobotBase:
     def _chain_rows(self, *arguments: Any) -> bool: ...
     def _tree_rows(self, *arguments: Any) -> bool: ...
 
+def quaternion_matrices(q: Annotated[NDArray[numpy.float64], dict(shape=(None, 4), order='C', device='cpu', writable=False)], scalar_last: bool, R: Annotated[NDArray[numpy.float64], dict(shape=(None, 3, 3), order='C', device='cpu')]) -> bool:
+    """
+    Rotations of quaternions (n, 4) of any length, written into R (n, 3, 3); False if a row needs care.
+    """
+
+def rotvec_matrices(w: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], R: Annotated[NDArray[numpy.float64], dict(shape=(None, 3, 3), order='C', device='cpu')]) -> bool:
+    """
+    Rotations of rotation vectors (n, 3) [rad], written into R (n, 3, 3); False if a row needs care.
+    """
+
+def axis_angle_matrices(axis: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], angle: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], R: Annotated[NDArray[numpy.float64], dict(shape=(None, 3, 3), order='C', device='cpu')]) -> bool:
+    """
+    Rotations by angles (n,) [rad] about axes (n, 3) of any length, written into R (n, 3, 3); False if a row needs care.
+    """
+
 def position_solutions(axes: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], prismatic: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu', writable=False)], T_zero: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C', device='cpu', writable=False)], goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, 8, None), order='C', device='cpu')], direction: Annotated[NDArray[numpy.float64], dict(shape=(None, 8, None), order='C', device='cpu')], free: Annotated[NDArray[numpy.bool_], dict(shape=(None, 8), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], missing: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], nearest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
     """
     Joints that bring the tip of an arm of up to three joints to goals (n, 3); the last six are written.

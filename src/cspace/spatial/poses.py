@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial import single
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
-from cspace.spatial.quaternions import matrix_of_wxyz, rolled, unit_wxyz
+from cspace.spatial.quaternions import matrix_of_quaternion
 from cspace.spatial.rotations import matrix_of_axis_angle, matrix_of_rotvec
 from cspace.spatial.sequences import axes_of, matrix_of_euler, matrix_of_fixed
 from cspace.spatial.vectors import length_and_direction
@@ -174,13 +175,19 @@ def _rotation_of(forms: dict[str, Any], given: list[str], caller: str) -> Array:
 
 def _from_axis_angle(value: Any) -> Array:
     axis, angle = _pair(value, "axis_angle", "(axis, angle)")
-    length, unit = length_and_direction(as_floats(axis, "axis", last=(3,)))
+    axis, angle = as_floats(axis, "axis", last=(3,)), as_floats(angle, "angle")
+    shape = broadcast_batches(axis.shape[:-1], angle.shape, "axis", "angle")
+    if shape:
+        R = np.empty((*shape, 3, 3))
+        axes = np.ascontiguousarray(np.broadcast_to(axis, (*shape, 3))).reshape(-1, 3)
+        angles = np.ascontiguousarray(np.broadcast_to(angle, shape)).reshape(-1)
+        if _core.axis_angle_matrices(axes, angles, R.reshape(-1, 3, 3)):
+            return R
+    length, unit = length_and_direction(axis)
     if not (length > 0.0).all():
         raise InputError(
             "axis is zero; a rotation axis needs a direction (the identity: any axis with angle 0)"
         )
-    angle = as_floats(angle, "angle")
-    broadcast_batches(length.shape, angle.shape, "axis", "angle")
     return matrix_of_axis_angle(unit, angle)
 
 
@@ -201,8 +208,8 @@ def _pair(value: Any, name: str, form: str) -> tuple[Any, Any]:
 
 
 _FORMS: dict[str, Callable[[Any], Array]] = {
-    "wxyz": lambda q: matrix_of_wxyz(unit_wxyz(q, "wxyz")),
-    "xyzw": lambda q: matrix_of_wxyz(rolled(unit_wxyz(q, "xyzw"), 1)),
+    "wxyz": lambda q: matrix_of_quaternion(q, "wxyz"),
+    "xyzw": lambda q: matrix_of_quaternion(q, "xyzw", scalar_last=True),
     "rpy": lambda angles: matrix_of_fixed((0, 1, 2), as_floats(angles, "rpy", last=(3,))),
     "rotvec": lambda w: matrix_of_rotvec(as_floats(w, "rotvec", last=(3,)), "rotvec"),
     "axis_angle": _from_axis_angle,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.spatial import single
@@ -38,6 +39,18 @@ def rolled(q: Array, shift: int) -> Array:
     for k in range(4):
         result[..., k] = q[..., (k - shift) % 4]
     return result
+
+
+def matrix_of_quaternion(q: object, subject: str, *, scalar_last: bool = False) -> Array:
+    """The rotation matrices (..., 3, 3) of quaternions (..., 4) of any length; a zero one is refused."""
+    numbers = as_floats(q, subject, last=(4,), finite=False)
+    if numbers.ndim > 1:
+        R = np.empty((*numbers.shape[:-1], 3, 3))
+        rows = np.ascontiguousarray(numbers).reshape(-1, 4)
+        if _core.quaternion_matrices(rows, scalar_last, R.reshape(-1, 3, 3)):
+            return R
+    unit = unit_wxyz(numbers, subject)
+    return matrix_of_wxyz(rolled(unit, 1) if scalar_last else unit)
 
 
 def unit_wxyz(q: object, subject: str) -> Array:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import Final
+
 import numpy as np
 import numpy.typing as npt
 
+from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.spatial import single
@@ -13,6 +16,10 @@ from cspace.spatial.quaternions import wxyz_of_matrix
 from cspace.spatial.vectors import length_and_direction
 
 __all__ = ["exp_so3", "hat_so3", "log_so3", "to_axis_angle", "to_rotvec", "vee_so3"]
+
+
+SHORT: Final = 3.6
+"""Entries [rad] up to here make a vector of less than the 6.3 rad that the compiled formula takes."""
 
 
 def hat_so3(w: npt.ArrayLike) -> Array:
@@ -104,6 +111,16 @@ def matrix_of_rotvec(w: Array, subject: str) -> Array:
     """exp_so3 of checked numbers."""
     if w.ndim == 1 and (split := single.direction(w.tolist())):
         return single.matrix(single.turn(split[1], split[0]))
+    R = np.empty((*w.shape[:-1], 3, 3))
+    rows = np.ascontiguousarray(w).reshape(-1, 3)
+    if not _core.rotvec_matrices(rows, R.reshape(-1, 3, 3)):
+        long = np.abs(rows).max(axis=-1) > SHORT
+        R.reshape(-1, 3, 3)[long] = _matrix_of_long_rotvec(rows[long], subject)
+    return R
+
+
+def _matrix_of_long_rotvec(w: Array, subject: str) -> Array:
+    """The same for vectors of any length, whose length is found to the last digit: it shows in the matrix."""
     angle, axis = checked_angle_and_axis(w, subject)
     return matrix_of_axis_angle(axis, angle)
 
