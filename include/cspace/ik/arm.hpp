@@ -3,6 +3,7 @@
 
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/complete.hpp"
+#include "cspace/ik/miss.hpp"
 #include "cspace/ik/position/pose.hpp"
 #include "cspace/ik/position/solve.hpp"
 
@@ -12,13 +13,6 @@ struct Arm {
     Plan plan;              // plan.chain is the arm, plan or no plan
     bool has_plan = false;  // four to six revolute joints with a closed form
     bool is_short = false;  // up to three joints of any kind, solved directly
-};
-
-// The configuration that comes nearest to a goal that nothing reaches.
-struct Miss {
-    double q[max_joints];
-    double position;  // [m]
-    double rotation;  // [rad]
 };
 
 }  // namespace cspace::ik
@@ -56,32 +50,35 @@ inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const dou
     return from_short(arm.plan.chain, solve_short_pose(arm.plan.chain, goal));
 }
 
-// Minimises ‖Δp‖² + (stiffness · length · angle)²: stiffness 1 weighs a radian like the arm's length, a large
-// one keeps the orientation and gives the distance by which the goal is out of reach. Starts from the
-// branches cut off at their borders and from configurations spread over the joints.
-inline ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double stiffness) {
+// Minimises (‖Δp‖ / length)² + (weight · angle)²: weight 1 weighs a radian like the arm's length, a large one
+// keeps the orientation and gives the distance by which the goal is out of reach. Starts from the branches
+// cut off at their borders and from configurations spread over the joints; a large weight comes in by steps,
+// for the way along the orientations that it allows is narrow.
+inline ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double weight) {
     const ik::Plan& plan = arm.plan;
+    const int n = plan.chain.n;
     Care care;
     care.band = std::numeric_limits<double>::infinity();
     Branches<double> b{};
     if (arm.has_plan) b = closed_form(plan, goal_in_form(plan, goal), care);
-    ik::Miss best{{}, std::numeric_limits<double>::infinity(), 0};
-    double least = std::numeric_limits<double>::infinity();
-    const double length = plan.form.length * stiffness;
-    constexpr int spread = 8;
+    ik::Miss best;
+    best.cost = std::numeric_limits<double>::infinity();
+    constexpr int spread = 16;
     for (int k = 0; k < max_branches + spread; ++k) {
         double q[ik::max_joints] = {};
-        spread_configuration(k, plan.chain.n, q);
+        spread_configuration(k, n, q);
         for (int i = 0; arm.has_plan && i < 6 && k < max_branches; ++i)
             if (plan.joint[i] >= 0 && std::isfinite(b.t[k][i]))
                 q[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
         PoseError error;
-        const double size = refine(plan.chain, goal, length, q, error, 200);
-        if (!(size < least)) continue;
-        least = size;
+        for (double w = min(weight, 1.0); w < weight; w *= 10)
+            minimise(plan.chain, goal, plan.form.length, w, q, error);
+        const double cost = minimise(plan.chain, goal, plan.form.length, weight, q, error);
+        if (!(cost < best.cost)) continue;
+        best.cost = cost;
         best.position = error.position;
         best.rotation = error.rotation;
-        for (int i = 0; i < plan.chain.n; ++i)
+        for (int i = 0; i < n; ++i)
             best.q[i] = plan.chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
     }
     return best;

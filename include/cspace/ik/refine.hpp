@@ -67,13 +67,14 @@ inline void measure(const ik::Chain& chain, const Posed& goal, double length, co
 
 inline double size_of_error(const PoseError& error) { return std::sqrt(dot_n(error.e, error.e, 6)); }
 
-// The damped least-squares step from a decomposed Jacobian.
+// The damped least-squares step from a decomposed Jacobian. Along a direction that does not move the tip at
+// all it stays put: what is left of the error there is rounding, and would send joints along their family.
 inline void damped_step(const PoseError& error, double damping, double* dq) {
     const PoseSvd& J = error.jacobian;
     for (int i = 0; i < J.columns; ++i) dq[i] = 0;
     for (int j = 0; j < J.columns; ++j) {
         const double s2 = J.sigma[j] * J.sigma[j];
-        if (s2 + damping == 0) continue;
+        if (J.sigma[j] <= tolerance::free_joint) continue;
         const double along = dot_n(J.us[j], error.e, 6) / (s2 + damping);
         for (int i = 0; i < J.columns; ++i) dq[i] += along * J.v[j][i];
     }
@@ -104,10 +105,11 @@ inline double take_step(const ik::Chain& chain, const Posed& goal, double length
 inline bool newton(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
     constexpr int most_steps = 16;
     constexpr double settled = 1e-15, arrived = 1e-12;
-    double best[ik::max_joints], at[ik::max_joints], least = 1;
-    for (int i = 0; i < chain.n; ++i) at[i] = q[i];
+    double best[ik::max_joints], at[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) best[i] = at[i] = q[i];
     measure(chain, goal, length, at, error);
-    for (int step = 0; step < most_steps; ++step) {
+    double least = min(size_of_error(error), 1.0);
+    for (int step = 0; step < most_steps && least >= settled; ++step) {
         double dq[ik::max_joints];
         decompose(error.jacobian);
         damped_step(error, 0, dq);

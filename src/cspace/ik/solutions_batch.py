@@ -66,12 +66,15 @@ class SolutionsBatch:
         return np.asarray(np.arange(self.q.shape[-2]) < self.count[..., None])
 
     def __getitem__(self, index: Any) -> Solutions:
+        from cspace.ik.solve import prepare
+
         goal = self.goal[index]
         if goal.shape != (4, 4):
             raise InputError(
                 f"index {index!r} picks {goal.shape[:-2]} goals, expected one: use .q for slices"
             )
         rows = self.q[index][: int(self.count[index])]
+        prepare(self.robot)  # a robot out of a pickle comes without its solver
         full = _core._ik_single(self.robot, np.ascontiguousarray(goal))
         if len(full) == len(rows) and np.array_equal(full.q, rows):
             return cast(Solutions, full)
