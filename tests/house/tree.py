@@ -16,6 +16,7 @@ PACKAGE = ROOT / "src/cspace"
 TIERS: list[set[str]] = [
     {"errors", "tolerances", "_core"},
     {"arrays"},
+    {"spare"},
     {"math"},
     {"spatial"},
     {"model", "shapes"},

@@ -13,8 +13,8 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.geometry import NoClosedFormError, explain_missing_form
 from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.ik.spare import spare_array
 from cspace.ik.windings import wrap
+from cspace.spare import spare_array
 from cspace.spatial import as_pose
 
 __all__ = ["inverse_kinematics"]

@@ -12,6 +12,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.model import Chain, Limits
+from cspace.spare import spare_array
 from cspace.spatial import as_pose
 
 __all__ = ["Batch", "Machine", "frame_number", "output", "rows_of"]
@@ -138,7 +139,7 @@ def output(out: Any, shape: tuple[int, ...], subject: str = "out") -> Array:
     Raises InputTypeError unless out is a contiguous float64 array, InputError for another shape.
     """
     if out is None:
-        return np.empty(shape)
+        return spare_array(shape)
     if not isinstance(out, np.ndarray) or out.dtype != np.float64:
         kind = f"an array of {out.dtype}" if isinstance(out, np.ndarray) else type(out).__name__
         raise InputTypeError(f"{subject} must be a float64 array to write into, got {kind}")

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cspace.ik.spare import spare_array
+from cspace.spare import LARGEST, _blocks, spare_array
 
 SHAPE = (1000, 8, 6)
 
@@ -26,3 +26,19 @@ def test_memory_that_has_gone_is_taken_again():
     address = first.ctypes.data
     del first
     assert spare_array(SHAPE).ctypes.data == address
+
+
+def test_several_arrays_of_one_call_come_back_in_the_next():
+    pair = [spare_array(SHAPE), spare_array(SHAPE)]
+    addresses = {array.ctypes.data for array in pair}
+    del pair
+    again = [spare_array(SHAPE), spare_array(SHAPE)]
+    assert {array.ctypes.data for array in again} == addresses
+
+
+def test_what_is_kept_is_bounded():
+    for rows in range(1, 40):
+        spare_array((rows * LARGEST // 8 // 40,))
+    assert sum(block.nbytes for block in _blocks) <= LARGEST
+    assert spare_array((2 * LARGEST // 8,)).nbytes == 2 * LARGEST
+    assert sum(block.nbytes for block in _blocks) <= LARGEST

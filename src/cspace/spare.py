@@ -1,0 +1,43 @@
+"""Memory of earlier batches, taken again when nobody holds it: fresh pages cost as much as computing."""
+
+from __future__ import annotations
+
+import sys
+import threading
+
+import numpy as np
+
+from cspace.arrays import Array
+
+__all__ = ["spare_array"]
+
+SMALLEST, LARGEST = 1 << 16, 1 << 26
+"""Sizes worth keeping [bytes]: below, the allocator is fast; LARGEST bounds what is kept in all."""
+
+_lock = threading.Lock()
+_blocks: list[Array] = []
+
+
+def holders(blocks: list[Array], i: int) -> int:
+    """How many references to a block there are, as this very function counts them."""
+    return sys.getrefcount(blocks[i])
+
+
+UNUSED = holders([np.empty(1)], 0)
+"""What `holders` says of a block that nobody but its list holds."""
+
+
+def spare_array(shape: tuple[int, ...]) -> Array:
+    """An uninitialised float64 array, in the memory of an earlier one that has gone if there is any."""
+    size = int(np.prod(shape))
+    if not SMALLEST <= 8 * size <= LARGEST:
+        return np.empty(shape)
+    with _lock:
+        for i in range(len(_blocks)):
+            if holders(_blocks, i) == UNUSED and size <= _blocks[i].size <= 4 * size:
+                return _blocks[i][:size].reshape(shape)
+        made = np.empty(size)
+        _blocks.append(made)
+        while sum(block.nbytes for block in _blocks) > LARGEST:
+            del _blocks[0]
+        return made.reshape(shape)
