@@ -26,7 +26,8 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         venv.create(folder / "venv", with_pip=True)
-        python = next((folder / "venv").glob("*/python*"))
+        programs = folder / "venv" / ("Scripts" if os.name == "nt" else "bin")
+        python = programs / ("python.exe" if os.name == "nt" else "python")
         site = Path(
             subprocess.check_output(
                 [python, "-c", "import sysconfig; print(sysconfig.get_paths()['purelib'])"], text=True

@@ -68,10 +68,10 @@ static void measure_arm(const NamedArm& arm) {
     }
     constexpr int n = 1000;
     const std::vector<double> goals = random_goals(arm.chain, n);
-    std::vector<double> q(n * ik::max_branches * 6);
+    std::vector<double> q(n * max_branches * 6);
     std::vector<std::int64_t> counts(n);
     std::vector<ik::Quick> verdicts(n);
-    std::int8_t branch[ik::max_branches];
+    std::int8_t branch[max_branches];
     bench::measure(("ik " + arm.name).c_str(), n, 200, [&] {
         for (int k = 0; k < n; ++k) {
             int count = 0;
