@@ -20,7 +20,11 @@ inline namespace CSPACE_ISA {}
 }  // namespace cspace
 
 #if defined(__GNUC__) || defined(__clang__)
+#if defined(__SANITIZE_ADDRESS__)
+#define CSPACE_INLINE inline  // checks in every copy would make kernels too large to compile
+#else
 #define CSPACE_INLINE inline __attribute__((always_inline))
+#endif
 #define CSPACE_NOINLINE __attribute__((noinline))
 // For the rare path of a hot function: out of line and away from the hot code.
 #define CSPACE_COLD __attribute__((noinline, cold))
