@@ -18,23 +18,23 @@ _lock = threading.Lock()
 _blocks: list[Array] = []
 
 
-def holders(blocks: list[Array], i: int) -> int:
+def _holders(blocks: list[Array], i: int) -> int:
     """How many references to a block there are, as this very function counts them."""
     return sys.getrefcount(blocks[i])
 
 
-UNUSED = holders([np.empty(1)], 0)
-"""What `holders` says of a block that nobody but its list holds."""
+_UNUSED = _holders([np.empty(1)], 0)
+"""What `_holders` says of a block that nobody but its list holds."""
 
 
 def spare_array(shape: tuple[int, ...]) -> Array:
-    """An uninitialised float64 array, in the memory of an earlier one that has gone if there is any."""
+    """An uninitialised float64 array of shape (...), in the memory of an earlier one that has gone if there is any."""
     size = int(np.prod(shape))
     if not SMALLEST <= 8 * size <= LARGEST:
         return np.empty(shape)
     with _lock:
         for i in range(len(_blocks)):
-            if holders(_blocks, i) == UNUSED and size <= _blocks[i].size <= 4 * size:
+            if _holders(_blocks, i) == _UNUSED and size <= _blocks[i].size <= 4 * size:
                 return _blocks[i][:size].reshape(shape)
         made = np.empty(size)
         _blocks.append(made)
