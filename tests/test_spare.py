@@ -23,6 +23,7 @@ def test_a_view_keeps_its_memory():
 
 def test_memory_that_has_gone_is_taken_again():
     first = spare_array(SHAPE)
+    assert first.flags.c_contiguous
     address = first.ctypes.data
     del first
     assert spare_array(SHAPE).ctypes.data == address
@@ -36,8 +37,13 @@ def test_several_arrays_of_one_call_come_back_in_the_next():
     assert {array.ctypes.data for array in again} == addresses
 
 
+def test_memory_begins_with_a_cache_line():
+    for rows in (100, 1000, 1001):
+        assert spare_array((rows, 8, 6)).ctypes.data % 64 == 0
+
+
 def test_what_is_kept_is_bounded():
-    for rows in range(1, 40):
+    for rows in range(4, 40):
         spare_array((rows * LARGEST // 8 // 40,))
     assert sum(block.nbytes for block in _blocks) <= LARGEST
     assert spare_array((2 * LARGEST // 8,)).nbytes == 2 * LARGEST

@@ -13,6 +13,8 @@ __all__ = ["spare_array"]
 
 SMALLEST, LARGEST = 1 << 16, 1 << 26
 """Sizes worth keeping [bytes]: below, the allocator is fast; LARGEST bounds what is kept in all."""
+LINE = 64
+"""Bytes of a cache line."""
 
 _lock = threading.Lock()
 _blocks: list[Array] = []
@@ -27,17 +29,26 @@ _UNUSED = _holders([np.empty(1)], 0)
 """What `_holders` says of a block that nobody but its list holds."""
 
 
+def _aligned(block: Array, shape: tuple[int, ...], size: int) -> Array:
+    """The part of a block that begins with a cache line."""
+    start = -(block.ctypes.data // 8) % (LINE // 8)
+    return block[start : start + size].reshape(shape)
+
+
 def spare_array(shape: tuple[int, ...]) -> Array:
-    """An uninitialised float64 array of shape (...), in the memory of an earlier one that has gone if there is any."""
+    """An uninitialised float64 array of shape (...), in the memory of an earlier one that has gone if there is
+    any.
+    """
     size = int(np.prod(shape))
     if not SMALLEST <= 8 * size <= LARGEST:
         return np.empty(shape)
+    needed = size + LINE // 8
     with _lock:
         for i in range(len(_blocks)):
-            if _holders(_blocks, i) == _UNUSED and size <= _blocks[i].size <= 4 * size:
-                return _blocks[i][:size].reshape(shape)
-        made = np.empty(size)
+            if _holders(_blocks, i) == _UNUSED and needed <= _blocks[i].size <= 4 * needed:
+                return _aligned(_blocks[i], shape, size)
+        made = np.empty(needed)
         _blocks.append(made)
         while sum(block.nbytes for block in _blocks) > LARGEST:
             del _blocks[0]
-        return made.reshape(shape)
+        return _aligned(made, shape, size)

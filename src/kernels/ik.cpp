@@ -4,6 +4,7 @@
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/polish.hpp"
 #include "cspace/math/rows.hpp"
+#include "cspace/math/stream.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 namespace {
@@ -23,24 +24,6 @@ CSPACE_INLINE int compact(unsigned ok, double* rows) {
     }
     for (int i = 6 * count; i < 6 * max_branches; ++i) rows[i] = std::numeric_limits<double>::quiet_NaN();
     return count;
-}
-
-// Results larger than the caches go past them: writing a line need not read it first.
-constexpr std::size_t rows_past_cache = 16384;
-
-CSPACE_INLINE void write_out(double* to, const double* from, std::size_t size, bool past_cache) {
-#if defined(CSPACE_X86_REGISTERS)
-    if (past_cache) {
-        for (std::size_t i = 0; i < size; i += 2) _mm_stream_pd(to + i, _mm_load_pd(from + i));
-        return;
-    }
-#endif
-    for (std::size_t i = 0; i < size; ++i) to[i] = from[i];
-}
-CSPACE_INLINE void finish_streams() {
-#if defined(CSPACE_X86_REGISTERS)
-    _mm_sfence();
-#endif
 }
 
 CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
@@ -91,7 +74,7 @@ void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, st
     const Care care = care_of(plan);
     constexpr std::size_t row = max_branches * 6;
     alignas(64) double stage[native_width * row];
-    const bool past_cache = n >= rows_past_cache && reinterpret_cast<std::uintptr_t>(q) % 16 == 0;
+    const bool past_cache = goes_past_cache(n * row) && is_aligned(q);
     for (std::size_t first = 0; first < n; first += native_width) {
         const int lanes = int(n - first < native_width ? n - first : native_width);
         V m[16];

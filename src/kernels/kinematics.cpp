@@ -6,6 +6,7 @@
 #include "cspace/kinematics/jacobian_rate.hpp"
 #include "cspace/kinematics/singular_values.hpp"
 #include "cspace/math/rows.hpp"
+#include "cspace/math/stream.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 namespace {
@@ -45,7 +46,9 @@ template <class V>
 struct ChainWork {
     V *q, *qd, *s, *c, *J, *J_rate;
     Axis<V>*axes, *rates;
+    double* stage;
     int dof, first;
+    bool past_cache;
 };
 template <class V>
 ChainWork<V> chain_work(const ChainRows& rows, void* memory) {
@@ -59,8 +62,20 @@ ChainWork<V> chain_work(const ChainRows& rows, void* memory) {
             take<V>(scratch, 6 * dof),
             take<Axis<V>>(scratch, n),
             take<Axis<V>>(scratch, n),
+            take<double>(scratch, Lanes<V>::count * (6 * dof < 16 ? 16 : 6 * dof)),
             dof,
-            first};
+            first,
+            false};
+}
+
+// Writes the rows i to i + count of an output, `width` values each.
+template <class V>
+CSPACE_INLINE void put_rows(const ChainWork<V>& w, const V* values, int width, double* to, std::size_t i,
+                            int count) {
+    to += i * std::size_t(width);
+    if (!w.past_cache) return store_rows(values, width, to, width, count);
+    store_rows(values, width, w.stage, width, count);
+    write_out(to, w.stage, std::size_t(width * count), true);
 }
 
 template <class V>
@@ -74,7 +89,7 @@ void jacobian_rate(const ChainRows& rows, const ChainWork<V>& w, const Pose<V>& 
     joint_column_rates(rows.chain, w.axes, w.rates, p, end.v, w.J_rate, w.dof, w.first);
     if (rows.floating) base_column_rates(end.v - base.v, w.J_rate, w.dof);
     if (rows.in_tip) express_rate_in(T.R, end.w, w.J, w.J_rate, w.dof);
-    store_rows(w.J_rate, 6 * w.dof, rows.J_rate + i * 6 * w.dof, 6 * w.dof, count);
+    put_rows(w, w.J_rate, 6 * w.dof, rows.J_rate, i, count);
 }
 
 template <class V>
@@ -107,7 +122,7 @@ CSPACE_INLINE bool chain_pack(const ChainRows& rows, const ChainWork<V>& w, std:
     if (rows.T) {
         V matrix[16];
         write_matrix(T, matrix);
-        store_rows(matrix, 16, rows.T + i * 16, 16, count);
+        put_rows(w, matrix, 16, rows.T, i, count);
     }
     if (!rows.J && !rows.J_rate && !rows.sigma) return true;
     Vec3<V> p = T.t;
@@ -120,7 +135,7 @@ CSPACE_INLINE bool chain_pack(const ChainRows& rows, const ChainWork<V>& w, std:
     if (rows.floating) base_columns(p - T_world_base.t, w.J, w.dof, 6);
     if (rows.J_rate) jacobian_rate(rows, w, T, p, T_world_base, i, count);
     if (rows.in_tip) express_in(T.R, w.J, w.dof);
-    if (rows.J) store_rows(w.J, 6 * w.dof, rows.J + i * 6 * w.dof, 6 * w.dof, count);
+    if (rows.J) put_rows(w, w.J, 6 * w.dof, rows.J, i, count);
     if (rows.sigma) chosen_singular_values(rows, w, i, count);
     return true;
 }
@@ -186,8 +201,14 @@ CSPACE_NOINLINE Posed follow_one(const Chain& chain, const double* q, const OneW
 }  // namespace
 
 bool chain_rows(const ChainRows& rows, std::size_t begin, std::size_t end, void* scratch) {
-    const auto work = chain_work<Pack<width>>(rows, scratch);
-    return over_packs(begin, end, [&](std::size_t i, int count) { return chain_pack(rows, work, i, count); });
+    auto work = chain_work<Pack<width>>(rows, scratch);
+    const std::size_t values = rows.J || rows.J_rate ? 6 * std::size_t(work.dof) : 16;
+    work.past_cache = is_aligned(rows.T) && is_aligned(rows.J) && is_aligned(rows.J_rate) &&
+                      goes_past_cache((end - begin) * values);
+    const bool finite = over_packs(
+        begin, end, [&](std::size_t i, int count) { return chain_pack(rows, work, i, count); });
+    if (work.past_cache) finish_streams();
+    return finite;
 }
 
 bool tree_rows(const TreeRows& rows, std::size_t begin, std::size_t end, void* scratch) {

@@ -41,7 +41,7 @@ struct TreeRows {
 // Bytes of scratch memory, aligned to 64, that one thread needs.
 inline std::size_t scratch_bytes(const ChainRows& rows) {
     const std::size_t n = rows.chain.n, dof = rows.chain.n_coordinates + 6;
-    return 32 * (14 * (n + 4) + 14 * dof + 64);
+    return 32 * (14 * (n + 4) + 20 * dof + 80);
 }
 inline std::size_t scratch_bytes(const TreeRows& rows) {
     const std::size_t n = rows.tree.n_joints, dof = rows.tree.n_coordinates + 6;
