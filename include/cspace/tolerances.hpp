@@ -50,6 +50,10 @@ inline constexpr double reached = 1e-9;
 // Solutions closer than this [rad] are one, unless conditioning says otherwise (see ik/refine.hpp).
 inline constexpr double same_solution = 1e-9;
 
+// Two candidates that conditioning cannot tell apart are one solution if the configuration halfway between
+// them meets the goal this well (as `reached`): rounding leaves 1e-15, a fold between two solutions more.
+inline constexpr double halfway = 2e-14;
+
 // Largest entry of RᵀR − I accepted in a goal (ROTATION_ERROR in Python): numbers typed with seven digits
 // pass.
 inline constexpr double rotation_error = 1e-6;

@@ -331,6 +331,27 @@ def test_solutions_near_shoulder_singularities_are_recovered(name, off):
     assert missed == 0
 
 
+@pytest.mark.parametrize("name", ["puma560", "kr6_r900", "irb1600"])
+def test_a_fold_keeps_its_two_solutions_apart_down_to_a_millionth(name):
+    """On one side of a fold as many solutions at a distance of 1e-6 rad as at 1e-4, unless rounding of the
+    goal moves them farther than they are apart.
+    """
+    robot = load(name)
+    rng = np.random.default_rng([11, *map(ord, name)])
+    compared = 0
+    while compared < 100:
+        at = shoulder_root(robot, random_q(rng, 6))
+        if at is None:
+            continue
+        far, near = at.copy(), at.copy()
+        far[1] += 1e-4
+        near[1] += 1e-6
+        if np.linalg.svd(robot.jacobian(near), compute_uv=False)[-1] < 1e-9:
+            continue
+        assert len(robot.ik(robot.fk(far))) == len(robot.ik(robot.fk(near)))
+        compared += 1
+
+
 def shoulder_root(robot, q):
     """q with joint 2 moved to where det J changes sign, or None."""
     t = np.linspace(-np.pi, np.pi, 41)

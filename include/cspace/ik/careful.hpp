@@ -17,6 +17,19 @@ inline double wrapped_distance(const double* a, const double* b, int n) {
     return worst;
 }
 
+// Whether two configurations stand for one solution: what lies between them reaches the goal as they do.
+inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, const double* a,
+                    const double* b) {
+    double q[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) {
+        const double step = b[i] - a[i];
+        q[i] = a[i] + 0.5 * (chain.prismatic[i] ? step : std::remainder(step, 2 * pi));
+    }
+    PoseError error;
+    measure(chain, goal, length, q, error);
+    return size_of_error(error) <= tolerance::halfway;
+}
+
 // Adds q to the solutions unless it is no solution or already there.
 inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal, double length, double* q,
                   int branch, int most_steps) {
@@ -25,9 +38,12 @@ inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal,
     if (!(size <= tolerance::reached) || out.count == ik::max_solutions) return;
     const int weak = weakest(error.jacobian);
     const double conditioning = max(error.jacobian.sigma[weak], 1e-9);
-    const double same = max(tolerance::same_solution, 10 * max(size, 1e-15) / conditioning);
-    for (int k = 0; k < out.count; ++k)
-        if (wrapped_distance(out.q[k], q, chain.n) < same) return;
+    const double near = 10 * max(size, 1e-15) / conditioning;
+    for (int k = 0; k < out.count; ++k) {
+        const double gap = wrapped_distance(out.q[k], q, chain.n);
+        if (gap < tolerance::same_solution) return;
+        if (gap < near && are_one(chain, goal, length, out.q[k], q)) return;
+    }
     const int n = out.count++;
     for (int i = 0; i < chain.n; ++i)
         out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
