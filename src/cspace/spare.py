@@ -36,9 +36,7 @@ def _aligned(block: Array, shape: tuple[int, ...], size: int) -> Array:
 
 
 def spare_array(shape: tuple[int, ...]) -> Array:
-    """An uninitialised float64 array of shape (...), in the memory of an earlier one that has gone if there is
-    any.
-    """
+    """An uninitialised float64 array of shape (...), in the memory of one that has gone, if any."""
     size = int(np.prod(shape))
     if not SMALLEST <= 8 * size <= LARGEST:
         return np.empty(shape)

@@ -205,8 +205,8 @@ bool chain_rows(const ChainRows& rows, std::size_t begin, std::size_t end, void*
     const std::size_t values = rows.J || rows.J_rate ? 6 * std::size_t(work.dof) : 16;
     work.past_cache = is_aligned(rows.T) && is_aligned(rows.J) && is_aligned(rows.J_rate) &&
                       goes_past_cache((end - begin) * values);
-    const bool finite = over_packs(
-        begin, end, [&](std::size_t i, int count) { return chain_pack(rows, work, i, count); });
+    const bool finite =
+        over_packs(begin, end, [&](std::size_t i, int count) { return chain_pack(rows, work, i, count); });
     if (work.past_cache) finish_streams();
     return finite;
 }

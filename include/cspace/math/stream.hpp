@@ -1,4 +1,5 @@
-// Results larger than the caches are written past them: a line of memory need not be read before it is written.
+// Results larger than the caches are written past them: a line of memory need not be read before it is
+// written.
 #pragma once
 
 #include <cstddef>
