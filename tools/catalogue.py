@@ -54,6 +54,11 @@ def row(robot: Description) -> tuple[object, ...]:
     )
 
 
+def rated(robots: list[Description]) -> int:
+    """How many robots have limits of velocity and effort."""
+    return sum(not {"velocity", "effort"} & set(robot.provenance.missing) for robot in robots)
+
+
 def index_text(robots: list[Description]) -> str:
     """The module cspace.robots.index."""
     lines = [
@@ -87,9 +92,10 @@ def page_text(robots: list[Description]) -> str:
         "Capitals, blanks, dashes, underscores and full stops do not count: `UR-5e` is `ur5e`. This page is",
         "made by `tools/catalogue.py` from `src/cspace/robots/catalogue`, where every number is.",
         "",
-        "These are joint axes and ranges. Velocity, acceleration and effort limits, inertias, shapes and",
-        "named poses are absent; each file lists what it lacks under `missing`. Base and tip are links of",
-        "the source; the link frames between stand on the joint axes, parallel to the base at zero (where a",
+        f"These are joint axes and ranges; {rated(robots)} robots have velocity and effort limits as well.",
+        "Acceleration limits, inertias, shapes and named poses are absent; each file lists what it lacks",
+        "under `missing` and says where each group of numbers is from. Base and tip are links of the source;",
+        "the link frames between stand on the joint axes, parallel to the base at zero (where a",
         "file holds a Denavit–Hartenberg table: where that table puts them).",
         "",
         "| name | joints | robot | vendor | other names | source | licence |",

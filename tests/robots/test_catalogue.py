@@ -52,6 +52,9 @@ def test_a_robot_says_what_it_is_and_what_it_lacks(name):
     for field in ("velocity", "acceleration", "effort"):
         known = [j for j in robot.moving_joints if np.isfinite(getattr(j, field))]
         assert (field in about.missing) != bool(known)
+        assert (field in about.sources) == bool(known)
+        assert len(known) in (0, len(robot.moving_joints))
+        assert all(getattr(j, field) > 0 for j in known)
     assert ("inertia" in about.missing) != any(link.inertial for link in robot.links)
     assert ("collision" in about.missing) != any(link.collision for link in robot.links)
     assert ("visual" in about.missing) != any(link.visual for link in robot.links)
@@ -213,6 +216,22 @@ def test_every_robot_loads_as_a_chain_within_its_limits(name):
     q = robot.random_configuration(rng=1, reach=1.0)
     c = robot.chain
     np.testing.assert_allclose(robot.fk(q), chain_fk(c, q), atol=1e-13)
+
+
+@pytest.mark.parametrize(
+    ("name", "degrees_per_second", "torques"),
+    [
+        ("ur3e", [180, 180, 180, 360, 360, 360], [54, 54, 28, 9, 9, 9]),
+        ("ur5e", [180] * 6, [150, 150, 150, 28, 28, 28]),
+        ("ur10e", [120, 120, 180, 180, 180, 180], [330, 330, 150, 54, 54, 54]),
+        ("panda", np.degrees([2.175] * 4 + [2.61] * 3), [87] * 4 + [12] * 3),
+        ("panda_urdf", np.degrees([2.175] * 4 + [2.61] * 3), [87] * 4 + [12] * 3),
+    ],
+)
+def test_the_published_velocities_and_torques(name, degrees_per_second, torques):
+    limits = load_robot(name).limits
+    np.testing.assert_allclose(np.degrees(limits.velocity), degrees_per_second, rtol=1e-12)
+    np.testing.assert_array_equal(limits.effort, torques)
 
 
 def test_names_are_forgiving_and_unknown_ones_get_suggestions():
