@@ -58,6 +58,9 @@ inline constexpr double halfway = 2e-14;
 // pass.
 inline constexpr double rotation_error = 1e-6;
 
+// Largest sum of a goal's coordinates [m] (FARTHEST in Python): their squares still fit a double.
+inline constexpr double farthest = 1e100;
+
 // Largest deviation of a pose's last row from (0, 0, 0, 1): it is written, never computed, up to rounding.
 inline constexpr double last_row = 1e-9;
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <limits>
 #include <memory>
 
 #include "bindings.hpp"
@@ -13,21 +14,21 @@
 using namespace cspace;
 
 const char robot_ik_doc[] =
-    "ik($self, goal, /, *, near=None, least_squares=False, threads=None)\n--\n\n"
-    "Every configuration q with fk(q) = goal.\n\n"
-    "goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. near (dof,) [rad, m]: the answer is "
-    "the one\n"
-    "solution nearest to it, and joints that the pose leaves free take its values. least_squares: where "
-    "nothing\n"
-    "reaches the goal, answer with the configuration that misses it least. threads: of a batch, all cores "
-    "unless\n"
-    "given.\n\n"
-    "Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, residual, "
-    "branch,\n"
-    "within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns SolutionsBatch for many: q\n"
-    "(..., k_max, dof) padded with NaN, count (...). Raises InputError for what is no pose, "
-    "NoClosedFormError for an\n"
-    "arm that this version does not solve.";
+    R"doc(ik($self, goal=None, *, position=None, near=None, least_squares=False, threads=None)
+--
+
+Every configuration q with fk(q) = goal.
+
+goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. position: instead of it the place of the
+tip alone [m], (3,) or (..., 3), or (..., 2) for an arm in the plane; for arms of up to three joints. near
+(dof,) [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its
+values. least_squares: where nothing reaches the goal, answer with the configuration that misses it least.
+threads: of a batch, all cores unless given.
+
+Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, residual,
+branch, families, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns SolutionsBatch for
+many: q (..., 8, dof) padded with NaN, count (...). Raises InputError for what is no goal, NoClosedFormError for
+an arm that this version does not solve.)doc";
 
 namespace {
 
@@ -35,10 +36,8 @@ Posed pose_from(const double* m) {
     return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
 }
 
-PyObject* from_careful(PyObject* robot, const ik::Arm& arm, const double* goal, const double* idle) {
-    const ReadGoal<double> read = read_goal(goal);
-    const ik::Solutions found = solve_pose(arm, read.T, idle);
-    const int dof = arm.plan.chain.n;
+// The solutions as Python sees them; null with an error set.
+PyObject* to_python(PyObject* robot, const double* goal, int dof, const ik::Solutions& found) {
     SolutionsObject* made = new_solutions(robot, goal, found.count, dof, found.status);
     if (!made) return nullptr;
     for (int k = 0; k < found.count; ++k) {
@@ -47,6 +46,9 @@ PyObject* from_careful(PyObject* robot, const ik::Arm& arm, const double* goal, 
         families_of(made)[k] = found.family[k];
     }
     return reinterpret_cast<PyObject*>(made);
+}
+PyObject* from_careful(PyObject* robot, const ik::Arm& arm, const double* goal, const double* idle) {
+    return to_python(robot, goal, arm.plan.chain.n, solve_pose(arm, read_goal(goal).T, idle));
 }
 
 // The 16 numbers of a float64 4×4 array, in `copy` if they are not contiguous; null if it is something else.
@@ -95,7 +97,7 @@ PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
         PyObject* answer = answer_single(self, *arm, goal);
         if (answer || PyErr_Occurred()) return answer;
     }
-    return robot_call_python(words, "inverse_kinematics", self, args, nargs, kwnames);
+    return robot_call_python(words, "inverse_kinematics", "ik", self, args, nargs, kwnames);
 }
 
 namespace {
@@ -188,30 +190,47 @@ PyObject* direction(PyObject*, PyObject* args) {
     return out;
 }
 
-// _ik_position(robot, p (3,)) → (status, q (k, n), families (k), missing [m], q that comes nearest (n,))
-PyObject* position(PyObject*, PyObject* args) {
-    PyObject *robot, *goal;
+// The arm and the goal of a call about a position; null with an error set.
+const ik::Arm* position_arm(PyObject* args, const char* function, PyObject*& robot, Vec3d& p) {
+    PyObject* goal;
     if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
     const ik::Arm* arm = arm_of(robot);
     if (!arm || !arm->is_short || !is_doubles(goal, 3)) {
-        PyErr_SetString(PyExc_TypeError,
-                        "_ik_position takes an arm of up to three joints and a float64 point (3,)");
+        PyErr_Format(PyExc_TypeError, "%s takes an arm of up to three joints and a float64 point (3,)",
+                     function);
         return nullptr;
     }
-    const double* p = data_of(goal);
-    const ik::PositionSolutions found = solve_position(arm->plan.chain, {p[0], p[1], p[2]});
-    const ik::Solutions all = from_short(arm->plan.chain, found);
-    npy_intp shape[2] = {all.count, arm->plan.chain.n};
-    PyObject* q = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
-    PyObject* nearest = PyArray_SimpleNew(1, shape + 1, NPY_DOUBLE);
-    PyObject* families = PyTuple_New(all.count);
-    if (!q || !nearest || !families) return nullptr;
-    for (int k = 0; k < all.count; ++k) {
-        std::copy(all.q[k], all.q[k] + shape[1], data_of(q) + k * shape[1]);
-        PyTuple_SET_ITEM(families, k, PyBool_FromLong(all.family[k]));
-    }
-    std::copy(found.nearest, found.nearest + shape[1], data_of(nearest));
-    return Py_BuildValue("iNNdN", int(all.status), q, families, found.missing, nearest);
+    const double* x = data_of(goal);
+    p = {x[0], x[1], x[2]};
+    return arm;
+}
+
+// _ik_position(robot, p (3,)) → solutions
+PyObject* position(PyObject*, PyObject* args) {
+    PyObject* robot;
+    Vec3d p;
+    const ik::Arm* arm = position_arm(args, "_ik_position", robot, p);
+    if (!arm) return nullptr;
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const double goal[16] = {none, none, none, p.x, none, none, none, p.y,
+                             none, none, none, p.z, none, none, none, none};
+    return to_python(robot, goal, arm->plan.chain.n,
+                     from_short(arm->plan.chain, solve_position(arm->plan.chain, p, false)));
+}
+
+// _ik_position_miss(robot, p (3,)) → (q that comes nearest (n,), what is missing there [m])
+PyObject* position_miss(PyObject*, PyObject* args) {
+    PyObject* robot;
+    Vec3d p;
+    const ik::Arm* arm = position_arm(args, "_ik_position_miss", robot, p);
+    if (!arm) return nullptr;
+    const ik::PositionSolutions found = solve_position(arm->plan.chain, p);
+    npy_intp n = arm->plan.chain.n;
+    PyObject* q = PyArray_SimpleNew(1, &n, NPY_DOUBLE);
+    if (!q) return nullptr;
+    const double* best = found.count ? found.q[0] : found.nearest;
+    std::copy(best, best + n, data_of(q));
+    return Py_BuildValue("Nd", q, found.missing);
 }
 
 // _ik_single(robot, goal (4, 4)) → solutions, or None for a goal that is no pose
@@ -248,6 +267,8 @@ PyMethodDef functions[] = {
     {"_ik_miss", miss, METH_VARARGS, "The configuration that comes nearest to a goal out of reach."},
     {"_ik_direction", direction, METH_VARARGS, "The direction of the self-motion through a configuration."},
     {"_ik_position", position, METH_VARARGS, "Solves a position goal of an arm of up to three joints."},
+    {"_ik_position_miss", position_miss, METH_VARARGS, "The configuration that comes nearest to a position."},
+    {"_ik_positions", ik_positions, METH_VARARGS, "Solves many position goals."},
     {"_ik_make", ik_make, METH_VARARGS, "A result from its parts."},
     {"_ik_single", single, METH_VARARGS, "Solves one goal."},
     {"_ik_many", ik_many, METH_VARARGS, "Solves many goals."},

@@ -54,3 +54,4 @@ PyObject* ik_make(PyObject*, PyObject* args);
 PyObject* ik_results(PyObject*, PyObject* cls);
 // ik_batch.cpp
 PyObject* ik_many(PyObject*, PyObject* args);
+PyObject* ik_positions(PyObject*, PyObject* args);

@@ -1,6 +1,7 @@
 #define CSPACE_FILLS_NUMPY_API
 #include "robot.hpp"
 
+#include <cstring>
 #include <new>
 #include <string>
 
@@ -31,8 +32,26 @@ bool robot_read_configuration(const RobotObject* robot, PyObject* value, double*
     return true;
 }
 
-PyObject* robot_call_python(const char* module, const char* function, PyObject* self, PyObject* const* args,
-                            Py_ssize_t nargs, PyObject* kwnames) {
+// "function() got an unexpected …" becomes "method() got an unexpected …"; any other error stays as it is.
+static void name_method(const char* function, const char* method) {
+    PyObject *type, *value, *traceback;
+    PyErr_Fetch(&type, &value, &traceback);
+    PyObject* text = type == PyExc_TypeError && value ? PyObject_Str(value) : nullptr;
+    const char* said = text ? PyUnicode_AsUTF8(text) : nullptr;
+    const std::size_t length = std::strlen(function);
+    if (said && !std::strncmp(said, function, length) && !std::strncmp(said + length, "()", 2)) {
+        PyErr_Format(PyExc_TypeError, "%s%s", method, said + length);
+        Py_DECREF(type);
+        Py_XDECREF(value);
+        Py_XDECREF(traceback);
+    } else {
+        PyErr_Restore(type, value, traceback);
+    }
+    Py_XDECREF(text);
+}
+
+PyObject* robot_call_python(const char* module, const char* function, const char* method, PyObject* self,
+                            PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     PyObject* room = PyImport_ImportModule(module);
     if (!room) return nullptr;
     PyObject* callee = PyObject_GetAttrString(room, function);
@@ -50,6 +69,7 @@ PyObject* robot_call_python(const char* module, const char* function, PyObject* 
         PyErr_NoMemory();
     }
     Py_DECREF(callee);
+    if (!result) name_method(function, method);
     return result;
 }
 
@@ -111,7 +131,7 @@ PyObject* fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* 
         if (kernels::chain_pose(*call.chain, call.q, data_of(T), &stack)) return T;
         Py_DECREF(T);
     }
-    return robot_call_python(words, "forward_kinematics", self, args, nargs, kwnames);
+    return robot_call_python(words, "forward_kinematics", "fk", self, args, nargs, kwnames);
 }
 
 PyObject* jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
@@ -124,7 +144,7 @@ PyObject* jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
         if (kernels::chain_jacobian(*call.chain, call.q, nullptr, data_of(J), &stack)) return J;
         Py_DECREF(J);
     }
-    return robot_call_python(words, "jacobian", self, args, nargs, kwnames);
+    return robot_call_python(words, "jacobian", "jacobian", self, args, nargs, kwnames);
 }
 
 PyObject* fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
@@ -145,7 +165,7 @@ PyObject* fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, P
         Py_XDECREF(both);
         if (PyErr_Occurred()) return nullptr;
     }
-    return robot_call_python(words, "fk_jacobian", self, args, nargs, kwnames);
+    return robot_call_python(words, "fk_jacobian", "fk_jacobian", self, args, nargs, kwnames);
 }
 
 PyObject* dof(PyObject* self, void*) {

@@ -32,9 +32,7 @@ inline constexpr int robot_stack_joints = 32;
 // A configuration that can be read in place: one float64 row of the robot's size. q points to its values, in
 // `copy` if they were not contiguous. False for everything else, and no error is set.
 bool robot_read_configuration(const RobotObject* robot, PyObject* value, double* copy, const double*& q);
-// Calls the free function of that name in a Python module, with the robot before the arguments.
-PyObject* robot_call_python(const char* module, const char* function, PyObject* self, PyObject* const* args,
-                            Py_ssize_t nargs, PyObject* kwnames);
-
-// Inverse kinematics, in its own file.
-PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
+// Calls the free function of that name in a Python module, with the robot before the arguments. Complaints
+// about the arguments name the method that was called.
+PyObject* robot_call_python(const char* module, const char* function, const char* method, PyObject* self,
+                            PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);

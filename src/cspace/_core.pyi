@@ -73,19 +73,20 @@ class RobotBase:
         Returns (T, J): T (..., 4, 4) as of fk, J (..., 6, dof) as of jacobian.
         """
 
-    def ik(self, goal: Any = None, /, *, position: ArrayLike | None = None, near: ArrayLike | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: ArrayLike | None = None, near: ArrayLike | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
         Every configuration q with fk(q) = goal.
 
-        goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. near (dof,) [rad, m]: the answer is the one
-        solution nearest to it, and joints that the pose leaves free take its values. least_squares: where nothing
-        reaches the goal, answer with the configuration that misses it least. threads: of a batch, all cores unless
-        given.
+        goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. position: instead of it the place of the
+        tip alone [m], (3,) or (..., 3), or (..., 2) for an arm in the plane; for arms of up to three joints. near
+        (dof,) [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its
+        values. least_squares: where nothing reaches the goal, answer with the configuration that misses it least.
+        threads: of a batch, all cores unless given.
 
-        Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, residual, branch,
-        within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns SolutionsBatch for many: q
-        (..., k_max, dof) padded with NaN, count (...). Raises InputError for what is no pose, NoClosedFormError for an
-        arm that this version does not solve.
+        Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, residual,
+        branch, families, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns SolutionsBatch for
+        many: q (..., 8, dof) padded with NaN, count (...). Raises InputError for what is no goal, NoClosedFormError for
+        an arm that this version does not solve.
         """
 
     @property
@@ -175,6 +176,8 @@ def _ik_make(*arguments: Any) -> Any: ...
 def _ik_many(*arguments: Any) -> int: ...
 def _ik_direction(*arguments: Any) -> NDArray[numpy.float64] | None: ...
 def _ik_miss(*arguments: Any) -> tuple[NDArray[numpy.float64], float, float]: ...
-def _ik_position(*arguments: Any) -> tuple[int, NDArray[numpy.float64], tuple[bool, ...], float, NDArray[numpy.float64]]: ...
+def _ik_position(*arguments: Any) -> Any: ...
+def _ik_position_miss(*arguments: Any) -> tuple[NDArray[numpy.float64], float]: ...
+def _ik_positions(*arguments: Any) -> int: ...
 def _ik_results(cls: type) -> None: ...
 def _ik_single(*arguments: Any) -> Any: ...

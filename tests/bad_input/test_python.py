@@ -43,7 +43,7 @@ CALLS = [
     (
         lambda: cs.load_robot("planar_2r").ik(position=(1e300, 1e300)),
         InputError,
-        "position is .* make sense",
+        "position lies at .* make sense",
     ),
     (lambda: cs.robots.find(5), InputTypeError, "given by a text, got int"),
     (lambda: cs.robots.search(None), InputTypeError, "given by a text, got NoneType"),

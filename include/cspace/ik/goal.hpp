@@ -46,7 +46,7 @@ CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     // Every comparison with NaN is false, so NaN anywhere refuses the goal.
     out.is_pose = (abs(dot(x, x) + dot(y, y) + dot(z, z) + dot(x, y) + dot(y, z) + dot(x, z)) <= 100.0) &&
                   (error <= tolerance::rotation_error) && (last_row <= tolerance::last_row) &&
-                  (size <= 1e100) && (dot(cross(x, y), z) > 0.0);
+                  (size <= tolerance::farthest) && (dot(cross(x, y), z) > 0.0);
     if (any(error > 1e-14)) R = straightened(R);
     return out;
 }

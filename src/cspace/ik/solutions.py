@@ -93,7 +93,7 @@ class Solutions(_core.SolutionsBase):
         if self._verdict != UNREACHABLE:
             return 0.0
         if self.goal.shape == (3,):
-            return float(_core._ik_position(self.robot, self.goal)[3])
+            return float(_core._ik_position_miss(self.robot, self.goal)[1])
         return float(_core._ik_miss(self.robot, self.goal, ORIENTATION_FIRST)[1])
 
     @property
@@ -229,7 +229,7 @@ def pose_errors(robot: Any, q: Array, goal: Array) -> Array:
     if q.size == 0:
         return np.zeros(q.shape[:-1])
     T = robot.fk(q)
-    if goal.shape == (3,):
+    if goal.shape[-1] == 3:
         return cast(Array, np.linalg.norm(T[..., :3, 3] - goal, axis=-1))
     away = np.linalg.norm(T[..., :3, 3] - goal[..., :3, 3], axis=-1)
     # ‖R − R_goal‖_F = 2√2 sin(angle/2), which keeps its digits for small angles.

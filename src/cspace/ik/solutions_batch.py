@@ -10,7 +10,15 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.ik.solutions import METRICS, UNREACHABLE, VERDICTS, Solutions, bounds_of, pose_errors
+from cspace.ik.solutions import (
+    METRICS,
+    UNREACHABLE,
+    VERDICTS,
+    Solutions,
+    bounds_of,
+    pose_errors,
+    position_goal,
+)
 from cspace.ik.windings import into_limits, nearest_winding, wrap
 from cspace.kinematics.batch import choice
 
@@ -24,8 +32,8 @@ class SolutionsBatch:
     """Every configuration that reaches each of n goals.
 
     q: (..., k_max, dof) [rad, m], the solutions of each goal first, NaN behind them. count: (...,)
-    solutions per goal. goal: (..., 4, 4). status: (...,) strings as of `Solutions`. Index with one goal's
-    index to get its `Solutions` with branch names and reasons.
+    solutions per goal. goal: (..., 4, 4), or (..., 3) for positions. status: (...,) strings as of
+    `Solutions`. Index with one goal's index to get its `Solutions`: batch[i].branch, batch[i].families.
     """
 
     def __init__(
@@ -55,10 +63,31 @@ class SolutionsBatch:
         """How far fk(q) is from the goal, (..., k_max): the larger of position [m] and angle [rad]; NaN
         padded.
         """
-        goal = np.broadcast_to(self.goal[..., None, :, :], (*self.q.shape[:-1], 4, 4))
+        shape = self.goal.shape[self.count.ndim :]
+        goal = np.broadcast_to(np.expand_dims(self.goal, self.count.ndim), (*self.q.shape[:-1], *shape))
         out = np.full(self.q.shape[:-1], np.nan)
         real = self._real
         out[real] = pose_errors(self.robot, self.q[real], goal[real])
+        return out
+
+    @property
+    def reason(self) -> npt.NDArray[np.object_]:
+        """The verdict of each goal in a sentence, (...,). Made when read, goal by goal: an unreachable one
+        costs a search, so for a few goals ask batch[i].reason.
+        """
+        return self._of_each("reason", np.dtype(object))
+
+    @property
+    def missing(self) -> Array:
+        """By how much each goal is out of reach [m], (...,), as of `Solutions`; made when read, by a search
+        for each unreachable goal.
+        """
+        return self._of_each("missing", np.dtype(float))
+
+    def _of_each(self, name: str, kind: np.dtype[Any]) -> npt.NDArray[Any]:
+        out = np.empty(self.count.shape, dtype=kind)
+        for index in np.ndindex(out.shape):
+            out[index] = getattr(self[index], name)
         return out
 
     @property
@@ -68,14 +97,16 @@ class SolutionsBatch:
     def __getitem__(self, index: Any) -> Solutions:
         from cspace.ik.solve import prepare
 
-        goal = self.goal[index]
-        if goal.shape != (4, 4):
+        verdict = self._verdict[index]
+        if np.ndim(verdict):
             raise InputError(
-                f"index {index!r} picks {goal.shape[:-2]} goals, expected one: use .q for slices"
+                f"index {index!r} picks {np.shape(verdict)} goals, expected one: use .q for slices"
             )
+        goal = np.ascontiguousarray(self.goal[index])
         rows = self.q[index][: int(self.count[index])]
         prepare(self.robot)  # a robot out of a pickle comes without its solver
-        full = _core._ik_single(self.robot, np.ascontiguousarray(goal))
+        is_pose = goal.shape == (4, 4)
+        full = _core._ik_single(self.robot, goal) if is_pose else _core._ik_position(self.robot, goal)
         if len(full) == len(rows) and np.array_equal(full.q, rows):
             return cast(Solutions, full)
         branches = tuple(
@@ -84,8 +115,8 @@ class SolutionsBatch:
         )
         made = _core._ik_make(
             self.robot,
-            np.ascontiguousarray(goal),
-            int(self._verdict[index]),
+            goal if is_pose else position_goal(goal),
+            int(verdict),
             np.ascontiguousarray(rows),
             branches,
             (False,) * len(rows),

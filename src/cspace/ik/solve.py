@@ -6,6 +6,7 @@ import os
 from typing import Any, cast
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
@@ -25,6 +26,8 @@ FARTHEST = 1e100
 MAX_JOINTS = 6
 MOST_THREADS = 1024
 MAX_POSITION_JOINTS = 3
+Counts = npt.NDArray[np.int64]
+Verdicts = npt.NDArray[np.uint8]
 
 
 def prepare(robot: Any) -> None:
@@ -61,12 +64,12 @@ def inverse_kinematics(
 ) -> Solutions | SolutionsBatch:
     """Every configuration q with fk(q) = goal.
 
-    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. position: (3,) the tip alone [m], or
-    (2,) for an arm in the plane; for arms of up to three joints. near: (dof,), a configuration; the
-    answer is the one solution nearest to it, and joints that the pose leaves free take its values.
-    least_squares: where nothing reaches the goal, answer with the configuration that misses it least (a
-    radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
-    answer does not depend on it.
+    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. position: the tip alone [m],
+    (3,) or (..., 3), or (..., 2) for an arm in the plane; for arms of up to three joints. near: (dof,), a
+    configuration; the answer is the one solution nearest to it, and joints that the pose leaves free take
+    its values. least_squares: where nothing reaches the goal, answer with the configuration that misses it
+    least (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless
+    given; the answer does not depend on it.
 
     Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
     with the reason); a goal that is no pose raises InputError, an arm without a closed form
@@ -80,9 +83,10 @@ def inverse_kinematics(
         raise InputTypeError(
             "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or robot.ik(position=p)"
         )
+    found: Solutions | SolutionsBatch
     if position is not None:
-        p = position_in_base(robot, position)
-        found: Solutions | SolutionsBatch = solve_position(robot, p)
+        p = points_in_base(robot, position)
+        found = _core._ik_position(robot, p) if p.ndim == 1 else solve_positions(robot, p, workers)
     else:
         T = goal_array(goal)
         found = solve_many(robot, T, workers) if T.ndim > 2 else solve_one(robot, T, near)
@@ -95,8 +99,8 @@ def inverse_kinematics(
     return found if near is None else found.nearest(near)
 
 
-def position_in_base(robot: Any, position: Any) -> Array:
-    """One point in the base (3,); a point of the plane (2,) is lifted to the height that a planar arm
+def points_in_base(robot: Any, position: Any) -> Array:
+    """Points in the base (..., 3); points of the plane (..., 2) are lifted to the height that a planar arm
     keeps.
     """
     if len(robot.chain.joint_types) > MAX_POSITION_JOINTS:
@@ -104,28 +108,28 @@ def position_in_base(robot: Any, position: Any) -> Array:
             f"position goals are for arms of up to {MAX_POSITION_JOINTS} joints; {robot.name} has "
             f"{len(robot.chain.joint_types)}, which leaves freedom: give a full pose"
         )
-    p = as_floats(position, "position", last=(None,))
-    if p.shape == (2,):
-        chain = robot.chain
-        turns = np.array([kind == "R" for kind in chain.joint_types])
-        in_plane = np.where(turns, np.abs(chain.axes[:, 2]) > 1 - 1e-12, np.abs(chain.axes[:, 2]) < 1e-6)
-        if not in_plane.all():
-            raise InputError(
-                f"position has shape (2,), but {robot.name} does not move in a plane z = constant"
-            )
-        p = np.append(p, chain.T_zero[2, 3])
-    if p.shape != (3,):
-        raise InputError(f"position has shape {p.shape}, expected (3,), or (2,) for an arm in the plane")
-    if np.abs(p).sum() > FARTHEST:
-        raise InputError(f"position is {p.tolist()}; goals up to {FARTHEST:g} m away make sense")
+    p = as_floats(position, "position")
+    if p.ndim > 0 and p.shape[-1] == 2:
+        p = lifted(robot, p)
+    if p.ndim == 0 or p.shape[-1] != 3:
+        raise InputError(
+            f"position has shape {p.shape}, expected (..., 3), or (..., 2) for an arm in the plane"
+        )
+    if p.ndim == 1 and np.abs(p).sum() > FARTHEST:
+        raise too_far("position", p)
     return np.ascontiguousarray(p)
 
 
-def solve_position(robot: Any, p: Array) -> Solutions:
-    verdict, q, families, _, _ = _core._ik_position(robot, p)
-    return cast(
-        Solutions, _core._ik_make(robot, position_goal(p), verdict, q, tuple(range(len(q))), families, None)
-    )
+def lifted(robot: Any, p: Array) -> Array:
+    """Points (..., 2) of the plane z = constant in which an arm keeps its tip, as points (..., 3)."""
+    chain = robot.chain
+    turns = np.array([kind == "R" for kind in chain.joint_types])
+    in_plane = np.where(turns, np.abs(chain.axes[:, 2]) > 1 - 1e-12, np.abs(chain.axes[:, 2]) < 1e-6)
+    if not in_plane.all():
+        raise InputError(
+            f"position has shape {p.shape}, but {robot.name} does not move in a plane z = constant"
+        )
+    return np.concatenate([p, np.full((*p.shape[:-1], 1), chain.T_zero[2, 3])], axis=-1)
 
 
 def goal_array(goal: Any) -> Array:
@@ -141,18 +145,18 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
     if near is None:
         found = _core._ik_single(robot, T)
         if found is None:
-            raise too_far("goal", T)
+            raise too_far("goal", T[:3, 3])
         return cast(Solutions, found)
     seed = as_floats(near, "near", last=(robot.dof,))
     if seed.ndim != 1:
         raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
     if np.abs(T[:3, 3]).sum() > FARTHEST:
-        raise too_far("goal", T)
+        raise too_far("goal", T[:3, 3])
     return cast(Solutions, _core._ik_careful(robot, T, np.ascontiguousarray(seed)))
 
 
-def too_far(subject: str, T: Array) -> InputError:
-    return InputError(f"{subject} lies at {T[:3, 3].tolist()} m; goals up to {FARTHEST:g} m away make sense")
+def too_far(subject: str, p: Array) -> InputError:
+    return InputError(f"{subject} lies at {p.tolist()} m; goals up to {FARTHEST:g} m away make sense")
 
 
 def count_of_threads(threads: int | None) -> int:
@@ -169,28 +173,44 @@ def count_of_threads(threads: int | None) -> int:
 
 def solve_many(robot: Any, T: Array, workers: int) -> SolutionsBatch:
     leading = T.shape[:-2]
-    n = int(np.prod(leading))
-    q = spare_array((n, MAX_BRANCHES, robot.dof))
-    count = np.empty(n, dtype=np.int64)
-    verdict = np.empty(n, dtype=np.uint8)
-    bad = _core._ik_many(robot, T.reshape(n, 4, 4), q, count, verdict, workers)
-    if bad < n:
+    answers = room_for(robot, leading)
+    bad = _core._ik_many(robot, T.reshape(-1, 4, 4), *answers, workers)
+    if bad < len(answers[0]):
         as_pose(T, "goal")  # finds the words for what is wrong
         index = tuple(map(int, np.unravel_index(bad, leading)))
-        raise too_far(f"goal {index}", T[index])
-    return SolutionsBatch(
-        robot,
-        T,
-        q.reshape(*leading, MAX_BRANCHES, robot.dof),
-        count.reshape(leading),
-        verdict.reshape(leading),
-    )
+        raise too_far(f"goal {index}", T[index][:3, 3])
+    return shaped(robot, T, leading, answers)
+
+
+def solve_positions(robot: Any, p: Array, workers: int) -> SolutionsBatch:
+    leading = p.shape[:-1]
+    answers = room_for(robot, leading)
+    bad = _core._ik_positions(robot, p.reshape(-1, 3), *answers, workers)
+    if bad < len(answers[0]):
+        index = tuple(map(int, np.unravel_index(bad, leading)))
+        raise too_far(f"position {index}", p[index])
+    return shaped(robot, p, leading, answers)
+
+
+def room_for(robot: Any, leading: tuple[int, ...]) -> tuple[Array, Counts, Verdicts]:
+    """Arrays for the answers to n goals: q (n, 8, dof), count (n,), verdict (n,)."""
+    n = int(np.prod(leading))
+    q = spare_array((n, MAX_BRANCHES, robot.dof))
+    return q, np.empty(n, dtype=np.int64), np.empty(n, dtype=np.uint8)
+
+
+def shaped(
+    robot: Any, goal: Array, leading: tuple[int, ...], answers: tuple[Array, Counts, Verdicts]
+) -> SolutionsBatch:
+    q, count, verdict = answers
+    q = q.reshape(*leading, MAX_BRANCHES, robot.dof)
+    return SolutionsBatch(robot, goal, q, count.reshape(leading), verdict.reshape(leading))
 
 
 def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
     goal = found.goal
     if goal.shape == (3,):
-        _, _, _, missing, q = _core._ik_position(robot, goal)
+        q, missing = _core._ik_position_miss(robot, goal)
         goal, text = position_goal(goal), f"{missing:.4g} m"
     else:
         q, away, turned = _core._ik_miss(robot, goal, 1.0)

@@ -103,7 +103,7 @@ void by_last_axis(const ik::Chain& chain, const Posed& G, double size, bool back
     const Vec3d h = chain.axis[n - 1];
     for (double along : {0.0, size}) {
         others.tip = {identity_pose().R, foot_of_tip(chain, n - 1) + along * h};
-        const ik::PositionSolutions placed = solve_position(others, G * others.tip.t);
+        const ik::PositionSolutions placed = solve_position(others, G * others.tip.t, false);
         for (int k = 0; k < placed.count; ++k) {
             double q[n];
             Posed rest = G;

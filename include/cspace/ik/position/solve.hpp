@@ -81,12 +81,12 @@ inline void candidates(const TipGap<3>& g, ik::PositionSolutions& found) {
 }
 
 template <int n>
-void solve(const ik::Chain& chain, const Vec3d& goal, ik::PositionSolutions& found) {
+void solve(const ik::Chain& chain, const Vec3d& goal, bool measure_miss, ik::PositionSolutions& found) {
     const PositionScale scale = position_scale(chain, goal);
     const double size = scale.size;
     const TipGap<n> g = tip_gap<n>(chain, goal, scale);
     candidates(g, found);
-    if (found.count == 0) found.missing = size * nearest_configuration(g, found.nearest);
+    if (found.count == 0 && measure_miss) found.missing = size * nearest_configuration(g, found.nearest);
     for (int i = 0; i < n; ++i) {
         if (!g.prismatic[i]) continue;
         found.nearest[i] *= size;
@@ -97,12 +97,14 @@ void solve(const ik::Chain& chain, const Vec3d& goal, ik::PositionSolutions& fou
 
 }  // namespace position
 
-// The tip of the chain (n ≤ 3) to p, in base. Without a solution, what is missing.
-inline ik::PositionSolutions solve_position(const ik::Chain& chain, const Vec3d& p) {
+// The tip of the chain (n ≤ 3) to p, in base. Without a solution, what is missing: a search that costs fifty
+// times the solution, so it is left out where nobody asks.
+inline ik::PositionSolutions solve_position(const ik::Chain& chain, const Vec3d& p,
+                                            bool measure_miss = true) {
     ik::PositionSolutions found;
-    if (chain.n == 1) position::solve<1>(chain, p, found);
-    if (chain.n == 2) position::solve<2>(chain, p, found);
-    if (chain.n == 3) position::solve<3>(chain, p, found);
+    if (chain.n == 1) position::solve<1>(chain, p, measure_miss, found);
+    if (chain.n == 2) position::solve<2>(chain, p, measure_miss, found);
+    if (chain.n == 3) position::solve<3>(chain, p, measure_miss, found);
     return found;
 }
 
