@@ -257,6 +257,32 @@ def test_separators_and_capitals_do_not_count(name):
     assert find(name) in names()
 
 
+MAKERS = {
+    "KUKA KR 6 R900 sixx": "kr6_r900",
+    "KUKA LBR iiwa 7": "iiwa7",
+    "Universal Robots UR5e": "ur5e",
+    "universal ur10e": "ur10e",
+    "Unimation PUMA 560": "puma560",
+    "Willow Garage PR2": "pr2_right",
+    "Kinova Gen3": "gen3",
+    "Unitree G1": "g1_left_arm",
+    "PAL TALOS": "talos_left_leg",
+}
+
+
+@pytest.mark.parametrize("name", MAKERS)
+def test_the_maker_may_stand_before_the_name(name):
+    assert find(name) == MAKERS[name]
+
+
+@pytest.mark.parametrize(
+    "name", ["ABB UR5e", "Universal Robots", "KUKA", "robots ur5e", "ur5e Universal Robots"]
+)
+def test_another_maker_or_none_but_the_maker_is_nobody(name):
+    with pytest.raises(UnknownNameError):
+        find(name)
+
+
 def found(text):
     return [row.name for row in search(text)]
 

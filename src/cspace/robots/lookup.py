@@ -52,10 +52,12 @@ def find(name: str) -> str:
     """The catalogue name of a robot called by any of its names.
 
     Capitals count as small letters; blanks, dashes, underscores and full stops do not count: "UR-5e" is ur5e.
-    Every other character counts: "ur@5e" is nobody's name. Raises UnknownNameError with the nearest names.
+    Every other character counts: "ur@5e" is nobody's name. The maker may stand before: "KUKA KR 6 R900".
+    Raises UnknownNameError with the nearest names.
     """
     _check_text(name, "a robot of the catalogue")
-    found = PLAIN_NAMES.get(re.sub(SEPARATORS, "", name.lower()))
+    key = _key(name)
+    found = PLAIN_NAMES.get(key) or _after_its_maker(key)
     if found is not None:
         return found
     known = [known for row in ROWS for known in (row[0], *row[7])]
@@ -88,6 +90,20 @@ def search(text: str) -> tuple[CatalogueRow, ...]:
 def plain(name: str) -> str:
     """A text as a search compares it: small letters and digits alone."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
+
+
+def _key(name: str) -> str:
+    """A name without capitals and separators, as PLAIN_NAMES holds it."""
+    return re.sub(SEPARATORS, "", name.lower())
+
+
+def _after_its_maker(key: str) -> str | None:
+    """The robot whose maker, whole or by the first word, and one of whose names make up `key`."""
+    for name, _, _, _, vendor, *_ in ROWS:
+        for maker in {_key(vendor), _key(vendor.split()[0])}:
+            if key.startswith(maker) and PLAIN_NAMES.get(key[len(maker) :]) == name:
+                return name
+    return None
 
 
 def _check_text(value: object, subject: str) -> None:
