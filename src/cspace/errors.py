@@ -51,6 +51,11 @@ class MissingExtraError(CspaceError, ImportError):
     def __init__(self, extra: str, purpose: str) -> None:
         super().__init__(f"{purpose} needs an optional part; install it with: pip install 'cspace[{extra}]'")
         self.extra = extra
+        self.purpose = purpose
+
+    def __reduce__(self) -> tuple[type[MissingExtraError], tuple[str, str]]:
+        """What pickle makes it from again: its two arguments, not the message."""
+        return type(self), (self.extra, self.purpose)
 
 
 def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = "") -> UnknownNameError:

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import pickle
+
 import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import CspaceError, InputError, InputTypeError, UnknownNameError
+from cspace.errors import (
+    CspaceError,
+    DescriptionError,
+    InputError,
+    InputTypeError,
+    MissingExtraError,
+    UnknownNameError,
+)
 from cspace.model import Limits
 
 ARM = cs.load_robot("ur5e")
@@ -36,6 +45,9 @@ CALLS = [
     (lambda: ARM.random_configuration(reach=[1, 2]), InputError, "reach is"),
     (lambda: ARM.random_configuration(reach="far"), InputTypeError, "reach must be numbers"),
     (lambda: ARM.random_configuration(reach=-1.0), InputError, "reach is -1"),
+    (lambda: cs.kinematics.jacobian("ur5e", np.zeros(6)), InputTypeError, "takes a robot first, got str"),
+    (lambda: cs.kinematics.center_of_mass(None, np.zeros(6)), InputTypeError, "got NoneType; cspace.load"),
+    (lambda: cs.kinematics.workspace(ARM.description), InputTypeError, "got Description"),
     (lambda: cs.Robot("ur5e"), InputTypeError, "Robot takes a Description, got str; load_robot"),
     (lambda: cs.Robot.from_urdf(None), InputTypeError, "path or its text, got NoneType"),
     (lambda: cs.Robot.from_toml([]), InputTypeError, "path or its text, got list"),
@@ -91,3 +103,18 @@ def test_a_chain_of_no_joints_or_too_many_has_no_closed_form_and_says_so(n):
     robot = cs.Robot.from_urdf(f"<robot name='r'>{links}{joints}</robot>")
     with pytest.raises(CspaceError, match="no closed form for r"):
         robot.ik(np.eye(4))
+
+
+@pytest.mark.parametrize(
+    "error",
+    [
+        MissingExtraError("plot", "a picture"),
+        DescriptionError("no links", path="arm.urdf", line=3),
+        InputError("q is NaN"),
+    ],
+)
+def test_errors_travel_between_processes(error):
+    again = pickle.loads(pickle.dumps(error))
+    assert type(again) is type(error)
+    assert str(again) == str(error)
+    assert vars(again) == vars(error)

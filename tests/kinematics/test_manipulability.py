@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cspace.errors import InputError, UnknownNameError
+from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.model import from_screws
 from cspace.robot import Robot
 from kinematics import robots
@@ -134,6 +134,12 @@ def test_rows_and_batches_that_make_no_sense_are_refused():
     robot = robots.arm(1)
     with pytest.raises(UnknownNameError, match="no row 'vw' in the Jacobian; did you mean"):
         robot.manipulability(np.zeros(6), rows="vw")
+    for rows in (np.array(3), 3, None):
+        with pytest.raises(InputTypeError, match="rows must be names"):
+            robot.manipulability(np.zeros(6), rows=rows)
+    for rows in (np.eye(2), [["vx"]], [3]):
+        with pytest.raises(UnknownNameError, match="in the Jacobian"):
+            robot.manipulability(np.zeros(6), rows=rows)
     with pytest.raises(InputError, match="once"):
         robot.singular_values(np.zeros(6), rows=("vx", "vx"))
     with pytest.raises(InputError, match="distance_to_singularity takes batches"):

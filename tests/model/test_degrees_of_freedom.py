@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from cspace.errors import InputError, UnknownNameError
+import cspace as cs
+from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.model import (
     Description,
     Joint,
@@ -98,3 +99,25 @@ def test_bad_counts_are_refused():
         mobility(Description("r", (Link("a"),)), links=2)
     with pytest.raises(InputError, match="negative"):
         task_word(-1, 6)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "words"),
+    [
+        (lambda: mobility(cs.load_robot("ur5e")), InputTypeError, "got Robot; a robot has one"),
+        (lambda: tree_freedoms("ur5e"), InputTypeError, "of a Description, got str"),
+        (lambda: mobility(links=4, joints=4), InputTypeError, "joints is a list of freedoms"),
+        (lambda: mobility(links=4, joints="revolute"), InputTypeError, "joints is a list of freedoms"),
+        (lambda: mobility(links=4, joints=np.ones((4, 2))), InputError, "expected 0 to 6"),
+        (lambda: mobility(links=4, joints=[None]), InputError, "a joint with None freedoms"),
+        (lambda: point_freedoms([3]), InputError, "expected 2"),
+        (lambda: body_freedoms("3"), InputError, "expected 2"),
+    ],
+)
+def test_what_cannot_be_counted_is_refused(call, error, words):
+    with pytest.raises(error, match=words):
+        call()
+
+
+def test_whole_numbers_may_come_as_an_array():
+    assert mobility(links=4, joints=np.ones(4), dimension=2) == 1

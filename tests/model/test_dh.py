@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from cspace.errors import InputError, UnknownNameError
+from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.model import Limits, chain, dh_matrix, from_dh, from_screws, from_urdf, to_dh, to_urdf
 from cspace.model.dh import DHTable
 from cspace.spatial import pose
@@ -254,3 +254,19 @@ def test_limits_are_read_as_a_table():
     assert titles.split() == ["i", "lower", "upper", "velocity"]
     assert [row.split() for row in rows] == [["0", "-1", "2.5", "-"], ["1", "-", "-", "0.25"]]
     assert repr(Limits([], [])).splitlines()[1].split() == ["i", "lower", "upper"]
+
+
+@pytest.mark.parametrize(
+    ("column", "error", "words"),
+    [
+        (np.nan, InputError, "a holds nan"),
+        (np.inf, InputError, "a holds inf"),
+        (1j, InputTypeError, "a must be numbers"),
+        ("abc", InputTypeError, "a must be numbers"),
+        ([[1.0], [1.0, 2.0]], InputTypeError, "a must be numbers"),
+        (np.zeros(2), InputError, r"shapes of alpha \(3,\), a \(2,\), .* do not fit"),
+    ],
+)
+def test_a_matrix_of_what_is_no_number_is_refused(column, error, words):
+    with pytest.raises(error, match=words):
+        dh_matrix(np.zeros(3), column, 0.0, 0.0, convention="modified")

@@ -1,11 +1,24 @@
 import math
 import os
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from cspace.errors import DescriptionError, InputError
-from cspace.model import Description, Geometry, Joint, Link, Loop, Mesh, Mimic, from_urdf, to_urdf
+from cspace.errors import DescriptionError, InputError, InputTypeError
+from cspace.model import (
+    Description,
+    Geometry,
+    Joint,
+    Link,
+    Loop,
+    Mesh,
+    Mimic,
+    from_toml,
+    from_urdf,
+    to_toml,
+    to_urdf,
+)
 from model.random_robots import random_pose, random_tree, random_values
 from oracles.forward import link_poses
 
@@ -339,6 +352,14 @@ def test_packages_are_found_by_argument_first_whether_it_holds_or_is_the_package
     mine = put("mine")
     assert mesh_of(path, package_paths=[tmp / "mine"]).file() == mine
     assert mesh_of(path, package_paths=[tmp / "mine" / "arm"]).file() == mine
+
+
+@pytest.mark.parametrize("paths", ["/opt/robots", Path("/opt/robots"), b"/opt/robots", 5, [5], None])
+@pytest.mark.parametrize("read", [from_urdf, from_toml])
+def test_package_paths_that_are_no_list_of_folders_are_refused(read, paths):
+    text = ARM if read is from_urdf else to_toml(from_urdf(ARM))
+    with pytest.raises(InputTypeError, match="package_paths is a list of folders"):
+        read(text, package_paths=paths)
 
 
 @pytest.mark.parametrize(

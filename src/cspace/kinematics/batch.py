@@ -9,6 +9,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from cspace._core import RobotBase
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.model import Chain, Limits
@@ -69,6 +70,7 @@ def rows_of(
     refuse_infinite), a pose that is none, or leading axes that do not fit; InputTypeError for what is no
     number.
     """
+    check_robot(robot)
     q = _row_vectors(q, "q", len(robot.joint_names), "one value per joint", robot, finite=False)
     given: dict[str, tuple[Array, int]] = {"q": (q, 1)}
     if T_world_base is not None:
@@ -113,11 +115,21 @@ def refuse_infinite(batch: Batch) -> None:
     as_floats(batch.q.reshape((*batch.shape, batch.q.shape[1])), "q")
 
 
+def check_robot(robot: object) -> None:
+    """Raise InputTypeError for what is no robot, such as its name."""
+    if not isinstance(robot, RobotBase):
+        raise InputTypeError(
+            f"this function takes a robot first, got {type(robot).__name__};"
+            " cspace.load_robot(name) makes one"
+        )
+
+
 def frame_number(robot: Machine, frame: str | None) -> int:
     """The number of a frame among `robot.frames`, of the tip if None.
 
     Raises UnknownNameError for a name that is not there, InputError where a tree leaves the choice.
     """
+    check_robot(robot)
     if frame is None:
         frame = robot.tip
     if frame is None:

@@ -48,11 +48,12 @@ def row_numbers(rows: str | Iterable[str]) -> list[int]:
     """
     if isinstance(rows, str) and rows in GROUPS:
         return [ROWS.index(row) for row in GROUPS[rows]]
-    if not isinstance(rows, Iterable):
-        raise InputTypeError(f"rows must be names, got {type(rows).__name__}")
-    names = [rows] if isinstance(rows, str) else list(rows)
+    try:
+        names = [rows] if isinstance(rows, str) else list(rows)
+    except TypeError:
+        raise InputTypeError(f"rows must be names, got {type(rows).__name__}") from None
     for name in names:
-        if name not in ROWS:
+        if not isinstance(name, str) or name not in ROWS:
             raise suggest("row", name, (*ROWS, *GROUPS), owner="the Jacobian")
     if not names or len(set(names)) < len(names):
         raise InputError(f"rows are {names}; each must be named once, and one at least")

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from numbers import Real
 from typing import Any, Final
 
-from cspace.errors import InputError, suggest
+from cspace.errors import InputError, InputTypeError, suggest
 from cspace.model.description import Description
 from cspace.model.joint import FREEDOMS
 
@@ -30,7 +31,8 @@ def tree_freedoms(description: Description, *, floating: bool = False) -> int:
 
     Joints that mimic add none; a floating joint in the file counts 6, a planar one 3.
     """
-    return sum(joint.freedoms for joint in description.joints) + (6 if floating else 0)
+    joints = _checked_description(description).joints
+    return sum(joint.freedoms for joint in joints) + (6 if floating else 0)
 
 
 def mobility(
@@ -55,13 +57,15 @@ def mobility(
     if description is not None:
         if links is not None or joints is not None:
             raise InputError("give either a description or links= and joints=, not both")
-        links = len(description.links)
+        links = len(_checked_description(description).links)
         joints = [joint.freedoms for joint in description.joints]
         joints += [FREEDOMS[loop.type] for loop in description.loops]
     if links is None or joints is None:
         raise InputError(
             "mobility needs a description, or links= (the ground counted) and joints= (freedoms)"
         )
+    if isinstance(joints, str) or not isinstance(joints, Iterable):
+        raise InputTypeError(f"joints is a list of freedoms or joint types, got {joints!r}")
     if links < 1:
         raise InputError(f"links is {links}; a linkage has at least the ground")
     freedoms = [_freedoms(joint, size) for joint in joints]
@@ -78,8 +82,17 @@ def task_word(dof: int, task: int) -> str:
     return "over-constrained" if dof < task else "redundant" if dof > task else "exact"
 
 
+def _checked_description(description: object) -> Description:
+    if not isinstance(description, Description):
+        raise InputTypeError(
+            f"freedoms are counted of a Description, got {type(description).__name__};"
+            " a robot has one: robot.description"
+        )
+    return description
+
+
 def _checked_dimension(dimension: int) -> int:
-    if dimension not in BODY:
+    if not isinstance(dimension, Real) or dimension not in BODY:
         raise InputError(f"dimension is {dimension!r}; expected 2 (the plane) or 3 (space)")
     return dimension
 
@@ -90,6 +103,7 @@ def _freedoms(joint: Any, size: int) -> int:
         if joint not in FREEDOMS:
             raise suggest("joint type", joint, FREEDOMS)
         joint = FREEDOMS[joint]
-    if joint not in range(size + 1):
+    possible = isinstance(joint, Real) and joint in range(size + 1)
+    if not possible:
         raise InputError(f"a joint with {joint!r} freedoms; expected 0 to {size}")
     return int(joint)

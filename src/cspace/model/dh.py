@@ -41,11 +41,16 @@ def dh_matrix(alpha: Any, a: Any, d: Any, theta: Any, *, convention: str) -> Arr
         [cθ, −sθ, 0, a], [sθ cα, cθ cα, −sα, −d sα], [sθ sα, cθ sα, cα, d cα], with α, a of link i−1.
 
     alpha, theta [rad], a, d [m]: numbers or arrays (...). Returns (..., 4, 4).
-    Raises UnknownNameError for another convention. Sources: Denavit, Hartenberg 1955; Craig 1986, section
-    3.4.
+    Raises UnknownNameError for another convention, InputError for NaN, inf and shapes that do not broadcast.
+    Sources: Denavit, Hartenberg 1955; Craig 1986, section 3.4.
     """
     standard = check_convention(convention) == "standard"
-    alpha, a, d, theta = np.broadcast_arrays(*(np.asarray(x, dtype=np.float64) for x in (alpha, a, d, theta)))
+    numbers = [as_floats(x, name) for x, name in zip((alpha, a, d, theta), COLUMNS, strict=True)]
+    try:
+        alpha, a, d, theta = np.broadcast_arrays(*numbers)
+    except ValueError:
+        shapes = ", ".join(f"{name} {x.shape}" for name, x in zip(COLUMNS, numbers, strict=True))
+        raise InputError(f"the shapes of {shapes} do not fit together") from None
     ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
     zero, one = np.zeros_like(ca), np.ones_like(ca)
     if standard:

@@ -5,11 +5,26 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 from urllib.parse import unquote
 
-__all__ = ["locate"]
+from cspace.errors import InputTypeError
+
+__all__ = ["folders", "locate"]
 
 PACKAGE_SCHEMES = ("package://", "model://")
+
+
+def folders(package_paths: Any) -> tuple[str, ...]:
+    """The folders of a `package_paths` argument; one folder alone would be read as a list of its letters."""
+    if isinstance(package_paths, (str, bytes, os.PathLike)):
+        raise InputTypeError(
+            f"package_paths is a list of folders, got {os.fsdecode(package_paths)!r}; put it in brackets"
+        )
+    try:
+        return tuple(map(os.fsdecode, package_paths))
+    except TypeError as error:
+        raise InputTypeError(f"package_paths is a list of folders: {error}") from None
 
 
 def locate(uri: str, beside: str | None, package_paths: Sequence[str]) -> tuple[str | None, tuple[str, ...]]:

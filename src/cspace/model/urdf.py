@@ -15,6 +15,7 @@ from cspace.model.description import Description
 from cspace.model.files import path_of, read_bytes
 from cspace.model.joint import JOINT_TYPES, Joint, Mimic
 from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
+from cspace.model.packages import folders
 from cspace.model.structure import ElementError
 from cspace.model.transforms import from_rpy
 from cspace.model.values import IDENTITY, X_AXIS, frozen
@@ -60,7 +61,7 @@ class _Reader:
     def __init__(self, path: str | None, package_paths: Sequence[Any], lines_before: int) -> None:
         self.path = path
         self.beside = None if path is None else os.path.dirname(os.path.abspath(path))
-        self.package_paths = tuple(os.fspath(folder) for folder in package_paths)
+        self.package_paths = folders(package_paths)
         self.lines_before = lines_before
         self.colors: dict[str, Color] = {}
 
