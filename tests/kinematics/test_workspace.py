@@ -41,6 +41,22 @@ def test_without_limits_a_planar_arm_reaches_a_ring(lengths):
     assert (distance >= inner - 1e-12).all()
 
 
+@pytest.mark.parametrize(("lower", "upper"), [(-np.inf, np.inf), (-0.5, 2.0), (-9.0, 9.0), (1.0, 1.0)])
+def test_one_joint_reaches_an_arc_with_nothing_inside(lower, upper):
+    space = limited([0.7], [lower], [upper]).workspace(50, rng=1)
+    (curve,) = space.boundary
+    np.testing.assert_array_equal(curve[0], curve[-1])
+    np.testing.assert_allclose(np.hypot(curve[:, 0], curve[:, 1]), 0.7, atol=1e-15)
+    assert space.area == pytest.approx(0.0, abs=1e-14)
+    steps = np.linalg.norm(np.diff(curve, axis=0), axis=1)
+    width = min(upper - lower, 2 * np.pi)
+    assert steps.max() <= 0.7 * 2 * np.pi / 256
+    assert steps.sum() == pytest.approx(2 * 0.7 * width, rel=1e-4)
+    if width < 2 * np.pi:
+        angles = np.arctan2(curve[:, 1], curve[:, 0])
+        np.testing.assert_allclose([angles.min(), angles.max()], [lower, upper], atol=1e-12)
+
+
 def limited(lengths, lower, upper):
     n = len(lengths)
     points = np.zeros((n, 3))

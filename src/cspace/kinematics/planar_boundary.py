@@ -164,6 +164,10 @@ def boundary(arm: PlanarArm, *, step: float = TURN / 256) -> list[Array]:
 
     step: largest angle [rad] of an arc between two points of a curve.
     """
+    if len(arm.lengths) == 1:  # a line with nothing inside: there and back it closes
+        start, width = map(float, arm.ranges[0])
+        line = _points(Arc((0.0, 0.0), arm.reach, start, width), start, start + width, step)
+        return [np.concatenate([line, line[-2::-1]])]
     if len(arm.lengths) > 3 and (arm.ranges[:, 1] >= TURN).all():
         inner = 2.0 * float(arm.lengths.max()) - arm.reach
         full = Arc((0.0, 0.0), arm.reach, 0.0, TURN)

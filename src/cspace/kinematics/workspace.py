@@ -24,7 +24,8 @@ class Workspace:
 
     points (n, 3): positions [m] in the base. q (n, n_joints): the configurations [rad or m] that reach them.
     boundary: closed curves (m, 3) [m], the first point repeated, for a planar arm of turning joints; empty
-    for other robots. area: what they enclose [m²], None without a boundary.
+    for other robots. Of one joint it is the arc of the tip, there and back. area: what they enclose [m²],
+    None without a boundary.
     """
 
     points: Array
@@ -82,7 +83,7 @@ def _planar(chain: Chain, lower: Array, upper: Array) -> tuple[PlanarArm, Array,
     """The arm in its plane, the axes (3, 3) of the plane, its origin (3,); None for other robots."""
     n = len(chain.axes)
     free = np.isinf(lower).all() and np.isinf(upper).all()
-    if n < 2 or chain.joint_types != "R" * n or len(chain.coordinates.names) != n or (n > 3 and not free):
+    if n < 1 or chain.joint_types != "R" * n or len(chain.coordinates.names) != n or (n > 3 and not free):
         return None
     R = turned_to(chain.axes[0])
     normal = R[:, 2]
