@@ -249,16 +249,36 @@ PyObject* single(PyObject*, PyObject* args) {
     Py_RETURN_NONE;
 }
 
+// What the first three axes share; −1 for an arm that was not asked: its wrist is not spherical, nor are its
+// joints three that turn.
+int first_three(const ik::Arm& arm) {
+    if (arm.has_plan)
+        return arm.plan.family == ik::Family::spherical_wrist ? int(arm.plan.wrist.first.kind) : -1;
+    const ik::Chain& c = arm.plan.chain;
+    if (c.n != 3 || c.prismatic[0] || c.prismatic[1] || c.prismatic[2]) return -1;
+    bool parallel[2], meeting[2];
+    for (int i = 0; i < 2; ++i) {
+        const Vec3d normal = cross(c.axis[i], c.axis[i + 1]), gap = c.point[i + 1] - c.point[i];
+        parallel[i] = norm(normal) <= tolerance::axis_relation;
+        meeting[i] = !parallel[i] && std::fabs(dot(gap, normal)) <=
+                                         tolerance::axis_relation * arm.plan.form.length * norm(normal);
+    }
+    return int(parallel[1]   ? ik::FirstThree::last_parallel
+               : parallel[0] ? ik::FirstThree::first_parallel
+               : meeting[0]  ? ik::FirstThree::first_meet
+               : meeting[1]  ? ik::FirstThree::last_meet
+                             : ik::FirstThree::general);
+}
+
 // _ik_geometry(robot) → what the classification saw, for cspace.ik to put into words.
 PyObject* geometry(PyObject*, PyObject* robot) {
     const ik::Arm* arm = arm_of(robot);
     if (!arm) Py_RETURN_NONE;
     const ik::Plan& plan = arm->plan;
     return Py_BuildValue("{s:i,s:i,s:i,s:O,s:O,s:d,s:d}", "family", arm->has_plan ? int(plan.family) : -1,
-                         "virtual_joints", plan.virtual_joints, "first_three", int(plan.wrist.first.kind),
-                         "reversed", plan.reversed ? Py_True : Py_False, "polish",
-                         plan.polish ? Py_True : Py_False, "deviation", plan.form.deviation, "length",
-                         plan.form.length);
+                         "virtual_joints", plan.virtual_joints, "first_three", first_three(*arm), "reversed",
+                         plan.reversed ? Py_True : Py_False, "polish", plan.polish ? Py_True : Py_False,
+                         "deviation", plan.form.deviation, "length", plan.form.length);
 }
 
 PyMethodDef functions[] = {

@@ -1,25 +1,42 @@
 """Names for the branches of a closed form, read off the configurations themselves.
 
 shoulder: seen from axis 1 towards the wrist, the arm's plane passes on the right or left of axis 1; an arm
-whose plane contains axis 1 faces its goal (front) or has turned away and reaches over its back (back).
-elbow: joint 3 lies above or below the line from shoulder to wrist, up being the direction of axis 1. wrist:
-the sign of the middle wrist joint; flip where the second of the two wrist solutions is used.
+whose plane contains axis 1 faces its goal (front) or has turned away and reaches over its back (back), its
+face being the side on which the tip is at zero or, for an arm upright at zero, to which joint 2 tilts it.
+
+elbow: joint 3 lies above or below the line from shoulder to wrist, up being the direction of axis 1. Where
+the axes are parallel the arm moves in a plane: its elbow is up if joint 2 lies on the left of the line from
+axis 1 to the wrist, drawn with the base's x (else its y) to the right and its z (else its y) up; for a goal
+ahead that is above the line. The wrist of such an arm is its third axis, or the tip if it has none.
+
+wrist: the sign of the middle wrist joint; flip where the second of the two wrist solutions is used.
+
+slide: the tip (or a third axis parallel to the first) lies forward or back of the turning axis, along the
+slide. link: the tip lies ahead of or behind the last axis, along the slide.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.ik.placed import Placed, are_parallel, are_square, meeting_point, place
 
 __all__ = ["branch_labels"]
 
 SPHERICAL_WRIST, THREE_PARALLEL = 1, 2
 LAST_PARALLEL = 0
 NOISE = 1e-9
+LEVEL = 1e-6
+"""Part of its own length up to which an elbow or a slide counts as being on the line: rounding moves it by
+the root of 1e-15 there."""
+
+Words = Callable[[Placed, int], str]
+"""The name of one configuration, from where the arm is and the number of its branch."""
 
 
 def branch_labels(robot: Any, q: Array, numbers: tuple[int, ...]) -> tuple[str, ...]:
@@ -27,87 +44,153 @@ def branch_labels(robot: Any, q: Array, numbers: tuple[int, ...]) -> tuple[str, 
     seen = _core._ik_geometry(robot)
     if seen is None or any(n < 0 for n in numbers):
         return ("",) * len(numbers)
-    named = (
-        not seen["reversed"]
-        and seen["virtual_joints"] == 0
-        and (
-            seen["family"] == THREE_PARALLEL
-            or (seen["family"] == SPHERICAL_WRIST and seen["first_three"] == LAST_PARALLEL)
-        )
-    )
-    if not named:
+    words = words_of(robot.chain, seen)
+    if words is None:
         return tuple(f"branch {n + 1}" for n in numbers)
-    # The wrist is where axis 5 meets its neighbours: axis 4 in a spherical wrist, axis 6 beside parallel
-    # axes.
-    other = 3 if seen["family"] == SPHERICAL_WRIST else 5
-    wrist_bit = 0 if seen["family"] == SPHERICAL_WRIST else 1
-    return tuple(
-        f"shoulder {shoulder_word(points, n)}, elbow {elbow_word(points)}, wrist {wrist_word(n, wrist_bit)}"
-        for points, n in ((arm_points(robot, row, other), n) for row, n in zip(q, numbers, strict=True))
-    )
-
-
-def arm_points(robot: Any, q: Array, other: int) -> dict[str, Array]:
-    """Axis 1, axis 2 and points on axes 2 and 3 and at the wrist, of one configuration, in the base frame."""
     chain = robot.chain
-    axes, points = moved_axes(chain.axes, chain.points, q)
-    wrist = meeting_point(axes[4], points[4], axes[other], points[other])
-    elbow_end = wrist if other == 3 else points[3]
-    return {
-        "h1": axes[0],
-        "p1": points[0],
-        "h2": axes[1],
-        "shoulder": points[1],
-        "elbow": points[2],
-        "forearm end": elbow_end,
-        "wrist": wrist,
-    }
+    return tuple(words(place(chain, row), n) for row, n in zip(q, numbers, strict=True))
 
 
-def moved_axes(axes: Array, points: Array, q: Array) -> tuple[Array, Array]:
-    """Where the axes and points on them are at q, for revolute joints (product of exponentials)."""
-    R, t = np.eye(3), np.zeros(3)
-    moved = []
-    for h, p, angle in zip(axes, points, q, strict=True):
-        moved.append((R @ h, R @ p + t))
-        K = np.array([[0, -h[2], h[1]], [h[2], 0, -h[0]], [-h[1], h[0], 0]])
-        turn = np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
-        t = t + R @ (p - turn @ p)
-        R = R @ turn
-    return np.array([h for h, _ in moved]), np.array([p for _, p in moved])
+def words_of(chain: Any, seen: dict[str, Any]) -> Words | None:
+    """How the branches of an arm are named; None where its geometry has no names."""
+    if seen["family"] < 0:
+        return words_of_few(chain)
+    if seen["virtual_joints"]:
+        return words_of_completed(chain)
+    if seen["reversed"]:
+        return None
+    if seen["family"] == THREE_PARALLEL:
+        # The wrist is where axes 5 and 6 meet; the forearm ends at axis 4.
+        return six_joints(5, wrist_bit=1, forearm_end=3)
+    if seen["family"] == SPHERICAL_WRIST and seen["first_three"] == LAST_PARALLEL:
+        return six_joints(3, wrist_bit=0, forearm_end=None)
+    return None
 
 
-def meeting_point(h1: Array, p1: Array, h2: Array, p2: Array) -> Array:
-    """The point midway between two lines where they come closest."""
-    n = np.cross(h1, h2)
-    gap = p2 - p1
-    on_first = p1 + (np.cross(gap, h2) @ n) / (n @ n) * h1
-    on_second = p2 + (np.cross(gap, h1) @ n) / (n @ n) * h2
-    return np.asarray(0.5 * (on_first + on_second))
+def six_joints(other: int, wrist_bit: int, forearm_end: int | None) -> Words:
+    def words(at: Placed, number: int) -> str:
+        wrist = meeting_point(at.axes[4], at.points[4], at.axes[other], at.points[other])
+        end = wrist if forearm_end is None else at.points[forearm_end]
+        flip = "flip" if (number >> wrist_bit) & 1 else "no flip"
+        return f"{shoulder(at, wrist)}, {elbow(at, end)}, wrist {flip}"
+
+    return words
 
 
-def shoulder_word(at: dict[str, Array], number: int) -> str:
-    to_wrist = at["wrist"] - at["p1"]
-    forward = to_wrist - (to_wrist @ at["h1"]) * at["h1"]
-    aside = (to_wrist @ at["h2"]) * at["h2"]
-    side = np.cross(at["h1"], forward) @ aside
-    if abs(side) <= NOISE:
-        return "front" if number >= 4 else "back"
-    return "left" if side > 0 else "right"
+def words_of_completed(chain: Any) -> Words | None:
+    """Arms of four and five turning joints: axis 1 square to parallel axes 2 and 3."""
+    h, p = chain.axes, chain.points
+    if not (are_square(h[0], h[1]) and are_parallel(h[1], h[2])):
+        return None
+    if are_parallel(h[1], h[3]):
+        return lambda at, _: f"{shoulder(at, at.points[3])}, {elbow(at, at.points[3])}"
+    if len(h) == 5 and not are_parallel(h[3], h[4]):
+        gap = np.cross(h[3], h[4]) @ (p[4] - p[3])
+        if abs(gap) <= LEVEL:
+            return shoulder_and_elbow_at_meeting
+    return None
 
 
-def elbow_word(at: dict[str, Array]) -> str:
-    def in_plane(v: Array) -> Array:
-        return np.asarray(v - (v @ at["h2"]) * at["h2"])
+def shoulder_and_elbow_at_meeting(at: Placed, _: int) -> str:
+    wrist = meeting_point(at.axes[3], at.points[3], at.axes[4], at.points[4])
+    return f"{shoulder(at, wrist)}, {elbow(at, wrist)}"
 
-    line, upper = in_plane(at["forearm end"] - at["shoulder"]), in_plane(at["elbow"] - at["shoulder"])
+
+def words_of_few(chain: Any) -> Words | None:
+    """Arms of up to three joints, turning or sliding."""
+    kinds, h = chain.joint_types, chain.axes
+    turns = [i for i, kind in enumerate(kinds) if kind == "R"]
+    slides = [i for i, kind in enumerate(kinds) if kind == "P"]
+    if not turns or len(kinds) == 1:
+        return lambda *_: "the only one"
+    along = [i for i in slides if are_parallel(h[i], h[turns[0]])]
+    across = [i for i in slides if are_square(h[i], h[turns[0]])]
+    level = all(are_parallel(h[turns[0]], h[i]) for i in turns)
+    if len(turns) > 1 and level and along == slides:
+        return in_a_plane(turns)
+    if len(turns) == 1 and len(across) == 1 and len(across) + len(along) == len(slides):
+        return lambda at, _: slide(at, turns[0], across[0], at.tip)
+    if kinds == "RPR" and across and level:
+        return lambda at, _: slide(at, 0, 1, at.points[2])
+    if kinds == "RPR" and across and are_square(h[2], h[0]) and are_square(h[2], h[1]):
+        return lambda at, _: f"{slide(at, 0, 1, at.tip)}, {link(at, 2, 1)}"
+    if kinds == "RRR" and are_square(h[0], h[1]) and are_parallel(h[1], h[2]):
+        return lambda at, _: f"{shoulder(at, at.tip)}, {elbow(at, at.tip)}"
+    if kinds == "RRP" and are_square(h[0], h[1]) and are_square(h[1], h[2]):
+        return lambda at, _: f"{shoulder(at, at.tip)}, {slide(at, 1, 2, at.tip)}"
+    return None
+
+
+def in_a_plane(turns: list[int]) -> Words:
+    """The elbow of an arm whose turning axes are parallel: axis 1, joint 2, and axis 3 or the tip."""
+    first, second = turns[:2]
+
+    def words(at: Placed, _: int) -> str:
+        end = at.points[turns[2]] if len(turns) > 2 else at.tip
+        n = towards_viewer(at.axes[first])
+        line, upper = (across(v - at.points[first], n) for v in (end, at.points[second]))
+        if np.linalg.norm(line) <= LEVEL * np.linalg.norm(upper):
+            return "elbow folded"
+        return elbow_side(line, upper, np.cross(n, line))
+
+    return words
+
+
+def towards_viewer(h: Array) -> Array:
+    """h or −h, whichever looks at a viewer who sees the base's x (else y) to the right and its z (else y)
+    up.
+    """
+    X, Y, Z = np.eye(3)
+    right = Y if are_parallel(h, X) else X
+    up = Y if are_parallel(h, Z) else Z
+    return h if np.cross(right, up) @ h > 0 else -h
+
+
+def shoulder(at: Placed, wrist: Array) -> str:
+    h1, h2 = at.axes[:2]
+    to_wrist = wrist - at.points[0]
+    forward, beside = across(to_wrist, h1), to_wrist @ h2
+    side = np.cross(h1, forward) @ (beside * h2)
+    if abs(beside) <= _core.AXIS_RELATION * np.linalg.norm(to_wrist):
+        return "shoulder front" if at.face @ forward > 0 else "shoulder back"
+    return "shoulder left" if side > 0 else "shoulder right"
+
+
+def elbow(at: Placed, end: Array) -> str:
+    """The elbow of an arm whose axes 2 and 3 are parallel and whose forearm ends at `end`."""
+    h2 = at.axes[1]
+    line, upper = (across(v - at.points[1], h2) for v in (end, at.points[2]))
+    return elbow_side(line, upper, at.axes[0])
+
+
+def elbow_side(line: Array, upper: Array, up: Array) -> str:
+    """Whether the upper arm ends above the line from shoulder to wrist or below."""
     length2 = line @ line
     offset = upper - (upper @ line) / length2 * line if length2 > NOISE**2 else upper
-    height = offset @ at["h1"]
-    if np.linalg.norm(offset) <= 1e-6 * np.linalg.norm(upper):
-        return "straight"
-    return "up" if height > 0 else "down"
+    if np.linalg.norm(offset) <= LEVEL * np.linalg.norm(upper):
+        return "elbow straight"
+    return "elbow up" if offset @ up > 0 else "elbow down"
 
 
-def wrist_word(number: int, bit: int) -> str:
-    return "flip" if (number >> bit) & 1 else "no flip"
+def slide(at: Placed, turn: int, sliding: int, end: Array) -> str:
+    word = side_of(at, turn, sliding, end, ("forward", "back"))
+    return f"slide {word}"
+
+
+def link(at: Placed, turn: int, sliding: int) -> str:
+    word = side_of(at, turn, sliding, at.tip, ("ahead", "behind"))
+    return f"link {word}"
+
+
+def side_of(at: Placed, turn: int, sliding: int, end: Array, words: tuple[str, str]) -> str:
+    """On which side of a turning axis `end` lies, along a slide; "level" with it at the fold between."""
+    from_axis = across(end - at.points[turn], at.axes[turn])
+    ahead = from_axis @ at.axes[sliding]
+    if abs(ahead) <= LEVEL * np.linalg.norm(from_axis):
+        return "level"
+    return words[0] if ahead > 0 else words[1]
+
+
+def across(v: Array, h: Array) -> Array:
+    """The part of v square to the unit vector h."""
+    return np.asarray(v - (v @ h) * h)

@@ -167,7 +167,8 @@ def geometry(robot: Any) -> Geometry:
         return Geometry("none", "", False, 0.0, tested)
     seen = _core._ik_geometry(robot)
     if seen["family"] < 0:
-        return Geometry("short arm", f"{robot.chain.joint_types}, up to three joints", False, 0.0, tested)
+        shared = FIRST_THREE.get(seen["first_three"], "up to three joints")
+        return Geometry("short arm", f"{robot.chain.joint_types}, {shared}", False, 0.0, tested)
     family = FAMILIES[seen["family"]]
     detail = FIRST_THREE[seen["first_three"]] if seen["family"] == 1 else PARALLEL[seen["family"]]
     if seen["virtual_joints"]:
