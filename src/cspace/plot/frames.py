@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.plot import colors, stage
 from cspace.plot.axes import space_axes
@@ -50,8 +51,16 @@ def frames(
     artist = scene_of(axes)
     artist.scene.groups.append(Group(stage.triads(T, length)))
     artists: list[Any] = [artist]
-    for k, name in enumerate(names or ()):
-        place = points[k] - 0.10 * length * T[k, :3, :3].sum(axis=1)
-        text = axes.text(*place, name, fontsize=10, color=colors.INK, ha="center", va="top", zorder=40)
-        artists.append(text)
+    artists += [write_name(axes, name, T[k], length) for k, name in enumerate(names or ())]
     return artists + stage.write_title(axes, title)
+
+
+def write_name(axes: Any, name: str, T: Array, length: float) -> Any:
+    """A name beside the corner of a frame, away from its arrows, legible before whatever is behind it."""
+    from matplotlib.patheffects import withStroke
+
+    place = T[:3, 3] - 0.15 * length * T[:3, :3].sum(axis=1)
+    halo = [withStroke(linewidth=3, foreground="white")]
+    return axes.text(
+        *place, name, fontsize=10, color=colors.INK, ha="center", va="top", zorder=40, path_effects=halo
+    )
