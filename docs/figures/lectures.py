@@ -1,0 +1,225 @@
+"""Draws the figures of the lectures: `python docs/figures/lectures.py [FOLDER]` writes them."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+
+matplotlib.use("Agg")
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.patheffects import withStroke
+
+import cspace as cs
+from cspace import plot
+
+DPI = 70
+INK, FAINT, BLUE, RED, GREEN = "#222222", "#bbbbbb", "#1f6fb2", "#c8442f", "#3a8f4d"
+HALO = [withStroke(linewidth=3, foreground="white")]
+
+
+def bare(ax, title=""):
+    """Equal scales, no frame around."""
+    ax.set_aspect("equal")
+    ax.set_title(title, color=INK, fontsize=10)
+    ax.spines[["top", "right"]].set_visible(False)
+
+
+def draw_frame(ax, T, name, *, size=0.8):
+    """A planar frame as two arrows."""
+    origin = T[:2, 2]
+    for k, (color, letter) in enumerate(((RED, "x"), (GREEN, "y"))):
+        end = origin + size * T[:2, k]
+        ax.annotate("", end, origin, arrowprops={"arrowstyle": "-|>", "color": color, "lw": 1.8})
+        ax.annotate(f"{letter}_{name}", end + 0.14 * T[:2, k], color=color, ha="center", va="center")
+    ax.plot(*origin, "o", color=INK, ms=4)
+
+
+def draw_arm(ax, robot, q, *, color=INK, alpha=1.0, label=None):
+    """A planar arm as a line with dots at the joints."""
+    places = robot.fk_all(q)[1:, :2, 3]
+    ax.plot(*places.T, "-o", color=color, alpha=alpha, lw=2.4, ms=4.5, label=label)
+    return places
+
+
+def one_point_two_frames():
+    """Frames A and B and a point seen from both."""
+    _, ax = plt.subplots(figsize=(5.2, 3.8))
+    T_A_B = cs.pose_2d((-1.0, 0.0), theta=np.pi / 2)
+    draw_frame(ax, np.eye(3), "A")
+    draw_frame(ax, T_A_B, "B")
+    p_A = cs.transform_points_2d(T_A_B, (2.0, 1.0))
+    corner = cs.transform_points_2d(T_A_B, (2.0, 0.0))
+    ax.plot(*np.stack([T_A_B[:2, 2], corner, p_A]).T, color=FAINT, ls="--", lw=1.2)
+    ax.plot(*p_A, "o", color=BLUE, ms=7)
+    ax.annotate("p_B = (2, 1)\np_A = (−2, 2)", p_A, xytext=(8, 4), textcoords="offset points", color=BLUE)
+    ax.set_xlim(-2.4, 1.3)
+    ax.set_ylim(-0.4, 2.7)
+    ax.grid(color="#eeeeee")
+    bare(ax)
+    return ax
+
+
+def turned_tip():
+    """A frame turned by 90° about z and moved."""
+    T = cs.pose((0.5, -0.2, 0.3), axis_angle=((0, 0, 1), np.pi / 2))
+    return plot.frames([np.eye(4), T], names=["base", "tip"])
+
+
+def fixed_axes():
+    """Three turns about axes that stand still, one after another."""
+    gamma, beta, alpha = 0.5, 0.6, 0.9
+    turns = [cs.rotation(rpy=r) for r in ((0, 0, 0), (gamma, 0, 0), (gamma, beta, 0), (gamma, beta, alpha))]
+    poses = [cs.pose((1.6 * k, 0, 0), matrix=R) for k, R in enumerate(turns)]
+    return plot.frames(poses, names=["start", "γ about x", "β about y", "α about z"])
+
+
+def tasks():
+    """Arms of one, two and three joints, asked for a point of the plane."""
+    _, axes = plt.subplots(1, 3, figsize=(9.6, 3.4), layout="constrained")
+    point = np.array([0.9, 0.7])
+    one = cs.load_robot("planar_1r")
+    for angle in np.linspace(0.1, 1.5, 8):
+        draw_arm(axes[0], one, [angle], alpha=0.25)
+    two = cs.load_robot("planar_2r")
+    for q, color in zip(two.ik(position=point).q, (BLUE, RED), strict=True):
+        draw_arm(axes[1], two, q, color=color)
+    three = cs.load_robot("planar_3r")
+    for heading in np.linspace(-1.6, 2.4, 9):
+        hand = 0.5 * np.array([np.cos(heading), np.sin(heading)])
+        for q in two.ik(position=point - hand).q:
+            draw_arm(axes[2], three, [*q, heading - q.sum()], alpha=0.25)
+    words = ("n = 1 < 2: over-constrained", "n = 2: exact", "n = 3 > 2: redundant")
+    for ax, word in zip(axes, words, strict=True):
+        ax.plot(*point, "*", color=GREEN, ms=13, zorder=5)
+        bare(ax, word)
+        ax.set_xlim(-0.8, 1.6)
+        ax.set_ylim(-0.9, 1.3)
+    return axes[0]
+
+
+def two_links():
+    """The angles and lengths of the two-joint arm."""
+    _, ax = plt.subplots(figsize=(5.2, 3.6))
+    robot, q = cs.load_robot("planar_2r"), np.array([0.5, 0.9])
+    shoulder, elbow, tip = draw_arm(ax, robot, q)
+    for place, start, width, name in ((shoulder, 0.0, q[0], "θ₁"), (elbow, q[0], q[1], "θ₂")):
+        ray = place + np.array([np.cos(start), np.sin(start)]) * 0.6
+        ax.plot(*np.stack([place, ray]).T, color=FAINT, ls="--", lw=1.2, zorder=0)
+        sweep = start + np.linspace(0, width, 40)
+        ax.plot(*(place[:, None] + 0.3 * np.array([np.cos(sweep), np.sin(sweep)])), color=BLUE, lw=1.4)
+        middle = start + width / 2
+        ax.annotate(name, place + 0.42 * np.array([np.cos(middle), np.sin(middle)]), color=BLUE, ha="center")
+    for a, b, name in ((shoulder, elbow, "l₁"), (elbow, tip, "l₂")):
+        across = np.array([a[1] - b[1], b[0] - a[0]])
+        ax.annotate(name, (a + b) / 2 + 0.1 * across, color=INK, ha="center")
+    ax.annotate("p", tip, xytext=(8, 2), textcoords="offset points", color=INK)
+    bare(ax)
+    return ax
+
+
+def dh_frames():
+    """Frames i − 1 and i of one row of a modified table, and the four motions between them."""
+    alpha, a, d, theta = 0.5, 1.0, 0.7, 0.8
+    turned = cs.pose(rpy=(alpha, 0, 0))
+    moved = turned @ cs.pose((a, 0, 0))
+    raised = moved @ cs.pose((0, 0, d))
+    last = cs.model.dh_matrix(alpha, a, d, theta, convention="modified")
+    artists = plot.frames([np.eye(4), moved, last], names=["i − 1", "after α, a", "i"], size=0.45)
+    ax = artists[0].axes
+    for start, end, name in ((np.eye(4), moved, "a"), (moved, raised, "d")):
+        ends = np.stack([start[:3, 3], end[:3, 3]])
+        ax.plot(*ends.T, color=INK, lw=1.2, ls="--")
+        ax.text(*ends.mean(axis=0), name, color=INK, fontsize=12, zorder=40, path_effects=HALO)
+    return artists
+
+
+def four_cases():
+    """None, one, two and infinitely many configurations of the two-joint arm."""
+    _, axes = plt.subplots(1, 4, figsize=(11.0, 3.0), layout="constrained")
+    robot = cs.load_robot("planar_2r")
+    circle = np.linspace(0, 2 * np.pi, 200)
+    words = ("none: out of reach", "one: stretched", "two", "infinitely many")
+    points = ((2.5, 0.0), (2.0, 0.0), (1.1, 0.7), (0.0, 0.0))
+    for ax, word, point in zip(axes, words, points, strict=True):
+        ax.plot(2 * np.cos(circle), 2 * np.sin(circle), color=FAINT, lw=1.0, ls="--")
+        found = robot.ik(position=point)
+        for q, color in zip(found.q, (BLUE, RED), strict=False):
+            draw_arm(ax, robot, q, color=color)
+        if found.families:
+            for turn in np.linspace(0.3, 6.0, 12):
+                draw_arm(ax, robot, [turn, np.pi], color=BLUE, alpha=0.2)
+        ax.plot(*point, "*", color=GREEN, ms=12, zorder=5)
+        bare(ax, word)
+        ax.set_xlim(-2.3, 2.8)
+        ax.set_ylim(-2.3, 2.3)
+    return axes[0]
+
+
+def standing_wrist():
+    """The wrist centre of a PUMA 560 stands still while its last three joints turn."""
+    turns = [(0, 0.4, 0), (1.2, 0.9, 0.3), (-1.4, 1.2, 0.5), (2.6, 0.8, 1.0)]
+    q = np.array([[0.2, -0.5, 0.9, *turn] for turn in turns])
+    labels = [f"wrist {k + 1}" for k in range(len(q))]
+    return plot.solutions(cs.load_robot("puma560"), q, labels=labels, title="one wrist centre")
+
+
+def ways(name: str, goal: Any, title: str):
+    """Every configuration of an arm that reaches a goal."""
+    robot = cs.load_robot(name)
+    found = robot.ik(goal) if np.ndim(goal) == 2 else robot.ik(position=goal)
+    return plot.solutions(robot, found, goal, title=f"{title}: {len(found)} configurations")
+
+
+def puma_style_solutions():
+    """The eight of the PUMA-style arm."""
+    goal = cs.load_robot("puma_style").fk([0.5, 0.4, -1.1, 0.3, 0.8, -0.6])
+    return ways("puma_style", goal, "PUMA-style arm")
+
+
+def simplified_puma_solutions():
+    """The four of the simplified PUMA."""
+    return ways("simplified_puma", [0.7, 0.5, 0.6], "simplified PUMA")
+
+
+def rpr_solutions():
+    """The four of the RPR arm."""
+    return ways("rpr", [0.5, 0.8, 0.3], "RPR arm")
+
+
+def elbow_solutions():
+    """The eight of the elbow arm."""
+    return ways("elbow", cs.load_robot("elbow").fk([0.5, -0.7, 0.9, 0.3, 1.1, -0.4]), "elbow arm")
+
+
+PICTURES: tuple[Callable[[], Any], ...] = (
+    one_point_two_frames,
+    turned_tip,
+    fixed_axes,
+    tasks,
+    two_links,
+    dh_frames,
+    four_cases,
+    standing_wrist,
+    puma_style_solutions,
+    simplified_puma_solutions,
+    rpr_solutions,
+    elbow_solutions,
+)
+
+
+def main(folder: Path) -> None:
+    """Write every picture into a folder."""
+    for picture in PICTURES:
+        drawn = picture()
+        artists = drawn if isinstance(drawn, (list, tuple)) else [drawn]
+        plot.save(artists, folder / f"{picture.__name__}.png", dpi=DPI)
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]) if len(sys.argv) > 1 else Path(__file__).parent)
