@@ -1,10 +1,13 @@
 import os
+import threading
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 from cspace.errors import CspaceError, DescriptionError, InputError, InputTypeError, UnknownNameError
 from cspace.model import to_toml, to_urdf
+from cspace.model.files import write_text
 from cspace.robot import Robot
 from cspace.robots import load_description, load_robot
 from cspace.spatial import pose
@@ -61,6 +64,27 @@ def test_a_robot_is_written_to_a_path_whole_or_not_at_all(name, tmp_path):
     with pytest.raises(InputTypeError, match="given by its path"):
         write(3.5)
     assert [entry.name for entry in tmp_path.iterdir()] == [name]
+
+
+def test_a_name_may_be_as_long_as_the_folder_allows(tmp_path):
+    path = tmp_path / ("x" * 250 + ".urdf")
+    load_robot("planar_2r").to_urdf(path)
+    assert load_robot(path).dof == 2
+
+
+def test_two_threads_that_write_one_file_leave_one_of_both_whole(tmp_path):
+    texts = [to_toml(load_description(name)) for name in ("panda", "planar_1r")]
+    path, start = tmp_path / "arm.toml", threading.Barrier(4)
+
+    def write(k):
+        start.wait()
+        for _ in range(25):
+            write_text(path, texts[k % 2])
+
+    with ThreadPoolExecutor(4) as pool:
+        list(pool.map(write, range(4)))  # raises what a thread raised
+    assert path.read_text(encoding="utf-8") in texts
+    assert list(tmp_path.iterdir()) == [path]
 
 
 def test_a_file_beside_is_found_without_a_separator(tmp_path, monkeypatch):

@@ -66,6 +66,8 @@ def number(text: str) -> float:
     else:
         try:
             value = float(word)
+            if "_" in word:  # Python reads 1_0 as ten
+                raise ValueError
         except ValueError:
             raise argparse.ArgumentTypeError(f"{word!r} is not a number") from None
     if not math.isfinite(value):

@@ -12,9 +12,13 @@ __all__ = ["check_writable"]
 
 def check_writable(path: Path) -> None:
     """Refuse an output path that cannot be written, before any work is done for it."""
-    if path.is_dir():
+    try:
+        is_folder, has_folder = path.is_dir(), path.parent.is_dir()
+    except OSError as error:  # a name that is too long, a folder that may not be entered
+        raise UsageError(f"cannot write {str(path)[:80]!r}: {error.strerror or error}") from None
+    if is_folder:
         raise UsageError(f"cannot write {str(path)!r}: it is a folder; give a file name")
-    if not path.parent.is_dir():
+    if not has_folder:
         raise UsageError(f"cannot write {str(path)!r}: there is no folder {str(path.parent)!r}")
     if not os.access(path.parent, os.W_OK):
         raise UsageError(f"cannot write {str(path)!r}: the folder {str(path.parent)!r} is not writable")

@@ -5,13 +5,20 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from itertools import count
 from pathlib import Path
-from typing import Any
+from typing import Any, Final
 
 from cspace.errors import DescriptionError, InputError, InputTypeError
 from cspace.tolerances import DESCRIPTION_BYTES
 
 __all__ = ["path_of", "read_bytes", "whole_file", "write_text"]
+
+DRAFTS: Final = count()
+"""Numbers the drafts of this process, so that two threads never write into one."""
+
+STEM: Final = 40
+"""As much of a file's name as its draft repeats, so that the draft's name is no longer than is allowed."""
 
 
 def path_of(source: Any) -> str:
@@ -54,7 +61,7 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
     So the file is either complete or untouched. Raises InputError where writing is impossible.
     """
     target = Path(os.path.abspath(path_of(path)))
-    draft = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
+    draft = target.with_name(f".{target.stem[:STEM]}.{os.getpid()}.{next(DRAFTS)}{target.suffix}")
     try:
         yield draft
         os.replace(draft, target)
