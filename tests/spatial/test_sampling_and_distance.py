@@ -101,6 +101,41 @@ def test_a_wider_limit_must_be_asked_for():
     close(cs.project_rotation(1.2 * np.eye(3), limit=0.5), np.eye(3))
 
 
+def test_distances_in_the_plane_are_those_of_the_embedded_poses():
+    A, B = cs.random_pose_2d(200, rng=8), cs.random_pose_2d(200, rng=9)
+    a, b = cs.embed_pose_2d(A), cs.embed_pose_2d(B)
+    close(cs.rotation_distance_2d(A, B), cs.rotation_distance(a, b))
+    close(cs.rotation_distance_2d(A[:, :2, :2], B[:, :2, :2]), cs.rotation_distance(a, b))
+    close(cs.translation_distance_2d(A, B), cs.translation_distance(a, b))
+    close(cs.pose_distance_2d(A, B, length=0.7), cs.pose_distance(a, b, length=0.7))
+    assert cs.pose_distance_2d(A[:, None], B[:3], length=1.0).shape == (200, 3)
+    half = cs.rotation_distance_2d(cs.rotation_2d(np.pi), np.eye(2))
+    assert half == np.pi
+    tiny = cs.rotation_distance_2d(cs.rotation_2d(1e-300), np.eye(2))
+    assert tiny == 1e-300
+    with pytest.raises(cs.CspaceError, match="length is -1"):
+        cs.pose_distance_2d(A, B, length=-1)
+    with pytest.raises(cs.CspaceError, match="second planar pose has shape"):
+        cs.translation_distance_2d(A, b)
+
+
+def test_the_projection_in_the_plane_is_that_of_the_embedded_pose():
+    T = cs.random_pose_2d(50, rng=8)
+    worn = T + np.random.default_rng(6).uniform(-0.015, 0.015, T.shape) * [[1, 1, 0], [1, 1, 0], [0, 0, 0]]
+    mended = cs.project_pose_2d(worn)
+    space = np.tile(np.eye(4), (50, 1, 1))
+    space[:, :2, :2], space[:, :2, 3] = worn[:, :2, :2], worn[:, :2, 2]
+    close(cs.embed_pose_2d(mended), cs.project_pose(space))
+    close(cs.project_rotation_2d(worn[:, :2, :2]), mended[:, :2, :2])
+    close(cs.project_rotation_2d(1.2 * np.eye(2), limit=0.5), np.eye(2))
+    with pytest.raises(cs.CspaceError, match="mends up to"):
+        cs.project_rotation_2d(1.2 * np.eye(2))
+    with pytest.raises(cs.CspaceError, match="it is a reflection"):
+        cs.project_rotation_2d(np.diag([1.0, -1.0]))
+    with pytest.raises(cs.CspaceError, match=r"last row of matrix is not \[0, 0, 1\]"):
+        cs.project_pose_2d(np.ones((3, 3)))
+
+
 def test_the_mean_is_in_the_middle_and_moves_with_the_frame():
     R = cs.random_rotation(rng=8) @ cs.exp_so3(0.4 * np.random.default_rng(9).normal(size=(6, 11, 3)))
     mean = cs.mean_rotation(R)

@@ -1,7 +1,14 @@
 """Poses: planar and spatial displacements and every way to write their rotations, as arrays."""
 
 from cspace.spatial.checks import as_pose, as_pose_2d, as_rotation, as_rotation_2d
-from cspace.spatial.distances import pose_distance, rotation_distance, translation_distance
+from cspace.spatial.distances import (
+    pose_distance,
+    pose_distance_2d,
+    rotation_distance,
+    rotation_distance_2d,
+    translation_distance,
+    translation_distance_2d,
+)
 from cspace.spatial.interpolation import interpolate, interpolate_2d, interpolate_decoupled, slerp
 from cspace.spatial.jacobians import (
     left_jacobian_inv_se3,
@@ -43,7 +50,13 @@ from cspace.spatial.poses import (
     transform_directions,
     transform_points,
 )
-from cspace.spatial.projection import mean_rotation, project_pose, project_rotation
+from cspace.spatial.projection import (
+    mean_rotation,
+    project_pose,
+    project_pose_2d,
+    project_rotation,
+    project_rotation_2d,
+)
 from cspace.spatial.quaternions import to_wxyz, to_xyzw
 from cspace.spatial.rotations import exp_so3, hat_so3, log_so3, to_axis_angle, to_rotvec, vee_so3
 from cspace.spatial.sampling import random_pose, random_pose_2d, random_rotation, random_rotation_2d
@@ -97,8 +110,11 @@ __all__: list[str] = [
     "pose",
     "pose_2d",
     "pose_distance",
+    "pose_distance_2d",
     "project_pose",
+    "project_pose_2d",
     "project_rotation",
+    "project_rotation_2d",
     "random_pose",
     "random_pose_2d",
     "random_rotation",
@@ -110,6 +126,7 @@ __all__: list[str] = [
     "rotation",
     "rotation_2d",
     "rotation_distance",
+    "rotation_distance_2d",
     "screw_of",
     "screw_to_twist",
     "slerp",
@@ -129,6 +146,7 @@ __all__: list[str] = [
     "transform_points",
     "transform_points_2d",
     "translation_distance",
+    "translation_distance_2d",
     "twist_to_screw",
     "vee_se2",
     "vee_se3",

@@ -2,16 +2,33 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
+from cspace.spatial.checks import (
+    PoseLike,
+    RotationLike,
+    as_pose,
+    as_pose_2d,
+    as_rotation,
+    as_rotation_2d,
+)
+from cspace.spatial.planar import angle_of
 from cspace.spatial.poses import broadcast_batches
 from cspace.spatial.rotations import rotvec_of_matrix
 from cspace.spatial.vectors import length_and_direction
 
-__all__ = ["pose_distance", "rotation_distance", "translation_distance"]
+__all__ = [
+    "pose_distance",
+    "pose_distance_2d",
+    "rotation_distance",
+    "rotation_distance_2d",
+    "translation_distance",
+    "translation_distance_2d",
+]
 
 
 def rotation_distance(R_a: RotationLike, R_b: RotationLike) -> Array:
@@ -39,18 +56,52 @@ def pose_distance(T_a: PoseLike, T_b: PoseLike, *, length: float) -> Array:
     T_a, T_b: (..., 4, 4), broadcast → (...) [m]. Raises InputError unless length is a number ≥ 0.
     """
     first, second = as_pose(T_a, "first pose"), as_pose(T_b, "second pose")
+    angle = _angle_between(first[..., :3, :3], second[..., :3, :3])
+    return _weighted(_length_between(first, second), angle, length)
+
+
+def rotation_distance_2d(R_a: Any, R_b: Any) -> Array:
+    """The angle between the headings of two planar rotations, |log(R_aᵀ R_b)|, in [0, π].
+
+    R_a, R_b: (..., 2, 2) or planar poses (..., 3, 3), broadcast → (...) [rad].
+    """
+    first, second = (
+        as_rotation_2d(R_a, "first planar rotation"),
+        as_rotation_2d(R_b, "second planar rotation"),
+    )
+    return _angle_between(first, second)[()]
+
+
+def translation_distance_2d(T_a: Any, T_b: Any) -> Array:
+    """The distance between the origins of two planar poses: (..., 3, 3), broadcast → (...) [m]."""
+    return _length_between(as_pose_2d(T_a, "first planar pose"), as_pose_2d(T_b, "second planar pose"))[()]
+
+
+def pose_distance_2d(T_a: Any, T_b: Any, *, length: float) -> Array:
+    """The weighted distance of two planar poses, √(d² + (L θ)²); d, θ and `length` L as in pose_distance.
+
+    T_a, T_b: (..., 3, 3), broadcast → (...) [m]. Raises InputError unless length is a number ≥ 0.
+    """
+    first, second = as_pose_2d(T_a, "first planar pose"), as_pose_2d(T_b, "second planar pose")
+    angle = _angle_between(first[..., :2, :2], second[..., :2, :2])
+    return _weighted(_length_between(first, second), angle, length)
+
+
+def _weighted(distance: Array, angle: Array, length: float) -> Array:
     weight = as_floats(length, "length")
     if weight.ndim != 0 or weight < 0.0:
         raise InputError(f"length is {length!r}; it must be one number ≥ 0 [m]")
-    angle = _angle_between(first[..., :3, :3], second[..., :3, :3])
-    return np.asarray(np.hypot(_length_between(first, second), weight * angle))[()]
+    return np.asarray(np.hypot(distance, weight * angle))[()]
 
 
 def _angle_between(R_a: Array, R_b: Array) -> Array:
     broadcast_batches(R_a.shape[:-2], R_b.shape[:-2], "first", "second")
-    return length_and_direction(rotvec_of_matrix(np.swapaxes(R_a, -1, -2) @ R_b))[0]
+    between = np.swapaxes(R_a, -1, -2) @ R_b
+    if between.shape[-1] == 2:
+        return np.abs(angle_of(between))
+    return length_and_direction(rotvec_of_matrix(between))[0]
 
 
 def _length_between(T_a: Array, T_b: Array) -> Array:
     broadcast_batches(T_a.shape[:-2], T_b.shape[:-2], "first", "second")
-    return length_and_direction(T_b[..., :3, 3] - T_a[..., :3, 3])[0]
+    return length_and_direction(T_b[..., :-1, -1] - T_a[..., :-1, -1])[0]

@@ -14,7 +14,13 @@ from cspace.spatial.checks import RotationLike, as_rotation, determinant, orthog
 from cspace.spatial.poses import assemble
 from cspace.spatial.quaternions import matrix_of_wxyz, wxyz_of_matrix
 
-__all__ = ["mean_rotation", "project_pose", "project_rotation"]
+__all__ = [
+    "mean_rotation",
+    "project_pose",
+    "project_pose_2d",
+    "project_rotation",
+    "project_rotation_2d",
+]
 
 
 def project_rotation(matrix: npt.ArrayLike, *, limit: float = tolerances.ROTATION_PROJECTION) -> Array:
@@ -35,10 +41,21 @@ def project_pose(matrix: npt.ArrayLike, *, limit: float = tolerances.ROTATION_PR
     matrix: (..., 4, 4), whose last row is [0, 0, 0, 1] within `limit` → (..., 4, 4).
     Raises InputError where the rotation or the last row is beyond the limit.
     """
-    M = as_floats(matrix, "matrix", last=(4, 4))
-    if (np.abs(M[..., 3, :] - [0.0, 0.0, 0.0, 1.0]) > limit).any():
-        raise InputError(f"the last row of matrix is not [0, 0, 0, 1] within {limit:g}; no pose is near")
-    return assemble(_nearest(M[..., :3, :3], "the rotation part of matrix", limit), M[..., :3, 3])
+    return _nearest_pose(as_floats(matrix, "matrix", last=(4, 4)), limit)
+
+
+def project_rotation_2d(matrix: npt.ArrayLike, *, limit: float = tolerances.ROTATION_PROJECTION) -> Array:
+    """The planar rotation nearest to a worn matrix (..., 2, 2), as project_rotation finds it in space."""
+    return _nearest(as_floats(matrix, "matrix", last=(2, 2)), "matrix", limit)
+
+
+def project_pose_2d(matrix: npt.ArrayLike, *, limit: float = tolerances.ROTATION_PROJECTION) -> Array:
+    """The planar pose with the nearest rotation, as project_pose finds it in space.
+
+    matrix: (..., 3, 3), whose last row is [0, 0, 1] within `limit` → (..., 3, 3).
+    Raises InputError where the rotation or the last row is beyond the limit.
+    """
+    return _nearest_pose(as_floats(matrix, "matrix", last=(3, 3)), limit)
 
 
 def mean_rotation(R: RotationLike, weights: npt.ArrayLike | None = None) -> Array:
@@ -74,6 +91,13 @@ def _weights(weights: Any, shape: tuple[int, ...]) -> Array:
     if (w < 0.0).any() or not (largest > 0.0).all():
         raise InputError("weights must not be negative, and not all zero")
     return np.broadcast_to(w / largest, shape)
+
+
+def _nearest_pose(M: Array, limit: float) -> Array:
+    row = [0] * (M.shape[-1] - 1) + [1]
+    if (np.abs(M[..., -1, :] - row) > limit).any():
+        raise InputError(f"the last row of matrix is not {row} within {limit:g}; no pose is near")
+    return assemble(_nearest(M[..., :-1, :-1], "the rotation part of matrix", limit), M[..., :-1, -1])
 
 
 def _nearest(M: Array, subject: str, limit: float) -> Array:
