@@ -166,30 +166,6 @@ PyObject* miss(PyObject*, PyObject* args) {
     return Py_BuildValue("Ndd", q, best.position, best.rotation);
 }
 
-// _ik_direction(robot, q (n,)) → the unit joint velocity (n,) of the self-motion through q, or None
-PyObject* direction(PyObject*, PyObject* args) {
-    PyObject *robot, *at;
-    if (!PyArg_ParseTuple(args, "OO", &robot, &at)) return nullptr;
-    const ik::Arm* arm = arm_of(robot);
-    if (!arm || !can_solve(*arm) || !is_doubles(at, arm->plan.chain.n)) {
-        PyErr_SetString(PyExc_TypeError,
-                        "_ik_direction takes a robot with a solver and a contiguous float64 (n,)");
-        return nullptr;
-    }
-    const ik::Chain& chain = arm->plan.chain;
-    const double length = characteristic_length(chain), *q = data_of(at);
-    const Posed goal = forward(chain, q);
-    PoseError error;
-    measure(chain, goal, length, q, error);
-    decompose(error.jacobian);
-    double d[ik::max_joints];
-    if (!find_self_motion(chain, goal, length, q, error.jacobian, d)) Py_RETURN_NONE;
-    npy_intp n = chain.n;
-    PyObject* out = PyArray_SimpleNew(1, &n, NPY_DOUBLE);
-    if (out) std::memcpy(data_of(out), d, sizeof(double) * std::size_t(n));
-    return out;
-}
-
 // The arm and the goal of a call about a position; null with an error set.
 const ik::Arm* position_arm(PyObject* args, const char* function, PyObject*& robot, Vec3d& p) {
     PyObject* goal;
@@ -285,7 +261,10 @@ PyMethodDef functions[] = {
     {"_ik_build", build, METH_VARARGS, "Builds the solver of a robot from its screws at zero."},
     {"_ik_careful", careful, METH_VARARGS, "Solves one goal by the careful path, free joints as given."},
     {"_ik_miss", miss, METH_VARARGS, "The configuration that comes nearest to a goal out of reach."},
-    {"_ik_direction", direction, METH_VARARGS, "The direction of the self-motion through a configuration."},
+    {"_ik_follow", ik_follow, METH_VARARGS, "The family through a configuration, as a curve."},
+    {"_ik_onto", ik_onto, METH_VARARGS, "Configurations brought onto the family through another one."},
+    {"_ik_direction", ik_direction, METH_VARARGS,
+     "The direction of the self-motion through a configuration."},
     {"_ik_position", position, METH_VARARGS, "Solves a position goal of an arm of up to three joints."},
     {"_ik_position_miss", position_miss, METH_VARARGS, "The configuration that comes nearest to a position."},
     {"_ik_positions", ik_positions, METH_VARARGS, "Solves many position goals."},

@@ -55,3 +55,7 @@ PyObject* ik_results(PyObject*, PyObject* cls);
 // ik_batch.cpp
 PyObject* ik_many(PyObject*, PyObject* args);
 PyObject* ik_positions(PyObject*, PyObject* args);
+// ik_families.cpp
+PyObject* ik_direction(PyObject*, PyObject* args);
+PyObject* ik_follow(PyObject*, PyObject* args);
+PyObject* ik_onto(PyObject*, PyObject* args);

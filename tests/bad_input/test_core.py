@@ -72,6 +72,10 @@ def test_what_is_no_robot_is_refused(arm):
             (_core._ik_careful, (GOAL, np.zeros(6))),
             (_core._ik_miss, (GOAL, 1.0)),
             (_core._ik_position, (np.zeros(3),)),
+            (_core._ik_position_miss, (np.zeros(3),)),
+            (_core._ik_positions, (np.zeros((1, 3)), *answers(1), 1)),
+            (_core._ik_follow, (np.zeros(6), np.zeros(6), True)),
+            (_core._ik_onto, (np.zeros(6), np.zeros((2, 6)), np.zeros((2, 6)), True)),
             (_core._ik_many, (np.stack([GOAL]), *answers(1), 1)),
             (_core._ik_make, parts),
         ]:
@@ -164,3 +168,17 @@ def test_answers_outlive_their_robot_and_can_be_copied_and_sent(arm):
     gc.collect()
     assert found.robot.name == "ur5e"
     assert found.residual.max() < 1e-9
+
+
+def test_curves_and_points_refuse_rows_of_another_size(arm):
+    q, rows = np.zeros(6), np.zeros((2, 6))
+    for call, arguments in [
+        (_core._ik_follow, (np.zeros(5), q, True)),
+        (_core._ik_follow, (q, q.astype(np.float32), True)),
+        (_core._ik_onto, (q, rows, rows[:1], True)),
+        (_core._ik_onto, (q, np.zeros(11), np.zeros(11), True)),
+        (_core._ik_onto, (q, rows.tolist(), rows, True)),
+        (_core._ik_positions, (np.zeros((3, 3)), *answers(3), 1)),  # an arm of six joints
+    ]:
+        with pytest.raises(TypeError, match="takes a robot"):
+            call(arm, *arguments)

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
@@ -13,13 +11,14 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.branches import branch_labels
+from cspace.ik.families import Family, family_at
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
 
 if TYPE_CHECKING:
     from cspace.model import Limits
 
-__all__ = ["Family", "Solutions"]
+__all__ = ["Solutions"]
 
 UNREACHABLE: Final = 0
 EXACT: Final = 1
@@ -35,20 +34,6 @@ ORIENTATION_KEPT: Final = 1e-3
 
 def verdict_name(verdict: int) -> str:
     return VERDICTS[verdict]
-
-
-@dataclass(frozen=True)
-class Family:
-    """A one-parameter family of configurations: the joints move, the tip stays.
-
-    row: the solution that stands for it. q: that configuration (dof,). direction: the unit joint velocity
-    (dof,) along the family at q. joints: the names of the joints that move.
-    """
-
-    row: int
-    q: Array
-    direction: Array
-    joints: tuple[str, ...]
 
 
 class Solutions(_core.SolutionsBase):
@@ -114,8 +99,8 @@ class Solutions(_core.SolutionsBase):
     def families(self) -> tuple[Family, ...]:
         """The one-parameter families among the solutions, empty unless the pose is singular."""
         rows = [row for row, is_family in enumerate(self._is_family) if is_family]
-        held = 6 if self.goal.shape == (4, 4) else 3
-        return tuple(family_at(self.robot, row, self.q[row], held) for row in rows)
+        whole_pose = self.goal.shape == (4, 4)
+        return tuple(family_at(self.robot, row, self.q[row], whole_pose) for row in rows)
 
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
@@ -274,16 +259,6 @@ def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:
         f"{how_many(len(found))} the goal, none within limits; the nearest one has "
         f"{found.robot.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
     )
-
-
-def family_at(robot: Any, row: int, q: Array, held: int) -> Family:
-    """The family through q: the joint velocity keeping the first `held` rows of the tip's twist at zero."""
-    found = _core._ik_direction(robot, np.ascontiguousarray(q)) if held == 6 else None
-    direction = np.linalg.svd(robot.jacobian(q)[:held])[2][-1] if found is None else found
-    direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
-    moving = np.abs(direction) > 1e-6
-    names = tuple(itertools.compress(robot.joint_names, moving))
-    return Family(row, q, np.where(moving, direction, 0.0), names)
 
 
 _core._ik_results(Solutions)

@@ -1,0 +1,154 @@
+// The curve of configurations that a family runs through: the tip (or its position alone) stays where it is
+// at the start. Steps along the tangent, each followed by Newton steps back onto the curve (Allgower & Georg
+// 1990, chapter 6).
+#pragma once
+
+#include "cspace/ik/refine.hpp"
+
+namespace cspace::ik {
+
+// What stays put.
+struct Held {
+    Posed goal;
+    bool whole_pose;
+    double length;  // of the arm [m]; sliding joints count in it
+};
+
+enum class CurveEnd {
+    closed,  // the curve came back to its start, up to whole turns
+    far,     // a slide went as far as far_away lengths of the arm: it goes on for ever
+    lost,    // no step succeeded any more
+};
+
+inline constexpr double far_away = 1000;
+inline constexpr int most_curve_steps = 20000;
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline double unit_of(const ik::Chain& chain, int i, double length) {
+    return chain.prismatic[i] ? length : 1;
+}
+
+// The error at q and its decomposed Jacobian, joints in their units.
+inline double measure_held(const ik::Chain& chain, const ik::Held& held, const double* q, PoseError& at) {
+    measure(chain, held.goal, held.length, q, at);
+    if (!held.whole_pose)
+        for (int k = 3; k < 6; ++k) at.e[k] = 0;
+    for (int i = 0; i < chain.n; ++i)
+        for (int k = 0; k < 6; ++k)
+            at.jacobian.us[i][k] *= !held.whole_pose && k >= 3 ? 0 : unit_of(chain, i, held.length);
+    decompose(at.jacobian);
+    return size_of_error(at);
+}
+
+// The direction of the curve at a point: the part of `along` that moves nothing, unit. False if there is
+// none.
+inline bool tangent_at(const ik::Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
+    constexpr double still = 1e-7;
+    double size2 = 0;
+    for (int i = 0; i < chain.n; ++i) tangent[i] = 0;
+    for (int j = 0; j < J.columns; ++j) {
+        if (J.sigma[j] > still) continue;
+        const double part = dot_n(J.v[j], along, chain.n);
+        for (int i = 0; i < chain.n; ++i) tangent[i] += part * J.v[j][i];
+    }
+    size2 = dot_n(tangent, tangent, chain.n);
+    if (!(size2 > 1e-4)) return false;
+    for (int i = 0; i < chain.n; ++i) tangent[i] /= std::sqrt(size2);
+    return true;
+}
+
+// Brings q onto the curve by the shortest steps; true if the tip is where it is held. `at` belongs to q.
+inline bool onto_curve(const ik::Chain& chain, const ik::Held& held, double* q, PoseError& at) {
+    constexpr int most_steps = 12;
+    constexpr double settled = 1e-15, arrived = 1e-12;
+    double size = measure_held(chain, held, q, at);
+    for (int step = 0; step < most_steps && size > settled; ++step) {
+        double dq[ik::max_joints], next[ik::max_joints];
+        PoseError trial;
+        damped_step(at, 0, dq);
+        for (int i = 0; i < chain.n; ++i) next[i] = q[i] + unit_of(chain, i, held.length) * dq[i];
+        const double left = measure_held(chain, held, next, trial);
+        if (!(left < size)) break;
+        for (int i = 0; i < chain.n; ++i) q[i] = next[i];
+        at = trial;
+        size = left;
+    }
+    return size <= arrived;
+}
+
+// One step of length h from q along its tangent. False if the curve bends too much for it.
+inline bool step_along(const ik::Chain& chain, const ik::Held& held, const double* q, const double* tangent,
+                       double h, double* next, double* next_tangent) {
+    constexpr double least_cosine = 0.995, largest_return = 0.1;
+    PoseError at;
+    for (int i = 0; i < chain.n; ++i) next[i] = q[i] + h * unit_of(chain, i, held.length) * tangent[i];
+    if (!onto_curve(chain, held, next, at) || !tangent_at(chain, at.jacobian, tangent, next_tangent))
+        return false;
+    double back2 = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        const double moved = (next[i] - q[i]) / unit_of(chain, i, held.length) - h * tangent[i];
+        back2 += moved * moved;
+    }
+    return back2 <= largest_return * largest_return * h * h &&
+           dot_n(tangent, next_tangent, chain.n) >= least_cosine;
+}
+
+// Whether the start lies ahead of q within a step, the curve passing it as it left it; `lift` is then the
+// start by the turns that bring it there.
+inline bool start_is_next(const ik::Chain& chain, const ik::Held& held, const double* q,
+                          const double* tangent, const double* start, const double* start_tangent, double h,
+                          double* lift) {
+    double gap[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) {
+        const double raw = start[i] - q[i];
+        const double d = chain.prismatic[i] ? raw : std::remainder(raw, 2 * pi);
+        lift[i] = q[i] + d;
+        gap[i] = d / unit_of(chain, i, held.length);
+    }
+    const double ahead = dot_n(gap, tangent, chain.n), size2 = dot_n(gap, gap, chain.n);
+    return ahead >= 0 && size2 <= h * h && ahead * ahead >= 0.9 * size2 &&
+           dot_n(tangent, start_tangent, chain.n) > 0.9;
+}
+
+// Follows the curve from `start` along `direction` (in joint units), telling `visit` every configuration and
+// the tangent there, the start first; where the curve closes, the start comes last again, its angles unwound.
+template <class Visit>
+ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const double* start,
+                          const double* direction, Visit&& visit) {
+    constexpr double longest = 0.05, shortest = 1e-7;
+    const int n = chain.n;
+    double q[ik::max_joints], t[ik::max_joints], first[ik::max_joints];
+    PoseError at;
+    for (int i = 0; i < n; ++i) q[i] = start[i];
+    measure_held(chain, held, q, at);
+    if (!tangent_at(chain, at.jacobian, direction, first)) return ik::CurveEnd::lost;
+    for (int i = 0; i < n; ++i) t[i] = first[i];
+    visit(q, t);
+    double h = longest;
+    for (int step = 0; step < ik::most_curve_steps; ++step) {
+        double next[ik::max_joints], next_t[ik::max_joints];
+        if (step > 2 && start_is_next(chain, held, q, t, start, first, 1.5 * h, next)) {
+            visit(next, first);
+            return ik::CurveEnd::closed;
+        }
+        while (!step_along(chain, held, q, t, h, next, next_t))
+            if ((h *= 0.5) < shortest) return ik::CurveEnd::lost;
+        double turning = 0, away = 0;
+        for (int i = 0; i < n; ++i) {
+            q[i] = next[i], t[i] = next_t[i];
+            if (chain.prismatic[i])
+                away = max(away, std::fabs(q[i] - start[i]) / held.length);
+            else
+                turning = max(turning, std::fabs(t[i]));
+        }
+        visit(q, t);
+        if (away > ik::far_away) return ik::CurveEnd::far;
+        h = turning > 1e-9 ? min(1.5 * h, longest) : 2 * h;  // slides alone run along a line
+    }
+    return ik::CurveEnd::lost;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

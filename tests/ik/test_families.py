@@ -1,0 +1,228 @@
+"""Families of configurations: how far each joint runs, and that the tip stays all the way."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+
+from cspace.errors import InputError, InputTypeError
+from cspace.model import from_screws
+from cspace.robot import Robot
+from ik.arms import load
+from ik.geometries import angle_gap
+
+X, Y, Z = np.eye(3)
+O = np.zeros(3)
+CASES = {
+    "puma560, wrist straight": ("puma560", [0.1, 0.2, 0.3, 0.4, 0.0, 0.5]),
+    "ur5e, axis 6 parallel to axis 2": ("ur5e", [0.3, -1.0, 0.9, 0.5, 0.0, 0.2]),
+    "ur5_dh, the other way round": ("ur5_dh", [0.3, -1.0, 0.9, 0.5, np.pi, 0.2]),
+    "elbow, stretched over a straight wrist": ("elbow", [0.3, -0.4, 0.0, 0.5, np.pi / 2, 0.2]),
+    "planar 3R, tip inside": ("planar_3r", [0.3, 0.5, 0.7]),
+    "planar 3R, folded": ("planar_3r", [0.3, 2.0, 1.7]),
+    "planar 3R with limits": ("three_link", [0.3, 2.0, 1.7]),
+    "planar 2R at its base": ("planar_2r", [0.3, np.pi]),
+    "rpr under its axis": ("rpr", [0.3, 0.25, np.pi / 6]),
+}
+
+
+def families_of(name, q):
+    robot = load(name)
+    T = robot.fk(np.array(q))
+    found = robot.ik(T) if robot.dof == 6 else robot.ik(position=T[:3, 3])
+    assert found.status == "singular"
+    return robot, T, found.families
+
+
+def limited(robot, lower, upper):
+    """The same arm with other limits."""
+    c = robot.chain
+    n = len(c.joint_types)
+    ends = {side: np.broadcast_to(v, n).astype(float) for side, v in (("lower", lower), ("upper", upper))}
+    return Robot(from_screws(c.axes, c.points, c.T_zero, joint_types=c.joint_types, name="limited", **ends))
+
+
+def tip_stays(robot, T, q, position):
+    at = robot.fk(q)
+    return np.abs((at - T)[..., :3, 3:] if position else at - T).max(initial=0) < 1e-9
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_the_tip_stays_along_every_family(case):
+    robot, T, families = families_of(*CASES[case])
+    assert families
+    seen = 0
+    for family in families:
+        bounds, path = family.bounds, family.sample(97)
+        assert bounds.shape == (robot.dof, 2)
+        if np.isnan(bounds).any():
+            assert not robot.ik(T).within() or robot.ik(T).violations()[family.row]
+            continue
+        seen += 1
+        assert path.shape == (97, robot.dof)
+        assert tip_stays(robot, T, path, robot.dof < 6)
+        whole = np.isclose(bounds[:, 1] - bounds[:, 0], 2 * np.pi)
+        inside = (path >= bounds[:, 0] - 1e-9) & (path <= bounds[:, 1] + 1e-9)
+        assert inside[:, ~whole].all()
+        # Neighbours are neighbours: no jump from one curve to another.
+        steps = np.abs(np.angle(np.exp(1j * np.diff(path, axis=0)))).max(axis=1)
+        assert steps.max() < 6 * np.median(steps) + 1e-9
+        for joint, name in enumerate(robot.joint_names):
+            assert (bounds[joint, 0] < bounds[joint, 1]) or name not in family.joints
+    assert seen
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_bounds_are_what_a_fine_sample_comes_near_to(case):
+    _, _, families = families_of(*CASES[case])
+    for family in families:
+        bounds = family.bounds
+        if np.isnan(bounds).any():
+            continue
+        path = family.sample(4001)
+        low, high = path.min(axis=0), path.max(axis=0)
+        assert np.abs(np.stack([low, high], axis=1) - bounds).max() < 5e-3
+
+
+def puma_family(lower, upper, q4, q6):
+    robot = limited(load("puma560"), lower, upper)
+    q = np.array([0.1, 0.2, 0.3, q4, 0.0, q6])
+    found = robot.ik(robot.fk(q), near=q)
+    assert angle_gap(found.q[0], q).max() < 1e-9
+    return found.families[0]
+
+
+@pytest.mark.parametrize("total", [0.9, -2.0, 0.0])
+def test_a_straight_wrist_rolls_all_the_way_round_without_limits(total):
+    bounds = puma_family(-np.inf, np.inf, 0.4, total - 0.4).bounds
+    assert np.allclose(bounds[[3, 5]], [[-np.pi, np.pi]] * 2)
+    assert np.array_equal(bounds[[0, 1, 2, 4], 0], bounds[[0, 1, 2, 4], 1])
+    assert np.abs(bounds[:3, 0] - [0.1, 0.2, 0.3]).max() < 1e-12
+
+
+@pytest.mark.parametrize("reach", [2.0, 3.0, 2 * np.pi, 11.0])
+@pytest.mark.parametrize("total", [0.9, -1.5, 0.0])
+def test_limits_of_a_straight_wrist_cut_both_joints_by_each_other(reach, total):
+    """q4 + q6 is constant, so q4 lies within its own limits and those of total − q6."""
+    family = puma_family(-reach, reach, 0.3, total - 0.3)
+    low, high = max(-reach, total - reach), min(reach, total + reach)
+    assert np.abs(family.bounds[3] - [low, high]).max() < 1e-9
+    assert np.abs(family.bounds[5] - [total - high, total - low]).max() < 1e-9
+    path = family.sample(20)
+    assert np.abs(path[:, 3] + path[:, 5] - total).max() < 1e-9
+    assert np.abs(np.sort(path[[0, -1], 3]) - [low, high]).max() < 1e-9
+    assert (np.abs(path) <= reach).all()
+
+
+def test_joints_limited_on_one_side_go_on_for_ever_on_the_other():
+    lower = np.full(6, -np.inf)
+    lower[3] = -1.0
+    family = puma_family(lower, np.inf, 0.3, 0.6)
+    assert np.allclose(family.bounds[3], [-1.0, np.inf])
+    assert np.allclose(family.bounds[5], [-np.inf, 1.9])
+    with pytest.raises(InputError, match="no end, joint_4"):
+        family.sample(5)
+
+
+def test_outside_the_limits_there_is_no_family():
+    upper = np.full(6, np.inf)
+    upper[0] = 0.0
+    family = puma_family(-1.0, upper, 0.3, 0.6)
+    assert np.isnan(family.bounds).all()
+    assert family.sample(5).shape == (0, 6)
+
+
+def four_bar_angles(l1, l2, l3, r):
+    """Least and largest angle of crank l1 against the line to a point at distance r that l2 and l3 reach."""
+    far, near = l2 + l3, abs(l2 - l3)
+    limits = []
+    for d in (near, far):
+        c = (l1**2 + r**2 - d**2) / (2 * l1 * r)
+        limits.append(np.arccos(np.clip(c, -1, 1)))
+    return limits
+
+
+@pytest.mark.parametrize("q", [[0.3, 0.5, 0.7], [0.2, 2.0, 1.7], [-0.4, 0.9, -0.2], [1.0, -0.6, -0.4]])
+def test_a_planar_arm_on_a_point_is_a_four_bar_linkage(q):
+    """Links of 1, 1 and 0.5 m and the line to the goal: the first link swings as far as the other two reach,
+    or goes round, by the law of cosines.
+    """
+    robot = load("planar_3r")
+    p = robot.fk(np.array(q))[:3, 3]
+    found = robot.ik(position=p)
+    r, towards = np.hypot(p[0], p[1]), np.arctan2(p[1], p[0])
+    inner, outer = four_bar_angles(1.0, 1.0, 0.5, r)
+    for family in found.families:
+        low, high = family.bounds[0]
+        if inner > 1e-9:  # it cannot pass the goal's direction: the swing stays on one side
+            side = np.sign(np.angle(np.exp(1j * (family.q[0] - towards))))
+            expected = np.sort(side * np.array([inner, outer]))
+        else:
+            expected = np.array([-outer, outer])
+        middle = 0.5 * (low + high)
+        turned = towards + 2 * np.pi * np.round((middle - towards - expected.mean()) / (2 * np.pi))
+        if outer < np.pi - 1e-9 or inner > 1e-9:
+            assert np.abs(np.array([low, high]) - turned - expected).max() < 1e-9
+        else:
+            assert np.allclose([low, high], [-np.pi, np.pi])
+
+
+def test_the_extremes_of_a_linkage_are_where_its_joints_turn_back():
+    """UR, axis 6 parallel: four parallel axes hold a point; at an extreme one joint stands still."""
+    robot, _, families = families_of(*CASES["ur5e, axis 6 parallel to axis 2"])
+    for family in families:
+        path = family.sample(2000)
+        for joint in (1, 2):
+            for end, pick in ((0, np.argmin), (1, np.argmax)):
+                at = path[pick(path[:, joint])]
+                J = robot.jacobian(at)
+                direction = np.linalg.svd(J)[2][-1]
+                assert abs(direction[joint]) < 2e-2
+                assert abs(family.bounds[joint, end] - at[joint]) < 1e-4
+
+
+def test_two_equal_links_at_the_base_turn_freely_and_within_limits():
+    free = load("planar_2r").ik(position=(0, 0)).families[0]
+    assert np.allclose(free.bounds, [[-np.pi, np.pi], [np.pi, np.pi]])
+    arm = limited(load("planar_2r"), [-0.5, -4], [1.25, 4])
+    bound = arm.ik(position=(0, 0)).families[0]
+    assert np.allclose(bound.bounds, [[-0.5, 1.25], [np.pi, np.pi]])
+    assert np.allclose(bound.sample(8)[:, 0], np.linspace(-0.5, 1.25, 8)) or np.allclose(
+        bound.sample(8)[::-1, 0], np.linspace(-0.5, 1.25, 8)
+    )
+
+
+def test_two_slides_side_by_side_share_the_way():
+    T_zero = np.eye(4)
+    for lower, upper, expected in (
+        (-np.inf, np.inf, [[-np.inf, np.inf]] * 2),
+        ([-1, -2], [1, 2], [[-1, 1], [-0.7, 1.3]]),
+        ([-1, -2], [1, 0.5], [[-0.2, 1], [-0.7, 0.5]]),
+    ):
+        robot = limited(Robot(from_screws([X, X], [O, O], T_zero, joint_types="PP")), lower, upper)
+        family = robot.ik(position=(0.3, 0, 0)).families[0]
+        assert np.allclose(family.bounds, expected, atol=1e-9)
+
+
+def test_samples_of_a_loop_start_at_its_representative_and_do_not_repeat_it():
+    _, _, families = families_of(*CASES["planar 3R, tip inside"])
+    for family in families:
+        path = family.sample(12)
+        assert angle_gap(path[:1], family.q).max() < 1e-9
+        assert angle_gap(path[1:], family.q).min() > 1e-2
+        assert (np.abs(path) <= np.pi).all()
+
+
+def test_families_can_be_copied_and_sent():
+    _, _, families = families_of(*CASES["planar 3R, tip inside"])
+    family = families[0]
+    for twin in (copy.deepcopy(family), pickle.loads(pickle.dumps(family))):
+        assert np.array_equal(twin.bounds, family.bounds)
+
+
+def test_what_is_no_number_of_samples_is_refused():
+    family = load("planar_2r").ik(position=(0, 0)).families[0]
+    for n, error in ((0, InputError), (-3, InputError), (2.5, InputTypeError), (True, InputTypeError)):
+        with pytest.raises(error, match="n is"):
+            family.sample(n)
