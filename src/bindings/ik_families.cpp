@@ -37,23 +37,29 @@ void scale(const ik::Chain& chain, double length, double* v, bool to_units) {
 
 }  // namespace
 
-// _ik_direction(robot, q (n,)) → the unit joint velocity (n,) of the self-motion through q, or None
+// _ik_direction(robot, q (n,), whole_pose) → the unit joint velocity (n,) of the self-motion through q, or
+// None
 PyObject* ik_direction(PyObject*, PyObject* args) {
     PyObject *robot, *at;
-    if (!PyArg_ParseTuple(args, "OO", &robot, &at)) return nullptr;
+    int whole_pose;
+    if (!PyArg_ParseTuple(args, "OOp", &robot, &at, &whole_pose)) return nullptr;
     const ik::Arm* arm = arm_for("_ik_direction", robot, {at}, 1);
     if (!arm) return nullptr;
     const ik::Chain& chain = arm->plan.chain;
-    const double length = characteristic_length(chain), *q = data_of(at);
-    const Posed goal = forward(chain, q);
+    const double* q = data_of(at);
+    const ik::Held held = held_at(chain, q, whole_pose);
     PoseError error;
-    measure(chain, goal, length, q, error);
-    decompose(error.jacobian);
+    measure_held(chain, held, q, error);
     double d[ik::max_joints];
-    if (!find_self_motion(chain, goal, length, q, error.jacobian, d)) Py_RETURN_NONE;
+    const bool found = whole_pose
+                           ? find_self_motion(chain, held.goal, held.length, q, error.jacobian, d)
+                           : start_direction(chain, held, q, error.jacobian.v[weakest(error.jacobian)], d);
+    if (!found) Py_RETURN_NONE;
+    if (!whole_pose) scale(chain, held.length, d, false);
+    const double size = std::sqrt(dot_n(d, d, chain.n));
     npy_intp n = chain.n;
     PyObject* out = PyArray_SimpleNew(1, &n, NPY_DOUBLE);
-    if (out) std::copy(d, d + n, data_of(out));
+    for (int i = 0; out && i < chain.n; ++i) data_of(out)[i] = d[i] / size;
     return out;
 }
 

@@ -143,16 +143,28 @@ def four_bar_angles(l1, l2, l3, r):
     return limits
 
 
-@pytest.mark.parametrize("q", [[0.3, 0.5, 0.7], [0.2, 2.0, 1.7], [-0.4, 0.9, -0.2], [1.0, -0.6, -0.4]])
-def test_a_planar_arm_on_a_point_is_a_four_bar_linkage(q):
+POINTS = {
+    "a swing": (1.9, 0.7, 0),
+    "a swing beside the base": (0.4, -0.2, 0),
+    "a crank": (-0.8, 0.6, 0),
+    "nearly stretched": (2.4999, 0, 0),
+    "where two curves cross, stretched": (1.5, 0, 0),
+    "where two curves cross, folded": (0, 0.5, 0),
+    "where two curves nearly cross": (1.500001, 0, 0),
+    "where they nearly cross, the other way": (1.499999, 0, 0),
+}
+
+
+@pytest.mark.parametrize("case", POINTS)
+def test_a_planar_arm_on_a_point_is_a_four_bar_linkage(case):
     """Links of 1, 1 and 0.5 m and the line to the goal: the first link swings as far as the other two reach,
     or goes round, by the law of cosines.
     """
-    robot = load("planar_3r")
-    p = robot.fk(np.array(q))[:3, 3]
+    robot, p = load("planar_3r"), POINTS[case]
     found = robot.ik(position=p)
     r, towards = np.hypot(p[0], p[1]), np.arctan2(p[1], p[0])
     inner, outer = four_bar_angles(1.0, 1.0, 0.5, r)
+    assert found.families
     for family in found.families:
         low, high = family.bounds[0]
         if inner > 1e-9:  # it cannot pass the goal's direction: the swing stays on one side

@@ -21,7 +21,7 @@ enum class CurveEnd {
 };
 
 inline constexpr double far_away = 1000;
-inline constexpr int most_curve_steps = 20000;
+inline constexpr int most_curve_steps = 4000;
 
 }  // namespace cspace::ik
 
@@ -43,32 +43,54 @@ inline double measure_held(const ik::Chain& chain, const ik::Held& held, const d
     return size_of_error(at);
 }
 
+// A singular value below this is a direction that moves nothing.
+inline constexpr double still = 1e-7;
+
 // The direction of the curve at a point: the part of `along` that moves nothing, unit. False if there is
 // none.
 inline bool tangent_at(const ik::Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
-    constexpr double still = 1e-7;
-    double size2 = 0;
     for (int i = 0; i < chain.n; ++i) tangent[i] = 0;
     for (int j = 0; j < J.columns; ++j) {
         if (J.sigma[j] > still) continue;
         const double part = dot_n(J.v[j], along, chain.n);
         for (int i = 0; i < chain.n; ++i) tangent[i] += part * J.v[j][i];
     }
-    size2 = dot_n(tangent, tangent, chain.n);
+    const double size2 = dot_n(tangent, tangent, chain.n);
     if (!(size2 > 1e-4)) return false;
     for (int i = 0; i < chain.n; ++i) tangent[i] /= std::sqrt(size2);
     return true;
 }
 
+// How far away another curve may be: the least of the other singular values vanishes where two curves cross,
+// about in proportion to the distance. A longer step could change from one to the other.
+inline double room_at(const PoseSvd& J) {
+    constexpr double least = 1e-5;
+    double weakest_hold = 1;
+    for (int j = 0; j < J.columns; ++j)
+        if (J.sigma[j] > still) weakest_hold = min(weakest_hold, J.sigma[j]);
+    return max(0.5 * weakest_hold, least);
+}
+
+// The shortest change of the joints, in their units, that undoes the error; none along the curve.
+inline void shortest_step(const PoseError& at, double* dq) {
+    const PoseSvd& J = at.jacobian;
+    for (int i = 0; i < J.columns; ++i) dq[i] = 0;
+    for (int j = 0; j < J.columns; ++j) {
+        if (J.sigma[j] <= still) continue;
+        const double along = dot_n(J.us[j], at.e, 6) / (J.sigma[j] * J.sigma[j]);
+        for (int i = 0; i < J.columns; ++i) dq[i] += along * J.v[j][i];
+    }
+}
+
 // Brings q onto the curve by the shortest steps; true if the tip is where it is held. `at` belongs to q.
 inline bool onto_curve(const ik::Chain& chain, const ik::Held& held, double* q, PoseError& at) {
     constexpr int most_steps = 12;
-    constexpr double settled = 1e-15, arrived = 1e-12;
+    constexpr double settled = 1e-15;
     double size = measure_held(chain, held, q, at);
     for (int step = 0; step < most_steps && size > settled; ++step) {
         double dq[ik::max_joints], next[ik::max_joints];
         PoseError trial;
-        damped_step(at, 0, dq);
+        shortest_step(at, dq);
         for (int i = 0; i < chain.n; ++i) next[i] = q[i] + unit_of(chain, i, held.length) * dq[i];
         const double left = measure_held(chain, held, next, trial);
         if (!(left < size)) break;
@@ -76,12 +98,13 @@ inline bool onto_curve(const ik::Chain& chain, const ik::Held& held, double* q, 
         at = trial;
         size = left;
     }
-    return size <= arrived;
+    // An arm whose axes are parallel to ten digits only has its families to ten digits only.
+    return size <= tolerance::reached;
 }
 
 // One step of length h from q along its tangent. False if the curve bends too much for it.
 inline bool step_along(const ik::Chain& chain, const ik::Held& held, const double* q, const double* tangent,
-                       double h, double* next, double* next_tangent) {
+                       double h, double* next, double* next_tangent, double* room) {
     constexpr double least_cosine = 0.995, largest_return = 0.1;
     PoseError at;
     for (int i = 0; i < chain.n; ++i) next[i] = q[i] + h * unit_of(chain, i, held.length) * tangent[i];
@@ -92,6 +115,7 @@ inline bool step_along(const ik::Chain& chain, const ik::Held& held, const doubl
         const double moved = (next[i] - q[i]) / unit_of(chain, i, held.length) - h * tangent[i];
         back2 += moved * moved;
     }
+    *room = room_at(at.jacobian);
     return back2 <= largest_return * largest_return * h * h &&
            dot_n(tangent, next_tangent, chain.n) >= least_cosine;
 }
@@ -113,6 +137,45 @@ inline bool start_is_next(const ik::Chain& chain, const ik::Held& held, const do
            dot_n(tangent, start_tangent, chain.n) > 0.9;
 }
 
+inline double first_step(const PoseSvd& J) { return min(1e-3, 0.2 * room_at(J)); }
+
+// The tangent at a configuration, from a guess. Where curves cross, the null space holds more directions than
+// theirs: a short step along each of many is brought back, and the way it then has gone that is nearest to
+// the guess is taken. False if no curve leaves from there.
+inline bool start_direction(const ik::Chain& chain, const ik::Held& held, const double* q,
+                            const double* guess, double* tangent) {
+    constexpr int around = 48;
+    const int n = chain.n;
+    PoseError at;
+    measure_held(chain, held, q, at);
+    const double h = first_step(at.jacobian);
+    double next[ik::max_joints], beyond[ik::max_joints], room, best = -1;
+    if (tangent_at(chain, at.jacobian, guess, tangent) &&
+        step_along(chain, held, q, tangent, h, next, beyond, &room))
+        return true;
+    for (int a = 0; a < n; ++a)
+        for (int b = a + 1; b < n; ++b)
+            for (int m = 0; m < around; ++m) {
+                if (at.jacobian.sigma[a] > still || at.jacobian.sigma[b] > still) break;
+                const double c = std::cos(2 * pi * m / around), s = std::sin(2 * pi * m / around);
+                double way[ik::max_joints], trial[ik::max_joints];
+                for (int i = 0; i < n; ++i)
+                    next[i] = q[i] + h * unit_of(chain, i, held.length) *
+                                         (c * at.jacobian.v[a][i] + s * at.jacobian.v[b][i]);
+                PoseError there;
+                if (!onto_curve(chain, held, next, there)) continue;
+                for (int i = 0; i < n; ++i) way[i] = (next[i] - q[i]) / (h * unit_of(chain, i, held.length));
+                if (!(dot_n(way, way, n) > 0.25) || !tangent_at(chain, at.jacobian, way, trial) ||
+                    !step_along(chain, held, q, trial, h, next, beyond, &room))
+                    continue;
+                const double agrees = dot_n(trial, guess, n);
+                if (agrees <= best) continue;
+                best = agrees;
+                for (int i = 0; i < n; ++i) tangent[i] = trial[i];
+            }
+    return best > -1;
+}
+
 // Follows the curve from `start` along `direction` (in joint units), telling `visit` every configuration and
 // the tangent there, the start first; where the curve closes, the start comes last again, its angles unwound.
 template <class Visit>
@@ -120,21 +183,21 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const do
                           const double* direction, Visit&& visit) {
     constexpr double longest = 0.05, shortest = 1e-7;
     const int n = chain.n;
-    double q[ik::max_joints], t[ik::max_joints], first[ik::max_joints];
+    double q[ik::max_joints] = {}, t[ik::max_joints] = {}, first[ik::max_joints] = {};
     PoseError at;
-    for (int i = 0; i < n; ++i) q[i] = start[i];
-    measure_held(chain, held, q, at);
-    if (!tangent_at(chain, at.jacobian, direction, first)) return ik::CurveEnd::lost;
-    for (int i = 0; i < n; ++i) t[i] = first[i];
+    measure_held(chain, held, start, at);
+    const bool leaves = start_direction(chain, held, start, direction, first);
+    for (int i = 0; i < n; ++i) q[i] = start[i], t[i] = leaves ? first[i] : direction[i];
     visit(q, t);
-    double h = longest;
+    if (!leaves) return ik::CurveEnd::lost;
+    double h = first_step(at.jacobian), room = longest;
     for (int step = 0; step < ik::most_curve_steps; ++step) {
-        double next[ik::max_joints], next_t[ik::max_joints];
+        double next[ik::max_joints] = {}, next_t[ik::max_joints] = {};
         if (step > 2 && start_is_next(chain, held, q, t, start, first, 1.5 * h, next)) {
             visit(next, first);
             return ik::CurveEnd::closed;
         }
-        while (!step_along(chain, held, q, t, h, next, next_t))
+        while (!step_along(chain, held, q, t, h, next, next_t, &room))
             if ((h *= 0.5) < shortest) return ik::CurveEnd::lost;
         double turning = 0, away = 0;
         for (int i = 0; i < n; ++i) {
@@ -146,7 +209,7 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const do
         }
         visit(q, t);
         if (away > ik::far_away) return ik::CurveEnd::far;
-        h = turning > 1e-9 ? min(1.5 * h, longest) : 2 * h;  // slides alone run along a line
+        h = turning > 1e-9 ? min(1.5 * h, min(room, longest)) : 2 * h;  // slides alone run along a line
     }
     return ik::CurveEnd::lost;
 }

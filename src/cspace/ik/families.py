@@ -53,7 +53,9 @@ class Family:
         counted on without a jump, so that bounds may lie beyond ±π.
 
         NaN where q breaks the limits whatever turn is taken: ik(..., near=q) picks another representative.
-        Where more than one joint is free, the curve is the one that goes on straight from `direction`.
+        Where more freedom is left than one, the curve is the one that goes on straight from `direction`; it
+        need not close, and is then followed for 4000 steps of 0.05 rad at most, and no further than to where
+        families cross within rounding.
         Computed when first read, by steps along the tangent and back onto the curve (Allgower and Georg
         1990); extremes and limits are met to rounding.
         """
@@ -85,7 +87,7 @@ class Family:
 def family_at(robot: Any, row: int, q: Array, whole_pose: bool) -> Family:
     """The family through q: the joint velocity keeping the tip's twist, or the tip's velocity, at zero."""
     held = 6 if whole_pose else 3
-    found = _core._ik_direction(robot, np.ascontiguousarray(q)) if whole_pose else None
+    found = _core._ik_direction(robot, np.ascontiguousarray(q), whole_pose)
     direction = np.linalg.svd(robot.jacobian(q)[:held])[2][-1] if found is None else found
     direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
     moving = np.abs(direction) > MOVING

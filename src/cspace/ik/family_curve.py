@@ -53,9 +53,11 @@ class Curve:
         around = np.floor(s / self.length) if self.shift is not None else np.zeros_like(s)
         inner = s - around * self.length
         i = np.clip(np.searchsorted(self.s, inner) - 1, 0, len(self.s) - 2)
-        part = (inner - self.s[i]) / (self.s[i + 1] - self.s[i])
+        step = self.s[i + 1] - self.s[i]
+        part = np.where(step > 0, (inner - self.s[i]) / np.where(step > 0, step, 1.0), 0.0)
         chord = self.points[i] + part[:, None] * (self.points[i + 1] - self.points[i])
         exact, _ = onto(self.robot, self.q, chord, self.tangents[i], self.whole_pose)
+        exact = np.where(np.isnan(exact), self.points[i], exact)  # a corner too sharp for its chord
         return exact if self.shift is None else exact + around[:, None] * self.shift
 
 
