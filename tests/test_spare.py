@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cspace.spare import LARGEST, _blocks, spare_array
+from cspace.spare import LARGEST, SMALLEST, _blocks, spare_array
 
 SHAPE = (1000, 8, 6)
 
@@ -38,7 +38,8 @@ def test_several_arrays_of_one_call_come_back_in_the_next():
 
 
 def test_memory_begins_with_a_cache_line():
-    for rows in (100, 1000, 1001):
+    for rows in (200, 1000, 1001):
+        assert rows * 8 * 6 * 8 >= SMALLEST
         assert spare_array((rows, 8, 6)).ctypes.data % 64 == 0
 
 

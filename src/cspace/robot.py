@@ -114,7 +114,8 @@ class Robot(RobotBase):
     def from_screws(cls, axes: Any, points: Any, T_zero: PoseLike, **options: Any) -> Robot:
         """A serial robot from its joint axes at zero: axes (n, 3), points (n, 3) [m], T_zero (4, 4).
 
-        options: joint_types, limits, names, as in model.from_screws, which also names the errors.
+        options: joint_types, lower, upper, velocity and the other limits, name, joint_names, base, tip, as in
+        model.from_screws, which also names the errors.
         """
         return cls(model.from_screws(axes, points, _one_pose(T_zero, "T_zero"), **options))
 

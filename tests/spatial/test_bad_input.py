@@ -153,3 +153,14 @@ def test_a_misspelt_sequence_is_answered_with_the_nearest_and_lower_case_is_expl
         cs.to_euler(np.eye(3), "ZYXX")
     with pytest.raises(UnknownNameError, match=r"in capitals, 'ZYX'.*lower case means fixed in scipy"):
         cs.to_euler(np.eye(3), "zyx")
+
+
+@pytest.mark.parametrize("between", [cs.interpolate, cs.interpolate_decoupled, cs.slerp])
+def test_planar_poses_between_poses_in_space_are_told_where_to_go(between):
+    planar, spatial = cs.pose_2d(xytheta=[3.0, 4.0, 0.5]), cs.random_pose(rng=1)
+    for start, end, subject in ((planar, spatial, "start"), (spatial, planar, "end")):
+        with pytest.raises(InputError, match=rf"{subject} .*planar pose.*interpolate_2d.*embed_pose_2d"):
+            between(start, end, 0.5)
+    with pytest.raises(InputError) as caught:
+        between(np.diag([1.0, 2.0, 3.0]), spatial, 0.5)
+    assert "looks like" not in str(caught.value)

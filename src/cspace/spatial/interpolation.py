@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
 from cspace.spatial import planar_twists, twists
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_pose_2d, as_rotation
 from cspace.spatial.poses import assemble, broadcast_batches, inverse
@@ -25,7 +27,7 @@ def interpolate(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
     T_start, T_end: (..., 4, 4). t: (...), 0 at start, 1 at end, beyond them the motion goes on. All leading
     axes broadcast: one pair and t of shape (m,) give (m, 4, 4); for n pairs at m fractions pass T[:, None].
     """
-    start, end = as_pose(T_start, "start pose"), as_pose(T_end, "end pose")
+    start, end = _spatial(as_pose, T_start, "start pose"), _spatial(as_pose, T_end, "end pose")
     step, t = _fractions(twists.logarithm(_relative(start, end)), t)
     return np.asarray(start @ twists.exponential(step * t))
 
@@ -37,7 +39,11 @@ def slerp(R_start: RotationLike, R_end: RotationLike, t: npt.ArrayLike) -> Array
 
     R_start, R_end: (..., 3, 3) or poses, of which the rotation counts. Returns (..., 3, 3).
     """
-    return _slerp(as_rotation(R_start, "start rotation"), as_rotation(R_end, "end rotation"), t)
+    start, end = (
+        _spatial(as_rotation, R_start, "start rotation"),
+        _spatial(as_rotation, R_end, "end rotation"),
+    )
+    return _slerp(start, end, t)
 
 
 def interpolate_decoupled(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
@@ -47,7 +53,7 @@ def interpolate_decoupled(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) 
 
     Shapes and half turns as in interpolate. Returns (..., 4, 4).
     """
-    start, end = as_pose(T_start, "start pose"), as_pose(T_end, "end pose")
+    start, end = _spatial(as_pose, T_start, "start pose"), _spatial(as_pose, T_end, "end pose")
     p_start, p_end = start[..., :3, 3], end[..., :3, 3]
     R = _slerp(start[..., :3, :3], end[..., :3, :3], t)
     way, fraction = _fractions(p_end - p_start, t)
@@ -62,6 +68,28 @@ def interpolate_2d(T_start: Any, T_end: Any, t: npt.ArrayLike) -> Array:
     start, end = as_pose_2d(T_start, "start pose"), as_pose_2d(T_end, "end pose")
     step, t = _fractions(planar_twists.logarithm(_relative(start, end)), t)
     return np.asarray(start @ planar_twists.exponential(step * t))
+
+
+def _spatial(check: Callable[[Any, str], Array], value: Any, subject: str) -> Array:
+    """check(value, subject); a planar pose is refused with the functions that take it."""
+    try:
+        return check(value, subject)
+    except InputError:
+        if not _is_planar(value):
+            raise
+        raise InputError(
+            f"{subject} looks like a planar pose: cspace.interpolate_2d moves between planar"
+            " poses, cspace.embed_pose_2d(T) makes one spatial; cspace.pose(matrix=R) makes a pose of a"
+            " rotation"
+        ) from None
+
+
+def _is_planar(value: Any) -> bool:
+    try:
+        as_pose_2d(value)
+    except InputError:
+        return False
+    return True
 
 
 def _relative(start: Array, end: Array) -> Array:
