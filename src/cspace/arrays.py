@@ -15,11 +15,18 @@ __all__ = ["Array", "as_floats", "as_generator"]
 Array = npt.NDArray[np.float64]
 
 
-def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), finite: bool = True) -> Array:
+def as_floats(
+    value: Any,
+    subject: str,
+    *,
+    last: tuple[int | None, ...] = (),
+    finite: bool = True,
+    largest: float | None = None,
+) -> Array:
     """A float64 array (..., *last): its trailing axes have the sizes `last` (None: any size), all finite.
 
-    value: anything numpy reads as numbers. subject: its name in messages.
-    Raises InputTypeError if it is not numeric, InputError on a wrong shape or on NaN or inf.
+    value: anything numpy reads as numbers. subject: its name in messages. largest: no entry may be larger.
+    Raises InputTypeError if it is not numeric, InputError on a wrong shape, on NaN or inf, or beyond largest.
     """
     array = value if type(value) is np.ndarray and value.dtype == np.float64 else _converted(value, subject)
     if not array.flags.aligned:  # the compiled loops read numbers in place
@@ -32,6 +39,11 @@ def as_floats(value: Any, subject: str, *, last: tuple[int | None, ...] = (), fi
         bad = np.argwhere(~np.isfinite(array))[0]
         raise InputError(
             f"{subject} holds {array[tuple(bad)]} at index {tuple(map(int, bad))}; all must be finite"
+        )
+    if largest is not None and len(beyond := np.argwhere(np.abs(array) > largest)):
+        index = tuple(map(int, beyond[0]))
+        raise InputError(
+            f"{subject} holds {array[index]:g} at index {index}; at most ±{largest:g} makes sense"
         )
     return array
 

@@ -10,6 +10,7 @@ __all__ = [
     "DESCRIPTION_DEPTH",
     "DH_COINCIDENT",
     "DH_PARALLEL",
+    "FARTHEST",
     "GIMBAL_LOCK",
     "INERTIA_SYMMETRY",
     "LARGEST_NUMBER",
@@ -114,3 +115,7 @@ and lie within SAME_PLACE of each other for the square root of that, 1e-5."""
 MOST_WINDINGS: Final = 100_000
 """Most copies of the solutions of one goal by whole turns that are listed: limits of ±2π on six joints give
 512, and a list beyond this one is no answer any more."""
+
+FARTHEST: Final = 1e100
+"""Largest number in a goal, a seed or a geometric subproblem, and largest sum of a goal's coordinates
+(m, rad): their squares still fit a double."""

@@ -209,6 +209,15 @@ def test_info_tells_the_geometry():
     np.testing.assert_allclose(limits, cs.load_robot("ur5e").limits.upper)
 
 
+@pytest.mark.parametrize(("name", "reason"), [("stanford", "prismatic"), ("panda", "7 joints")])
+def test_info_tells_first_why_there_is_no_closed_form(name, reason):
+    text = cspace(f"info {name} --json").json["geometry"]["text"]
+    assert text.startswith(f"no closed form for {name}")
+    assert reason in text
+    assert "fails" not in text
+    assert "no closed form for" in cspace(f"info {name}").out
+
+
 def test_doctor_is_well_and_says_what_runs():
     result = cspace("doctor")
     assert result.code == 0

@@ -39,6 +39,18 @@ def test_imports_go_downward_and_never_sideways(path):
         assert tree.RANK[target] < tree.RANK[room], f"{found.where}: {room} may not import {target}"
 
 
+def test_files_of_a_room_import_each_other_in_no_circle():
+    modules = {tree.module_name(p) for p in tree.python_files() if p.name != "__init__.py"}
+    below = {
+        tree.module_name(p): {found.module for found in tree.imports(p)} & modules
+        for p in tree.python_files()
+        if p.name != "__init__.py"
+    }
+    while free := {module for module, imported in below.items() if not imported}:
+        below = {module: imported - free for module, imported in below.items() if module not in free}
+    assert not below, f"files in circles, and those that import them: {sorted(below)}"
+
+
 @pytest.mark.parametrize("path", tree.python_files(), ids=tree.module_name)
 def test_only_numpy_and_the_standard_library_are_imported_at_import(path):
     optional = tree.OPTIONAL_IMPORTS.get(tree.room_of(path), set())

@@ -2,12 +2,13 @@
 
 import copy
 import pickle
+import re
 
 import numpy as np
 import pytest
 
 from cspace.errors import InputError, InputTypeError
-from cspace.ik import NoClosedFormError, geometry
+from cspace.ik import NoClosedFormError, geometry, inverse_kinematics
 from cspace.model import Description, Joint, Link, Mimic, from_screws
 from cspace.robot import Robot
 from ik.arms import load
@@ -90,6 +91,11 @@ BAD_SEEDS = {
     "two configurations": (np.zeros((2, 6)), InputError, r"\(2, 6\)"),
     "NaN": (np.full(6, np.nan), InputError, "near holds nan"),
     "words": ("home", InputTypeError, "near"),
+    "farther than numbers reach": (
+        [0, 0, -1e308, 0, 0, 0],
+        InputError,
+        r"near holds -1e\+308 .*\(2,\).*1e\+100",
+    ),
 }
 
 
@@ -98,6 +104,33 @@ def test_a_seed_that_is_no_configuration(robot, goal, case):
     seed, error, words = BAD_SEEDS[case]
     with pytest.raises(error, match=words):
         robot.ik(goal, near=seed)
+
+
+@pytest.mark.parametrize("shape", [(0, 6), (3, 6), (2, 3, 6), (1, 2, 6)])
+def test_a_batch_of_seeds_that_does_not_fit_the_goals(robot, goal, shape):
+    found = robot.ik(np.stack([goal] * 2))
+    with pytest.raises(InputError, match=rf"q has shape {re.escape(str(shape))}.*\(6,\).*\(2, 6\)"):
+        found.nearest(np.zeros(shape))
+
+
+@pytest.mark.parametrize("value", [1e101, -1e308])
+def test_seeds_farther_than_numbers_reach(robot, goal, value):
+    for found in (robot.ik(goal), robot.ik(np.eye(4)), robot.ik(np.stack([goal] * 2))):
+        with pytest.raises(InputError, match=r"q holds .* at index \(4,\).*1e\+100"):
+            found.nearest([0, 0, 0, 0, value, 0])
+
+
+def test_seeds_at_the_edge_of_the_numbers_keep_finite_answers(robot, goal):
+    seed = np.full(6, 1e100)
+    assert np.isfinite(robot.ik(goal, near=seed).q).all()
+    assert np.isfinite(robot.ik(goal[None]).nearest(seed)).all()
+
+
+@pytest.mark.parametrize("robot", ["ur5e", None, np.eye(4)], ids=["a name", "nothing", "a pose"])
+def test_what_is_no_robot_is_refused_with_the_remedy(robot):
+    for call in (lambda: geometry(robot), lambda: inverse_kinematics(robot, np.eye(4))):
+        with pytest.raises(InputTypeError, match=rf"{type(robot).__name__}.*load_robot"):
+            call()
 
 
 @pytest.mark.parametrize("threads", [0, -1, 1.5, "2", True])
@@ -144,8 +177,10 @@ def test_an_arm_without_a_closed_form_says_which_condition_failed_by_how_much(na
     [("panda", "7 joints"), ("iiwa14", "7 joints"), ("stanford", "prismatic"), ("p8", "prismatic")],
 )
 def test_arms_of_later_versions_are_refused_by_kind(name, words):
-    with pytest.raises(NoClosedFormError, match=words):
-        load(name).ik(np.eye(4))
+    robot = load(name)
+    with pytest.raises(NoClosedFormError, match=words) as caught:
+        robot.ik(np.eye(4))
+    assert str(geometry(robot)) == geometry(robot).reason == str(caught.value)
 
 
 def chain_with(joint_at_three, **options):
@@ -167,6 +202,7 @@ def test_a_joint_that_mimics_another_is_refused():
     assert robot.dof == 5
     with pytest.raises(NoClosedFormError, match="mimic"):
         robot.ik(np.eye(4))
+    assert "mimic" in str(geometry(robot))
 
 
 def test_a_fixed_joint_in_the_chain_leaves_an_arm_of_five():
@@ -176,8 +212,10 @@ def test_a_fixed_joint_in_the_chain_leaves_an_arm_of_five():
 
 
 def test_a_floating_base_is_refused():
-    with pytest.raises(Exception, match=r"floating|closed form"):
-        Robot(chain_with("continuous"), floating=True).ik(np.eye(4))
+    robot = Robot(chain_with("continuous"), floating=True)
+    with pytest.raises(NoClosedFormError, match="base floats"):
+        robot.ik(np.eye(4))
+    assert "base floats" in str(geometry(robot))
 
 
 def test_a_tree_without_a_tip_names_its_leaves():

@@ -1,13 +1,15 @@
 """Inverse kinematics: every configuration that reaches a goal, or why there is none."""
 
 from cspace.ik import subproblems
+from cspace.ik.conditions import Condition, NoClosedFormError
 from cspace.ik.families import Family
-from cspace.ik.geometry import Geometry, NoClosedFormError, geometry
+from cspace.ik.geometry import Geometry, geometry
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve import inverse_kinematics
 
 __all__ = [
+    "Condition",
     "Family",
     "Geometry",
     "NoClosedFormError",

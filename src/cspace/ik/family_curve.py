@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.ik.prepare import prepare
 from cspace.ik.windings import into_limits
 
 __all__ = ["Arc", "arc_through"]
@@ -116,8 +117,6 @@ class Arc:
 
 def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc | None:
     """The part of the family through q within the robot's limits; None where q itself breaks them."""
-    from cspace.ik.solve import prepare
-
     prepare(robot)  # a robot out of a pickle comes without its solver
     lower, upper = robot.limits.lower, robot.limits.upper
     moved, fits = into_limits(q[None], robot.joint_types, lower, upper)

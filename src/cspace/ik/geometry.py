@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, cast
-
-import numpy as np
+from typing import Any
 
 from cspace import _core
-from cspace.arrays import Array
-from cspace.errors import CspaceError
+from cspace.ik.conditions import Condition, NoClosedFormError, conditions
+from cspace.ik.prepare import prepare
 
-__all__ = ["Condition", "Geometry", "NoClosedFormError", "geometry"]
+__all__ = ["Geometry", "geometry"]
 
 FAMILIES = {
     0: "none",
@@ -34,137 +32,41 @@ FIRST_THREE = {
 }
 
 
-class NoClosedFormError(CspaceError, NotImplementedError):
-    """The arm has none of the geometries that this version solves; the message lists the conditions that
-    failed.
-    """
-
-
-@dataclass(frozen=True)
-class Condition:
-    """One geometric condition: what it says, whether it holds, the measured miss and its limit [rad or m]."""
-
-    text: str
-    holds: bool
-    measured: float
-    allowed: float
-    unit: str
-
-    def __str__(self) -> str:
-        verdict = "holds" if self.holds else "fails"
-        return f"{self.text}: {verdict} (off by {self.measured:.3g} {self.unit}, allowed {self.allowed:.3g})"
-
-
 @dataclass(frozen=True)
 class Geometry:
     """The closed form of an arm. family: its name or "none"; detail: the case within it; reversed: read
     from the tip; idealised: by how much the form differs from the true axes (m over the arm's length,
     rad), corrected by a
-    Newton step where it matters; conditions: what was tested."""
+    Newton step where it matters; conditions: what was tested; reason: why there is no form, as a sentence.
+    """
 
     family: str
     detail: str
     reversed: bool
     idealised: float
     conditions: tuple[Condition, ...]
+    reason: str = ""
 
     def __bool__(self) -> bool:
         return self.family != "none"
 
     def __str__(self) -> str:
         if not self:
-            return "no closed form: " + "; ".join(str(c) for c in self.conditions)
+            return self.reason
         end = ", read from the tip" if self.reversed else ""
         return f"{self.family} ({self.detail}{end})"
 
 
-def angle_between(h1: Array, h2: Array) -> float:
-    """The angle between two lines [rad], 0 to π/2."""
-    return float(np.arctan2(np.linalg.norm(np.cross(h1, h2)), abs(h1 @ h2)))
-
-
-def common_point(axes: Array, points: Array) -> tuple[Array, float]:
-    """The point nearest to some lines (least squares), and its largest distance from one [m]."""
-    projectors = np.eye(3) - axes[:, :, None] * axes[:, None, :]
-    A, b = projectors.sum(axis=0), np.einsum("nij,nj->i", projectors, points)
-    p = np.linalg.lstsq(A, b, rcond=None)[0]
-    away = np.einsum("nij,nj->ni", projectors, p - points)
-    return cast(Array, p), float(np.linalg.norm(away, axis=1).max())
-
-
-def arm_length(robot: Any) -> float:
-    """The longest distance between neighbouring axes or to the tip [m], 1 if all meet; the scale of
-    tolerances.
-    """
-    points = np.vstack([robot.chain.points, robot.chain.T_zero[:3, 3]])
-    axes = robot.chain.axes
-    steps = [np.linalg.norm(np.cross(points[i + 1] - points[i], axes[i])) for i in range(len(axes))]
-    return float(max(steps)) or 1.0
-
-
-def conditions(robot: Any) -> tuple[Condition, ...]:
-    """Every condition that a closed form could rest on, measured."""
-    axes, points = robot.chain.axes, robot.chain.points
-    allowed = _core.AXIS_RELATION * arm_length(robot)
-    out = []
-    for first in range(len(axes) - 2):
-        three = slice(first, first + 3)
-        names = f"axes {first + 1}, {first + 2}, {first + 3}"
-        away = common_point(axes[three], points[three])[1]
-        out.append(Condition(f"{names} meet in a point", away <= allowed, away, allowed, "m"))
-        bent = max(
-            angle_between(axes[first], axes[first + 1]), angle_between(axes[first + 1], axes[first + 2])
-        )
-        out.append(
-            Condition(f"{names} are parallel", bent <= _core.AXIS_RELATION, bent, _core.AXIS_RELATION, "rad")
-        )
-    return tuple(out)
-
-
-def best_conditioning(robot: Any) -> float:
-    """The largest, over some configurations, of the Jacobian's smallest singular value (lengths over the
-    arm's length).
-    """
-    n = len(robot.chain.axes)
-    steps = np.arange(1, 9)[:, None] * np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0])[:n]
-    J = np.array(robot.jacobian(2 * np.pi * (steps - np.floor(steps)) - np.pi))
-    J[:, :3] /= arm_length(robot)
-    return float(np.linalg.svd(J, compute_uv=False)[:, -1].max())
-
-
-def explain_missing_form(robot: Any) -> str:
-    kinds = robot.chain.joint_types
-    subject = f"no closed form for {robot.name} ({kinds}, {len(kinds)} joints)"
-    if robot.chain.dof != len(kinds):
-        return f"{subject}: joints that mimic others are not solved by this version"
-    if not kinds:
-        return f"{subject}: no joint moves"
-    if "P" in kinds:
-        return f"{subject}: arms with prismatic joints are not solved by this version"
-    if len(kinds) > 6:
-        return f"{subject}: this version solves full poses for four to six revolute joints"
-    best = best_conditioning(robot)
-    if best < _core.AXIS_RELATION:
-        return (
-            f"{subject}: every configuration is singular, two of its joints do one's work (the Jacobian's "
-            f"smallest singular value is {best:.2g} at best); hold one joint still"
-        )
-    tested = "; ".join(str(c) for c in conditions(robot) if not c.holds)
-    return (
-        f"{subject}: it needs the first or last three axes to meet in a point, or three neighbouring axes "
-        f"to be parallel. {tested}"
-    )
-
-
 def geometry(robot: Any) -> Geometry:
-    """The closed form that serves `robot`, or which conditions failed."""
-    from cspace.ik.solve import prepare
-
-    tested = conditions(robot) if len(robot.chain.axes) >= 3 else ()
+    """The closed form that serves `robot`, or why there is none; what is no robot raises InputTypeError."""
+    missing = ""
     try:
         prepare(robot)
-    except NoClosedFormError:
-        return Geometry("none", "", False, 0.0, tested)
+    except NoClosedFormError as error:
+        missing = str(error)
+    tested = conditions(robot) if len(robot.chain.axes) >= 3 else ()
+    if missing:
+        return Geometry("none", "", False, 0.0, tested, missing)
     seen = _core._ik_geometry(robot)
     if seen["family"] < 0:
         shared = FIRST_THREE.get(seen["first_three"], "up to three joints")

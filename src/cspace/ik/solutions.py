@@ -12,8 +12,10 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.branches import branch_labels
 from cspace.ik.families import Family, family_at
+from cspace.ik.prepare import prepare
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
+from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
     from cspace.model import Limits
@@ -132,7 +134,7 @@ class Solutions(_core.SolutionsBase):
         metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Turns that
         would leave the robot's limits are not taken where another one stays inside.
         """
-        seed = as_floats(q, "q", last=(self.robot.dof,))
+        seed = as_floats(q, "q", last=(self.robot.dof,), largest=FARTHEST)
         if seed.ndim != 1:
             raise InputError(f"q has shape {seed.shape}, expected ({self.robot.dof},): one configuration")
         choice(metric, "metric", METRICS)
@@ -190,8 +192,6 @@ class Solutions(_core.SolutionsBase):
 
 def again(robot: Any, *parts: Any) -> Solutions:
     """A result out of its pickle."""
-    from cspace.ik.solve import prepare
-
     prepare(robot)
     return cast(Solutions, _core._ik_make(robot, *parts))
 

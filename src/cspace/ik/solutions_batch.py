@@ -10,6 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.ik.prepare import prepare
 from cspace.ik.solutions import (
     METRICS,
     UNREACHABLE,
@@ -21,6 +22,7 @@ from cspace.ik.solutions import (
 )
 from cspace.ik.windings import into_limits, nearest_winding, wrap
 from cspace.kinematics.batch import choice
+from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
     from cspace.model import Limits
@@ -95,8 +97,6 @@ class SolutionsBatch:
         return np.asarray(np.arange(self.q.shape[-2]) < self.count[..., None])
 
     def __getitem__(self, index: Any) -> Solutions:
-        from cspace.ik.solve import prepare
-
         verdict = self._verdict[index]
         if np.ndim(verdict):
             raise InputError(
@@ -141,14 +141,25 @@ class SolutionsBatch:
         none.
         """
         choice(metric, "metric", METRICS)
-        seed = as_floats(q, "q", last=(self.robot.dof,))
-        seed = np.broadcast_to(seed, (*self.count.shape, self.robot.dof))[..., None, :]
+        seed = self._seed(q)[..., None, :]
         limits = self.robot.limits
         moved = nearest_winding(self.q, seed, self.robot.joint_types, limits.lower, limits.upper)
         gap = np.abs(moved - seed)
         distance = gap.max(axis=-1) if metric == "max" else np.linalg.norm(gap, axis=-1)
         row = np.argmin(np.where(self._real, distance, np.inf), axis=-1)
         return np.take_along_axis(moved, row[..., None, None], axis=-2)[..., 0, :]
+
+    def _seed(self, q: Any) -> Array:
+        """One configuration per goal, (..., dof), from as many as given or one for all."""
+        dof = self.robot.dof
+        seed = as_floats(q, "q", last=(dof,), largest=FARTHEST)
+        whole = (*self.count.shape, dof)
+        try:
+            return np.broadcast_to(seed, whole)
+        except ValueError:
+            raise InputError(
+                f"q has shape {seed.shape}, expected ({dof},) for all goals or {whole}, one for each"
+            ) from None
 
     def _keep(self, q: Array, keep: npt.NDArray[np.bool_]) -> SolutionsBatch:
         order = np.argsort(~keep, axis=-1, kind="stable")

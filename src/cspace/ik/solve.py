@@ -11,46 +11,22 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.geometry import NoClosedFormError, explain_missing_form
+from cspace.ik.conditions import NoClosedFormError
+from cspace.ik.prepare import prepare
 from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.windings import wrap
 from cspace.spare import spare_array
 from cspace.spatial import as_pose
+from cspace.tolerances import FARTHEST
 
 __all__ = ["inverse_kinematics"]
 
 MAX_BRANCHES = 8
-FARTHEST = 1e100
-"""Largest sum of a goal's coordinates [m]: their squares still fit a double."""
-MAX_JOINTS = 6
 MOST_THREADS = 1024
 MAX_POSITION_JOINTS = 3
 Counts = npt.NDArray[np.int64]
 Verdicts = npt.NDArray[np.uint8]
-
-
-def prepare(robot: Any) -> None:
-    """Build the solver of `robot` once: its axes, points and tip at zero go to the core, which looks for a
-    form.
-    """
-    if robot._ik_ready:
-        return
-    chain = robot.chain
-    joints = len(chain.joint_types)
-    if chain.dof != joints or robot.floating or not 1 <= joints <= MAX_JOINTS:
-        raise NoClosedFormError(explain_missing_form(robot))
-    prismatic = np.array([kind == "P" for kind in chain.joint_types], dtype=np.float64)
-    found = _core._ik_build(
-        robot,
-        np.ascontiguousarray(chain.axes, dtype=np.float64),
-        np.ascontiguousarray(chain.points, dtype=np.float64),
-        prismatic,
-        np.ascontiguousarray(chain.T_zero, dtype=np.float64),
-    )
-    if not found:
-        raise NoClosedFormError(explain_missing_form(robot))
-    robot._ik_ready = True
 
 
 def inverse_kinematics(
@@ -147,7 +123,7 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
         if found is None:
             raise too_far("goal", T[:3, 3])
         return cast(Solutions, found)
-    seed = as_floats(near, "near", last=(robot.dof,))
+    seed = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
     if seed.ndim != 1:
         raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
     if np.abs(T[:3, 3]).sum() > FARTHEST:

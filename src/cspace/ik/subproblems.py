@@ -31,6 +31,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -99,6 +100,11 @@ def axis_rows(value: Any, subject: str, last: tuple[int, ...] = (3,)) -> Array:
     return directions
 
 
+def amounts(value: Any, subject: str, last: tuple[int, ...] = ()) -> Array:
+    """Points, normals and lengths (..., *last), small enough that no product of them overflows."""
+    return as_floats(value, subject, last=last, largest=FARTHEST)
+
+
 def solve(
     kernel: Callable[..., None], most: int, angles: int, arrays: list[Array], tails: list[int]
 ) -> SubproblemSolution:
@@ -136,7 +142,7 @@ def subproblem_1(k: Any, p1: Any, p2: Any) -> SubproblemSolution:
     and the same distance from it; free if one of them lies on the axis.
     Source: Paden 1986, §4.3; Elias & Wen 2022, §3.1.
     """
-    arrays = [axis_rows(k, "k"), as_floats(p1, "p1", last=(3,)), as_floats(p2, "p2", last=(3,))]
+    arrays = [axis_rows(k, "k"), amounts(p1, "p1", last=(3,)), amounts(p2, "p2", last=(3,))]
     return solve(_core.subproblem_1, 1, 1, arrays, [1, 1, 1])
 
 
@@ -151,8 +157,8 @@ def subproblem_2(k1: Any, k2: Any, p1: Any, p2: Any) -> SubproblemSolution:
     arrays = [
         axis_rows(k1, "k1"),
         axis_rows(k2, "k2"),
-        as_floats(p1, "p1", last=(3,)),
-        as_floats(p2, "p2", last=(3,)),
+        amounts(p1, "p1", last=(3,)),
+        amounts(p2, "p2", last=(3,)),
     ]
     return solve(_core.subproblem_2, 2, 2, arrays, [1, 1, 1, 1])
 
@@ -164,10 +170,10 @@ def subproblem_3(k: Any, p1: Any, p2: Any, d: Any) -> SubproblemSolution:
     smallest and the largest distance of p2 from the circle of p1; free if either point lies on the axis.
     Source: Paden 1986, §4.3; Elias & Wen 2022, §3.3.
     """
-    distance = as_floats(d, "d")
+    distance = amounts(d, "d")
     if np.any(distance < 0):
         raise InputError(f"d is {float(distance.min())}; a distance must be 0 or more")
-    arrays = [axis_rows(k, "k"), as_floats(p1, "p1", last=(3,)), as_floats(p2, "p2", last=(3,)), distance]
+    arrays = [axis_rows(k, "k"), amounts(p1, "p1", last=(3,)), amounts(p2, "p2", last=(3,)), distance]
     return solve(_core.subproblem_3, 2, 1, arrays, [1, 1, 1, 0])
 
 
@@ -180,10 +186,10 @@ def subproblem_4(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
     Source: Elias & Wen 2022, §3.4.
     """
     arrays = [
-        as_floats(h, "h", last=(3,)),
+        amounts(h, "h", last=(3,)),
         axis_rows(k, "k"),
-        as_floats(p, "p", last=(3,)),
-        as_floats(d, "d"),
+        amounts(p, "p", last=(3,)),
+        amounts(d, "d"),
     ]
     return solve(_core.subproblem_4, 2, 1, arrays, [1, 1, 1, 0])
 
@@ -197,7 +203,7 @@ def subproblem_5(
     Source: Elias & Wen 2022, §3.5.
     """
     named = {"p0": p0, "p1": p1, "p2": p2, "p3": p3, "p4": p4}
-    points = [as_floats(value, name, last=(3,)) for name, value in named.items()]
+    points = [amounts(value, name, last=(3,)) for name, value in named.items()]
     axes = [axis_rows(k1, "k1"), axis_rows(k2, "k2"), axis_rows(k3, "k3")]
     return solve(_core.subproblem_5, 4, 3, [stacked(points, "points"), stacked(axes, "axes")], [2, 2])
 
@@ -213,10 +219,10 @@ def subproblem_6(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
     Source: Elias & Wen 2022, §3.6.
     """
     arrays = [
-        as_floats(h, "h", last=(4, 3)),
+        amounts(h, "h", last=(4, 3)),
         axis_rows(k, "k", last=(4, 3)),
-        as_floats(p, "p", last=(4, 3)),
-        as_floats(d, "d", last=(2,)),
+        amounts(p, "p", last=(4, 3)),
+        amounts(d, "d", last=(2,)),
     ]
     return solve(_core.subproblem_6, 4, 2, arrays, [2, 2, 2, 1])
 
@@ -259,7 +265,7 @@ def paden_kahan_3(
 
 def from_point(value: Any, subject: str, point: Any) -> Array:
     """The vector (..., 3) from `point` to `value`."""
-    return as_floats(value, subject, last=(3,)) - as_floats(point, "point", last=(3,))
+    return amounts(value, subject, last=(3,)) - amounts(point, "point", last=(3,))
 
 
 def stacked(vectors: list[Array], subject: str) -> Array:

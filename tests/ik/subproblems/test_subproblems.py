@@ -223,3 +223,47 @@ def test_an_answer_says_what_it_is():
 def test_misuse_is_named(call, message):
     with pytest.raises(InputError, match=message):
         call()
+
+
+SIGNATURES = {
+    1: ["axis", (3,), (3,)],
+    2: ["axis", "axis", (3,), (3,)],
+    3: ["axis", (3,), (3,), ()],
+    4: [(3,), "axis", (3,), ()],
+    5: [(3,)] * 5 + ["axis"] * 3,
+    6: [(4, 3), "axes", (4, 3), (2,)],
+}
+
+
+def scaled_problem(number, rng, scale):
+    """Arguments of a subproblem, points and lengths of about `scale`."""
+    axes = {"axis": (3,), "axes": (4, 3)}
+    return [
+        rng.normal(size=axes[kind]) if kind in axes else scale * rng.uniform(0.1, 1.0, size=kind)
+        for kind in SIGNATURES[number]
+    ]
+
+
+@pytest.mark.parametrize("number", SIGNATURES)
+@pytest.mark.parametrize("scale", [1e60, 1e100])
+def test_large_numbers_have_finite_answers(number, scale):
+    rng = np.random.default_rng(number)
+    for _ in range(50):
+        s = getattr(sp, f"subproblem_{number}")(*scaled_problem(number, rng, scale))
+        assert s.count > 0
+        assert np.isfinite(answers(s, ANGLES[number])).all()
+        assert np.isfinite(s.residual)
+
+
+@pytest.mark.parametrize("number", SIGNATURES)
+def test_numbers_whose_products_overflow_are_refused_by_name(number):
+    rng = np.random.default_rng(number)
+    for i, kind in enumerate(SIGNATURES[number]):
+        arguments = scaled_problem(number, rng, 1.0)
+        arguments[i] = arguments[i] * 1e200
+        solve = getattr(sp, f"subproblem_{number}")
+        if isinstance(kind, str):  # axes may have any length
+            assert np.isfinite(solve(*arguments).residual)
+            continue
+        with pytest.raises(InputError, match=r"^(p|h|d)\d? holds .*e\+(199|200) at index .*1e\+100"):
+            solve(*arguments)

@@ -1,0 +1,116 @@
+"""The conditions on an arm's axes that closed forms rest on, measured, and why an arm has none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, cast
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.errors import CspaceError
+
+__all__ = ["Condition", "NoClosedFormError", "conditions", "explain_missing_form"]
+
+
+class NoClosedFormError(CspaceError, NotImplementedError):
+    """The arm has none of the geometries that this version solves; the message lists the conditions that
+    failed.
+    """
+
+
+@dataclass(frozen=True)
+class Condition:
+    """One geometric condition: what it says, whether it holds, the measured miss and its limit [rad or m]."""
+
+    text: str
+    holds: bool
+    measured: float
+    allowed: float
+    unit: str
+
+    def __str__(self) -> str:
+        verdict = "holds" if self.holds else "fails"
+        return f"{self.text}: {verdict} (off by {self.measured:.3g} {self.unit}, allowed {self.allowed:.3g})"
+
+
+def angle_between(h1: Array, h2: Array) -> float:
+    """The angle between two lines [rad], 0 to π/2."""
+    return float(np.arctan2(np.linalg.norm(np.cross(h1, h2)), abs(h1 @ h2)))
+
+
+def common_point(axes: Array, points: Array) -> tuple[Array, float]:
+    """The point nearest to some lines (least squares), and its largest distance from one [m]."""
+    projectors = np.eye(3) - axes[:, :, None] * axes[:, None, :]
+    A, b = projectors.sum(axis=0), np.einsum("nij,nj->i", projectors, points)
+    p = np.linalg.lstsq(A, b, rcond=None)[0]
+    away = np.einsum("nij,nj->ni", projectors, p - points)
+    return cast(Array, p), float(np.linalg.norm(away, axis=1).max())
+
+
+def arm_length(robot: Any) -> float:
+    """The longest distance between neighbouring axes or to the tip [m], 1 if all meet; the scale of
+    tolerances.
+    """
+    points = np.vstack([robot.chain.points, robot.chain.T_zero[:3, 3]])
+    axes = robot.chain.axes
+    steps = [np.linalg.norm(np.cross(points[i + 1] - points[i], axes[i])) for i in range(len(axes))]
+    return float(max(steps)) or 1.0
+
+
+def conditions(robot: Any) -> tuple[Condition, ...]:
+    """Every condition that a closed form could rest on, measured."""
+    axes, points = robot.chain.axes, robot.chain.points
+    allowed = _core.AXIS_RELATION * arm_length(robot)
+    out = []
+    for first in range(len(axes) - 2):
+        three = slice(first, first + 3)
+        names = f"axes {first + 1}, {first + 2}, {first + 3}"
+        away = common_point(axes[three], points[three])[1]
+        out.append(Condition(f"{names} meet in a point", away <= allowed, away, allowed, "m"))
+        bent = max(
+            angle_between(axes[first], axes[first + 1]), angle_between(axes[first + 1], axes[first + 2])
+        )
+        out.append(
+            Condition(f"{names} are parallel", bent <= _core.AXIS_RELATION, bent, _core.AXIS_RELATION, "rad")
+        )
+    return tuple(out)
+
+
+def best_conditioning(robot: Any) -> float:
+    """The largest, over some configurations, of the Jacobian's smallest singular value (lengths over the
+    arm's length).
+    """
+    n = len(robot.chain.axes)
+    steps = np.arange(1, 9)[:, None] * np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0])[:n]
+    J = np.array(robot.jacobian(2 * np.pi * (steps - np.floor(steps)) - np.pi))
+    J[:, :3] /= arm_length(robot)
+    return float(np.linalg.svd(J, compute_uv=False)[:, -1].max())
+
+
+def explain_missing_form(robot: Any) -> str:
+    """Why `robot` has no closed form, as a sentence: the first reason that rules it out."""
+    kinds = robot.chain.joint_types
+    subject = f"no closed form for {robot.name} ({kinds}, {len(kinds)} joints)"
+    if robot.chain.dof != len(kinds):
+        return f"{subject}: joints that mimic others are not solved by this version"
+    if not kinds:
+        return f"{subject}: no joint moves"
+    if robot.floating:
+        return f"{subject}: its base floats; a robot made without floating=True has a fixed one"
+    if "P" in kinds:
+        return f"{subject}: arms with prismatic joints are not solved by this version"
+    if len(kinds) > 6:
+        return f"{subject}: this version solves full poses for four to six revolute joints"
+    best = best_conditioning(robot)
+    if best < _core.AXIS_RELATION:
+        return (
+            f"{subject}: every configuration is singular, two of its joints do one's work (the Jacobian's "
+            f"smallest singular value is {best:.2g} at best); hold one joint still"
+        )
+    tested = "; ".join(str(c) for c in conditions(robot) if not c.holds)
+    return (
+        f"{subject}: it needs the first or last three axes to meet in a point, or three neighbouring axes "
+        f"to be parallel. {tested}"
+    )

@@ -1,0 +1,41 @@
+"""Robots get their solver here, once, when inverse kinematics is first asked of them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.ik.conditions import NoClosedFormError, explain_missing_form
+from cspace.kinematics.batch import check_robot
+
+__all__ = ["prepare"]
+
+MAX_JOINTS = 6
+
+
+def prepare(robot: Any) -> None:
+    """Build the solver of `robot` once: its axes, points and tip at zero go to the core, which looks for a
+    form.
+
+    Raises InputTypeError for what is no robot, NoClosedFormError for an arm without a form.
+    """
+    check_robot(robot)
+    if robot._ik_ready:
+        return
+    chain = robot.chain
+    joints = len(chain.joint_types)
+    if chain.dof != joints or robot.floating or not 1 <= joints <= MAX_JOINTS:
+        raise NoClosedFormError(explain_missing_form(robot))
+    prismatic = np.array([kind == "P" for kind in chain.joint_types], dtype=np.float64)
+    found = _core._ik_build(
+        robot,
+        np.ascontiguousarray(chain.axes, dtype=np.float64),
+        np.ascontiguousarray(chain.points, dtype=np.float64),
+        prismatic,
+        np.ascontiguousarray(chain.T_zero, dtype=np.float64),
+    )
+    if not found:
+        raise NoClosedFormError(explain_missing_form(robot))
+    robot._ik_ready = True
