@@ -9,6 +9,7 @@
 
 #include "bindings.hpp"
 #include "cspace/ik/goal.hpp"
+#include "ik_general.hpp"
 #include "ik_shared.hpp"
 
 using namespace cspace;
@@ -40,6 +41,7 @@ Posed pose_from(const double* m) {
 PyObject* to_python(PyObject* robot, const double* goal, int dof, const ik::Solutions& found) {
     SolutionsObject* made = new_solutions(robot, goal, found.count, dof, found.status);
     if (!made) return nullptr;
+    made->complete = found.complete;
     for (int k = 0; k < found.count; ++k) {
         std::memcpy(made->q + k * dof, found.q[k], dof * sizeof(double));
         branches_of(made)[k] = found.branch[k];
@@ -102,7 +104,10 @@ PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
 
 namespace {
 
-// _ik_build(robot, axes (n, 3), points (n, 3), prismatic (n,), T_zero (4, 4)) → bool: is there a closed form?
+int room_of(const ik::Arm& arm) { return can_solve(arm) ? room_for(arm) : 0; }
+
+// _ik_build(robot, axes (n, 3), points (n, 3), prismatic (n,), T_zero (4, 4)) → rows that a goal's solutions
+// may need; 0 if nothing solves the arm
 PyObject* build(PyObject*, PyObject* args) {
     PyObject *robot, *axes, *points, *prismatic, *tip;
     if (!PyArg_ParseTuple(args, "OOOOO", &robot, &axes, &points, &prismatic, &tip)) return nullptr;
@@ -118,7 +123,7 @@ PyObject* build(PyObject*, PyObject* args) {
         return nullptr;
     }
     // Two threads may both come here first: the later one takes what the earlier one built and may be using.
-    if (const ik::Arm* built = arm_of(robot)) return PyBool_FromLong(can_solve(*built));
+    if (const ik::Arm* built = arm_of(robot)) return PyLong_FromLong(room_of(*built));
     ik::Chain chain;
     chain.n = int(n);
     for (int i = 0; i < chain.n; ++i) {
@@ -128,10 +133,10 @@ PyObject* build(PyObject*, PyObject* args) {
         chain.prismatic[i] = data_of(prismatic)[i] != 0;
     }
     chain.tip = pose_from(data_of(tip));
-    auto arm = std::make_shared<ik::Arm>(make_arm(chain));
-    const bool solvable = can_solve(*arm);
+    auto arm = std::make_shared<ik::Arm>(make_arm(chain, kernels::plan_general));
+    const int room = room_of(*arm);
     reinterpret_cast<RobotObject*>(robot)->ik = std::move(arm);
-    return PyBool_FromLong(solvable);
+    return PyLong_FromLong(room);
 }
 
 // _ik_careful(robot, goal (4, 4), idle (n,)) → solutions
@@ -251,8 +256,9 @@ PyObject* geometry(PyObject*, PyObject* robot) {
     const ik::Arm* arm = arm_of(robot);
     if (!arm) Py_RETURN_NONE;
     const ik::Plan& plan = arm->plan;
-    return Py_BuildValue("{s:i,s:i,s:i,s:O,s:O,s:d,s:d}", "family", arm->has_plan ? int(plan.family) : -1,
-                         "virtual_joints", plan.virtual_joints, "first_three", first_three(*arm), "reversed",
+    return Py_BuildValue("{s:i,s:O,s:i,s:i,s:O,s:O,s:d,s:d}", "family", arm->has_plan ? int(plan.family) : -1,
+                         "general", arm->is_general ? Py_True : Py_False, "virtual_joints",
+                         plan.virtual_joints, "first_three", first_three(*arm), "reversed",
                          plan.reversed ? Py_True : Py_False, "polish", plan.polish ? Py_True : Py_False,
                          "deviation", plan.form.deviation, "length", plan.form.length);
 }

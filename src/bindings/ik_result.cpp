@@ -30,6 +30,7 @@ SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, i
     made->count = count;
     made->dof = dof;
     made->status = status;
+    made->complete = true;
     return made;
 }
 
@@ -83,7 +84,8 @@ PyObject* get_note(PyObject* self, void*) {
     return Py_NewRef(note ? note : Py_None);
 }
 PyObject* get_verdict(PyObject* self, void*) {
-    return PyLong_FromLong(static_cast<long>(reinterpret_cast<SolutionsObject*>(self)->status));
+    const auto* s = reinterpret_cast<SolutionsObject*>(self);
+    return PyLong_FromLong(static_cast<long>(s->status) + (s->complete ? 0 : incomplete));
 }
 PyObject* get_branch_numbers(PyObject* self, void*) {
     auto* s = reinterpret_cast<SolutionsObject*>(self);
@@ -105,7 +107,8 @@ PyGetSetDef attributes[] = {
     {"goal", get_goal, nullptr, "The goal T_base_tip (4, 4).", nullptr},
     {"robot", get_robot, nullptr, "The robot that was asked.", nullptr},
     {"_note", get_note, nullptr, "Why rows are missing, if a filter removed them.", nullptr},
-    {"_verdict", get_verdict, nullptr, "The status as a number.", nullptr},
+    {"_verdict", get_verdict, nullptr, "The status as a number; 8 more if solutions may be missing.",
+     nullptr},
     {"_branch_numbers", get_branch_numbers, nullptr, "Which branch of the closed form each row comes from.",
      nullptr},
     {"_is_family", get_is_family, nullptr, "Which rows stand for a family.", nullptr},
@@ -143,7 +146,7 @@ PyObject* ik_make(PyObject*, PyObject* args) {
     const Py_ssize_t k = PyTuple_GET_SIZE(branches);
     const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
     const npy_intp dof = shaped ? PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 1) : -1;
-    if (!PyObject_TypeCheck(robot, robot_type) || status < 0 || status > last_status) {
+    if (!PyObject_TypeCheck(robot, robot_type) || status < 0 || (status & ~incomplete) > last_status) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes a robot and a status it knows");
         return nullptr;
     }
@@ -153,8 +156,9 @@ PyObject* ik_make(PyObject*, PyObject* args) {
         return nullptr;
     }
     SolutionsObject* made =
-        new_solutions(robot, data_of(goal), int(k), int(dof), static_cast<ik::Status>(status));
+        new_solutions(robot, data_of(goal), int(k), int(dof), static_cast<ik::Status>(status & ~incomplete));
     if (!made) return nullptr;
+    made->complete = !(status & incomplete);
     std::memcpy(made->q, data_of(q), sizeof(double) * std::size_t(k * dof));
     for (Py_ssize_t i = 0; i < k; ++i) {
         branches_of(made)[i] = static_cast<std::int8_t>(PyLong_AsLong(PyTuple_GET_ITEM(branches, i)));

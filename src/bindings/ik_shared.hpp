@@ -11,7 +11,7 @@ inline const cspace::ik::Arm* arm_of(PyObject* robot) {
     if (!PyObject_TypeCheck(robot, robot_type)) return nullptr;
     return static_cast<const cspace::ik::Arm*>(reinterpret_cast<RobotObject*>(robot)->ik.get());
 }
-inline bool can_solve(const cspace::ik::Arm& arm) { return arm.has_plan || arm.is_short; }
+inline bool can_solve(const cspace::ik::Arm& arm) { return arm.has_plan || arm.is_short || arm.is_general; }
 
 // --- the result ----------------------------------------------------------------------------------------
 // Followed in memory by count rows of dof angles, count branch numbers and count flags (families).
@@ -21,6 +21,7 @@ struct SolutionsObject {
     double goal[16];
     int count, dof;
     cspace::ik::Status status;
+    bool complete;
     double q[1];
 };
 inline std::int8_t* branches_of(SolutionsObject* s) {
@@ -28,7 +29,10 @@ inline std::int8_t* branches_of(SolutionsObject* s) {
 }
 inline std::int8_t* families_of(SolutionsObject* s) { return branches_of(s) + s->count; }
 
-// A result without note whose rows are still to be written; null with an error set.
+// In a verdict as a number: solutions may be missing.
+inline constexpr int incomplete = 8;
+
+// A complete result without note whose rows are still to be written; null with an error set.
 SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, int dof,
                                cspace::ik::Status status);
 

@@ -73,7 +73,7 @@ class Robot(RobotBase):
         self.limits = assembly.limits
         self.mass = float(assembly.mass.sum())
 
-    _ik_ready = False
+    _ik_room = 0  # rows that the solutions of a goal may need; 0 before a solver is built
 
     @classmethod
     def from_urdf(

@@ -3,6 +3,7 @@
 
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/complete.hpp"
+#include "cspace/ik/general/singular.hpp"
 #include "cspace/ik/miss.hpp"
 #include "cspace/ik/position/pose.hpp"
 #include "cspace/ik/position/solve.hpp"
@@ -10,20 +11,33 @@
 namespace cspace::ik {
 
 struct Arm {
-    Plan plan;              // plan.chain is the arm, plan or no plan
-    bool has_plan = false;  // four to six revolute joints with a closed form
-    bool is_short = false;  // up to three joints of any kind, solved directly
+    Plan plan;                // plan.chain is the arm, plan or no plan
+    GeneralPlan general;      // of six revolute joints without a closed form
+    bool has_plan = false;    // four to six revolute joints with a closed form
+    bool is_short = false;    // up to three joints of any kind, solved directly
+    bool is_general = false;  // six revolute joints in general position
 };
+
+// How many rows the solutions of a goal may need.
+inline int room_for(const Arm& arm) { return arm.is_general ? max_solutions : max_branches; }
 
 }  // namespace cspace::ik
 
 namespace cspace::inline CSPACE_ISA {
 
-inline ik::Arm make_arm(const ik::Chain& chain) {
+// plan_general: with which instruction set general arms are solved, that of the caller unless given.
+inline ik::Arm make_arm(const ik::Chain& chain,
+                        void (*plan_general)(const ik::Chain&, ik::GeneralPlan&) = make_general_plan) {
     ik::Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
     arm.is_short = chain.n <= ik::max_position_joints;
     if (!arm.has_plan) arm.plan.form.length = characteristic_length(chain);
+    bool all_turn = chain.n == 6;
+    for (int i = 0; i < chain.n; ++i) all_turn = all_turn && !chain.prismatic[i];
+    if (all_turn && !arm.has_plan) {
+        plan_general(chain, arm.general);
+        arm.is_general = arm.general.regular > 0;
+    }
     return arm;
 }
 
@@ -47,6 +61,7 @@ ik::Solutions from_short(const ik::Chain& chain, const Found& found) {
 
 inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
     if (arm.has_plan) return solve_carefully(arm.plan, goal, idle);
+    if (arm.is_general) return solve_general_carefully(arm.general, goal);
     return from_short(arm.plan.chain, solve_short_pose(arm.plan.chain, goal));
 }
 

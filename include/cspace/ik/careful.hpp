@@ -13,7 +13,7 @@ namespace cspace::inline CSPACE_ISA {
 
 inline double wrapped_distance(const double* a, const double* b, int n) {
     double worst = 0;
-    for (int i = 0; i < n; ++i) worst = max(worst, std::fabs(std::remainder(a[i] - b[i], 2 * pi)));
+    for (int i = 0; i < n; ++i) worst = max(worst, std::fabs(short_way(a[i] - b[i])));
     return worst;
 }
 

@@ -8,9 +8,11 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// One step of q towards the goal; returns the largest change of a joint [rad]. All joints are revolute.
+// One step of q towards the goal, cut where a joint would turn by more than `stride` [rad]; returns the
+// largest change of a joint asked for. All joints are revolute.
 template <class V>
-CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, double length, V* q) {
+CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, double length, V* q,
+                              double stride = 1e300) {
     Mat3<V> R = fill33<V>(identity_pose().R);
     Vec3<V> t = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)};
     Vec3<V> axis[6], point[6];
@@ -37,10 +39,9 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
     }
     solve(A, b);
     V largest = fill<V>(0.0);
-    for (int i = 0; i < 6; ++i) {
-        q[i] = q[i] + b[i];
-        largest = max(largest, abs(b[i]));
-    }
+    for (int i = 0; i < 6; ++i) largest = max(largest, abs(b[i]));
+    const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
+    for (int i = 0; i < 6; ++i) q[i] = mul_add(keep, b[i], q[i]);
     return largest;
 }
 

@@ -18,6 +18,8 @@ enum class Status : unsigned char {
 struct Solutions {
     int count = 0;
     Status status = Status::unreachable;
+    bool complete = true;  // nothing that meets the goal is left out, families by a representative
+    bool crowded = false;  // some solutions come close to each other: there may be families among them
     double q[max_solutions][max_arm];
     signed char branch[max_solutions];         // which of the closed form's branches
     bool family[max_solutions];                // stands for a one-parameter family

@@ -44,10 +44,11 @@ CSPACE_INLINE mask_of<V> full_rank(const V (&diagonal)[n]) {
 }
 
 // The triangle and the reflections of A = Q R (Householder 1958; Golub & Van Loan 2013, section 5.2): R above
-// the diagonal of A and in `diagonal`, the vectors v_k on and below it, I − factor_k v_k v_kᵀ.
-template <int m, int n, class V>
-CSPACE_INLINE void factor_qr(V (&A)[m][n], V (&diagonal)[n], V (&factor)[n]) {
-    for (int k = 0; k < n; ++k) {
+// the diagonal of A and in `diagonal`, the vectors v_k on and below it, I − factor_k v_k v_kᵀ. Of an A with
+// more columns than `diagonal` the first ones are reduced, and the reflections reach the others.
+template <int m, int n, int reduced, class V>
+CSPACE_INLINE void factor_qr(V (&A)[m][n], V (&diagonal)[reduced], V (&factor)[reduced]) {
+    for (int k = 0; k < reduced; ++k) {
         V square = A[k][k] * A[k][k];
         for (int i = k + 1; i < m; ++i) square = mul_add(A[i][k], A[i][k], square);
         diagonal[k] = -copysign(sqrt(square), A[k][k]);
@@ -62,8 +63,8 @@ CSPACE_INLINE void factor_qr(V (&A)[m][n], V (&diagonal)[n], V (&factor)[n]) {
     }
 }
 // b := (I − factor_k v_k v_kᵀ) b
-template <int m, int n, class V>
-CSPACE_INLINE void reflect(const V (&A)[m][n], const V (&factor)[n], int k, V (&b)[m]) {
+template <int m, int n, int reduced, class V>
+CSPACE_INLINE void reflect(const V (&A)[m][n], const V (&factor)[reduced], int k, V (&b)[m]) {
     V along = A[k][k] * b[k];
     for (int i = k + 1; i < m; ++i) along = mul_add(A[i][k], b[i], along);
     along = along * factor[k];

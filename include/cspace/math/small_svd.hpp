@@ -55,7 +55,7 @@ void decompose(SmallSvd<R, C>& m) {
                 const double ab = dot_n(m.us[i], m.us[j], m.rows);
                 if (!(std::fabs(ab) > 1e-15 * std::sqrt(aa * bb)) || std::fmin(aa, bb) <= nothing) continue;
                 const double zeta = (bb - aa) / (2 * ab);
-                const double t = std::copysign(1.0, zeta) / (std::fabs(zeta) + std::hypot(1.0, zeta));
+                const double t = std::copysign(1.0, zeta) / (std::fabs(zeta) + std::sqrt(1 + zeta * zeta));
                 const double c = 1 / std::sqrt(1 + t * t), s = c * t;
                 turn_columns(m.us[i], m.us[j], m.rows, c, s);
                 turn_columns(m.v[i], m.v[j], m.columns, c, s);

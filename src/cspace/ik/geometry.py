@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from cspace import _core
-from cspace.ik.conditions import Condition, NoClosedFormError, conditions
+from cspace.ik.conditions import Condition, NoClosedFormError, conditions, explain_missing_form
 from cspace.ik.prepare import prepare
 
 __all__ = ["Geometry", "geometry"]
@@ -30,11 +30,13 @@ FIRST_THREE = {
     3: "axes 1 and 2 parallel",
     4: "three axes in general position (a quartic)",
 }
+GENERAL = "Every solution comes from the general method: one joint's angle as the root of a determinant"
 
 
 @dataclass(frozen=True)
 class Geometry:
-    """The closed form of an arm. family: its name or "none"; detail: the case within it; reversed: read
+    """The closed form of an arm, truthy if it has one. family: its name, "general" for six joints that are
+    solved without one, or "none"; detail: the case within it; reversed: read
     from the tip; idealised: by how much the form differs from the true axes (m over the arm's length,
     rad), corrected by a
     Newton step where it matters; conditions: what was tested; reason: why there is no form, as a sentence.
@@ -48,7 +50,7 @@ class Geometry:
     reason: str = ""
 
     def __bool__(self) -> bool:
-        return self.family != "none"
+        return self.family not in ("none", "general")
 
     def __str__(self) -> str:
         if not self:
@@ -68,6 +70,8 @@ def geometry(robot: Any) -> Geometry:
     if missing:
         return Geometry("none", "", False, 0.0, tested, missing)
     seen = _core._ik_geometry(robot)
+    if seen["general"]:
+        return Geometry("general", "", False, 0.0, tested, f"{explain_missing_form(robot)}. {GENERAL}")
     if seen["family"] < 0:
         shared = FIRST_THREE.get(seen["first_three"], "up to three joints")
         return Geometry("short arm", f"{robot.chain.joint_types}, {shared}", False, 0.0, tested)

@@ -22,20 +22,20 @@ def prepare(robot: Any) -> None:
     Raises InputTypeError for what is no robot, NoClosedFormError for an arm without a form.
     """
     check_robot(robot)
-    if robot._ik_ready:
+    if robot._ik_room:
         return
     chain = robot.chain
     joints = len(chain.joint_types)
     if chain.dof != joints or robot.floating or not 1 <= joints <= MAX_JOINTS:
         raise NoClosedFormError(explain_missing_form(robot))
     prismatic = np.array([kind == "P" for kind in chain.joint_types], dtype=np.float64)
-    found = _core._ik_build(
+    room = _core._ik_build(
         robot,
         np.ascontiguousarray(chain.axes, dtype=np.float64),
         np.ascontiguousarray(chain.points, dtype=np.float64),
         prismatic,
         np.ascontiguousarray(chain.T_zero, dtype=np.float64),
     )
-    if not found:
+    if not room:
         raise NoClosedFormError(explain_missing_form(robot))
-    robot._ik_ready = True
+    robot._ik_room = room

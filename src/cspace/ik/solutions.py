@@ -26,12 +26,19 @@ UNREACHABLE: Final = 0
 EXACT: Final = 1
 SINGULAR: Final = 2
 NEAREST: Final = 3
+INCOMPLETE: Final = 8
+"""Added to a verdict where solutions may be missing."""
 VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
 METRICS: Final = ("euclidean", "max")
 ORIENTATION_FIRST: Final = 1e4
 """Weight of a radian, in lengths of the arm, in the search for the way that is missing: it stays put."""
 ORIENTATION_KEPT: Final = 1e-3
 """Largest angle [rad] left by that search at which the orientation counts as kept."""
+
+
+UNCERTIFIED: Final = (
+    "that these are all could not be certified, for some lie closer together than the arithmetic resolves"
+)
 
 
 def verdict_name(verdict: int) -> str:
@@ -51,14 +58,18 @@ class Solutions(_core.SolutionsBase):
     @property
     def status(self) -> str:
         """ "exact", "singular" (some rows stand for a family), "unreachable" or "least_squares"."""
-        return verdict_name(self._verdict)
+        return verdict_name(self._status)
+
+    @property
+    def _status(self) -> int:
+        return self._verdict & ~INCOMPLETE
 
     @property
     def complete(self) -> bool:
-        """Whether every solution is listed, families by a representative; a closed form always lists them
-        all.
+        """Whether every solution is listed, families by a representative. A closed form always lists them
+        all; the general method certifies it goal by goal.
         """
-        return self._verdict != NEAREST
+        return self._status != NEAREST and not self._verdict & INCOMPLETE
 
     @property
     def residual(self) -> Array:
@@ -77,7 +88,7 @@ class Solutions(_core.SolutionsBase):
         """By how much the goal is out of reach [m]: the shortest way it would have to move, orientation
         kept.
         """
-        if self._verdict != UNREACHABLE:
+        if self._status != UNREACHABLE:
             return 0.0
         if self.goal.shape == (3,):
             return float(_core._ik_position_miss(self.robot, self.goal)[1])
@@ -88,14 +99,14 @@ class Solutions(_core.SolutionsBase):
         """The verdict in a sentence."""
         if self._note is not None:
             return self._note
-        if self._verdict == UNREACHABLE:
+        if self._status == UNREACHABLE:
             return unreachable_reason(self)
         text = how_many(len(self)) + " the goal"
-        if self._verdict == SINGULAR:
+        if self._status == SINGULAR:
             moving = sorted({name for family in self.families for name in family.joints})
             cause = "the pose is singular" if self.goal.shape == (4, 4) else "the goal leaves freedom"
             text += f"; {cause}: {', '.join(moving)} can move while the tip stays"
-        return text
+        return text if self.complete else text + "; " + UNCERTIFIED
 
     @property
     def families(self) -> tuple[Family, ...]:

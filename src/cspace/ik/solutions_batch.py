@@ -12,6 +12,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.prepare import prepare
 from cspace.ik.solutions import (
+    INCOMPLETE,
     METRICS,
     UNREACHABLE,
     VERDICTS,
@@ -51,9 +52,18 @@ class SolutionsBatch:
         return len(self.count)
 
     @property
+    def _status(self) -> npt.NDArray[np.uint8]:
+        return np.asarray(self._verdict % INCOMPLETE, dtype=np.uint8)
+
+    @property
     def status(self) -> npt.NDArray[np.str_]:
         """ "exact", "singular" or "unreachable" per goal, (...,)."""
-        return np.array(VERDICTS)[self._verdict]
+        return np.array(VERDICTS)[self._status]
+
+    @property
+    def complete(self) -> npt.NDArray[np.bool_]:
+        """Whether every solution of each goal is listed, (...,)."""
+        return np.asarray(self._verdict < INCOMPLETE)
 
     @property
     def reachable(self) -> npt.NDArray[np.bool_]:
@@ -170,7 +180,7 @@ class SolutionsBatch:
 
     def __repr__(self) -> str:
         reached = int(np.count_nonzero(self.count))
-        unreachable = int(np.count_nonzero(self._verdict == UNREACHABLE))
+        unreachable = int(np.count_nonzero(self._status == UNREACHABLE))
         return (
             f"SolutionsBatch({self.robot.name}: {self.count.size} goals, {reached} with solutions, "
             f"{unreachable} unreachable, {int(self.count.sum())} configurations)"

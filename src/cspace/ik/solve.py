@@ -22,7 +22,6 @@ from cspace.tolerances import FARTHEST
 
 __all__ = ["inverse_kinematics"]
 
-MAX_BRANCHES = 8
 MOST_THREADS = 1024
 MAX_POSITION_JOINTS = 3
 Counts = npt.NDArray[np.int64]
@@ -169,9 +168,9 @@ def solve_positions(robot: Any, p: Array, workers: int) -> SolutionsBatch:
 
 
 def room_for(robot: Any, leading: tuple[int, ...]) -> tuple[Array, Counts, Verdicts]:
-    """Arrays for the answers to n goals: q (n, 8, dof), count (n,), verdict (n,)."""
+    """Arrays for the answers to n goals: q (n, k_max, dof), count (n,), verdict (n,)."""
     n = int(np.prod(leading))
-    q = spare_array((n, MAX_BRANCHES, robot.dof))
+    q = spare_array((n, robot._ik_room, robot.dof))
     return q, np.empty(n, dtype=np.int64), np.empty(n, dtype=np.uint8)
 
 
@@ -179,7 +178,7 @@ def shaped(
     robot: Any, goal: Array, leading: tuple[int, ...], answers: tuple[Array, Counts, Verdicts]
 ) -> SolutionsBatch:
     q, count, verdict = answers
-    q = q.reshape(*leading, MAX_BRANCHES, robot.dof)
+    q = q.reshape(*leading, robot._ik_room, robot.dof)
     return SolutionsBatch(robot, goal, q, count.reshape(leading), verdict.reshape(leading))
 
 

@@ -1,0 +1,214 @@
+// Three of the six angles eliminated from the loop (Raghavan & Roth 1993, without their 14 × 8 matrix).
+//
+// Both sides of
+//   M5 Rz(a0) M0 Rz(a1) M1 Rz(a2) M2 = Rz(−a5) M4⁻¹ Rz(−a4) M3⁻¹ Rz(−a3)
+// move the z axis and the origin alike, which a3 leaves alone: their invariants agree (invariants.hpp). Of
+// the right side, the parts along z and the two scalars do not see a5, and four combinations of them do not
+// see a4 either; the parts across z, as complex numbers, turn with a5, and one combination of them vanishes.
+// That is six equations in the nine products of (S1², S1C1, C1²) and (S2², S2C2, C2²), the sines and cosines
+// of half the angles a1 and a2, which no angle makes infinite:
+//   E(a0) = level + cos a0 · across + sin a0 · quarter.
+#pragma once
+
+#include "cspace/ik/general/invariants.hpp"
+#include "cspace/ik/general/loop.hpp"
+
+namespace cspace {
+
+struct Elimination {
+    double level[6][9], across[6][9], quarter[6][9];
+    double W[6][3];          // the six parts that do not see a5: W (cos a4, sin a4, 1)
+    double inverse_w[2][6];  // of the first two columns of W, in the least-squares sense
+    double a4_rank;          // ratio of their two singular sizes; 0 where they fix only one of cos, sin
+    double a5_rank;          // the same of the four complex parts, of rank three
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// Angles at which the half angles of a1 and a2 are zero: away from what arms are fond of.
+inline constexpr double a1_origin = 0.7, a2_origin = 2.1;
+
+struct Complex {
+    double re, im;
+};
+
+// The orthogonal complement of two columns of six, and their least-squares inverse, by reflections.
+inline void eliminate_a4(Elimination& e, double (&N)[4][6]) {
+    double A[6][2], H[6][6] = {};
+    double size[2] = {};
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 2; ++j) size[j] += e.W[i][j] * e.W[i][j];
+    const int large = size[1] > size[0];
+    for (int i = 0; i < 6; ++i) {
+        A[i][0] = e.W[i][large];
+        A[i][1] = e.W[i][1 - large];
+        H[i][i] = 1;
+    }
+    double diagonal[2] = {};
+    for (int k = 0; k < 2; ++k) {
+        double square = 0;
+        for (int i = k; i < 6; ++i) square += A[i][k] * A[i][k];
+        const double length = std::sqrt(square);
+        if (length < 1e-150) continue;
+        diagonal[k] = -std::copysign(length, A[k][k]);
+        double v[6] = {};
+        for (int i = k; i < 6; ++i) v[i] = A[i][k];
+        v[k] -= diagonal[k];
+        const double factor = -1 / (diagonal[k] * v[k]);
+        const auto reflect_column = [&](double* first, int stride) {
+            double along = 0;
+            for (int i = k; i < 6; ++i) along += v[i] * first[i * stride];
+            for (int i = k; i < 6; ++i) first[i * stride] -= factor * along * v[i];
+        };
+        for (int j = k; j < 2; ++j) reflect_column(&A[0][j], 2);
+        for (int j = 0; j < 6; ++j) reflect_column(&H[0][j], 6);
+    }
+    for (int i = 0; i < 4; ++i)
+        for (int j = 0; j < 6; ++j) N[i][j] = H[2 + i][j];
+    e.a4_rank = diagonal[0] != 0 ? std::fabs(diagonal[1] / diagonal[0]) : 0;
+    const bool full = e.a4_rank > 1e-9;
+    for (int j = 0; j < 6; ++j) {
+        const double y = full ? H[1][j] / diagonal[1] : 0;
+        const double x = diagonal[0] != 0 ? (H[0][j] - A[0][1] * y) / diagonal[0] : 0;
+        e.inverse_w[large][j] = x;
+        e.inverse_w[1 - large][j] = y;
+    }
+}
+
+inline Complex operator*(Complex a, Complex b) {
+    return {a.re * b.re - a.im * b.im, a.re * b.im + a.im * b.re};
+}
+inline Complex operator-(Complex a, Complex b) { return {a.re - b.re, a.im - b.im}; }
+inline Complex conjugate(Complex a) { return {a.re, -a.im}; }
+inline double square_of(Complex a) { return a.re * a.re + a.im * a.im; }
+
+// The row n with n W = 0 for three complex columns of four (n̄ spans their complement), by reflections with
+// the largest column first. Returns how the last column's size compares with the first's.
+inline double annihilator(Complex (&A)[4][3], Complex (&n)[4]) {
+    Complex H[4][4] = {};
+    for (int i = 0; i < 4; ++i) H[i][i] = {1, 0};
+    double first = 0, last = 0;
+    for (int k = 0; k < 3; ++k) {
+        int largest = k;
+        double most = -1;
+        for (int j = k; j < 3; ++j) {
+            double size = 0;
+            for (int i = k; i < 4; ++i) size += square_of(A[i][j]);
+            if (size > most) most = size, largest = j;
+        }
+        for (int i = 0; i < 4; ++i) {
+            const Complex kept = A[i][k];
+            A[i][k] = A[i][largest];
+            A[i][largest] = kept;
+        }
+        const double length = std::sqrt(most);
+        last = length;
+        if (k == 0) first = length;
+        if (!(length > 1e-14 * first)) break;
+        const double corner = std::sqrt(square_of(A[k][k]));
+        const Complex phase = corner > 0 ? Complex{A[k][k].re / corner, A[k][k].im / corner} : Complex{1, 0};
+        Complex v[4] = {};
+        for (int i = k; i < 4; ++i) v[i] = A[i][k];
+        v[k] = {v[k].re + length * phase.re, v[k].im + length * phase.im};
+        const double factor = 1 / (length * (length + corner));
+        const auto reflect_column = [&](Complex* top, int stride) {
+            Complex along = {0, 0};
+            for (int i = k; i < 4; ++i) {
+                const Complex part = conjugate(v[i]) * top[i * stride];
+                along = {along.re + part.re, along.im + part.im};
+            }
+            along = {factor * along.re, factor * along.im};
+            for (int i = k; i < 4; ++i) top[i * stride] = top[i * stride] - along * v[i];
+        };
+        for (int j = k; j < 3; ++j) reflect_column(&A[0][j], 3);
+        for (int j = 0; j < 4; ++j) reflect_column(&H[0][j], 4);
+    }
+    for (int j = 0; j < 4; ++j) n[j] = H[3][j];
+    return first > 0 ? last / first : 0;
+}
+
+// The six equations as functionals of the left side's invariants behind M5.
+inline void right_side(const ik::Loop& loop, Elimination& e, Invariants (&g)[6]) {
+    const Invariants behind = moved(inverse(loop.M[3]), axis_invariants());
+    const Posed M4 = inverse(loop.M[4]);
+    // Rz(−a4): the sine counts backwards.
+    const Invariants part[3] = {moved(M4, across(behind)), moved(M4, -1.0 * quarter(behind)),
+                                moved(M4, level(behind))};
+    Complex W[4][3];
+    for (int j = 0; j < 3; ++j) {
+        const Invariants& w = part[j];
+        const double seen[6] = {w.l.z, w.p.z, w.m.z, w.q.z, w.pp, w.pl};
+        for (int i = 0; i < 6; ++i) e.W[i][j] = seen[i];
+        const Vec3d turned[4] = {w.l, w.p, w.m, w.q};
+        for (int i = 0; i < 4; ++i) W[i][j] = {turned[i].x, turned[i].y};
+    }
+    double N[4][6];
+    eliminate_a4(e, N);
+    for (int i = 0; i < 4; ++i) {
+        double constant = 0;
+        for (int j = 0; j < 6; ++j) constant += N[i][j] * e.W[j][2];
+        g[i] = {{0, 0, N[i][0]}, {0, 0, N[i][1]}, {0, 0, N[i][2]}, {0, 0, N[i][3]},
+                N[i][4],         N[i][5],         -constant};
+    }
+    Complex n[4];
+    e.a5_rank = annihilator(W, n);
+    const auto rows = [&](double sx, double sy, auto pick_x, auto pick_y) {
+        const auto half = [&](int i) { return Vec3d{sx * pick_x(n[i]), sy * pick_y(n[i]), 0}; };
+        return Invariants{half(0), half(1), half(2), half(3), 0, 0, 0};
+    };
+    const auto re = [](Complex a) { return a.re; };
+    const auto im = [](Complex a) { return a.im; };
+    g[4] = rows(1, -1, re, im);
+    g[5] = rows(1, 1, im, re);
+}
+
+// The invariants behind M0, as coefficients of the nine monomials.
+inline void left_side(const ik::Loop& loop, Invariants (&B)[9]) {
+    const auto from = [](const Posed& M, double angle) {
+        const double c = std::cos(angle), s = std::sin(angle);
+        return M * Posed{{{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}}, {0, 0, 0}};
+    };
+    const Posed M0 = from(loop.M[0], a1_origin), M1 = from(loop.M[1], a2_origin);
+    const auto half_angles = [](const Invariants& v, Invariants* out) {
+        const Invariants up = level(v), side = across(v);
+        out[0] = up - side;
+        out[1] = 2.0 * quarter(v);
+        out[2] = up + side;
+    };
+    Invariants by_a2[3];
+    half_angles(moved(loop.M[2], axis_invariants()), by_a2);
+    for (int k = 0; k < 3; ++k) {
+        Invariants by_a1[3];
+        half_angles(moved(M1, by_a2[k]), by_a1);
+        for (int i = 0; i < 3; ++i) B[3 * i + k] = moved(M0, by_a1[i]);
+    }
+}
+
+inline Elimination eliminate(const ik::Loop& loop) {
+    Elimination e;
+    Invariants g[6], B[9];
+    right_side(loop, e, g);
+    left_side(loop, B);
+    for (int i = 0; i < 6; ++i) {
+        const Invariants behind = pulled_back(loop.M[5], g[i]);
+        double size = 0;
+        for (int m = 0; m < 9; ++m) {
+            e.level[i][m] = apply(behind, level(B[m]));
+            e.across[i][m] = apply(behind, across(B[m]));
+            e.quarter[i][m] = apply(behind, quarter(B[m]));
+            size += e.level[i][m] * e.level[i][m] + e.across[i][m] * e.across[i][m] +
+                    e.quarter[i][m] * e.quarter[i][m];
+        }
+        const double scale = size > 0 ? 1 / std::sqrt(size) : 0;
+        for (int m = 0; m < 9; ++m) {
+            e.level[i][m] *= scale;
+            e.across[i][m] *= scale;
+            e.quarter[i][m] *= scale;
+        }
+    }
+    return e;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

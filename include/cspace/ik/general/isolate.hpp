@@ -1,0 +1,190 @@
+// The hidden angles at which the determinant vanishes: simple roots one by one, close ones as clusters.
+#pragma once
+
+#include "cspace/ik/general/determinant.hpp"
+#include "cspace/ik/general/sampler.hpp"
+
+namespace cspace::ik {
+
+inline constexpr int max_roots = 48;
+
+struct HiddenAngle {
+    double angle;  // [rad]
+    double width;  // of the piece that holds it; 0 where it is isolated
+    int expected;  // how many solutions the signs announce: 1, or 2 for a pair; see below
+};
+// Noise hides how many there are; or there are none, but so nearly two that a slip of the equations, which
+// the signs do not show, may have hidden them.
+inline constexpr int unknown = 0, nearly_two = -1;
+
+struct HiddenAngles {
+    int count = 0;
+    HiddenAngle root[max_roots];
+    double alias = 0;     // what is left of harmonics that the determinant lacks: its noise
+    double largest = 0;   // of the samples
+    int evaluations = 0;  // of the determinant, on packs of four
+    bool overflow = false;
+};
+
+// Pieces of the circle that are still to be looked at.
+struct Pieces {
+    static constexpr int room = 64;
+    int count = 0;
+    Arc piece[room];
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline constexpr double cluster_width = 2e-5;  // [rad], a piece this small is not divided further
+inline constexpr double near_miss = 0.02;      // [rad], a pair announced on such a piece is followed up
+inline constexpr int most_samplings = 48, most_divisions = 400;  // of pieces, per goal
+inline constexpr double regular_alias = 1e-6;  // above, a formulation vanishes identically or drowns in noise
+
+inline double angle_at(const ik::Arc& arc, double u) {
+    return arc.centre + arc_angle(arc.from + (arc.to - arc.from) * u, arc.quarter);
+}
+
+inline void put(ik::HiddenAngles& out, const ik::HiddenAngle& root) {
+    if (out.count == ik::max_roots)
+        out.overflow = true;
+    else
+        out.root[out.count++] = root;
+}
+
+// A small piece where the signs leave a pair of roots open: the parabola through its middle tells whether
+// they are real and apart, together, or missing by more than noise.
+template <class Function>
+inline void close_roots(const Function& f, const ik::Arc& arc, const Variations& signs,
+                        ik::HiddenAngles& out) {
+    const double from = angle_at(arc, 0), to = angle_at(arc, 1), middle = 0.5 * (from + to);
+    const double h = cluster_width;
+    using V = Pack<4>;
+    V angle, s, c;
+    for (int k = 0; k < 4; ++k) set_lane(angle, k, middle + (k - 1) * h);
+    sincos(angle, s, c);
+    const V value = f(c, s);
+    ++out.evaluations;
+    const double left = lane(value, 0), at = lane(value, 1), right = lane(value, 2);
+    const double slope = (right - left) / (2 * h), bend = (right - 2 * at + left) / (h * h);
+    double vertex = middle - slope / bend;
+    if (!(std::fabs(vertex - middle) < 2 * (to - from) + 2 * h)) vertex = middle;
+    const double depth = 2 * (at - 0.5 * slope * slope / bend) / bend;  // −(half distance of the roots)²
+    if (signs.count == 0 && depth > 400 * h * h) return;
+    for (int k = 0; k < out.count; ++k)
+        if (out.root[k].width > 0 && std::fabs(out.root[k].angle - vertex) < 1e-2 * h) return;
+    const double apart = depth < 0 ? std::sqrt(-depth) : 0;
+    if (apart > 1e-2 * h && apart < 3 * h) {
+        put(out, {vertex - apart, h, 1});
+        put(out, {vertex + apart, h, 1});
+    } else {
+        put(out, {vertex, h, signs.count >= 2 ? 2 : ik::unknown});
+    }
+}
+
+// The pieces with one root each, four at a time.
+inline void find_simple_roots(const ik::Pieces& simple, ik::HiddenAngles& out) {
+    using V = Pack<4>;
+    for (int first = 0; first < simple.count; first += 4) {
+        const int lanes = simple.count - first < 4 ? simple.count - first : 4;
+        V b[ik::padded];
+        for (int i = 0; i <= ik::degree; ++i)
+            for (int k = 0; k < 4; ++k) set_lane(b[i], k, simple.piece[first + (k < lanes ? k : 0)].b[i]);
+        const V u = only_roots<ik::degree>(b, 1e-8);
+        for (int k = 0; k < lanes; ++k) put(out, {angle_at(simple.piece[first + k], lane(u, k)), 0, 1});
+    }
+}
+
+// Where a small piece announced two roots and neither was found: the bottom of the dip.
+inline void note_near_misses(const ik::Pieces& dips, ik::HiddenAngles& out) {
+    const int found = out.count;
+    for (int i = 0; i < dips.count; ++i) {
+        const ik::Arc& dip = dips.piece[i];
+        const double from = angle_at(dip, 0), to = angle_at(dip, 1);
+        bool has_root = false;
+        for (int k = 0; k < found; ++k)
+            has_root |= out.root[k].angle > from - 1e-3 && out.root[k].angle < to + 1e-3;
+        if (has_root) continue;
+        const double* b = dip.b;
+        const double bend = b[0] - 2 * b[ik::degree / 2] + b[ik::degree];
+        const double u = 0.5 + 0.25 * (b[0] - b[ik::degree]) / bend;
+        put(out, {angle_at(dip, u > 0 && u < 1 ? u : 0.5), to - from, ik::nearly_two});
+    }
+}
+
+// f(c, s) on packs of four: a trigonometric polynomial of degree 8.
+template <class Function>
+inline void isolate(const Function& f, ik::HiddenAngles& out) {
+    using V = Pack<4>;
+    const ik::SamplerTables& tables = sampler_tables();
+    alignas(32) double sampled[ik::samples];
+    for (int j = 0; j < ik::samples; j += 4)
+        store(sampled + j, f(load<V>(tables.cosine + j), load<V>(tables.sine + j)));
+    out.evaluations = ik::samples / 4;
+    double largest = 0;
+    for (double value : sampled) largest = max(largest, std::fabs(value));
+    out.largest = largest;
+    if (!(largest > 0) || !std::isfinite(largest)) {
+        out.alias = 1;
+        return;
+    }
+    for (double& value : sampled) value /= largest;
+    for (const auto& harmonic : tables.alias) {
+        double sum = 0;
+        for (int j = 0; j < ik::samples; ++j) sum += harmonic[j] * sampled[j];
+        out.alias = max(out.alias, std::fabs(sum));
+    }
+    if (out.alias > regular_alias) return;
+    ik::Pieces stack, simple, dips;
+    const double noise = max(30 * out.alias, 1e-15) * tables.arc_gain;
+    for (int k = 0; k < ik::arcs; ++k) {
+        ik::Arc& arc = stack.piece[stack.count];
+        read_arc(tables, sampled, k, arc);
+        arc.noise = noise;
+        const Variations signs = variations<ik::degree>(arc.b, noise);
+        if (signs.most > 0) ++stack.count;
+    }
+    int samplings = 0, divisions = 0;
+    while (stack.count > 0) {
+        const ik::Arc arc = stack.piece[--stack.count];
+        const Variations signs = variations<ik::degree>(arc.b, arc.noise);
+        if (signs.most == 0) continue;
+        const double from = angle_at(arc, 0), to = angle_at(arc, 1), width = to - from;
+        const bool whole = arc.from == 0 && arc.to == 1;
+        const bool drowning = signs.largest < 1e3 * arc.noise || signs.most != signs.count;
+        if (drowning && width > 2 * cluster_width && !(whole && arc.resampled) &&
+            samplings < most_samplings) {
+            ++samplings;
+            out.evaluations += ik::padded / 4;
+            resample(tables, f, largest, 0.5 * (from + to), 0.25 * width, stack.piece[stack.count++]);
+            continue;
+        }
+        if (signs.most == 1 && signs.ends_known) {
+            if (simple.count == ik::max_roots)
+                out.overflow = true;
+            else
+                simple.piece[simple.count++] = arc;
+            continue;
+        }
+        if (width < cluster_width) {
+            close_roots(f, arc, signs, out);
+            continue;
+        }
+        if (stack.count + 2 > ik::Pieces::room || ++divisions > most_divisions) {
+            out.overflow = true;
+            break;
+        }
+        if (signs.count >= 2 && width < near_miss && width >= 0.5 * near_miss &&
+            dips.count < ik::Pieces::room)
+            dips.piece[dips.count++] = arc;
+        ik::Arc &lower = stack.piece[stack.count++], &upper = stack.piece[stack.count++];
+        lower = upper = arc;
+        halve<ik::degree>(arc.b, lower.b, upper.b);
+        lower.to = upper.from = 0.5 * (arc.from + arc.to);
+    }
+    find_simple_roots(simple, out);
+    note_near_misses(dips, out);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,138 @@
+// Which formulations of the loop serve an arm, and in what order; and all solutions of a goal by as many of
+// them as it takes.
+#pragma once
+
+#include "cspace/ik/general/solve.hpp"
+
+namespace cspace {
+
+// How a formulation did on the poses of an arm.
+struct FormulationTrial {
+    int poses = 0, drowned = 0, work = 0;
+    double sensitivity = 0;
+    int found[24];
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// Whether the link that the goal makes of tip and base is longer than all the others together.
+inline bool is_beyond_reach(const ik::LoopFrames& frames, const Posed& goal) {
+    double others = 0;
+    for (const Posed& link : frames.between) others += norm(link.t);
+    return norm(closing_link(frames, goal).t) > (1 + 1e-9) * others;
+}
+
+// One formulation after the other until one of them certifies that nothing is missing.
+inline void solve_general(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+    out.crowded = false;
+    out.complete = is_beyond_reach(plan.frames, goal);
+    for (int k = 0; k < plan.regular && !out.complete; ++k) {
+        const ik::Certificate seen = solve_formulation(plan, goal, plan.order[k], out);
+        out.complete = seen.complete;
+        out.crowded = out.crowded || seen.clusters > 0;
+    }
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+}
+
+inline constexpr double usual_sensitivity = 1e5, useless_sensitivity = 1e8;
+
+// By how much more than their own the relative errors of the six equations change the determinant: where an
+// arm is almost, but not quite, one for which a formulation vanishes, its values are rounding enlarged.
+inline double sensitivity(const ik::GeneralPlan& plan, const Posed& goal, int number) {
+    using V = Pack<4>;
+    constexpr double slip = 1e-9;
+    const Elimination e = eliminate(make_loop(plan.frames, goal, formulation(number)));
+    Elimination slipped = e;
+    int sign = 1;
+    for (int i = 0; i < 6; ++i)
+        for (int m = 0; m < 9; ++m) {
+            for (double* entry : {&slipped.level[i][m], &slipped.across[i][m], &slipped.quarter[i][m]}) {
+                *entry += sign * slip;
+                sign = (7 * i + 5 * m + (sign > 0)) % 3 ? -sign : sign;
+            }
+        }
+    const ik::SamplerTables& tables = sampler_tables();
+    double largest = 0, change = 0;
+    for (int j = 0; j < ik::samples; j += 4) {
+        const V c = load<V>(tables.cosine + j), s = load<V>(tables.sine + j);
+        const V exact = determinant(e, c, s), other = determinant(slipped, c, s);
+        for (int k = 0; k < 4; ++k) {
+            largest = max(largest, std::fabs(lane(exact, k)));
+            change = max(change, std::fabs(lane(other, k) - lane(exact, k)));
+        }
+    }
+    return change / (slip * largest);
+}
+
+// Tries one on poses of its own arm; one that drowns in noise, or whose roots always come in close pairs, is
+// known for it after a few.
+inline FormulationTrial try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int poses,
+                                        int number) {
+    constexpr int first_look = 4, heavy = 400;
+    FormulationTrial trial;
+    for (int k = 0; k < poses; ++k) {
+        if (k < first_look) trial.sensitivity = max(trial.sensitivity, sensitivity(plan, goal[k], number));
+        if (!(trial.sensitivity < useless_sensitivity)) break;
+        if (k == first_look && (trial.drowned == k || trial.work > heavy * k)) break;
+        ik::Solutions out;
+        const ik::Certificate seen = solve_formulation(plan, goal[k], number, out);
+        trial.drowned += seen.alias > regular_alias;
+        trial.work += seen.work;
+        trial.found[trial.poses++] = out.count;
+    }
+    return trial;
+}
+
+// Whether two of the joints do one's work, or would but for rounded axes: then every configuration is
+// singular and no list of solutions could be complete.
+inline bool has_joint_to_spare(const ik::Chain& chain, double length) {
+    for (int k = 0; k < 8; ++k) {
+        double q[ik::max_joints];
+        spread_configuration(k, 6, q);
+        PoseError error;
+        measure(chain, forward(chain, q), length, q, error);
+        if (weak_direction(&error.jacobian.us[0]).sigma > tolerance::axis_relation) return false;
+    }
+    return true;
+}
+
+// For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
+// them at great cost. The regular ones are ordered by what they miss, by their work and by how
+// much they enlarge rounding.
+inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
+    constexpr int poses = 24;
+    plan = {};
+    plan.solve = &solve_general;
+    plan.chain = chain;
+    plan.frames = loop_frames(chain);
+    if (has_joint_to_spare(chain, plan.frames.length)) return;
+    Posed goal[poses];
+    for (int k = 0; k < poses; ++k) {
+        double q[ik::max_joints];
+        spread_configuration(k, 6, q);
+        goal[k] = forward(chain, q);
+    }
+    FormulationTrial trial[ik::formulations];
+    int most[poses] = {};
+    for (int number = 0; number < ik::formulations; ++number) {
+        trial[number] = try_formulation(plan, goal, poses, number);
+        for (int k = 0; k < trial[number].poses; ++k)
+            most[k] = trial[number].found[k] > most[k] ? trial[number].found[k] : most[k];
+    }
+    double price[ik::formulations];
+    for (int number = 0; number < ik::formulations; ++number) {
+        const FormulationTrial& t = trial[number];
+        if (t.drowned == t.poses || !(t.sensitivity < useless_sensitivity)) continue;
+        int missed = 0;
+        for (int k = 0; k < t.poses; ++k) missed += most[k] - t.found[k];
+        const double slips = max(0.0, std::log10(t.sensitivity / usual_sensitivity));
+        price[number] = double(t.work + 100 * missed) / t.poses + 20 * slips;
+        int at = plan.regular++;
+        for (; at > 0 && price[plan.order[at - 1]] > price[number]; --at) plan.order[at] = plan.order[at - 1];
+        plan.order[at] = number;
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

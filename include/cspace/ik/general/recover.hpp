@@ -1,0 +1,153 @@
+// From a hidden angle to the other five: the null vector of the twelve equations holds the half angles of a1
+// and a2, and the loop closes with a4, a5 and a3.
+#pragma once
+
+#include "cspace/ik/general/determinant.hpp"
+
+namespace cspace {
+
+// Products of half angles, x[3 i + j] belonging to S1^(3−i) C1^i and S2^(2−j) C2^j.
+template <class V>
+struct Monomials {
+    V x[12];
+};
+
+// Sines and cosines of a1 and a2, from their origins, not normalised.
+template <class V>
+struct TwoHalfAngles {
+    V s1, c1, s2, c2;
+};
+
+// The transposed equations, reduced: their reflections, their triangle.
+template <class V>
+struct ReducedEquations {
+    V A[12][12], diagonal[12], factor[12];
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+template <class V>
+CSPACE_NOINLINE void reduce_equations(const Elimination& e, V c, V s, ReducedEquations<V>& out) {
+    for (auto& row : out.A)
+        for (V& entry : row) entry = fill<V>(0.0);
+    for (int i = 0; i < 6; ++i)
+        for (int m = 0; m < 9; ++m) out.A[m][i] = out.A[3 + m][6 + i] = equation(e, i, m, c, s);
+    linear::factor_qr(out.A, out.diagonal, out.factor);
+}
+// Q y, for the Q of the reduction.
+template <class V>
+CSPACE_INLINE void turn_back(const ReducedEquations<V>& r, V (&y)[12]) {
+    for (int k = 11; k >= 0; --k) linear::reflect(r.A, r.factor, k, y);
+}
+// The monomials that all equations but the last in line annihilate.
+template <class V>
+CSPACE_INLINE Monomials<V> null_vector(const ReducedEquations<V>& r) {
+    Monomials<V> out;
+    for (int i = 0; i < 12; ++i) out.x[i] = fill<V>(i == 11 ? 1.0 : 0.0);
+    turn_back(r, out.x);
+    return out;
+}
+
+// Neighbouring monomials differ by the factor C1/S1 or C2/S2: sums over all neighbours, as sine and cosine of
+// the whole angles.
+template <class V>
+CSPACE_INLINE TwoHalfAngles<V> half_angles(const Monomials<V>& m) {
+    const V* x = m.x;
+    const V zero = fill<V>(0.0);
+    V aa = zero, ab = zero, bb = zero, cc = zero, cd = zero, dd = zero;
+    for (int i = 0; i < 9; ++i) {
+        aa = mul_add(x[i], x[i], aa);
+        ab = mul_add(x[i], x[i + 3], ab);
+        bb = mul_add(x[i + 3], x[i + 3], bb);
+    }
+    for (int i = 0; i < 12; ++i) {
+        if (i % 3 == 2) continue;
+        cc = mul_add(x[i], x[i], cc);
+        cd = mul_add(x[i], x[i + 1], cd);
+        dd = mul_add(x[i + 1], x[i + 1], dd);
+    }
+    return {2.0 * ab, bb - aa, 2.0 * cd, dd - cc};
+}
+
+template <class V>
+CSPACE_INLINE Turn<V> unit_turn(V c, V s) {
+    const V scale = 1.0 / sqrt(max(c * c + s * s, fill<V>(1e-300)));
+    return {scale * c, scale * s};
+}
+template <class V>
+CSPACE_INLINE Pose<V> turned_about_z(const Pose<V>& T, const Turn<V>& t) {
+    const Vec3<V> x = column(T.R, 0), y = column(T.R, 1);
+    return {from_columns(t.c * x + t.s * y, t.c * y - t.s * x, column(T.R, 2)), T.t};
+}
+
+// The six parts of the left side that a5 does not see, less the constant of the right side.
+template <class V>
+CSPACE_INLINE void parts_without_a5(const Elimination& e, const Pose<V>& X, V (&out)[6]) {
+    const Vec3<V> l = column(X.R, 2), &p = X.t;
+    const V pp = dot(p, p), pl = dot(p, l);
+    out[0] = l.z;
+    out[1] = p.z;
+    out[2] = p.x * l.y - p.y * l.x;
+    out[3] = pp * l.z - 2.0 * pl * p.z;
+    out[4] = pp;
+    out[5] = pl;
+    for (int i = 0; i < 6; ++i) out[i] = out[i] - e.W[i][2];
+}
+
+// a5 and a3 from the two sides of the loop once a4 is known; writes the joints of all six.
+template <class V>
+CSPACE_INLINE void close_loop(const ik::Loop& loop, const Pose<V>& X, const Turn<V>& a0, const Turn<V>& a1,
+                              const Turn<V>& a2, const Turn<V>& a4, V* q) {
+    const Pose<V> M3 = fill_pose<V>(inverse(loop.M[3])), M4 = fill_pose<V>(inverse(loop.M[4]));
+    const Pose<V> Y = turned_about_z(M4, Turn<V>{a4.c, -a4.s}) * M3;  // X = Rz(−a5) Y Rz(−a3)
+    const Vec3<V> l = column(X.R, 2), w = column(Y.R, 2);
+    const Turn<V> a5 = unit_turn(w.x * l.x + w.y * l.y + Y.t.x * X.t.x + Y.t.y * X.t.y,
+                                 w.y * l.x - w.x * l.y + Y.t.y * X.t.x - Y.t.x * X.t.y);
+    // The first column of Yᵀ Rz(a5) X is that of Rz(−a3).
+    const Vec3<V> x = column(X.R, 0);
+    const Vec3<V> turned = {a5.c * x.x - a5.s * x.y, a5.s * x.x + a5.c * x.y, x.z};
+    const Vec3<V> seen = transpose_times(Y.R, turned);
+    const Turn<V> a3 = {seen.x, -seen.y};
+    const Turn<V> all[6] = {a0, a1, a2, a3, a4, a5};
+    for (int j = 0; j < 6; ++j) q[loop.joint[j]] = loop.sign * angle_of(all[j]);
+}
+
+// Candidates for the joints of one hidden angle (cosine and sine a0) and the half angles found there. Where
+// the parts fix a4 by one equation alone there are two; `second` says so.
+template <class V>
+CSPACE_INLINE void joints_from(const ik::Loop& loop, const Elimination& e, const Turn<V>& a0,
+                               const TwoHalfAngles<V>& half, V* q, V* second) {
+    const Turn<V> o1 = {fill<V>(std::cos(a1_origin)), fill<V>(std::sin(a1_origin))};
+    const Turn<V> o2 = {fill<V>(std::cos(a2_origin)), fill<V>(std::sin(a2_origin))};
+    const Turn<V> a1 = unit_turn(half.c1, half.s1) + o1, a2 = unit_turn(half.c2, half.s2) + o2;
+    Pose<V> X = turned_about_z(fill_pose<V>(loop.M[5]), a0) * fill_pose<V>(loop.M[0]);
+    X = turned_about_z(X, a1) * fill_pose<V>(loop.M[1]);
+    X = turned_about_z(X, a2) * fill_pose<V>(loop.M[2]);
+    V part[6];
+    parts_without_a5(e, X, part);
+    if (e.a4_rank > 1e-6) {
+        V c = fill<V>(0.0), s = c;
+        for (int i = 0; i < 6; ++i) {
+            c = mul_add(fill<V>(e.inverse_w[0][i]), part[i], c);
+            s = mul_add(fill<V>(e.inverse_w[1][i]), part[i], s);
+        }
+        close_loop(loop, X, a0, a1, a2, unit_turn(c, s), q);
+        return;
+    }
+    int best = 0;
+    double most = -1;
+    for (int i = 0; i < 6; ++i) {
+        const double size = e.W[i][0] * e.W[i][0] + e.W[i][1] * e.W[i][1];
+        if (size > most) most = size, best = i;
+    }
+    const double length = std::sqrt(max(most, 1e-300));
+    const Turn<V> mean = {fill<V>(e.W[best][0] / length), fill<V>(e.W[best][1] / length)};
+    const V c = max(min(part[best] * (1 / length), fill<V>(1.0)), fill<V>(-1.0));
+    const Turn<V> off = {c, sqrt(max(1.0 - c * c, fill<V>(0.0)))};
+    close_loop(loop, X, a0, a1, a2, mean + off, q);
+    close_loop(loop, X, a0, a1, a2, mean - off, second);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,190 @@
+// A trigonometric polynomial of degree 8 from its values, arc by arc in Bernstein form.
+//
+// On an arc of the circle the half angle's cosine and sine, scaled, are linear in u ∈ [0, 1]: with the arc's
+// centre φ and a quarter α of its width, (C, S) ∝ (cos α, (2u − 1) sin α). Times the 16th power of their
+// length a polynomial of degree 8 in cos and sin is one of degree 16 in u, whose Bernstein coefficients show
+// its signs.
+#pragma once
+
+#include "cspace/math/bernstein.hpp"
+#include "cspace/math/rows.hpp"
+#include "cspace/math/trig.hpp"
+
+namespace cspace::ik {
+
+inline constexpr int harmonics = 8, degree = 2 * harmonics, samples = 20, arcs = 10;
+inline constexpr int padded = 20;  // degree + 1 coefficients or nodes, up to whole packs of four
+
+// Ten arcs of 36° share one matrix: two samples stand on each, and the next arc sees them two further on.
+struct SamplerTables {
+    double angle[samples];
+    double cosine[samples], sine[samples];
+    double to_arc[samples][padded];           // samples, from the arc's first on, to coefficients
+    double arc_gain;                          // largest sum of magnitudes over the samples
+    double alias[3][samples];                 // to the harmonics 9 and 10, which a true polynomial lacks
+    double node[padded];                      // u where an arc is sampled anew (Chebyshev)
+    double to_chebyshev[degree + 1][padded];  // values at the nodes to Chebyshev coefficients, a row each
+    double to_bernstein[degree + 1][padded];  // T_n in Bernstein form, a row each
+    double bernstein_gain[degree + 1];        // its largest coefficient
+};
+
+// A piece of the circle: the part [from, to] of an arc sampled at once.
+struct Arc {
+    double b[padded];
+    double centre, quarter;
+    double from = 0, to = 1;
+    double noise;  // of the coefficients
+    bool resampled = false;
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline double binomial(int n, int k) {
+    if (k < 0 || k > n) return 0;
+    double out = 1;
+    for (double i = 0; i < k; ++i) out = out * (n - i) / (i + 1);
+    return out;
+}
+
+// The angle on an arc, from its centre.
+inline double arc_angle(double u, double quarter) {
+    return 2 * std::atan2((2 * u - 1) * std::sin(quarter), std::cos(quarter));
+}
+// The factor between the function on an arc and its polynomial.
+inline double arc_weight(double u, double quarter) {
+    const double c = std::cos(quarter), s = (2 * u - 1) * std::sin(quarter);
+    double r = c * c + s * s;
+    r *= r;
+    r *= r;
+    return r * r;
+}
+
+// The Bernstein coefficient i of cos kθ and sin kθ on an arc around zero: with z = C + iS the functions are
+// the parts of z^(8+k) z̄^(8−k), a product of linear factors.
+inline void harmonic_coefficient(int k, int i, double quarter, double& cosine, double& sine) {
+    cosine = sine = 0;
+    for (int j = 0; j <= i; ++j) {
+        const double weight =
+            binomial(ik::harmonics + k, j) * binomial(ik::harmonics - k, i - j) / binomial(ik::degree, i);
+        cosine += weight * std::cos(quarter * (4 * j - 2 * i - 2 * k));
+        sine += weight * std::sin(quarter * (4 * j - 2 * i - 2 * k));
+    }
+}
+
+inline void fill_arc_matrix(ik::SamplerTables& t) {
+    constexpr double quarter = 2 * pi / ik::arcs / 4, step = 2 * pi / ik::samples;
+    t.arc_gain = 0;
+    for (int i = 0; i <= ik::degree; ++i) {
+        double c[ik::harmonics + 1], s[ik::harmonics + 1], gain = 0;
+        for (int k = 0; k <= ik::harmonics; ++k) harmonic_coefficient(k, i, quarter, c[k], s[k]);
+        for (int j = 0; j < ik::samples; ++j) {
+            const double from_centre = (j - 0.5) * step;
+            double sum = c[0];
+            for (int k = 1; k <= ik::harmonics; ++k)
+                sum += 2 * (c[k] * std::cos(k * from_centre) + s[k] * std::sin(k * from_centre));
+            t.to_arc[j][i] = sum / ik::samples;
+            gain += std::fabs(t.to_arc[j][i]);
+        }
+        t.arc_gain = max(t.arc_gain, gain);
+    }
+}
+
+inline void fill_node_matrices(ik::SamplerTables& t) {
+    constexpr int n_nodes = ik::degree + 1;
+    for (int m = 0; m < ik::padded; ++m) {
+        const double angle = pi - pi * (m + 0.5) / n_nodes;
+        t.node[m] = m < n_nodes ? 0.5 + 0.5 * std::cos(angle) : 0.5;
+        for (int n = 0; n < n_nodes; ++n)
+            t.to_chebyshev[n][m] = m < n_nodes ? (n == 0 ? 1.0 : 2.0) / n_nodes * std::cos(n * angle) : 0;
+    }
+    for (int n = 0; n < n_nodes; ++n) {
+        double* b = t.to_bernstein[n];
+        for (int i = 0; i <= n; ++i)
+            b[i] = ((n - i) % 2 ? -1.0 : 1.0) * binomial(2 * n, 2 * i) / binomial(n, i);
+        for (int d = n; d < ik::degree; ++d)  // raise the degree from d to d + 1
+            for (int i = d + 1; i >= 0; --i)
+                b[i] = double(i) / (d + 1) * (i > 0 ? b[i - 1] : 0) + (1 - double(i) / (d + 1)) * b[i];
+        t.bernstein_gain[n] = 0;
+        for (int i = 0; i < n_nodes; ++i) t.bernstein_gain[n] = max(t.bernstein_gain[n], std::fabs(b[i]));
+    }
+}
+
+inline ik::SamplerTables make_sampler_tables() {
+    ik::SamplerTables t{};
+    for (int j = 0; j < ik::samples; ++j) {
+        t.angle[j] = 2 * pi * (j + 0.5) / ik::samples;
+        t.cosine[j] = std::cos(t.angle[j]);
+        t.sine[j] = std::sin(t.angle[j]);
+        t.alias[0][j] = 2.0 / ik::samples * std::cos(9 * t.angle[j]);
+        t.alias[1][j] = 2.0 / ik::samples * std::sin(9 * t.angle[j]);
+        t.alias[2][j] = 1.0 / ik::samples * std::sin(10 * t.angle[j]);
+    }
+    fill_arc_matrix(t);
+    fill_node_matrices(t);
+    return t;
+}
+inline const ik::SamplerTables& sampler_tables() {
+    static const ik::SamplerTables tables = make_sampler_tables();
+    return tables;
+}
+
+// The arc that starts at sample 2 k.
+inline void read_arc(const ik::SamplerTables& t, const double* f, int k, ik::Arc& arc) {
+    for (double& b : arc.b) b = 0;
+    for (int j = 0; j < ik::samples; ++j) {
+        const double value = f[(2 * k + j) % ik::samples];
+        for (int i = 0; i < ik::padded; ++i) arc.b[i] += value * t.to_arc[j][i];
+    }
+    arc.centre = t.angle[2 * k] + pi / ik::samples;
+    arc.quarter = 2 * pi / ik::arcs / 4;
+    arc.from = 0;
+    arc.to = 1;
+    arc.resampled = false;
+}
+
+// A piece of an arc sampled anew by f(c, s) on packs of four, in units of `unit`. Chebyshev coefficients that
+// drown in the noise of the samples are dropped: what they would put into the Bernstein form is noise
+// enlarged.
+template <class Function>
+inline void resample(const ik::SamplerTables& t, const Function& f, double unit, double centre,
+                     double quarter, ik::Arc& arc) {
+    using V = Pack<4>;
+    double g[ik::padded], largest = 0;
+    for (int m = 0; m < ik::padded; m += 4) {
+        V angle, s, c;
+        for (int k = 0; k < 4; ++k) set_lane(angle, k, centre + arc_angle(t.node[m + k], quarter));
+        sincos(angle, s, c);
+        store(g + m, f(c, s));
+    }
+    for (int m = 0; m <= ik::degree; ++m) {
+        g[m] *= arc_weight(t.node[m], quarter) / unit;
+        largest = max(largest, std::fabs(g[m]));
+    }
+    for (int m = ik::degree + 1; m < ik::padded; ++m) g[m] = 0;
+    double c[ik::degree + 1];
+    for (int n = 0; n <= ik::degree; ++n) {
+        double sum = 0;
+        for (int m = 0; m < ik::padded; ++m) sum += t.to_chebyshev[n][m] * g[m];
+        c[n] = sum;
+    }
+    // On a piece of an arc the last coefficients are nothing but noise, and measure it.
+    double tail = 0;
+    for (int n = ik::degree - 2; n <= ik::degree; ++n) tail = max(tail, std::fabs(c[n]));
+    const double noise = max(1e-15 * largest, 8 * tail);
+    int top = 0;
+    for (int n = 0; n <= ik::degree; ++n)
+        if (std::fabs(c[n]) > noise) top = n;
+    for (double& b : arc.b) b = 0;
+    for (int n = 0; n <= top; ++n)
+        for (int i = 0; i < ik::padded; ++i) arc.b[i] += c[n] * t.to_bernstein[n][i];
+    arc.centre = centre;
+    arc.quarter = quarter;
+    arc.from = 0;
+    arc.to = 1;
+    arc.noise = noise * (ik::degree - top + 2 * t.bernstein_gain[top]);
+    arc.resampled = true;
+}
+
+}  // namespace cspace::inline CSPACE_ISA
