@@ -223,3 +223,20 @@ def test_doctor_is_well_and_says_what_runs():
     assert result.code == 0
     assert cs.__version__ in result.out
     assert cs._core.isa in result.out
+
+
+def test_rows_within_limits_are_printed_where_the_limits_are():
+    """Joint 3 of this arm goes to −235°: a solution found at 137° is shown a whole turn further back."""
+    robot = cs.load_robot("irb1600")
+    T = robot.fk([0.2, 0.3, -3.9, 0.5, 0.5, 0.6])
+    found = cspace("ik irb1600 --json --matrix", *typed(T.ravel())).json["solutions"]
+    inside = [row for row in found if row["within_limits"]]
+    assert inside
+    for row in inside:
+        assert (row["q"] >= robot.limits.lower).all()
+        assert (row["q"] <= robot.limits.upper).all()
+    assert min(abs(row["q"][2] + 3.9) for row in inside) < 1e-9
+
+
+def test_words_find_robots_without_an_option():
+    assert cspace("robots universal --json").json == cspace("robots --search universal --json").json

@@ -392,3 +392,33 @@ def test_relative_and_file_names_need_no_package(tmp_path):
         path = tmp_path / "arm.urdf"
         path.write_text(ARM.replace("package://arm/meshes/a.stl", uri))
         assert mesh_of(path).file() == str(tmp_path / "a b.stl")
+
+
+SLIPS = {
+    "orgin": ('<orgin xyz="0.25 0 0"/>', "<joint> has no <orgin>; did you mean <origin>"),
+    "xzy": ('<origin xzy="0.25 0 0"/>', "<origin> has no attribute 'xzy'; did you mean 'xyz'"),
+    "axes": ('<axes xyz="0 1 0"/>', "<joint> has no <axes>; did you mean <axis>"),
+    "uper": ('<limit lower="-1" uper="2"/>', "<limit> has no attribute 'uper'; did you mean 'upper'"),
+    "limits": ('<limits lower="-1" upper="2"/>', "<joint> has no <limits>; did you mean <limit>"),
+}
+
+
+@pytest.mark.parametrize("case", SLIPS)
+def test_a_slip_of_the_pen_is_named_with_its_line(case):
+    line, words = SLIPS[case]
+    text = f"""<robot name="r"><link name="a"/><link name="b"/>
+<joint name="tilt" type="revolute"><parent link="a"/><child link="b"/>
+{line}
+</joint></robot>"""
+    with pytest.raises(DescriptionError) as caught:
+        from_urdf(text)
+    assert words in str(caught.value)
+    assert "'tilt'" in str(caught.value)
+    assert caught.value.line == 3
+
+
+def test_extensions_are_left_alone():
+    text = """<robot name="r"><link name="a"><self_collision_checking/></link><link name="b"/>
+<joint name="j" type="revolute"><parent link="a"/><child link="b"/><drake:orgin/><hardwareInterface/>
+<limit lower="-1" upper="2" effort="1" velocity="1" soft_lower="-0.9"/></joint><gazebo/></robot>"""
+    assert from_urdf(text).joints[0].upper == 2

@@ -18,6 +18,7 @@ from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
 from cspace.model.packages import folders
 from cspace.model.structure import ElementError
 from cspace.model.transforms import from_rpy
+from cspace.model.urdf_words import slip_in
 from cspace.model.values import IDENTITY, X_AXIS, frozen
 from cspace.model.xml import Element, parse
 from cspace.tolerances import UNLIMITED
@@ -82,6 +83,7 @@ class _Reader:
     def read(self, data: bytes, name: str) -> Description:
         root = parse(data, self.path, self.lines_before)
         self.check_root(root)
+        self.check_words(root)
         for material in root.all("material"):
             self.color(material)
         links = [(element, self.link(element)) for element in root.all("link")]
@@ -105,6 +107,17 @@ class _Reader:
         if root.tag != "robot":
             hint = OTHER_ROOTS.get(root.tag, "a URDF file holds one <robot> element")
             raise self.fault(f"this is no robot: the root element is <{root.tag}>; {hint}", root)
+
+    def check_words(self, element: Element) -> None:
+        """Complain about what looks like a slip of the pen: an element left out in silence is worse."""
+        slip = slip_in(element)
+        if slip is not None:
+            name = element.attributes.get("name", "")
+            where = f" ({element.tag} {name!r})" if name else ""
+            raise self.fault(slip[0] + where, slip[1])
+        for child in element.children:
+            if child.tag in ("link", "joint", "inertial", "visual", "collision"):
+                self.check_words(child)
 
     def floats(
         self, element: Element, attribute: str, default: Sequence[float] | None, n: int

@@ -84,14 +84,19 @@ def solve(robot: Any, T: Array | None, point: Array | None) -> Any:
 class Rows:
     """The solutions in the order of the table: as found, or the nearest to `near` first.
 
-    q: (k, dof). branch: k labels. residual, singularity: (k,). out: per row the joints out of limits and
-    by how much. distance: (k,) from `near`, or None.
+    q: (k, dof), each joint moved into its limits by whole turns where they are checked. branch: k labels.
+    residual, singularity: (k,). out: per row the joints out of limits and by how much. distance: (k,) from
+    `near`, or None.
     """
 
     def __init__(self, robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str) -> None:
+        from cspace.ik.windings import into_limits
         from cspace.kinematics import distance_to_singularity
 
         q = np.asarray(answer.q, dtype=np.float64)
+        if check:  # each joint where its limits are, if a whole turn brings it there
+            limits = robot.limits
+            q = into_limits(q, robot.joint_types, limits.lower, limits.upper)[0]
         self.distance: Array | None = None
         order = np.arange(len(q))
         if near is not None:
@@ -198,8 +203,9 @@ def title_of(robot: Robot, rows: Rows) -> str:
 
 
 def draw(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, title: str) -> None:
-    """Write the picture of all solutions, the first row solid."""
+    """Write the picture of all solutions, the first row within limits solid."""
     from cspace import plot
 
-    labels = [f"{k + 1}  {branch}" for k, branch in enumerate(rows.branch)]
-    plot.save(plot.solutions(robot, rows.q, goal, labels=labels, title=title), path)
+    order = sorted(range(len(rows)), key=lambda k: bool(rows.out[k]))
+    labels = [f"{k + 1}  {rows.branch[k]}" + (" (out of limits)" if rows.out[k] else "") for k in order]
+    plot.save(plot.solutions(robot, rows.q[order], goal, labels=labels, title=title), path)

@@ -20,6 +20,7 @@ cspace robots --dof 7 --json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
+    parser.add_argument("words", nargs="*", metavar="WORD", help="the same as after --search")
     parser.add_argument("--search", nargs="+", metavar="WORD", default=[], help="all words have to occur")
     parser.add_argument("--dof", type=int, metavar="N", help="only arms of N joints")
 
@@ -28,7 +29,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     """Print one row per robot; none found is a negative answer."""
     from cspace.robots import search
 
-    found = [row for row in search(" ".join(args.search)) if args.dof in (None, row.dof)]
+    found = [row for row in search(" ".join([*args.words, *args.search])) if args.dof in (None, row.dof)]
     if out.as_json:
         out.document({"schema": "cspace.robots/1", "robots": [asdict(row) for row in found]})
     elif found:
@@ -38,7 +39,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         out.table(table)
         out.hint(f"{len(found)} robots; cspace info NAME tells more about one")
     else:
-        words = " ".join(args.search)
+        words = " ".join([*args.words, *args.search])
         joints = "" if args.dof is None else f" with {args.dof} joints"
         out.line(f"no robot of the catalogue fits {words!r}{joints}")
     return Exit.DONE if found else Exit.NEGATIVE

@@ -1,0 +1,60 @@
+"""The elements and attributes of URDF, to tell a slip of the pen from an extension."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+from typing import Final
+
+from cspace.model.xml import Element
+
+__all__ = ["slip_in"]
+
+CHILDREN: Final[dict[str, frozenset[str]]] = {
+    "robot": frozenset({"link", "joint", "material", "transmission", "gazebo"}),
+    "link": frozenset({"inertial", "visual", "collision"}),
+    "joint": frozenset({"origin", "parent", "child", "axis", "limit", "mimic", "dynamics", "calibration"}),
+    "inertial": frozenset({"origin", "mass", "inertia"}),
+    "visual": frozenset({"origin", "geometry", "material"}),
+    "collision": frozenset({"origin", "geometry", "material"}),
+}
+ATTRIBUTES: Final[dict[str, frozenset[str]]] = {
+    "origin": frozenset({"xyz", "rpy"}),
+    "axis": frozenset({"xyz"}),
+    "limit": frozenset({"lower", "upper", "velocity", "effort", "acceleration", "jerk"}),
+    "mimic": frozenset({"joint", "multiplier", "offset"}),
+    "dynamics": frozenset({"damping", "friction"}),
+    "inertia": frozenset({"ixx", "ixy", "ixz", "iyy", "iyz", "izz"}),
+    "mesh": frozenset({"filename", "scale"}),
+}
+LIKENESS: Final = 0.65
+"""How much of two words must agree (Ratcliff and Metzener 1988) for one to be meant for the other."""
+
+
+def slip_in(element: Element) -> tuple[str, Element] | None:
+    """What is misspelled in an element or its children, in words, and where; None where nothing is.
+
+    A name that URDF does not know is an extension, unless it is close to one that is not there.
+    """
+    known = CHILDREN.get(element.tag, frozenset())
+    present = {child.tag for child in element.children}
+    for child in element.children:
+        if known and child.tag not in known:
+            meant = closest(child.tag, known - present)
+            if meant:
+                return f"<{element.tag}> has no <{child.tag}>; did you mean <{meant}>?", child
+        names = ATTRIBUTES.get(child.tag)
+        if names is None or child.attributes.keys() <= names:
+            continue
+        for name in child.attributes.keys() - names:
+            meant = closest(name, names - child.attributes.keys())
+            if meant:
+                return f"<{child.tag}> has no attribute {name!r}; did you mean {meant!r}?", child
+    return None
+
+
+def closest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that `word` was meant for, if any; names of another namespace are never meant so."""
+    if ":" in word:
+        return None
+    return next(iter(difflib.get_close_matches(word, sorted(known), 1, LIKENESS)), None)
