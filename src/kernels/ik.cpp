@@ -1,9 +1,5 @@
 #include "ik.hpp"
 
-#include "cspace/ik/evaluate.hpp"
-#include "cspace/ik/goal.hpp"
-#include "cspace/ik/polish.hpp"
-#include "cspace/math/rows.hpp"
 #include "cspace/math/stream.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -32,41 +28,10 @@ CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
     return bits;
 }
 
-// Corrects angles on the true chain; false where that did not settle.
-template <class W>
-CSPACE_INLINE mask_of<W> polished_angles(const ik::Plan& plan, const Pose<W>& goal, W* q) {
-    const mask_of<W> settled = polish(plan.chain, goal, plan.form.length, q);
-    for (int i = 0; i < 6; ++i) q[i] = wrap_once(q[i]);
-    return settled;
-}
-
 }  // namespace
 
 ik::Quick ik_one(const ik::Plan& plan, const double* T, double* q, std::int8_t* branch, int* count) {
-    const ReadGoal<double> goal = read_goal(T);
-    *count = 0;
-    if (!goal.is_pose) return ik::Quick::refused;
-    if (plan.virtual_joints || !plan.on_lanes) return ik::Quick::doubtful;
-    const Abreast found = closed_form_abreast(plan, goal_in_form(plan, goal.T), care_of(plan));
-    if (found.doubt) return ik::Quick::doubtful;
-    Pack<4> angles[2][6];
-    for (int e = 0; e < 2; ++e)
-        for (int i = 0; i < 6; ++i) angles[e][plan.joint[i]] = joint_angle(plan, i, found.t[e][i]);
-    if (plan.polish)
-        for (int e = 0; e < 2; ++e)
-            if (any(found.ok[e] && !polished_angles(plan, fill_pose<Pack<4>>(goal.T), angles[e])))
-                return ik::Quick::doubtful;
-    // Branch 2 l + e is lane l of angles[e].
-    for (int e = 0; e < 2; ++e) store_rows(angles[e], 6, q + 6 * e, 12, 4);
-    int n = 0;
-    for (int k = 0; k < max_branches; ++k) {
-        if (!lane(found.ok[k & 1], k >> 1)) continue;
-        if (n != k)
-            for (int i = 0; i < 6; ++i) q[6 * n + i] = q[6 * k + i];
-        branch[n++] = static_cast<std::int8_t>(k);
-    }
-    *count = n;
-    return ik::Quick::settled;
+    return solve_quickly(plan, T, q, branch, count);
 }
 
 void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, std::int64_t* count,

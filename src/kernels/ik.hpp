@@ -2,20 +2,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "cspace/ik/plan.hpp"
+#include "cspace/ik/quick.hpp"
 #include "cspace/ik/solution.hpp"
 #include "dispatch.hpp"
-
-namespace cspace::ik {
-
-// What a kernel says of a goal before anybody looks twice.
-enum class Quick : std::uint8_t {
-    settled,   // the branches listed are all there are
-    doubtful,  // the careful path has to decide
-    refused,   // not a pose: a number that is not finite, a wrong last row, no rotation
-};
-
-}  // namespace cspace::ik
 
 // One goal, 16 numbers in row-major order; q takes up to max_branches rows of 6 and branch their numbers.
 CSPACE_KERNEL(cspace::ik::Quick, ik_one,

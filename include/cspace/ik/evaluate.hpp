@@ -15,23 +15,23 @@ CSPACE_INLINE Pose<V> goal_in_form(const ik::Plan& plan, const Pose<V>& T_base_t
 
 template <class V>
 CSPACE_INLINE Branches<V> closed_form(const ik::Plan& plan, const Pose<V>& goal, const Care& care) {
-    using enum ik::FirstThree;
+    using Kind = ik::FirstThree;
     if (plan.family == ik::Family::three_parallel) return solve(plan.parallel, goal, care);
     if constexpr (Lanes<V>::count == 1) {
         if (plan.family == ik::Family::middle_parallel) return solve_middle_parallel(plan.form, goal, care);
         if (plan.family == ik::Family::first_parallel) return solve_first_parallel(plan.form, goal, care);
     }
     switch (plan.wrist.first.kind) {
-        case last_parallel:
-            return solve<last_parallel>(plan.wrist, goal, care);
-        case first_meet:
-            return solve<first_meet>(plan.wrist, goal, care);
-        case last_meet:
-            return solve<last_meet>(plan.wrist, goal, care);
-        case first_parallel:
-            return solve<first_parallel>(plan.wrist, goal, care);
+        case Kind::last_parallel:
+            return solve<Kind::last_parallel>(plan.wrist, goal, care);
+        case Kind::first_meet:
+            return solve<Kind::first_meet>(plan.wrist, goal, care);
+        case Kind::last_meet:
+            return solve<Kind::last_meet>(plan.wrist, goal, care);
+        case Kind::first_parallel:
+            return solve<Kind::first_parallel>(plan.wrist, goal, care);
         default:
-            return solve<general>(plan.wrist, goal, care);
+            return solve<Kind::general>(plan.wrist, goal, care);
     }
 }
 
@@ -44,19 +44,19 @@ inline Care care_of(const ik::Plan& plan) {
 
 // One goal, for the families that have a kernel.
 CSPACE_INLINE Abreast closed_form_abreast(const ik::Plan& plan, const Posed& goal, const Care& care) {
-    using enum ik::FirstThree;
+    using Kind = ik::FirstThree;
     if (plan.family == ik::Family::three_parallel) return solve_abreast(plan.parallel, goal, care);
     switch (plan.wrist.first.kind) {
-        case last_parallel:
-            return solve_abreast<last_parallel>(plan.wrist, goal, care);
-        case first_meet:
-            return solve_abreast<first_meet>(plan.wrist, goal, care);
-        case last_meet:
-            return solve_abreast<last_meet>(plan.wrist, goal, care);
-        case first_parallel:
-            return solve_abreast<first_parallel>(plan.wrist, goal, care);
+        case Kind::last_parallel:
+            return solve_abreast<Kind::last_parallel>(plan.wrist, goal, care);
+        case Kind::first_meet:
+            return solve_abreast<Kind::first_meet>(plan.wrist, goal, care);
+        case Kind::last_meet:
+            return solve_abreast<Kind::last_meet>(plan.wrist, goal, care);
+        case Kind::first_parallel:
+            return solve_abreast<Kind::first_parallel>(plan.wrist, goal, care);
         default:
-            return solve_abreast<general>(plan.wrist, goal, care);
+            return solve_abreast<Kind::general>(plan.wrist, goal, care);
     }
 }
 

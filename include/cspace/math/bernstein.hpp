@@ -2,8 +2,6 @@
 // 2005).
 #pragma once
 
-#include <bit>
-
 #include "cspace/math/lanes.hpp"
 
 namespace cspace {
@@ -21,6 +19,16 @@ struct Variations {
 
 namespace cspace::inline CSPACE_ISA {
 
+CSPACE_INLINE int count_bits(unsigned x) {
+#if defined(__GNUC__) || defined(__clang__)
+    return __builtin_popcount(x);
+#else
+    int count = 0;
+    for (; x; x &= x - 1) ++count;
+    return count;
+#endif
+}
+
 template <int n>
 inline Variations variations(const double* b, double noise) {
     Variations out;
@@ -34,7 +42,7 @@ inline Variations variations(const double* b, double noise) {
     const unsigned known = above | below, all = (1u << (n + 1)) - 1;
     out.ends_known = (known & 1) && (known >> n & 1);
     if (known == all) {
-        out.count = out.most = std::popcount((above ^ above >> 1) & all >> 1);
+        out.count = out.most = count_bits((above ^ above >> 1) & all >> 1);
         return out;
     }
     int last = 0, unknown = 0;

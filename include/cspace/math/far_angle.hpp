@@ -6,9 +6,9 @@
 // careful: glibc 2.36 is eight ulp off at 6381956970095103 · 2⁷⁹⁷.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include "cspace/math/isa.hpp"
 
@@ -81,7 +81,8 @@ inline Fraction negated(Fraction f) {
 
 // For 2 ≤ x < ∞.
 inline FarAngle reduce_far(double x) {
-    const std::uint64_t bits = std::bit_cast<std::uint64_t>(x);
+    std::uint64_t bits;
+    std::memcpy(&bits, &x, sizeof bits);
     const int exponent = int(bits >> 52) - 1075;  // x = m 2^exponent
     const std::uint64_t m = (bits & 0xfffffffffffffu) | 0x10000000000000u;
     // Bits of 2/π that make multiples of four quadrants are left out: the product is (x 2/π mod 4) / 4.

@@ -77,8 +77,7 @@ CSPACE_INLINE void set_lane(Pack<N>& x, int i, double value) {
 
 // --- packs wider than a register: every operation on both halves ----------------------------------------
 #define CSPACE_ON_HALVES(Result, name, Operand)                \
-    template <int N>                                           \
-        requires is_split<N>                                   \
+    template <int N, when<is_split<N>> = 0>                    \
     CSPACE_INLINE Result<N> name(Operand<N> a, Operand<N> b) { \
         return {name(a.low, b.low), name(a.high, b.high)};     \
     }
@@ -101,44 +100,36 @@ CSPACE_ON_HALVES(Pack, bit_and_not, Pack)
 CSPACE_ON_HALVES(Pack, min, Pack)
 CSPACE_ON_HALVES(Pack, max, Pack)
 #undef CSPACE_ON_HALVES
-template <int N>
-    requires is_split<N>
+template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> operator-(Pack<N> a) {
     return {-a.low, -a.high};
 }
-template <int N>
-    requires is_split<N>
+template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Mask<N> operator!(Mask<N> a) {
     return {!a.low, !a.high};
 }
-template <int N>
-    requires is_split<N>
+template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> sqrt(Pack<N> a) {
     return {sqrt(a.low), sqrt(a.high)};
 }
-template <int N>
-    requires is_split<N>
+template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {
     return {mul_add(a.low, b.low, c.low), mul_add(a.high, b.high, c.high)};
 }
-template <int N>
-    requires is_split<N>
+template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {
     return {select(m.low, yes.low, no.low), select(m.high, yes.high, no.high)};
 }
-template <int count, int N>
-    requires is_split<N>
+template <int count, int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> shift_bits_left(Pack<N> a) {
     return {shift_bits_left<count>(a.low), shift_bits_left<count>(a.high)};
 }
-template <int N>
-    requires is_split<N>
+template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Mask<N> lowest_bit(Pack<N> a) {
     return {lowest_bit(a.low), lowest_bit(a.high)};
 }
 // The lanes of a mask as the low bits of an integer.
-template <int N>
-    requires is_split<N>
+template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE unsigned bits_of(Mask<N> m) {
     return bits_of(m.low) | bits_of(m.high) << N / 2;
 }
@@ -190,9 +181,9 @@ CSPACE_INLINE unsigned bits_of(bool m) { return m; }
 CSPACE_INLINE double sqrt(double x) { return std::sqrt(x); }
 CSPACE_INLINE double min(double a, double b) { return a < b ? a : b; }
 CSPACE_INLINE double max(double a, double b) { return a > b ? a : b; }
-#define CSPACE_BITS(name, op)                                                                           \
-    CSPACE_INLINE double name(double a, double b) {                                                     \
-        return std::bit_cast<double>(std::bit_cast<std::int64_t>(a) op std::bit_cast<std::int64_t>(b)); \
+#define CSPACE_BITS(name, op)                                                         \
+    CSPACE_INLINE double name(double a, double b) {                                   \
+        return bits_as<double>(bits_as<std::int64_t>(a) op bits_as<std::int64_t>(b)); \
     }
 CSPACE_BITS(bit_and, &)
 CSPACE_BITS(bit_or, |)
@@ -201,9 +192,9 @@ CSPACE_BITS(bit_and_not, &~)
 #undef CSPACE_BITS
 template <int count>
 CSPACE_INLINE double shift_bits_left(double a) {
-    return std::bit_cast<double>(std::bit_cast<std::uint64_t>(a) << count);
+    return bits_as<double>(bits_as<std::uint64_t>(a) << count);
 }
-CSPACE_INLINE bool lowest_bit(double a) { return std::bit_cast<std::uint64_t>(a) & 1; }
+CSPACE_INLINE bool lowest_bit(double a) { return bits_as<std::uint64_t>(a) & 1; }
 
 // --- what follows from the above, for both ---------------------------------------------------------------
 template <class M>

@@ -5,9 +5,10 @@
 // stand where the vector extensions compile to more than the one instruction there is.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
 
 #include "cspace/math/isa.hpp"
 
@@ -31,43 +32,53 @@ inline constexpr int register_lanes = 2, native_width = 4;
 #endif
 template <int N>
 inline constexpr bool is_split = N > register_lanes;
+// A template parameter that removes a function where the condition fails.
+template <bool condition>
+using when = std::enable_if_t<condition, int>;
 }  // namespace cspace::inline CSPACE_ISA
 
 namespace cspace {
 #if CSPACE_VECTOR_EXTENSIONS
-template <int N>
+template <int N, bool split = is_split<N>>
 struct Pack {
     typedef double Raw __attribute__((vector_size(N * 8)));
     Raw v;
 };
-template <int N>
+template <int N, bool split = is_split<N>>
 struct Mask {
     typedef std::int64_t Raw __attribute__((vector_size(N * 8)));
     Raw m;
 };
 #else
-template <int N>
+template <int N, bool split = is_split<N>>
 struct alignas(N * 8) Pack {
     double v[N];
 };
-template <int N>
+template <int N, bool split = is_split<N>>
 struct alignas(N * 8) Mask {
     std::int64_t m[N];
 };
 #endif
 template <int N>
-    requires is_split<N>
-struct Pack<N> {
+struct Pack<N, true> {
     Pack<N / 2> low, high;
 };
 template <int N>
-    requires is_split<N>
-struct Mask<N> {
+struct Mask<N, true> {
     Mask<N / 2> low, high;
 };
 }  // namespace cspace
 
 namespace cspace::inline CSPACE_ISA {
+
+// The bits of a value as one of another type.
+template <class To, class From>
+CSPACE_INLINE To bits_as(From from) {
+    static_assert(sizeof(To) == sizeof(From));
+    To to;
+    std::memcpy(&to, &from, sizeof to);
+    return to;
+}
 
 // a b + c; rounded once where the instruction set multiplies and adds in one instruction.
 CSPACE_INLINE double mul_add(double a, double b, double c) {
@@ -79,8 +90,7 @@ CSPACE_INLINE double mul_add(double a, double b, double c) {
 }
 
 #define CSPACE_REGISTER_OPERATION(Result, name, Operand) \
-    template <int N>                                     \
-        requires(!is_split<N>)                           \
+    template <int N, when<!is_split<N>> = 0>             \
     CSPACE_INLINE Result<N> name(Operand<N> a, Operand<N> b)
 
 // --- arithmetic, comparison, logic ---------------------------------------------------------------------
@@ -137,35 +147,30 @@ CSPACE_LOGIC(||, |)
 #undef CSPACE_COMPARISON
 #undef CSPACE_LOGIC
 
-template <int N>
-    requires(!is_split<N>)
+template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Pack<N> operator-(Pack<N> a) {
     CSPACE_EACH_LANE(Pack, v, -a.v, -a.v[i])
 }
-template <int N>
-    requires(!is_split<N>)
+template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Mask<N> operator!(Mask<N> a) {
     CSPACE_EACH_LANE(Mask, m, ~a.m, ~a.m[i])
 }
 
 // --- bits ------------------------------------------------------------------------------------------------
 // The representation shifted left, zeros coming in.
-template <int count, int N>
-    requires(!is_split<N>)
+template <int count, int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Pack<N> shift_bits_left(Pack<N> a) {
     using Bits [[maybe_unused]] = decltype(Mask<N>::m);
-    CSPACE_EACH_LANE(Pack, v, (Bits)a.v << count,
-                     std::bit_cast<double>(std::bit_cast<std::uint64_t>(a.v[i]) << count))
+    CSPACE_EACH_LANE(Pack, v, (Bits)a.v << count, bits_as<double>(bits_as<std::uint64_t>(a.v[i]) << count))
 }
 // Whether the lowest bit of the representation is set.
-template <int N>
-    requires(!is_split<N>)
+template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Mask<N> lowest_bit(Pack<N> a) {
     using Bits [[maybe_unused]] = decltype(Mask<N>::m);
 #if defined(CSPACE_X86_REGISTERS) && !defined(__AVX__)  // SSE2 does not compare 64-bit integers
     return {-((Bits)a.v & 1)};
 #else
-    CSPACE_EACH_LANE(Mask, m, ((Bits)a.v & 1) == 1, -(std::bit_cast<std::int64_t>(a.v[i]) & 1))
+    CSPACE_EACH_LANE(Mask, m, ((Bits)a.v & 1) == 1, -(bits_as<std::int64_t>(a.v[i]) & 1))
 #endif
 }
 
@@ -217,12 +222,12 @@ CSPACE_INLINE unsigned bits_of(Mask<8> m) { return unsigned(_mm512_movepi64_mask
 #else
 // --- choice, logic of bits, square root: NEON and arrays
 // ----------------------------------------------------------
-#define CSPACE_BITS(name, op)                                                                            \
-    CSPACE_REGISTER_OPERATION(Pack, name, Pack) {                                                        \
-        [[maybe_unused]] const auto lane_bits = [](double x) { return std::bit_cast<std::int64_t>(x); }; \
-        using Bits [[maybe_unused]] = decltype(Mask<N>::m);                                              \
-        CSPACE_EACH_LANE(Pack, v, (Bits)a.v op(Bits) b.v,                                                \
-                         std::bit_cast<double>(lane_bits(a.v[i]) op lane_bits(b.v[i])))                  \
+#define CSPACE_BITS(name, op)                                                                      \
+    CSPACE_REGISTER_OPERATION(Pack, name, Pack) {                                                  \
+        [[maybe_unused]] const auto lane_bits = [](double x) { return bits_as<std::int64_t>(x); }; \
+        using Bits [[maybe_unused]] = decltype(Mask<N>::m);                                        \
+        CSPACE_EACH_LANE(Pack, v, (Bits)a.v op(Bits) b.v,                                          \
+                         bits_as<double>(lane_bits(a.v[i]) op lane_bits(b.v[i])))                  \
     }
 CSPACE_BITS(bit_and, &)
 CSPACE_BITS(bit_or, |)
@@ -230,16 +235,14 @@ CSPACE_BITS(bit_xor, ^)
 CSPACE_BITS(bit_and_not, &~)
 #undef CSPACE_BITS
 
-template <int N>
-    requires(!is_split<N>)
+template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {
     using Bits [[maybe_unused]] = decltype(Mask<N>::m);
     CSPACE_EACH_LANE(Pack, v, (m.m & (Bits)yes.v) | (~m.m & (Bits)no.v), m.m[i] ? yes.v[i] : no.v[i])
 }
 CSPACE_REGISTER_OPERATION(Pack, min, Pack) { return select(a < b, a, b); }
 CSPACE_REGISTER_OPERATION(Pack, max, Pack) { return select(a > b, a, b); }
-template <int N>
-    requires(!is_split<N>)
+template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Pack<N> sqrt(Pack<N> a) {
 #if CSPACE_VECTOR_EXTENSIONS && defined(__ARM_NEON)
     return {(typename Pack<N>::Raw)vsqrtq_f64(a.v)};
@@ -248,8 +251,7 @@ CSPACE_INLINE Pack<N> sqrt(Pack<N> a) {
     return a;
 #endif
 }
-template <int N>
-    requires(!is_split<N>)
+template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {
 #if CSPACE_VECTOR_EXTENSIONS && defined(__ARM_NEON)
     return {(typename Pack<N>::Raw)vfmaq_f64(c.v, a.v, b.v)};
@@ -258,8 +260,7 @@ CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {
     return c;
 #endif
 }
-template <int N>
-    requires(!is_split<N>)
+template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE unsigned bits_of(Mask<N> m) {
     unsigned bits = 0;
     for (int i = 0; i < N; ++i) bits |= unsigned(m.m[i] & 1) << i;

@@ -8,7 +8,6 @@
 // The polynomials are minimax fits of relative error by tools/minimax.py.
 #pragma once
 
-#include <bit>
 #include <cmath>
 #include <type_traits>
 
@@ -26,6 +25,9 @@ namespace trig {
 // π/2 as a double and what is missing (2⁻⁵⁴ relative, again as a double).
 inline constexpr double half_pi = 0x1.921fb54442d18p+0, half_pi_rest = 0x1.1a62633145c07p-54;
 
+// The largest power of two up to n ≥ 1.
+constexpr int largest_power_of_two(int n) { return n < 2 ? 1 : 2 * largest_power_of_two(n / 2); }
+
 template <int n, class V>
 CSPACE_INLINE V power(V z) {
     if constexpr (n == 1) {
@@ -40,7 +42,7 @@ CSPACE_INLINE V polynomial(const double* c, V z) {
     if constexpr (n == 1) {
         return fill<V>(c[0]);
     } else {
-        constexpr int half = int(std::bit_floor(unsigned(n - 1)));
+        constexpr int half = largest_power_of_two(n - 1);
         return mul_add(polynomial<n - half>(c + half, z), power<half>(z), polynomial<half>(c, z));
     }
 }
@@ -112,8 +114,7 @@ template <class V>
 CSPACE_INLINE void sincos_lanes(V x, V& s, V& c) {
     const V magnitude = abs(x);
     Reduced<V> r = reduce(magnitude);
-    if (!all(magnitude <= cheap_range)) [[unlikely]]
-        r = mend(magnitude, r);
+    if (!all(magnitude <= cheap_range)) r = mend(magnitude, r);
 
     const V u = r.u, z = u * u, half = 0.5 * z;
     const V sine_tail = mul_add(u * z, polynomial(sine, z), mul_add(-r.rest, half, r.rest));
