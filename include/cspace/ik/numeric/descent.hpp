@@ -1,0 +1,216 @@
+// Many descents side by side, one per lane: Newton's method and Levenberg–Marquardt on the pose error, inside
+// limits where there are any. A lane that has ended takes the next start at once, and no lane sees what the
+// others do: the result of a start is the same in whatever company it is computed.
+//
+// The damping follows the error, λ = μ |e|², with μ lowered by steps that gain and raised by steps that do
+// not (Yamashita & Fukushima 2001; Fan 2006): quadratic convergence even where the Jacobian has no full rank.
+// Limits are kept by projection: a coordinate at its limit that the gradient pushes outward is held, the
+// others step, and the result is cut to the box (Bertsekas 1982).
+#pragma once
+
+#include <cstdint>
+
+#include "cspace/ik/goal.hpp"
+#include "cspace/ik/numeric/step.hpp"
+
+namespace cspace {
+
+// Items k = 0 … count − 1: item k is row `pick[k]`, or k where pick is null. A stride is in values per row, 0
+// where all rows share one.
+struct DescentRows {
+    const ik::Path* path;
+    const ik::Task* task;
+    const double* goals;  // T_base_tip, 16 numbers each
+    std::size_t goal_stride;
+    const double* starts;  // (n,) each
+    std::size_t start_stride;
+    const std::int64_t* pick;
+    std::size_t count;
+    bool first_only;  // stop as soon as the first item that reaches its goal is known
+    // Outputs, one per row; a row that is there already (ending < unknown) is replaced by a better one alone.
+    double* q;            // (n,) each
+    double* cost;         // ½ |e|²
+    double* position;     // [m]
+    double* rotation;     // [rad]
+    std::int32_t* steps;  // evaluations spent on the row, added up
+    ik::Ending* ending;
+};
+
+// The lanes of a descent.
+template <class V>
+struct Descent {
+    Pose<V> T_goal_first;
+    V q[ik::max_joints], trial[ik::max_joints];
+    Gap<V> at, there;  // at q, and at the trial
+    V cost, mu, slow, steps;
+    V fresh, near;  // 1 or 0: just begun; within the tolerance already
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+namespace descent {
+inline constexpr double first_mu = 0.1, least_mu = 1e-7, largest_mu = 1e7;
+inline constexpr double gained = 0.5, lost = 4.0;
+inline constexpr double stride =
+    2.0;  // largest change of a coordinate in one step [rad, lengths of the path]
+// A step that leaves this much of the cost gains nothing; after so many of them in a row the descent ends.
+inline constexpr double nothing = 0.97;
+inline constexpr double patience = 5.0;
+// An error this small is rounding [rad, m over the length]: more steps cannot help.
+inline constexpr double rounding = 1e-14;
+// Newton's normal equations get this much of their trace, so that a singular Jacobian gives a long step and
+// not an endless one.
+inline constexpr double newton_floor = 1e-15;
+}  // namespace descent
+
+// Takes what the trial brought: where it is better (or must be taken), the trial becomes the place.
+template <class V>
+CSPACE_INLINE void take_trial(const ik::Path& path, const Rows& rows, bool always, Descent<V>& d) {
+    V cost = fill<V>(0.0);
+    for (int r = 0; r < rows.m; ++r) cost = mul_add(0.5 * d.there.e[r], d.there.e[r], cost);
+    const mask_of<V> begun = d.fresh > 0.5;
+    const mask_of<V> better = begun || (cost < d.cost), taken = always ? cost == cost : better;
+    const mask_of<V> gains = begun || (cost < descent::nothing * d.cost);
+    d.slow = where(!gains, d.slow + 1.0);
+    const V mu = select(taken, max(descent::gained * d.mu, fill<V>(descent::least_mu)), descent::lost * d.mu);
+    d.mu = select(begun, fill<V>(descent::first_mu), mu);
+    d.cost = select(taken, cost, d.cost);
+    d.at.position = select(taken, d.there.position, d.at.position);
+    d.at.rotation = select(taken, d.there.rotation, d.at.rotation);
+    for (int j = 0; j < path.n; ++j) d.q[j] = select(taken, d.trial[j], d.q[j]);
+    for (int r = 0; r < rows.m; ++r) {
+        d.at.e[r] = select(taken, d.there.e[r], d.at.e[r]);
+        for (int j = 0; j < path.n; ++j) d.at.J[r][j] = select(taken, d.there.J[r][j], d.at.J[r][j]);
+    }
+    d.steps = select(begun, fill<V>(1.0), d.steps + 1.0);
+    d.fresh = fill<V>(0.0);
+}
+
+// The lanes that have ended. A descent that is within the tolerance goes on as long as it gains much: the
+// last steps cost little and take the error down to rounding.
+template <class V>
+CSPACE_INLINE mask_of<V> ended(const ik::Path& path, const ik::Task& task, Descent<V>& d) {
+    const V gap = max(d.at.position, d.at.rotation);
+    const mask_of<V> inside = gap <= task.tolerance;
+    const mask_of<V> settled =
+        inside &&
+        ((d.near > 0.5) || (max(d.at.position * (1 / path.length), d.at.rotation) <= descent::rounding));
+    d.near = where(inside, fill<V>(1.0));
+    const mask_of<V> stalled = (d.slow >= descent::patience) || (d.mu > descent::largest_mu);
+    return settled || stalled || (d.steps >= double(task.most_steps));
+}
+
+// The next trial of each lane.
+template <class V>
+CSPACE_INLINE void next_trial(const ik::Path& path, const ik::Task& task, const Rows& rows, Descent<V>& d) {
+    V loose[ik::max_joints], dx[ik::max_joints];
+    const V one = fill<V>(1.0), zero = fill<V>(0.0);
+    for (int j = 0; j < path.n; ++j) {
+        loose[j] = one;
+        if (!task.limited) continue;
+        V pull = zero;
+        for (int r = 0; r < rows.m; ++r) pull = mul_add(d.at.J[r][j], d.at.e[r], pull);
+        const mask_of<V> held =
+            ((d.q[j] <= task.lower[j]) && (pull < 0.0)) || ((d.q[j] >= task.upper[j]) && (pull > 0.0));
+        loose[j] = select(held, zero, one);
+    }
+    V damping = 2.0 * d.mu * d.cost + 1e-30;
+    if (task.method == ik::Method::newton) {
+        damping = fill<V>(1e-30);
+        for (int r = 0; r < rows.m; ++r)
+            for (int j = 0; j < path.n; ++j)
+                damping = mul_add(descent::newton_floor * d.at.J[r][j], d.at.J[r][j], damping);
+    }
+    damped_step(rows.m, path.n, d.at.J, d.at.e, loose, damping, dx);
+    V reach = zero;
+    for (int j = 0; j < path.n; ++j) reach = max(reach, abs(dx[j]));
+    const V keep = select(reach > descent::stride, descent::stride / reach, one);
+    for (int j = 0; j < path.n; ++j) {
+        V to = mul_add(keep * (path.slides[j] ? path.length : 1.0), dx[j], d.q[j]);
+        if (task.limited) to = min(max(to, fill<V>(task.lower[j])), fill<V>(task.upper[j]));
+        d.trial[j] = to;
+    }
+}
+
+// Puts row `row` into lane l.
+template <class V>
+void begin_lane(const DescentRows& rows, std::size_t row, int l, Descent<V>& d) {
+    const Posed goal = read_goal(rows.goals + row * rows.goal_stride).T;
+    const Posed first = inverse(goal) * rows.path->T_base_first;
+    const double* start = rows.starts + row * rows.start_stride;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) set_lane(d.T_goal_first.R.m[i][j], l, first.R.m[i][j]);
+    set_lane(d.T_goal_first.t.x, l, first.t.x);
+    set_lane(d.T_goal_first.t.y, l, first.t.y);
+    set_lane(d.T_goal_first.t.z, l, first.t.z);
+    for (int j = 0; j < rows.path->n; ++j) {
+        double q = start[j];
+        if (rows.task->limited) q = min(max(q, rows.task->lower[j]), rows.task->upper[j]);
+        set_lane(d.trial[j], l, q);
+    }
+    set_lane(d.fresh, l, 1.0);
+    set_lane(d.near, l, 0.0);
+    set_lane(d.slow, l, 0.0);
+}
+
+// Writes the result of lane l to row `row`; true if it reaches the goal.
+template <class V>
+bool end_lane(const DescentRows& rows, std::size_t row, int l, const Descent<V>& d) {
+    const double position = lane(d.at.position, l), rotation = lane(d.at.rotation, l), cost = lane(d.cost, l);
+    const bool reached = position <= rows.task->tolerance && rotation <= rows.task->tolerance;
+    rows.steps[row] += std::int32_t(lane(d.steps, l));
+    const bool known = rows.ending[row] != ik::Ending::unknown;
+    if (known && (rows.ending[row] == ik::Ending::reached || !(cost < rows.cost[row]))) return reached;
+    rows.ending[row] = reached                                             ? ik::Ending::reached
+                       : lane(d.steps, l) >= double(rows.task->most_steps) ? ik::Ending::exhausted
+                                                                           : ik::Ending::stalled;
+    rows.cost[row] = cost;
+    rows.position[row] = position;
+    rows.rotation[row] = rotation;
+    for (int j = 0; j < rows.path->n; ++j) rows.q[row * std::size_t(rows.path->n) + j] = lane(d.q[j], l);
+    return reached;
+}
+
+template <class V>
+void run_descents(const DescentRows& rows) {
+    constexpr int lanes = Lanes<V>::count;
+    const Rows counted = rows_of(*rows.task);
+    const bool always = rows.task->method == ik::Method::newton;
+    Descent<V> d;
+    for (V& x : d.trial) x = fill<V>(0.0);
+    d.T_goal_first = fill_pose<V>(rows.path->T_base_first);
+    d.cost = d.mu = d.slow = d.steps = d.near = fill<V>(0.0);
+    d.fresh = fill<V>(1.0);
+    std::size_t item[lanes], next = 0, stop = rows.count;
+    bool live[lanes];
+    const auto row_of = [&](std::size_t k) { return rows.pick ? std::size_t(rows.pick[k]) : k; };
+    const auto refill = [&](int l) {
+        live[l] = next < stop;
+        if (!live[l]) return;
+        item[l] = next++;
+        begin_lane(rows, row_of(item[l]), l, d);
+    };
+    for (int l = 0; l < lanes; ++l) refill(l);
+    for (;;) {
+        measure_gap(*rows.path, counted, d.T_goal_first, d.trial, d.there);
+        take_trial(*rows.path, counted, always, d);
+        const mask_of<V> done = ended(*rows.path, *rows.task, d);
+        next_trial(*rows.path, *rows.task, counted, d);
+        if (!any(done)) continue;
+        bool alive = false;
+        for (int l = 0; l < lanes; ++l) {
+            if (live[l] && lane(done, l)) {
+                if (end_lane(rows, row_of(item[l]), l, d) && rows.first_only && item[l] < stop)
+                    stop = item[l];
+                refill(l);
+            }
+            live[l] = live[l] && item[l] < stop;
+            alive = alive || live[l];
+        }
+        if (!alive) return;
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

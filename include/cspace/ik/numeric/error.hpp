@@ -1,0 +1,133 @@
+// The error of configurations against goals and its derivative, on lanes.
+//
+// With T = T_goal_tip(q) = (R, t) the error is e = −[t; log R] in the axes of the goal. A twist [v; ω] of the
+// tip changes log R by J_l⁻¹(log R) ω (Chirikjian 2012, section 10.8). For equal weights the factor may be
+// left out: J_lᵀ log R = log R, so the gradient of |log R|² is the same without it.
+#pragma once
+
+#include "cspace/ik/numeric/task.hpp"
+
+namespace cspace {
+
+// The counted rows of the error, lengths over that of the path, times their weights.
+struct Rows {
+    int m = 0;           // how many count
+    int row[6];          // which of [t; rotation vector]
+    double weight[6];    // of each counted row
+    bool turns = false;  // some row of the rotation counts
+    bool even = true;    // the rows of the rotation weigh alike
+};
+
+template <class V>
+struct Gap {
+    V e[6];
+    V J[6][ik::max_joints];  // −∂e/∂x of the coordinates x, slides over the length of the path
+    V position, rotation;    // lengths of the counted parts [m, rad]
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+inline Rows rows_of(const ik::Task& task) {
+    Rows rows;
+    for (int k = 0; k < 6; ++k) {
+        if (!(task.weight[k] > 0)) continue;
+        rows.row[rows.m] = k;
+        rows.weight[rows.m++] = task.weight[k];
+        rows.turns = rows.turns || k > 2;
+    }
+    rows.even = task.weight[3] == task.weight[4] && task.weight[4] == task.weight[5];
+    return rows;
+}
+
+// The rotation vector of R, half turns included.
+template <class V>
+CSPACE_INLINE Vec3<V> log_of(const Mat3<V>& R) {
+    Vec3<V> w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]), 0.5 * (R.m[1][0] - R.m[0][1])};
+    const V s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1.0);
+    const V angle = atan2(s, c);
+    const V scale = select(s > 1e-12, angle / select(s > 1e-12, s, fill<V>(1.0)), fill<V>(1.0));
+    w = scale * w;
+    const mask_of<V> half = (s <= 1e-6) && (c < 0.0);
+    if (!any(half)) return w;
+    // Near a half turn the axis is the largest column of R + I.
+    Vec3<V> axis = column(R, 0);
+    axis.x = axis.x + 1.0;
+    V largest = R.m[0][0];
+    for (int k = 1; k < 3; ++k) {
+        Vec3<V> other = column(R, k);
+        (k == 1 ? other.y : other.z) = (k == 1 ? other.y : other.z) + 1.0;
+        const mask_of<V> better = R.m[k][k] > largest;
+        largest = select(better, R.m[k][k], largest);
+        axis = {select(better, other.x, axis.x), select(better, other.y, axis.y),
+                select(better, other.z, axis.z)};
+    }
+    axis = (angle / norm(axis)) * axis;
+    return {select(half, axis.x, w.x), select(half, axis.y, w.y), select(half, axis.z, w.z)};
+}
+
+// What turns ω into the rate of the rotation vector w: J_l⁻¹(w) ω = ω − ½ w × ω + k w × (w × ω).
+template <class V>
+struct LogRate {
+    Vec3<V> w;
+    V k;
+};
+template <class V>
+CSPACE_INLINE LogRate<V> log_rate(const Vec3<V>& w) {
+    const V square = dot(w, w), angle = sqrt(square);
+    V s, c;
+    sincos(0.5 * angle, s, c);
+    // 1/θ² − cot(θ/2) / 2θ; its series where the difference cancels.
+    const mask_of<V> small = square < 1e-4;
+    const V safe = select(small, fill<V>(1.0), square);
+    const V exact = (1.0 - 0.5 * angle * c / select(small, fill<V>(1.0), s)) / safe;
+    return {w, select(small, 1.0 / 12.0 + square * (1.0 / 720.0), exact)};
+}
+template <class V>
+CSPACE_INLINE Vec3<V> operator*(const LogRate<V>& rate, const Vec3<V>& omega) {
+    const Vec3<V> across = cross(rate.w, omega);
+    return omega - 0.5 * across + rate.k * cross(rate.w, across);
+}
+
+// T_goal_first: the frame of the first joint in the goal.
+template <class V>
+CSPACE_INLINE void measure_gap(const ik::Path& path, const Rows& rows, const Pose<V>& T_goal_first,
+                               const V* q, Gap<V>& out) {
+    V s[ik::max_path + 3], c[ik::max_path + 3];
+    Vec3<V> point[ik::max_path], axis[ik::max_path];
+    const Chain chain = view_of(path);
+    chain_sines(chain, q, s, c);
+    const Pose<V> T =
+        follow_chain(chain, T_goal_first, q, s, c, [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
+            point[i] = p;
+            axis[i] = d;
+        });
+    const V zero = fill<V>(0.0);
+    const Vec3<V> w = rows.turns ? log_of(T.R) : Vec3<V>{zero, zero, zero};
+    const V error[6] = {T.t.x, T.t.y, T.t.z, w.x, w.y, w.z};
+    const double per_length = 1 / path.length;
+    V square[2] = {zero, zero};
+    for (int r = 0; r < rows.m; ++r) {
+        const int k = rows.row[r];
+        square[k > 2] = mul_add(error[k], error[k], square[k > 2]);
+        out.e[r] = -rows.weight[r] * (k > 2 ? 1.0 : per_length) * error[k];
+        for (int j = 0; j < path.n; ++j) out.J[r][j] = zero;
+    }
+    out.position = sqrt(square[0]);
+    out.rotation = sqrt(square[1]);
+    const LogRate<V> rate = rows.even ? LogRate<V>{w, zero} : log_rate(w);
+    for (int i = 0; i < path.joints; ++i) {
+        const ChainJoint& joint = path.joint[i];
+        const int j = joint.coordinate;
+        const double unit = joint.ratio * (path.slides[j] ? path.length : 1.0);
+        const Vec3<V> v = joint.prismatic ? axis[i] : cross(axis[i], T.t - point[i]);
+        Vec3<V> h = {zero, zero, zero};
+        if (rows.turns && !joint.prismatic) h = rows.even ? axis[i] : rate * axis[i];
+        const V column[6] = {per_length * v.x, per_length * v.y, per_length * v.z, h.x, h.y, h.z};
+        for (int r = 0; r < rows.m; ++r)
+            out.J[r][j] = mul_add(fill<V>(unit * rows.weight[r]), column[rows.row[r]], out.J[r][j]);
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,67 @@
+// The damped least-squares step on lanes: (JᵀJ + λ I) dx = Jᵀ e (Levenberg 1944; Wampler 1986).
+#pragma once
+
+#include "cspace/ik/numeric/error.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// M x = b by M = L D Lᵀ for a symmetric positive definite M of k ≤ 6 rows, of which the lower triangle is
+// read and used up; b becomes x. An unknown whose pivot is lost to rounding is left at zero.
+template <class V>
+CSPACE_INLINE void solve_positive(V (&M)[6][6], V (&b)[6], int k) {
+    V L[6][6], inverse[6];
+    for (int j = 0; j < k; ++j) {
+        const mask_of<V> positive = M[j][j] > 0.0;
+        inverse[j] = where(positive, 1.0 / select(positive, M[j][j], fill<V>(1.0)));
+        for (int i = j + 1; i < k; ++i) {
+            L[i][j] = M[i][j] * inverse[j];
+            for (int p = j + 1; p <= i; ++p) M[i][p] = mul_add(-L[i][j], M[p][j], M[i][p]);
+            b[i] = mul_add(-L[i][j], b[j], b[i]);
+        }
+    }
+    for (int j = k - 1; j >= 0; --j) {
+        b[j] = b[j] * inverse[j];
+        for (int i = j + 1; i < k; ++i) b[j] = mul_add(-L[i][j], b[i], b[j]);
+    }
+}
+
+// dx (n,) for m rows. loose[j] is 1, or 0 for a coordinate that must not move. The smaller of the two equal
+// systems is solved: (JᵀJ + λ I) dx = Jᵀ e, or dx = Jᵀ y with (J Jᵀ + λ I) y = e.
+template <class V>
+CSPACE_INLINE void damped_step(int m, int n, const V (&J)[6][ik::max_joints], const V (&e)[6], const V* loose,
+                               V damping, V* dx) {
+    V M[6][6], b[6];
+    if (n <= m) {
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j <= i; ++j) {
+                V sum = fill<V>(0.0);
+                for (int r = 0; r < m; ++r) sum = mul_add(J[r][i], J[r][j], sum);
+                M[i][j] = loose[i] * loose[j] * sum;
+            }
+            M[i][i] = M[i][i] + damping + (1.0 - loose[i]);
+            b[i] = fill<V>(0.0);
+            for (int r = 0; r < m; ++r) b[i] = mul_add(J[r][i], e[r], b[i]);
+            b[i] = loose[i] * b[i];
+        }
+        solve_positive(M, b, n);
+        for (int i = 0; i < n; ++i) dx[i] = b[i];
+        return;
+    }
+    for (int r = 0; r < m; ++r) {
+        for (int t = 0; t <= r; ++t) {
+            V sum = fill<V>(0.0);
+            for (int j = 0; j < n; ++j) sum = mul_add(loose[j] * J[r][j], J[t][j], sum);
+            M[r][t] = sum;
+        }
+        M[r][r] = M[r][r] + damping;
+        b[r] = e[r];
+    }
+    solve_positive(M, b, m);
+    for (int j = 0; j < n; ++j) {
+        dx[j] = fill<V>(0.0);
+        for (int r = 0; r < m; ++r) dx[j] = mul_add(J[r][j], b[r], dx[j]);
+        dx[j] = loose[j] * dx[j];
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA
