@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import time
 
 import numpy as np
 import pytest
@@ -110,6 +111,62 @@ def test_the_nearest_solution_is_the_solid_one():
     assert len(ghosts) == 2
     bold = [text.get_text() for text in artists[1].get_texts() if text.get_fontweight() == "bold"]
     assert bold == ["solution 2"]
+
+
+def test_configurations_out_of_limits_are_grey_and_say_so():
+    arm = cs.Robot.from_screws(
+        [arms.Z, arms.Y, arms.Y], [[0, 0, 0.2], [0, 0, 0.4], [0.4, 0, 0.4]], arms.at(0.8, 0, 0.4),
+        lower=[-1] * 3, upper=[1] * 3,
+    )  # fmt: skip
+    q = np.array([[0.1, 0.2, 0.3], [0.1, 2.0, 0.3], [0.1 - 2 * np.pi, 0.5, 0.3]])
+    artists = plot.solutions(arm, q)
+    solid, out, turned = (group.solids[-1].color for group in solutions_of(artists, 3))
+    assert np.ptp(out) < 0.05 < min(np.ptp(solid), np.ptp(turned)), "a whole turn brings the last one inside"
+    texts = [text.get_text() for text in artists[1].get_texts()]
+    assert texts == ["solution 1", "solution 2 (out of limits)", "solution 3"]
+    told = plot.solutions(arm, q, within=[True, True, False])
+    assert [np.ptp(group.solids[-1].color) > 0.05 for group in solutions_of(told, 3)] == [True, True, False]
+    with pytest.raises(InputError, match="one each"):
+        plot.solutions(arm, q, within=[True])
+
+
+def solutions_of(artists: list, count: int) -> list:
+    """The groups of a picture of solutions, the solid one first."""
+    groups = [group for group in artists[0].scene.groups if group.shadow][-count:]
+    return [groups[-1], *groups[:-1]]
+
+
+def lowest(solid) -> float:
+    """The lowest height of a body, by the points of its surface."""
+    angle = np.linspace(0, 2 * np.pi, 73)
+    axis = (solid.b - solid.a) / max(np.linalg.norm(solid.b - solid.a), 1e-12)
+    if solid.round:
+        return min(solid.a[2] - solid.radius_a, solid.b[2] - solid.radius_b)
+    u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    u /= np.linalg.norm(u)
+    around = np.cos(angle)[:, None] * u + np.sin(angle)[:, None] * np.cross(axis, u)
+    return min(
+        (p + r * around)[:, 2].min() for p, r in ((solid.a, solid.radius_a), (solid.b, solid.radius_b))
+    )
+
+
+@pytest.mark.parametrize("name", ["irb120", "puma560", "ur5e", "puma560_dh", "panda"])
+def test_nothing_hangs_below_the_floor(name):
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(8)
+    for _ in range(5):
+        scene = plot.robot(robot, rng.uniform(-2, 2, robot.dof))[0].scene
+        solids = [solid for group in scene.groups if group.shadow for solid in group.solids]
+        assert min(map(lowest, solids)) > scene.floor.center[2] - 1e-9
+
+
+def test_eight_configurations_are_drawn_in_a_second_or_two():
+    robot = cs.load_robot("ur5e")
+    T = cs.pose([0.4, 0.2, 0.4], rpy=[np.pi, 0, np.pi / 2])
+    artists = plot.solutions(robot, robot.ik(T), T)
+    start = time.process_time()
+    image_of(artists, dpi=150)
+    assert time.process_time() - start < 3.0
 
 
 def test_legends_name_the_branches():

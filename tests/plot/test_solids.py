@@ -5,17 +5,32 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cspace.plot.solids import Solid, arrow, meet
+from cspace.plot.layer import look
+from cspace.plot.solids import Solid, arrow, pieces
+from cspace.plot.view import Rays, View
 
 GREY = np.full(3, 0.5)
 
 
-def rays(rng: np.random.Generator, n: int = 4000) -> tuple[np.ndarray, np.ndarray]:
-    """Rays from a far sphere toward a box about the origin."""
-    out = rng.normal(size=(n, 3))
-    origins = 5.0 * out / np.linalg.norm(out, axis=1, keepdims=True)
-    ways = rng.uniform(-0.7, 0.7, size=(n, 3)) - origins
-    return origins, ways / np.linalg.norm(ways, axis=1, keepdims=True)
+def cameras(rng: np.random.Generator) -> dict[str, Rays]:
+    """An eye and a far light, both looking at a box about the origin through the square [-1, 1]²."""
+    eye, right, up = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    spread, nothing = np.array([0.8 * right, 0.8 * up, 0.0 * eye]), np.zeros((2, 3))
+    return {
+        "eye": Rays(np.array([*nothing, 3.0 * eye]), spread / 3.0 + np.array([*nothing, -eye])),
+        "light": Rays(spread + np.array([*nothing, 3.0 * eye]), np.array([*nothing, -eye])),
+    }
+
+
+def meetings(solid: Solid, rays: Rays, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The first t of every ray (m,), inf where it misses, and the normals (m, 3) there, else NaN."""
+    t, normals = np.full(x.shape, np.inf), np.full((len(x), 3), np.nan)
+    for piece in pieces(solid):
+        found = piece.meet(rays, x, y)
+        nearer = found < t
+        t = np.where(nearer, found, t)
+        normals[nearer] = piece.normals(rays.points(x[nearer], y[nearer], t[nearer]))
+    return t, normals
 
 
 def signed_distance(solid: Solid, x: np.ndarray) -> np.ndarray:
@@ -46,32 +61,69 @@ SOLIDS = {
 }
 
 
+@pytest.mark.parametrize("camera", ["eye", "light"])
 @pytest.mark.parametrize("name", SOLIDS)
-def test_the_first_meeting_lies_on_the_surface(name):
-    solid = SOLIDS[name]
-    origins, ways = rays(np.random.default_rng(3))
-    distance, normals = meet(solid, origins, ways)
-    hit = np.isfinite(distance)
-    assert 0.05 < hit.mean() < 0.95
-    points = origins[hit] + distance[hit, None] * ways[hit]
-    some = slice(0, 300)
-    allowed = 1e-3 if solid.round else 1e-9  # a capsule's distance is sampled
-    assert np.abs(signed_distance(solid, points[some])).max() < allowed
-    before = points[some] - 0.01 * ways[hit][some]
-    assert (signed_distance(solid, before) > -1e-4).all(), "nothing of the solid lies before the meeting"
-    np.testing.assert_allclose(np.linalg.norm(normals[hit], axis=1), 1.0, atol=1e-9)
-    assert (np.einsum("ij,ij->i", normals[hit], ways[hit]) < 1e-9).all(), "normals face the ray"
+def test_the_first_meeting_lies_on_the_surface(name, camera):
+    solid, rng = SOLIDS[name], np.random.default_rng(3)
+    for _ in range(8):
+        rays = cameras(rng)[camera]
+        x, y = rng.uniform(-1, 1, size=(2, 400))
+        t, normals = meetings(solid, rays, x, y)
+        hit = np.flatnonzero(np.isfinite(t))
+        assert 0.02 < len(hit) / len(x) < 0.98
+        some = hit[:40]
+        points = rays.points(x[some], y[some], t[some])
+        allowed = 1e-3 if solid.round else 1e-9  # a capsule's distance is sampled
+        assert np.abs(signed_distance(solid, points)).max() < allowed
+        before = rays.points(x[some], y[some], t[some] - 0.01)
+        assert (signed_distance(solid, before) > -1e-4).all(), "nothing of the solid lies before the meeting"
+        np.testing.assert_allclose(np.linalg.norm(normals[hit], axis=1), 1.0, atol=1e-9)
+        ways = rays.points(x[hit], y[hit], t[hit] + 1.0) - rays.points(x[hit], y[hit], t[hit])
+        assert (np.einsum("ij,ij->i", normals[hit], ways) < 1e-9).all(), "normals face the ray"
+
+
+@pytest.mark.parametrize("camera", ["eye", "light"])
+@pytest.mark.parametrize("name", SOLIDS)
+def test_rays_that_miss_stay_outside(name, camera):
+    rng = np.random.default_rng(4)
+    rays = cameras(rng)[camera]
+    x, y = rng.uniform(-1, 1, size=(2, 400))
+    t, _ = meetings(SOLIDS[name], rays, x, y)
+    for i in np.flatnonzero(~np.isfinite(t))[:40]:
+        along = rays.points(np.full(200, x[i]), np.full(200, y[i]), np.linspace(1.5, 4.5, 200))
+        assert signed_distance(SOLIDS[name], along).min() > -1e-4
 
 
 @pytest.mark.parametrize("name", SOLIDS)
-def test_rays_that_miss_stay_outside(name):
-    solid = SOLIDS[name]
-    origins, ways = rays(np.random.default_rng(4), 400)
-    distance, _ = meet(solid, origins, ways)
-    missed = np.flatnonzero(~np.isfinite(distance))[:40]
-    for i in missed:
-        along = origins[i] + np.linspace(3, 7, 200)[:, None] * ways[i]
-        assert signed_distance(solid, along).min() > -1e-4
+def test_two_balls_hold_every_piece(name):
+    for rays in cameras(np.random.default_rng(5)).values():
+        x, y = np.random.default_rng(6).uniform(-1, 1, size=(2, 2000))
+        for piece in pieces(SOLIDS[name]):
+            t = piece.meet(rays, x, y)
+            hit = np.isfinite(t)
+            (a, r), (b, s) = piece.balls()
+            hull = Solid(a, b, r + 1e-9, s + 1e-9, GREY)
+            assert (signed_distance(hull, rays.points(x[hit], y[hit], t[hit])) < 1e-4).all()
+
+
+def test_an_outline_pixel_holds_the_share_that_many_rays_find():
+    plt = pytest.importorskip("matplotlib.pyplot")
+    ax = plt.figure(figsize=(1.2, 1.2), dpi=50).add_subplot(projection="3d")
+    for axis in "xyz":
+        getattr(ax, f"set_{axis}lim")(-0.7, 0.7)
+    ax.figure.canvas.draw()
+    view = View(ax, 1.0)
+    for solid in SOLIDS.values():
+        layer = look(view, [solid])
+        rows, columns = np.divmod(layer.pixels, view.width)
+        steps = (np.arange(16) + 0.5) / 16
+        dx, dy = (each.ravel() for each in np.meshgrid(steps, steps))
+        x, y = (columns[:, None] + dx).ravel(), (rows[:, None] + dy).ravel()
+        share = np.isfinite(meetings(solid, view.rays, x, y)[0]).reshape(-1, 256).mean(axis=1)
+        assert ((share > 0.1) & (share < 0.9)).sum() > 20
+        assert np.abs(layer.coverage - share).max() < 0.2
+        assert abs(layer.coverage.sum() - share.sum()) < 0.01 * share.sum()
+    plt.close(ax.figure)
 
 
 def test_an_arrow_ends_where_it_points():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Final
 
 import numpy as np
 
@@ -12,10 +12,14 @@ from cspace.errors import InputError
 from cspace.plot import colors, planar, stage
 from cspace.plot.axes import space_axes
 from cspace.plot.scene import Group, artist_type, scene_of
-from cspace.plot.skeleton import Skeleton, planar_basis, size_of, skeleton
+from cspace.plot.skeleton import WIDTH, Skeleton, planar_basis, size_of, skeleton
 from cspace.plot.solids import Solid, capsule, cylinder
 
 __all__ = ["robot", "solutions"]
+
+GHOST: Final = 0.40
+FAINT: Final = 0.16
+"""Opacity of ghosts, and of those out of limits."""
 
 
 def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: str = "") -> list[Any]:
@@ -51,22 +55,29 @@ def solutions(
     *,
     near: Any | None = None,
     labels: Sequence[str] | None = None,
+    within: Sequence[bool] | None = None,
     ax: Any | None = None,
     title: str = "",
 ) -> list[Any]:
     """Draw every configuration of an answer as a ghost, the one nearest to `near` (or the first) solid.
 
+    Configurations out of limits are grey.
+
     arm: a Robot that is a chain. answer: a result of `arm.ik`, or configurations (k, dof). goal: the pose
     (4, 4) or point they reach; by default where the tip of the first one is. near: (dof,) [rad, m].
-    labels: k texts for the legend; by default the branches of the answer. Returns the artists.
+    labels: k texts for the legend; by default the branches of the answer. within: which configurations are
+    within limits; by default what the limits of the arm say, after whole turns. Returns the artists.
     Raises InputError if there is nothing to draw, MissingExtraError without matplotlib.
     """
     q = as_floats(getattr(answer, "q", answer), "configurations", last=(arm.dof,))
     if q.ndim != 2 or not len(q):
         raise InputError(f"nothing to draw: the configurations have shape {q.shape}, expected (k, {arm.dof})")
-    names = list(labels) if labels is not None else branch_names(answer, len(q))
+    inside = np.array(within_limits(arm, q) if within is None else within, dtype=bool)
+    if len(inside) != len(q):
+        raise InputError(f"within has {len(inside)} entries for {len(q)} configurations; give one each")
+    names = list(labels) if labels is not None else branch_names(answer, inside)
     solid = 0 if near is None else nearest(q, as_floats(near, "near", last=(arm.dof,)), arm)
-    tints = list(np.roll(colors.palette(len(q)), solid, axis=0))  # the solid one is blue
+    tints = tints_of(inside, solid)
     basis = planar_basis(arm.chain)
     if basis is not None and not hasattr(ax, "get_proj"):
         return planar.draw(
@@ -78,7 +89,7 @@ def solutions(
     set_stage(axes, arm, drawn, T_goal)
     white = (1.0, 1.0, 1.0)
     groups = [
-        Group(solids_of(drawn[k], colors.mix(tints[k], white, 0.25), tints[k]), opacity=0.40)
+        Group(solids_of(drawn[k], colors.mix(tints[k], white, 0.25), tints[k]), GHOST if inside[k] else FAINT)
         for k in range(len(q))
         if k != solid
     ]
@@ -90,12 +101,30 @@ def solutions(
     return artists + stage.write_title(axes, title)
 
 
-def branch_names(answer: Any, count: int) -> list[str]:
-    """The branches of an answer as texts, or numbers."""
+def within_limits(arm: Any, q: Array) -> Any:
+    """Which of the configurations q (k, dof) are within the limits of the arm, after whole turns."""
+    from cspace.ik.windings import into_limits
+
+    return into_limits(q, arm.chain.joint_types, arm.limits.lower, arm.limits.upper)[1]
+
+
+def tints_of(inside: Any, solid: int) -> list[Array]:
+    """One colour per configuration: hues for those within limits, blue for the solid one, grey for others."""
+    coloured = inside.copy()
+    coloured[solid] = True
+    tints = np.tile(np.array(colors.BARRED), (len(inside), 1))
+    first = int(coloured[:solid].sum())
+    tints[coloured] = np.roll(colors.palette(int(coloured.sum())), first, axis=0)
+    return list(tints)
+
+
+def branch_names(answer: Any, inside: Any) -> list[str]:
+    """The branches of an answer as texts, or numbers; what is out of limits says so."""
     branch = getattr(answer, "branch", None)
-    if branch is None or len(branch) != count:
-        return [f"solution {k + 1}" for k in range(count)]
-    return [str(each) or f"solution {k + 1}" for k, each in enumerate(branch)]
+    count = len(inside)
+    texts = [""] * count if branch is None or len(branch) != count else [str(each) for each in branch]
+    names = [text or f"solution {k + 1}" for k, text in enumerate(texts)]
+    return [name if fits else f"{name} (out of limits)" for name, fits in zip(names, inside, strict=True)]
 
 
 def nearest(q: Array, near: Array, arm: Any) -> int:
@@ -112,8 +141,8 @@ def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:
         return
     points = np.concatenate([each.points for each in drawn])
     thick = drawn[0].radii[-1]
-    moving = np.concatenate([path for each in drawn for path in each.paths[1:]])
-    low = min(0.0, float(moving[:, 2].min()) - thick)
+    plain = np.array(colors.LINK)
+    low = min(0.0, *(solid.lowest() for each in drawn for solid in solids_of(each, plain, plain)))
     arrows = T_goal[:3, 3] + 0.2 * size_of(arm.chain.points, arm.chain.T_zero) * T_goal[:3, :3].T
     around = np.concatenate([points + thick, points - thick, arrows])
     ground = np.concatenate([around[:, :2], np.zeros((1, 2))])
@@ -144,18 +173,18 @@ def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
     for i, path in enumerate(drawn.paths):
         ends = np.linspace(radii[i], radii[i + 1], len(path))
         for k in range(len(path) - 1):
-            if np.linalg.norm(path[k + 1] - path[k]) > 1e-9:
-                if i == 0 and k == 0 and path[1][2] > path[0][2]:  # the pillar stands on the floor, flat
-                    solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
-                solids.append(
-                    capsule(path[k], path[k + 1], ends[k] if i or k else 0.5 * ends[k], ends[k + 1], link)
-                )
+            if np.linalg.norm(path[k + 1] - path[k]) < 1e-9:
+                continue
+            if i == 0 and k == 0 and path[1][2] > path[0][2]:  # the pillar stands on the floor, flat
+                solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
+                solids.append(capsule(path[1], path[1], ends[1], ends[1], link))
+            else:
+                solids.append(capsule(path[k], path[k + 1], ends[k], ends[k + 1], link))
     for rail in drawn.rails:
         if np.linalg.norm(rail[1] - rail[0]) > 1e-9:
             solids.append(capsule(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
     for i, (place, axis) in enumerate(zip(drawn.joints, drawn.axes, strict=True)):
-        r = radii[i + 1]
-        solids.append(cylinder(place, axis, 1.2 * r, (1.4 if drawn.types[i] == "R" else 2.2) * r, joint))
+        solids.append(cylinder(place, axis, WIDTH * radii[i + 1], drawn.body_half(i), joint))
     return solids
 
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["AXES", "INK", "JOINT", "LINK", "STAND", "mix", "palette"]
+__all__ = ["AXES", "BARRED", "INK", "JOINT", "LINK", "STAND", "mix", "palette"]
 
 INK: Final = (0.16, 0.19, 0.24)
 """Text, outlines."""
@@ -16,6 +16,8 @@ LINK: Final = (0.90, 0.91, 0.925)
 """The links of a solid robot."""
 JOINT: Final = (0.28, 0.56, 0.88)
 """The joints of a solid robot."""
+BARRED: Final = (0.50, 0.51, 0.53)
+"""Configurations out of limits: without a hue."""
 STAND: Final = (0.80, 0.82, 0.85)
 """What a robot stands on where the floor is below its base."""
 AXES: Final = ((0.84, 0.18, 0.20), (0.18, 0.62, 0.28), (0.16, 0.38, 0.88))

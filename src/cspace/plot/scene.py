@@ -11,7 +11,9 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import Any
 
-from cspace.plot.canvas import Canvas, Floor, look, mean_depth, shadow_of
+from cspace.plot.canvas import Canvas, Floor
+from cspace.plot.layer import Layer, look
+from cspace.plot.shadow import shadow_of
 from cspace.plot.solids import Solid
 from cspace.plot.view import View
 
@@ -40,17 +42,23 @@ class Scene:
         canvas = Canvas(view)
         if self.floor is not None:
             cast = [solid for group in self.groups if group.shadow for solid in group.solids]
-            canvas.lay_floor(view, self.floor)
-            canvas.shade(shadow_of(view, cast, float(self.floor.center[2])))
+            canvas.lay_floor(view, self.floor, shadow_of(cast, float(self.floor.center[2]), view.size))
         front = look(view, [solid for group in self.groups if group.opacity >= 1.0 for solid in group.solids])
-        ghosts = [(look(view, group.solids), group.opacity) for group in self.groups if group.opacity < 1.0]
+        seen = ((look(view, group.solids), group.opacity) for group in self.groups if group.opacity < 1.0)
+        ghosts = [(layer, opacity) for layer, opacity in seen if layer is not None]
         ghosts.sort(key=lambda ghost: -mean_depth(ghost[0]))
         for layer, opacity in ghosts:
             canvas.lay_ghost(layer, opacity, before=None)
-        canvas.lay(front)
-        for layer, opacity in ghosts:
-            canvas.lay_ghost(layer, 0.55 * opacity, before=front)
+        if front is not None:
+            canvas.lay(front)
+            for layer, opacity in ghosts:
+                canvas.lay_ghost(layer, 0.55 * opacity, before=front)
         return canvas.finished()
+
+
+def mean_depth(layer: Layer) -> float:
+    """The mean depth of what a layer shows."""
+    return float(layer.depth.mean())
 
 
 @cache

@@ -10,7 +10,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.spatial import rotation
 
-__all__ = ["Skeleton", "planar_basis", "skeleton"]
+__all__ = ["WIDTH", "Skeleton", "planar_basis", "skeleton"]
 
 PARALLEL: Final = 0.08
 """Sine of the angle below which two axes are routed as parallel: their common normal would lie far away."""
@@ -18,6 +18,11 @@ DETOUR: Final = 1.9
 """A route along axes and common normal longer than this many straight distances is drawn straight."""
 SHORT: Final = 0.012
 """Pieces of a route below this share of the arm's length are left out."""
+TURNING: Final = 1.4
+SLIDING: Final = 2.2
+"""Half the length of the body of a turning and of a sliding joint, in radii of its link."""
+WIDTH: Final = 1.2
+"""The radius of a joint's body, in radii of its link."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +48,10 @@ class Skeleton:
         """Every corner of every path, (m, 3)."""
         return np.concatenate([*self.paths, *self.rails])
 
+    def body_half(self, i: int) -> float:
+        """Half the length of the body of joint i [m]."""
+        return float((TURNING if self.types[i] == "R" else SLIDING) * self.radii[i + 1])
+
 
 def skeleton(robot: Any, q: Array) -> Skeleton:
     """The skeleton of `robot` (anything with a `chain`) at the configuration `q` (dof,)."""
@@ -57,6 +66,10 @@ def skeleton(robot: Any, q: Array) -> Skeleton:
     paths.append(route(after[-1], axes[-1], T_tip[:3, 3], axes[-1], length))
     radii = length * np.linspace(0.046, 0.019, n + 2)
     joints = np.array([body_place(i, before, axes, paths, radii) for i in range(n)])
+    leaving = paths[1][1] - paths[1][0]
+    half = TURNING * radii[1]
+    if types[0] == "R" and abs(axes[0][2]) > 0.98 and leaving[2] > 2.0 * half and abs(joints[0][2]) < half:
+        joints[0][2] = half  # the first joint stands on the ground and does not hang below it
     rails = [np.array([before[i], after[i]]) for i in range(n) if types[i] == "P"]
     return Skeleton(paths, radii, joints, axes, types, T_tip, rails)
 

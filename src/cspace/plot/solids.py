@@ -1,4 +1,4 @@
-"""Rays against tapered capsules and cylinders: what a picture of a robot is made of.
+"""Tapered capsules and cylinders: what a picture of a robot is made of, as pieces that rays meet exactly.
 
 Matplotlib sorts faces by their centres, which leaves teeth where bodies meet and seams where they are
 transparent. There are few bodies and few kinds of them, so each pixel's ray is met with each exactly.
@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.plot.quadrics import Disc, Piece, Side, Sphere
 
-__all__ = ["Solid", "arrow", "capsule", "cylinder", "meet"]
+__all__ = ["Solid", "arrow", "capsule", "cylinder", "pieces"]
 
 
 @dataclass(frozen=True)
@@ -29,10 +30,12 @@ class Solid:
     color: Array
     round: bool = True
 
-    def corners(self) -> Array:
-        """The corners (16, 3) of boxes about both ends, which hold the body."""
-        signs = np.array(np.meshgrid([-1, 1], [-1, 1], [-1, 1])).reshape(3, 8).T
-        return np.concatenate([self.a + signs * self.radius_a, self.b + signs * self.radius_b])
+    def lowest(self) -> float:
+        """The height of its lowest point [m]."""
+        way = self.b - self.a
+        upright = 0.0 if self.round else way[2] / max(float(np.linalg.norm(way)), 1e-12)
+        down = np.sqrt(max(0.0, 1.0 - upright**2))
+        return float(min(self.a[2] - down * self.radius_a, self.b[2] - down * self.radius_b))
 
 
 def capsule(a: Array, b: Array, radius_a: float, radius_b: float, color: Array) -> Solid:
@@ -56,95 +59,22 @@ def arrow(origin: Array, way: Array, thickness: float, color: Array) -> list[Sol
     ]
 
 
-def meet(solid: Solid, origins: Array, ways: Array) -> tuple[Array, Array]:
-    """Where rays first meet a solid: distances (m,), inf where they miss, and outward normals (m, 3).
-
-    origins, ways: (m, 3), ways of unit length; origins outside the solid.
-    """
+def pieces(solid: Solid) -> list[Piece]:
+    """The surfaces that bound a solid."""
     way = solid.b - solid.a
     length = float(np.linalg.norm(way))
-    distance = np.full(len(origins), np.inf)
-    normals = np.zeros_like(origins)
     slope = (solid.radius_a - solid.radius_b) / max(length, 1e-12)
     if solid.round:
-        for center, radius in ((solid.a, solid.radius_a), (solid.b, solid.radius_b)):
-            take(distance, normals, *meet_sphere(center, radius, origins, ways))
-        if abs(slope) >= 1.0 or length < 1e-12:
-            return distance, normals
-        sine, ends = slope, (slope * solid.radius_a, length + slope * solid.radius_b)
-    else:
-        sine, ends = slope / np.hypot(1.0, slope), (0.0, length)
-    cosine = np.sqrt(1.0 - sine * sine)
-    start = solid.radius_a if solid.round else solid.radius_a * cosine
+        if length < 1e-12 or abs(slope) >= 1.0:  # one sphere holds the other
+            larger = solid.a if solid.radius_a >= solid.radius_b else solid.b
+            return [Sphere(larger, max(solid.radius_a, solid.radius_b))]
+        ends = slope * solid.radius_a, length + slope * solid.radius_b
+        cosine = float(np.sqrt(1.0 - slope * slope))
+        side = Side(solid.a, way / length, solid.radius_a / cosine, slope / cosine, ends)
+        return [side, Sphere(solid.a, solid.radius_a), Sphere(solid.b, solid.radius_b)]
     axis = way / length
-    take(distance, normals, *meet_side(solid.a, axis, start, sine, cosine, ends, origins, ways))
-    if not solid.round:
-        for center, radius, side in ((solid.a, solid.radius_a, -1.0), (solid.b, solid.radius_b, 1.0)):
-            take(distance, normals, *meet_disc(center, side * axis, radius, origins, ways))
-    return distance, normals
-
-
-def take(distance: Array, normals: Array, found: Array, found_normals: Array) -> None:
-    """Keep the nearer of what is known and what was found."""
-    nearer = found < distance
-    distance[nearer] = found[nearer]
-    normals[nearer] = found_normals[nearer]
-
-
-def meet_sphere(center: Array, radius: float, origins: Array, ways: Array) -> tuple[Array, Array]:
-    """|o + t w − c| = r, the nearer root."""
-    o = origins - center
-    b = np.einsum("ij,ij->i", o, ways)
-    inside = b * b - np.einsum("ij,ij->i", o, o) + radius * radius
-    t = np.where(inside >= 0.0, -b - np.sqrt(np.maximum(inside, 0.0)), np.inf)
-    at = o + np.where(np.isfinite(t), t, 0.0)[:, None] * ways
-    return t, at / max(radius, 1e-12)
-
-
-def meet_side(
-    a: Array,
-    axis: Array,
-    start: float,
-    sine: float,
-    cosine: float,
-    ends: tuple[float, float],
-    origins: Array,
-    ways: Array,
-) -> tuple[Array, Array]:
-    """The cone of half angle asin(sine) whose radius at the height y on the axis is (start − sine y)/cosine.
-
-    |o + t w|² − (y + t v)² = (start − sine (y + t v))² / cosine², with y, v the heights of o and w; only
-    heights between `ends` count.
-    """
-    o = origins - a
-    y, v = o @ axis, ways @ axis
-    k = start - sine * y
-    squares = cosine * cosine
-    A = 1.0 - v * v - (sine * v) ** 2 / squares
-    B = np.einsum("ij,ij->i", o, ways) - y * v + k * sine * v / squares
-    C = np.einsum("ij,ij->i", o, o) - y * y - k * k / squares
-    inside = B * B - A * C
-    root = np.sqrt(np.maximum(inside, 0.0))
-    A = np.where(np.abs(A) < 1e-12, 1e-12, A)
-    best = np.full(len(o), np.inf)
-    for t in ((-B - root) / A, (-B + root) / A):
-        height = y + t * v
-        good = (inside >= 0.0) & (height >= ends[0]) & (height <= ends[1]) & (start - sine * height >= 0.0)
-        best = np.where(good & (t < best), t, best)
-    t = np.where(np.isfinite(best), best, 0.0)
-    at = o + t[:, None] * ways
-    out = at - (at @ axis)[:, None] * axis
-    out /= np.maximum(np.linalg.norm(out, axis=1, keepdims=True), 1e-12)
-    return best, cosine * out + sine * axis
-
-
-def meet_disc(
-    center: Array, normal: Array, radius: float, origins: Array, ways: Array
-) -> tuple[Array, Array]:
-    """The flat end of a cylinder, seen from outside."""
-    falling = ways @ normal
-    o = origins - center
-    t = -(o @ normal) / np.where(np.abs(falling) < 1e-12, 1e-12, falling)
-    at = o + t[:, None] * ways
-    good = (falling < 0.0) & (np.einsum("ij,ij->i", at, at) <= radius * radius)
-    return np.where(good, t, np.inf), np.broadcast_to(normal, ways.shape)
+    caps = (Disc(solid.a, -axis, solid.radius_a), Disc(solid.b, axis, solid.radius_b))
+    return [
+        Side(solid.a, axis, solid.radius_a, slope, (0.0, length)),
+        *(cap for cap in caps if cap.radius > 0.0),
+    ]

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["SUPERSAMPLING", "Block", "View", "on_floor", "project"]
+__all__ = ["Block", "Rays", "View", "affine", "block_about", "centers", "project"]
 
-SUPERSAMPLING: Final = 2
-"""Rays per pixel and direction."""
 Block = tuple[int, int, int, int]
 """A block of pixels: columns x0 to x1, rows y0 to y1."""
+PARALLEL_WAYS: Final = 1e-9
+"""Share of a ray's way by which it may change from pixel to pixel while all rays count as parallel."""
 
 
 def project(points: Array, matrix: Array) -> Array:
@@ -22,15 +23,50 @@ def project(points: Array, matrix: Array) -> Array:
     return np.asarray(lifted[:, :3] / lifted[:, 3:])
 
 
+def affine(row: Array, x: Array, y: Array) -> Array:
+    """row · (x, y, 1), where x and y broadcast."""
+    return np.asarray((row[0] * x + row[2]) + row[1] * y)
+
+
+def centers(first: int, last: int) -> Array:
+    """The middles of the pixels from `first` to before `last`."""
+    return np.arange(first, last, dtype=np.float64) + 0.5
+
+
+@dataclass(frozen=True)
+class Rays:
+    """One ray per place (x, y) of a plane: the points o + t w with o, w affine in x and y.
+
+    origin, way: (3, 3), the rows multiply x, y and 1. One of the two is the same for all rays: the origin for
+    the rays of an eye, the way for those of a far light; the meeting with a quadric is simpler then.
+    """
+
+    origin: Array
+    way: Array
+
+    @property
+    def parallel(self) -> bool:
+        """Whether all rays have the same way."""
+        return not self.way[:2].any()
+
+    def points(self, x: Array, y: Array, t: Array) -> Array:
+        """The points (m, 3) of some rays, x, y, t: (m,)."""
+        points = np.empty((len(t), 3))
+        for axis in range(3):  # by hand: threads of a matrix product cost more than they save here
+            w = affine(self.way[:, axis], x, y)
+            points[:, axis] = affine(self.origin[:, axis], x, y) + t * w
+        return points
+
+
 class View:
-    """The rays of an axes' pixels: from the projection matrix of matplotlib back into space."""
+    """What an axes sees: its rays, one unit of t for one metre of depth, and where points appear."""
 
     def __init__(self, axes: Any, magnification: float) -> None:
         self.matrix = axes.get_proj()
         box = axes.figure.bbox
-        self.scale = magnification * SUPERSAMPLING
-        self.width = int(np.ceil(box.width * magnification)) * SUPERSAMPLING
-        self.height = int(np.ceil(box.height * magnification)) * SUPERSAMPLING
+        self.scale = magnification
+        self.width = int(np.ceil(box.width * magnification))
+        self.height = int(np.ceil(box.height * magnification))
         self.to_display = axes.transData
         elevation, azimuth = np.radians(axes.elev), np.radians(axes.azim)
         self.eye = np.array(
@@ -42,59 +78,43 @@ class View:
         middle, self.size = limits.mean(axis=1), float(np.ptp(limits, axis=1).max())
         near_far = middle + np.array([[0.5], [-0.5]]) * self.size * self.eye
         depths = project(near_far, self.matrix)[:, 2]
-        self.planes = [self.plane(axes, depth) for depth in depths]
+        near, far = (self.plane(axes, depth) for depth in depths)
+        self.rays = rays_through(near, (far - near) / self.size)
 
     def plane(self, axes: Any, depth: float) -> Array:
-        """The rows (3, 4) that turn (column, row, 1) into the homogeneous point of that projected depth."""
-        corners = np.array([[0.5, 0.5], [1.5, 0.5], [0.5, 1.5]]) / self.scale
+        """The rows (3, 3) that turn (column, row, 1) into the point of that projected depth."""
+        corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) / self.scale
         flat = axes.transData.inverted().transform(corners)
         lifted = np.column_stack([flat, np.full(3, depth), np.ones(3)]) @ np.linalg.inv(self.matrix).T
-        return np.array([lifted[1] - lifted[0], lifted[2] - lifted[0], lifted[0]])
+        points = (
+            lifted[:, :3] / lifted[:, 3:]
+        )  # planes of one projected depth are planes: affine in the pixel
+        return np.array([points[1] - points[0], points[2] - points[0], points[0]])
 
     def seen(self, points: Array) -> Array:
         """Where points (m, 3) appear, in pixels (m, 2)."""
         return np.asarray(self.to_display.transform(project(points, self.matrix)[:, :2])) * self.scale
 
     def block_of(self, points: Array) -> Block | None:
-        """The block of pixels that holds the projected points, or None off the image."""
-        seen = self.seen(points)
-        low = np.maximum(np.floor(seen.min(axis=0)).astype(int) - 1, 0)
-        high = np.minimum(np.ceil(seen.max(axis=0)).astype(int) + 2, [self.width, self.height])
-        if (high <= low).any():
-            return None
-        return int(low[0]), int(high[0]), int(low[1]), int(high[1])
-
-    def rays(self, columns: Any, rows: Any) -> tuple[Array, Array]:
-        """Origins before everything and unit ways, (m, 3) each, of some pixels."""
-        ends = []
-        for plane in self.planes:
-            lifted = columns[:, None] * plane[0] + rows[:, None] * plane[1] + plane[2]
-            ends.append(lifted[:, :3] / lifted[:, 3:])
-        ways = ends[1] - ends[0]
-        ways /= np.sqrt(np.einsum("ij,ij->i", ways, ways))[:, None]
-        return ends[0] - 4.0 * self.size * ways, ways
-
-    def near_segment(self, ends: Array, radii: Array, block: Block) -> tuple[Any, Any]:
-        """The pixels (columns, rows) of a block that a bar between two points (2, 3) [m] may cover."""
-        x0, x1, y0, y1 = block
-        columns, rows = np.meshgrid(np.arange(x0, x1), np.arange(y0, y1))
-        fringe = ends[:, None] + radii[:, None, None] * np.stack([self.right, self.up])
-        flat = self.seen(np.concatenate([ends, fringe.reshape(-1, 3)]))
-        a, b, reach = (
-            flat[0],
-            flat[1],
-            1.25 * np.linalg.norm(flat[2:].reshape(2, 2, 2) - flat[:2, None], axis=2).max(),
-        )
-        way = b - a
-        share = ((columns - a[0]) * way[0] + (rows - a[1]) * way[1]) / max(float(way @ way), 1e-12)
-        share = np.clip(share, 0.0, 1.0)
-        away = np.hypot(columns - a[0] - share * way[0], rows - a[1] - share * way[1])
-        near = away <= reach + 2.0
-        return columns[near], rows[near]
+        """The block of pixels that holds the projected points (m, 3), or None off the image."""
+        return block_about(self.seen(points), self.width, self.height)
 
 
-def on_floor(origins: Array, ways: Array, height: float) -> tuple[Array, Any]:
-    """Where rays reach the floor (m, 3), and whether they fall at all (m,)."""
-    falling = ways[:, 2] < -1e-9
-    t = np.where(falling, (height - origins[:, 2]) / np.where(falling, ways[:, 2], -1.0), 0.0)
-    return origins + t[:, None] * ways, falling
+def rays_through(near: Array, way: Array) -> Rays:
+    """The rays that leave the places of the plane `near` (3, 3) along `way` (3, 3), with t = 0 there or, for
+    rays that meet in an eye, with t = 0 at the eye.
+    """
+    turning = way[:2]
+    if np.abs(turning).max() * 1e4 < PARALLEL_WAYS * np.abs(way[2]).max():
+        return Rays(near, np.array([np.zeros(3), np.zeros(3), way[2]]))
+    back = -float(np.vdot(near[:2], turning) / np.vdot(turning, turning))
+    eye = near[2] + back * way[2]
+    return Rays(np.array([np.zeros(3), np.zeros(3), eye]), way)
+
+
+def block_about(places: Array, width: int, height: int) -> Block | None:
+    """The pixels of an image that places (m, 2) on it span, or None where there are none."""
+    low, high = places.min(axis=0), places.max(axis=0)
+    x0, y0 = max(int(low[0]) - 1, 0), max(int(low[1]) - 1, 0)
+    x1, y1 = min(int(high[0]) + 2, width), min(int(high[1]) + 2, height)
+    return (x0, x1, y0, y1) if x1 > x0 and y1 > y0 else None

@@ -186,12 +186,12 @@ def limits_cell(out_by: dict[str, float], robot: Robot, *, degrees: bool) -> Cel
     short = dict(zip(robot.joint_names, headings(robot), strict=True))
     kinds = dict(zip(robot.joint_names, robot.joint_types, strict=True))
     for name, excess in out_by.items():
-        if kinds[name] == "P":
-            texts.append(f"{short[name]} out by {excess:.4f} m")
-        elif degrees:
-            texts.append(f"{short[name]} out by {np.degrees(excess):.2f} deg")
-        else:
-            texts.append(f"{short[name]} out by {excess:.4f} rad")
+        size, unit, digits = excess, "m" if kinds[name] == "P" else "rad", 4
+        if degrees and kinds[name] == "R":
+            size, unit, digits = float(np.degrees(excess)), "deg", 2
+        least = 10.0**-digits
+        amount = f"< {least:g}" if size < 0.5 * least else f"{size:.{digits}f}"
+        texts.append(f"{short[name]} out by {amount} {unit}")
     return Cell(", ".join(texts), "red")
 
 
@@ -208,4 +208,5 @@ def draw(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, title: str
 
     order = sorted(range(len(rows)), key=lambda k: bool(rows.out[k]))
     labels = [f"{k + 1}  {rows.branch[k]}" + (" (out of limits)" if rows.out[k] else "") for k in order]
-    plot.save(plot.solutions(robot, rows.q[order], goal, labels=labels, title=title), path)
+    within = [not rows.out[k] for k in order]
+    plot.save(plot.solutions(robot, rows.q[order], goal, labels=labels, within=within, title=title), path)
