@@ -7,3 +7,4 @@ void bind_rotations(nanobind::module_& m);
 void bind_short_arms(nanobind::module_& m);
 void bind_subproblems(nanobind::module_& m);
 void bind_ik(nanobind::module_& m);
+void bind_ik_numeric(nanobind::module_& m);

@@ -15,4 +15,5 @@ NB_MODULE(_core, m) {
     bind_short_arms(m);
     bind_subproblems(m);
     bind_ik(m);
+    bind_ik_numeric(m);
 }

@@ -17,6 +17,8 @@ from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 
 if TYPE_CHECKING:
+    from cspace.ik import NumericSolution, SampledSolutions
+
     Seed = int | np.random.Generator | None
 
 __all__ = ["Robot"]
@@ -196,6 +198,26 @@ class Robot(RobotBase):
         (−π, π]; a sliding one needs reach [m]. Returns q (n, n_joints) or (n_joints,) [rad or m].
         """
         return kinematics.random_configurations(self.limits, self.joint_types, n, rng=rng, reach=reach)
+
+    def ik_numeric(self, goal: Any = None, start: Any = None, **options: Any) -> NumericSolution:
+        """One configuration that reaches a goal (..., 4, 4), by descent from start (dof,) and further starts.
+
+        options: position, frame, method, limits, starts, rest, rest_weights, weights, tolerance,
+        max_iterations, rng, threads, as in ik.ik_numeric, which also names the errors.
+        """
+        from cspace.ik import ik_numeric
+
+        return ik_numeric(self, goal, start, **options)
+
+    def ik_many_starts(self, goal: Any = None, starts: Any = 64, **options: Any) -> SampledSolutions:
+        """The different solutions of one goal (4, 4) that descents from many starts find; a sample.
+
+        options: position, frame, limits, weights, tolerance, max_iterations, rng, threads, as in
+        ik.ik_many_starts, which also names the errors.
+        """
+        from cspace.ik import ik_many_starts
+
+        return ik_many_starts(self, goal, starts, **options)
 
     def _changed(self, **changes: Any) -> Robot:
         description, base, tip, floating = self._made_from

@@ -17,6 +17,7 @@ __all__ = [
     "LAST_ROW_ERROR",
     "MEAN_UNIQUENESS",
     "MOST_WINDINGS",
+    "NUMERIC_TOLERANCE",
     "PLANAR_AXES",
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
@@ -119,3 +120,7 @@ MOST_WINDINGS: Final = 100_000
 FARTHEST: Final = 1e100
 """Largest number in a goal, a seed or a geometric subproblem, and largest sum of a goal's coordinates
 (m, rad): their squares still fit a double."""
+
+NUMERIC_TOLERANCE: Final = 1e-9
+"""Error of a descent (m of the position, rad of the rotation) that counts as reached unless given: far above
+the rounding at which descents settle, far below what any robot can tell."""

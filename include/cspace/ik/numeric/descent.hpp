@@ -32,7 +32,7 @@ struct DescentRows {
     double* cost;         // ½ |e|²
     double* position;     // [m]
     double* rotation;     // [rad]
-    std::int32_t* steps;  // evaluations spent on the row, added up
+    std::int32_t* steps;  // how many it took
     ik::Ending* ending;
 };
 
@@ -84,7 +84,7 @@ CSPACE_INLINE void take_trial(const ik::Path& path, const Rows& rows, bool alway
         d.at.e[r] = select(taken, d.there.e[r], d.at.e[r]);
         for (int j = 0; j < path.n; ++j) d.at.J[r][j] = select(taken, d.there.J[r][j], d.at.J[r][j]);
     }
-    d.steps = select(begun, fill<V>(1.0), d.steps + 1.0);
+    d.steps = where(!begun, d.steps + 1.0);
     d.fresh = fill<V>(0.0);
 }
 
@@ -160,13 +160,13 @@ template <class V>
 bool end_lane(const DescentRows& rows, std::size_t row, int l, const Descent<V>& d) {
     const double position = lane(d.at.position, l), rotation = lane(d.at.rotation, l), cost = lane(d.cost, l);
     const bool reached = position <= rows.task->tolerance && rotation <= rows.task->tolerance;
-    rows.steps[row] += std::int32_t(lane(d.steps, l));
     const bool known = rows.ending[row] != ik::Ending::unknown;
     if (known && (rows.ending[row] == ik::Ending::reached || !(cost < rows.cost[row]))) return reached;
     rows.ending[row] = reached                                             ? ik::Ending::reached
                        : lane(d.steps, l) >= double(rows.task->most_steps) ? ik::Ending::exhausted
                                                                            : ik::Ending::stalled;
     rows.cost[row] = cost;
+    rows.steps[row] = std::int32_t(lane(d.steps, l));
     rows.position[row] = position;
     rows.rotation[row] = rotation;
     for (int j = 0; j < rows.path->n; ++j) rows.q[row * std::size_t(rows.path->n) + j] = lane(d.q[j], l);

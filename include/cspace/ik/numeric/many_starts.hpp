@@ -20,7 +20,7 @@ void descend_from_starts(const ik::Chain& chain, const double* T, const double* 
     for (std::size_t first = 0; first < count; first += part) {
         const std::size_t n = count - first < part ? count - first : part;
         const std::size_t offset = first * std::size_t(chain.n);
-        for (std::size_t k = 0; k < n; ++k) ending[k] = ik::Ending::unknown, steps[k] = 0;
+        for (std::size_t k = 0; k < n; ++k) ending[k] = ik::Ending::unknown;
         run_descents<V>({&path, &task, T, 0, starts + offset, std::size_t(chain.n), nullptr, n, false,
                          q + offset, cost, position, rotation, steps, ending});
         for (std::size_t k = 0; k < n; ++k) residual[first + k] = max(position[k], rotation[k]);

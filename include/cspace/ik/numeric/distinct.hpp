@@ -1,0 +1,59 @@
+// The different solutions among the ends of many descents.
+//
+// Not for kernels: it uses the standard library.
+#pragma once
+
+#include "cspace/ik/numeric/search.hpp"
+
+namespace cspace::numeric {
+// Two ends are one solution if no coordinate differs by more than `same` [rad, lengths of the path], or by
+// `close` where the configuration halfway between reaches the goal too: at a double root descents end
+// scattered by the square root of the error that is left.
+inline constexpr double same = 1e-6, close = 1e-3;
+}  // namespace cspace::numeric
+
+namespace cspace {
+
+inline bool is_one_solution(const ik::Path& path, const ik::Task& task, const Rows& rows,
+                            const Posed& T_goal_first, const double* a, const double* b) {
+    double apart = 0, halfway[ik::max_joints];
+    for (int j = 0; j < path.n; ++j) {
+        const double step =
+            path.slides[j] ? (b[j] - a[j]) / path.length : std::remainder(b[j] - a[j], 2 * pi);
+        apart = std::fmax(apart, std::fabs(step));
+        halfway[j] = a[j] + 0.5 * step * unit_of(path, j);
+    }
+    if (apart <= numeric::same) return true;
+    if (apart > numeric::close) return false;
+    Gap<double> gap;
+    measure_gap(path, rows, T_goal_first, halfway, gap);
+    return std::fmax(gap.position, gap.rotation) <= task.tolerance;
+}
+
+// Picks the rows of results that reach the goal and differ, in the order in which they were found. `wanted`
+// (n,) says near which angles each is given. Returns how many; q (rows, n) takes them, hits (rows,) by how
+// many descents each was found.
+inline std::size_t pick_distinct(const ik::Path& path, const ik::Task& task, const double* goal,
+                                 const double* wanted, const DescentResults& results, double* q,
+                                 double* residual, std::int64_t* hits) {
+    const std::size_t n = std::size_t(path.n);
+    const Rows rows = rows_of(task);
+    const Posed T_goal_first = inverse(read_goal(goal).T) * path.T_base_first;
+    std::size_t count = 0;
+    for (std::size_t row = 0; row < results.ending.size(); ++row) {
+        if (results.ending[row] != ik::Ending::reached) continue;
+        const double* found = results.q.data() + n * row;
+        std::size_t k = 0;
+        while (k < count && !is_one_solution(path, task, rows, T_goal_first, q + n * k, found)) ++k;
+        if (k == count) {
+            std::copy_n(found, n, q + n * k);
+            nearest_turns(path, task, wanted, q + n * k);
+            residual[k] = std::fmax(results.position[row], results.rotation[row]);
+            hits[count++] = 0;
+        }
+        ++hits[k];
+    }
+    return count;
+}
+
+}  // namespace cspace

@@ -1,0 +1,177 @@
+// Self-motion towards a preferred posture: the configuration that reaches the goal and comes nearest to it.
+//
+// min ½ Σ wⱼ (qⱼ − restⱼ)² with e(q) = 0 and q in its limits. A step goes along the null space of the
+// Jacobian, the projected gradient of Liégeois (1977), and is brought back onto the goal by Newton's method;
+// it is halved until it gains.
+#pragma once
+
+#include "cspace/ik/numeric/step.hpp"
+
+namespace cspace::ik {
+
+struct Posture {
+    double rest[max_joints];
+    double weight[max_joints];  // positive
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+namespace posture {
+inline constexpr int most_steps = 300, corrections = 8;
+inline constexpr double settled = 1e-10;  // a move this small ends the motion [rad, lengths of the path]
+inline constexpr double shortest = 1e-3;  // share of a step below which no gain is expected any more
+inline constexpr double slowest = 0.01, fastest = 100;  // share of a move
+inline constexpr double at_limit = 1e-9;  // this close to a limit is at it [rad, lengths of the path]
+inline constexpr double on_goal = 1e-12;  // an error as good as none [rad, lengths of the path]
+inline constexpr double stride = 0.5;     // of a step [rad, lengths of the path]
+inline constexpr double damping = 1e-14;  // keeps a singular Jacobian from overflowing
+}  // namespace posture
+
+// A robot at work on one goal.
+struct SelfMotion {
+    const ik::Path* path;
+    const ik::Task* task;
+    const ik::Posture* posture;
+    Rows rows;
+    Posed T_goal_first;
+};
+
+inline double unit_of(const ik::Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
+
+inline double posture_cost(const SelfMotion& at, const double* q) {
+    double cost = 0;
+    for (int j = 0; j < at.path->n; ++j) {
+        const double away = q[j] - at.posture->rest[j];
+        cost += 0.5 * at.posture->weight[j] * away * away;
+    }
+    return cost;
+}
+inline double size_of(const Gap<double>& gap, const ik::Path& path) {
+    return max(gap.position / path.length, gap.rotation);
+}
+inline bool is_held(const ik::Task& task, const double* q, const double* move, int j) {
+    return task.limited && ((q[j] <= task.lower[j] && move[j] < 0) || (q[j] >= task.upper[j] && move[j] > 0));
+}
+
+// The move along the null space that lowers the cost most, coordinates at limits that it pushes outward held.
+inline void null_space_move(const SelfMotion& at, const double* q, const Gap<double>& gap, double* move) {
+    const int n = at.path->n, m = at.rows.m;
+    double scaled[6][ik::max_joints], root[ik::max_joints], loose[ik::max_joints];
+    for (int j = 0; j < n; ++j) {
+        root[j] = std::sqrt(at.posture->weight[j]) * unit_of(*at.path, j);
+        loose[j] = 1;
+        for (int r = 0; r < m; ++r) scaled[r][j] = gap.J[r][j] / root[j];
+    }
+    for (bool changed = true; changed;) {
+        double wanted[ik::max_joints], back[ik::max_joints], moved[6] = {};
+        for (int j = 0; j < n; ++j) {
+            wanted[j] = loose[j] * root[j] * (at.posture->rest[j] - q[j]) / unit_of(*at.path, j);
+            for (int r = 0; r < m; ++r) moved[r] += scaled[r][j] * wanted[j];
+        }
+        damped_step(m, n, scaled, moved, loose, posture::damping, back);
+        changed = false;
+        for (int j = 0; j < n; ++j) {
+            move[j] = loose[j] * (wanted[j] - back[j]) / root[j] * unit_of(*at.path, j);
+            if (loose[j] == 0 || !is_held(*at.task, q, move, j)) continue;
+            loose[j] = 0;
+            changed = true;
+        }
+    }
+}
+
+// The largest share of a move, up to 1, that keeps every coordinate in its limits.
+inline double share_inside(const SelfMotion& at, const double* q, const double* move) {
+    double share = 1;
+    for (int j = 0; j < at.path->n && at.task->limited; ++j) {
+        if (move[j] < 0) share = min(share, (at.task->lower[j] - q[j]) / move[j]);
+        if (move[j] > 0) share = min(share, (at.task->upper[j] - q[j]) / move[j]);
+    }
+    return max(share, 0.0);
+}
+
+// Adds `share` of a move to q, coordinates in their limits.
+inline void add_move(const SelfMotion& at, const double* q, const double* move, double share, double* to) {
+    for (int j = 0; j < at.path->n; ++j) {
+        to[j] = q[j] + share * move[j];
+        if (!at.task->limited) continue;
+        // What comes to a limit up to rounding is at the limit, where it can be held.
+        const double near = posture::at_limit * unit_of(*at.path, j);
+        if (to[j] <= at.task->lower[j] + near) to[j] = at.task->lower[j];
+        if (to[j] >= at.task->upper[j] - near) to[j] = at.task->upper[j];
+    }
+}
+
+// Brings q back onto the goal, coordinates at limits held there; true if it is there. `gap` belongs to q on
+// return.
+inline bool back_onto_goal(const SelfMotion& at, double good_enough, double* q, Gap<double>& gap) {
+    const int n = at.path->n;
+    double loose[ik::max_joints], dx[ik::max_joints];
+    for (int j = 0; j < n; ++j)
+        loose[j] = !at.task->limited || (at.task->lower[j] < q[j] && q[j] < at.task->upper[j]);
+    for (int k = 0; k <= posture::corrections; ++k) {
+        measure_gap(*at.path, at.rows, at.T_goal_first, q, gap);
+        if (size_of(gap, *at.path) <= good_enough) return true;
+        damped_step(at.rows.m, n, gap.J, gap.e, loose, posture::damping, dx);
+        for (int j = 0; j < n; ++j) dx[j] *= unit_of(*at.path, j);
+        add_move(at, q, dx, 1, q);
+    }
+    return false;
+}
+
+// How far along its move the next step should go, from what the last one did to the move (Barzilai & Borwein
+// 1988): the move is the negative gradient on the goal, in the metric of the weights.
+struct Pace {
+    double q[ik::max_joints], move[ik::max_joints];
+    bool known = false;
+};
+inline double next_pace(const SelfMotion& at, const double* q, const double* move, Pace& last) {
+    double along = 0, bent = 0;
+    for (int j = 0; j < at.path->n; ++j) {
+        const double step = q[j] - last.q[j], weight = at.posture->weight[j];
+        along += weight * step * step;
+        bent -= weight * step * (move[j] - last.move[j]);
+        last.q[j] = q[j];
+        last.move[j] = move[j];
+    }
+    const double pace = last.known && bent > 0 ? along / bent : 1.0;
+    last.known = true;
+    return min(max(pace, posture::slowest), posture::fastest);
+}
+
+// Moves q, which reaches the goal, to the posture nearest to rest that does so too; returns the error there.
+inline Gap<double> settle_posture(const ik::Path& path, const ik::Task& task, const ik::Posture& wish,
+                                  const Posed& T_base_tip, double* q) {
+    const SelfMotion at = {&path, &task, &wish, rows_of(task), inverse(T_base_tip) * path.T_base_first};
+    Gap<double> gap;
+    Pace last{};
+    measure_gap(path, at.rows, at.T_goal_first, q, gap);
+    const double good_enough = max(size_of(gap, path), posture::on_goal);
+    double cost = posture_cost(at, q);
+    for (int step = 0; step < posture::most_steps; ++step) {
+        double move[ik::max_joints], next[ik::max_joints], reach = 0;
+        null_space_move(at, q, gap, move);
+        for (int j = 0; j < path.n; ++j) reach = max(reach, std::fabs(move[j]) / unit_of(path, j));
+        if (!(reach > posture::settled)) break;
+        const double pace = min(next_pace(at, q, move, last), posture::stride / reach);
+        for (int j = 0; j < path.n; ++j) move[j] *= pace;
+        bool gained = false;
+        const double longest = share_inside(at, q, move);
+        for (double share = longest; !gained && share > posture::shortest * longest; share *= 0.5) {
+            Gap<double> there;
+            add_move(at, q, move, share, next);
+            if (!back_onto_goal(at, good_enough, next, there)) continue;
+            const double next_cost = posture_cost(at, next);
+            if (!(next_cost < cost)) continue;
+            gained = true;
+            cost = next_cost;
+            gap = there;
+            for (int j = 0; j < path.n; ++j) q[j] = next[j];
+        }
+        if (!gained) break;
+    }
+    return gap;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,186 @@
+// From goals to answers: a first start, then further ones until one of them reaches the goal.
+//
+// Not for kernels: it uses the standard library and is given the kernel that descends.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "cspace/ik/numeric/descent.hpp"
+#include "cspace/ik/numeric/posture.hpp"
+
+namespace cspace {
+
+using Descend = void (*)(const DescentRows&);
+
+struct Search {
+    ik::Path path;
+    ik::Task task;
+    const double* goals;  // (count, 16)
+    std::size_t count;
+    const double* starts;  // (count, n), or (1, n) with stride 0
+    std::size_t start_stride;
+    const double* more;  // (n_more, n): tried in order where the first start failed
+    std::size_t n_more;
+    const ik::Posture* posture;  // or null
+};
+
+// What is known of a goal at the end; the configuration is that of the first start that reached it, or of the
+// one that came nearest.
+struct Found {
+    double position, rotation;  // errors left [m, rad]
+    std::int32_t steps;         // of the descent that ended there
+    std::int32_t start;         // its number, 0 for the first
+    ik::Ending ending;
+};
+
+// Working arrays of the descents, one row each.
+struct DescentResults {
+    std::vector<double> q, cost, position, rotation;
+    std::vector<std::int32_t> steps;
+    std::vector<ik::Ending> ending;
+
+    DescentResults(std::size_t rows, int n)
+        : q(rows * std::size_t(n)),
+          cost(rows),
+          position(rows),
+          rotation(rows),
+          steps(rows),
+          ending(rows, ik::Ending::unknown) {}
+
+    DescentRows rows_for(const ik::Path& path, const ik::Task& task) {
+        DescentRows rows{};
+        rows.path = &path;
+        rows.task = &task;
+        rows.count = ending.size();
+        rows.q = q.data();
+        rows.cost = cost.data();
+        rows.position = position.data();
+        rows.rotation = rotation.data();
+        rows.steps = steps.data();
+        rows.ending = ending.data();
+        return rows;
+    }
+};
+
+// Moves the coordinates that turn by whole turns to where they are nearest to `wanted`, inside the limits.
+inline void nearest_turns(const ik::Path& path, const ik::Task& task, const double* wanted, double* q) {
+    for (int j = 0; j < path.n; ++j) {
+        // A coordinate that drives several joints, or one through a ratio, has another period.
+        int driven = 0;
+        bool plain = !path.slides[j];
+        for (int i = 0; i < path.joints; ++i) {
+            if (path.joint[i].coordinate != j) continue;
+            ++driven;
+            plain = plain && std::fabs(path.joint[i].ratio) == 1.0;
+        }
+        if (!plain || driven != 1) continue;
+        double turns = std::round((wanted[j] - q[j]) / (2 * pi));
+        if (task.limited) {
+            const double least = std::ceil((task.lower[j] - q[j]) / (2 * pi));
+            const double most = std::floor((task.upper[j] - q[j]) / (2 * pi));
+            turns = least <= most ? std::fmin(std::fmax(turns, least), most) : 0;
+        }
+        if (turns != 0) q[j] += 2 * pi * turns;
+    }
+}
+
+namespace searching {
+
+// The rows of goals begin to end; each pass takes those that failed so far to the next start.
+inline DescentResults passes(const Search& search, std::size_t begin, std::size_t end, Descend descend,
+                             std::vector<std::int32_t>& start) {
+    const std::size_t n = std::size_t(search.path.n);
+    DescentResults results(end - begin, search.path.n);
+    DescentRows rows = results.rows_for(search.path, search.task);
+    rows.goals = search.goals + 16 * begin;
+    rows.goal_stride = 16;
+    rows.starts = search.starts + search.start_stride * begin;
+    rows.start_stride = search.start_stride;
+    descend(rows);
+    std::vector<std::int64_t> left;
+    std::vector<double> cost;
+    for (std::size_t k = 0; k < search.n_more; ++k) {
+        left.clear();
+        for (std::size_t row = 0; row < end - begin; ++row)
+            if (results.ending[row] != ik::Ending::reached) left.push_back(std::int64_t(row));
+        if (left.empty()) break;
+        cost = results.cost;
+        rows.pick = left.data();
+        rows.count = left.size();
+        rows.starts = search.more + n * k;
+        rows.start_stride = 0;
+        descend(rows);
+        for (const std::int64_t row : left)
+            if (results.cost[std::size_t(row)] != cost[std::size_t(row)] ||
+                results.ending[std::size_t(row)] == ik::Ending::reached)
+                start[std::size_t(row)] = std::int32_t(k + 1);
+    }
+    return results;
+}
+
+// One goal: all its starts side by side.
+inline DescentResults side_by_side(const Search& search, std::size_t goal, Descend descend,
+                                   std::size_t& best) {
+    const std::size_t n = std::size_t(search.path.n), count = 1 + search.n_more;
+    DescentResults results(count, search.path.n);
+    std::vector<double> starts(count * n);
+    std::copy_n(search.starts + search.start_stride * goal, n, starts.begin());
+    std::copy_n(search.more, search.n_more * n, starts.begin() + std::ptrdiff_t(n));
+    DescentRows rows = results.rows_for(search.path, search.task);
+    rows.goals = search.goals + 16 * goal;
+    rows.starts = starts.data();
+    rows.start_stride = n;
+    rows.first_only = true;
+    descend(rows);
+    best = 0;
+    for (std::size_t k = 0; k < count; ++k) {
+        if (results.ending[k] == ik::Ending::reached) {
+            best = k;
+            break;
+        }
+        if (results.ending[k] != ik::Ending::unknown && results.cost[k] < results.cost[best]) best = k;
+    }
+    return results;
+}
+
+// The answer to a goal from the row that a descent wrote.
+inline Found finish(const Search& search, std::size_t goal, const DescentResults& results, std::size_t row,
+                    std::int32_t start, double* q) {
+    const ik::Path& path = search.path;
+    std::copy_n(results.q.begin() + std::ptrdiff_t(row) * path.n, path.n, q);
+    Found found = {results.position[row], results.rotation[row], results.steps[row], start,
+                   results.ending[row]};
+    const double* wanted = search.posture ? search.posture->rest : search.starts + search.start_stride * goal;
+    nearest_turns(path, search.task, wanted, q);
+    if (!search.posture || found.ending != ik::Ending::reached) return found;
+    const Gap<double> left =
+        settle_posture(path, search.task, *search.posture, read_goal(search.goals + 16 * goal).T, q);
+    found.position = left.position;
+    found.rotation = left.rotation;
+    return found;
+}
+
+}  // namespace searching
+
+// The goals begin to end: q (count, n) and found (count,) take their answers. A goal is answered alike alone
+// and among others.
+inline void search_goals(const Search& search, std::size_t begin, std::size_t end, Descend descend, double* q,
+                         Found* found) {
+    const std::size_t n = std::size_t(search.path.n), side_by_side_up_to = 3;
+    if (end - begin <= side_by_side_up_to) {
+        for (std::size_t goal = begin; goal < end; ++goal) {
+            std::size_t best;
+            const DescentResults results = searching::side_by_side(search, goal, descend, best);
+            found[goal] = searching::finish(search, goal, results, best, std::int32_t(best), q + n * goal);
+        }
+        return;
+    }
+    std::vector<std::int32_t> start(end - begin);
+    const DescentResults results = searching::passes(search, begin, end, descend, start);
+    for (std::size_t goal = begin; goal < end; ++goal)
+        found[goal] =
+            searching::finish(search, goal, results, goal - begin, start[goal - begin], q + n * goal);
+}
+
+}  // namespace cspace

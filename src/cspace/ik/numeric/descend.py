@@ -1,0 +1,183 @@
+"""Numeric inverse kinematics: descents on the pose error, for every arm, from one start or from many."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats, as_generator
+from cspace.errors import InputError
+from cspace.ik.numeric.question import ask, further_starts, middle
+from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
+from cspace.kinematics.batch import choice, whole_number
+from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE
+
+__all__ = ["METHODS", "ik_many_starts", "ik_numeric"]
+
+METHODS = ("levenberg_marquardt", "newton")
+"""The methods of descent."""
+
+MOST_STARTS = 1_000_000
+MOST_ITERATIONS = 100_000
+NO_MORE = np.empty(0)
+
+
+def ik_numeric(
+    robot: Any,
+    goal: Any = None,
+    start: Any = None,
+    *,
+    position: Any = None,
+    frame: str | None = None,
+    method: str = "levenberg_marquardt",
+    limits: Any = True,
+    starts: int = 64,
+    rest: Any = None,
+    rest_weights: Any = None,
+    weights: Any = None,
+    tolerance: float = NUMERIC_TOLERANCE,
+    max_iterations: int = 60,
+    rng: int | np.random.Generator | None = None,
+    threads: int | None = None,
+) -> NumericSolution:
+    """One configuration that reaches a goal, found by descent from a start: for any robot and any frame.
+
+    Levenberg–Marquardt minimises ½ |W e(q)|², e = [Δp / length; rotation vector] in the axes of the goal, by
+    steps (JᵀJ + λ I) Δq = Jᵀ e with λ in proportion to |e|²; "newton" leaves λ out. Where the first start
+    ends in a local minimum, further ones are tried, several at once.
+
+    goal (..., 4, 4): the frame in the base; or position (..., 3) [m], its origin alone. start (dof,) or
+    (..., dof): where to begin; the middle of the limits, or rest, unless given. Joints that do not move the
+    frame keep its values. limits: True keeps q inside the robot's, False ignores them, or other Limits.
+    starts: how many to try at most, the first included. rest (dof,): where the goal leaves freedom, move to
+    the posture nearest to it, ½ Σ rest_weights (q − rest)², without moving the frame. weights (6,): of e; a
+    zero leaves that direction of the goal free. tolerance: largest position error [m] and rotation error
+    [rad] that count as reached. max_iterations: per start. rng: draws the further starts; None spreads them
+    evenly. threads: of a batch, every processor unless given; the answer does not depend on it.
+
+    Returns NumericSolution: q (..., dof), success, residual, iterations, reason; falsy unless every goal is
+    reached. Raises InputError for a goal that is no pose, a start of the wrong shape, NaN, a floating base or
+    more than 16 joints on the way; InputTypeError for no goal or two; UnknownNameError for another method or
+    an unknown frame.
+
+    Levenberg 1944; Sugihara 2011 (damping in proportion to the error); Bertsekas 1982 (limits).
+    """
+    question = ask(robot, goal, position, frame, weights, limits, tolerance)
+    newton = choice(method, "method", METHODS) == "newton"
+    number = whole_number(starts, "starts", 1, MOST_STARTS)
+    steps = whole_number(max_iterations, "max_iterations", 0, MOST_ITERATIONS)
+    lead, n = question.goals.shape[:-2], len(robot.joint_names)
+    if rng is not None:
+        rng = as_generator(rng)
+    posture = _posture(robot, rest, rest_weights)
+    if start is None:
+        first = middle(robot, question.limits)[None] if rest is None else posture[:1]
+    else:
+        first = _starts(robot, start, lead)
+    goals = np.ascontiguousarray(question.goals.reshape(-1, 4, 4))
+    workers = whole_number(threads, "threads", 1, 1024) if threads is not None else 0 if lead else 1
+    q, info = np.empty((len(goals), n)), np.empty((len(goals), 5))
+    settings = (posture, question.weights, question.limits, question.tolerance, steps, newton, workers)
+
+    def descend(first: Array, more: Array) -> None:
+        _core._ik_descend(robot, question.frame, goals, first, more, *settings, q, info)
+
+    if lead:
+        descend(first, further_starts(robot, question.limits, goals, number - 1, rng))
+    else:
+        descend(first, NO_MORE.reshape(0, n))
+        if number > 1 and info[0, 4] != REACHED:
+            descend(first, further_starts(robot, question.limits, goals, number - 1, rng))
+    return NumericSolution(
+        robot, question.goals, q.reshape(*lead, n), info.reshape(*lead, 5), number, question.limits
+    )
+
+
+def ik_many_starts(
+    robot: Any,
+    goal: Any = None,
+    starts: Any = 64,
+    *,
+    position: Any = None,
+    frame: str | None = None,
+    limits: Any = True,
+    weights: Any = None,
+    tolerance: float = NUMERIC_TOLERANCE,
+    max_iterations: int = 60,
+    rng: int | np.random.Generator | None = None,
+    threads: int | None = None,
+) -> SampledSolutions:
+    """The different solutions of one goal that descents from many starts find: a sample, never a proof.
+
+    goal (4, 4), or position (3,) [m]. starts: how many, or the starts themselves (k, dof). frame, limits,
+    weights, tolerance [m, rad], max_iterations, rng, threads: as in ik_numeric.
+
+    Returns SampledSolutions: q (k, dof) in the order found, hits (k,), unseen, reason; falsy if nothing was
+    found. Ends that differ by less than 1e-6 [rad, lengths of the arm] are one solution.
+    Raises as ik_numeric does.
+    """
+    question = ask(robot, goal, position, frame, weights, limits, tolerance)
+    if question.goals.ndim != 2:
+        raise InputError(f"goal has shape {question.goals.shape}; a search from many starts takes one goal")
+    steps = whole_number(max_iterations, "max_iterations", 0, MOST_ITERATIONS)
+    n = len(robot.joint_names)
+    if np.ndim(starts) == 0:
+        number = whole_number(starts, "starts", 1, MOST_STARTS)
+        begin = further_starts(robot, question.limits, question.goals, number, rng)
+    else:
+        begin = np.ascontiguousarray(as_floats(starts, "starts", last=(n,), largest=FARTHEST).reshape(-1, n))
+    goal_pose = np.ascontiguousarray(question.goals)
+    q, residual = np.empty((len(begin), n)), np.empty(len(begin))
+    hits = np.empty(len(begin), dtype=np.int64)
+    workers = whole_number(threads, "threads", 1, 1024) if threads is not None else 1
+    count = _core._ik_sample(
+        robot,
+        question.frame,
+        goal_pose,
+        begin,
+        np.zeros((1, n)),
+        question.weights,
+        question.limits,
+        question.tolerance,
+        steps,
+        workers,
+        q,
+        residual,
+        hits,
+    )
+    kept = slice(0, count)
+    return SampledSolutions(
+        robot, question.goals, q[kept].copy(), hits[kept].copy(), residual[kept].copy(), len(begin)
+    )
+
+
+def _starts(robot: Any, start: Any, lead: tuple[int, ...]) -> Array:
+    """Starts as rows: one for all goals (1, n), or one for each (goals, n)."""
+    n = len(robot.joint_names)
+    rows = as_floats(start, "start", last=(n,))
+    if np.abs(rows).max(initial=0.0) > FARTHEST:
+        raise InputError(f"start holds {np.abs(rows).max():g}; at most {FARTHEST:g} makes sense")
+    if rows.ndim > 1:
+        try:
+            rows = np.broadcast_to(rows, (*lead, n))
+        except ValueError:
+            raise InputError(
+                f"start has shape {rows.shape}, expected ({n},) or {(*lead, n)}: one per goal"
+            ) from None
+    return np.ascontiguousarray(rows.reshape(-1, n))
+
+
+def _posture(robot: Any, rest: Any, rest_weights: Any) -> Array:
+    """Rows rest and its weights (2, n), or (0, n)."""
+    n = len(robot.joint_names)
+    if rest is None:
+        if rest_weights is not None:
+            raise InputError("rest_weights= weigh the joints of rest=, which is not given")
+        return np.empty((0, n))
+    wanted = as_floats(rest, "rest", last=(n,), largest=FARTHEST)
+    weights = np.ones(n) if rest_weights is None else as_floats(rest_weights, "rest_weights", last=(n,))
+    if wanted.ndim != 1 or weights.ndim != 1 or not ((weights > 0) & (weights < 1e12)).all():
+        raise InputError(f"rest and rest_weights are ({n},) each, one per joint, the weights positive")
+    return np.array([wanted, weights])

@@ -1,0 +1,180 @@
+"""What numeric inverse kinematics is asked, checked and laid out for the compiled loops."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import Any, cast
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats, as_generator
+from cspace.errors import InputError, InputTypeError
+from cspace.kinematics.batch import check_robot, frame_number
+from cspace.model import Limits
+from cspace.spatial import as_pose
+from cspace.tolerances import FARTHEST
+
+__all__ = ["Question", "ask", "bounds_of", "further_starts", "middle", "positive"]
+
+MOST_PATH = 16
+EVERYTHING = np.ones(6)
+POSITION_ALONE = np.array([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+EVERYTHING.flags.writeable = POSITION_ALONE.flags.writeable = False
+
+
+@dataclass
+class Question:
+    """One frame and the goals (..., 4, 4) it is to reach; weights (6,) of the error; limits (2, dof), or
+    (2, 0) without any; tolerance [m, rad].
+    """
+
+    frame: int
+    goals: Array
+    weights: Array
+    limits: Array
+    tolerance: float
+
+
+def ask(
+    robot: Any,
+    goal: Any,
+    position: Any,
+    frame: str | None,
+    weights: Any,
+    limits: Any,
+    tolerance: Any,
+) -> Question:
+    """The arguments that all descents share.
+
+    Raises InputError for a goal that is no pose, weights that are negative or all zero, limits upside down,
+    a tolerance that is not positive, a floating base, or a frame that more than 16 joints move;
+    InputTypeError unless there is one goal; UnknownNameError for a frame that is not there.
+    """
+    check_robot(robot)
+    number = robot._assembly.tip_index if frame is None else -1
+    number = frame_number(robot, frame) if number < 0 else number
+    if robot.floating:
+        raise InputError(
+            f"the base of {robot.name} floats, and no pose of a frame alone says where it should go;"
+            " robot.step(q, tasks) moves base and joints together"
+        )
+    moving = _core._ik_moving(robot, number)
+    if moving > MOST_PATH:
+        raise InputError(
+            f"{moving} joints of {robot.name} move the frame; descents take up to {MOST_PATH},"
+            " robot.step(q, tasks) any number"
+        )
+    if (goal is None) == (position is None):
+        raise InputTypeError("give one goal: a pose T (..., 4, 4) of the frame, or position= (..., 3)")
+    if position is None:
+        goals, counted = as_pose(goal, "goal"), EVERYTHING if weights is None else _weights(weights)
+    else:
+        if weights is not None:
+            raise InputTypeError("weights= belong to a pose; a position weighs the same in every direction")
+        goals, counted = _at(as_floats(position, "position", last=(3,))), POSITION_ALONE
+    far = np.abs(goals[..., :3, 3]).max(initial=0.0)
+    if far > FARTHEST / 3:
+        raise InputError(f"a goal lies {far:g} m away; goals up to {FARTHEST:g} m away make sense")
+    return Question(number, goals, counted, bounds_of(robot, limits), positive(tolerance, "tolerance"))
+
+
+def _at(points: Array) -> Array:
+    """Points (..., 3) as poses whose rotation does not count."""
+    T = np.zeros((*points.shape[:-1], 4, 4))
+    T[..., range(4), range(4)] = 1.0
+    T[..., :3, 3] = points
+    return T
+
+
+def _weights(value: Any) -> Array:
+    weights = as_floats(value, "weights", last=(6,), largest=1e6)
+    if weights.ndim != 1 or (weights < 0).any() or not weights.any():
+        raise InputError(f"weights is {weights.tolist()}; expected six numbers, 0 or more, not all of them 0")
+    return np.ascontiguousarray(weights)
+
+
+def positive(value: Any, subject: str) -> float:
+    """The value as a positive number.
+
+    Raises InputTypeError for what is no number, InputError for zero, a negative number, NaN or inf.
+    """
+    if type(value) is float and 0.0 < value < math.inf:
+        return value
+    number = as_floats(value, subject)
+    if number.ndim or not number > 0:
+        raise InputError(f"{subject} is {value!r}; it must be one positive number")
+    return float(number)
+
+
+def bounds_of(robot: Any, limits: Any) -> Array:
+    """The limits of the joints as rows lower and upper (2, n), or (2, 0) for none.
+
+    limits: True for the robot's own, False for none, or a Limits.
+    Raises InputTypeError for anything else, InputError for another number of joints or limits upside down.
+    """
+    if limits is False:
+        return np.empty((2, 0))
+    if limits is True:
+        known = robot.__dict__.get("_bounds")
+        if known is None:
+            known = robot.__dict__["_bounds"] = np.array([robot.limits.lower, robot.limits.upper])
+        return cast(Array, known)
+    own = limits
+    if not isinstance(own, Limits):
+        raise InputTypeError(f"limits must be True, False or a Limits, got {type(limits).__name__}")
+    lower, upper = np.asarray(own.lower, dtype=np.float64), np.asarray(own.upper, dtype=np.float64)
+    n = len(robot.joint_names)
+    if lower.shape != (n,) or upper.shape != (n,):
+        raise InputError(f"limits are for {lower.shape} joints, expected {n} of {robot.name}")
+    if not (lower <= upper).all():
+        raise InputError("limits hold a lower one above its upper one, or NaN")
+    return np.array([lower, upper])
+
+
+def middle(robot: Any, bounds: Array) -> Array:
+    """The configuration halfway between the limits (n,); zero, or the limit nearest to it, where one is
+    missing.
+    """
+    if not bounds.size:
+        return np.zeros(len(robot.joint_names))
+    lower, upper = bounds
+    both = np.isfinite(lower) & np.isfinite(upper)
+    with np.errstate(invalid="ignore"):
+        halfway = 0.5 * (lower + upper)
+    return np.asarray(np.where(both, halfway, np.clip(0.0, lower, upper)))
+
+
+def further_starts(robot: Any, bounds: Array, goals: Array, count: int, rng: Any) -> Array:
+    """Configurations (count, n) all over the limits, to start from.
+
+    Angles without limits lie in (−π, π]; slides without limits reach as far as the goals and the tip at
+    zero. rng: seed or generator of random ones; None spreads them evenly, the same in every call.
+    """
+    n = len(robot.joint_names)
+    share = spread(count, n) if rng is None else as_generator(rng).random((count, n))
+    reach = 1.0
+    if "P" in robot.joint_types:
+        reach = 1e-3 + float(np.abs(goals[..., :3, 3]).max(initial=0.0))
+    span = np.where([kind == "P" for kind in robot.joint_types], reach, np.pi)
+    low, high = bounds if bounds.size else (np.full(n, -np.inf), np.full(n, np.inf))
+    open_low, open_high = ~np.isfinite(low), ~np.isfinite(high)
+    lower = np.where(open_low, np.where(open_high, -span, high - 2 * span), low)
+    upper = np.where(open_high, np.where(open_low, span, low + 2 * span), high)
+    return np.ascontiguousarray(upper - share * (upper - lower))
+
+
+@lru_cache(maxsize=32)
+def spread(count: int, n: int) -> Array:
+    """Points (count, n) of the unit cube, evenly spread: multiples of the powers of 1/φ, where φ is the
+    positive root of xⁿ⁺¹ = x + 1 (the additive recurrence of Roberts 2018).
+    """
+    root = 2.0
+    for _ in range(60):
+        root = (1.0 + root) ** (1.0 / (n + 1))
+    powers = root ** -np.arange(1.0, n + 1)
+    points = np.mod(0.5 + np.arange(1, count + 1)[:, None] * powers, 1.0)
+    points.flags.writeable = False
+    return points

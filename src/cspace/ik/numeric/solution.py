@@ -1,0 +1,169 @@
+"""What numeric inverse kinematics answers: a configuration, and whether it reaches the goal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.ik.windings import nearest_winding
+
+__all__ = ["NumericSolution", "SampledSolutions"]
+
+REACHED: Final = 0
+STALLED: Final = 1
+Flags = npt.NDArray[np.bool_]
+Counts = npt.NDArray[np.int64]
+ENDINGS: Final = ("reached", "stalled", "out of iterations")
+
+
+class NumericSolution:
+    """The configuration at which a descent ended, one per goal.
+
+    q (..., dof) [rad, m]. goal (..., 4, 4). success (...): whether fk(q) is the goal within the tolerance;
+    with limits q lies inside them, reached or not. position_error (...) [m] and rotation_error (...) [rad]:
+    lengths of the parts of the error that count. iterations (...): of the descent that ended at q.
+    start (...): which start it came from, 0 for the first. Truthy if every goal is reached.
+    """
+
+    __slots__ = ("_info", "_limits", "_starts", "goal", "q", "robot")
+
+    def __init__(self, robot: Any, goal: Array, q: Array, info: Array, starts: int, limits: Array) -> None:
+        # info (..., 5): position error, rotation error, iterations, start, ending.
+        self.robot, self.goal, self.q = robot, goal, q
+        self._info, self._starts, self._limits = info, starts, limits
+
+    def __bool__(self) -> bool:
+        return bool((self._info[..., 4] == REACHED).all())
+
+    @property
+    def success(self) -> Flags:
+        """Whether each goal is reached, (...)."""
+        return np.asarray(self._info[..., 4] == REACHED)
+
+    @property
+    def position_error(self) -> Array:
+        """Length of the counted part of the position error, (...) [m]."""
+        return np.asarray(self._info[..., 0])
+
+    @property
+    def rotation_error(self) -> Array:
+        """Length of the counted part of the rotation error, (...) [rad]."""
+        return np.asarray(self._info[..., 1])
+
+    @property
+    def iterations(self) -> Counts:
+        """Iterations of the descent that ended at q, (...)."""
+        return self._whole(2)
+
+    @property
+    def start(self) -> Counts:
+        """Which of the starts led to q, (...): 0 is the first one."""
+        return self._whole(3)
+
+    def _whole(self, column: int) -> Counts:
+        return np.asarray(self._info[..., column]).astype(np.int64)
+
+    @property
+    def residual(self) -> Array:
+        """The larger of position error [m] and rotation error [rad], (...)."""
+        return np.maximum(self.position_error, self.rotation_error)
+
+    @property
+    def status(self) -> Any:
+        """ "reached", "stalled" (a local minimum of the error) or "out of iterations"; of a batch (...)."""
+        words = np.array(ENDINGS)[self._whole(4)]
+        return str(words) if words.ndim == 0 else words
+
+    @property
+    def reason(self) -> str:
+        """The verdict in a sentence; of a batch, how many goals were reached."""
+        if self.q.ndim > 1:
+            reached = int(np.count_nonzero(self.success))
+            return f"{reached} of {self.success.size} goals reached"
+        left = f"{float(self.position_error):.3g} m and {np.degrees(float(self.rotation_error)):.3g}°"
+        which = "the first start" if self.start == 0 else f"start {int(self.start) + 1} of {self._starts}"
+        if self:
+            return f"reached from {which} in {int(self.iterations)} iterations; {left} are left"
+        tried = "one start" if self._starts == 1 else f"{self._starts} starts"
+        how = "a local minimum" if self._whole(4) == STALLED else "where the iterations ran out"
+        text = f"not reached from {tried}: the best of them ends {left} away, at {how}"
+        held = self._at_limits()
+        return text + (f", with {', '.join(held)} at a limit" if held else "") + "; this proves nothing"
+
+    def _at_limits(self) -> list[str]:
+        if not self._limits.size:
+            return []
+        at = (self.q <= self._limits[0]) | (self.q >= self._limits[1])
+        return [name for name, held in zip(self.robot.joint_names, at, strict=True) if held]
+
+    def __repr__(self) -> str:
+        return f"<NumericSolution of {self.robot.name}: {self.reason}>"
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class SampledSolutions:
+    """The different solutions of one goal that descents from many starts found: a sample, never all for sure.
+
+    q (k, dof) [rad, m] in the order found. hits (k,): how many of the starts ended in each. goal (4, 4).
+    starts: how many there were. Truthy if there is one.
+    """
+
+    robot: Any
+    goal: Array
+    q: Array
+    hits: Counts
+    residual: Array
+    starts: int
+
+    complete: Final = False
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    def __iter__(self) -> Iterator[Array]:
+        return iter(self.q)
+
+    def __getitem__(self, row: int) -> Array:
+        return np.asarray(self.q[row])
+
+    @property
+    def unseen(self) -> float:
+        """An estimate of the share of starts that lead to solutions not found yet (Good 1953): the share of
+        those found, among the successful starts, that were found once.
+        """
+        reached = int(self.hits.sum())
+        return float(np.count_nonzero(self.hits == 1)) / reached if reached else 1.0
+
+    @property
+    def reason(self) -> str:
+        """What was found in a sentence."""
+        reached = int(self.hits.sum())
+        if not reached:
+            return f"none of {self.starts} starts reached the goal; this proves nothing"
+        found = "one solution" if len(self) == 1 else f"{len(self)} different solutions"
+        once = int(np.count_nonzero(self.hits == 1))
+        return (
+            f"{found} from {reached} of {self.starts} starts, {once} of them found once;"
+            " a sample, there may be more"
+        )
+
+    def nearest(self, q: Any) -> Array:
+        """The solution nearest to q (dof,), its angles turned to where they are closest.
+
+        Raises InputError where nothing was found.
+        """
+        wanted = as_floats(q, "q", last=(self.robot.dof,))
+        if not len(self):
+            raise InputError(self.reason)
+        free = np.full(self.robot.dof, np.inf)
+        turned = nearest_winding(self.q, wanted, self.robot.joint_types, -free, free)
+        return np.asarray(turned[np.argmin(np.linalg.norm(turned - wanted, axis=1))])
+
+    def __repr__(self) -> str:
+        return f"<SampledSolutions of {self.robot.name}: {self.reason}>"
