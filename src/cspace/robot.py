@@ -12,7 +12,7 @@ from cspace import kinematics, model
 from cspace._core import RobotBase
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
-from cspace.model import Chain, Description, DHTable
+from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 
@@ -138,6 +138,14 @@ class Robot(RobotBase):
     def to_dh(self, *, convention: str) -> DHTable:
         """The Denavit–Hartenberg table from base to tip, tool and mounting included; see model.to_dh."""
         return model.to_dh(self.chain, convention=convention)
+
+    def link_matrices(self, *, convention: str = "standard") -> LinkMatrices:
+        """The matrices of the links and their products with c1, s12 and the like as symbols.
+
+        convention: of the Denavit–Hartenberg table behind them, "standard" or "modified". The result prints,
+        has to_markdown() and to_latex(), and can be evaluated; see model.link_matrices.
+        """
+        return model.link_matrices(self.to_dh(convention=convention))
 
     def to_screws(self) -> Chain:
         """The joint axes at zero from base to tip, tool and mounting included; the same as chain."""

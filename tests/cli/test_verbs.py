@@ -240,3 +240,12 @@ def test_rows_within_limits_are_printed_where_the_limits_are():
 
 def test_words_find_robots_without_an_option():
     assert cspace("robots universal --json").json == cspace("robots --search universal --json").json
+
+
+def test_products_of_link_matrices_in_every_form():
+    assert "px = c1 + c12" in cspace("dh planar_2r --products").out
+    assert r"p_x &= c_{1} + c_{12}" in cspace("dh planar_2r --products --latex").out
+    assert "$$A_{1} A_{2}" in cspace("dh planar_2r --products --markdown").out
+    products = cspace("dh planar_2r --products --json").json["products"]
+    assert products[0][0] == ["c12", "−s12", "0", "c1 + c12"]
+    assert "products" not in cspace("dh planar_2r --json").json

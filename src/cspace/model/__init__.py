@@ -13,6 +13,7 @@ from cspace.model.dh import DHTable, dh_matrix, from_dh
 from cspace.model.dh_derivation import to_dh
 from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
+from cspace.model.link_matrices import LinkMatrices, link_matrices
 from cspace.model.mounting import mounted, with_frame
 from cspace.model.screws import from_screws, twists
 from cspace.model.toml import from_toml
@@ -30,6 +31,7 @@ __all__ = [
     "Joint",
     "Limits",
     "Link",
+    "LinkMatrices",
     "Loop",
     "Mesh",
     "Mimic",
@@ -44,6 +46,7 @@ __all__ = [
     "from_screws",
     "from_toml",
     "from_urdf",
+    "link_matrices",
     "mobility",
     "mounted",
     "point_freedoms",

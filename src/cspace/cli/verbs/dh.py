@@ -14,14 +14,14 @@ from cspace.cli.robot import load, need_chain
 from cspace.cli.symbols import ZERO, angle_text, entry_texts, link_matrix
 
 if TYPE_CHECKING:
-    from cspace.model import DHTable
+    from cspace.model import DHTable, LinkMatrices
 
 __all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
 cspace dh ur5e
 cspace dh puma560 --convention modified --deg
-cspace dh scara --latex
+cspace dh scara --latex --products
 """
 
 
@@ -37,29 +37,45 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     form = parser.add_mutually_exclusive_group()
     form.add_argument("--latex", action="store_true", help="print LaTeX")
     form.add_argument("--markdown", action="store_true", help="print Markdown")
+    parser.add_argument(
+        "--products", action="store_true", help="also A1 A2, A1 A2 A3 … with c12 and the like"
+    )
     add_degrees(parser)
     add_chain(parser)
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print the table and the matrix of every link, as symbols and, with q = 0, as numbers."""
-    from cspace.model import to_dh
+    from cspace.model import link_matrices, to_dh
 
     robot = load(args)
     need_chain(robot)
     table = to_dh(robot.chain, convention=args.convention)
+    links = link_matrices(table) if args.products else None
     if out.as_json:
-        out.document(document(robot.name, table))
-    elif args.latex:
+        out.document(document(robot.name, table, links))
+        return Exit.DONE
+    if args.latex:
         latex(out, table, degrees=args.deg)
     elif args.markdown:
         markdown(out, table, degrees=args.deg)
     else:
         show(out, robot.name, table, degrees=args.deg)
+    for text in products(links, args) if links is not None else ():
+        out.line(text)
     return Exit.DONE
 
 
-def document(name: str, table: DHTable) -> dict[str, Any]:
+def products(links: LinkMatrices, args: argparse.Namespace) -> list[str]:
+    """The products of the link matrices in the form asked for."""
+    if args.latex:
+        return links.product_formulas()
+    if args.markdown:
+        return [f"\n$${formula}$$" for formula in links.product_formulas()]
+    return [f"\n{text}" for text in links.product_texts()]
+
+
+def document(name: str, table: DHTable, links: LinkMatrices | None) -> dict[str, Any]:
     """The table as JSON data, [rad] and [m]."""
     columns = zip(
         table.joint_names, table.joint_types, table.alpha, table.a, table.d, table.theta_offset, strict=True
@@ -85,6 +101,7 @@ def document(name: str, table: DHTable) -> dict[str, Any]:
         "deviation": float(table.deviation),
         "matrices": [link_matrix(table, i).tolist() for i in range(len(table))],
         "symbols": [entry_texts(table, i) for i in range(len(table))],
+        **({} if links is None else {"products": [T.texts() for T in links.products[1:]]}),
     }
 
 

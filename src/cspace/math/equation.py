@@ -1,0 +1,53 @@
+"""Equations that print and can be checked: both sides are data."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from cspace.math.trig_polynomial import TrigPolynomial
+
+__all__ = ["Equation"]
+
+
+@dataclass(frozen=True, eq=False)
+class Equation:
+    """left = right. defines: the symbol that the equation introduces (its left side), or "".
+
+    unit: what both sides are measured in, "m", "m²" or "" for a plain number.
+    """
+
+    left: TrigPolynomial
+    right: TrigPolynomial
+    defines: str = ""
+    unit: str = ""
+
+    @classmethod
+    def definition(cls, name: str, right: TrigPolynomial, unit: str = "") -> Equation:
+        """A symbol and what it stands for."""
+        return cls(TrigPolynomial.symbol(name), right, name, unit)
+
+    def residual(self, values: Mapping[str, Any]) -> Any:
+        """left − right (...) at values (...) of the symbols."""
+        return self.left.evaluate(values) - self.right.evaluate(values)
+
+    def with_numbers(self, values: Mapping[str, float]) -> Equation:
+        """The same with numbers in the place of some symbols; a symbol that it defines stays."""
+        known = {name: value for name, value in values.items() if name != self.defines}
+        return Equation(
+            self.left.with_numbers(known), self.right.with_numbers(known), self.defines, self.unit
+        )
+
+    def __len__(self) -> int:
+        return len(self.left) + len(self.right)
+
+    def text(self, *, least: float = 0.0) -> str:
+        """As plain text."""
+        return f"{self.left.text(least=least)} = {self.right.text(least=least)}"
+
+    def latex(self, *, least: float = 0.0) -> str:
+        """As LaTeX, the equals sign to be aligned."""
+        return f"{self.left.latex(least=least)} &= {self.right.latex(least=least)}"
+
+    __str__ = text
