@@ -81,6 +81,8 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
 def _plural(noun: str) -> str:
     if noun.endswith("is"):
         return noun[:-2] + "es"
+    if noun.endswith("y") and noun[-2:-1] not in "aeiou":
+        return noun[:-1] + "ies"
     return noun + ("es" if noun.endswith(("s", "x", "ch", "sh")) else "s")
 
 

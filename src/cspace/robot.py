@@ -91,6 +91,19 @@ class Robot(RobotBase):
         return cls(model.from_urdf(source, package_paths=package_paths), base, tip, floating=floating)
 
     @classmethod
+    def from_mjcf(
+        cls,
+        source: str | os.PathLike[str] | bytes,
+        base: str | None = None,
+        tip: str | None = None,
+        *,
+        floating: bool | None = None,
+        package_paths: Sequence[Any] = (),
+    ) -> Robot:
+        """A robot from an MJCF file or its text; see model.from_mjcf, which also names the errors."""
+        return cls(model.from_mjcf(source, package_paths=package_paths), base, tip, floating=floating)
+
+    @classmethod
     def from_toml(
         cls,
         source: str | os.PathLike[str],

@@ -16,6 +16,8 @@ __all__ = [
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
     "MEAN_UNIQUENESS",
+    "MJCF_DEPTH",
+    "MJCF_SAME_AXIS",
     "MOST_WINDINGS",
     "NUMERIC_TOLERANCE",
     "PLANAR_AXES",
@@ -73,6 +75,14 @@ DESCRIPTION_BYTES: Final = 64 * 2**20
 
 DESCRIPTION_DEPTH: Final = 64
 """Deepest nesting of elements in a robot file: URDF needs five levels, simulator extensions a dozen."""
+
+MJCF_DEPTH: Final = 500
+"""Deepest nesting of elements in MJCF, where each link stands inside the one before: as far as the XML reader
+of MuJoCo goes."""
+
+MJCF_SAME_AXIS: Final = 1e-10
+"""Sine of the angle to the z axis below which `zaxis` of MJCF leaves z in place, or turns it over: MuJoCo's
+own bound, so that both read the same frame."""
 
 UNLIMITED: Final = 1e300
 """What stands for infinity where a file format demands a finite number (rad, m, or their rates): beyond any

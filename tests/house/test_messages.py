@@ -62,7 +62,9 @@ def test_a_suggestion_is_a_sentence(name, known, text):
     assert text in str(errors.suggest("frame", name, known, owner="r"))
 
 
-@pytest.mark.parametrize(("noun", "plural"), [("link", "links"), ("branch", "branches"), ("axis", "axes")])
+@pytest.mark.parametrize(
+    ("noun", "plural"), [("link", "links"), ("branch", "branches"), ("axis", "axes"), ("body", "bodies")]
+)
 def test_the_plural_of_a_subject_is_right(noun, plural):
     assert str(errors.suggest(noun, "x", ["a"])).endswith(f"; {plural}: a")
 

@@ -6,7 +6,7 @@ import re
 import numpy as np
 
 from cspace.errors import CspaceError
-from cspace.model import chain, default_tip, from_toml, from_urdf, to_dh, to_toml, to_urdf, tree
+from cspace.model import chain, default_tip, from_mjcf, from_toml, from_urdf, to_dh, to_toml, to_urdf, tree
 
 POISON = [
     *(b"nan inf -inf 1e999 -0 1e-320 0x10 1_0 true false null".split()),
@@ -54,6 +54,15 @@ POISON = [
     b"planar",
     b"continuous",
     b"prismatic",
+    b"<body/>",
+    b"<body><joint/></body>",
+    b"<freejoint/>",
+    b"<frame>",
+    b"<default class='main'>",
+    b"<include file='x.xml'/>",
+    b"free",
+    b"ball",
+    b"slide",
 ]
 
 
@@ -93,7 +102,9 @@ def damaged(rng, data, seeds):
     k = int(rng.integers(len(other)))
     poison = POISON[int(rng.integers(len(POISON)))]
     words = [
-        w for w in (b"0", b"1", b"name", b"base", b"link", b"joint", b"revolute", b'"', b"=") if w in data
+        w
+        for w in (b"0", b"1", b"name", b"base", b"link", b"joint", b"revolute", b"body", b'"', b"=")
+        if w in data
     ]
     word = words[int(rng.integers(len(words)))] if words else b""
     choices = [
@@ -118,12 +129,12 @@ def swapped_lines(rng, data):
 
 
 def exercise(data, path):
-    """Read `data` as both formats and, where that works, use the robot; anything but CspaceError escapes.
+    """Read `data` as every format and, where that works, use the robot; anything but CspaceError escapes.
 
-    Returns how many of the two readers accepted it.
+    Returns how many of the readers accepted it.
     """
     accepted = 0
-    for read, suffix in ((from_urdf, ".urdf"), (from_toml, ".toml")):
+    for read, suffix in ((from_urdf, ".urdf"), (from_toml, ".toml"), (from_mjcf, ".xml")):
         file = path.with_suffix(suffix)
         file.write_bytes(data)
         robot = None

@@ -6,8 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cspace.errors import CspaceError
-from cspace.model import from_toml, from_urdf, to_toml, to_urdf
+from cspace.model import from_mjcf, from_toml, from_urdf, to_toml, to_urdf
 from cspace.robots import load_description
+from model.mjcf.models import ARM as MJCF
+from model.mjcf.models import random_model
 from model.mutation import POISON, exercise, mutant
 from model.random_robots import random_tree
 from model.test_toml import DH, SCREWS, TREE
@@ -18,6 +20,7 @@ def seeds():
     """Valid files to damage, a few kilobytes each."""
     trees = [random_tree(np.random.default_rng(i), n=4) for i in range(2)]
     texts = [ARM, TREE, SCREWS, DH, *map(to_urdf, trees), *map(to_toml, trees)]
+    texts += [MJCF, random_model(np.random.default_rng(2), n=3), random_model(np.random.default_rng(6), n=4)]
     texts.append(to_urdf(load_description("planar_2r")))
     return [text.encode() for text in texts]
 
@@ -32,10 +35,11 @@ def test_damaged_files_end_in_an_error_of_ours_or_in_a_robot(seed, tmp_path):
     assert accepted > 0, "the damage is too coarse to reach the deeper checks"
 
 
-def test_every_poison_in_every_attribute_is_refused_or_read(tmp_path):
-    """Each attribute value of the arm, each poison in its place."""
+@pytest.mark.parametrize("arm", [ARM, MJCF], ids=["urdf", "mjcf"])
+def test_every_poison_in_every_attribute_is_refused_or_read(arm, tmp_path):
+    """Each attribute value of the arms, each poison in its place."""
     rng = np.random.default_rng(0)
-    parts = ARM.split('"')
+    parts = arm.split('"')
     for i in range(3, len(parts), 2):
         for poison in rng.choice(len(POISON), 6, replace=False):
             text = '"'.join([*parts[:i], "", *parts[i + 1 :]]).encode()
@@ -45,14 +49,15 @@ def test_every_poison_in_every_attribute_is_refused_or_read(tmp_path):
 
 @settings(max_examples=150, deadline=None)
 @given(st.text(max_size=200))
-def test_any_text_is_refused_by_both_readers(text):
-    for read in (from_urdf, from_toml):
+def test_any_text_is_refused_by_every_reader(text):
+    for read in (from_urdf, from_mjcf, from_toml):
         with pytest.raises(CspaceError):
-            read("<" + text if read is from_urdf else "x\n" + text)
+            read("x\n" + text if read is from_toml else "<" + text)
 
 
 @settings(max_examples=100, deadline=None)
 @given(st.binary(max_size=200))
 def test_any_bytes_are_refused(data):
-    with pytest.raises(CspaceError):
-        from_urdf(data)
+    for read in (from_urdf, from_mjcf):
+        with pytest.raises(CspaceError):
+            read(data)

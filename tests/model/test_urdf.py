@@ -218,7 +218,12 @@ FAULTS = {
     "negative size": ('length="0.4"', 'length="-0.4"', "<cylinder", "must not be negative"),
     "mimic of nothing": ('mimic joint="finger"', 'mimic joint="fingr"', '"other"', "did you mean 'finger'"),
     "no mass": ('<mass value="2"/>', "", "<inertial", "needs <mass"),
-    "xacro": ("<link name=", "<xacro:include/><link name=", "xacro:include", "xacro in.xacro > out.urdf"),
+    "xacro": (
+        "<link name=",
+        "<xacro:include/><link name=",
+        "xacro:include",
+        "load_robot and model.from_xacro expand",
+    ),
 }
 
 

@@ -14,6 +14,7 @@ from cspace.model.dh_derivation import to_dh
 from cspace.model.joint import Joint, Limits, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.link_matrices import LinkMatrices, link_matrices
+from cspace.model.mjcf import from_mjcf
 from cspace.model.mounting import mounted, with_frame
 from cspace.model.screws import from_screws, twists
 from cspace.model.toml import from_toml
@@ -43,6 +44,7 @@ __all__ = [
     "default_tip",
     "dh_matrix",
     "from_dh",
+    "from_mjcf",
     "from_screws",
     "from_toml",
     "from_urdf",

@@ -8,7 +8,7 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["from_rpy", "inverse", "rotation_about", "to_rpy", "translation"]
+__all__ = ["from_rpy", "from_wxyz", "inverse", "rotation_about", "to_rpy", "translation"]
 
 
 def from_rpy(xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -> Array:
@@ -35,6 +35,19 @@ def to_rpy(R: Array) -> tuple[float, float, float]:
     pitch = math.atan2(-R[2, 0], c * R[0, 0] + s * R[1, 0])
     roll = math.atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
     return roll, pitch, yaw
+
+
+def from_wxyz(quaternion: Array) -> Array:
+    """The rotation (4, 4) of a unit quaternion (4,), its scalar first."""
+    w, x, y, z = quaternion.tolist()
+    return np.array(
+        [
+            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y), 0.0],
+            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x), 0.0],
+            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y), 0.0],
+            [0.0, 0.0, 0.0, 1.0],
+        ]
+    )
 
 
 def rotation_about(axis: Array, angle: float) -> Array:

@@ -14,7 +14,7 @@ from cspace.model.elementary import Coordinates, Elementary, coordinates_of, ele
 from cspace.model.link import Inertial
 from cspace.model.values import frozen
 
-__all__ = ["Tree", "tree"]
+__all__ = ["Tree", "lumped", "tree"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -123,11 +123,11 @@ def _bodies(
             carried[joint + 1].append((inertial, pose))
     mass, com, inertia = np.zeros(n + 1), np.zeros((n + 1, 3)), np.zeros((n + 1, 3, 3))
     for k, parts in enumerate(carried):
-        mass[k], com[k], inertia[k] = _lump(parts)
+        mass[k], com[k], inertia[k] = lumped(parts)
     return frozen(mass), frozen(com), frozen(inertia), tuple(massless)
 
 
-def _lump(parts: list[tuple[Inertial, Array]]) -> tuple[float, Array, Array]:
+def lumped(parts: list[tuple[Inertial, Array]]) -> tuple[float, Array, Array]:
     """One body out of several: Σm, Σm c / Σm, and Σ(R I Rᵀ + m (|d|² 1 − d dᵀ)) about it (Steiner)."""
     mass = sum(inertial.mass for inertial, _ in parts)
     places = [pose[:3, :3] @ inertial.com + pose[:3, 3] for inertial, pose in parts]

@@ -8,7 +8,7 @@ from typing import Final
 
 from cspace.model.xml import Element
 
-__all__ = ["slip_in"]
+__all__ = ["closest", "slip_in"]
 
 CHILDREN: Final[dict[str, frozenset[str]]] = {
     "robot": frozenset({"link", "joint", "material", "transmission", "gazebo"}),

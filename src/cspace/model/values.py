@@ -12,6 +12,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER, ROTATION_ERROR
 
 __all__ = [
+    "BEYOND",
     "IDENTITY",
     "X_AXIS",
     "finite_number",
@@ -24,6 +25,7 @@ __all__ = [
 ]
 
 BEYOND = f"no robot has numbers beyond {LARGEST_NUMBER:g} in SI units"
+"""The rule that a number broke which is larger than tolerances.LARGEST_NUMBER."""
 
 
 def frozen(array: Array) -> Array:

@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
+import contextlib
+import os
 from collections.abc import Iterator
 from xml.parsers import expat
 
 from cspace.errors import DescriptionError
+from cspace.model.files import path_of, read_bytes
 from cspace.tolerances import DESCRIPTION_BYTES, DESCRIPTION_DEPTH
 
-__all__ = ["Element", "parse"]
+__all__ = ["Element", "parse", "parse_source", "root_tag"]
+
+BLANKS = "\ufeff \t\r\n"
 
 
 class Element:
-    """One XML element: its tag, attributes, children and the line where it starts."""
+    """One XML element: tag, attributes, children, and the file (None: a text) and line where it starts."""
 
-    __slots__ = ("attributes", "children", "line", "tag")
+    __slots__ = ("attributes", "children", "line", "path", "tag")
 
-    def __init__(self, tag: str, attributes: dict[str, str], line: int) -> None:
+    def __init__(self, tag: str, attributes: dict[str, str], line: int, path: str | None = None) -> None:
         self.tag = tag
         self.attributes = attributes
         self.children: list[Element] = []
         self.line = line
+        self.path = path
 
     def all(self, tag: str) -> Iterator[Element]:
         """The children of that tag."""
@@ -34,9 +40,10 @@ class Element:
 class _Builder:
     """Builds the tree from the events of one parser."""
 
-    def __init__(self, path: str | None, lines_before: int) -> None:
+    def __init__(self, path: str | None, lines_before: int, depth: int) -> None:
         self.path = path
         self.lines_before = lines_before
+        self.depth = depth
         self.root: Element | None = None
         self.stack: list[Element] = []
         self.parser = expat.ParserCreate()
@@ -46,14 +53,14 @@ class _Builder:
         self.parser.EntityDeclHandler = self.refuse_entity
 
     def start(self, tag: str, attributes: dict[str, str]) -> None:
-        element = Element(tag, attributes, self.parser.CurrentLineNumber + self.lines_before)
+        element = Element(tag, attributes, self.line(), self.path)
         if self.stack:
             self.stack[-1].children.append(element)
         else:
             self.root = element
         self.stack.append(element)
-        if len(self.stack) > DESCRIPTION_DEPTH:
-            raise self.fault(f"elements are nested more than {DESCRIPTION_DEPTH} deep; this is no robot")
+        if len(self.stack) > self.depth:
+            raise self.fault(f"elements are nested more than {self.depth} deep; this is no robot")
 
     def end(self, tag: str) -> None:
         self.stack.pop()
@@ -68,19 +75,21 @@ class _Builder:
         return DescriptionError(message, path=self.path, line=self.line())
 
 
-def parse(data: bytes, path: str | None = None, lines_before: int = 0) -> Element:
+def parse(
+    data: bytes, path: str | None = None, lines_before: int = 0, depth: int = DESCRIPTION_DEPTH
+) -> Element:
     """The root element of an XML document.
 
-    data: the file. path: its name in messages. lines_before: lines cut off ahead of data.
+    data: the file. path: its name in messages. lines_before: lines cut off ahead of data. depth: how deep
+    elements may be nested.
     Raises DescriptionError with file and line for malformed XML, for entity declarations (which a few lines
-    can blow up to gigabytes), for files beyond tolerances.DESCRIPTION_BYTES or nested beyond
-    DESCRIPTION_DEPTH.
+    can blow up to gigabytes), for files beyond tolerances.DESCRIPTION_BYTES or nested beyond `depth`.
     """
     if len(data) > DESCRIPTION_BYTES:
         raise DescriptionError(
             f"the file holds {len(data)} bytes; more than {DESCRIPTION_BYTES} are refused", path=path
         )
-    builder = _Builder(path, lines_before)
+    builder = _Builder(path, lines_before, depth)
     try:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
@@ -95,3 +104,37 @@ def parse(data: bytes, path: str | None = None, lines_before: int = 0) -> Elemen
     if builder.root is None:
         raise DescriptionError("malformed XML: no element found", path=path, line=1)
     return builder.root
+
+
+def parse_source(source: str | os.PathLike[str] | bytes, depth: int = DESCRIPTION_DEPTH) -> Element:
+    """The root element of `source`: a path, or the text itself (a string that starts with "<", or bytes).
+
+    The root's `path` tells which it was. Errors as in `parse` and files.read_bytes.
+    """
+    if isinstance(source, str) and source.lstrip(BLANKS).startswith("<"):
+        blank = len(source) - len(source.lstrip(BLANKS))
+        data = source[blank:].encode("utf-8", "replace")
+        return parse(data, None, source.count("\n", 0, blank), depth)
+    if isinstance(source, bytes):
+        return parse(source, None, 0, depth)
+    path = path_of(source)
+    return parse(read_bytes(path), path, 0, depth)
+
+
+class _RootSeen(Exception):
+    """Ends the parser once the root's tag is known."""
+
+
+def root_tag(data: bytes) -> str | None:
+    """The tag of the root element, or None where the document is broken before it."""
+    parser = expat.ParserCreate()
+    found: list[str] = []
+
+    def seen(tag: str, _: dict[str, str]) -> None:
+        found.append(tag)
+        raise _RootSeen
+
+    parser.StartElementHandler = seen
+    with contextlib.suppress(_RootSeen, expat.ExpatError, LookupError, UnicodeError, ValueError):
+        parser.Parse(data, True)
+    return found[0] if found else None

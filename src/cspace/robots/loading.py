@@ -8,8 +8,9 @@ from pathlib import Path
 from typing import Any
 
 from cspace.errors import DescriptionError, InputTypeError, UnknownNameError
-from cspace.model import Description, from_toml, from_urdf
+from cspace.model import Description, from_mjcf, from_toml, from_urdf
 from cspace.model.files import read_bytes
+from cspace.model.xml import root_tag
 from cspace.robot import Robot
 from cspace.robots.lookup import catalogue_description
 
@@ -17,12 +18,14 @@ __all__ = ["load_description", "load_robot"]
 
 ADVICE = {
     ".xacro": "xacro cannot be read yet; expand it first: xacro in.xacro > out.urdf (pip install xacro)",
-    ".mjcf": "MJCF (MuJoCo) cannot be read yet; convert it to URDF",
     ".sdf": "SDF (Gazebo) cannot be read; convert it to URDF",
     ".usd": "USD cannot be read; convert it to URDF",
     ".usda": "USD cannot be read; convert it to URDF",
     ".srdf": "an SRDF file only adds groups to a robot; give the URDF file that it belongs to",
 }
+
+
+XML_SUFFIXES = (".urdf", ".xml", ".mjcf")
 
 
 def load_robot(
@@ -35,7 +38,8 @@ def load_robot(
 ) -> Robot:
     """A robot of the catalogue or of a file, ready to be asked.
 
-    name_or_path: a name ("ur5e", see cspace.robots.names()) or the path of a .urdf, .xml or .toml file.
+    name_or_path: a name ("ur5e", see cspace.robots.names()) or the path of a URDF, MJCF or TOML file; URDF
+    and MJCF are told apart by their root element.
     base, tip: links between which it moves, where the file leaves the choice. floating: whether the base
     moves freely, its six velocities before those of the joints; None: if the file says so. package_paths:
     folders where package:// names of meshes are looked for first.
@@ -69,14 +73,16 @@ def load_description(
         raise DescriptionError(ADVICE[suffix], path=path)
     if suffix == ".toml":
         return from_toml(path, package_paths=package_paths)
-    if suffix not in (".urdf", ".xml"):
-        _check_xml(path)
-    return from_urdf(path, package_paths=package_paths)
+    data = read_bytes(path)
+    if suffix not in XML_SUFFIXES:
+        _check_xml(path, data)
+    read = from_mjcf if root_tag(data) == "mujoco" else from_urdf
+    return read(path, package_paths=package_paths)
 
 
 def _looks_like_a_path(text: str) -> bool:
     suffix = Path(text).suffix.lower()
-    return "/" in text or os.sep in text or suffix in (".urdf", ".xml", ".toml", *ADVICE)
+    return "/" in text or os.sep in text or suffix in (*XML_SUFFIXES, ".toml", *ADVICE)
 
 
 def _exists(text: str) -> bool:
@@ -86,12 +92,12 @@ def _exists(text: str) -> bool:
         return False
 
 
-def _check_xml(path: str) -> None:
+def _check_xml(path: str, data: bytes) -> None:
     """Complain about a file of unknown suffix unless it starts as XML does."""
-    start = read_bytes(path)[:64].lstrip(b"\xef\xbb\xbf \t\r\n")
+    start = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")
     if not start.startswith(b"<"):
         raise DescriptionError(
             f"this is no robot file: it starts with {start[:12]!r};"
-            " a robot is URDF (.urdf, .xml) or TOML (.toml)",
+            " a robot is URDF (.urdf, .xml), MJCF (.xml) or TOML (.toml)",
             path=path,
         )

@@ -1,0 +1,75 @@
+"""An MJCF document in one piece: the main file with every <include> put in its place."""
+
+from __future__ import annotations
+
+import os
+
+from cspace.errors import DescriptionError
+from cspace.model.attributes import fault, text_of
+from cspace.model.files import read_bytes
+from cspace.model.xml import Element, parse, parse_source
+from cspace.tolerances import DESCRIPTION_BYTES, MJCF_DEPTH
+
+__all__ = ["read_document"]
+
+
+def read_document(source: str | os.PathLike[str] | bytes) -> Element:
+    """The root element of an MJCF file or text, includes resolved; each element knows its file and line.
+
+    An included file is looked for beside the main file, then beside the file that includes it; its root's
+    children take the place of <include>. As in MuJoCo a file is included once, so there are no circles.
+    Raises DescriptionError for files that are missing, broken or included twice, and for elements nested
+    deeper than tolerances.MJCF_DEPTH.
+    """
+    root = parse_source(source, MJCF_DEPTH)
+    return _Includes(root).resolve()
+
+
+class _Includes:
+    """Puts the included files in their places."""
+
+    def __init__(self, root: Element) -> None:
+        self.root = root
+        self.main = root.path
+        self.seen = set() if root.path is None else {os.path.realpath(root.path)}
+        self.bytes = 0
+
+    def resolve(self) -> Element:
+        stack = [(self.root, 1)]
+        while stack:
+            element, depth = stack.pop()
+            if depth > MJCF_DEPTH:
+                raise fault(element, f"elements are nested more than {MJCF_DEPTH} deep; this is no robot")
+            while any(child.tag == "include" for child in element.children):
+                element.children = [part for child in element.children for part in self.parts(child)]
+            stack.extend((child, depth + 1) for child in element.children)
+        return self.root
+
+    def parts(self, element: Element) -> list[Element]:
+        """What stands for an element: itself, or what the file holds that it includes."""
+        if element.tag != "include":
+            return [element]
+        if element.children:
+            raise fault(element, "<include> holds elements; what is included stands in its file")
+        included = self.included(element)
+        if not included.children:
+            raise fault(element, f"the included file {included.path!r} holds no elements")
+        return included.children
+
+    def included(self, element: Element) -> Element:
+        name = text_of(element, "file")
+        if self.main is None or element.path is None:
+            raise fault(element, f"{name!r} is included by a text, which has no folder; give the file's path")
+        places = [os.path.join(os.path.dirname(path), name) for path in (self.main, element.path)]
+        path = next((place for place in places if os.path.isfile(place)), places[0])
+        if os.path.realpath(path) in self.seen:
+            raise fault(element, f"the file {name!r} is included a second time; MuJoCo takes a file once")
+        self.seen.add(os.path.realpath(path))
+        try:
+            data = read_bytes(path)
+        except DescriptionError as error:
+            raise fault(element, f"<include file={name!r}>: {error}") from None
+        self.bytes += len(data)
+        if self.bytes > DESCRIPTION_BYTES:
+            raise fault(element, f"the included files hold more than {DESCRIPTION_BYTES} bytes")
+        return parse(data, path, 0, MJCF_DEPTH)

@@ -1,0 +1,177 @@
+"""The joints of MJCF, each with its own link behind it, and the couplings between them."""
+
+from __future__ import annotations
+
+import logging
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import suggest
+from cspace.model.attributes import at, fault
+from cspace.model.joint import Joint, Mimic
+from cspace.model.mjcf.actuators import bound
+from cspace.model.mjcf.given import Defaults, Given
+from cspace.model.mjcf.settings import Settings
+from cspace.model.transforms import rotation_about, translation
+from cspace.model.values import IDENTITY, unit_axis
+from cspace.model.xml import Element
+
+__all__ = ["Coupling", "Draft", "couplings", "read_joint"]
+
+KINDS: Final = ("hinge", "slide", "free", "ball")
+
+LOG: Final = logging.getLogger("cspace")
+
+
+@dataclass(frozen=True, eq=False)
+class Draft:
+    """A joint of a body, before it is known which joints follow others.
+
+    kind: "hinge", "slide" or "free". anchor (4, 4): where it acts, in the body. axis (3,): a unit vector in
+    the body. ref: its value where the body is as drawn [rad or m]. lower, upper, effort, damping,
+    friction: as in Joint.
+    """
+
+    name: str
+    kind: str
+    anchor: Array
+    axis: Array
+    ref: float
+    lower: float
+    upper: float
+    effort: float
+    damping: float | None
+    friction: float | None
+    element: Element
+
+    def motion(self, by: float) -> Array:
+        """The motion (4, 4) by an angle [rad] or a distance [m]."""
+        return rotation_about(self.axis, by) if self.kind == "hinge" else translation(by * self.axis)
+
+    def joint(self, parent: str, child: str, place: Array, coupling: Coupling | None, effort: float) -> Joint:
+        """The joint between two links, standing at `place` (4, 4) in its parent, driven by `effort`."""
+        if self.kind == "free":
+            return Joint(self.name, "floating", parent, child, place)
+        place = place @ self.motion(-self.ref)
+        if coupling is not None and coupling.leader is None:
+            place = place @ self.motion(self.ref + coupling.offset)
+            return Joint(self.name, "fixed", parent, child, place)
+        limited = math.isfinite(self.lower)
+        kind = "prismatic" if self.kind == "slide" else "revolute" if limited else "continuous"
+        mimic = None if coupling is None else coupling.mimic(self)
+        numbers: dict[str, Any] = {"lower": self.lower, "upper": self.upper}
+        numbers |= {"effort": min(effort, self.effort), "damping": self.damping, "friction": self.friction}
+        return Joint(self.name, kind, parent, child, place, self.axis, mimic=mimic, **numbers)
+
+
+def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings) -> Draft:
+    """The joint of an element that stands in a frame of its body."""
+    element = given.element
+    kind = "free" if element.tag == "freejoint" else given.word("type", "hinge", KINDS)
+    if kind == "free":
+        free = (IDENTITY, np.array([1.0, 0.0, 0.0]), 0.0, -math.inf, math.inf, math.inf, None, None)
+        return Draft(name, kind, *free, element)
+    if kind == "ball":
+        raise fault(
+            given.holder("type") or element,
+            f"joint {name!r} is a ball joint, which has no single coordinate; write it as three hinges with"
+            " one 'pos' and perpendicular axes",
+        )
+    unit = settings.unit if kind == "hinge" else 1.0
+    R = T_body_frame[:3, :3]
+    anchor = R @ given.floats("pos", (0.0, 0.0, 0.0), 3) + T_body_frame[:3, 3]
+    direction = given.floats("axis", (0.0, 0.0, 1.0), 3)
+    axis = at(given.holder("axis") or element, lambda: unit_axis(R @ direction, f"axis of joint {name!r}"))
+    lower, upper = limits(given, name, unit, settings)
+    damping, friction = (
+        None if given.holder(key) is None else given.floats(key, None, 1, 9)[0]
+        for key in ("damping", "frictionloss")
+    )
+    ref, effort = given.number("ref", 0.0) * unit, bound(given, "actuatorfrc")
+    return Draft(name, kind, translation(anchor), axis, ref, lower, upper, effort, damping, friction, element)
+
+
+def limits(given: Given, name: str, unit: float, settings: Settings) -> tuple[float, float]:
+    """The range of a joint [rad or m]; ±inf where it has none."""
+    holder = given.holder("range")
+    low, high = given.span("range")
+    limited = given.word("limited", "auto", ("true", "false", "auto"))
+    if limited == "auto" and not settings.autolimits and holder is not None:
+        rule = "say limited= as well, or leave autolimits on in <compiler>"
+        raise fault(holder, f"joint {name!r} has a range, and autolimits is off; {rule}")
+    if limited == "false" or (limited == "auto" and not low < high):
+        return -math.inf, math.inf
+    if not low < high:
+        text = f"joint {name!r} is limited to the range {low:g} to {high:g}; the first must be less"
+        raise fault(holder or given.element, text)
+    return low * unit, high * unit
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """An equality of joints: q − ref = offset + factor · (q(leader) − ref(leader)), or offset alone."""
+
+    leader: Draft | None
+    offset: float
+    factor: float
+    element: Element
+
+    def mimic(self, follower: Draft) -> Mimic | None:
+        """The rule in terms of q alone."""
+        if self.leader is None:
+            return None
+        leader = self.leader
+        offset = self.offset + follower.ref - self.factor * leader.ref
+        return at(self.element, lambda: Mimic(leader.name, self.factor, offset))
+
+
+def couplings(
+    equalities: Sequence[Element], defaults: Defaults, drafts: Mapping[str, Draft]
+) -> dict[str, Coupling]:
+    """The couplings of joints that are straight lines, by the joint that follows.
+
+    A polynomial of higher degree has no place in a Description: its joints stay independent, which is logged.
+    """
+    found: dict[str, Coupling] = {}
+    for element in equalities:
+        given = defaults.given(element)
+        if element.tag != "joint" or not given.flag("active", True):
+            continue
+        follower = named(element, "joint1", drafts)
+        leader = named(element, "joint2", drafts) if element.attributes.get("joint2") else None
+        offset, factor, *rest = coefficients(given)
+        if leader is not None and any(rest):
+            LOG.warning(
+                "%s:%d: joints %r and %r are coupled by a polynomial of degree two or more; they are read as"
+                " independent",
+                element.path,
+                element.line,
+                follower.name,
+                leader.name,
+            )
+            continue
+        if follower.name in found:
+            raise fault(element, f"joint {follower.name!r} is coupled twice; it can follow one joint")
+        found[follower.name] = Coupling(leader, offset, factor, element)
+    return found
+
+
+def coefficients(given: Given) -> list[float]:
+    """The five coefficients of a coupling, the constant first; as in MuJoCo those left out are 0 1 0 0 0."""
+    numbers = given.floats("polycoef", (0.0, 1.0), 1, 5)
+    return [*numbers, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(numbers) :]]
+
+
+def named(element: Element, attribute: str, drafts: Mapping[str, Draft]) -> Draft:
+    """The joint that an equality names."""
+    name = element.attributes.get(attribute, "").strip()
+    if name not in drafts:
+        raise fault(element, f"{attribute} of an equality: {suggest('joint', name, drafts)}")
+    if drafts[name].kind == "free":
+        raise fault(element, f"joint {name!r} is free and can be in no equality")
+    return drafts[name]

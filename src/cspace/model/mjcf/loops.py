@@ -1,0 +1,83 @@
+"""The equalities of MJCF that tie bodies, as loops."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import suggest
+from cspace.model.attributes import at, fault
+from cspace.model.joint import Loop
+from cspace.model.mjcf.given import Defaults, Given
+from cspace.model.mjcf.skeleton import WORLD, Skeleton
+from cspace.model.mounting import free_name
+from cspace.model.transforms import from_wxyz, inverse, translation
+from cspace.model.xml import Element
+
+__all__ = ["loops"]
+
+
+def loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skeleton) -> tuple[Loop, ...]:
+    """A spherical loop for each <connect> and a rigid one for each <weld> that is active."""
+    found: list[Loop] = []
+    for element in equalities:
+        if element.tag not in ("connect", "weld") or not defaults.given(element).flag("active", True):
+            continue
+        wish = element.attributes.get("name", "") or f"{element.tag}_{len(found) + 1}"
+        name = free_name(wish, {*skeleton.joint_names, *(loop.name for loop in found)})
+        make = connect if element.tag == "connect" else weld
+        found.append(at(element, partial(make, name, element, skeleton)))
+    return tuple(found)
+
+
+def connect(name: str, element: Element, skeleton: Skeleton) -> Loop:
+    """Two bodies that share a point: two sites, or where the anchor in the first is when all is at rest."""
+    ends = two_sites(element, skeleton)
+    if ends is not None:
+        return Loop(name, "spherical", *ends)
+    first, second = two_bodies(element, skeleton)
+    origin = translation(np.array(Given(element).floats("anchor", None, 3)))
+    far = inverse(skeleton.rest[second]) @ skeleton.rest[first] @ origin
+    return Loop(name, "spherical", first, second, origin, far)
+
+
+def weld(name: str, element: Element, skeleton: Skeleton) -> Loop:
+    """Two bodies that are one: two sites, or as `relpose` says or the rest has it."""
+    ends = two_sites(element, skeleton)
+    if ends is not None:
+        return Loop(name, "fixed", *ends)
+    first, second = two_bodies(element, skeleton)
+    return Loop(name, "fixed", first, second, relative(element, first, second, skeleton))
+
+
+def relative(element: Element, first: str, second: str, skeleton: Skeleton) -> Array:
+    """The pose (4, 4) of the second body in the first; a quaternion of zeros means that of the rest."""
+    numbers = np.array(Given(element).floats("relpose", (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 7))
+    length = float(np.linalg.norm(numbers[3:]))
+    if length == 0.0:
+        return inverse(skeleton.rest[first]) @ skeleton.rest[second]
+    return translation(numbers[:3]) @ from_wxyz(numbers[3:] / length)
+
+
+def two_sites(element: Element, skeleton: Skeleton) -> tuple[str, str] | None:
+    """The links of the two sites that an equality names; None where it names none."""
+    names = [element.attributes.get(key) for key in ("site1", "site2")]
+    if names == [None, None]:
+        return None
+    for name in names:
+        if name not in skeleton.sites:
+            raise fault(element, f"<{element.tag}>: {suggest('site', name, skeleton.sites)}")
+    first, second = (skeleton.sites[str(name)] for name in names)
+    return first, second
+
+
+def two_bodies(element: Element, skeleton: Skeleton) -> tuple[str, str]:
+    """The two bodies that an equality names; the second is the world where it is left out."""
+    first, second = (element.attributes.get(key, WORLD) for key in ("body1", "body2"))
+    for name in (first, second):
+        if name not in skeleton.bodies:
+            raise fault(element, f"<{element.tag}>: {suggest('body', name, skeleton.bodies)}")
+    return first, second

@@ -1,0 +1,142 @@
+"""The links and joints of an MJCF document while it is read: every name once, every place known."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.model.attributes import at, fault
+from cspace.model.joint import Joint
+from cspace.model.mjcf.joints import Coupling, Draft
+from cspace.model.mounting import free_name
+from cspace.model.transforms import inverse
+from cspace.model.values import IDENTITY
+from cspace.model.xml import Element
+
+__all__ = ["WORLD", "Segment", "Skeleton"]
+
+WORLD: Final = "world"
+"""The link of <worldbody>, as MuJoCo calls it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Segment:
+    """A joint of the description to be: a draft, or None where it is fixed, standing at `place` (4, 4)."""
+
+    name: str
+    draft: Draft | None
+    parent: str
+    child: str
+    place: Array
+    element: Element
+
+    def joint(self, followers: Mapping[str, Coupling], efforts: Mapping[str, float]) -> Joint:
+        """The joint, once it is known which joints follow others and how hard they are driven."""
+        ends, draft = (self.parent, self.child, self.place), self.draft
+        if draft is None:
+            return at(self.element, lambda: Joint(self.name, "fixed", *ends))
+        effort = efforts.get(self.name, math.inf)
+        return at(self.element, lambda: draft.joint(*ends, followers.get(self.name), effort))
+
+
+class Skeleton:
+    """The links and joints read so far.
+
+    bodies: their names and numbers, those of MuJoCo. links: bodies and the links made beside them.
+    segments: the joints. drafts: the joints that the file gives, by name, in the order of MuJoCo's
+    coordinates. rest: where each link is in the world (4, 4) with every joint at its `ref`. sites: name of a
+    site → its link.
+    """
+
+    def __init__(self, root: Element) -> None:
+        inside = [part for world in root.all("worldbody") for part in everything(world)]
+        named = {tag: [e.attributes.get("name", "") for e in inside if e.tag == tag] for tag in TAGS}
+        self.link_names = {WORLD, *named["body"]}
+        self.joint_names = {*named["joint"], *named["freejoint"]}
+        self.given_joints: set[str] = set()
+        self.bodies = {WORLD: 0}
+        self.links = [WORLD]
+        self.segments: list[Segment] = []
+        self.drafts: dict[str, Draft] = {}
+        self.rest: dict[str, Array] = {WORLD: IDENTITY}
+        self.sites: dict[str, str] = {}
+
+    def body_name(self, element: Element) -> str:
+        """The name of a body, made up where it has none."""
+        name = element.attributes.get("name", "")
+        if name in self.bodies:
+            raise fault(element, f"a second body is named {name!r}")
+        return name or self.new_link(f"body_{len(self.bodies)}")
+
+    def joint_name(self, element: Element, body: str) -> str:
+        """The name of a joint, made up where it has none."""
+        name = element.attributes.get("name", "")
+        if name in self.given_joints:
+            raise fault(element, f"a second joint is named {name!r}")
+        name = name or self.new_joint(f"{body}_joint")
+        self.given_joints.add(name)
+        return name
+
+    def new_link(self, wish: str) -> str:
+        """A name that no link has."""
+        name = free_name(wish, self.link_names)
+        self.link_names.add(name)
+        return name
+
+    def new_joint(self, wish: str) -> str:
+        """A name that no joint has."""
+        name = free_name(wish, self.joint_names)
+        self.joint_names.add(name)
+        return name
+
+    def add_body(
+        self, element: Element, name: str, parent: str, place: Array, drafts: Sequence[Draft]
+    ) -> None:
+        """A body that stands at `place` (4, 4) in its parent, moved by its joints, the first outermost.
+
+        T_parent_body(q) = place · ∏ᵢ anchorᵢ · motionᵢ(qᵢ − refᵢ) · anchorᵢ⁻¹
+        """
+        self.rest[name] = self.rest[parent] @ place
+        self.bodies[name] = len(self.bodies)
+        here, last = parent, drafts[-1] if drafts else None
+        for draft in drafts:
+            self.drafts[draft.name] = draft
+            whole = draft is last and np.array_equal(draft.anchor, IDENTITY)
+            link = name if whole else self.new_link(f"{name}/{draft.name}")
+            self.segments.append(Segment(draft.name, draft, here, link, place @ draft.anchor, draft.element))
+            self.links.append(link)
+            here, place = link, inverse(draft.anchor)
+        if here != name:
+            self.add_fixed(element, name, here, place)
+
+    def add_site(self, element: Element, body: str, place: Array) -> None:
+        """A site with a name, as a link that stands at `place` (4, 4) in its body."""
+        name = element.attributes["name"]
+        if name in self.sites:
+            raise fault(element, f"a second site is named {name!r}")
+        link = self.new_link(f"{name}_site" if name in self.link_names else name)
+        self.sites[name] = link
+        self.rest[link] = self.rest[body] @ place
+        self.add_fixed(element, link, body, place)
+
+    def add_fixed(self, element: Element, link: str, parent: str, place: Array) -> None:
+        """A link that is fixed to its parent at `place` (4, 4)."""
+        self.links.append(link)
+        self.segments.append(Segment(self.new_joint(f"{link}_fixed"), None, parent, link, place, element))
+
+
+TAGS: Final = ("body", "joint", "freejoint")
+
+
+def everything(root: Element) -> Iterator[Element]:
+    """An element and all inside it."""
+    stack = [root]
+    while stack:
+        element = stack.pop()
+        yield element
+        stack.extend(element.children)

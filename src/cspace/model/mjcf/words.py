@@ -1,0 +1,92 @@
+"""The elements and attributes of MJCF that say how a robot is made, to tell slips of the pen."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from cspace.model.attributes import fault
+from cspace.model.urdf_words import closest
+from cspace.model.xml import Element
+
+__all__ = ["check_words"]
+
+
+def words(text: str) -> frozenset[str]:
+    return frozenset(text.split())
+
+
+TURNS: Final = "quat axisangle euler xyaxes zaxis"
+INSIDE: Final = words(
+    "body frame joint freejoint geom site inertial camera light plugin replicate attach composite flexcomp"
+)
+CHILDREN: Final[dict[str, frozenset[str]]] = {
+    "mujoco": words(
+        "compiler option size statistic visual default extension asset worldbody deformable contact tendon"
+        " equality actuator sensor custom keyframe"
+    ),
+    "worldbody": INSIDE,
+    "body": INSIDE,
+    "frame": INSIDE,
+    "equality": words("connect weld joint tendon flex flexvert flexstrain distance"),
+    "keyframe": words("key"),
+}
+"""What may stand in the elements that are read."""
+
+ELEMENTS: Final = frozenset().union(*CHILDREN.values())
+"""All of them."""
+
+SOLIDS: Final = "class name type group size material mesh fromto pos user rgba " + TURNS
+ATTRIBUTES: Final[dict[str, frozenset[str]]] = {
+    "compiler": words(
+        "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass conflict convexhull"
+        " coordinate discardvisual eulerseq exactmeshinertia fitaabb fusestatic inertiafromgeom"
+        " inertiagrouprange meshdir passthrough savecanonical savecompiled saveinertial settotalmass"
+        " strippath texturedir usethread"
+    ),
+    "body": words("childclass fuse gravcomp mocap name pos simple sleep user " + TURNS),
+    "frame": words("childclass name pos " + TURNS),
+    "inertial": words("mass pos diaginertia fullinertia " + TURNS),
+    "joint": words(
+        "actuatorfrclimited actuatorfrcrange actuatorgravcomp armature axis class damping frictionloss group"
+        " limited margin name pos range ref solimpfriction solimplimit solreffriction solreflimit"
+        " springdamper springref springyield stiffness type user"
+    ),
+    "freejoint": words("align group name"),
+    "geom": words(
+        "adhesion castshadow conaffinity condim contype density fitscale fluidcoef fluidshape friction gap"
+        " hfield margin mass priority shellinertia solimp solmix solref surfacevel " + SOLIDS
+    ),
+    "site": words(SOLIDS),
+}
+"""The attributes of those elements."""
+
+
+def check_words(root: Element) -> None:
+    """Complain about what looks like a slip of the pen: an element left out in silence is worse.
+
+    A word that is not known here is of a newer MuJoCo, unless it is close to a known one that is not there.
+    """
+    stack = [root]
+    while stack:
+        element = stack.pop()
+        known = CHILDREN.get(element.tag)
+        for child in element.children:
+            if known is not None and child.tag not in known:
+                message = f"<{element.tag}> has no <{child.tag}>"
+                if child.tag in ELEMENTS:
+                    raise fault(child, f"{message}; it stands elsewhere in MJCF")
+                check(child, message, child.tag, known, "<{}>")
+            if element.tag in ("mujoco", "worldbody", "body", "frame"):
+                attributes = ATTRIBUTES.get(child.tag, frozenset(child.attributes))
+                for name in child.attributes.keys() - attributes:
+                    missing = attributes - child.attributes.keys()
+                    check(child, f"<{child.tag}> has no attribute {name!r}", name, missing, "{!r}")
+                if child.tag in CHILDREN:
+                    stack.append(child)
+
+
+def check(element: Element, message: str, word: str, known: frozenset[str], form: str) -> None:
+    """Raise if the word is meant for a known one."""
+    meant = closest(word, known)
+    if meant:
+        raise fault(element, f"{message}; did you mean {form.format(meant)}?")
