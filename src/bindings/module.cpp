@@ -16,4 +16,5 @@ NB_MODULE(_core, m) {
     bind_subproblems(m);
     bind_ik(m);
     bind_ik_numeric(m);
+    bind_ik_tasks(m);
 }

@@ -10,7 +10,14 @@ from cspace.errors import CspaceError
 if TYPE_CHECKING:
     from cspace import ik, kinematics, model, plot, robots, spatial
     from cspace._core import __version__
-    from cspace.ik import subproblems
+    from cspace.ik import (
+        CenterOfMassTask,
+        DirectionTask,
+        PoseTask,
+        PositionTask,
+        PostureTask,
+        subproblems,
+    )
     from cspace.robot import Robot
     from cspace.robots import load_robot
     from cspace.spatial import *  # noqa: F403
@@ -19,6 +26,7 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 
 __all__ = ["CspaceError", "Robot", "__version__", "ik", "kinematics", "load_robot", "model", "plot"]
 __all__ += ["robots", "spatial", "subproblems"]
+__all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
 # __getattr__ makes the whole list: it holds the names of spatial, and spatial needs numpy.
@@ -27,6 +35,11 @@ _OWN: list[str] = globals().pop("__all__")
 # Where the names are that are imported when they are first used: numpy and the rooms take time to load. The
 # names that are not here are those of spatial.
 _LATER = {
+    "CenterOfMassTask": "cspace.ik",
+    "DirectionTask": "cspace.ik",
+    "PoseTask": "cspace.ik",
+    "PositionTask": "cspace.ik",
+    "PostureTask": "cspace.ik",
     "Robot": "cspace.robot",
     "__version__": "cspace._core",
     "ik": "",

@@ -17,7 +17,7 @@ from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 
 if TYPE_CHECKING:
-    from cspace.ik import NumericSolution, SampledSolutions
+    from cspace.ik import NumericSolution, SampledSolutions, TaskSolution
 
     Seed = int | np.random.Generator | None
 
@@ -239,6 +239,35 @@ class Robot(RobotBase):
         from cspace.ik import ik_many_starts
 
         return ik_many_starts(self, goal, starts, **options)
+
+    def ik_tasks(self, tasks: Any, start: Any = None, **options: Any) -> TaskSolution:
+        """The configuration that serves several tasks best, by steps from start (n,).
+
+        options: limits, max_iterations, tolerance, T_world_base, as in ik.ik_tasks, which also names the
+        errors.
+        """
+        from cspace.ik import ik_tasks
+
+        return ik_tasks(self, tasks, start, **options)
+
+    def task_velocity(self, q: Any, tasks: Any, dt: float, **options: Any) -> Array:
+        """The velocities (dof,) that serve several tasks best in the next step of dt [s], at q (n,).
+
+        options: limits, velocity, damping, T_world_base, as in ik.task_velocity, which also names the errors.
+        """
+        from cspace.ik import task_velocity
+
+        return task_velocity(self, q, tasks, dt, **options)
+
+    def resolved_rate(self, q: Any, twist: Any, **options: Any) -> Array:
+        """The least joint velocities (..., dof) that give the tip a twist (..., 6) at q (..., n).
+
+        options: frame, point, expressed_in, damping, null_space, velocity, T_world_base, threads, as in
+        ik.resolved_rate, which also names the errors.
+        """
+        from cspace.ik import resolved_rate
+
+        return resolved_rate(self, q, twist, **options)
 
     def _changed(self, **changes: Any) -> Robot:
         description, base, tip, floating = self._made_from

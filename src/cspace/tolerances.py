@@ -25,11 +25,14 @@ __all__ = [
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
     "SAME_PLACE",
+    "SERVED",
+    "SETTLED",
     "SINGULAR_ROUNDING",
     "SINGULAR_VALUE",
     "TANGENT_PLACE",
     "TOML_BYTES",
     "UNLIMITED",
+    "WEAK_DIRECTION",
     "WHOLE_TURN",
 ]
 
@@ -134,3 +137,15 @@ FARTHEST: Final = 1e100
 NUMERIC_TOLERANCE: Final = 1e-9
 """Error of a descent (m of the position, rad of the rotation) that counts as reached unless given: far above
 the rounding at which descents settle, far below what any robot can tell."""
+
+SERVED: Final = 1e-6
+"""Error of a task (m, rad) up to which it counts as done unless given: what the small weight of a posture
+beside it may cost."""
+
+SETTLED: Final = 1e-10
+"""Step (rad, m) that ends the search for the configuration that serves tasks best: its square, which is what
+the step can still gain, is rounding."""
+
+WEAK_DIRECTION: Final = 0.01
+"""Singular value of a Jacobian (m or rad, per rad or m) below which a direction counts as weak in resolved
+rate: a joint would turn a hundred times faster than the frame, which no drive follows."""

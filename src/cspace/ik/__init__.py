@@ -4,23 +4,46 @@ from cspace.ik import subproblems
 from cspace.ik.conditions import Condition, NoClosedFormError
 from cspace.ik.families import Family
 from cspace.ik.geometry import Geometry, geometry
-from cspace.ik.numeric import NumericSolution, SampledSolutions, ik_many_starts, ik_numeric
+from cspace.ik.numeric import (
+    CenterOfMassTask,
+    DirectionTask,
+    NumericSolution,
+    PoseTask,
+    PositionTask,
+    PostureTask,
+    SampledSolutions,
+    TaskSolution,
+    ik_many_starts,
+    ik_numeric,
+    ik_tasks,
+    resolved_rate,
+    task_velocity,
+)
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve import inverse_kinematics
 
 __all__ = [
+    "CenterOfMassTask",
     "Condition",
+    "DirectionTask",
     "Family",
     "Geometry",
     "NoClosedFormError",
     "NumericSolution",
+    "PoseTask",
+    "PositionTask",
+    "PostureTask",
     "SampledSolutions",
     "Solutions",
     "SolutionsBatch",
+    "TaskSolution",
     "geometry",
     "ik_many_starts",
     "ik_numeric",
+    "ik_tasks",
     "inverse_kinematics",
+    "resolved_rate",
     "subproblems",
+    "task_velocity",
 ]

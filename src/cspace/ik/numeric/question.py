@@ -59,13 +59,13 @@ def ask(
     if robot.floating:
         raise InputError(
             f"the base of {robot.name} floats, and no pose of a frame alone says where it should go;"
-            " robot.step(q, tasks) moves base and joints together"
+            " robot.ik_tasks(tasks) moves base and joints together"
         )
     moving = _core._ik_moving(robot, number)
     if moving > MOST_PATH:
         raise InputError(
             f"{moving} joints of {robot.name} move the frame; descents take up to {MOST_PATH},"
-            " robot.step(q, tasks) any number"
+            " robot.ik_tasks any number"
         )
     if (goal is None) == (position is None):
         raise InputTypeError("give one goal: a pose T (..., 4, 4) of the frame, or position= (..., 3)")

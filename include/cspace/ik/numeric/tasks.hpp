@@ -1,0 +1,237 @@
+// Several weighted tasks on several frames at once: the velocities, or the configuration, that serve all of
+// them best inside the limits.
+//
+// Each task has an error e(q), its Jacobian J = −∂e/∂q, and weights: the step Δq minimises
+// ½ Σ |W (J Δq − gain · e)|² + ½ λ |Δq|² in the box that limits leave (a quadratic program, box_qp.hpp).
+//
+// Not for kernels: it uses the standard library.
+#pragma once
+
+#include "cspace/ik/numeric/box_qp.hpp"
+#include "cspace/ik/numeric/error.hpp"
+#include "cspace/kinematics/center_of_mass.hpp"
+#include "cspace/kinematics/jacobian.hpp"
+#include "cspace/model/robot_model.hpp"
+
+namespace cspace {
+
+enum class TaskKind : int { pose, position, direction, center_of_mass };
+
+struct FrameTask {
+    TaskKind kind;
+    int frame;         // unused by the centre of mass
+    double gain;       // share of the error that one step takes away
+    double weight[6];  // pose: of [Δp; rotation vector] in the axes of the target; else the first three
+    Posed target;      // position, centre of mass: its t; direction: its t, a unit vector in the base
+    Vec3d point;       // position: a point of the frame; direction: a unit vector of the frame
+};
+// Coordinates drawn to their places.
+struct PostureTask {
+    const double* q;       // (n,)
+    const double* weight;  // (n,)
+    double gain;
+};
+// How far a task is from its target: lengths of the parts that count.
+struct TaskError {
+    double position, rotation;  // [m, rad]
+};
+
+struct TaskProblem {
+    const RobotModel* model;
+    bool floating;
+    std::vector<FrameTask> tasks;
+    std::vector<PostureTask> postures;
+    const double* lower;  // (n,) limits of the coordinates, or null
+    const double* upper;
+};
+
+// A configuration, and what the tasks see there.
+struct TaskPlace {
+    std::vector<double> q;  // (n,)
+    Posed T_world_base;
+    double cost = 0;  // ½ Σ |W e|²
+    std::vector<TaskError> errors;
+    std::vector<double> H, g;             // of the frames: Σ Jᵀ W² J and Σ Jᵀ W² gain · e
+    std::vector<double> stiffness, pull;  // the same of the postures, whose Jᵀ W² J is diagonal
+};
+
+struct TaskWork {
+    std::vector<double> s, c, J;
+    std::vector<Axis<double>> axes;
+    std::vector<Posed> T_world_joint;
+    std::vector<Vec3d> moments;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+inline int dof_of(const TaskProblem& problem) {
+    return problem.model->n_coordinates() + (problem.floating ? 6 : 0);
+}
+
+inline TaskWork task_work(const TaskProblem& problem) {
+    const Tree tree = problem.model->tree();
+    const std::size_t joints = std::size_t(tree.n_joints) + 4;
+    TaskWork work;
+    work.s.resize(joints);
+    work.c.resize(joints);
+    work.J.resize(6 * std::size_t(dof_of(problem)));
+    work.axes.resize(joints);
+    work.T_world_joint.resize(joints);
+    work.moments.resize(joints);
+    return work;
+}
+
+// The pose of a frame; work.J takes the Jacobian of the point p of it, rows [v; ω] in the world.
+inline Posed measure_frame(const TaskProblem& problem, const TaskPlace& at, int frame, const Vec3d& p,
+                           TaskWork& work) {
+    const Chain& chain = problem.model->chain(frame);
+    const int dof = dof_of(problem), first = problem.floating ? 6 : 0;
+    chain_sines(chain, at.q.data(), work.s.data(), work.c.data());
+    const Posed T =
+        follow_chain(chain, at.T_world_base * chain.T_base_first, at.q.data(), work.s.data(), work.c.data(),
+                     [&](int i, const Vec3d& o, const Vec3d& d) { work.axes[std::size_t(i)] = {o, d}; });
+    joint_columns(chain, work.axes.data(), T * p, work.J.data(), dof, first);
+    if (problem.floating) base_columns(T * p - at.T_world_base.t, work.J.data(), dof, 6);
+    return T;
+}
+
+// The centre of mass; the first three rows of work.J take its Jacobian.
+inline Vec3d measure_center(const TaskProblem& problem, const TaskPlace& at, TaskWork& work) {
+    const Tree tree = problem.model->tree();
+    const int dof = dof_of(problem), first = problem.floating ? 6 : 0;
+    joint_poses(tree, at.q.data(), at.T_world_base, work.T_world_joint.data());
+    const Vec3d center =
+        center_of_mass(tree, at.T_world_base, work.T_world_joint.data(), work.moments.data());
+    center_of_mass_columns(tree, work.T_world_joint.data(), work.moments.data(), work.J.data(), dof, first);
+    if (problem.floating) base_columns(center - at.T_world_base.t, work.J.data(), dof, 3);
+    return center;
+}
+
+// Adds the rows `from` to `from + 2` of the Jacobian, turned into the axes of Q, with their error and
+// weights. Returns the length of the counted part of the error.
+inline double add_rows(const Mat3d& Q, const Vec3d& error, const double* weight, double gain, int from,
+                       const TaskWork& work, int dof, TaskPlace& at) {
+    double counted = 0;
+    std::vector<double> row(static_cast<std::size_t>(dof));
+    for (int k = 0; k < 3; ++k) {
+        const double w2 = weight[k] * weight[k];
+        if (!(w2 > 0)) continue;
+        const Vec3d axis = column(Q, k);
+        const double e = dot(axis, error);
+        counted += e * e;
+        at.cost += 0.5 * w2 * e * e;
+        for (int j = 0; j < dof; ++j)
+            row[std::size_t(j)] = dot(axis, get_column(work.J.data(), dof, j, from));
+        for (int i = 0; i < dof; ++i) {
+            const double wi = w2 * row[std::size_t(i)];
+            if (wi == 0) continue;
+            at.g[std::size_t(i)] += wi * gain * e;
+            double* H = at.H.data() + std::size_t(i) * std::size_t(dof);
+            for (int j = 0; j < dof; ++j) H[j] += wi * row[std::size_t(j)];
+        }
+    }
+    return std::sqrt(counted);
+}
+
+// The rotation vector that takes the unit vector a to d the short way.
+inline Vec3d turn_between(const Vec3d& a, const Vec3d& d) {
+    const Vec3d across = cross(a, d);
+    const double s = norm(across), c = dot(a, d);
+    if (s > 1e-12) return (std::atan2(s, c) / s) * across;
+    return c > 0 ? across : pi * any_perpendicular(a);
+}
+
+inline TaskError add_task(const TaskProblem& problem, const FrameTask& task, TaskWork& work, TaskPlace& at) {
+    const int dof = dof_of(problem);
+    const Mat3d I = identity_pose().R;
+    const double* w = task.weight;
+    switch (task.kind) {
+        case TaskKind::center_of_mass: {
+            const Vec3d miss = task.target.t - measure_center(problem, at, work);
+            return {add_rows(I, miss, w, task.gain, 0, work, dof, at), 0};
+        }
+        case TaskKind::position: {
+            const Posed T = measure_frame(problem, at, task.frame, task.point, work);
+            return {add_rows(I, task.target.t - T * task.point, w, task.gain, 0, work, dof, at), 0};
+        }
+        case TaskKind::direction: {
+            const Posed T = measure_frame(problem, at, task.frame, {0, 0, 0}, work);
+            const Vec3d a = T.R * task.point;
+            // A turn about the direction itself does not count.
+            for (int j = 0; j < dof; ++j) {
+                const Vec3d h = get_column(work.J.data(), dof, j, 3);
+                put_column(work.J.data(), dof, j, 3, h - dot(a, h) * a);
+            }
+            return {0, add_rows(I, turn_between(a, task.target.t), w, task.gain, 3, work, dof, at)};
+        }
+        default: {
+            const Posed T = measure_frame(problem, at, task.frame, {0, 0, 0}, work);
+            const Mat3d& Q = task.target.R;
+            const Vec3d turn = log_of(Q * transpose(T.R));
+            const double away = add_rows(Q, task.target.t - T.t, w, task.gain, 0, work, dof, at);
+            if (w[3] != w[4] || w[4] != w[5]) {
+                // Unequal weights see how the rotation vector itself changes (see error.hpp).
+                const LogRate<double> rate = log_rate(-turn);
+                for (int j = 0; j < dof; ++j)
+                    put_column(work.J.data(), dof, j, 3, rate * get_column(work.J.data(), dof, j, 3));
+            }
+            return {away, add_rows(Q, turn, w + 3, task.gain, 3, work, dof, at)};
+        }
+    }
+}
+
+// What the tasks see at at.q and at.T_world_base.
+inline void look(const TaskProblem& problem, TaskWork& work, TaskPlace& at) {
+    const std::size_t dof = std::size_t(dof_of(problem)), first = problem.floating ? 6 : 0;
+    at.cost = 0;
+    at.H.assign(dof * dof, 0.0);
+    at.g.assign(dof, 0.0);
+    at.stiffness.assign(dof, 0.0);
+    at.pull.assign(dof, 0.0);
+    at.errors.clear();
+    for (const FrameTask& task : problem.tasks) at.errors.push_back(add_task(problem, task, work, at));
+    for (const PostureTask& posture : problem.postures) {
+        for (std::size_t j = first; j < dof; ++j) {
+            const double e = posture.q[j - first] - at.q[j - first];
+            const double w2 = posture.weight[j - first] * posture.weight[j - first];
+            at.cost += 0.5 * w2 * e * e;
+            at.pull[j] += w2 * posture.gain * e;
+            at.stiffness[j] += w2;
+        }
+    }
+}
+
+// The step (dof,) that serves the tasks best, postures among them or not, in the box given by qp.lower and
+// qp.upper; false where the numbers are not finite.
+inline bool best_step(const TaskPlace& at, double damping, bool postures, BoxQp& qp, double* step) {
+    qp.H = at.H;
+    qp.g = at.g;
+    for (std::size_t j = 0; j < std::size_t(qp.n); ++j) {
+        qp.H[j * std::size_t(qp.n) + j] += damping + (postures ? at.stiffness[j] : 0);
+        qp.g[j] += postures ? at.pull[j] : 0;
+        step[j] = 0;
+    }
+    return solve(qp, step) >= 0;
+}
+
+// The place after a step; the base turns and moves in the world.
+inline void move_by(const TaskProblem& problem, const TaskPlace& from, const double* step, TaskPlace& to) {
+    const std::size_t first = problem.floating ? 6 : 0;
+    to.q = from.q;
+    to.T_world_base = from.T_world_base;
+    for (std::size_t j = 0; j < to.q.size(); ++j) {
+        to.q[j] += step[first + j];
+        if (problem.lower) to.q[j] = std::clamp(to.q[j], problem.lower[j], problem.upper[j]);
+    }
+    if (!problem.floating) return;
+    const Vec3d w = {step[3], step[4], step[5]};
+    const double angle = norm(w);
+    to.T_world_base.t = to.T_world_base.t + Vec3d{step[0], step[1], step[2]};
+    if (angle > 0)
+        to.T_world_base.R =
+            rotation_about((1 / angle) * w, std::cos(angle), std::sin(angle)) * to.T_world_base.R;
+}
+
+}  // namespace cspace::inline CSPACE_ISA
