@@ -11,9 +11,13 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-inline double wrapped_distance(const double* a, const double* b, int n) {
+// The largest difference of a joint between two configurations, angles the short way round.
+inline double distance(const ik::Chain& chain, const double* a, const double* b) {
     double worst = 0;
-    for (int i = 0; i < n; ++i) worst = max(worst, std::fabs(short_way(a[i] - b[i])));
+    for (int i = 0; i < chain.n; ++i) {
+        const double d = a[i] - b[i];
+        worst = max(worst, std::fabs(chain.prismatic[i] ? d : short_way(d)));
+    }
     return worst;
 }
 
@@ -40,7 +44,7 @@ inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal,
     const double conditioning = max(error.jacobian.sigma[weak], 1e-9);
     const double near = 10 * max(size, 1e-15) / conditioning;
     for (int k = 0; k < out.count; ++k) {
-        const double gap = wrapped_distance(out.q[k], q, chain.n);
+        const double gap = distance(chain, out.q[k], q);
         if (gap < tolerance::same_solution) return;
         if (gap < near && are_one(chain, goal, length, out.q[k], q)) return;
     }

@@ -8,8 +8,8 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// One step of q towards the goal, cut where a joint would turn by more than `stride` [rad]; returns the
-// largest change of a joint asked for. All joints are revolute.
+// One step of q (n = 6) towards the goal, cut where a joint would turn by more than `stride` [rad]; returns
+// the largest change of a joint asked for. Slides count over `length`.
 template <class V>
 CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, double length, V* q,
                               double stride = 1e300) {
@@ -19,6 +19,10 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
     for (int i = 0; i < 6; ++i) {
         const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
         axis[i] = R * h;
+        if (chain.prismatic[i]) {
+            t = t + q[i] * axis[i];
+            continue;
+        }
         point[i] = R * p + t;
         V s, c;
         sincos(q[i], s, c);
@@ -33,15 +37,17 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
     for (int k = 1; k < 3; ++k) w = w + 0.5 * cross(column(Q, k), column(goal.R, k));
     V A[6][6], b[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
     for (int i = 0; i < 6; ++i) {
-        const Vec3<V> v = (1 / length) * cross(axis[i], tip - point[i]);
-        const V col[6] = {v.x, v.y, v.z, axis[i].x, axis[i].y, axis[i].z};
+        const bool slides = chain.prismatic[i];
+        const Vec3<V> v = slides ? axis[i] : (1 / length) * cross(axis[i], tip - point[i]);
+        const double turns = slides ? 0.0 : 1.0;
+        const V col[6] = {v.x, v.y, v.z, turns * axis[i].x, turns * axis[i].y, turns * axis[i].z};
         for (int k = 0; k < 6; ++k) A[k][i] = col[k];
     }
     solve(A, b);
     V largest = fill<V>(0.0);
     for (int i = 0; i < 6; ++i) largest = max(largest, abs(b[i]));
     const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
-    for (int i = 0; i < 6; ++i) q[i] = mul_add(keep, b[i], q[i]);
+    for (int i = 0; i < 6; ++i) q[i] = mul_add(chain.prismatic[i] ? length * keep : keep, b[i], q[i]);
     return largest;
 }
 

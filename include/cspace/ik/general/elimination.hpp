@@ -8,6 +8,8 @@
 // That is six equations in the nine products of (S1², S1C1, C1²) and (S2², S2C2, C2²), the sines and cosines
 // of half the angles a1 and a2, which no angle makes infinite:
 //   E(a0) = level + cos a0 · across + sin a0 · quarter.
+// A joint that slides has (a², a, 1) where one that turns has (S², SC, C²), and (a², a) for (cos, sin): any of
+// a1, a2, a4 may.
 #pragma once
 
 #include "cspace/ik/general/invariants.hpp"
@@ -17,9 +19,9 @@ namespace cspace {
 
 struct Elimination {
     double level[6][9], across[6][9], quarter[6][9];
-    double W[6][3];          // the six parts that do not see a5: W (cos a4, sin a4, 1)
+    double W[6][3];          // the six parts that do not see a5: W (cos a4, sin a4, 1) or W (a4², a4, 1)
     double inverse_w[2][6];  // of the first two columns of W, in the least-squares sense
-    double a4_rank;          // ratio of their two singular sizes; 0 where they fix only one of cos, sin
+    double a4_rank;          // ratio of their two singular sizes; 0 where they fix only one of the two
     double a5_rank;          // the same of the four complex parts, of rank three
 };
 
@@ -133,9 +135,11 @@ inline double annihilator(Complex (&A)[4][3], Complex (&n)[4]) {
 inline void right_side(const ik::Loop& loop, Elimination& e, Invariants (&g)[6]) {
     const Invariants behind = moved(inverse(loop.M[3]), axis_invariants());
     const Posed M4 = inverse(loop.M[4]);
-    // Rz(−a4): the sine counts backwards.
-    const Invariants part[3] = {moved(M4, across(behind)), moved(M4, -1.0 * quarter(behind)),
-                                moved(M4, level(behind))};
+    // Rz(−a4): the sine counts backwards; Tz(−a4): so does the slide.
+    const bool slides = loop.slides[4];
+    const Invariants part[3] = {moved(M4, slides ? twice(behind) : across(behind)),
+                                moved(M4, -1.0 * (slides ? once(behind) : quarter(behind))),
+                                moved(M4, slides ? behind : level(behind))};
     Complex W[4][3];
     for (int j = 0; j < 3; ++j) {
         const Invariants& w = part[j];
@@ -166,22 +170,29 @@ inline void right_side(const ik::Loop& loop, Elimination& e, Invariants (&g)[6])
 
 // The invariants behind M0, as coefficients of the nine monomials.
 inline void left_side(const ik::Loop& loop, Invariants (&B)[9]) {
-    const auto from = [](const Posed& M, double angle) {
+    const auto from = [&](int link, double angle) {
+        if (loop.slides[link + 1]) return loop.M[link];
         const double c = std::cos(angle), s = std::sin(angle);
-        return M * Posed{{{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}}, {0, 0, 0}};
+        return loop.M[link] * Posed{{{{c, -s, 0}, {s, c, 0}, {0, 0, 1}}}, {0, 0, 0}};
     };
-    const Posed M0 = from(loop.M[0], a1_origin), M1 = from(loop.M[1], a2_origin);
-    const auto half_angles = [](const Invariants& v, Invariants* out) {
+    const Posed M0 = from(0, a1_origin), M1 = from(1, a2_origin);
+    const auto monomials = [](const Invariants& v, bool slides, Invariants* out) {
+        if (slides) {
+            out[0] = twice(v);
+            out[1] = once(v);
+            out[2] = v;
+            return;
+        }
         const Invariants up = level(v), side = across(v);
         out[0] = up - side;
         out[1] = 2.0 * quarter(v);
         out[2] = up + side;
     };
     Invariants by_a2[3];
-    half_angles(moved(loop.M[2], axis_invariants()), by_a2);
+    monomials(moved(loop.M[2], axis_invariants()), loop.slides[2], by_a2);
     for (int k = 0; k < 3; ++k) {
         Invariants by_a1[3];
-        half_angles(moved(M1, by_a2[k]), by_a1);
+        monomials(moved(M1, by_a2[k]), loop.slides[1], by_a1);
         for (int i = 0; i < 3; ++i) B[3 * i + k] = moved(M0, by_a1[i]);
     }
 }

@@ -3,7 +3,7 @@
 // From the unit direction l and the point p follow fourteen quantities (Raghavan & Roth 1993):
 //   l, p, m = p × l, q = (p·p) l − 2 (p·l) p, p·p, p·l.
 // With a one put beside them a displacement acts on the fifteen linearly, and so do they depend on the cosine
-// and sine of each angle on the way.
+// and sine of each angle on the way, and on a slide and its square.
 #pragma once
 
 #include "cspace/math/vec.hpp"
@@ -73,6 +73,15 @@ inline Invariants across(const Invariants& v) {
 }
 inline Invariants quarter(const Invariants& v) {
     return {quarter(v.l), quarter(v.p), quarter(v.m), quarter(v.q), 0, 0, 0};
+}
+
+// Tz(d) v = v + d · once + d² · twice.
+inline Invariants once(const Invariants& v) {
+    const Vec3d z = {0, 0, 1};
+    return {{0, 0, 0}, v.one * z, cross(z, v.l), -2.0 * cross(z, v.m) - (2 * v.pl) * z, 2 * v.p.z, v.l.z, 0};
+}
+inline Invariants twice(const Invariants& v) {
+    return {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {v.l.x, v.l.y, -v.l.z}, v.one, 0, 0};
 }
 
 }  // namespace cspace::inline CSPACE_ISA

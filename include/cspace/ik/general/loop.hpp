@@ -1,6 +1,6 @@
-// Six revolute joints as a closed loop. With a frame on each axis, its z along the axis, the arm and its goal
-// close up:
-//   Rz(a0) M0 Rz(a1) M1 Rz(a2) M2 Rz(a3) M3 Rz(a4) M4 Rz(a5) M5 = I.
+// Six joints as a closed loop. With a frame on each axis, its z along the axis, the arm and its goal close up:
+//   Rz(a0) M0 Rz(a1) M1 Rz(a2) M2 Rz(a3) M3 Rz(a4) M4 Rz(a5) M5 = I,
+// a joint that slides with Tz in the place of Rz.
 // Any joint may come first, and the loop may be read backwards: twelve formulations of one problem.
 #pragma once
 
@@ -9,11 +9,10 @@
 
 namespace cspace::ik {
 
-// The frames on the axes of a six-joint arm at zero; lengths over the arm's.
+// The frames on the axes of a six-joint arm at zero.
 struct LoopFrames {
     Posed between[5];   // from the frame on axis i to that on axis i + 1
     Posed first, last;  // from the base to axis 1, from axis 6 to the tip
-    double length;      // [m]
 };
 
 struct Formulation {
@@ -24,16 +23,20 @@ inline constexpr int formulations = 12;
 
 struct Loop {
     Posed M[6];
-    int joint[6];  // the joint behind each angle: q = sign · a
+    bool slides[6];  // Tz(a) in the place of Rz(a)
+    int joint[6];    // the joint behind each angle: q = sign · a
     double sign;
 };
 
-// Built once per arm: its frames, and the formulations in the order in which they are asked.
+// Built once per arm: its frames, and the formulations in the order in which they are asked. All lengths are
+// over the arm's, those of goals and slides too.
 struct GeneralPlan {
     Chain chain;
+    double length = 1;  // of the arm [m]
+    int slides = 0;     // how many joints slide
     LoopFrames frames;
     int order[formulations];
-    int regular = 0;  // how many of them do not vanish identically
+    int regular = 0;  // how many of them do not vanish identically; 1 where no angle is hidden
     // Every solution of a goal, by the code of the instruction set that the plan was made with.
     void (*solve)(const GeneralPlan& plan, const Posed& goal, Solutions& out) = nullptr;
 };
@@ -43,32 +46,39 @@ struct GeneralPlan {
 namespace cspace::inline CSPACE_ISA {
 
 // Each frame stands where its axis comes closest to the frame before: feet of common normals would run away
-// from axes that are almost parallel.
+// from axes that are almost parallel. A slide has a direction and no place: its frame stays where it is.
 inline ik::LoopFrames loop_frames(const ik::Chain& chain) {
     ik::LoopFrames out;
-    out.length = characteristic_length(chain);
     Posed frame[6];
     Vec3d before = chain.point[1];
     for (int i = 0; i < 6; ++i) {
         const Vec3d& z = chain.axis[i];
         const Vec3d x = any_perpendicular(z);
-        before = chain.point[i] + dot(before - chain.point[i], z) * z;
-        frame[i] = {from_columns(x, cross(z, x), z), (1 / out.length) * before};
+        if (!chain.prismatic[i]) before = chain.point[i] + dot(before - chain.point[i], z) * z;
+        frame[i] = {from_columns(x, cross(z, x), z), before};
     }
     for (int i = 0; i < 5; ++i) out.between[i] = inverse(frame[i]) * frame[i + 1];
     out.first = frame[0];
-    out.last = inverse(frame[5]) * Posed{chain.tip.R, (1 / out.length) * chain.tip.t};
+    out.last = inverse(frame[5]) * chain.tip;
     return out;
+}
+
+// The arm with lengths in units of `length`.
+inline ik::Chain in_units_of(double length, ik::Chain chain) {
+    for (int i = 0; i < chain.n; ++i) chain.point[i] = (1 / length) * chain.point[i];
+    chain.tip.t = (1 / length) * chain.tip.t;
+    return chain;
 }
 
 inline ik::Formulation formulation(int number) { return {number % 6, number >= 6}; }
 
 // From axis 6 by the goal back to axis 1.
 inline Posed closing_link(const ik::LoopFrames& frames, const Posed& goal) {
-    return frames.last * (inverse(Posed{goal.R, (1 / frames.length) * goal.t}) * frames.first);
+    return frames.last * (inverse(goal) * frames.first);
 }
 
-inline ik::Loop make_loop(const ik::LoopFrames& frames, const Posed& goal, ik::Formulation form) {
+inline ik::Loop make_loop(const ik::LoopFrames& frames, const bool* prismatic, const Posed& goal,
+                          ik::Formulation form) {
     Posed link[6];
     for (int i = 0; i < 5; ++i) link[i] = frames.between[i];
     link[5] = closing_link(frames, goal);
@@ -78,6 +88,7 @@ inline ik::Loop make_loop(const ik::LoopFrames& frames, const Posed& goal, ik::F
         const int k = (form.shift + j) % 6;
         loop.M[j] = !form.backwards ? link[k] : inverse(link[k == 5 ? 5 : 4 - k]);
         loop.joint[j] = form.backwards ? 5 - k : k;
+        loop.slides[j] = prismatic[loop.joint[j]];
     }
     return loop;
 }

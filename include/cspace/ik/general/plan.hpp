@@ -27,7 +27,13 @@ inline bool is_beyond_reach(const ik::LoopFrames& frames, const Posed& goal) {
 // One formulation after the other until one of them certifies that nothing is missing.
 inline void solve_general(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
     out.crowded = false;
-    out.complete = is_beyond_reach(plan.frames, goal);
+    if (plan.slides == 3) {
+        out.complete = solve_orientation_first(plan, goal, out);
+        out.crowded = !out.complete;
+        out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+        return;
+    }
+    out.complete = plan.slides == 0 && is_beyond_reach(plan.frames, goal);
     for (int k = 0; k < plan.regular && !out.complete; ++k) {
         const ik::Certificate seen = solve_formulation(plan, goal, plan.order[k], out);
         out.complete = seen.complete;
@@ -43,7 +49,10 @@ inline constexpr double usual_sensitivity = 1e5, useless_sensitivity = 1e8;
 inline double sensitivity(const ik::GeneralPlan& plan, const Posed& goal, int number) {
     using V = Pack<4>;
     constexpr double slip = 1e-9;
-    const Elimination e = eliminate(make_loop(plan.frames, goal, formulation(number)));
+    const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
+    if (!is_possible(loop, formulation(number))) return useless_sensitivity;
+    if (plan.slides == 2) return 0;
+    const Elimination e = eliminate(loop);
     Elimination slipped = e;
     int sign = 1;
     for (int i = 0; i < 6; ++i)
@@ -87,12 +96,12 @@ inline FormulationTrial try_formulation(const ik::GeneralPlan& plan, const Posed
 
 // Whether two of the joints do one's work, or would but for rounded axes: then every configuration is
 // singular and no list of solutions could be complete.
-inline bool has_joint_to_spare(const ik::Chain& chain, double length) {
+inline bool has_joint_to_spare(const ik::Chain& chain) {
     for (int k = 0; k < 8; ++k) {
         double q[ik::max_joints];
         spread_configuration(k, 6, q);
         PoseError error;
-        measure(chain, forward(chain, q), length, q, error);
+        measure(chain, forward(chain, q), 1, q, error);
         if (weak_direction(&error.jacobian.us[0]).sigma > tolerance::axis_relation) return false;
     }
     return true;
@@ -101,13 +110,22 @@ inline bool has_joint_to_spare(const ik::Chain& chain, double length) {
 // For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
 // them at great cost. The regular ones are ordered by what they miss, by their work and by how
 // much they enlarge rounding.
-inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
+inline void make_general_plan(const ik::Chain& given, ik::GeneralPlan& plan) {
     constexpr int poses = 24;
     plan = {};
     plan.solve = &solve_general;
+    plan.length = characteristic_length(given);
+    const ik::Chain chain = in_units_of(plan.length, given);
     plan.chain = chain;
     plan.frames = loop_frames(chain);
-    if (has_joint_to_spare(chain, plan.frames.length)) return;
+    plan.slides = 0;
+    for (int i = 0; i < 6; ++i) plan.slides += chain.prismatic[i];
+    if (plan.slides > 3 || has_joint_to_spare(chain)) return;
+    if (plan.slides == 3) {
+        const OrientationFirst arm = orientation_first(chain);
+        plan.regular = arm.a * arm.a + arm.b * arm.b > 1e-12;
+        return;
+    }
     Posed goal[poses];
     for (int k = 0; k < poses; ++k) {
         double q[ik::max_joints];

@@ -12,10 +12,17 @@ struct Monomials {
     V x[12];
 };
 
-// Sines and cosines of a1 and a2, from their origins, not normalised.
+// Sums over neighbouring monomials: the sines and cosines of a1 and a2, from their origins, not normalised.
 template <class V>
 struct TwoHalfAngles {
     V s1, c1, s2, c2;
+};
+
+// The value of a joint, as a turn or as a slide.
+template <class V>
+struct Step {
+    Turn<V> turn;
+    V slide;
 };
 
 // The transposed equations, reduced: their reflections, their triangle.
@@ -81,6 +88,19 @@ CSPACE_INLINE Pose<V> turned_about_z(const Pose<V>& T, const Turn<V>& t) {
     const Vec3<V> x = column(T.R, 0), y = column(T.R, 1);
     return {from_columns(t.c * x + t.s * y, t.c * y - t.s * x, column(T.R, 2)), T.t};
 }
+// T Rz(a) or T Tz(a).
+template <class V>
+CSPACE_INLINE Pose<V> stepped(const Pose<V>& T, bool slides, const Step<V>& a) {
+    return slides ? Pose<V>{T.R, T.t + a.slide * column(T.R, 2)} : turned_about_z(T, a.turn);
+}
+template <class V>
+CSPACE_INLINE Step<V> turn_step(const Turn<V>& t) {
+    return {t, fill<V>(0.0)};
+}
+template <class V>
+CSPACE_INLINE Step<V> slide_step(V d) {
+    return {{fill<V>(1.0), fill<V>(0.0)}, d};
+}
 
 // The six parts of the left side that a5 does not see, less the constant of the right side.
 template <class V>
@@ -98,10 +118,11 @@ CSPACE_INLINE void parts_without_a5(const Elimination& e, const Pose<V>& X, V (&
 
 // a5 and a3 from the two sides of the loop once a4 is known; writes the joints of all six.
 template <class V>
-CSPACE_INLINE void close_loop(const ik::Loop& loop, const Pose<V>& X, const Turn<V>& a0, const Turn<V>& a1,
-                              const Turn<V>& a2, const Turn<V>& a4, V* q) {
+CSPACE_INLINE void close_loop(const ik::Loop& loop, const Pose<V>& X, const Turn<V>& a0, const Step<V>& a1,
+                              const Step<V>& a2, const Step<V>& a4, V* q) {
     const Pose<V> M3 = fill_pose<V>(inverse(loop.M[3])), M4 = fill_pose<V>(inverse(loop.M[4]));
-    const Pose<V> Y = turned_about_z(M4, Turn<V>{a4.c, -a4.s}) * M3;  // X = Rz(−a5) Y Rz(−a3)
+    const Step<V> back = {{a4.turn.c, -a4.turn.s}, -a4.slide};
+    const Pose<V> Y = stepped(M4, loop.slides[4], back) * M3;  // X = Rz(−a5) Y Rz(−a3)
     const Vec3<V> l = column(X.R, 2), w = column(Y.R, 2);
     const Turn<V> a5 = unit_turn(w.x * l.x + w.y * l.y + Y.t.x * X.t.x + Y.t.y * X.t.y,
                                  w.y * l.x - w.x * l.y + Y.t.y * X.t.x - Y.t.x * X.t.y);
@@ -110,8 +131,9 @@ CSPACE_INLINE void close_loop(const ik::Loop& loop, const Pose<V>& X, const Turn
     const Vec3<V> turned = {a5.c * x.x - a5.s * x.y, a5.s * x.x + a5.c * x.y, x.z};
     const Vec3<V> seen = transpose_times(Y.R, turned);
     const Turn<V> a3 = {seen.x, -seen.y};
-    const Turn<V> all[6] = {a0, a1, a2, a3, a4, a5};
-    for (int j = 0; j < 6; ++j) q[loop.joint[j]] = loop.sign * angle_of(all[j]);
+    const Step<V> all[6] = {turn_step(a0), a1, a2, turn_step(a3), a4, turn_step(a5)};
+    for (int j = 0; j < 6; ++j)
+        q[loop.joint[j]] = loop.sign * (loop.slides[j] ? all[j].slide : angle_of(all[j].turn));
 }
 
 // Candidates for the joints of one hidden angle (cosine and sine a0) and the half angles found there. Where
@@ -121,10 +143,18 @@ CSPACE_INLINE void joints_from(const ik::Loop& loop, const Elimination& e, const
                                const TwoHalfAngles<V>& half, V* q, V* second) {
     const Turn<V> o1 = {fill<V>(std::cos(a1_origin)), fill<V>(std::sin(a1_origin))};
     const Turn<V> o2 = {fill<V>(std::cos(a2_origin)), fill<V>(std::sin(a2_origin))};
-    const Turn<V> a1 = unit_turn(half.c1, half.s1) + o1, a2 = unit_turn(half.c2, half.s2) + o2;
+    // The monomials of a slide are those of an angle of which it is the tangent of the half.
+    const auto step = [](bool slides, V c, V s, const Turn<V>& origin) {
+        if (!slides) return turn_step(unit_turn(c, s) + origin);
+        const V size = sqrt(c * c + s * s), upper = size - c, lower = size + c;
+        return slide_step(select(lower > upper, s / max(lower, fill<V>(1e-300)),
+                                 upper / select(s == 0.0, fill<V>(1e-300), s)));
+    };
+    const Step<V> a1 = step(loop.slides[1], half.c1, half.s1, o1);
+    const Step<V> a2 = step(loop.slides[2], half.c2, half.s2, o2);
     Pose<V> X = turned_about_z(fill_pose<V>(loop.M[5]), a0) * fill_pose<V>(loop.M[0]);
-    X = turned_about_z(X, a1) * fill_pose<V>(loop.M[1]);
-    X = turned_about_z(X, a2) * fill_pose<V>(loop.M[2]);
+    X = stepped(X, loop.slides[1], a1) * fill_pose<V>(loop.M[1]);
+    X = stepped(X, loop.slides[2], a2) * fill_pose<V>(loop.M[2]);
     V part[6];
     parts_without_a5(e, X, part);
     if (e.a4_rank > 1e-6) {
@@ -133,7 +163,7 @@ CSPACE_INLINE void joints_from(const ik::Loop& loop, const Elimination& e, const
             c = mul_add(fill<V>(e.inverse_w[0][i]), part[i], c);
             s = mul_add(fill<V>(e.inverse_w[1][i]), part[i], s);
         }
-        close_loop(loop, X, a0, a1, a2, unit_turn(c, s), q);
+        close_loop(loop, X, a0, a1, a2, loop.slides[4] ? slide_step(s) : turn_step(unit_turn(c, s)), q);
         return;
     }
     int best = 0;
@@ -142,12 +172,20 @@ CSPACE_INLINE void joints_from(const ik::Loop& loop, const Elimination& e, const
         const double size = e.W[i][0] * e.W[i][0] + e.W[i][1] * e.W[i][1];
         if (size > most) most = size, best = i;
     }
+    if (loop.slides[4]) {  // w0 a² + w1 a = part
+        const double w0 = e.W[best][0], w1 = e.W[best][1];
+        const V root = sqrt(max(0.25 * w1 * w1 + w0 * part[best], fill<V>(0.0)));
+        const double scale = w0 != 0 ? 1 / w0 : 0;
+        close_loop(loop, X, a0, a1, a2, slide_step(scale * (root - 0.5 * w1)), q);
+        close_loop(loop, X, a0, a1, a2, slide_step(scale * (-root - 0.5 * w1)), second);
+        return;
+    }
     const double length = std::sqrt(max(most, 1e-300));
     const Turn<V> mean = {fill<V>(e.W[best][0] / length), fill<V>(e.W[best][1] / length)};
     const V c = max(min(part[best] * (1 / length), fill<V>(1.0)), fill<V>(-1.0));
     const Turn<V> off = {c, sqrt(max(1.0 - c * c, fill<V>(0.0)))};
-    close_loop(loop, X, a0, a1, a2, mean + off, q);
-    close_loop(loop, X, a0, a1, a2, mean - off, second);
+    close_loop(loop, X, a0, a1, a2, turn_step(mean + off), q);
+    close_loop(loop, X, a0, a1, a2, turn_step(mean - off), second);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -1,9 +1,11 @@
-// Every solution of six revolute joints in general position, for one goal.
+// Every solution of six joints in general position, for one goal.
 #pragma once
 
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/general/close_pairs.hpp"
 #include "cspace/ik/general/isolate.hpp"
+#include "cspace/ik/general/orientation_first.hpp"
+#include "cspace/ik/general/two_sheets.hpp"
 #include "cspace/ik/general/weak_direction.hpp"
 #include "cspace/ik/polish.hpp"
 
@@ -48,7 +50,7 @@ inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, in
         V q[6], step = fill<V>(1.0);
         load_rows(&all.q[first][0], 6, lanes, 6, q);
         for (int k = 0; k < 8 && any(step > 1e-9); ++k)
-            step = newton_step(plan.chain, goal4, plan.frames.length, q, 0.3);
+            step = newton_step(plan.chain, goal4, 1.0, q, 0.3);
         for (int k = 0; k < lanes; ++k) {
             all.settled[first + k] = lane(step, k) < 1e-7;
             if (!all.settled[first + k]) continue;
@@ -61,13 +63,13 @@ inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, in
 inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, const Posed& goal,
                            const double* q) {
     for (int k = 0; k < out.count; ++k) {
-        const double gap = wrapped_distance(out.q[k], q, 6);
+        const double gap = distance(plan.chain, out.q[k], q);
         if (gap < tolerance::same_solution) return;
-        if (gap < 1e-3 && are_one(plan.chain, goal, plan.frames.length, out.q[k], q)) return;
+        if (gap < 1e-3 && are_one(plan.chain, goal, 1.0, out.q[k], q)) return;
     }
     if (out.count == ik::max_solutions) return;
     const int n = out.count++;
-    for (int i = 0; i < 6; ++i) out.q[n][i] = wrap_once(short_way(q[i]));
+    for (int i = 0; i < 6; ++i) out.q[n][i] = plan.chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
     out.branch[n] = static_cast<signed char>(n);
     out.family[n] = false;
 }
@@ -77,7 +79,7 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
 inline void propose_twin(const ik::GeneralPlan& plan, const Posed& goal, const double* q,
                          ik::Candidates& out) {
     PoseError error;
-    const double length = plan.frames.length;
+    const double length = 1.0;
     measure(plan.chain, goal, length, q, error);
     const WeakDirection weak = weak_direction(&error.jacobian.us[0]);
     if (weak.sigma > 0.1) return;
@@ -166,7 +168,7 @@ inline void refine_unsettled(const ik::GeneralPlan& plan, const Posed& goal, ik:
     for (int k = 0; k < count; ++k) {
         if (all.settled[k]) continue;
         PoseError error;
-        const double left = refine(plan.chain, goal, plan.frames.length, all.q[k], error, 10);
+        const double left = refine(plan.chain, goal, 1.0, all.q[k], error, 10);
         if (!(left <= tolerance::reached)) continue;
         const int before = out.count;
         admit_polished(out, plan, goal, all.q[k]);
@@ -193,13 +195,32 @@ inline bool all_matched(const ik::Loop& loop, const ik::HiddenAngles& hidden, co
     return true;
 }
 
-inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Posed& goal, int number,
-                                         ik::Solutions& out) {
+// On both sheets of each hidden angle: one of them is meant, unless noise hides which.
+inline void follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidden, const bool* close,
+                          ik::Candidates& out) {
+    constexpr double clearly = 1e-3;
+    for (int k = 0; k < hidden.count; ++k) {
+        const AtHiddenAngle<double> at = at_hidden_angle(sheets, turn_by(hidden.root[k].angle));
+        const Turn<double> g = lack(at);
+        const double root = std::sqrt(max(at.inside, 0.0));
+        const double there[2] = {std::fabs(g.c + root * g.s), std::fabs(g.c - root * g.s)};
+        for (int side = 0; side < 2; ++side) {
+            if (there[1 - side] < clearly * there[side]) continue;
+            double q[6];
+            joints_on_sheet(sheets, at, side ? -1 : 1, q);
+            put(out, q, close[k] || !(there[side] < clearly * there[1 - side]));
+        }
+    }
+}
+
+// All solutions by the roots of f, a function of the hidden angle; `follow` makes candidates of them.
+template <class Function, class Follow>
+inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const Posed& goal,
+                                             const ik::Loop& loop, const Function& f, const Follow& follow,
+                                             ik::Solutions& out) {
     ik::Certificate seen;
-    const ik::Loop loop = make_loop(plan.frames, goal, formulation(number));
-    const Elimination e = eliminate(loop);
     ik::HiddenAngles hidden;
-    isolate([&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); }, hidden);
+    isolate(f, hidden);
     seen.alias = hidden.alias;
     seen.roots = hidden.count;
     seen.work = hidden.evaluations;
@@ -213,8 +234,7 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
         seen.clusters += close[k];
     }
     ik::Candidates found;
-    follow_roots(loop, e, hidden, close, found);
-    if (seen.clusters) split_close_roots(loop, e, hidden, close, found);
+    follow(hidden, close, found);
     admit_candidates(plan, goal, 0, found, out);
     const auto settled_all = [&] { return out.count % 2 == 0 && all_matched(loop, hidden, out); };
     bool all = settled_all();
@@ -228,6 +248,49 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
     }
     seen.complete = all && seen.alias < 1e-9 && !hidden.overflow;
     return seen;
+}
+
+// Whether a formulation can be asked of these joints: the hidden angle, the one that is stripped and the one
+// that is eliminated last must turn.
+inline bool is_possible(const ik::Loop& loop, ik::Formulation form) {
+    int slides = 0;
+    for (const bool s : loop.slides) slides += s;
+    if (slides == 2) return !loop.slides[0] && !form.backwards;
+    return slides < 2 && !loop.slides[0] && !loop.slides[3] && !loop.slides[5];
+}
+
+inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Posed& goal, int number,
+                                         ik::Solutions& out) {
+    const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
+    if (!is_possible(loop, formulation(number))) return {};
+    if (plan.slides == 2) {
+        const TwoSheets sheets = two_sheets(loop);
+        if (!(sheets.square_end > 1e-9)) return {};
+        const auto f = [&](Pack<4> c, Pack<4> s) { return lack_on_both(sheets, c, s); };
+        const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, ik::Candidates& found) {
+            follow_sheets(sheets, hidden, close, found);
+        };
+        return solve_by_hidden_angle(plan, goal, loop, f, follow, out);
+    }
+    const Elimination e = eliminate(loop);
+    const auto f = [&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); };
+    const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, ik::Candidates& found) {
+        follow_roots(loop, e, hidden, close, found);
+        bool any_close = false;
+        for (int k = 0; k < hidden.count; ++k) any_close |= close[k];
+        if (any_close) split_close_roots(loop, e, hidden, close, found);
+    };
+    return solve_by_hidden_angle(plan, goal, loop, f, follow, out);
+}
+
+// Of three joints that turn and three that slide.
+inline bool solve_orientation_first(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+    constexpr double clear = 1e-9, flat = 1e-9;
+    const TwoOrientations both = two_orientations(plan.chain, orientation_first(plan.chain), goal);
+    ik::Candidates found;
+    for (int k = 0; k < both.count; ++k) put(found, both.q[k], both.inside < 1e-6);
+    admit_candidates(plan, goal, 0, found, out);
+    return both.volume > flat && (std::fabs(both.inside) > clear || out.count == 2);
 }
 
 }  // namespace cspace::inline CSPACE_ISA
