@@ -1,9 +1,9 @@
 #include "ik_general.hpp"
 
-#include "cspace/ik/general/plan.hpp"
+#include "cspace/ik/general/completion.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
-void plan_general(const ik::Chain& chain, ik::GeneralPlan& plan) { make_general_plan(chain, plan); }
+bool plan_general(const ik::Chain& chain, ik::GeneralArm& arm) { return make_general_arm(chain, arm); }
 
 }  // namespace cspace::inline CSPACE_ISA

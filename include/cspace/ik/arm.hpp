@@ -12,10 +12,10 @@ namespace cspace::ik {
 
 struct Arm {
     Plan plan;                // plan.chain is the arm, plan or no plan
-    GeneralPlan general;      // of six revolute joints without a closed form
+    GeneralArm general;       // of the others
     bool has_plan = false;    // four to six revolute joints with a closed form
     bool is_short = false;    // up to three joints of any kind, solved directly
-    bool is_general = false;  // six revolute joints in general position
+    bool is_general = false;  // up to six joints of any kind without a closed form
 };
 
 // How many rows the solutions of a goal may need.
@@ -27,17 +27,12 @@ namespace cspace::inline CSPACE_ISA {
 
 // plan_general: with which instruction set general arms are solved, that of the caller unless given.
 inline ik::Arm make_arm(const ik::Chain& chain,
-                        void (*plan_general)(const ik::Chain&, ik::GeneralPlan&) = make_general_plan) {
+                        bool (*plan_general)(const ik::Chain&, ik::GeneralArm&) = make_general_arm) {
     ik::Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
     arm.is_short = chain.n <= ik::max_position_joints;
     if (!arm.has_plan) arm.plan.form.length = characteristic_length(chain);
-    bool all_turn = chain.n == 6;
-    for (int i = 0; i < chain.n; ++i) all_turn = all_turn && !chain.prismatic[i];
-    if (all_turn && !arm.has_plan) {
-        plan_general(chain, arm.general);
-        arm.is_general = arm.general.regular > 0;
-    }
+    if (!arm.has_plan && !arm.is_short && chain.n <= 6) arm.is_general = plan_general(chain, arm.general);
     return arm;
 }
 

@@ -84,8 +84,11 @@ def best_conditioning(robot: Any) -> float:
     """
     n = len(robot.chain.axes)
     steps = np.arange(1, 9)[:, None] * np.sqrt([2.0, 3.0, 5.0, 7.0, 11.0, 13.0])[:n]
-    J = np.array(robot.jacobian(2 * np.pi * (steps - np.floor(steps)) - np.pi))
+    q = 2 * np.pi * (steps - np.floor(steps)) - np.pi
+    slides = np.array([kind == "P" for kind in robot.chain.joint_types])
+    J = np.array(robot.jacobian(np.where(slides, arm_length(robot), 1) * q))
     J[:, :3] /= arm_length(robot)
+    J[..., slides] *= arm_length(robot)
     return float(np.linalg.svd(J, compute_uv=False)[:, -1].max())
 
 
@@ -99,16 +102,16 @@ def explain_missing_form(robot: Any) -> str:
         return f"{subject}: no joint moves"
     if robot.floating:
         return f"{subject}: its base floats; a robot made without floating=True has a fixed one"
-    if "P" in kinds:
-        return f"{subject}: arms with prismatic joints are not solved by this version"
     if len(kinds) > 6:
-        return f"{subject}: this version solves full poses for four to six revolute joints"
+        return f"{subject}: this version solves full poses for up to six joints"
     best = best_conditioning(robot)
     if best < _core.AXIS_RELATION:
         return (
             f"{subject}: every configuration is singular, two of its joints do one's work (the Jacobian's "
             f"smallest singular value is {best:.2g} at best); hold one joint still"
         )
+    if "P" in kinds:
+        return f"{subject}: its joints slide"
     tested = "; ".join(str(c) for c in conditions(robot) if not c.holds)
     return (
         f"{subject}: it needs the first or last three axes to meet in a point, or three neighbouring axes "

@@ -37,8 +37,16 @@ struct GeneralPlan {
     LoopFrames frames;
     int order[formulations];
     int regular = 0;  // how many of them do not vanish identically; 1 where no angle is hidden
+};
+
+// The plan of an arm, and where it cannot serve alone those of two neighbours (neighbours.hpp).
+struct GeneralArm {
+    Chain chain;       // the arm as given, of up to six joints
+    GeneralPlan plan;  // virtual joints behind its own complete it to six (completion.hpp)
+    GeneralPlan neighbour[2];
+    bool has_neighbours = false;
     // Every solution of a goal, by the code of the instruction set that the plan was made with.
-    void (*solve)(const GeneralPlan& plan, const Posed& goal, Solutions& out) = nullptr;
+    void (*solve)(const GeneralArm& arm, const Posed& goal, Solutions& out) = nullptr;
 };
 
 }  // namespace cspace::ik

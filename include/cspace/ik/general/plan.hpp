@@ -24,22 +24,24 @@ inline bool is_beyond_reach(const ik::LoopFrames& frames, const Posed& goal) {
     return norm(closing_link(frames, goal).t) > (1 + 1e-9) * others;
 }
 
-// One formulation after the other until one of them certifies that nothing is missing.
-inline void solve_general(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+// One formulation after the other until one of them certifies that nothing is missing. Returns the work.
+inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
     out.crowded = false;
+    int work = 0;
     if (plan.slides == 3) {
-        out.complete = solve_orientation_first(plan, goal, out);
+        out.complete = plan.regular > 0 && solve_orientation_first(plan, goal, out);
         out.crowded = !out.complete;
-        out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
-        return;
+    } else {
+        out.complete = plan.slides == 0 && is_beyond_reach(plan.frames, goal);
     }
-    out.complete = plan.slides == 0 && is_beyond_reach(plan.frames, goal);
-    for (int k = 0; k < plan.regular && !out.complete; ++k) {
+    for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete; ++k) {
         const ik::Certificate seen = solve_formulation(plan, goal, plan.order[k], out);
         out.complete = seen.complete;
         out.crowded = out.crowded || seen.clusters > 0;
+        work += seen.work;
     }
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    return work;
 }
 
 inline constexpr double usual_sensitivity = 1e5, useless_sensitivity = 1e8;
@@ -107,31 +109,31 @@ inline bool has_joint_to_spare(const ik::Chain& chain) {
     return true;
 }
 
+// The k-th of some poses of an arm without a pattern.
+inline Posed own_pose(const ik::Chain& chain, int k) {
+    double q[ik::max_joints];
+    spread_configuration(k, 6, q);
+    return forward(chain, q);
+}
+
 // For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
 // them at great cost. The regular ones are ordered by what they miss, by their work and by how
 // much they enlarge rounding.
-inline void make_general_plan(const ik::Chain& given, ik::GeneralPlan& plan) {
+inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
     constexpr int poses = 24;
     plan = {};
-    plan.solve = &solve_general;
-    plan.length = characteristic_length(given);
-    const ik::Chain chain = in_units_of(plan.length, given);
     plan.chain = chain;
     plan.frames = loop_frames(chain);
     plan.slides = 0;
     for (int i = 0; i < 6; ++i) plan.slides += chain.prismatic[i];
-    if (plan.slides > 3 || has_joint_to_spare(chain)) return;
+    if (plan.slides > 3) return;
     if (plan.slides == 3) {
         const OrientationFirst arm = orientation_first(chain);
         plan.regular = arm.a * arm.a + arm.b * arm.b > 1e-12;
         return;
     }
     Posed goal[poses];
-    for (int k = 0; k < poses; ++k) {
-        double q[ik::max_joints];
-        spread_configuration(k, 6, q);
-        goal[k] = forward(chain, q);
-    }
+    for (int k = 0; k < poses; ++k) goal[k] = own_pose(chain, k);
     FormulationTrial trial[ik::formulations];
     int most[poses] = {};
     for (int number = 0; number < ik::formulations; ++number) {

@@ -1,7 +1,7 @@
 // General arms at poses that leave them freedom: which of the solutions stand for a family.
 #pragma once
 
-#include "cspace/ik/general/plan.hpp"
+#include "cspace/ik/general/completion.hpp"
 #include "cspace/ik/self_motion.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -22,44 +22,62 @@ inline void mark_families(const ik::GeneralPlan& plan, const Posed& goal, ik::So
 
 // Where the determinant vanishes all round the circle, a family runs through every hidden angle: its members
 // are found by descent from configurations all over the joints.
-inline void search_family(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
-    constexpr int starts = 48;
+inline void search_family(const ik::Chain& chain, const Posed& goal, ik::Solutions& out) {
+    constexpr int starts = 48, most_steps = 60;
     for (int k = 0; k < starts && out.count < ik::max_solutions; ++k) {
         double q[ik::max_joints];
-        spread_configuration(k, 6, q);
-        PoseError error;
-        if (refine(plan.chain, goal, 1, q, error) <= tolerance::reached)
-            admit_polished(out, plan, goal, q);
+        spread_configuration(k, chain.n, q);
+        admit(out, chain, goal, 1, q, out.count, most_steps);
     }
 }
 
 // Slides in metres again, and directions of length one.
-inline void in_metres(const ik::GeneralPlan& plan, ik::Solutions& out) {
-    if (plan.slides == 0) return;
+inline void in_metres(const ik::Chain& chain, double length, ik::Solutions& out) {
     for (int k = 0; k < out.count; ++k) {
-        double size = 0;
-        for (int i = 0; i < 6; ++i) {
-            if (plan.chain.prismatic[i]) {
-                out.q[k][i] *= plan.length;
-                out.direction[k][i] *= plan.length;
-            }
-            size += out.direction[k][i] * out.direction[k][i];
-        }
-        for (int i = 0; out.family[k] && i < 6; ++i) out.direction[k][i] /= std::sqrt(size);
+        for (int i = 0; i < chain.n; ++i)
+            if (chain.prismatic[i]) out.q[k][i] *= length;
+        if (!out.family[k]) continue;
+        double* const d = out.direction[k];
+        for (int i = 0; i < chain.n; ++i)
+            if (chain.prismatic[i]) d[i] *= length;
+        const double size = std::sqrt(dot_n(d, d, chain.n));
+        for (int i = 0; i < chain.n; ++i) d[i] /= size;
     }
 }
 
-// goal: in metres, as is the answer.
-inline ik::Solutions solve_general_carefully(const ik::GeneralPlan& plan, const Posed& goal_in_metres) {
-    const Posed goal = {goal_in_metres.R, (1 / plan.length) * goal_in_metres.t};
+// Of the completed arm's solutions those with virtual joints at zero, on the arm itself.
+inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed& goal,
+                                            const ik::Solutions& six) {
+    constexpr double stray = 1e-3;  // rounding beside singularities of the completed arm
     ik::Solutions out;
-    plan.solve(plan, goal, out);
-    if (out.crowded || !out.complete) {
-        if (!out.complete && out.count == 0) search_family(plan, goal, out);
-        out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
-        mark_families(plan, goal, out);
+    out.complete = six.complete;
+    for (int k = 0; k < six.count; ++k) {
+        double q[ik::max_joints], off = 0;
+        for (int i = 0; i < 6; ++i) q[i] = six.q[k][i];
+        for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(q[i]));
+        if (off < stray) admit(out, chain, goal, 1, q, out.count, 20);
     }
-    in_metres(plan, out);
+    return out;
+}
+
+// goal: in metres, as is the answer.
+inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Posed& goal_in_metres) {
+    const double length = arm.plan.length;
+    const Posed goal = {goal_in_metres.R, (1 / length) * goal_in_metres.t};
+    ik::Chain chain = arm.plan.chain;
+    chain.n = arm.chain.n;
+    ik::Solutions out;
+    arm.solve(arm, goal, out);
+    const bool all = out.complete && !out.crowded;
+    if (chain.n < 6) out = without_virtual_joints(chain, goal, out);
+    if (!all) {
+        if (!out.complete && out.count == 0) search_family(chain, goal, out);
+        if (chain.n == 6) mark_families(arm.plan, goal, out);
+    }
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    for (int k = 0; k < out.count; ++k)
+        if (out.family[k]) out.status = ik::Status::singular;
+    if (arm.plan.slides > 0) in_metres(chain, length, out);
     return out;
 }
 

@@ -1,0 +1,82 @@
+// Arms of fewer than six joints: virtual joints behind the last complete them to six. A pose that the arm
+// reaches is one that the completed arm reaches with its virtual joints at zero.
+#pragma once
+
+#include "cspace/ik/general/neighbours.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+inline constexpr double regular_enough = 1e-3;  // singular value of a completed Jacobian
+
+// How well a completed arm is conditioned where its virtual joints are zero: the median over some
+// configurations of the smallest singular value.
+inline double completed_conditioning(const ik::Chain& six, int joints) {
+    constexpr int trials = 5;
+    double sigma[trials];
+    for (int k = 0; k < trials; ++k) {
+        double q[ik::max_joints];
+        spread_configuration(k, 6, q);
+        for (int i = joints; i < 6; ++i) q[i] = 0;
+        PoseError error;
+        measure(six, six.tip, 1, q, error);
+        sigma[k] = weak_direction(&error.jacobian.us[0]).sigma;
+        for (int j = k; j > 0 && sigma[j - 1] > sigma[j]; --j) {
+            const double kept = sigma[j];
+            sigma[j] = sigma[j - 1];
+            sigma[j - 1] = kept;
+        }
+    }
+    return sigma[trials / 2];
+}
+
+// The chain with virtual joints, the first `slides` of which slide, in directions without a pattern.
+inline ik::Chain with_virtual_joints(const ik::Chain& chain, int slides, int choice) {
+    ik::Chain six = chain;
+    six.n = 6;
+    for (int i = chain.n; i < 6; ++i) {
+        const Vec3d direction = pattern(7 * choice + 2 * i), beside = pattern(7 * choice + 2 * i + 1);
+        six.axis[i] = (1 / norm(direction)) * direction;
+        six.point[i] = chain.tip.t + 0.5 * beside;
+        six.prismatic[i] = i - chain.n < slides;
+    }
+    return six;
+}
+
+// The more of six joints slide, up to three, the simpler their equations. Returns whether any choice makes
+// the arm regular; its lengths are over its own.
+inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
+    constexpr int choices = 12;
+    int sliding = 0;
+    for (int i = 0; i < chain.n; ++i) sliding += chain.prismatic[i];
+    for (int slides = min(6 - chain.n, 3 - sliding); slides >= 0; --slides) {
+        double most = regular_enough;
+        for (int choice = 0; choice < choices; ++choice) {
+            const ik::Chain six = with_virtual_joints(chain, slides, choice);
+            const double sigma = completed_conditioning(six, chain.n);
+            if (sigma > most) {
+                most = sigma;
+                best = six;
+            }
+        }
+        if (most > regular_enough) return true;
+    }
+    return false;
+}
+
+// The solver of an arm of up to six joints none of which is to spare; false for others.
+inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
+    arm = {};
+    arm.chain = chain;
+    arm.solve = &solve_general;
+    const double length = characteristic_length(chain);
+    ik::Chain six = in_units_of(length, chain);
+    if (chain.n > 6 || (chain.n < 6 && !complete_arm(in_units_of(length, chain), six))) return false;
+    arm.plan.chain = six;
+    if (has_joint_to_spare(six)) return false;
+    make_general_plan(six, arm.plan);
+    arm.plan.length = length;
+    if (!serves_alone(arm.plan)) make_neighbours(arm);
+    return arm.plan.regular > 0 || arm.has_neighbours;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

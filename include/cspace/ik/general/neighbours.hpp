@@ -1,0 +1,88 @@
+// Arms whose axes are parallel, square or meet in such a way that every formulation vanishes or finds each
+// hidden angle twice: a neighbour, the arm with its axes disturbed a little, has neither fault, and leads to
+// the solutions of the arm itself. There are two neighbours, on opposite sides: where two solutions of the
+// arm are about to merge one of them may have lost the pair, and then the other keeps it apart.
+#pragma once
+
+#include "cspace/ik/general/plan.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+inline constexpr double disturbance = 3e-4;  // [rad], and over the arm's length
+inline constexpr double about_to_merge = 0.2;  // smallest singular value near which it may cost a pair
+
+// A vector of entries up to one, without a pattern.
+inline Vec3d pattern(int k) {
+    double q[ik::max_joints];
+    spread_configuration(k, 3, q);
+    return {q[0] / pi, q[1] / pi, q[2] / pi};
+}
+
+inline ik::Chain disturbed(const ik::Chain& chain, double size) {
+    ik::Chain out = chain;
+    for (int i = 0; i < chain.n; ++i) {
+        const Vec3d axis = chain.axis[i] + size * pattern(2 * i);
+        out.axis[i] = (1 / norm(axis)) * axis;
+        out.point[i] = chain.point[i] + size * pattern(2 * i + 1);
+    }
+    return out;
+}
+
+inline void make_neighbours(ik::GeneralArm& arm) {
+    for (int k = 0; k < 2; ++k)
+        make_general_plan(disturbed(arm.plan.chain, k ? -disturbance : disturbance), arm.neighbour[k]);
+    arm.has_neighbours = arm.neighbour[0].regular > 0 && arm.neighbour[1].regular > 0;
+}
+
+inline bool is_about_to_merge(const ik::Chain& chain, const Posed& goal, const double* q) {
+    PoseError error;
+    measure(chain, goal, 1, q, error);
+    return weak_direction(&error.jacobian.us[0]).sigma < about_to_merge;
+}
+
+// Complete if both neighbours are and both lead to every solution, pairs about to merge excepted.
+inline void solve_beside(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
+    const ik::Chain& chain = arm.plan.chain;
+    bool led[2][ik::max_solutions] = {};
+    out.complete = true;
+    out.crowded = true;
+    for (int k = 0; k < 2; ++k) {
+        ik::Solutions beside;
+        solve_by_plan(arm.neighbour[k], goal, beside);
+        out.complete = out.complete && beside.complete;
+        ik::Candidates start;
+        for (int j = 0; j < beside.count; ++j) put(start, beside.q[j], false);
+        admit_candidates(arm.plan, goal, 0, start, out);
+        refine_unsettled(arm.plan, goal, start, out);
+        for (int j = 0; j < beside.count; ++j) {
+            bool arrived = false;
+            for (int m = 0; m < out.count; ++m)
+                if (distance(chain, out.q[m], start.q[j]) < tolerance::same_solution)
+                    led[k][m] = arrived = true;
+            if (!arrived && !is_about_to_merge(arm.neighbour[k].chain, goal, beside.q[j])) out.complete = false;
+        }
+    }
+    for (int m = 0; m < out.count && out.complete; ++m)
+        out.complete = (led[0][m] && led[1][m]) || is_about_to_merge(chain, goal, out.q[m]);
+    out.complete = out.complete && out.count % 2 == 0;
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+}
+
+// Whether the arm's own plan does well on its poses.
+inline bool serves_alone(const ik::GeneralPlan& plan) {
+    constexpr int poses = 24, light = 60;
+    int complete = 0, work = 0;
+    for (int k = 0; k < poses; ++k) {
+        ik::Solutions out;
+        work += solve_by_plan(plan, own_pose(plan.chain, k), out);
+        complete += out.complete;
+    }
+    return complete >= poses - 1 && work <= light * poses;
+}
+
+inline void solve_general(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
+    if (arm.has_neighbours) solve_beside(arm, goal, out);
+    if (!arm.has_neighbours || !out.complete) solve_by_plan(arm.plan, goal, out);
+}
+
+}  // namespace cspace::inline CSPACE_ISA
