@@ -173,7 +173,7 @@ def test_an_arm_without_a_closed_form_says_which_condition_failed_by_how_much(na
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("panda", "7 joints"), ("iiwa14", "7 joints"), ("stanford", "prismatic"), ("p8", "prismatic")],
+    [("panda", "7 joints"), ("iiwa14", "7 joints"), ("p8", "8 joints")],
 )
 def test_arms_of_later_versions_are_refused_by_kind(name, words):
     robot = load(name)

@@ -15,19 +15,24 @@ def rotations(axis, angle):
     return np.eye(3) + s * K + (1 - c) * (K @ K)
 
 
-def forward(axes, points, T_zero, q):
-    """Tip rotation (k, 3, 3), tip position (k, 3) and Jacobian (k, 6, n), rows [v; ω], of revolute arms."""
+def forward(axes, points, T_zero, q, slides):
+    """Tip rotation (k, 3, 3), tip position (k, 3) and Jacobian (k, 6, n), rows [v; ω]."""
     k, n = q.shape
     R, t = np.tile(np.eye(3), (k, 1, 1)), np.zeros((k, 3))
     h, p = np.empty((n, k, 3)), np.empty((n, k, 3))
     for i in range(n):
         h[i], p[i] = R @ axes[i], R @ points[i] + t
+        if slides[i]:
+            t = t + q[:, i, None] * h[i]
+            continue
         turn = rotations(axes[i], q[:, i])
         t = t + np.einsum("kij,kj->ki", R, points[i] - turn @ points[i])
         R = R @ turn
     t = R @ T_zero[:3, 3] + t
     R = R @ T_zero[:3, :3]
-    return R, t, np.concatenate([np.cross(h, t - p), h], axis=2).transpose(1, 2, 0)
+    turns = np.where(slides, 0.0, 1.0)[:, None, None]
+    v = np.where(np.asarray(slides)[:, None, None], h, np.cross(h, t - p))
+    return R, t, np.concatenate([v, turns * h], axis=2).transpose(1, 2, 0)
 
 
 def rotation_vectors(R):
@@ -37,45 +42,48 @@ def rotation_vectors(R):
     return w / (2 * cos_half[:, None])
 
 
-def pose_errors(axes, points, T_zero, goals, q):
+def pose_errors(axes, points, T_zero, goals, q, slides):
     """[Δp; Δrotation] (k, 6) and the Jacobian (k, 6, n)."""
-    R, t, J = forward(axes, points, T_zero, q)
+    R, t, J = forward(axes, points, T_zero, q, slides)
     turn = rotation_vectors(goals[:, :3, :3] @ R.transpose(0, 2, 1))
     return np.concatenate([goals[:, :3, 3] - t, turn], axis=1), J
 
 
-def levenberg_marquardt(axes, points, T_zero, goals, q, steps):
+def levenberg_marquardt(axes, points, T_zero, goals, q, steps, slides):
     """Every start (k, n) walked towards its goal (k, 4, 4); returns q and the error left (k,)."""
     q, damping = q.copy(), np.full(len(q), 1e-2)
-    e, J = pose_errors(axes, points, T_zero, goals, q)
+    e, J = pose_errors(axes, points, T_zero, goals, q, slides)
     identity = np.eye(q.shape[1])
     for _ in range(steps):
         JT = J.transpose(0, 2, 1)
         A = JT @ J + damping[:, None, None] * identity
         step = np.linalg.solve(A, (JT @ e[:, :, None]))[:, :, 0]
         trial = q + step
-        e_trial, J_trial = pose_errors(axes, points, T_zero, goals, trial)
+        e_trial, J_trial = pose_errors(axes, points, T_zero, goals, trial, slides)
         better = np.linalg.norm(e_trial, axis=1) < np.linalg.norm(e, axis=1)
         q[better], e[better], J[better] = trial[better], e_trial[better], J_trial[better]
         damping = np.clip(np.where(better, damping / 5, damping * 4), 1e-14, 1e3)
     return q, np.linalg.norm(e, axis=1)
 
 
-def distinct(q, apart):
-    """One of each bunch of configurations (k, n) that agree on the circle within `apart` [rad]."""
+def distinct(q, apart, slides):
+    """One of each bunch of configurations (k, n) that agree within `apart` [rad], turns on the circle."""
     kept = np.empty((0, q.shape[1]))
     while len(q):
         kept = np.vstack([kept, q[:1]])
-        gap = np.abs((q - q[0] + np.pi) % (2 * np.pi) - np.pi).max(axis=1)
-        q = q[gap > apart]
+        gap = q - q[0]
+        gap = np.where(slides, gap, (gap + np.pi) % (2 * np.pi) - np.pi)
+        q = q[np.abs(gap).max(axis=1) > apart]
     return kept
 
 
-def all_solutions(axes, points, T_zero, goals, *, starts=400, steps=60, rng=0, near=1e-9, apart=1e-5):
+def all_solutions(
+    axes, points, T_zero, goals, *, joint_types=None, starts=400, steps=60, rng=0, near=1e-9, apart=1e-5
+):
     """For each goal (m, 4, 4) the solutions found, a list of (k_i, n) arrays with angles in (−π, π].
 
-    Lengths are first brought to the size of radians. near: largest error of a solution (scaled lengths,
-    rad); apart: solutions closer than this are one [rad].
+    joint_types: "R" or "P" each, all "R" unless given. Lengths are first brought to the size of radians.
+    near: largest error of a solution (scaled lengths, rad); apart: solutions closer than this are one [rad].
     """
     rng = np.random.default_rng(rng)
     size = np.abs(np.vstack([points - points[0], T_zero[None, :3, 3] - points[0]])).max() or 1.0
@@ -83,8 +91,9 @@ def all_solutions(axes, points, T_zero, goals, *, starts=400, steps=60, rng=0, n
     T_zero[:3, 3] /= size
     goals[:, :3, 3] /= size
     m, n = len(goals), len(axes)
+    slides = np.array([kind == "P" for kind in joint_types or n * "R"])
     q = rng.uniform(-np.pi, np.pi, (m * starts, n))
-    q, left = levenberg_marquardt(axes, points, T_zero, np.repeat(goals, starts, axis=0), q, steps)
-    q = np.pi - np.mod(np.pi - q, 2 * np.pi)
+    q, left = levenberg_marquardt(axes, points, T_zero, np.repeat(goals, starts, axis=0), q, steps, slides)
+    q = np.where(slides, size * q, np.pi - np.mod(np.pi - q, 2 * np.pi))
     q, left = q.reshape(m, starts, n), left.reshape(m, starts)
-    return [distinct(row[ok], apart) for row, ok in zip(q, left < near, strict=True)]
+    return [distinct(row[ok], apart, slides) for row, ok in zip(q, left < near, strict=True)]

@@ -42,10 +42,36 @@ inline ik::Chain with_virtual_joints(const ik::Chain& chain, int slides, int cho
     return six;
 }
 
+// A wrist made of the turning joints at one end and virtual ones square to them.
+inline bool with_virtual_wrist(const ik::Chain& chain, ik::Chain& best) {
+    if (chain.n < 4) return false;
+    const Vec3d& last = chain.axis[chain.n - 1];
+    ik::Chain six = chain;
+    six.n = 6;
+    Vec3d centre = chain.point[chain.n - 1] + dot(chain.tip.t - chain.point[chain.n - 1], last) * last;
+    if (chain.n == 5) {
+        const Vec3d n = cross(chain.axis[3], last), gap = chain.point[4] - chain.point[3];
+        if (!(dot(n, n) > 1e-6)) return false;
+        centre = chain.point[3] + (dot(cross(gap, last), n) / dot(n, n)) * chain.axis[3];
+    }
+    const Vec3d x = any_perpendicular(last);
+    for (int i = chain.n; i < 6; ++i) {
+        six.axis[i] = i == 5 ? cross(last, x) : x;
+        six.point[i] = centre;
+        six.prismatic[i] = false;
+    }
+    if (chain.n == 5) six.axis[5] = cross(chain.axis[3], last);
+    six.axis[5] = (1 / norm(six.axis[5])) * six.axis[5];
+    if (!position_first(six).serves || !(completed_conditioning(six, chain.n) > regular_enough)) return false;
+    best = six;
+    return true;
+}
+
 // The more of six joints slide, up to three, the simpler their equations. Returns whether any choice makes
 // the arm regular; its lengths are over its own.
 inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
     constexpr int choices = 12;
+    if (with_virtual_wrist(chain, best)) return true;
     int sliding = 0;
     for (int i = 0; i < chain.n; ++i) sliding += chain.prismatic[i];
     for (int slides = min(6 - chain.n, 3 - sliding); slides >= 0; --slides) {
@@ -73,8 +99,13 @@ inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
     if (chain.n > 6 || (chain.n < 6 && !complete_arm(in_units_of(length, chain), six))) return false;
     arm.plan.chain = six;
     if (has_joint_to_spare(six)) return false;
-    make_general_plan(six, arm.plan);
+    arm.position_first = position_first(six);
+    if (arm.position_first.serves)
+        describe(six, arm.plan);
+    else
+        make_general_plan(six, arm.plan);
     arm.plan.length = length;
+    if (arm.position_first.serves) return true;
     if (!serves_alone(arm.plan)) make_neighbours(arm);
     return arm.plan.regular > 0 || arm.has_neighbours;
 }

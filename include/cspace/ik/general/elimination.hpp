@@ -8,8 +8,8 @@
 // That is six equations in the nine products of (S1², S1C1, C1²) and (S2², S2C2, C2²), the sines and cosines
 // of half the angles a1 and a2, which no angle makes infinite:
 //   E(a0) = level + cos a0 · across + sin a0 · quarter.
-// A joint that slides has (a², a, 1) where one that turns has (S², SC, C²), and (a², a) for (cos, sin): any of
-// a1, a2, a4 may.
+// A joint that slides has (a², a, 1) where one that turns has (S², SC, C²), and (a², a) for (cos, sin): any
+// of a1, a2, a4 may.
 #pragma once
 
 #include "cspace/ik/general/invariants.hpp"

@@ -1,10 +1,12 @@
-// Six joints as a closed loop. With a frame on each axis, its z along the axis, the arm and its goal close up:
+// Six joints as a closed loop. With a frame on each axis, its z along the axis, the arm and its goal close
+// up:
 //   Rz(a0) M0 Rz(a1) M1 Rz(a2) M2 Rz(a3) M3 Rz(a4) M4 Rz(a5) M5 = I,
 // a joint that slides with Tz in the place of Rz.
 // Any joint may come first, and the loop may be read backwards: twelve formulations of one problem.
 #pragma once
 
 #include "cspace/ik/dh_form.hpp"
+#include "cspace/ik/general/position_first.hpp"
 #include "cspace/ik/solution.hpp"
 
 namespace cspace::ik {
@@ -43,6 +45,7 @@ struct GeneralPlan {
 struct GeneralArm {
     Chain chain;       // the arm as given, of up to six joints
     GeneralPlan plan;  // virtual joints behind its own complete it to six (completion.hpp)
+    PositionFirst position_first;
     GeneralPlan neighbour[2];
     bool has_neighbours = false;
     // Every solution of a goal, by the code of the instruction set that the plan was made with.

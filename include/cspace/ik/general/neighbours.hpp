@@ -8,7 +8,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-inline constexpr double disturbance = 3e-4;  // [rad], and over the arm's length
+inline constexpr double disturbance = 3e-4;    // [rad], and over the arm's length
 inline constexpr double about_to_merge = 0.2;  // smallest singular value near which it may cost a pair
 
 // A vector of entries up to one, without a pattern.
@@ -59,7 +59,8 @@ inline void solve_beside(const ik::GeneralArm& arm, const Posed& goal, ik::Solut
             for (int m = 0; m < out.count; ++m)
                 if (distance(chain, out.q[m], start.q[j]) < tolerance::same_solution)
                     led[k][m] = arrived = true;
-            if (!arrived && !is_about_to_merge(arm.neighbour[k].chain, goal, beside.q[j])) out.complete = false;
+            if (!arrived && !is_about_to_merge(arm.neighbour[k].chain, goal, beside.q[j]))
+                out.complete = false;
         }
     }
     for (int m = 0; m < out.count && out.complete; ++m)
@@ -71,16 +72,29 @@ inline void solve_beside(const ik::GeneralArm& arm, const Posed& goal, ik::Solut
 // Whether the arm's own plan does well on its poses.
 inline bool serves_alone(const ik::GeneralPlan& plan) {
     constexpr int poses = 24, light = 60;
-    int complete = 0, work = 0;
-    for (int k = 0; k < poses; ++k) {
+    int doubtful = 0, work = 0;
+    for (int k = 0; k < poses && doubtful < 2 && work <= light * poses; ++k) {
         ik::Solutions out;
         work += solve_by_plan(plan, own_pose(plan.chain, k), out);
-        complete += out.complete;
+        doubtful += !out.complete;
     }
-    return complete >= poses - 1 && work <= light * poses;
+    return doubtful < 2 && work <= light * poses;
+}
+
+// By the wrist that the arm has. Where solutions merge or joints are free its list may be short.
+inline void solve_with_wrist(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
+    const PlacedAndTurned found = solve(arm.position_first, goal);
+    ik::Candidates start;
+    for (int k = 0; k < found.count; ++k) put(start, found.q[k], found.close[k]);
+    admit_candidates(arm.plan, goal, 0, start, out);
+    refine_unsettled(arm.plan, goal, start, out);
+    out.complete = true;
+    out.crowded = found.doubt;
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
 }
 
 inline void solve_general(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
+    if (arm.position_first.serves) return solve_with_wrist(arm, goal, out);
     if (arm.has_neighbours) solve_beside(arm, goal, out);
     if (!arm.has_neighbours || !out.complete) solve_by_plan(arm.plan, goal, out);
 }

@@ -116,20 +116,23 @@ inline Posed own_pose(const ik::Chain& chain, int k) {
     return forward(chain, q);
 }
 
+// A plan without formulations.
+inline void describe(const ik::Chain& chain, ik::GeneralPlan& plan) {
+    plan = {};
+    plan.chain = chain;
+    plan.frames = loop_frames(chain);
+    for (int i = 0; i < 6; ++i) plan.slides += chain.prismatic[i];
+}
+
 // For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
 // them at great cost. The regular ones are ordered by what they miss, by their work and by how
 // much they enlarge rounding.
 inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
     constexpr int poses = 24;
-    plan = {};
-    plan.chain = chain;
-    plan.frames = loop_frames(chain);
-    plan.slides = 0;
-    for (int i = 0; i < 6; ++i) plan.slides += chain.prismatic[i];
+    describe(chain, plan);
     if (plan.slides > 3) return;
     if (plan.slides == 3) {
-        const OrientationFirst arm = orientation_first(chain);
-        plan.regular = arm.a * arm.a + arm.b * arm.b > 1e-12;
+        plan.regular = is_regular(orientation_first(chain).turns);
         return;
     }
     Posed goal[poses];

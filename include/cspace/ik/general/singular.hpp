@@ -14,8 +14,7 @@ inline void mark_families(const ik::GeneralPlan& plan, const Posed& goal, ik::So
         measure(plan.chain, goal, 1, out.q[k], error);
         if (weak_direction(&error.jacobian.us[0]).sigma > hardly) continue;
         decompose(error.jacobian);
-        out.family[k] =
-            find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);
+        out.family[k] = find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);
         if (out.family[k]) out.status = ik::Status::singular;
     }
 }

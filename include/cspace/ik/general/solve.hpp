@@ -49,8 +49,7 @@ inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, in
         const int lanes = all.count - first < 4 ? all.count - first : 4;
         V q[6], step = fill<V>(1.0);
         load_rows(&all.q[first][0], 6, lanes, 6, q);
-        for (int k = 0; k < 8 && any(step > 1e-9); ++k)
-            step = newton_step(plan.chain, goal4, 1.0, q, 0.3);
+        for (int k = 0; k < 8 && any(step > 1e-9); ++k) step = newton_step(plan.chain, goal4, 1.0, q, 0.3);
         for (int k = 0; k < lanes; ++k) {
             all.settled[first + k] = lane(step, k) < 1e-7;
             if (!all.settled[first + k]) continue;

@@ -17,11 +17,11 @@ namespace cspace {
 struct TwoSheets {
     Mat3d A[4];
     Vec3d t[4];
-    Vec3d u[2];  // directions of the slides
-    int link[2];  // in which link they stand
+    Vec3d u[2];             // directions of the slides
+    int link[2];            // in which link they stand
     int turn[4], slide[2];  // the joints of the chain
-    Vec3d end, row;  // A2ᵀ z and A2 z
-    double square_end;  // of their part across z
+    Vec3d end, row;         // A2ᵀ z and A2 z
+    double square_end;      // of their part across z
 };
 
 // even ± odd √Δ
@@ -95,8 +95,8 @@ CSPACE_INLINE Turn<V> turn_between(const Vec3<V>& w, const Vec3<V>& x, double n2
 
 // A vector fixed in link i, seen from before a0.
 template <class V>
-CSPACE_INLINE OnSheets<V> from_link(const TwoSheets& s, const AtHiddenAngle<V>& at, const Mat3<V>& R0A0, int i,
-                                    const Vec3d& fixed) {
+CSPACE_INLINE OnSheets<V> from_link(const TwoSheets& s, const AtHiddenAngle<V>& at, const Mat3<V>& R0A0,
+                                    int i, const Vec3d& fixed) {
     const Vec3<V> none = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)}, v = fill3<V>(fixed);
     if (i == 0) return {turned(at.a0, v), none};
     if (i == 1) return times(R0A0, turned(at.a1, v));
@@ -111,7 +111,8 @@ CSPACE_INLINE AtHiddenAngle<V> at_hidden_angle(const TwoSheets& s, const Turn<V>
     at.a0 = a0;
     const Vec3<V> end = fill3<V>(column(s.A[1], 2));
     Mat3<V> R0A0 = fill33<V>(s.A[0]);
-    R0A0 = from_columns(turned(a0, column(R0A0, 0)), turned(a0, column(R0A0, 1)), turned(a0, column(R0A0, 2)));
+    R0A0 =
+        from_columns(turned(a0, column(R0A0, 0)), turned(a0, column(R0A0, 1)), turned(a0, column(R0A0, 2)));
     const Mat3<V> B = fill33<V>(s.A[3]) * R0A0;
     const Vec3<V> row = {B.m[2][0], B.m[2][1], B.m[2][2]};
     const V a = row.x * end.x + row.y * end.y, b = row.y * end.x - row.x * end.y;
