@@ -15,9 +15,10 @@ def rotations(axis, angle):
     return np.eye(3) + s * K + (1 - c) * (K @ K)
 
 
-def forward(axes, points, T_zero, q, slides):
+def forward(axes, points, T_zero, q, slides=None):
     """Tip rotation (k, 3, 3), tip position (k, 3) and Jacobian (k, 6, n), rows [v; ω]."""
     k, n = q.shape
+    slides = np.zeros(n, dtype=bool) if slides is None else slides
     R, t = np.tile(np.eye(3), (k, 1, 1)), np.zeros((k, 3))
     h, p = np.empty((n, k, 3)), np.empty((n, k, 3))
     for i in range(n):
@@ -42,14 +43,14 @@ def rotation_vectors(R):
     return w / (2 * cos_half[:, None])
 
 
-def pose_errors(axes, points, T_zero, goals, q, slides):
+def pose_errors(axes, points, T_zero, goals, q, slides=None):
     """[Δp; Δrotation] (k, 6) and the Jacobian (k, 6, n)."""
     R, t, J = forward(axes, points, T_zero, q, slides)
     turn = rotation_vectors(goals[:, :3, :3] @ R.transpose(0, 2, 1))
     return np.concatenate([goals[:, :3, 3] - t, turn], axis=1), J
 
 
-def levenberg_marquardt(axes, points, T_zero, goals, q, steps, slides):
+def levenberg_marquardt(axes, points, T_zero, goals, q, steps, slides=None):
     """Every start (k, n) walked towards its goal (k, 4, 4); returns q and the error left (k,)."""
     q, damping = q.copy(), np.full(len(q), 1e-2)
     e, J = pose_errors(axes, points, T_zero, goals, q, slides)
@@ -66,7 +67,7 @@ def levenberg_marquardt(axes, points, T_zero, goals, q, steps, slides):
     return q, np.linalg.norm(e, axis=1)
 
 
-def distinct(q, apart, slides):
+def distinct(q, apart, slides=False):
     """One of each bunch of configurations (k, n) that agree within `apart` [rad], turns on the circle."""
     kept = np.empty((0, q.shape[1]))
     while len(q):
