@@ -7,5 +7,6 @@ void bind_rotations(nanobind::module_& m);
 void bind_short_arms(nanobind::module_& m);
 void bind_subproblems(nanobind::module_& m);
 void bind_ik(nanobind::module_& m);
+void bind_ik_plan(nanobind::module_& m);
 void bind_ik_numeric(nanobind::module_& m);
 void bind_ik_tasks(nanobind::module_& m);

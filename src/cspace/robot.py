@@ -17,7 +17,7 @@ from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 
 if TYPE_CHECKING:
-    from cspace.ik import NumericSolution, SampledSolutions, TaskSolution
+    from cspace.ik import IkPlan, NumericSolution, SampledSolutions, TaskSolution
 
     Seed = int | np.random.Generator | None
 
@@ -191,6 +191,16 @@ class Robot(RobotBase):
         Raises InputError for a tree without tip.
         """
         return kinematics.screws(self._assembly, self.name)
+
+    def ik_plan(self) -> IkPlan:
+        """How ik solves this arm: the geometry found, the steps, the equations with its numbers.
+
+        The result prints, has to_markdown(), to_latex() and residuals(q, T), and is false, with a reason, for
+        an arm that nothing solves; see cspace.ik.ik_plan.
+        """
+        from cspace.ik.explain import ik_plan
+
+        return ik_plan(self)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:
         """The same robot with a tool on its tip; the new tip is the frame "tool", and it counts everywhere.

@@ -118,6 +118,29 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             }
         ],
     },
+    "cspace.ik_plan/1": {
+        "robot": TEXT,
+        "joints": [TEXT],
+        "family": TEXT,
+        "summary": TEXT,
+        "reason": TEXT,
+        "branches": int,
+        "relations": [{"axes": [int], "angle": NUMBER, "distance": NUMBER_OR_NULL, "words": TEXT}],
+        "points": [{"place": VECTOR, "joints": [int], "miss": NUMBER}],
+        "directions": [{"direction": VECTOR, "joints": [int], "miss": NUMBER}],
+        "notes": [TEXT],
+        "constants": dict,
+        "matrices": dict,
+        "steps": [
+            {
+                "finds": TEXT,
+                "ways": int,
+                "method": TEXT,
+                "words": TEXT,
+                "equations": [{"text": TEXT, "latex": TEXT, "numbers": TEXT}],
+            }
+        ],
+    },
     "cspace.doctor/1": {
         "versions": dict,
         "extras": dict,

@@ -249,3 +249,35 @@ def test_products_of_link_matrices_in_every_form():
     products = cspace("dh planar_2r --products --json").json["products"]
     assert products[0][0] == ["c12", "−s12", "0", "c1 + c12"]
     assert "products" not in cspace("dh planar_2r --json").json
+
+
+@pytest.mark.parametrize("robot", ["ur5e", "jaco2", "planar_2r", "al5d"])
+def test_explanations_in_every_form(robot):
+    result = cspace(f"ik {robot} --explain --json")
+    assert result.code == 0
+    schema.check(result.json, "cspace.ik_plan/1")
+    assert cspace(f"ik {robot} --explain").out.startswith(f"{robot}: ")
+    assert "$$" in cspace(f"ik {robot} --explain --markdown").out
+    assert r"\begin{align*}" in cspace(f"ik {robot} --explain --latex").out
+
+
+def test_an_explanation_of_an_arm_that_nothing_solves_is_a_negative_answer():
+    result = cspace("ik p8 --explain --json")
+    schema.check(result.json, "cspace.ik_plan/1")
+    assert result.code == (0 if result.json["branches"] else 1)
+    assert bool(result.json["reason"]) == (result.code == 1)
+    assert result.json["relations"]
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("ik ur5e --explain --xyz 1 0 0", "leave --xyz out"),
+        ("ik ur5e --explain --plot a.png", "leave --plot out"),
+        ("ik ur5e --xyz 1 0 0 --latex", "add --explain"),
+    ],
+)
+def test_goals_and_explanations_do_not_mix(line, words):
+    result = cspace(line)
+    assert result.code == 2
+    assert words in result.err

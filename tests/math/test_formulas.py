@@ -67,8 +67,8 @@ def test_products_of_one_group_become_sums():
 
 def test_what_is_printed():
     f = 0.5 * symbol("a_2") * cos(ANGLES[0]) * symbol("p_x") - symbol("ca_1") * symbol("ca_1") + 3
-    assert f.text() == "−cα1² + 3 + 0.5 a2 c1 px"
-    assert f.latex() == r"-c_{\alpha_{1}}^2 + 3 + 0.5 a_{2} c_{1} p_{x}"
+    assert f.text() == "3 − cα1² + 0.5 a2 c1 px"
+    assert f.latex() == r"3 - c_{\alpha_{1}}^2 + 0.5 a_{2} c_{1} p_{x}"
     assert TrigPolynomial().text() == "0"
     assert (cos(ANGLES[0]) + 1e-7 * sin(ANGLES[0])).text(least=1e-5) == "c1"
 

@@ -2,6 +2,7 @@
 
 from cspace.ik import subproblems
 from cspace.ik.conditions import Condition, NoClosedFormError
+from cspace.ik.explain import IkPlan, Relation, Step, StillDirection, StillPoint, ik_plan
 from cspace.ik.families import Family
 from cspace.ik.geometry import Geometry, geometry
 from cspace.ik.numeric import (
@@ -29,18 +30,24 @@ __all__ = [
     "DirectionTask",
     "Family",
     "Geometry",
+    "IkPlan",
     "NoClosedFormError",
     "NumericSolution",
     "PoseTask",
     "PositionTask",
     "PostureTask",
+    "Relation",
     "SampledSolutions",
     "Solutions",
     "SolutionsBatch",
+    "Step",
+    "StillDirection",
+    "StillPoint",
     "TaskSolution",
     "geometry",
     "ik_many_starts",
     "ik_numeric",
+    "ik_plan",
     "ik_tasks",
     "inverse_kinematics",
     "resolved_rate",

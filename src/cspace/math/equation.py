@@ -6,9 +6,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from cspace.math.trig_matrix import Product
 from cspace.math.trig_polynomial import TrigPolynomial
 
-__all__ = ["Equation"]
+__all__ = ["Equation", "MatrixEquation"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,6 +42,10 @@ class Equation:
             self.left.with_numbers(known), self.right.with_numbers(known), self.defines, self.unit
         )
 
+    def symbols(self) -> set[str]:
+        """The names of the symbols and angles of both sides."""
+        return self.left.symbols() | self.right.symbols()
+
     def __len__(self) -> int:
         return len(self.left) + len(self.right)
 
@@ -49,5 +56,29 @@ class Equation:
     def latex(self, *, least: float = 0.0) -> str:
         """As LaTeX, the equals sign to be aligned."""
         return f"{self.left.latex(least=least)} &= {self.right.latex(least=least)}"
+
+    __str__ = text
+
+
+@dataclass(frozen=True, eq=False)
+class MatrixEquation:
+    """left = right, both products of displacements written by the names of their factors."""
+
+    left: Product
+    right: Product
+    unit: str = ""
+
+    def residual(self, values: Mapping[str, Any]) -> Any:
+        """The largest entry of left − right (...) at values (...) of the symbols."""
+        gap = self.left.evaluate(values) - self.right.evaluate(values)
+        return np.abs(gap).max(axis=(-2, -1))
+
+    def text(self) -> str:
+        """As plain text."""
+        return f"{self.left.text()} = {self.right.text()}"
+
+    def latex(self) -> str:
+        """As LaTeX, the equals sign to be aligned."""
+        return f"{self.left.latex()} &= {self.right.latex()}"
 
     __str__ = text

@@ -146,9 +146,9 @@ class TrigPolynomial:
 
     def _written(self, least: float, *, latex: bool) -> Iterator[tuple[float, str]]:
         in_order = sorted(self.terms.items(), key=lambda term: [angle for _, _, angle in term[0][1]])
-        for (plain, turns), factor in in_order:
-            if abs(factor) < least:
-                continue
+        kept = [term for term in in_order if abs(term[1]) >= least]
+        ahead = next((k for k, (_, factor) in enumerate(kept) if factor > 0), 0)
+        for (plain, turns), factor in [*kept[ahead : ahead + 1], *kept[:ahead], *kept[ahead + 1 :]]:
             lengths = [each for each in plain if not each[0].startswith(("p_", "r_"))]
             goal = [each for each in plain if each[0].startswith(("p_", "r_"))]
             yield (

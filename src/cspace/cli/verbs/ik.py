@@ -11,6 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot, number
 from cspace.cli.exits import Exit
+from cspace.cli.explain import add_explanation, explain, explanation_asked
 from cspace.cli.files import check_writable
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.pictures import check_format
@@ -26,6 +27,7 @@ EXAMPLES: Final = """
 cspace ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace ik puma560 --xyz 0.5 0 0.3 --wxyz 0 1 0 0 --near 0 0 0 0 0 0 --plot puma.png
 cspace ik planar_2r --xy 0.6 0.3 --limits drop --json
+cspace ik ur5e --explain
 """
 
 
@@ -46,6 +48,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         default="mark",
         help="mark what is out of limits (default), drop it, or keep all as they are",
     )
+    add_explanation(parser)
     parser.add_argument("--plot", metavar="FILE", type=Path, help="write a picture (png, svg, pdf)")
     add_degrees(parser)
     add_chain(parser)
@@ -58,6 +61,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
         check_writable(args.plot)
     robot = load(args)
     need_chain(robot)
+    if explanation_asked(args):
+        return explain(args, robot, out)
     T, point = goal_of(args)
     near = None if args.near is None else configuration(args.near, robot, "--near", degrees=args.deg)
     answer = solve(robot, T, point)

@@ -1,0 +1,98 @@
+// What the solver of a robot rests on, as plain numbers: cspace.ik.explain puts it into words and equations.
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <vector>
+
+#include "bindings.hpp"
+#include "cspace/ik/general/determinant.hpp"
+#include "cspace/ik/goal.hpp"
+#include "ik_shared.hpp"
+
+namespace nb = nanobind;
+using namespace cspace;
+
+namespace {
+
+template <class T>
+nb::list list_of(const T* values, int n) {
+    nb::list out;
+    for (int i = 0; i < n; ++i) out.append(values[i]);
+    return out;
+}
+
+nb::list rows_of(const Posed& T) {
+    nb::list rows;
+    const double t[3] = {T.t.x, T.t.y, T.t.z};
+    for (int i = 0; i < 3; ++i) {
+        nb::list row = list_of(T.R.m[i], 3);
+        row.append(t[i]);
+        rows.append(row);
+    }
+    const double last[4] = {0, 0, 0, 1};
+    rows.append(list_of(last, 4));
+    return rows;
+}
+
+// The six joints of a closed form: the chain's joint behind each (−1: virtual), and their table.
+nb::dict form_of(const ik::Plan& plan) {
+    nb::dict out;
+    const ik::DhForm& f = plan.form;
+    out["joint"] = list_of(plan.joint, 6);
+    out["sign"] = list_of(plan.sign, 6);
+    out["a"] = list_of(f.a, 6);
+    out["d"] = list_of(f.d, 6);
+    out["ca"] = list_of(f.ca, 6);
+    out["sa"] = list_of(f.sa, 6);
+    out["offset"] = list_of(f.offset, 6);
+    out["parallel"] = list_of(f.parallel, 5);
+    out["meeting"] = list_of(f.meeting, 5);
+    out["base"] = rows_of(f.base);
+    out["tool"] = rows_of(f.tool);
+    return out;
+}
+
+// The loop of a general arm: its frames, and for each formulation in the order in which it is asked the
+// joints behind a0 … a5 and whether it is read backwards.
+nb::dict loop_of(const ik::GeneralPlan& plan) {
+    nb::dict out;
+    nb::list order, between;
+    for (const Posed& link : plan.frames.between) between.append(rows_of(link));
+    for (int k = 0; k < plan.regular; ++k) {
+        const ik::Formulation form = formulation(plan.order[k]);
+        const ik::Loop loop = make_loop(plan.frames, plan.chain.tip, form);
+        order.append(nb::make_tuple(plan.order[k], list_of(loop.joint, 6), form.backwards));
+    }
+    out["order"] = order;
+    out["between"] = between;
+    out["first"] = rows_of(plan.frames.first);
+    out["last"] = rows_of(plan.frames.last);
+    out["length"] = plan.frames.length;
+    return out;
+}
+
+// _ik_plan(robot) → {"form": …} of an arm with a closed form, {"loop": …} of a general one, else {}.
+nb::dict plan(nb::object robot) {
+    nb::dict out;
+    const ik::Arm* arm = arm_of(robot.ptr());
+    if (arm && arm->has_plan) out["form"] = form_of(arm->plan);
+    if (arm && arm->is_general) out["loop"] = loop_of(arm->general);
+    return out;
+}
+
+// _ik_determinant(robot, goal rows, formulation, a0) → f(a0), whose zeros are the solutions' hidden angles.
+double hidden_determinant(nb::object robot, const std::vector<double>& goal, int number, double a0) {
+    const ik::Arm* arm = arm_of(robot.ptr());
+    if (!arm || !arm->is_general || goal.size() != 16)
+        throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
+    const ik::Loop loop = make_loop(arm->general.frames, read_goal(goal.data()).T, formulation(number));
+    return determinant(eliminate(loop), std::cos(a0), std::sin(a0));
+}
+
+}  // namespace
+
+void bind_ik_plan(nb::module_& m) {
+    m.def("_ik_plan", &plan, nb::arg("robot"), "What the solver of a robot rests on.");
+    m.def("_ik_determinant", &hidden_determinant, nb::arg("robot"), nb::arg("goal"), nb::arg("formulation"),
+          nb::arg("a0"), "The determinant of a general arm at one hidden angle.");
+}

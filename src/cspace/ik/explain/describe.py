@@ -1,0 +1,213 @@
+"""From the solver of a robot to its explanation."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.ik.conditions import NoClosedFormError, arm_length
+from cspace.ik.explain.findings import Step
+from cspace.ik.explain.form import Form
+from cspace.ik.explain.general import Loop
+from cspace.ik.explain.parallel import first_parallel_steps, middle_parallel_steps, three_parallel_steps
+from cspace.ik.explain.plan import IkPlan
+from cspace.ik.explain.short import short_steps, short_values
+from cspace.ik.explain.survey import relations, still_directions, still_points
+from cspace.ik.explain.wrist import wrist_constants, wrist_steps
+from cspace.ik.geometry import FIRST_THREE
+from cspace.ik.prepare import prepare
+
+__all__ = ["ik_plan"]
+
+SPHERICAL_WRIST, THREE_PARALLEL, MIDDLE_PARALLEL, FIRST_PARALLEL = 1, 2, 3, 4
+"""The families of the core."""
+SUMMARIES = {
+    SPHERICAL_WRIST: "the last three axes meet in a point, the wrist: three joints place it, three turn "
+    "about it",
+    THREE_PARALLEL: "axes 2, 3 and 4 are parallel and axes 5 and 6 meet: the plane across the parallel axes "
+    "separates the equations",
+    MIDDLE_PARALLEL: "axes 2, 3 and 4 are parallel: two equations without them fix two other joints",
+    FIRST_PARALLEL: "axes 1, 2 and 3 are parallel: two equations without them fix two other joints",
+}
+
+
+def ik_plan(robot: Any) -> IkPlan:
+    """How `robot.ik` solves an arm: the geometry found, the steps, the equations with its numbers.
+
+    The answer is built from what the solver itself holds. It prints, has to_markdown() and to_latex(), and
+    plan.residuals(q, T) evaluates every equation. An arm that nothing solves gets a plan that is false and
+    says why. Raises InputTypeError for what is no robot.
+    """
+    reason = ""
+    try:
+        prepare(robot)
+    except NoClosedFormError as error:
+        reason = str(error)
+    chain = robot.chain
+    seen = None if reason else _core._ik_geometry(robot)
+    measurable = chain.dof == len(chain.joint_types) and len(chain.joint_types) > 0
+    length = seen["length"] if seen else arm_length(robot) if measurable else 1.0
+    common: dict[str, Any] = {
+        "robot": robot.name,
+        "joints": tuple(chain.joint_names),
+        "length": length,
+        "relations": relations(chain, length),
+        "still_points": still_points(chain, length),
+        "still_directions": still_directions(chain, length),
+    }
+    if seen is None:
+        return IkPlan(
+            **common, family="none", summary="`robot.ik` does not solve this arm.", branches=0, reason=reason
+        )
+    inside = _core._ik_plan(robot)
+    if "form" in inside and seen["family"] in SUMMARIES:
+        return form_plan(Form.of(seen, inside["form"]), seen, common)
+    if "loop" in inside and len(chain.joint_types) == 6 and "P" not in chain.joint_types:
+        return general_plan(Loop.of(inside["loop"]), common)
+    if len(chain.joint_types) <= 3:
+        return short_plan(chain, common)
+    return IkPlan(
+        **common,
+        family="other",
+        summary="`robot.ik` solves this arm by a method that has no explanation yet. What its axes share:",
+        branches=robot._ik_room,
+    )
+
+
+def form_plan(form: Form, seen: dict[str, Any], common: dict[str, Any]) -> IkPlan:
+    """An arm with a closed form."""
+    family = seen["family"]
+    constants = form.constants()
+    summary = SUMMARIES[family]
+    if family == SPHERICAL_WRIST:
+        kind = seen["first_three"]
+        constants |= wrist_constants(form)
+        steps = wrist_steps(form, kind)
+        summary += f"; of the first three, {FIRST_THREE[kind]}"
+    else:
+        steps = {
+            THREE_PARALLEL: three_parallel_steps,
+            MIDDLE_PARALLEL: middle_parallel_steps,
+            FIRST_PARALLEL: first_parallel_steps,
+        }[family](form)
+    name = "spherical wrist" if family == SPHERICAL_WRIST else "three parallel axes"
+    if form.reversed:
+        summary = f"read from the tip, {summary}"
+    return IkPlan(
+        **common,
+        family=name,
+        summary=f"{name}. {summary[0].upper()}{summary[1:]}.",
+        branches=ways(steps),
+        notes=notes_of(form, seen),
+        tables={"Denavit–Hartenberg form of the solver": form.table(common["joints"])},
+        matrices={"B": form.base, "C": form.tool},
+        constants=constants,
+        steps=tuple(steps),
+        _values=form.values,
+    )
+
+
+def notes_of(form: Form, seen: dict[str, Any]) -> tuple[str, ...]:
+    """What has to be known to read the equations."""
+    goal = "T^{-1}" if form.reversed else "T"
+    notes = []
+    if form.reversed:
+        notes.append(
+            "The arm is read from the tip to the base: joint 1 of the solver is the last joint of the "
+            "arm, and the goal is "
+            "the inverse of the pose."
+        )
+    if seen["virtual_joints"]:
+        virtual = [str(i + 1) for i, joint in enumerate(form.joint) if joint < 0]
+        notes.append(
+            f"Virtual joints ({', '.join(virtual)} of the six below) complete the arm to six, in a place "
+            f"where a closed form "
+            "appears. A pose that the arm reaches is one that the completed arm reaches with its virtual "
+            "joints "
+            "at zero; solutions with other values are dropped."
+        )
+    notes.append(
+        f"$P = B^{{-1}} {goal} C^{{-1}}$ is the goal from the frame of axis 1 to that of axis 6; $p$ is "
+        f"its origin, "
+        "$r_{ij}$ are the entries of its rotation. $c_1$, $s_{23}$ are cosine and sine of $t_1$, $t_2 + "
+        "t_3$; "
+        "$c_{\\alpha_1}$, $s_{\\alpha_1}$ those of a twist."
+    )
+    if seen["deviation"] > 1e-13:
+        corrected = "; Newton steps on the true axes correct it" if seen["polish"] else ""
+        notes.append(
+            f"The form takes axes as parallel or meeting that are so within rounding; poses differ by up to "
+            f"{seen['deviation']:.1g} of the arm's length ({seen['length']:.3g} m){corrected}."
+        )
+    return tuple(notes)
+
+
+def general_plan(loop: Loop, common: dict[str, Any]) -> IkPlan:
+    """Six turning joints without a closed form."""
+    steps = loop.steps(common["joints"])
+    count = len(loop.order)
+    notes = (
+        f"Lengths are over the arm's ({loop.length:.4g} m). $L_1, \\ldots, L_5$ lead from the frame on "
+        f"one axis to that on the "
+        "next, $F$ from the base to the first, $H$ from the last to the tip; $L_6 = H T^{-1} F$ closes "
+        "the loop.",
+        f"{count} of the twelve formulations {'is' if count == 1 else 'are'} regular for this arm; they "
+        f"are asked in this "
+        "order until one certifies that nothing is missing.",
+    )
+    return IkPlan(
+        **{**common, "length": 1.0},
+        family="general",
+        summary="six joints in general position. No closed form: all but one angle are eliminated from "
+        "the loop that arm "
+        "and goal close.",
+        branches=16,
+        notes=notes,
+        tables={"Formulations": loop.formulations(common["joints"])},
+        matrices=loop.matrices(),
+        steps=tuple(steps),
+        _values=loop.values,
+    )
+
+
+def short_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
+    """Arms of up to three joints."""
+    steps = short_steps(chain)
+    turning = chain.joint_types.count("R")
+    notes = [
+        "$p$ is where the tip has to be, in the base; $t_i$ is the angle of a turning joint, $q_i$ the "
+        "way of a slide."
+    ]
+    if turning > 1:
+        end = "last" if chain.joint_types[-1] == "R" else "first"
+        notes.append(
+            f"A pose is reached by the same equations: the {end} joint leaves the points of its own axis "
+            f"alone, so the "
+            "other joints bring two of them to their places, and the orientation that remains is its angle."
+        )
+    elif turning == 1:
+        notes.append(
+            "For a pose the turning joint takes the angle of its rotation, and the slides follow linearly."
+        )
+
+    def values(q: Array, T: Array) -> dict[str, Any]:
+        return short_values(chain, q, T)
+
+    return IkPlan(
+        **common,
+        family="short arm",
+        summary=f"an arm of {len(chain.joint_types)} joint{'s' if len(chain.joint_types) > 1 else ''} "
+        f"({chain.joint_types}), solved directly.",
+        branches=ways(steps),
+        notes=tuple(notes),
+        steps=tuple(steps),
+        _values=values,
+    )
+
+
+def ways(steps: list[Step]) -> int:
+    """How many answers the steps have together."""
+    return int(np.prod([step.ways for step in steps]))

@@ -1,0 +1,197 @@
+"""An explanation laid out: as blocks of a page, and as plain data."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.ik.explain import page
+from cspace.ik.explain.findings import Findings, Step
+from cspace.math import Equation, MatrixEquation
+from cspace.model.text import aligned, shown
+
+__all__ = ["blocks", "document"]
+
+LEAST: Final = 1e-5
+"""Factors below this (of the arm's length, where they are lengths) are not printed: rounded right angles."""
+MOST_TERMS: Final = 16
+"""An equation of more terms is printed with symbols alone."""
+
+
+def blocks(plan: Findings) -> list[page.Block]:
+    """The page of an explanation."""
+    out: list[page.Block] = [page.Paragraph(f"**{plan.robot}**: {plan.summary}")]
+    if plan.reason:
+        out.append(page.Paragraph(plan.reason))
+    out += geometry_blocks(plan)
+    out += [page.Paragraph(note) for note in plan.notes]
+    for name, rows in plan.tables.items():
+        out += [page.Heading(name), rows]
+    for name, T in plan.matrices.items():
+        out.append(page.Formulas([(matrix_text(name, T), matrix_latex(name, T))]))
+    if plan.steps:
+        out.append(page.Heading("Steps"))
+    for number, step in enumerate(plan.steps, 1):
+        ways = "" if step.ways == 1 else f"up to {step.ways} ways"
+        how = ", ".join(word for word in (ways, step.method) if word)
+        how = f" ({how})" if how else ""
+        out.append(page.Paragraph(f"{number}. {step.finds}{how}. {step.words}"))
+        out += equation_blocks(plan, step)
+    if plan.steps:
+        factors = [str(step.ways) for step in plan.steps if step.ways > 1]
+        product = r" \times ".join(factors)
+        count = f"${product} = {plan.branches}$" if len(factors) > 1 else str(plan.branches)
+        out.append(page.Paragraph(f"Together up to {count} solutions."))
+    return out
+
+
+def geometry_blocks(plan: Findings) -> list[page.Block]:
+    """The tables of what the axes share."""
+    out: list[page.Block] = []
+    if plan.relations:
+        rows = [
+            (
+                f"{each.joints[0]}, {each.joints[1]}",
+                f"`{plan.joints[each.joints[0] - 1]}`, `{plan.joints[each.joints[1] - 1]}`",
+                shown(np.degrees(each.angle)),
+                shown(each.distance) if np.isfinite(each.distance) else "–",
+                each.words,
+            )
+            for each in plan.relations
+        ]
+        head = ("axes", "joints", "angle [°]", "distance [m]", "relation")
+        out += [page.Heading("Neighbouring axes"), page.Rows(head, rows)]
+    for point in plan.still_points:
+        place = ", ".join(shown(x) for x in point.place)
+        out.append(
+            page.Paragraph(
+                f"Axes {listed(point.joints)} meet in a point, ({place}) m at zero (missed by "
+                f"{point.miss:.1g} m): "
+                "their joints leave it where it is."
+            )
+        )
+    for each in plan.still_directions:
+        n = ", ".join(shown(x) for x in each.direction)
+        out.append(
+            page.Paragraph(
+                f"Axes {listed(each.joints)} are parallel to ({n}) at zero (missed by {each.miss:.1g} rad): "
+                "their joints change neither heights along it nor angles with it."
+            )
+        )
+    return out
+
+
+def listed(joints: tuple[int, ...]) -> str:
+    """4, 5 and 6."""
+    return ", ".join(map(str, joints[:-1])) + f" and {joints[-1]}"
+
+
+def equation_blocks(plan: Findings, step: Step) -> list[page.Block]:
+    """The equations of a step as symbols and, where they fit, with the arm's numbers."""
+    symbols = step.equations
+    out: list[page.Block] = []
+    general = [line(plan, each, numbers=False) for each in symbols if refers_to_the_arm(plan, each)]
+    if general:
+        out.append(page.Formulas(general))
+    special = [
+        line(plan, each, numbers=True)
+        for each in symbols
+        if not refers_to_the_arm(plan, each) or fits(plan, each)
+    ]
+    if special:
+        if general:
+            out.append(page.Paragraph("With this arm's numbers:"))
+        out.append(page.Formulas(special))
+    return out
+
+
+def refers_to_the_arm(plan: Findings, equation: Equation | MatrixEquation) -> bool:
+    """Whether an equation holds symbols of the arm, which have numbers."""
+    return isinstance(equation, Equation) and bool(
+        equation.symbols() & (set(plan.constants) - {equation.defines})
+    )
+
+
+def fits(plan: Findings, equation: Equation | MatrixEquation) -> bool:
+    """Whether an equation is short enough to be printed with numbers."""
+    if not isinstance(equation, Equation):
+        return True
+    return len(equation.with_numbers(plan.constants)) <= MOST_TERMS
+
+
+def line(plan: Findings, equation: Equation | MatrixEquation, *, numbers: bool) -> tuple[str, str]:
+    """An equation as text and LaTeX."""
+    if isinstance(equation, MatrixEquation) or not numbers:
+        return equation.text(), equation.latex()
+    special = equation.with_numbers(plan.constants)
+    if len(special) > MOST_TERMS:
+        terms = len(special.right)
+        return (
+            f"{special.left.text()} = … ({terms} terms)",
+            rf"{special.left.latex()} &= \text{{{terms} terms}}",
+        )
+    least = LEAST * plan.length ** {"m": 1, "m²": 2, "m⁴": 4}.get(equation.unit, 0)
+    return special.text(least=least), special.latex(least=least)
+
+
+def matrix_text(name: str, T: Any) -> str:
+    """A matrix of numbers behind its name."""
+    lines = aligned([[shown(x) for x in row] for row in T]).splitlines()
+    before = f"{name} = "
+    return ("\n    ").join((before if k == 0 else " " * len(before)) + row for k, row in enumerate(lines))
+
+
+def matrix_latex(name: str, T: Any) -> str:
+    """The same in LaTeX."""
+    rows = r" \\ ".join(" & ".join(shown(x) for x in row) for row in T)
+    symbol = f"{name[0]}_{{{name[1:]}}}" if name[1:] else name
+    return rf"{symbol} &= \begin{{bmatrix}} {rows} \end{{bmatrix}}"
+
+
+def document(plan: Findings) -> dict[str, Any]:
+    """An explanation as data."""
+    return {
+        "robot": plan.robot,
+        "joints": list(plan.joints),
+        "family": plan.family,
+        "summary": page.plain_sentence(plan.summary.replace("**", "")),
+        "reason": plan.reason,
+        "branches": plan.branches,
+        "relations": [
+            {
+                "axes": list(each.joints),
+                "angle": each.angle,
+                "distance": each.distance if np.isfinite(each.distance) else None,
+                "words": each.words,
+            }
+            for each in plan.relations
+        ],
+        "points": [
+            {"place": list(map(float, each.place)), "joints": list(each.joints), "miss": each.miss}
+            for each in plan.still_points
+        ],
+        "directions": [
+            {"direction": list(map(float, each.direction)), "joints": list(each.joints), "miss": each.miss}
+            for each in plan.still_directions
+        ],
+        "notes": [page.plain_sentence(note) for note in plan.notes],
+        "constants": dict(plan.constants),
+        "matrices": {name: np.asarray(T).tolist() for name, T in plan.matrices.items()},
+        "steps": [step_document(plan, step) for step in plan.steps],
+    }
+
+
+def step_document(plan: Findings, step: Step) -> dict[str, Any]:
+    """A step as data; numbers: the equation with this arm's numbers, all of its terms."""
+    equations = []
+    for each in step.equations:
+        special = each.with_numbers(plan.constants) if isinstance(each, Equation) else each
+        equations.append({"text": each.text(), "latex": each.latex(), "numbers": special.text()})
+    return {
+        "finds": page.plain_sentence(step.finds),
+        "ways": step.ways,
+        "method": step.method,
+        "words": page.plain_sentence(step.words),
+        "equations": equations,
+    }

@@ -1,0 +1,89 @@
+"""What an explanation holds: the geometry found, the steps, the equations."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.explain import page
+from cspace.ik.explain.survey import Relation, StillDirection, StillPoint
+from cspace.math import Equation, MatrixEquation
+
+__all__ = ["Findings", "Step"]
+
+Values = Callable[[Array, Array], dict[str, Any]]
+"""From configurations and the poses that they reach to the numbers of the symbols."""
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """One step of a solver. finds: the unknowns, as $t_1$. ways: how many answers it has at most.
+
+    method: what solves it. words: what happens, a sentence. equations: what holds, definitions first.
+    """
+
+    finds: str
+    ways: int
+    method: str
+    words: str
+    equations: tuple[Equation | MatrixEquation, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class Findings:
+    """How `robot.ik` solves an arm, as data; false if it does not.
+
+    robot: its name; joints: their names. family: the geometry that is used, "general", "short arm" or "none".
+    summary: the method in a sentence. branches: how many solutions a goal has at most. reason: why nothing
+    solves the arm, else "". relations, still_points, still_directions: the geometry found. notes: sentences
+    about signs, frames and goals. tables: named rows of numbers that the equations refer to. matrices: named
+    displacements (4, 4). constants: numbers of the symbols that belong to the arm. steps: what is done.
+    """
+
+    robot: str
+    joints: tuple[str, ...]
+    family: str
+    summary: str
+    branches: int
+    reason: str = ""
+    relations: tuple[Relation, ...] = ()
+    still_points: tuple[StillPoint, ...] = ()
+    still_directions: tuple[StillDirection, ...] = ()
+    notes: tuple[str, ...] = ()
+    tables: Mapping[str, page.Rows] = field(default_factory=dict)
+    matrices: Mapping[str, Array] = field(default_factory=dict)
+    constants: Mapping[str, float] = field(default_factory=dict)
+    steps: tuple[Step, ...] = ()
+    length: float = 1.0
+    _values: Values | None = field(default=None, repr=False)
+
+    def __bool__(self) -> bool:
+        return not self.reason
+
+    @property
+    def equations(self) -> tuple[Equation | MatrixEquation, ...]:
+        """Every equation of every step, in order."""
+        return tuple(equation for step in self.steps for equation in step.equations)
+
+    def residuals(self, q: Any, T: Any) -> Array:
+        """How far each equation is off, (..., k), at configurations q (..., n) that reach T (..., 4, 4).
+
+        Lengths count in units of the arm's length. Definitions introduce symbols for those behind them and
+        are never off.
+        """
+        q, T = np.asarray(q, dtype=np.float64), np.asarray(T, dtype=np.float64)
+        shape = q.shape[:-1]
+        if self._values is None:
+            return np.zeros((*shape, 0))
+        values: dict[str, Any] = {**self.constants, **self._values(q, T)}
+        out = []
+        for equation in self.equations:
+            if isinstance(equation, Equation) and equation.defines:
+                values[equation.defines] = equation.right.evaluate(values)
+            scale = self.length ** {"m": 1, "m²": 2, "m⁴": 4}.get(equation.unit, 0)
+            out.append(np.broadcast_to(np.abs(equation.residual(values)) / scale, shape))
+        return np.stack(out, axis=-1) if out else np.zeros((*shape, 0))

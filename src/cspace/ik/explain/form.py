@@ -1,0 +1,144 @@
+"""The table of a closed form, from the core, as symbols: its angles, its links, its goal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.explain.page import Rows
+from cspace.math import Angle, Product, TrigMatrix, TrigPolynomial
+from cspace.model.text import shown
+
+__all__ = ["Form", "symbol"]
+
+symbol = TrigPolynomial.symbol
+
+
+@dataclass(frozen=True, eq=False)
+class Form:
+    """Six joints in standard Denavit–Hartenberg form, T_base_tip = B A_1 … A_6 C with A_i of t_i.
+
+    joint: the arm's joint behind each (from 0), −1 for a virtual one. sign, offset: t_i = sign q + offset.
+    a, d, ca, sa: columns of the table. parallel, meeting: what neighbouring axes share. base, tool: B and C
+    (4, 4). reversed: the form is of the arm read from the tip, and its goal the inverse.
+    """
+
+    joint: tuple[int, ...]
+    sign: tuple[float, ...]
+    offset: tuple[float, ...]
+    a: tuple[float, ...]
+    d: tuple[float, ...]
+    ca: tuple[float, ...]
+    sa: tuple[float, ...]
+    parallel: tuple[bool, ...]
+    meeting: tuple[bool, ...]
+    base: Array
+    tool: Array
+    reversed: bool
+    length: float
+
+    @classmethod
+    def of(cls, seen: Mapping[str, Any], plan: Mapping[str, Any]) -> Form:
+        """From what the core says of the geometry and of the form."""
+        columns = {
+            name: tuple(plan[name])
+            for name in ("joint", "sign", "offset", "a", "d", "ca", "sa", "parallel", "meeting")
+        }
+        base, tool = np.array(plan["base"]), np.array(plan["tool"])
+        return cls(**columns, base=base, tool=tool, reversed=seen["reversed"], length=seen["length"])
+
+    @property
+    def angles(self) -> tuple[Angle, ...]:
+        """t_1 … t_6, those of consecutive parallel axes in one group."""
+        groups = np.concatenate([[0], np.cumsum(np.logical_not(self.parallel))])
+        return tuple(Angle(i + 1, int(group)) for i, group in enumerate(groups))
+
+    def cos(self, *joints: int) -> TrigPolynomial:
+        """The cosine of a sum of angles by their numbers from 1."""
+        return TrigPolynomial.cos(*(self.angles[i - 1] for i in joints))
+
+    def sin(self, *joints: int) -> TrigPolynomial:
+        """The sine of a sum of angles by their numbers from 1."""
+        return TrigPolynomial.sin(*(self.angles[i - 1] for i in joints))
+
+    def twist(self, i: int) -> tuple[TrigPolynomial, TrigPolynomial]:
+        """Cosine and sine of α_i as symbols, or 1 and 0 between parallel axes."""
+        if i < 6 and self.parallel[i - 1]:
+            return TrigPolynomial.number(self.ca[i - 1]), TrigPolynomial()
+        return symbol(f"ca_{i}"), symbol(f"sa_{i}")
+
+    def constants(self) -> dict[str, float]:
+        """The numbers of a_i, d_i, ca_i, sa_i."""
+        out: dict[str, float] = {}
+        for i in range(5):
+            out |= {f"a_{i + 1}": self.a[i], f"ca_{i + 1}": self.ca[i], f"sa_{i + 1}": self.sa[i]}
+            if i:
+                out[f"d_{i + 1}"] = self.d[i]
+        return out
+
+    def about_z(self, i: int) -> tuple[str, str, TrigMatrix]:
+        """Rz(t_i) with its names."""
+        return f"Rz(t{i})", f"R_z(t_{i})", TrigMatrix.about_z(self.angles[i - 1])
+
+    def about_x(self, i: int) -> tuple[str, str, TrigMatrix]:
+        """Rx(α_i) with its names."""
+        return f"Rx(α{i})", rf"R_x(\alpha_{i})", TrigMatrix.turn("x", *self.twist(i))
+
+    def seen_from(self, count: int) -> Product:
+        """Rz(t_1) Rx(α_1) … of the first `count` joints: what turns in front of the wrist."""
+        return Product(tuple(f for i in range(1, count + 1) for f in (self.about_z(i), self.about_x(i))))
+
+    def turned_goal(self, count: int) -> TrigMatrix:
+        """M = (Rz(t_1) Rx(α_1) …)ᵀ R with the numbers of the twists."""
+        turn = self.seen_from(count).matrix().with_numbers(self.constants())
+        rows = [[TrigPolynomial() if 3 in (i, j) else turn[j, i] for j in range(4)] for i in range(4)]
+        goal = TrigMatrix.symbols()
+        rotation = [[goal[i, j] if 3 not in (i, j) else TrigPolynomial() for j in range(4)] for i in range(4)]
+        return TrigMatrix(rows) @ TrigMatrix(rotation)
+
+    def table(self, names: tuple[str, ...]) -> Rows:
+        """The table of the form with the joints behind it."""
+        rows = []
+        for i, joint in enumerate(self.joint):
+            name = f"`{names[joint]}`" if joint >= 0 else "virtual, held at 0"
+            offset = shown(np.degrees(self.offset[i]))
+            q = "0" if joint < 0 else f"q_{{{joint + 1}}}"
+            sign = "−" if self.sign[i] < 0 and joint >= 0 else ""
+            alpha = np.degrees(np.arctan2(self.sa[i], self.ca[i]))
+            rows.append(
+                (
+                    f"{i + 1}",
+                    name,
+                    shown(alpha),
+                    shown(self.a[i]),
+                    shown(self.d[i]),
+                    f"{sign}${q}$ + {offset}" if joint >= 0 else offset,
+                )
+            )
+        return Rows(("i", "joint", r"$\alpha_i$ [°]", "$a_i$ [m]", "$d_i$ [m]", "$t_i$ [°]"), rows)
+
+    @property
+    def left(self) -> Array:
+        """B⁻¹ (4, 4)."""
+        return np.asarray(np.linalg.inv(self.base), dtype=np.float64)
+
+    @property
+    def right(self) -> Array:
+        """C⁻¹ (4, 4)."""
+        return np.asarray(np.linalg.inv(self.tool), dtype=np.float64)
+
+    def values(self, q: Array, T: Array) -> dict[str, Any]:
+        """The numbers of angles and goal at configurations q (..., n) that reach T (..., 4, 4)."""
+        goal = self.left @ (np.linalg.inv(T) if self.reversed else T) @ self.right
+        out: dict[str, Any] = {}
+        for i, joint in enumerate(self.joint):
+            out[f"t_{i + 1}"] = (self.sign[i] * q[..., joint] if joint >= 0 else 0.0) + self.offset[i]
+        for i, axis in enumerate("xyz"):
+            out[f"p_{axis}"] = goal[..., i, 3]
+            for j in range(3):
+                out[f"r_{i + 1}{j + 1}"] = goal[..., i, j]
+        return out

@@ -1,0 +1,43 @@
+"""The explanation of an arm's solver as an object that prints."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cspace.ik.explain import page
+from cspace.ik.explain.document import blocks, document
+from cspace.ik.explain.findings import Findings
+
+__all__ = ["IkPlan"]
+
+
+class IkPlan(Findings):
+    """How `robot.ik` solves an arm; prints, has to_markdown() and to_latex(), and is false if it does not.
+
+    robot: its name; joints: their names. family: the geometry that is used, "general", "short arm", "other"
+    or "none". summary: the method in a sentence. branches: how many solutions a goal has at most. reason: why
+    nothing solves the arm, else "". relations, still_points, still_directions: the geometry found. steps:
+    what is done, with equations; constants: the numbers of their symbols; matrices: named displacements
+    (4, 4). residuals(q, T): how far each equation is off at configurations q (..., n).
+    """
+
+    def to_text(self) -> str:
+        """As plain text."""
+        return page.plain(blocks(self))
+
+    def to_markdown(self) -> str:
+        """As Markdown with formulas between dollar signs."""
+        return page.markdown(blocks(self))
+
+    def to_latex(self) -> str:
+        """As LaTeX for the body of a document that loads amsmath."""
+        return page.latex(blocks(self))
+
+    __str__ = to_text
+
+    def __repr__(self) -> str:
+        return f"<IkPlan of {self.robot}: {self.family}, up to {self.branches} solutions>"
+
+    def to_dict(self) -> dict[str, Any]:
+        """As plain data, angles in radians and lengths in metres."""
+        return document(self)

@@ -1,0 +1,124 @@
+"""What the axes of an arm share, measured: which are parallel, square or meet, and what they leave alone."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.ik.conditions import angle_between, common_point
+
+__all__ = ["Relation", "StillDirection", "StillPoint", "relations", "still_directions", "still_points"]
+
+
+@dataclass(frozen=True)
+class Relation:
+    """Two neighbouring axes. joints: their numbers from 1. angle: between the lines [rad], 0 to π/2.
+
+    distance: between the lines [m], NaN where one belongs to a slide, which has no place. parallel, meet,
+    square: within what the solver allows.
+    """
+
+    joints: tuple[int, int]
+    angle: float
+    distance: float
+    parallel: bool
+    meet: bool
+    square: bool
+
+    @property
+    def words(self) -> str:
+        """The relation in words."""
+        if self.parallel:
+            return "on one line" if self.meet else "parallel"
+        found = [word for word, holds in (("meet", self.meet), ("perpendicular", self.square)) if holds]
+        return ", ".join(found) or "skew"
+
+
+@dataclass(frozen=True, eq=False)
+class StillPoint:
+    """A point that some joints leave alone: their axes meet in it. place: (3,) in the base at zero [m].
+
+    joints: their numbers from 1. miss: how far the axes pass it at most [m].
+    """
+
+    place: Array
+    joints: tuple[int, ...]
+    miss: float
+
+
+@dataclass(frozen=True, eq=False)
+class StillDirection:
+    """A direction that some joints leave alone: their axes are parallel to it. direction: (3,) at zero.
+
+    joints: their numbers from 1. miss: the largest angle between an axis and it [rad].
+    """
+
+    direction: Array
+    joints: tuple[int, ...]
+    miss: float
+
+
+def relations(chain: Any, length: float) -> tuple[Relation, ...]:
+    """What each pair of neighbouring axes shares; length: the arm's [m], the scale of what is allowed."""
+    out = []
+    for i in range(len(chain.joint_types) - 1):
+        (h, k), (p, r) = chain.axes[i : i + 2], chain.points[i : i + 2]
+        angle = angle_between(h, k)
+        parallel = bool(np.sin(angle) < _core.AXIS_RELATION)
+        across = np.cross(h, r - p) if parallel else [np.cross(h, k) @ (r - p) / np.sin(angle)]
+        slides = "P" in chain.joint_types[i : i + 2]
+        distance = float("nan") if slides else float(np.linalg.norm(across))
+        out.append(
+            Relation(
+                (i + 1, i + 2),
+                angle,
+                distance,
+                parallel,
+                distance < _core.AXIS_RELATION * length,
+                abs(np.pi / 2 - angle) < _core.AXIS_RELATION,
+            )
+        )
+    return tuple(out)
+
+
+def still_points(chain: Any, length: float) -> tuple[StillPoint, ...]:
+    """Where neighbouring axes meet: three in a point, or two that no such three hold."""
+    pairs = [each.joints for each in relations(chain, length) if each.meet and not each.parallel]
+    threes = [
+        (a, b, c)
+        for (a, b), (_, c) in itertools.pairwise(pairs)
+        if c == b + 1
+        and common_point(chain.axes[a - 1 : c], chain.points[a - 1 : c])[1] < _core.AXIS_RELATION * length
+    ]
+    held = {pair for a, b, c in threes for pair in ((a, b), (b, c))}
+    groups = sorted([*threes, *(pair for pair in pairs if pair not in held)])
+    out = []
+    for joints in groups:
+        some = slice(joints[0] - 1, joints[-1])
+        place, miss = common_point(chain.axes[some], chain.points[some])
+        out.append(StillPoint(place, joints, miss))
+    return tuple(out)
+
+
+def still_directions(chain: Any, length: float) -> tuple[StillDirection, ...]:
+    """Runs of neighbouring parallel axes of turning joints."""
+    runs: list[list[int]] = []
+    for each in relations(chain, length):
+        a, b = each.joints
+        if not each.parallel or "P" in chain.joint_types[a - 1 : b]:
+            continue
+        if runs and runs[-1][-1] == a:
+            runs[-1].append(b)
+        else:
+            runs.append([a, b])
+    out = []
+    for run in runs:
+        n = chain.axes[run[0] - 1]
+        miss = max(angle_between(n, chain.axes[joint - 1]) for joint in run)
+        out.append(StillDirection(np.asarray(n), tuple(run), miss))
+    return tuple(out)
