@@ -6,11 +6,15 @@ from typing import Final
 
 __all__ = [
     "AXIS_LENGTH",
+    "CALIBRATION_ANGLE",
+    "CALIBRATION_BYTES",
+    "CALIBRATION_DISTANCE",
     "DESCRIPTION_BYTES",
     "DESCRIPTION_DEPTH",
     "DH_COINCIDENT",
     "DH_PARALLEL",
     "FARTHEST",
+    "FRAME_SNAP",
     "GIMBAL_LOCK",
     "INERTIA_SYMMETRY",
     "LARGEST_NUMBER",
@@ -34,6 +38,8 @@ __all__ = [
     "UNLIMITED",
     "WEAK_DIRECTION",
     "WHOLE_TURN",
+    "XACRO_ELEMENTS",
+    "XACRO_SECONDS",
 ]
 
 ROTATION_ERROR: Final = 1e-6
@@ -90,6 +96,21 @@ own bound, so that both read the same frame."""
 UNLIMITED: Final = 1e300
 """What stands for infinity where a file format demands a finite number (rad, m, or their rates): beyond any
 machine, and read back as infinity."""
+
+CALIBRATION_ANGLE: Final = 0.05
+"""Angle [rad] between a joint axis as calibrated and as published, at zero, beyond which a calibration is
+that of another arm: measured arms stay within 0.01."""
+
+CALIBRATION_DISTANCE: Final = 0.015
+"""Distance [m] of the two, likewise: measured arms stay within a few millimetres, and the models most alike
+(UR3 and UR3e) differ by 0.0187."""
+
+CALIBRATION_BYTES: Final = 2**20
+"""Largest calibration file that is read (bytes): a real one has one thousand."""
+
+FRAME_SNAP: Final = 1e-6
+"""Largest entry by which the rotation between two frames of one flange may miss quarter turns: published
+frames are printed with seven digits or more."""
 
 DH_PARALLEL: Final = 2.0**-26
 """Angle [rad] up to which consecutive axes get the parallel row of a Denavit–Hartenberg table: the square
@@ -149,3 +170,9 @@ the step can still gain, is rounding."""
 WEAK_DIRECTION: Final = 0.01
 """Singular value of a Jacobian (m or rad, per rad or m) below which a direction counts as weak in resolved
 rate: a joint would turn a hundred times faster than the frame, which no drive follows."""
+
+XACRO_SECONDS: Final = 60.0
+"""Longest expansion of a xacro file [s]: the largest robots take two."""
+
+XACRO_ELEMENTS: Final = 200_000
+"""Most steps and elements of the expansion of a xacro file: the largest robots take ten thousand."""

@@ -2,7 +2,7 @@
 
 ```python blocks are executed in order; ```console blocks run their `$ cspace …` lines and compare the output,
 blank space apart, where the page prints any (a line or a part of a line may be … for "whatever stands here").
-A block with `no-run` after its language is shown only.
+A block with `no-run` after its language is shown only; one with `needs=PACKAGE` runs where that is installed.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import shlex
 import subprocess
 import sys
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -39,7 +40,7 @@ def blocks(page: Path) -> list[Block]:
         if fence is None:
             fence, start = match.groups(), number
         else:
-            if "no-run" not in fence[1]:
+            if "no-run" not in fence[1] and all(map(find_spec, re.findall(r"needs=(\w+)", fence[1]))):
                 found.append(Block(fence[0], start, "\n".join(lines[start : number - 1])))
             fence = None
     assert fence is None, f"{page}:{start}: this block never ends"

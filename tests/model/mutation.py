@@ -137,13 +137,21 @@ def exercise(data, path):
     for read, suffix in ((from_urdf, ".urdf"), (from_toml, ".toml"), (from_mjcf, ".xml")):
         file = path.with_suffix(suffix)
         file.write_bytes(data)
-        robot = None
-        with contextlib.suppress(CspaceError):
-            robot = read(file)
-        if robot is not None:
-            accepted += 1
-            use(robot)
+        accepted += exercise_file(read, file)
     return accepted
+
+
+def exercise_file(read, file):
+    """Read a file and, where that works, use the robot; anything but CspaceError escapes.
+
+    Returns whether it worked.
+    """
+    robot = None
+    with contextlib.suppress(CspaceError):
+        robot = read(file)
+    if robot is not None:
+        use(robot)
+    return robot is not None
 
 
 def use(robot):

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from cspace.errors import DescriptionError
 from cspace.model import from_toml, from_urdf, to_toml, to_urdf
 from oracles.forward import link_poses
 
@@ -62,6 +63,19 @@ def test_joints_limits_frames_and_masses_are_those_of_pinocchio(path):
         robot.link(robot.root).inertial.mass if robot.link(robot.root).inertial and fixed_to_root else 0.0
     )
     assert ours == pytest.approx(total, rel=1e-9, abs=1e-12)
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_every_mesh_is_found_without_options(path):
+    """package://example-robot-data is the share folder above the file; one file names its author's folder."""
+    links = from_urdf(path).links
+    meshes = [shape.mesh for link in links for shape in (*link.visual, *link.collision) if shape.mesh]
+    for mesh in meshes:
+        if mesh.uri.startswith("file:///usr/Romeo"):
+            with pytest.raises(DescriptionError, match="not found; searched"):
+                mesh.file()
+        else:
+            assert Path(mesh.file()).is_file()
 
 
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)

@@ -101,8 +101,8 @@ def test_a_file_beside_is_found_without_a_separator(tmp_path, monkeypatch):
     [
         ("nothing.urdf", "no such file"),
         ("nothing.toml", "no such file"),
-        ("arm.xacro", "expand it first"),
-        ("arm.urdf.xacro", "expand it first"),
+        ("arm.xacro", "no such file"),
+        ("arm.urdf.xacro", "no such file"),
         ("arm.mjcf", "no such file"),
         ("arm.srdf", "give the URDF"),
         ("a/b/c", "no such file"),

@@ -20,6 +20,7 @@ __all__ = [
     "add_joints",
     "add_robot",
     "guard_negative_numbers",
+    "named_value",
     "number",
     "seconds",
 ]
@@ -83,6 +84,15 @@ def seconds(text: str) -> float:
     return value
 
 
+def named_value(text: str) -> tuple[str, str]:
+    """A name and a value with = between them, or := as in ROS."""
+    name, sign, value = text.strip().partition("=")
+    name = name.removesuffix(":").strip()
+    if not sign or not name:
+        raise argparse.ArgumentTypeError(f"{text.strip()!r} is not of the form NAME=VALUE")
+    return name, value.strip()
+
+
 def guard_negative_numbers(words: Sequence[str]) -> list[str]:
     """Put a blank before words such as -1e-3 or -pi/2: argparse then takes them as values, not as options."""
     return [" " + word if word.startswith("-") and is_number(word) else word for word in words]
@@ -100,8 +110,27 @@ def is_number(word: str) -> bool:
 
 
 def add_robot(parser: argparse.ArgumentParser) -> None:
-    """The robot: a name of the catalogue or a file."""
+    """The robot: a name of the catalogue or a file, and what a file may need besides."""
     parser.add_argument("robot", metavar="ROBOT", help="a name of the catalogue (cspace robots) or a file")
+    group = parser.add_argument_group("what the robot's file may need")
+    group.add_argument(
+        "--calibration", metavar="FILE", help="the joint frames of one UR arm, from ur_calibration"
+    )
+    group.add_argument(
+        "--xacro-arg",
+        action="append",
+        default=[],
+        type=named_value,
+        metavar="NAME=VALUE",
+        help="an argument of a xacro file; may be repeated",
+    )
+    group.add_argument(
+        "--package-path",
+        action="append",
+        default=[],
+        metavar="FOLDER",
+        help="a folder with ROS packages, or one package; may be repeated",
+    )
 
 
 def add_chain(parser: argparse.ArgumentParser) -> None:

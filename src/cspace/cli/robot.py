@@ -21,7 +21,14 @@ def load(args: argparse.Namespace) -> Robot:
     """The robot that the words name, with the chosen ends."""
     from cspace.robots import load_robot
 
-    return load_robot(args.robot, base=getattr(args, "base", None), tip=getattr(args, "tip", None))
+    return load_robot(
+        args.robot,
+        base=getattr(args, "base", None),
+        tip=getattr(args, "tip", None),
+        package_paths=args.package_path,
+        xacro_args=dict(args.xacro_arg),
+        calibration=args.calibration,
+    )
 
 
 def need_chain(robot: Robot) -> None:

@@ -1,5 +1,6 @@
 """Robots as data: the description and its readers and writers."""
 
+from cspace.model.calibration import calibrated
 from cspace.model.chain import Chain, chain, default_tip
 from cspace.model.degrees_of_freedom import (
     body_freedoms,
@@ -22,6 +23,7 @@ from cspace.model.toml_writer import to_toml
 from cspace.model.tree import Tree, tree
 from cspace.model.urdf import from_urdf
 from cspace.model.urdf_writer import to_urdf
+from cspace.model.xacro import from_xacro
 
 __all__ = [
     "Chain",
@@ -40,6 +42,7 @@ __all__ = [
     "Source",
     "Tree",
     "body_freedoms",
+    "calibrated",
     "chain",
     "default_tip",
     "dh_matrix",
@@ -48,6 +51,7 @@ __all__ = [
     "from_screws",
     "from_toml",
     "from_urdf",
+    "from_xacro",
     "link_matrices",
     "mobility",
     "mounted",

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+import re
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from cspace.errors import InputTypeError
+from cspace.errors import CspaceError, InputTypeError
+from cspace.model.files import read_bytes
 
-__all__ = ["folders", "locate"]
+__all__ = ["folders", "locate", "locate_package"]
 
 PACKAGE_SCHEMES = ("package://", "model://")
 
@@ -33,15 +35,27 @@ def locate(uri: str, beside: str | None, package_paths: Sequence[str]) -> tuple[
     uri: package://NAME/rest, model://NAME/rest, file://path, or a plain path. beside: the folder of the
     robot file. package_paths: folders given by the caller, each either holding packages or being one.
     A package is looked for in package_paths, beside the file and in each folder above it, in
-    ROS_PACKAGE_PATH, and in the share folders of AMENT_PREFIX_PATH and CMAKE_PREFIX_PATH.
+    ROS_PACKAGE_PATH, and in the share folders of AMENT_PREFIX_PATH and CMAKE_PREFIX_PATH. A folder is a
+    package by its name or by the name that its package.xml gives.
     """
+    return _first(_candidates(uri, beside, package_paths), os.path.isfile)
+
+
+def locate_package(
+    name: str, beside: str | None, package_paths: Sequence[str]
+) -> tuple[str | None, tuple[str, ...]]:
+    """The folder of a package, or None, and the places tried in order; rules as in `locate`."""
+    return _first(_packages(name, beside, package_paths), os.path.isdir)
+
+
+def _first(places: Iterator[str], fits: Callable[[str], bool]) -> tuple[str | None, tuple[str, ...]]:
+    """The first place that fits, or None, and the places tried."""
     tried: dict[str, None] = {}
-    for place in _candidates(uri, beside, package_paths):
-        if place in tried:
-            continue
-        tried[place] = None
-        if os.path.isfile(place):
-            return place, tuple(tried)
+    for place in places:
+        if place not in tried:
+            tried[place] = None
+            if fits(place):
+                return place, tuple(tried)
     return None, tuple(tried)
 
 
@@ -51,11 +65,20 @@ def _candidates(uri: str, beside: str | None, package_paths: Sequence[str]) -> I
         plain = unquote(uri[len("file://") :]) if uri.startswith("file://") else uri
         yield os.path.normpath(os.path.join(beside or "", plain))
         return
-    package, _, rest = uri[len(scheme) :].partition("/")
+    package, _, rest = uri[len(scheme) :].lstrip("/").partition("/")
+    for folder in _packages(package, beside, package_paths):
+        yield os.path.normpath(os.path.join(folder, rest))
+
+
+def _packages(name: str, beside: str | None, package_paths: Sequence[str]) -> Iterator[str]:
+    """The folders that may be the package of that name, in the order in which they are tried."""
+    given = [*package_paths, *_listed("ROS_PACKAGE_PATH")]
     for folder in _folders(beside, package_paths):
-        yield os.path.normpath(os.path.join(folder, package, rest))
-        if os.path.basename(os.path.normpath(folder)) == package:
-            yield os.path.normpath(os.path.join(folder, rest))
+        yield os.path.normpath(os.path.join(folder, name))
+        if os.path.basename(os.path.normpath(folder)) == name or _declared(folder) == name:
+            yield os.path.normpath(folder)
+    for folder in given:  # a clone may have another name than its package
+        yield from (part for part in _subfolders(folder) if _declared(part) == name)
 
 
 def _folders(beside: str | None, package_paths: Sequence[str]) -> Iterator[str]:
@@ -68,6 +91,26 @@ def _folders(beside: str | None, package_paths: Sequence[str]) -> Iterator[str]:
     yield from _listed("ROS_PACKAGE_PATH")
     for variable in ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH"):
         yield from (os.path.join(prefix, "share") for prefix in _listed(variable))
+
+
+def _subfolders(folder: str) -> list[str]:
+    """The folders in a folder, by name; none where it cannot be read."""
+    try:
+        return sorted(entry.path for entry in os.scandir(folder) if entry.is_dir())
+    except OSError:
+        return []
+
+
+def _declared(folder: str) -> str | None:
+    """The name that the package.xml of a folder gives, if there is one that can be read."""
+    path = os.path.join(folder, "package.xml")
+    if not os.path.isfile(path):
+        return None
+    try:
+        name = re.search(rb"<name>\s*([^<\s]+)\s*</name>", read_bytes(path))
+    except CspaceError:
+        return None
+    return None if name is None else name.group(1).decode("utf-8", "replace")
 
 
 def _listed(variable: str) -> list[str]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from cspace.errors import DescriptionError, InputTypeError, UnknownNameError
-from cspace.model import Description, from_mjcf, from_toml, from_urdf
+from cspace.model import Description, calibrated, from_mjcf, from_toml, from_urdf, from_xacro
 from cspace.model.files import read_bytes
+from cspace.model.xacro import is_xacro
 from cspace.model.xml import root_tag
 from cspace.robot import Robot
 from cspace.robots.lookup import catalogue_description
@@ -17,15 +18,14 @@ from cspace.robots.lookup import catalogue_description
 __all__ = ["load_description", "load_robot"]
 
 ADVICE = {
-    ".xacro": "xacro cannot be read yet; expand it first: xacro in.xacro > out.urdf (pip install xacro)",
     ".sdf": "SDF (Gazebo) cannot be read; convert it to URDF",
     ".usd": "USD cannot be read; convert it to URDF",
     ".usda": "USD cannot be read; convert it to URDF",
     ".srdf": "an SRDF file only adds groups to a robot; give the URDF file that it belongs to",
 }
 
-
-XML_SUFFIXES = (".urdf", ".xml", ".mjcf")
+SUFFIXES = (".urdf", ".xml", ".mjcf", ".xacro", ".toml")
+"""Of the files that can be read; XML files may have any other."""
 
 
 def load_robot(
@@ -35,22 +35,33 @@ def load_robot(
     *,
     floating: bool | None = None,
     package_paths: Sequence[Any] = (),
+    xacro_args: Mapping[str, Any] | None = None,
+    calibration: str | os.PathLike[str] | None = None,
 ) -> Robot:
     """A robot of the catalogue or of a file, ready to be asked.
 
-    name_or_path: a name ("ur5e", see cspace.robots.names()) or the path of a URDF, MJCF or TOML file; URDF
-    and MJCF are told apart by their root element.
-    base, tip: links between which it moves, where the file leaves the choice. floating: whether the base
-    moves freely, its six velocities before those of the joints; None: if the file says so. package_paths:
-    folders where package:// names of meshes are looked for first.
+    name_or_path: a name ("ur5e", see cspace.robots.names()) or the path of a URDF, xacro, MJCF or TOML file;
+    XML files are told apart by what they hold. base, tip: links between which it moves, where the file leaves
+    the choice. floating: whether the base moves freely, its six velocities before those of the joints; None:
+    if the file says so. package_paths: folders where packages (of package:// and $(find …)) are looked for
+    first. xacro_args: values of the arguments of a xacro file, by name. calibration: the file of one UR arm's
+    joint frames, see model.calibrated.
     Raises UnknownNameError for a name that is not in the catalogue, DescriptionError for a file that cannot
-    be read, InputError where the tip is a choice that must be made.
+    be read, InputError where the tip is a choice that must be made, MissingExtraError for xacro without the
+    extra [xacro].
     """
-    return Robot(load_description(name_or_path, package_paths=package_paths), base, tip, floating=floating)
+    description = load_description(
+        name_or_path, package_paths=package_paths, xacro_args=xacro_args, calibration=calibration
+    )
+    return Robot(description, base, tip, floating=floating)
 
 
 def load_description(
-    name_or_path: str | os.PathLike[str], *, package_paths: Sequence[Any] = ()
+    name_or_path: str | os.PathLike[str],
+    *,
+    package_paths: Sequence[Any] = (),
+    xacro_args: Mapping[str, Any] | None = None,
+    calibration: str | os.PathLike[str] | None = None,
 ) -> Description:
     """The description of a robot, as load_robot finds it: a name of the catalogue or a path.
 
@@ -61,28 +72,48 @@ def load_description(
             f"a robot is given by a name or a path, got {type(name_or_path).__name__}; Robot(description),"
             " Robot.from_dh and Robot.from_screws take what is no file"
         )
+    description = _nominal(name_or_path, package_paths, xacro_args)
+    return description if calibration is None else calibrated(description, calibration)
+
+
+def _nominal(
+    name_or_path: str | os.PathLike[str], package_paths: Sequence[Any], xacro_args: Mapping[str, Any] | None
+) -> Description:
+    """The robot of a name or a path, before any calibration."""
     if isinstance(name_or_path, str) and not _looks_like_a_path(name_or_path):
         try:
-            return catalogue_description(name_or_path)
+            description = catalogue_description(name_or_path)
         except UnknownNameError:
             if not _exists(name_or_path):
                 raise
+        else:
+            _refuse_arguments(xacro_args, name_or_path)
+            return description
     path = os.fspath(name_or_path)
     suffix = Path(path).suffix.lower()
     if suffix in ADVICE:
         raise DescriptionError(ADVICE[suffix], path=path)
+    data = read_bytes(path)
+    if suffix == ".xacro" or (suffix != ".toml" and is_xacro(data)):
+        return from_xacro(path, xacro_args=xacro_args, package_paths=package_paths)
+    _refuse_arguments(xacro_args, path)
     if suffix == ".toml":
         return from_toml(path, package_paths=package_paths)
-    data = read_bytes(path)
-    if suffix not in XML_SUFFIXES:
+    if suffix not in SUFFIXES:
         _check_xml(path, data)
     read = from_mjcf if root_tag(data) == "mujoco" else from_urdf
     return read(path, package_paths=package_paths)
 
 
+def _refuse_arguments(xacro_args: Mapping[str, Any] | None, name: object) -> None:
+    """Complain about arguments that nothing would read."""
+    if xacro_args:
+        raise InputTypeError(f"xacro_args goes with a xacro file, which {str(name)!r} is not")
+
+
 def _looks_like_a_path(text: str) -> bool:
     suffix = Path(text).suffix.lower()
-    return "/" in text or os.sep in text or suffix in (*XML_SUFFIXES, ".toml", *ADVICE)
+    return "/" in text or os.sep in text or suffix in (*SUFFIXES, *ADVICE)
 
 
 def _exists(text: str) -> bool:
@@ -98,6 +129,6 @@ def _check_xml(path: str, data: bytes) -> None:
     if not start.startswith(b"<"):
         raise DescriptionError(
             f"this is no robot file: it starts with {start[:12]!r};"
-            " a robot is URDF (.urdf, .xml), MJCF (.xml) or TOML (.toml)",
+            " a robot is URDF (.urdf, .xml), xacro (.xacro), MJCF (.xml) or TOML (.toml)",
             path=path,
         )

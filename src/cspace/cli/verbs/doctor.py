@@ -21,7 +21,7 @@ cspace doctor
 cspace doctor --json
 """
 
-EXTRAS: Final[Mapping[str, str]] = MappingProxyType({"rich": "cli", "matplotlib": "plot"})
+EXTRAS: Final[Mapping[str, str]] = MappingProxyType({"rich": "cli", "matplotlib": "plot", "xacro": "xacro"})
 """Optional packages and the extra that brings each."""
 
 ARMS: Final = ("ur5e", "puma560", "kr6_r900")

@@ -1,0 +1,138 @@
+"""A UR arm as its maker measured it: the joint frames of the calibration in place of the nominal ones."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.model.calibration_file import PARTS, Calibration, read_calibration
+from cspace.model.chain import chain, default_tip
+from cspace.model.description import Description, Source
+from cspace.model.joint import Joint
+from cspace.model.link import Link
+from cspace.model.transforms import from_rpy
+from cspace.model.values import IDENTITY
+from cspace.tolerances import CALIBRATION_ANGLE, CALIBRATION_DISTANCE, FRAME_SNAP
+
+__all__ = ["calibrated"]
+
+JOINTS: Final = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
+"""The joints of a UR arm, in order, without "_joint"; each is placed by the entry of PARTS at its place."""
+
+TOOL0_AT_ZERO: Final = np.array([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+"""How tool0 is turned in base_link with every joint of a UR arm at zero."""
+
+Z_AXIS: Final = np.array([0.0, 0.0, 1.0])
+
+BASE_INERTIA: Final = from_rpy((0.0, 0.0, 0.0), (0.0, 0.0, math.pi))
+"""base_link_inertia in base_link: the controller's base looks backward."""
+
+
+def calibrated(description: Description, path: str | os.PathLike[str]) -> Description:
+    """A UR arm with the joint frames of a calibration file.
+
+    The file is what ur_calibration of ROS extracts from the arm, or a default_kinematics.yaml of
+    ur_description. Its frames stand as in ur_description: each joint turns about its own z; base_link_inertia
+    is base_link turned by π about z; tool0 is the frame of wrist_3. A description with such frames keeps all
+    else; one of the catalogue gets these links, and keeps its base, tip, limits and name.
+    Raises DescriptionError with file and line for a bad file; InputError for a robot that is no UR arm, one
+    with other link frames, and a calibration that is further off than tolerances.CALIBRATION_DISTANCE or
+    CALIBRATION_ANGLE, which is that of another arm.
+    """
+    calibration = read_calibration(path)
+    joints = joints_of(description)
+    if all(joint.axis.tolist() == [0.0, 0.0, 1.0] for joint in joints):
+        result = replaced(description, joints, calibration)
+    elif len(description.links) == len(PARTS) + 2:
+        result = rebuilt(description, joints, calibration)
+    else:
+        raise InputError(
+            f"the link frames of robot {description.name!r} are not those of a calibration, where each joint"
+            " turns about its own z; take a URDF of ur_description, or the arm by its name"
+        )
+    check(description, result, joints, calibration)
+    known = description.provenance
+    named = f"calibration {calibration.hash}".rstrip() + f" ({os.path.basename(calibration.path)})"
+    missing = tuple(group for group in known.missing if group != "link frames")
+    sources = {**known.sources, "joints": Source(named)}
+    return replace(result, provenance=replace(known, sources=sources, missing=missing))
+
+
+def joints_of(description: Description) -> list[Joint]:
+    """The six joints of the arm, whatever stands before their names."""
+    found = []
+    for name in JOINTS:
+        fitting = [joint for joint in description.moving_joints if joint.name.endswith(f"{name}_joint")]
+        if len(fitting) != 1:
+            some = "several joints" if fitting else "no joint"
+            raise InputError(
+                f"robot {description.name!r} has {some} named …{name}_joint; a calibration fits one arm of"
+                " Universal Robots with the joint names of ROS"
+            )
+        found.append(fitting[0])
+    for before, after in pairwise(found):
+        if before.child != after.parent:
+            raise InputError(
+                f"joint {after.name!r} of robot {description.name!r} does not follow {before.name!r}"
+                " directly, as it does in a UR arm"
+            )
+    return found
+
+
+def replaced(description: Description, joints: Sequence[Joint], calibration: Calibration) -> Description:
+    """The same links with other joint frames."""
+    names = {joint.name: part for joint, part in zip(joints, PARTS, strict=True)}
+    changed = tuple(
+        replace(joint, origin=calibration.origins[names[joint.name]]) if joint.name in names else joint
+        for joint in description.joints
+    )
+    return replace(description, joints=changed)
+
+
+def rebuilt(description: Description, joints: Sequence[Joint], calibration: Calibration) -> Description:
+    """A chain from base to tip through the links of ur_description."""
+    base, tip = joints[0].parent, default_tip(description)
+    links = ["base_link_inertia", *(f"{part}_link" for part in PARTS)]
+    chained = [Joint("base_link-base_link_inertia", "fixed", base, links[0], BASE_INERTIA)]
+    for i, (joint, part) in enumerate(zip(joints, PARTS, strict=True)):
+        place = calibration.origins[part]
+        chained.append(replace(joint, parent=links[i], child=links[i + 1], origin=place, axis=Z_AXIS))
+    turned = turn_of_tip(description)
+    chained.append(Joint(f"{tip}_fixed", "fixed", links[-1], tip, turned))
+    return replace(description, links=tuple(map(Link, (base, *links, tip))), joints=tuple(chained))
+
+
+def turn_of_tip(description: Description) -> Array:
+    """The tip in tool0 (4, 4), which differ by quarter turns."""
+    R = TOOL0_AT_ZERO.T @ chain(description).T_zero[:3, :3]
+    quarter = np.round(R)
+    if np.abs(R - quarter).max() > FRAME_SNAP:
+        raise InputError(f"the tip of robot {description.name!r} is turned against tool0 by no quarter turns")
+    turned = np.eye(4)
+    turned[:3, :3] = quarter + 0.0
+    return turned if np.any(turned != IDENTITY) else IDENTITY
+
+
+def check(
+    nominal: Description, measured: Description, joints: Sequence[Joint], calibration: Calibration
+) -> None:
+    """Raise if the calibration is that of another arm: its axes at zero are far from the nominal ones."""
+    first = chain(nominal, joints[0].parent, joints[-1].child)
+    second = chain(measured, joints[0].parent, measured.joint(joints[-1].name).child)
+    for i, joint in enumerate(joints):
+        angle = math.acos(min(1.0, float(abs(first.axes[i] @ second.axes[i]))))
+        away = float(np.linalg.norm(np.cross(first.points[i] - second.points[i], second.axes[i])))
+        if angle > CALIBRATION_ANGLE or away > CALIBRATION_DISTANCE:
+            raise InputError(
+                f"{calibration.path} is the calibration of another arm than {nominal.name!r}: the axis of"
+                f" {joint.name!r} is {away:.3g} m and {angle:.3g} rad off (allowed:"
+                f" {CALIBRATION_DISTANCE:g} m, {CALIBRATION_ANGLE:g} rad)"
+            )

@@ -1,0 +1,195 @@
+"""The process that expands a xacro file: runs the package xacro and tells where each element comes from."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from typing import Any
+from xml.dom import expatbuilder, minidom
+
+from cspace.errors import CspaceError, DescriptionError, suggest
+from cspace.model.files import read_bytes
+from cspace.model.packages import locate_package
+from cspace.model.xml import parse
+from cspace.tolerances import XACRO_ELEMENTS
+
+__all__ = ["main"]
+
+Place = tuple[str, int]
+"""A file and a line."""
+
+WATCHED = ("grab_property", "grab_macro", "process_include", "handle_macro_call", "check_attrs", "eval_all")
+"""The functions of xacro whose first argument is the element at work."""
+
+
+def main(request: dict[str, Any]) -> None:
+    """Answer one request on the standard output: the elements, or what is wrong with the file."""
+    answers, sys.stdout = sys.stdout, sys.stderr  # xacro prints
+    json.dump(answer(request), answers)
+
+
+def answer(request: dict[str, Any]) -> dict[str, Any]:
+    """The expanded document as JSON data, or the fault that ends it."""
+    arguments = Arguments(request["arguments"])
+    expansion = Expansion(request["file"], request["package_paths"])
+    try:
+        root = expansion.run(arguments)
+    except DescriptionError as error:  # of a file: malformed, entities
+        if error.path is not None and error.line is not None:
+            fault = str(error).removeprefix(f"{error.path}:{error.line}: ")
+            return {"fault": fault, "file": error.path, "line": error.line}
+        fault = str(error)
+    except RecursionError:
+        fault = "its macros or includes call each other without end"
+    except Exception as error:
+        fault = told(error)
+    else:
+        if arguments.unused():
+            return {"unknown": arguments.complaint()}
+        files: dict[str, int] = {}
+        rows = [
+            (depth, tag, attributes, files.setdefault(file, len(files)), line)
+            for depth, tag, attributes, (file, line) in listed(root, (request["file"], 1))
+        ]
+        return {"files": list(files), "elements": rows}
+    return {"fault": fault, "file": expansion.place[0], "line": expansion.place[1]}
+
+
+def told(error: Exception) -> str:
+    """What xacro complains about, in one line."""
+    cause = getattr(error, "exc", None)
+    if isinstance(cause, CspaceError):
+        return str(cause)
+    text = " ".join(str(error).split()) or type(error).__name__
+    return text if type(error).__name__ == "XacroException" else f"{type(error).__name__}: {text}"
+
+
+class Arguments(dict[str, str]):
+    """The arguments given, which remember the names that the file asks for."""
+
+    def __init__(self, given: dict[str, str]) -> None:
+        super().__init__(given)
+        self.given = tuple(given)
+        self.asked: dict[str, None] = {}
+
+    def __contains__(self, name: object) -> bool:
+        self.asked[str(name)] = None
+        return super().__contains__(name)
+
+    def __getitem__(self, name: str) -> str:
+        self.asked[name] = None
+        return super().__getitem__(name)
+
+    def unused(self) -> list[str]:
+        """The names given that the file did not ask for."""
+        return [name for name in self.given if name not in self.asked]
+
+    def complaint(self) -> str:
+        """Says that a name given is none of the file's."""
+        return str(suggest("argument", self.unused()[0], self.asked, owner="the xacro file"))
+
+
+class Expansion:
+    """One run of xacro, with the place where it is."""
+
+    def __init__(self, file: str, package_paths: list[str]) -> None:
+        self.file = file
+        self.package_paths = package_paths
+        self.place: Place = (file, 1)
+        self.steps = 0
+
+    def run(self, arguments: Arguments) -> minidom.Element:
+        """The root element of the document that the file makes."""
+        xacro: Any = import_module("xacro")
+        substitution_args: Any = import_module("xacro.substitution_args")
+        substitution_args._eval_find = self.find
+        substitution_args._eval_dict["find"] = self.find
+        self.parse_original = xacro.parse
+        self.xacro = xacro
+        xacro.parse = self.parse
+        for name in WATCHED:
+            if hasattr(xacro, name):
+                setattr(xacro, name, self.watched(getattr(xacro, name)))
+        elements: Any = minidom.Element
+        copy = elements.cloneNode
+        elements.cloneNode = lambda node, deep: with_places(node, copy(node, deep))
+        root: minidom.Element = xacro.process_file(self.file, mappings=arguments, verbosity=0).documentElement
+        return root
+
+    def find(self, name: str) -> str:
+        """The folder of a package: what $(find name) stands for."""
+        beside = os.path.dirname(os.path.abspath(self.file))
+        folder, searched = locate_package(name, beside, self.package_paths)
+        if folder is None:
+            places = "".join(f"\n  {place}" for place in searched)
+            raise DescriptionError(
+                f"package {name!r} not found; searched:{places}\n"
+                "Pass package_paths=[folder that holds the package], or set ROS_PACKAGE_PATH."
+            )
+        return folder
+
+    def parse(self, source: Any, filename: str | None = None) -> Any:
+        """xacro.parse, with the checks and the places of our own reader."""
+        if source is not None or filename is None:
+            return self.parse_original(source, filename)
+        try:
+            data = read_bytes(filename)
+        except DescriptionError as error:
+            self.xacro.filestack.pop()
+            raise self.xacro.XacroException(str(error), exc=OSError()) from None
+        parse(data, filename)
+        return Placed(filename).parseString(data)
+
+    def watched(self, function: Callable[..., Any]) -> Callable[..., Any]:
+        """The same function, after noting which element it works on."""
+
+        def wrapper(element: Any, *rest: Any, **options: Any) -> Any:
+            before, self.place = self.place, getattr(element, "place", self.place)
+            self.steps += 1
+            if self.steps > XACRO_ELEMENTS:
+                raise DescriptionError(f"it makes more than {XACRO_ELEMENTS} elements; this is no robot")
+            result = function(element, *rest, **options)
+            if function.__name__ != "check_attrs":  # what it has checked is at work now
+                self.place = before
+            return result
+
+        wrapper.__name__ = function.__name__
+        return wrapper
+
+
+class Placed(expatbuilder.ExpatBuilderNS):
+    """Builds a document whose elements know their file and line."""
+
+    def __init__(self, file: str) -> None:
+        super().__init__()
+        self.file = file
+
+    def start_element_handler(self, name: str, attributes: Any) -> None:
+        super().start_element_handler(name, attributes)
+        element: Any = self.curNode
+        element.place = (self.file, self.getParser().CurrentLineNumber)
+
+
+def with_places(node: Any, copy: Any) -> Any:
+    """A copied element whose parts have the places of the first one's."""
+    stack = [(node, copy)]
+    while stack:
+        old, new = stack.pop()
+        if hasattr(old, "place"):
+            new.place = old.place
+        stack.extend(zip(old.childNodes, new.childNodes, strict=False))
+    return copy
+
+
+def listed(root: minidom.Element, place: Place) -> Iterator[tuple[int, str, dict[str, str], Place]]:
+    """An element and all inside it: depth, tag, attributes, place."""
+    stack = [(0, root, place)]
+    while stack:
+        depth, element, place = stack.pop()
+        place = getattr(element, "place", place)
+        yield depth, element.tagName, dict(element.attributes.items()), place
+        inside = [node for node in element.childNodes if node.nodeType == node.ELEMENT_NODE]
+        stack.extend((depth + 1, node, place) for node in reversed(inside))

@@ -1,0 +1,269 @@
+"""Xacro files: what they make, where each fault is told to be, and that none of them hangs."""
+
+import os
+import subprocess
+import sys
+from importlib.util import find_spec
+
+import numpy as np
+import pytest
+
+import cspace.model.xacro
+from cspace.errors import DescriptionError, InputError, InputTypeError, MissingExtraError
+from cspace.model import from_urdf, from_xacro, to_toml
+from cspace.robots import load_description, load_robot
+from model.mutation import exercise_file, mutant
+
+HEAD = '<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro">\n'
+
+ARM = (
+    HEAD
+    + """  <xacro:arg name="length" default="0.5"/>
+  <xacro:arg name="gripper" default="false"/>
+  <xacro:property name="length" value="$(arg length)"/>
+  <xacro:include filename="$(find arm_parts)/urdf/joint.xacro"/>
+  <link name="link_0"/>
+  <xacro:turn i="1" z="${2 * length}" axis="0 0 1"/>
+  <xacro:turn i="2" z="${length}" axis="0 1 0"/>
+  <xacro:if value="$(arg gripper)">
+    <link name="gripper"/>
+    <joint name="mount" type="fixed"><parent link="link_2"/><child link="gripper"/></joint>
+  </xacro:if>
+</robot>
+"""
+)
+
+PART = (
+    HEAD
+    + """<xacro:macro name="turn" params="i z axis">
+  <link name="link_${i}">
+    <visual><geometry><mesh filename="package://arm_parts/meshes/link.stl"/></geometry></visual>
+  </link>
+  <joint name="joint_${i}" type="revolute">
+    <origin xyz="0 0 ${z}" rpy="0 0 ${pi / 4}"/>
+    <parent link="link_${i - 1}"/>
+    <child link="link_${i}"/>
+    <axis xyz="${axis}"/>
+    <limit lower="-1" upper="1" velocity="1" effort="1"/>
+  </joint>
+</xacro:macro></robot>
+"""
+)
+
+
+@pytest.fixture
+def arm(tmp_path):
+    """A xacro file and a package beside it."""
+    package = tmp_path / "src" / "parts-clone"
+    (package / "urdf").mkdir(parents=True)
+    (package / "meshes").mkdir()
+    (package / "package.xml").write_text("<package>\n <name> arm_parts </name></package>")
+    (package / "meshes" / "link.stl").write_text("solid")
+    (package / "urdf" / "joint.xacro").write_text(PART)
+    path = tmp_path / "arm.urdf.xacro"
+    path.write_text(ARM)
+    return path
+
+
+def needs_xacro(test):
+    """Marks a test that expands a file."""
+    return pytest.mark.skipif(find_spec("xacro") is None, reason="the package xacro is not installed")(test)
+
+
+def by_xacro_itself(path, **arguments):
+    """The URDF text that the package's own command line writes."""
+    script = "import sys, xacro; xacro.main()"
+    words = [f"{name}:={value}" for name, value in arguments.items()]
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(path), *words], capture_output=True, text=True, check=True
+    )
+    return done.stdout
+
+
+@needs_xacro
+def test_macros_arguments_and_packages_make_the_robot(arm):
+    folders = [arm.parent / "src"]
+    robot = load_robot(arm, package_paths=folders)
+    assert robot.joint_names == ("joint_1", "joint_2")
+    assert robot.fk([0, 0])[2, 3] == 1.5
+    longer = load_robot(str(arm), xacro_args={"length": 2, "gripper": True}, package_paths=folders)
+    assert longer.tip == "gripper"
+    assert longer.fk([0, 0])[2, 3] == 6.0
+    mesh = robot.description.link("link_1").visual[0].mesh
+    assert mesh.file() == str(arm.parent / "src/parts-clone/meshes/link.stl")
+
+
+@needs_xacro
+def test_a_package_is_found_above_the_file_and_in_the_environment(arm, monkeypatch):
+    inside = arm.parent / "src" / "parts-clone" / "urdf" / "arm.xacro"
+    inside.write_text(ARM)
+    assert load_robot(inside).dof == 2
+    with pytest.raises(
+        DescriptionError, match=r"package 'arm_parts' not found; searched:(?s:.*)package_paths"
+    ):
+        load_robot(arm)
+    monkeypatch.setenv("ROS_PACKAGE_PATH", str(arm.parent / "src"))
+    assert load_robot(arm).dof == 2
+
+
+@needs_xacro
+def test_what_comes_out_is_what_xacro_itself_writes(tmp_path):
+    path = tmp_path / "loop.xacro"
+    rows = "".join(f'<xacro:link_of n="{n}"/>' for n in range(12))
+    path.write_text(
+        HEAD
+        + '<xacro:property name="a" value="${[0.1 * k for k in range(12)]}"/><link name="l-1"/>'
+        + '<xacro:macro name="link_of" params="n"><link name="l${n}"/><joint name="j${n}" type="continuous">'
+        + '<parent link="l${n - 1}"/><child link="l${n}"/><origin xyz="${a[n]} ${sin(n)} 0" rpy="${n} 0 1"/>'
+        + f'<axis xyz="0 ${{n % 2}} 1"/></joint></xacro:macro>{rows}</robot>'
+    )
+    assert to_toml(from_xacro(path)) == to_toml(from_urdf(by_xacro_itself(path)))
+
+
+@needs_xacro
+def test_xacro_elements_are_found_whatever_the_suffix(arm):
+    path = arm.with_name("arm.urdf")
+    path.write_text(ARM)
+    assert load_robot(path, package_paths=[arm.parent / "src"]).dof == 2
+    plain = '<!-- <xacro:macro/> --><robot name="r"><link name="a"/></robot>'
+    assert not cspace.model.xacro.is_xacro(plain.encode())
+    assert not cspace.model.xacro.is_xacro(ARM[:-20].encode())  # broken: the reader says how
+
+
+@needs_xacro
+def test_mjcf_can_be_written_by_macros_too(tmp_path):
+    path = tmp_path / "leg.xml.xacro"
+    path.write_text(
+        '<mujoco xmlns:xacro="http://ros.org/wiki/xacro"><worldbody><xacro:property name="h" value="0.5"/>'
+        '<body name="b" pos="0 0 ${h}"><joint name="j"/></body></worldbody></mujoco>'
+    )
+    robot = load_description(path)
+    assert robot.name == "leg"
+    assert robot.joint("j").origin[2, 3] == 0.5
+
+
+@needs_xacro
+def test_an_argument_that_the_file_does_not_have_is_refused(arm):
+    with pytest.raises(InputError, match=r"no argument 'lenght' .*did you mean 'length'"):
+        load_robot(arm, xacro_args={"lenght": 2}, package_paths=[arm.parent / "src"])
+
+
+def test_arguments_without_a_xacro_file_are_refused(tmp_path):
+    for name in ("ur5e", tmp_path / "arm.urdf"):
+        (tmp_path / "arm.urdf").write_text('<robot name="r"><link name="a"/></robot>')
+        with pytest.raises(InputTypeError, match="xacro_args goes with a xacro file"):
+            load_robot(name, xacro_args={"length": 1})
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"), [(["a"], "mapping"), ({1: "a"}, "1: str"), ({"a": []}, "list")]
+)
+def test_arguments_of_other_types_are_refused(arguments, says, arm):
+    with pytest.raises(InputTypeError, match=says):
+        from_xacro(arm, xacro_args=arguments)
+
+
+def test_without_the_package_the_extra_is_named(arm, monkeypatch):
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(MissingExtraError, match=r"pip install 'cspace\[xacro\]'"):
+        load_robot(arm)
+    with pytest.raises(DescriptionError, match="no such file"):
+        load_robot(arm.with_name("other.xacro"))
+
+
+ENTITIES = '<!DOCTYPE x [<!ENTITY a "aaaa"><!ENTITY b "&a;&a;&a;&a;">]>'
+TWICE = "".join(
+    f'<xacro:macro name="m{k}"><xacro:m{k + 1}/><xacro:m{k + 1}/></xacro:macro>\n' for k in range(40)
+)
+
+FAULTS = {
+    "malformed": (HEAD + "<link>", 2, "malformed XML"),
+    "entities": (ENTITIES + HEAD + "</robot>", 1, "entity declarations are refused"),
+    "unknown property": (
+        HEAD + '<link name="a"/>\n<xacro:property name="p" value="1"/>\n<link name="${q}"/>',
+        4,
+        "q",
+    ),
+    "unknown macro": (HEAD + "\n<xacro:leg/></robot>", 3, "unknown macro name: xacro:leg"),
+    "missing parameter": (
+        HEAD + '<xacro:macro name="m" params="a"/>\n<xacro:m/></robot>',
+        3,
+        r"Undefined parameters \[a\]",
+    ),
+    "missing argument": (HEAD + '<link name="$(arg nothing)"/></robot>', 2, "nothing"),
+    "missing include": (HEAD + '\n<xacro:include filename="no.xacro"/></robot>', 3, "no.xacro: no such file"),
+    "missing package": (
+        HEAD + '<xacro:include filename="$(find no)/a.xacro"/></robot>',
+        2,
+        "package 'no' not",
+    ),
+    "no condition": (HEAD + '<xacro:if value="perhaps"/></robot>', 2, "perhaps"),
+    "circle": (HEAD + '<xacro:macro name="m"><xacro:m/></xacro:macro><xacro:m/></robot>', 2, "without end"),
+    "itself": (HEAD + '<xacro:include filename="bad.xacro"/></robot>', 2, "without end"),
+    "no end": (
+        HEAD + TWICE + '<xacro:macro name="m40"/><xacro:m0/></robot>',
+        None,
+        "makes more than .* elements",
+    ),
+    "only macros": (HEAD + '<xacro:macro name="m"/></robot>', 1, "makes no links"),
+    "in a macro": (
+        HEAD
+        + '<xacro:macro name="m" params="t">\n<link name="a"/>\n<joint name="j" type="${t}"/></xacro:macro>'
+        '\n<xacro:m t="hinge"/></robot>',
+        4,
+        "no joint type 'hinge'",
+    ),
+    "URDF": (
+        HEAD + '<link name="a"/>\n<xacro:if value="1"><link name="a"/></xacro:if></robot>',
+        3,
+        "two links",
+    ),
+}
+
+
+@needs_xacro
+@pytest.mark.parametrize(("text", "line", "says"), FAULTS.values(), ids=FAULTS.keys())
+def test_a_fault_is_told_with_file_and_line(text, line, says, tmp_path):
+    path = tmp_path / "bad.xacro"
+    path.write_text(text if text.endswith(("</robot>", "<link>")) else text + "</robot>")
+    with pytest.raises(DescriptionError, match=says) as caught:
+        load_description(path)
+    assert caught.value.path == str(path)
+    assert line is None or caught.value.line == line
+
+
+@needs_xacro
+def test_a_fault_in_an_included_file_is_told_there(arm):
+    part = arm.parent / "src/parts-clone/urdf/joint.xacro"
+    part.write_text(PART.replace('upper="1"', 'upper="-2"'))
+    with pytest.raises(DescriptionError, match="upside down") as caught:
+        load_description(arm, package_paths=[arm.parent / "src"])
+    assert os.path.samefile(caught.value.path, part)
+    assert "<joint" in PART.splitlines()[caught.value.line - 1]
+
+
+@needs_xacro
+def test_a_file_that_computes_for_ever_is_stopped(tmp_path, monkeypatch):
+    monkeypatch.setattr(cspace.model.xacro, "XACRO_SECONDS", 2.0)
+    path = tmp_path / "slow.xacro"
+    path.write_text(HEAD + '<link name="${10**10**9 % 7}"/></robot>')
+    with pytest.raises(DescriptionError, match="longer than 2 s"):
+        load_description(path)
+
+
+@needs_xacro
+def test_modules_of_the_working_folder_are_not_run(tmp_path, monkeypatch):
+    for name in ("json.py", "xacro.py", "cspace.py"):
+        (tmp_path / name).write_text("raise SystemExit('taken from the working folder')")
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "a.xacro").write_text(HEAD + '<link name="a"/></robot>')
+    assert load_description("a.xacro").root == "a"
+
+
+@needs_xacro
+def test_damaged_files_end_in_an_error_of_ours_or_in_a_robot(arm):
+    rng = np.random.default_rng(0)
+    package_paths = [arm.parent / "src"]
+    for _ in range(12):
+        arm.write_bytes(mutant(rng, [ARM.encode()]))
+        exercise_file(lambda path: from_xacro(path, package_paths=package_paths), arm)
