@@ -60,15 +60,21 @@ nb::dict loop_of(const ik::GeneralPlan& plan) {
     for (const Posed& link : plan.frames.between) between.append(rows_of(link));
     for (int k = 0; k < plan.regular; ++k) {
         const ik::Formulation form = formulation(plan.order[k]);
-        const ik::Loop loop = make_loop(plan.frames, plan.chain.tip, form);
+        const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, plan.chain.tip, form);
         order.append(nb::make_tuple(plan.order[k], list_of(loop.joint, 6), form.backwards));
     }
     out["order"] = order;
     out["between"] = between;
     out["first"] = rows_of(plan.frames.first);
     out["last"] = rows_of(plan.frames.last);
-    out["length"] = plan.frames.length;
+    out["length"] = plan.length;
     return out;
+}
+
+// Whether an arm of six turning joints is solved by its own hidden angles.
+bool is_hidden_angle(const ik::Arm& arm) {
+    const ik::GeneralArm& general = arm.general;
+    return arm.is_general && general.chain.n == 6 && general.plan.slides == 0 && !general.has_neighbours;
 }
 
 // _ik_plan(robot) → {"form": …} of an arm with a closed form, {"loop": …} of a general one, else {}.
@@ -76,16 +82,19 @@ nb::dict plan(nb::object robot) {
     nb::dict out;
     const ik::Arm* arm = arm_of(robot.ptr());
     if (arm && arm->has_plan) out["form"] = form_of(arm->plan);
-    if (arm && arm->is_general) out["loop"] = loop_of(arm->general);
+    if (arm && is_hidden_angle(*arm)) out["loop"] = loop_of(arm->general.plan);
     return out;
 }
 
 // _ik_determinant(robot, goal rows, formulation, a0) → f(a0), whose zeros are the solutions' hidden angles.
 double hidden_determinant(nb::object robot, const std::vector<double>& goal, int number, double a0) {
     const ik::Arm* arm = arm_of(robot.ptr());
-    if (!arm || !arm->is_general || goal.size() != 16)
+    if (!arm || !is_hidden_angle(*arm) || goal.size() != 16)
         throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
-    const ik::Loop loop = make_loop(arm->general.frames, read_goal(goal.data()).T, formulation(number));
+    const ik::GeneralPlan& plan = arm->general.plan;
+    Posed T = read_goal(goal.data()).T;
+    T.t = (1 / plan.length) * T.t;
+    const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, T, formulation(number));
     return determinant(eliminate(loop), std::cos(a0), std::sin(a0));
 }
 

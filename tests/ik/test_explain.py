@@ -56,7 +56,8 @@ def test_every_arm_of_the_catalogue_is_explained(name):
     if not plan:
         assert plan.reason in plan.to_text().replace("\n", " ")
         return
-    expect_true(robot, np.random.default_rng(2))
+    if plan.steps:
+        expect_true(robot, np.random.default_rng(2))
     goals = robot.fk(configurations(robot, np.random.default_rng(3), 20))
     assert max(len(robot.ik(T)) for T in goals) <= plan.branches
 
