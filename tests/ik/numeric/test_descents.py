@@ -8,6 +8,8 @@ import pytest
 import cspace as cs
 from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.model import Limits
+from cspace.robot import Robot
+from kinematics.robots import arm, tree
 
 CLOSED_FORM = ["ur5e", "puma560", "kr6_r900", "crx10ia", "planar_3r"]
 ANY_KIND = [*CLOSED_FORM, "panda", "iiwa14", "jaco2", "stanford", "rpr", "so101", "two_link", "scara"]
@@ -188,6 +190,35 @@ def test_further_starts_are_reproducible():
         a, b = (robot.ik_numeric(T, rng=rng).q for _ in range(2))
         np.testing.assert_array_equal(a, b)
     assert not np.array_equal(robot.ik_numeric(T, rng=4).q, robot.ik_numeric(T, rng=3).q)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_frames_of_trees_with_joints_that_mimic_others(seed):
+    robot, rng = tree(seed), np.random.default_rng(seed)
+    n = len(robot.joint_names)
+    for frame in robot.leaves:
+        truth = rng.uniform(-1, 1, n)
+        start = truth + rng.uniform(-0.1, 0.1, n)
+        T = robot.fk(truth, frame)
+        found = robot.ik_numeric(T, start, frame=frame, limits=False)
+        assert found, found.reason
+        np.testing.assert_allclose(robot.fk(found.q, frame), T, atol=3e-9)
+        still = np.abs(robot.jacobian(start, frame)).max(axis=0) == 0
+        np.testing.assert_array_equal(found.q[still], start[still])
+
+
+def test_what_cannot_be_asked_of_trees_is_refused():
+    with pytest.raises(InputError, match="branches"):
+        tree(0).ik_numeric(np.eye(4))
+    floating = Robot(tree(0).description, floating=True)
+    with pytest.raises(InputError, match="floats"):
+        floating.ik_numeric(np.eye(4), frame=floating.leaves[0])
+    long = arm(1, "R" * 17)
+    with pytest.raises(InputError, match="17 joints"):
+        long.ik_numeric(np.eye(4))
+    sixteen = arm(2, "RP" * 8)
+    q = sixteen.random_configuration(rng=1)
+    assert sixteen.ik_numeric(sixteen.fk(q))
 
 
 def test_positions_and_free_directions():

@@ -36,21 +36,69 @@ inline double share_within(const double* base, const double* extra, const double
     return share;
 }
 
-// J (6, dof), twist (6,) and the wish (dof,) of the null space, or null; qd (dof,) takes the velocities.
-// Where they would be too fast, the motion in the null space gives way first, then the twist is slowed down
-// as a whole.
-inline void resolved_rate(const double* J, int dof, const double* twist, const double* wish,
-                          const RateSettings& settings, RateSvd& svd, double* qd) {
+// The inverse of a symmetric positive definite 6×6 matrix by Cholesky's factors; false if it is not one.
+inline bool invert_positive(const double (&M)[6][6], double (&inverse)[6][6]) {
+    double L[6][6], K[6][6] = {};  // K = L⁻¹
+    for (int i = 0; i < 6; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            const double rest = M[i][j] - dot_n(L[i], L[j], j);
+            if (i == j && !(rest > 0)) return false;
+            L[i][j] = i == j ? std::sqrt(rest) : rest / L[j][j];
+        }
+        K[i][i] = 1 / L[i][i];
+        for (int j = 0; j < i; ++j) {
+            double sum = 0;
+            for (int k = j; k < i; ++k) sum += L[i][k] * K[k][j];
+            K[i][j] = -sum * K[i][i];
+        }
+    }
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) {
+            inverse[i][j] = 0;
+            for (int k = i > j ? i : j; k < 6; ++k) inverse[i][j] += K[k][i] * K[k][j];
+        }
+    return true;
+}
+
+// qd += share · Jᵀ A t
+inline void add_transposed(const double* J, int dof, const double (&A)[6][6], const double* t, double share,
+                           double* qd) {
+    for (int r = 0; r < 6; ++r) {
+        const double gain = share * dot_n(A[r], t, 6);
+        for (int j = 0; j < dof; ++j) qd[j] += gain * J[r * dof + j];
+    }
+}
+
+// The rate and the projected wish where every singular value of J is surely above ε: 1/σ² is at most the norm
+// of (J Jᵀ)⁻¹. False elsewhere.
+inline bool regular_rate(const double* J, int dof, const double* twist, const RateSettings& settings,
+                         double* qd, double* extra) {
+    double M[6][6], inverse[6][6], square = 0;
+    for (int r = 0; r < 6; ++r)
+        for (int c = 0; c <= r; ++c) M[r][c] = M[c][r] = dot_n(J + r * dof, J + c * dof, dof);
+    if (!invert_positive(M, inverse)) return false;
+    for (const auto& row : inverse) square += dot_n(row, row, 6);
+    const double threshold2 = settings.threshold * settings.threshold;
+    if (!(std::sqrt(square) * threshold2 <= 1)) return false;
+    double moved[6];
+    for (int r = 0; r < 6; ++r) moved[r] = dot_n(J + r * dof, extra, dof);
+    add_transposed(J, dof, inverse, moved, -1, extra);
+    if (settings.damping > 0) {
+        for (int r = 0; r < 6; ++r) M[r][r] += settings.damping * settings.damping;
+        if (!invert_positive(M, inverse)) return false;
+    }
+    add_transposed(J, dof, inverse, twist, 1, qd);
+    return true;
+}
+
+// The same anywhere, from the singular values.
+inline void singular_rate(const double* J, int dof, const double* twist, const RateSettings& settings,
+                          RateSvd& svd, double* qd, double* extra) {
     svd.rows = dof;
     svd.columns = 6;
     for (int r = 0; r < 6; ++r)
         for (int j = 0; j < dof; ++j) svd.us[r][j] = J[r * dof + j];
     decompose(svd);
-    double extra[max_rate_columns];
-    for (int j = 0; j < dof; ++j) {
-        qd[j] = 0;
-        extra[j] = wish ? wish[j] : 0;
-    }
     for (int i = 0; i < 6; ++i) {
         const double sigma = svd.sigma[i];
         if (sigma <= tolerance::always_singular) continue;
@@ -58,9 +106,27 @@ inline void resolved_rate(const double* J, int dof, const double* twist, const d
         const double damping = std::fmax(settings.damping, 0.0);
         const double gain = dot_n(svd.v[i], twist, 6) / (least * least + damping * damping);
         for (int j = 0; j < dof; ++j) qd[j] += gain * svd.us[i][j];
-        if (!wish) continue;
         const double along = dot_n(svd.us[i], extra, dof) / (sigma * sigma);
         for (int j = 0; j < dof; ++j) extra[j] -= along * svd.us[i][j];
+    }
+}
+
+// J (6, dof), twist (6,) and the wish (dof,) of the null space, or null; qd (dof,) takes the velocities.
+// Where they would be too fast, the motion in the null space gives way first, then the twist is slowed down
+// as a whole.
+inline void resolved_rate(const double* J, int dof, const double* twist, const double* wish,
+                          const RateSettings& settings, RateSvd& svd, double* qd) {
+    double extra[max_rate_columns];
+    const auto start = [&] {
+        for (int j = 0; j < dof; ++j) {
+            qd[j] = 0;
+            extra[j] = wish ? wish[j] : 0;
+        }
+    };
+    start();
+    if (dof < 6 || !regular_rate(J, dof, twist, settings, qd, extra)) {
+        start();
+        singular_rate(J, dof, twist, settings, svd, qd, extra);
     }
     double share = 1;
     if (settings.most) {

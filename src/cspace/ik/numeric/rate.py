@@ -54,7 +54,7 @@ def resolved_rate(
     dof = robot.dof
     if dof > MOST_JOINTS:
         raise InputError(f"{robot.name} has {dof} velocities; resolved_rate takes up to {MOST_JOINTS}")
-    wanted = as_floats(twist, "twist", last=(6,), largest=FARTHEST)
+    wanted = as_floats(twist, "twist", last=(6,))
     wish = None if null_space is None else as_floats(null_space, "null_space", last=(dof,), largest=FARTHEST)
     try:
         lead = np.broadcast_shapes(J.shape[:-2], wanted.shape[:-1], () if wish is None else wish.shape[:-1])
@@ -65,6 +65,8 @@ def resolved_rate(
 
     def rows(array: Array, own: int) -> Array:
         last = array.shape[array.ndim - own :]
+        if array.shape == lead + last:
+            return np.ascontiguousarray(array.reshape(-1, *last))
         return np.ascontiguousarray(np.broadcast_to(array, lead + last).reshape(-1, *last))
 
     workers = (0 if lead else 1) if threads is None else whole_number(threads, "threads", 0, 1024)
