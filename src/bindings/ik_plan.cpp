@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "bindings.hpp"
-#include "cspace/ik/general/determinant.hpp"
 #include "cspace/ik/goal.hpp"
 #include "ik_shared.hpp"
 
@@ -52,13 +51,34 @@ nb::dict form_of(const ik::Plan& plan) {
     return out;
 }
 
-// The loop of a general arm: its frames, and for each formulation in the order in which it is asked the
-// joints behind a0 … a5 and whether it is read backwards.
-nb::dict loop_of(const ik::GeneralPlan& plan) {
+nb::list vector_of(const Vec3d& v) {
+    const double entries[3] = {v.x, v.y, v.z};
+    return list_of(entries, 3);
+}
+
+// The six joints of a general arm, virtual ones behind its own, in metres.
+void put_joints(const ik::GeneralPlan& plan, nb::dict& out) {
+    nb::list axes, points;
+    for (int i = 0; i < 6; ++i) {
+        axes.append(vector_of(plan.chain.axis[i]));
+        points.append(vector_of(plan.length * plan.chain.point[i]));
+    }
+    out["axes"] = axes;
+    out["points"] = points;
+    out["prismatic"] = list_of(plan.chain.prismatic, 6);
+    out["tip"] = rows_of({plan.chain.tip.R, plan.length * plan.chain.tip.t});
+}
+
+// How a general arm is solved: by a wrist behind three joints (`wrist`: whether it is at the base), or by the
+// loop, whose frames have lengths over the arm's. order: for each formulation as they are asked its number,
+// the joints behind a0 … a5 and whether it is read backwards; none where three joints slide.
+nb::dict loop_of(const ik::GeneralArm& arm) {
     nb::dict out;
+    const ik::GeneralPlan& plan = arm.plan;
+    put_joints(plan, out);
     nb::list order, between;
     for (const Posed& link : plan.frames.between) between.append(rows_of(link));
-    for (int k = 0; k < plan.regular; ++k) {
+    for (int k = 0; k < plan.regular && plan.slides < 3; ++k) {
         const ik::Formulation form = formulation(plan.order[k]);
         const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, plan.chain.tip, form);
         order.append(nb::make_tuple(plan.order[k], list_of(loop.joint, 6), form.backwards));
@@ -68,13 +88,9 @@ nb::dict loop_of(const ik::GeneralPlan& plan) {
     out["first"] = rows_of(plan.frames.first);
     out["last"] = rows_of(plan.frames.last);
     out["length"] = plan.length;
+    out["neighbours"] = arm.has_neighbours;
+    if (arm.position_first.serves) out["wrist"] = arm.position_first.backwards;
     return out;
-}
-
-// Whether an arm of six turning joints is solved by its own hidden angles.
-bool is_hidden_angle(const ik::Arm& arm) {
-    const ik::GeneralArm& general = arm.general;
-    return arm.is_general && general.chain.n == 6 && general.plan.slides == 0 && !general.has_neighbours;
 }
 
 // _ik_plan(robot) → {"form": …} of an arm with a closed form, {"loop": …} of a general one, else {}.
@@ -82,20 +98,22 @@ nb::dict plan(nb::object robot) {
     nb::dict out;
     const ik::Arm* arm = arm_of(robot.ptr());
     if (arm && arm->has_plan) out["form"] = form_of(arm->plan);
-    if (arm && is_hidden_angle(*arm)) out["loop"] = loop_of(arm->general.plan);
+    if (arm && arm->is_general) out["loop"] = loop_of(arm->general);
     return out;
 }
 
 // _ik_determinant(robot, goal rows, formulation, a0) → f(a0), whose zeros are the solutions' hidden angles.
 double hidden_determinant(nb::object robot, const std::vector<double>& goal, int number, double a0) {
     const ik::Arm* arm = arm_of(robot.ptr());
-    if (!arm || !is_hidden_angle(*arm) || goal.size() != 16)
+    if (!arm || !arm->is_general || arm->general.plan.regular == 0 || arm->general.plan.slides > 2 ||
+        goal.size() != 16)
         throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
     const ik::GeneralPlan& plan = arm->general.plan;
     Posed T = read_goal(goal.data()).T;
     T.t = (1 / plan.length) * T.t;
     const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, T, formulation(number));
-    return determinant(eliminate(loop), std::cos(a0), std::sin(a0));
+    if (plan.slides < 2) return determinant(eliminate(loop), std::cos(a0), std::sin(a0));
+    return lane(lack_on_both(two_sheets(loop), fill<Pack<4>>(std::cos(a0)), fill<Pack<4>>(std::sin(a0))), 0);
 }
 
 }  // namespace

@@ -56,8 +56,7 @@ def test_every_arm_of_the_catalogue_is_explained(name):
     if not plan:
         assert plan.reason in plan.to_text().replace("\n", " ")
         return
-    if plan.steps:
-        expect_true(robot, np.random.default_rng(2))
+    expect_true(robot, np.random.default_rng(2))
     goals = robot.fk(configurations(robot, np.random.default_rng(3), 20))
     assert max(len(robot.ik(T)) for T in goals) <= plan.branches
 
@@ -86,6 +85,68 @@ def test_arms_of_up_to_three_joints(kinds):
     assert plan.family == "short arm"
     for q in configurations(robot, rng, 20):
         assert len(robot.ik(position=robot.fk(q)[:3, 3])) <= plan.branches
+
+
+WORDS = ["".join(k) for n in (4, 5, 6) for k in itertools.product("RP", repeat=n) if k.count("P") <= 3]
+
+
+def sliding_arm(kinds, rng, wrist=None):
+    """A random arm; wrist: the first of three axes that meet in a point."""
+    n = len(kinds)
+    axes, points = np.array([unit(v) for v in rng.normal(size=(n, 3))]), rng.uniform(-1, 1, (n, 3))
+    if wrist is not None:
+        points[wrist : wrist + 3] = points[wrist]
+    tip = cs.pose(rng.normal(size=3), rpy=rng.normal(size=3))
+    return Robot(from_screws(axes, points, tip, joint_types=kinds, name=f"random {kinds}"))
+
+
+@pytest.mark.parametrize("kinds", [*[word for word in WORDS if "P" in word][::3], "RRRR", "RRRRR"])
+def test_arms_of_four_to_six_joints_that_turn_and_slide(kinds):
+    rng = np.random.default_rng([ord(kind) for kind in kinds])
+    robot = sliding_arm(kinds, rng)
+    plan = expect_true(robot, rng)
+    assert plan.branches in (2, 8, 16)
+    assert ("Virtual joints" in plan.to_text()) == (len(kinds) < 6)
+    for q in configurations(robot, rng, 5):
+        assert len(robot.ik(robot.fk(q))) <= plan.branches
+
+
+@pytest.mark.parametrize("kinds", ["RRPRRR", "PRRRRR", "PPPRRR", "RPPRRR", "RRRRPR", "RRRPRP"])
+def test_a_wrist_behind_three_joints_of_any_kind(kinds):
+    rng = np.random.default_rng([ord(kind) for kind in kinds])
+    robot = sliding_arm(kinds, rng, wrist=3 if kinds.endswith("RRR") else 0)
+    plan = expect_true(robot, rng)
+    assert plan.family == "wrist behind three joints"
+    assert ("read from the tip" in plan.to_text()) == (not kinds.endswith("RRR"))
+    for q in configurations(robot, rng, 10):
+        assert len(robot.ik(robot.fk(q))) <= plan.branches == 8
+
+
+@pytest.mark.parametrize("kinds", ["RPRRPR", "PRRPRR", "RRRRPP"])
+def test_the_hidden_angle_of_an_arm_with_two_slides_is_a_root_of_degree_four(kinds):
+    rng = np.random.default_rng([ord(kind) for kind in kinds])
+    robot = sliding_arm(kinds, rng)
+    assert "degree 4" in robot.ik_plan().to_text().replace("\n", " ")
+    for q in configurations(robot, rng):
+        goal = robot.fk(q).ravel().tolist()
+        for number, joints, backwards in _core._ik_plan(robot)["loop"]["order"]:
+            f = [_core._ik_determinant(robot, goal, number, a) for a in 2 * np.pi * np.arange(32) / 32]
+            harmonics = np.abs(np.fft.rfft(f))
+            noise = 1e-9 * harmonics.max()
+            assert harmonics[5:].max() < noise
+            hidden = -q[joints[0]] if backwards else q[joints[0]]
+            assert abs(_core._ik_determinant(robot, goal, number, hidden)) < 10 * noise
+
+
+def test_an_arm_that_is_solved_through_its_neighbours_says_so():
+    x, y, z = np.eye(3)
+    points = [[0, 0.4, 0.4], [0, 0, 0.4], [0.2, 0.2, 0.4], [0, 0, 0.2], [0.4, 0, 0.2], [0.2, 0, 0.2]]
+    tip = cs.pose([0.3, 0.2, 0.5])
+    robot = Robot(from_screws([y, z, x, y, x, z], points, tip, joint_types="RPRRRR"))
+    plan = expect_true(robot, np.random.default_rng(4))
+    assert _core._ik_plan(robot)["loop"]["neighbours"]
+    assert "Two neighbours of the arm" in plan.to_text()
+    assert "neighbour" not in load("jaco2").ik_plan().to_text()
 
 
 @pytest.mark.parametrize("name", ["jaco2", "m1013", "calibrated", "random"])

@@ -8,12 +8,14 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.ik.conditions import NoClosedFormError, arm_length
+from cspace.ik.conditions import NoClosedFormError, arm_length, common_point
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form
 from cspace.ik.explain.general import Loop
 from cspace.ik.explain.parallel import first_parallel_steps, middle_parallel_steps, three_parallel_steps
+from cspace.ik.explain.placed_wrist import orientation_steps, placed_wrist_steps
 from cspace.ik.explain.plan import IkPlan
+from cspace.ik.explain.screws import goal_values, joint_values
 from cspace.ik.explain.short import short_steps, short_values
 from cspace.ik.explain.survey import relations, still_directions, still_points
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
@@ -65,7 +67,7 @@ def ik_plan(robot: Any) -> IkPlan:
     inside = _core._ik_plan(robot)
     if "form" in inside and seen["family"] in SUMMARIES:
         return form_plan(Form.of(seen, inside["form"]), seen, common)
-    if "loop" in inside and len(chain.joint_types) == 6 and "P" not in chain.joint_types:
+    if "loop" in inside:
         return general_plan(Loop.of(inside["loop"]), common)
     if len(chain.joint_types) <= 3:
         return short_plan(chain, common)
@@ -117,59 +119,144 @@ def notes_of(form: Form, seen: dict[str, Any]) -> tuple[str, ...]:
     if form.reversed:
         notes.append(
             "The arm is read from the tip to the base: joint 1 of the solver is the last joint of the "
-            "arm, and the goal is "
-            "the inverse of the pose."
+            "arm, and the goal is the inverse of the pose."
         )
     if seen["virtual_joints"]:
         virtual = [str(i + 1) for i, joint in enumerate(form.joint) if joint < 0]
         notes.append(
             f"Virtual joints ({', '.join(virtual)} of the six below) complete the arm to six, in a place "
-            f"where a closed form "
-            "appears. A pose that the arm reaches is one that the completed arm reaches with its virtual "
-            "joints "
-            "at zero; solutions with other values are dropped."
+            "where a closed form appears. A pose that the arm reaches is one that the completed arm "
+            "reaches with its virtual joints at zero; solutions with other values are dropped."
         )
     notes.append(
         f"$P = B^{{-1}} {goal} C^{{-1}}$ is the goal from the frame of axis 1 to that of axis 6; $p$ is "
-        f"its origin, "
-        "$r_{ij}$ are the entries of its rotation. $c_1$, $s_{23}$ are cosine and sine of $t_1$, $t_2 + "
-        "t_3$; "
-        "$c_{\\alpha_1}$, $s_{\\alpha_1}$ those of a twist."
+        "its origin, $r_{ij}$ are the entries of its rotation. $c_1$, $s_{23}$ are cosine and sine "
+        "of $t_1$, $t_2 + t_3$; $c_{\\alpha_1}$, $s_{\\alpha_1}$ those of a twist."
     )
     if seen["deviation"] > 1e-13:
         corrected = "; Newton steps on the true axes correct it" if seen["polish"] else ""
         notes.append(
-            f"The form takes axes as parallel or meeting that are so within rounding; poses differ by up to "
-            f"{seen['deviation']:.1g} of the arm's length ({seen['length']:.3g} m){corrected}."
+            "The form takes axes as parallel or meeting that are so within rounding; poses differ by up "
+            f"to {seen['deviation']:.1g} of the arm's length ({seen['length']:.3g} m){corrected}."
         )
     return tuple(notes)
 
 
 def general_plan(loop: Loop, common: dict[str, Any]) -> IkPlan:
-    """Six turning joints without a closed form."""
-    steps = loop.steps(common["joints"])
-    count = len(loop.order)
-    notes = (
-        f"Lengths are over the arm's ({loop.length:.4g} m). $L_1, \\ldots, L_5$ lead from the frame on "
-        f"one axis to that on the "
-        "next, $F$ from the base to the first, $H$ from the last to the tip; $L_6 = H T^{-1} F$ closes "
-        "the loop.",
+    """Up to six joints, turning or sliding, without a closed form on lanes."""
+    n = len(common["joints"])
+    notes = []
+    if n < 6:
+        notes.append(
+            f"Virtual joints ({', '.join(str(i + 1) for i in range(n, 6))}) behind the last complete the "
+            "arm to six. A pose that the arm reaches is one that the completed arm reaches with its "
+            "virtual joints at zero."
+        )
+    if loop.wrist is not None:
+        return wrist_plan(loop, common, notes)
+    if loop.slides == 3:
+        return slides_plan(loop, common, notes)
+    if loop.neighbours or not loop.order:
+        return neighbour_plan(loop, common, notes)
+    steps, count = loop.steps(), len(loop.order)
+    notes += [
+        loop_note(loop),
         f"{count} of the twelve formulations {'is' if count == 1 else 'are'} regular for this arm; they "
-        f"are asked in this "
-        "order until one certifies that nothing is missing.",
-    )
+        "are asked in this order until one certifies that nothing is missing.",
+    ]
     return IkPlan(
         **{**common, "length": 1.0},
         family="general",
-        summary="six joints in general position. No closed form: all but one angle are eliminated from "
-        "the loop that arm "
-        "and goal close.",
-        branches=16,
-        notes=notes,
+        summary="joints in general position. No closed form: all but one angle are eliminated from the "
+        "loop that arm and goal close.",
+        branches=ways(steps),
+        notes=tuple(notes),
         tables={"Formulations": loop.formulations(common["joints"])},
         matrices=loop.matrices(),
         steps=tuple(steps),
         _values=loop.values,
+    )
+
+
+def loop_note(loop: Loop) -> str:
+    """What the matrices of the loop are."""
+    return (
+        f"Lengths are over the arm's ({loop.length:.4g} m). $L_1, \\ldots, L_5$ lead from the frame on "
+        "one axis to that on the next, $F$ from the base to the first, $H$ from the last to the tip; "
+        "$L_6 = H T^{-1} F$ closes the loop."
+    )
+
+
+def neighbour_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
+    """An arm that is solved through arms beside it."""
+    most = 8 if loop.slides == 2 else 16
+    step = Step(
+        "The loop",
+        most,
+        "neighbours",
+        "Every solution of a neighbour leads to one of the arm by Newton's method; what one neighbour "
+        "loses beside a fold the other one keeps.",
+        (loop.chain_equation(),),
+    )
+    return IkPlan(
+        **{**common, "length": 1.0},
+        family="general",
+        summary="joints in general position, with axes parallel, square or meeting in such a way that "
+        "every polynomial in a hidden angle vanishes or has double roots only. Two neighbours of the arm, "
+        "its axes disturbed a little to either side, have neither fault; they are solved by elimination "
+        "to one hidden angle.",
+        branches=most,
+        notes=(*notes, loop_note(loop)),
+        matrices=loop.matrices(),
+        steps=(step,),
+        _values=loop.values,
+    )
+
+
+def slides_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
+    """Three slides: the orientation first."""
+    steps = orientation_steps(loop.six, loop.chain_equation())
+    return IkPlan(
+        **{**common, "length": 1.0},
+        family="orientation first",
+        summary="three turning joints make the orientation, three slides the position.",
+        branches=ways(steps),
+        notes=(*notes, loop_note(loop)),
+        matrices=loop.matrices(),
+        steps=tuple(steps),
+        _values=loop.values,
+    )
+
+
+def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
+    """A wrist behind three joints of any kind."""
+    arm = loop.six.reversed() if loop.wrist else loop.six
+    if loop.wrist:
+        notes.append(
+            "The arm is read from the tip to the base: joint 1 below is the last joint, and the goal is "
+            "the inverse of the pose."
+        )
+    centre = common_point(arm.axes[3:], arm.points[3:])[0]
+    notes.append(
+        "$t_i$ is the angle of a turning joint, $q_i$ the way of a slide; $p$ and $r_{ij}$ are position "
+        "and rotation of the goal, $w$ is where the wrist's centre has to be."
+    )
+
+    def values(q: Array, T: Array) -> dict[str, Any]:
+        whole = np.concatenate([q, np.zeros((*q.shape[:-1], 6 - q.shape[-1]))], axis=-1)
+        goal = np.asarray(np.linalg.inv(T), dtype=np.float64) if loop.wrist else T
+        return joint_values(arm.joint_types, whole[..., ::-1] if loop.wrist else whole) | goal_values(goal)
+
+    steps = placed_wrist_steps(arm, centre)
+    return IkPlan(
+        **common,
+        family="wrist behind three joints",
+        summary="three axes meet in a point, the wrist: the three joints before it, some of which slide, "
+        "place it, and the wrist makes the orientation.",
+        branches=ways(steps),
+        notes=tuple(notes),
+        steps=tuple(steps),
+        _values=values,
     )
 
 
@@ -185,8 +272,8 @@ def short_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
         end = "last" if chain.joint_types[-1] == "R" else "first"
         notes.append(
             f"A pose is reached by the same equations: the {end} joint leaves the points of its own axis "
-            f"alone, so the "
-            "other joints bring two of them to their places, and the orientation that remains is its angle."
+            "alone, so the other joints bring two of them to their places, and the orientation that "
+            "remains is its angle."
         )
     elif turning == 1:
         notes.append(

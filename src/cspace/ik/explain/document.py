@@ -67,16 +67,15 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
         out.append(
             page.Paragraph(
                 f"Axes {listed(point.joints)} meet in a point, ({place}) m at zero (missed by "
-                f"{point.miss:.1g} m): "
-                "their joints leave it where it is."
+                f"{point.miss:.1g} m): their joints leave it where it is."
             )
         )
     for each in plan.still_directions:
         n = ", ".join(shown(x) for x in each.direction)
         out.append(
             page.Paragraph(
-                f"Axes {listed(each.joints)} are parallel to ({n}) at zero (missed by {each.miss:.1g} rad): "
-                "their joints change neither heights along it nor angles with it."
+                f"Axes {listed(each.joints)} are parallel to ({n}) at zero (missed by {each.miss:.1g} "
+                "rad): their joints change neither heights along it nor angles with it."
             )
         )
     return out

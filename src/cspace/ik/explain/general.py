@@ -1,4 +1,4 @@
-"""Six turning joints in general position: the steps of include/cspace/ik/general/."""
+"""Six joints in general position: the steps of include/cspace/ik/general/."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Rows
-from cspace.math import Angle, MatrixEquation, Product, TrigMatrix
+from cspace.ik.explain.screws import Screws, goal_values, joint_values
+from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 
 __all__ = ["Loop"]
 
@@ -20,33 +21,46 @@ Factor = tuple[str, str, TrigMatrix]
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """The loop that arm and goal close. links: L1 … L5 (4, 4) from the frame on axis i to the next one.
+    """The loop that arm and goal close. six: the joints in metres, virtual ones behind the arm's own.
 
-    first, last: from the base to axis 1, from axis 6 to the tip (4, 4); lengths over `length` [m]. order: the
-    formulations as they are asked: number, the joints behind a_0 … a_5 (from 0), whether read backwards.
+    links: L1 … L5 (4, 4) from the frame on axis i to the next one. first, last: from the base to axis 1, from
+    axis 6 to the tip (4, 4); lengths over `length` [m]. order: the formulations as they are asked: number,
+    the joints behind a_0 … a_5 (from 0), whether read backwards. neighbours: whether arms beside it are
+    asked. wrist: None, or whether the wrist behind three joints is at the base.
     """
 
+    six: Screws
     links: tuple[Array, ...]
     first: Array
     last: Array
     length: float
     order: tuple[tuple[int, tuple[int, ...], bool], ...]
+    neighbours: bool
+    wrist: bool | None
 
     @classmethod
     def of(cls, loop: Mapping[str, Any]) -> Loop:
         """From what the core says."""
         order = tuple((number, tuple(joints), backwards) for number, joints, backwards in loop["order"])
         links = tuple(np.array(link) for link in loop["between"])
-        return cls(links, np.array(loop["first"]), np.array(loop["last"]), loop["length"], order)
+        kinds = "".join("P" if slides else "R" for slides in loop["prismatic"])
+        six = Screws(kinds, np.array(loop["axes"]), np.array(loop["points"]), np.array(loop["tip"]))
+        ends = np.array(loop["first"]), np.array(loop["last"])
+        return cls(six, links, *ends, loop["length"], order, loop["neighbours"], loop.get("wrist"))
+
+    @property
+    def slides(self) -> int:
+        """How many of the six joints slide."""
+        return self.six.joint_types.count("P")
 
     def values(self, q: Array, T: Array) -> dict[str, Any]:
         """The numbers of angles and goal, lengths over the arm's."""
-        out: dict[str, Any] = {f"t_{i + 1}": q[..., i] for i in range(6)}
-        for i, axis in enumerate("xyz"):
-            out[f"p_{axis}"] = T[..., i, 3] / self.length
-            for j in range(3):
-                out[f"r_{i + 1}{j + 1}"] = T[..., i, j]
-        return out
+        joints = joint_values(self.six.joint_types, q, length=self.length)
+        return joints | goal_values(T, length=self.length)
+
+    def symbol(self, joint: int) -> str:
+        """t_i or q_i of a joint (from 0), for sentences."""
+        return f"${'t' if self.six.joint_types[joint] == 'R' else 'q'}_{joint + 1}$"
 
     def matrices(self) -> dict[str, Array]:
         """The matrices that the equations name."""
@@ -56,7 +70,7 @@ class Loop:
         """The formulations that serve, in the order in which they are asked."""
         rows = []
         for k, (_, joints, backwards) in enumerate(self.order, 1):
-            said = [f"`{names[j]}`" for j in joints]
+            said = [f"`{names[j]}`" if j < len(names) else f"virtual joint {j + 1}" for j in joints]
             rows.append(
                 (
                     str(k),
@@ -69,53 +83,81 @@ class Loop:
             )
         return Rows(("asked", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows)
 
-    def steps(self, names: tuple[str, ...]) -> list[Step]:
+    def steps(self) -> list[Step]:
         """The steps of the formulation that is asked first."""
         _, joints, backwards = self.order[0]
-        t = [f"$t_{joint + 1}$" for joint in joints]
+        t = [self.symbol(joint) for joint in joints]
+        loop = Step(
+            "The loop",
+            1,
+            "",
+            "A frame on each axis, its z along the axis, makes the arm a product of joints and links. "
+            "Any joint may come first, and the loop may be read backwards; asked first is the one that "
+            f"begins with {t[0]}.",
+            (self.chain_equation(), self.split_equation(joints, backwards)),
+        )
+        return [loop, *(self.two_sheets(t) if self.slides == 2 else self.elimination(t))]
+
+    def elimination(self, t: list[str]) -> list[Step]:
+        """At most one slide: Raghavan and Roth's elimination."""
+        slides = " (a slide has its own powers where an angle has sines and cosines)" if self.slides else ""
         return [
-            Step(
-                "The loop",
-                1,
-                "",
-                "A frame on each axis, its z along the axis, makes the arm a product of turns and links. "
-                "Any joint may "
-                f"come first, and the loop may be read backwards; asked first is the one that begins with "
-                f"{t[0]}.",
-                (self.chain_equation(), self.split_equation(joints, backwards)),
-            ),
             Step(
                 t[0],
                 16,
                 "elimination",
                 f"Both sides move the z axis and the origin alike, and {t[3]} moves neither. Six "
-                f"combinations of the "
-                f"fourteen invariants do not see {t[4]} and {t[5]}; times sine and cosine of half of "
-                f"{t[1]} they are "
-                f"twelve linear equations in twelve products of {t[1]} and {t[2]}. Their determinant, a "
-                f"trigonometric "
-                f"polynomial of degree 8 in {t[0]}, the hidden angle, vanishes at the solutions: up to 16.",
+                f"combinations of the fourteen invariants do not see {t[4]} and {t[5]}; times sine and "
+                f"cosine of half of {t[1]} they are twelve linear equations in twelve products of {t[1]} "
+                f"and {t[2]}{slides}. Their determinant, a trigonometric polynomial of degree 8 in "
+                f"{t[0]}, the hidden angle, vanishes at the solutions: up to 16.",
             ),
             Step(
                 f"{t[1]}, {t[2]}",
                 1,
                 "null vector",
-                "At a root the null vector holds the products of both half angles.",
+                "At a root the null vector holds the products of both.",
             ),
             Step(
                 f"{t[4]}, {t[5]}, {t[3]}",
                 1,
                 "",
                 "The loop closes with the joints that were eliminated and the one that was left alone; a "
-                "Newton step on "
-                "the arm itself takes out what rounding left.",
+                "Newton step on the arm itself takes out what rounding left.",
+            ),
+        ]
+
+    def two_sheets(self, t: list[str]) -> list[Step]:
+        """Two slides: the orientation is made by four turns."""
+        turns = [each for each in t[1:] if "t" in each]
+        slides = [each for each in t if "q" in each]
+        return [
+            Step(
+                t[0],
+                8,
+                "two sheets",
+                f"Four turns make the orientation, so {t[0]} is free; given it, a corner of the rotation "
+                "fixes one more angle in two ways, and the others follow. What the position still lacks "
+                "must lie in the plane of both slides. The product of that condition over both ways is a "
+                f"trigonometric polynomial of degree 4 in {t[0]}, the hidden angle: up to 8 roots.",
+            ),
+            Step(", ".join(turns), 1, "", "The way on which the condition vanishes makes the orientation."),
+            Step(
+                ", ".join(slides),
+                1,
+                "",
+                "Two linear equations: the slides make up for what the position lacks.",
             ),
         ]
 
     def turn(self, joint: int, *, back: bool = False) -> Factor:
-        """Rz of a joint's angle, or of minus it."""
-        matrix = TrigMatrix.about_z(Angle(joint + 1, joint))
-        sign = "−" if back else ""
+        """Rz of a joint's angle, or of minus it; Tz of a slide."""
+        sign, number = "−" if back else "", joint + 1
+        if self.six.joint_types[joint] == "P":
+            matrix = TrigMatrix.shift(z=TrigPolynomial.symbol(f"q_{number}"))
+            latex = f"T_z({'-' if back else ''}q_{number})"
+            return f"Tz({sign}q{number})", latex, matrix.inverse() if back else matrix
+        matrix = TrigMatrix.about_z(Angle(number, joint))
         latex = f"R_z({'-' if back else ''}t_{joint + 1})"
         return f"Rz({sign}t{joint + 1})", latex, matrix.inverse() if back else matrix
 

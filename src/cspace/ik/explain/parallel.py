@@ -25,8 +25,7 @@ def three_parallel_steps(form: Form) -> list[Step]:
         2,
         "subproblem 4",
         "Joints 2, 3 and 4 do not change heights along their axes, and joints 5 and 6 leave the wrist "
-        "alone: its "
-        "height depends on $t_1$ alone.",
+        "alone: its height depends on $t_1$ alone.",
         (Equation(goal, own, unit="m"),),
     )
     return [shoulder, *turn_steps(form, 1, (2, 3, 4)), *planar_steps(form, meeting=True)]
@@ -43,8 +42,7 @@ def middle_parallel_steps(form: Form) -> list[Step]:
         4,
         "subproblem 6",
         "Joints 2, 3 and 4 change neither heights along their axes nor angles with them: the height of "
-        "axis 6 and "
-        "its slope are two equations in $t_1$ and $t_5$.",
+        "axis 6 and its slope are two equations in $t_1$ and $t_5$.",
         (
             Equation(goal, own + sa4 * symbol("a_5") * s5, unit="m"),
             Equation(ca1 * r[3] + sa1 * (s1 * r[1] - c1 * r[2]), ca4 * ca5 - sa4 * sa5 * c5),
@@ -72,8 +70,7 @@ def planar_steps(form: Form, *, meeting: bool) -> list[Step]:
             2,
             "subproblem 3",
             "Axis 4, seen from axis 2 in the plane, is at $(u, v)$; links $a_2$ and $a_3$ span that "
-            "distance: the law "
-            "of cosines.",
+            "distance: the law of cosines.",
             (
                 *in_frame_one(form),
                 define("u", x - c234 * X + s234 * Y, "m"),
@@ -118,8 +115,7 @@ def first_parallel_steps(form: Form) -> list[Step]:
             4,
             "subproblem 6",
             "Joints 1, 2 and 3 change neither heights along their axes nor angles with them: the height "
-            "of the goal "
-            "and the slope of axis 5 against them are two equations in $t_4$ and $t_6$.",
+            "of the goal and the slope of axis 5 against them are two equations in $t_4$ and $t_6$.",
             (slope, level),
         ),
         Step(
@@ -139,8 +135,7 @@ def first_parallel_steps(form: Form) -> list[Step]:
             2,
             "subproblem 3",
             "With joints 4, 5, 6 known, axis 3 seen from axis 1 in the plane is at $(u, v)$; links $a_1$ "
-            "and $a_2$ "
-            "span that distance: the law of cosines.",
+            "and $a_2$ span that distance: the law of cosines.",
             (
                 define("u", Q[0, 3], "m"),
                 define("v", Q[1, 3], "m"),

@@ -8,52 +8,18 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
-from cspace.math import Angle, Equation, TrigPolynomial
+from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, moved, numbers, symbols
+from cspace.math import Equation, TrigPolynomial
 
 __all__ = ["short_steps", "short_values"]
 
-Vector = list[TrigPolynomial]
 WAYS = {1: 1, 2: 2, 3: 4}
 """How many configurations bring the tip of an arm of so many joints to a point."""
 
 
 def short_values(chain: Any, q: Array, T: Array) -> dict[str, Any]:
     """The numbers of the joints and of the goal."""
-    out: dict[str, Any] = {}
-    for i, kind in enumerate(chain.joint_types):
-        out[f"{'t' if kind == 'R' else 'q'}_{i + 1}"] = q[..., i]
-    return out | {f"p_{axis}": T[..., i, 3] for i, axis in enumerate("xyz")}
-
-
-def moved(chain: Any, i: int, x: Vector, *, back: bool = False) -> Vector:
-    """The point x carried along by joint i: e^{ξ q} x, or back by e^{−ξ q}."""
-    h, o = chain.axes[i], chain.points[i]
-    sign = -1.0 if back else 1.0
-    if chain.joint_types[i] == "P":
-        return [x[k] + sign * float(h[k]) * TrigPolynomial.symbol(f"q_{i + 1}") for k in range(3)]
-    angle = Angle(i + 1, group_of(chain, i))
-    c, s = TrigPolynomial.cos(angle), sign * TrigPolynomial.sin(angle)
-    d = [x[k] - float(o[k]) for k in range(3)]
-    along = dotted(h, d)
-    turned = [
-        float(h[(k + 1) % 3]) * d[(k + 2) % 3] - float(h[(k + 2) % 3]) * d[(k + 1) % 3] for k in range(3)
-    ]
-    return [
-        float(o[k]) + float(h[k]) * along + c * (d[k] - float(h[k]) * along) + s * turned[k] for k in range(3)
-    ]
-
-
-def group_of(chain: Any, i: int) -> int:
-    """The group of parallel axes that joint i belongs to: the first joint of its kind."""
-    for k in range(i):
-        if np.linalg.norm(np.cross(chain.axes[k], chain.axes[i])) < 1e-12:
-            return k
-    return i
-
-
-def dotted(h: Array, x: Vector) -> TrigPolynomial:
-    """h · x."""
-    return sum((float(h[k]) * x[k] for k in range(3)), TrigPolynomial())
+    return joint_values(chain.joint_types, q) | goal_values(T)
 
 
 def kept(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
@@ -73,11 +39,10 @@ def equal(f: list[tuple[TrigPolynomial, str]], g: list[tuple[TrigPolynomial, str
     return tuple(each for each in pairs if (each.left - each.right).terms)
 
 
-def short_steps(chain: Any) -> list[Step]:
-    """How the tip comes to a point; the pose of the tip is asked of what is left."""
+def short_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
+    """How the tip comes to a point, p unless given."""
     kinds, n = chain.joint_types, len(chain.joint_types)
-    goal = [TrigPolynomial.symbol(f"p_{axis}") for axis in "xyz"]
-    tip = [TrigPolynomial.number(float(x)) for x in chain.T_zero[:3, 3]]
+    goal, tip = symbols("p") if goal is None else goal, numbers(chain.T_zero[:3, 3])
     if n == 1:
         return [last_step(chain, 0, tip, goal)]
     middle = 0 if n == 2 else 1

@@ -111,8 +111,7 @@ def last_parallel(form: Form) -> list[Step]:
             2,
             "subproblem 3",
             "In the plane across axes 2 and 3 an upper arm $a_2$ and a forearm to the wrist span the "
-            "distance of "
-            "the wrist from axis 2: the law of cosines.",
+            "distance of the wrist from axis 2: the law of cosines.",
             (
                 *in_frame_one(form),
                 Equation(
@@ -158,8 +157,7 @@ def first_meet(form: Form) -> list[Step]:
             2,
             "subproblem 3",
             "Joints 1 and 2 leave the point alone where their axes meet, so the distance of the wrist "
-            "from it "
-            "depends on $t_3$ alone.",
+            "from it depends on $t_3$ alone.",
             (Equation(squared(px, py, pz), length2, unit="m²"),),
         ),
         Step(
@@ -187,8 +185,7 @@ def last_meet(form: Form) -> list[Step]:
             2,
             "subproblem 3",
             "Joints 2 and 3 leave the point alone where their axes meet, so the distance of the wrist "
-            "from it is "
-            "fixed, and it depends on $t_1$ alone.",
+            "from it is fixed, and it depends on $t_1$ alone.",
             (
                 Equation(
                     squared(px, py, pz, a1, d2) - 2.0 * ca1 * d2 * pz,
@@ -264,8 +261,8 @@ def any_three(form: Form) -> list[Step]:
             4,
             "subproblem 5",
             "The distance from the foot of axis 1 and the height along it are two equations, linear in "
-            "cosine and sine "
-            "of $t_2$. Their squares add up to one without $t_2$: a quartic in $\\tan(t_3/2)$ (Pieper 1968).",
+            "cosine and sine of $t_2$. Their squares add up to one without $t_2$: a quartic in "
+            "$\\tan(t_3/2)$ (Pieper 1968).",
             (
                 *behind_joint_two(form),
                 define("k", p2 - a1 * a1 - v2, "m²"),
@@ -312,9 +309,8 @@ def turn_steps(form: Form, before: int, sum_of: tuple[int, ...]) -> list[Step]:
             "$t_5$",
             2,
             "subproblem 4",
-            f"What is left of the orientation, $M = ({front})^T R$, "
-            f"is a turn of "
-            f"the wrist. Its third diagonal entry, the cosine between axes 4 and 6, depends on $t_5$ alone.",
+            f"What is left of the orientation, $M = ({front})^T R$, is a turn of the wrist. Its third "
+            "diagonal entry, the cosine between axes 4 and 6, depends on $t_5$ alone.",
             (entry(3, 3), equals(3, 3)),
         ),
         Step(

@@ -1,0 +1,106 @@
+"""A wrist behind three joints of any kind, and three turns with three slides: general/position_first.hpp and
+orientation_first.hpp.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.explain.findings import Step
+from cspace.ik.explain.screws import Screws, Vector, dotted, numbers, symbols, turned
+from cspace.ik.explain.short import short_steps
+from cspace.math import Equation, MatrixEquation, TrigPolynomial
+
+__all__ = ["orientation_steps", "placed_wrist_steps"]
+
+AXES = "xyz"
+
+
+def goal_turns(v: Array) -> Vector:
+    """R v for the rotation R of the goal."""
+    return [
+        sum((float(v[j]) * TrigPolynomial.symbol(f"r_{i + 1}{j + 1}") for j in range(3)), TrigPolynomial())
+        for i in range(3)
+    ]
+
+
+def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
+    """Joints 1, 2, 3 place the centre (3,) of the wrist, joints 4, 5, 6 turn about it."""
+    in_tip = (np.linalg.inv(arm.T_zero) @ np.append(centre, 1.0))[:3]
+    p, offset = symbols("p"), goal_turns(in_tip)
+    wanted = tuple(Equation.definition(f"w_{AXES[k]}", p[k] + offset[k], "m") for k in range(3))
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = centre
+    first = Screws(arm.joint_types[:3], arm.axes[:3], arm.points[:3], T_zero)
+    place = short_steps(first, symbols("w"))
+    where = Step("$w$", 1, "", "The goal fixes where the centre of the wrist has to be.", wanted)
+    return [where, *place, *three_turns(arm, (3, 4, 5), before=(0, 1, 2))]
+
+
+def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...]) -> list[Step]:
+    """Three turning joints make what is left of the rotation: the middle one first."""
+    i, j, k = turns
+    h, R_tip = arm.axes, arm.T_zero[:3, :3]
+    left = goal_turns(R_tip.T @ h[k])  # where the last axis points, seen behind the joints before
+    for joint in before:
+        left = turned(arm, joint, left, back=True)
+    middle = turned(arm, j, numbers(h[k]))
+    seen = tuple(Equation.definition(f"g_{AXES[n]}", left[n]) for n in range(3))
+    g = symbols("g")
+    back = numbers(h[i])
+    for joint in reversed(before):
+        back = turned(arm, joint, back)
+    f = turned_back_by_goal(back, R_tip)
+    names = [f"$t_{n + 1}$" for n in turns]
+    onto = turned(arm, i, middle)
+    last = turned(arm, k, turned(arm, j, numbers(h[i]), back=True), back=True)
+    return [
+        Step(
+            names[1],
+            2,
+            "subproblem 4",
+            f"$g$ is where axis {k + 1} points at the goal, seen behind the joints before. Its angle with "
+            f"axis {i + 1} depends on {names[1]} alone.",
+            (*seen, Equation(dotted(h[i], g), dotted(h[i], middle))),
+        ),
+        Step(
+            names[0],
+            1,
+            "subproblem 1",
+            f"Joint {i + 1} turns axis {k + 1} to where it has to point.",
+            tuple(Equation(g[n], onto[n]) for n in range(3)),
+        ),
+        Step(
+            names[2],
+            1,
+            "subproblem 1",
+            f"The same from the other side: where axis {i + 1} points, seen from the tip.",
+            tuple(Equation(f[n], last[n]) for n in range(3)),
+        ),
+    ]
+
+
+def turned_back_by_goal(v: Vector, R_tip: Array) -> Vector:
+    """R_tip Rᵀ v for the rotation R of the goal."""
+    seen = [
+        sum((TrigPolynomial.symbol(f"r_{i + 1}{j + 1}") * v[i] for i in range(3)), TrigPolynomial())
+        for j in range(3)
+    ]
+    return [sum((float(R_tip[n, j]) * seen[j] for j in range(3)), TrigPolynomial()) for n in range(3)]
+
+
+def orientation_steps(six: Screws, chain: MatrixEquation) -> list[Step]:
+    """Three turns make the orientation, then three slides the position."""
+    turns = [k for k, kind in enumerate(six.joint_types) if kind == "R"]
+    slides = [f"$q_{k + 1}$" for k, kind in enumerate(six.joint_types) if kind == "P"]
+    return [
+        *three_turns(six, (turns[0], turns[1], turns[2]), before=()),
+        Step(
+            ", ".join(slides),
+            1,
+            "",
+            "With the turns known the position is linear in the slides: three equations.",
+            (chain,),
+        ),
+    ]

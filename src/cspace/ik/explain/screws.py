@@ -1,0 +1,109 @@
+"""Points and directions carried along by joints, as formulas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.math import Angle, TrigPolynomial
+
+__all__ = [
+    "Screws",
+    "Vector",
+    "dotted",
+    "goal_values",
+    "joint_values",
+    "moved",
+    "numbers",
+    "symbols",
+    "turned",
+]
+
+Vector = list[TrigPolynomial]
+
+
+@dataclass(frozen=True, eq=False)
+class Screws:
+    """Joints as screws at zero: axes, points (n, 3) [m], joint_types, T_zero (4, 4)."""
+
+    joint_types: str
+    axes: Array
+    points: Array
+    T_zero: Array
+
+    def reversed(self) -> Screws:
+        """The same joints read from the tip."""
+        back = np.linalg.inv(self.T_zero)
+        axes = -(self.axes @ back[:3, :3].T)[::-1]
+        points = (self.points @ back[:3, :3].T + back[:3, 3])[::-1]
+        return Screws(self.joint_types[::-1], axes, points, np.asarray(back, dtype=np.float64))
+
+
+def joint_values(kinds: str, q: Array, *, length: float = 1.0) -> dict[str, Any]:
+    """The numbers of t_i and q_i (slides over `length`); joints behind those of q (..., n) are at zero."""
+    out: dict[str, Any] = {}
+    for i, kind in enumerate(kinds):
+        value = q[..., i] if i < q.shape[-1] else np.zeros(q.shape[:-1])
+        out[f"{'t' if kind == 'R' else 'q'}_{i + 1}"] = value if kind == "R" else value / length
+    return out
+
+
+def goal_values(T: Array, *, length: float = 1.0) -> dict[str, Any]:
+    """The numbers of p (over `length`) and r_ij."""
+    out: dict[str, Any] = {}
+    for i, axis in enumerate("xyz"):
+        out[f"p_{axis}"] = T[..., i, 3] / length
+        for j in range(3):
+            out[f"r_{i + 1}{j + 1}"] = T[..., i, j]
+    return out
+
+
+def numbers(v: Any) -> Vector:
+    """A vector of numbers."""
+    return [TrigPolynomial.number(float(x)) for x in v]
+
+
+def symbols(name: str) -> Vector:
+    """name_x, name_y, name_z."""
+    return [TrigPolynomial.symbol(f"{name}_{axis}") for axis in "xyz"]
+
+
+def dotted(h: Array, x: Vector) -> TrigPolynomial:
+    """h · x."""
+    return sum((float(h[k]) * x[k] for k in range(3)), TrigPolynomial())
+
+
+def group_of(chain: Any, i: int) -> int:
+    """The group of parallel axes that joint i belongs to: the first joint of its kind."""
+    for k in range(i):
+        if np.linalg.norm(np.cross(chain.axes[k], chain.axes[i])) < 1e-12:
+            return k
+    return i
+
+
+def turned(chain: Any, i: int, v: Vector, *, back: bool = False) -> Vector:
+    """The direction v turned by joint i, or back; a slide leaves it."""
+    if chain.joint_types[i] == "P":
+        return v
+    h, angle = chain.axes[i], Angle(i + 1, group_of(chain, i))
+    c, s = TrigPolynomial.cos(angle), (-1.0 if back else 1.0) * TrigPolynomial.sin(angle)
+    along = dotted(h, v)
+    out = []
+    for k in range(3):
+        i1, i2 = (k + 1) % 3, (k + 2) % 3
+        across = float(h[i1]) * v[i2] - float(h[i2]) * v[i1]
+        out.append(float(h[k]) * along + c * (v[k] - float(h[k]) * along) + s * across)
+    return out
+
+
+def moved(chain: Any, i: int, x: Vector, *, back: bool = False) -> Vector:
+    """The point x carried along by joint i: e^{ξ q} x, or back by e^{−ξ q}."""
+    h, o = chain.axes[i], chain.points[i]
+    if chain.joint_types[i] == "P":
+        slide = (-1.0 if back else 1.0) * TrigPolynomial.symbol(f"q_{i + 1}")
+        return [x[k] + float(h[k]) * slide for k in range(3)]
+    d = turned(chain, i, [x[k] - float(o[k]) for k in range(3)], back=back)
+    return [d[k] + float(o[k]) for k in range(3)]
