@@ -427,3 +427,29 @@ def test_extensions_are_left_alone():
 <joint name="j" type="revolute"><parent link="a"/><child link="b"/><drake:orgin/><hardwareInterface/>
 <limit lower="-1" upper="2" effort="1" velocity="1" soft_lower="-0.9"/></joint><gazebo/></robot>"""
     assert from_urdf(text).joints[0].upper == 2
+
+
+def test_a_package_is_known_by_its_package_xml_too(tmp_path):
+    """A clone of another name than its package: above the file, and inside a folder of packages."""
+    clone = tmp_path / "ws" / "my-clone"
+    for folder in ("urdf", "meshes"):
+        (clone / folder).mkdir(parents=True)
+    (clone / "package.xml").write_text("<package><name>arm</name></package>")
+    (clone / "meshes" / "a.stl").write_text("solid")
+    (clone / "urdf" / "arm.urdf").write_text(ARM)
+    mesh = from_urdf(clone / "urdf" / "arm.urdf").link("upper").collision[1].mesh
+    assert mesh.file() == str(clone / "meshes" / "a.stl")
+    away = from_urdf(ARM, package_paths=[tmp_path / "ws"]).link("upper").collision[1].mesh
+    assert away.file() == mesh.file()
+    (clone / "package.xml").write_text("<package><name>other</name></package>")
+    with pytest.raises(DescriptionError, match="not found; searched"):
+        mesh.file()
+    (clone / "package.xml").write_bytes(b"\xff\xfe<name>")
+    with pytest.raises(DescriptionError, match="not found; searched"):
+        mesh.file()
+
+
+def test_three_slashes_after_package_are_two(tmp_path):
+    (tmp_path / "arm" / "meshes").mkdir(parents=True)
+    (tmp_path / "arm" / "meshes" / "a.stl").write_text("solid")
+    assert Mesh("package:///arm/meshes/a.stl", package_paths=(str(tmp_path),)).file().endswith("a.stl")

@@ -16,7 +16,6 @@ from cspace.errors import DescriptionError, InputError, InputTypeError, MissingE
 from cspace.model.attributes import fault
 from cspace.model.description import Description
 from cspace.model.files import path_of, read_bytes
-from cspace.model.mjcf import mjcf_description
 from cspace.model.packages import folders
 from cspace.model.urdf import urdf_description
 from cspace.model.xml import Element, parse
@@ -53,6 +52,8 @@ def from_xacro(
     root = expanded(name, texts_of(xacro_args), folders(package_paths))
     stem = os.path.basename(name).partition(".")[0]
     if root.tag == "mujoco":
+        from cspace.model.mjcf.reader import mjcf_description
+
         root.attributes.setdefault("model", stem)
         return mjcf_description(root, package_paths)
     if root.tag == "robot" and root.first("link") is None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import accumulate
 from pathlib import Path
@@ -13,7 +12,6 @@ from cspace.model.attributes import at, fault, some_floats
 from cspace.model.description import Description
 from cspace.model.link import Geometry, Inertial, Link
 from cspace.model.mjcf.actuators import efforts
-from cspace.model.mjcf.document import read_document
 from cspace.model.mjcf.geoms import Geom, Geoms
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.joints import Coupling, Draft, couplings, read_joint
@@ -27,7 +25,7 @@ from cspace.model.structure import ElementError
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
 
-__all__ = ["from_mjcf", "mjcf_description"]
+__all__ = ["mjcf_description"]
 
 MAKERS: Final = {
     "replicate": "copies of a body",
@@ -42,24 +40,6 @@ PART: Final = "mujocoinclude"
 
 Part = tuple[Element, Array, "str | None"]
 """An element of a body, the frame (4, 4) in that body where it stands, and the class around it."""
-
-
-def from_mjcf(source: str | os.PathLike[str] | bytes, *, package_paths: Sequence[Any] = ()) -> Description:
-    """A robot from MJCF (the XML format of MuJoCo, mujoco.readthedocs.io/en/stable/XMLreference.html).
-
-    source: a path, or the text itself (a string that starts with "<", or bytes). package_paths: folders where
-    package:// names of meshes are looked for first.
-    Each body is a link of its name, <worldbody> the root link "world", each named site a link fixed to its
-    body. Several joints in a body get a massless link "body/joint" between them, and so does a joint whose
-    `pos` is not the body's origin. Hinges, slides and free joints are read, with default classes, includes,
-    frames, all ways to say an orientation, `ref`, limits, equalities of joints (a mimic) and of bodies (a
-    loop), keyframes (named poses), and masses, from <inertial> or from the geoms. Geoms of the groups 0 to 2
-    are visual, geoms that can touch are collision shapes; planes, height fields and ellipsoids are left out.
-    Meshes are not opened; a body whose mass only a mesh could tell has none.
-    Raises DescriptionError with file and line for whatever is wrong, for ball joints, and for elements that
-    make bodies (replicate, attach, composite, flexcomp).
-    """
-    return mjcf_description(read_document(source), package_paths)
 
 
 def mjcf_description(root: Element, package_paths: Sequence[Any] = ()) -> Description:
