@@ -11,6 +11,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.branches import branch_labels
+from cspace.ik.derivative import derivative
 from cspace.ik.families import Family, family_at
 from cspace.ik.prepare import prepare
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
@@ -75,6 +76,13 @@ class Solutions(_core.SolutionsBase):
     def residual(self) -> Array:
         """How far fk(q) is from the goal, (k,): the larger of the position error [m] and the angle [rad]."""
         return pose_errors(self.robot, self.q, self.goal)
+
+    @property
+    def derivative(self) -> Array:
+        """dq per base twist [v; ω] of the goal, (k, dof, 6): ik(exp(twist) goal) is q + derivative @ twist
+        to first order. NaN where a solution is singular. Made when read.
+        """
+        return derivative(self.robot, self.q, self.goal.shape == (3,))
 
     @property
     def branch(self) -> tuple[str, ...]:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.ik.derivative import derivative
 from cspace.ik.prepare import prepare
 from cspace.ik.solutions import (
     INCOMPLETE,
@@ -81,6 +82,11 @@ class SolutionsBatch:
         real = self._real
         out[real] = pose_errors(self.robot, self.q[real], goal[real])
         return out
+
+    @property
+    def derivative(self) -> Array:
+        """dq per base twist [v; ω] of each goal, (..., k_max, dof, 6), NaN padded, as of `Solutions`."""
+        return derivative(self.robot, self.q, self.goal.shape[self.count.ndim :] == (3,))
 
     @property
     def reason(self) -> npt.NDArray[np.object_]:

@@ -110,4 +110,29 @@ inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
     return arm.plan.regular > 0 || arm.has_neighbours;
 }
 
+// The same arm with other numbers, say with another value of a joint that is held: the choices that were made
+// for `typical` (virtual joints, formulations and their order) stay, for to make them takes a thousand times
+// as long as to use them.
+inline bool renumber_general_arm(const ik::GeneralArm& typical, const ik::Chain& chain, ik::GeneralArm& arm) {
+    arm = typical;
+    arm.chain = chain;
+    const double length = characteristic_length(chain);
+    ik::Chain six = typical.plan.chain;
+    const ik::Chain own = in_units_of(length, chain);
+    for (int i = 0; i < chain.n; ++i) {
+        six.axis[i] = own.axis[i];
+        six.point[i] = own.point[i];
+    }
+    six.tip = own.tip;
+    arm.plan.length = length;
+    arm.plan.chain = six;
+    arm.plan.frames = loop_frames(six);
+    arm.position_first = position_first(six);
+    for (int k = 0; k < 2 && arm.has_neighbours; ++k) {
+        arm.neighbour[k].chain = disturbed(six, k ? -disturbance : disturbance);
+        arm.neighbour[k].frames = loop_frames(arm.neighbour[k].chain);
+    }
+    return !has_joint_to_spare(six);
+}
+
 }  // namespace cspace::inline CSPACE_ISA
