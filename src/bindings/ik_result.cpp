@@ -41,11 +41,13 @@ int traverse(PyObject* self, visitproc visit, void* arg) {
     Py_VISIT(Py_TYPE(self));
     Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->robot);
     Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->note);
+    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->about);
     return 0;
 }
 int clear(PyObject* self) {
     Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->robot);
     Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->note);
+    Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->about);
     return 0;
 }
 void destroy(PyObject* self) {
@@ -83,6 +85,10 @@ PyObject* get_note(PyObject* self, void*) {
     PyObject* note = reinterpret_cast<SolutionsObject*>(self)->note;
     return Py_NewRef(note ? note : Py_None);
 }
+PyObject* get_about(PyObject* self, void*) {
+    PyObject* about = reinterpret_cast<SolutionsObject*>(self)->about;
+    return Py_NewRef(about ? about : Py_None);
+}
 PyObject* get_verdict(PyObject* self, void*) {
     const auto* s = reinterpret_cast<SolutionsObject*>(self);
     return PyLong_FromLong(static_cast<long>(s->status) + (s->complete ? 0 : incomplete));
@@ -107,6 +113,7 @@ PyGetSetDef attributes[] = {
     {"goal", get_goal, nullptr, "The goal T_base_tip (4, 4).", nullptr},
     {"robot", get_robot, nullptr, "The robot that was asked.", nullptr},
     {"_note", get_note, nullptr, "Why rows are missing, if a filter removed them.", nullptr},
+    {"_about", get_about, nullptr, "What there is to say about a goal that is no pose, or None.", nullptr},
     {"_verdict", get_verdict, nullptr, "The status as a number; 8 more if solutions may be missing.",
      nullptr},
     {"_branch_numbers", get_branch_numbers, nullptr, "Which branch of the closed form each row comes from.",
@@ -136,12 +143,12 @@ int ik_add_result_type(PyObject* module) {
     return 0;
 }
 
-// _ik_make(robot, goal (4, 4), status, q (k, dof), branches (k), families (k), note) → solutions
+// _ik_make(robot, goal (4, 4), status, q (k, dof), branches (k), families (k), note, about=None) → solutions
 PyObject* ik_make(PyObject*, PyObject* args) {
-    PyObject *robot, *goal, *q, *branches, *families, *note;
+    PyObject *robot, *goal, *q, *branches, *families, *note, *about = Py_None;
     int status;
-    if (!PyArg_ParseTuple(args, "OOiOO!O!O", &robot, &goal, &status, &q, &PyTuple_Type, &branches,
-                          &PyTuple_Type, &families, &note))
+    if (!PyArg_ParseTuple(args, "OOiOO!O!O|O", &robot, &goal, &status, &q, &PyTuple_Type, &branches,
+                          &PyTuple_Type, &families, &note, &about))
         return nullptr;
     const Py_ssize_t k = PyTuple_GET_SIZE(branches);
     const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
@@ -165,6 +172,7 @@ PyObject* ik_make(PyObject*, PyObject* args) {
         families_of(made)[i] = PyObject_IsTrue(PyTuple_GET_ITEM(families, i)) == 1;
     }
     made->note = note == Py_None ? nullptr : Py_NewRef(note);
+    made->about = about == Py_None ? nullptr : Py_NewRef(about);
     if (PyErr_Occurred()) Py_CLEAR(made);
     return reinterpret_cast<PyObject*>(made);
 }

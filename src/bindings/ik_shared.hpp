@@ -17,7 +17,8 @@ inline bool can_solve(const cspace::ik::Arm& arm) { return arm.has_plan || arm.i
 // Followed in memory by count rows of dof angles, count branch numbers and count flags (families).
 struct SolutionsObject {
     PyObject_VAR_HEAD PyObject* robot;
-    PyObject* note;  // why rows are missing, where a filter removed them; or null
+    PyObject* note;   // why rows are missing, where a filter removed them; or null
+    PyObject* about;  // of a goal that is no pose or leaves freedom: cspace.ik.about.About; or null
     double goal[16];
     int count, dof;
     cspace::ik::Status status;

@@ -37,6 +37,8 @@ ORIENTATION_KEPT: Final = 1e-3
 """Largest angle [rad] left by that search at which the orientation counts as kept."""
 
 
+POSE_ASKS: Final = 6
+
 UNCERTIFIED: Final = (
     "that these are all could not be certified, for some lie closer together than the arithmetic resolves"
 )
@@ -75,13 +77,38 @@ class Solutions(_core.SolutionsBase):
     @property
     def residual(self) -> Array:
         """How far fk(q) is from the goal, (k,): the larger of the position error [m] and the angle [rad]."""
+        if self._partial is not None:
+            return cast(Array, self._partial.residual(self.robot.fk(self.q)))
         return pose_errors(self.robot, self.q, self.goal)
+
+    @property
+    def asked(self) -> dict[str, Any]:
+        """What was asked, by keyword: {"position": p, "direction": d} and the like, or {"pose": T}. The goal
+        itself is then one of the poses that meet it.
+        """
+        if self._partial is not None:
+            return dict(self._partial.value)
+        return {"position" if self.goal.shape == (3,) else "pose": self.goal}
+
+    @property
+    def _partial(self) -> Any:
+        return None if self._about is None else self._about.goal
+
+    @property
+    def freedom(self) -> tuple[str, ...]:
+        """The names of the parameters that the goal leaves free, one per dimension; empty if it leaves
+        none but in its families.
+        """
+        return () if self._about is None else cast("tuple[str, ...]", self._about.freedom)
 
     @property
     def derivative(self) -> Array:
         """dq per base twist [v; ω] of the goal, (k, dof, 6): ik(exp(twist) goal) is q + derivative @ twist
         to first order. NaN where a solution is singular. Made when read.
         """
+        if self._partial is not None:
+            own = slice(len(self._partial.before), len(self._partial.before) + self.robot.dof)
+            return derivative(self._about.whole, self._about.q)[:, own]
         return derivative(self.robot, self.q, self.goal.shape == (3,))
 
     @property
@@ -100,7 +127,8 @@ class Solutions(_core.SolutionsBase):
             return 0.0
         if self.goal.shape == (3,):
             return float(_core._ik_position_miss(self.robot, self.goal)[1])
-        return float(_core._ik_miss(self.robot, self.goal, ORIENTATION_FIRST)[1])
+        asked = self.robot if self._partial is None else self._about.whole
+        return float(_core._ik_miss(asked, self.goal, ORIENTATION_FIRST)[1])
 
     @property
     def reason(self) -> str:
@@ -112,7 +140,8 @@ class Solutions(_core.SolutionsBase):
         text = how_many(len(self)) + " the goal"
         if self._status == SINGULAR:
             moving = sorted({name for family in self.families for name in family.joints})
-            cause = "the pose is singular" if self.goal.shape == (4, 4) else "the goal leaves freedom"
+            is_pose = self.goal.shape == (4, 4) and self._partial is None
+            cause = "the pose is singular" if is_pose else "the goal leaves freedom"
             text += f"; {cause}: {', '.join(moving)} can move while the tip stays"
         return text if self.complete else text + "; " + UNCERTIFIED
 
@@ -120,6 +149,9 @@ class Solutions(_core.SolutionsBase):
     def families(self) -> tuple[Family, ...]:
         """The one-parameter families among the solutions, empty unless the pose is singular."""
         rows = [row for row, is_family in enumerate(self._is_family) if is_family]
+        if self._partial is not None:
+            whole = self._about.whole
+            return tuple(family_at(whole, row, self._about.q[row], True) for row in rows)
         whole_pose = self.goal.shape == (4, 4)
         return tuple(family_at(self.robot, row, self.q[row], whole_pose) for row in rows)
 
@@ -192,11 +224,12 @@ class Solutions(_core.SolutionsBase):
             branches,
             families,
             note,
+            None if self._about is None else self._about.take(rows),
         )
         return cast(Solutions, made)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        numbers = (self._branch_numbers, self._is_family, self._note)
+        numbers = (self._branch_numbers, self._is_family, self._note, self._about)
         return again, (self.robot, self._goal_pose, self._verdict, self.q, *numbers)
 
     def __repr__(self) -> str:
@@ -255,6 +288,12 @@ def position_goal(p: Array) -> Array:
 
 def unreachable_reason(found: Solutions) -> str:
     name = found.robot.name
+    if found._partial is not None:
+        _, missing, turned = _core._ik_miss(found._about.whole, found.goal, 1.0)
+        return (
+            f"{name} cannot reach {found._partial.text}: the nearest configuration misses the goal by "
+            f"{missing:.4g} m and {np.degrees(turned):.4g}°"
+        )
     if found.goal.shape == (3,):
         return f"out of reach: the goal would have to move {found.missing:.4g} m for {name} to reach it"
     _, missing, turned = _core._ik_miss(found.robot, found.goal, ORIENTATION_FIRST)
@@ -263,9 +302,10 @@ def unreachable_reason(found: Solutions) -> str:
             f"{name} ({found.robot.dof} joints) cannot take this orientation: the nearest configuration "
             f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"
         )
+    short = "" if found.robot.dof >= POSE_ASKS else f" ({found.robot.dof} joints, where poses ask for 6)"
     return (
         f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
-        f"for {name} to reach it"
+        f"for {name}{short} to reach it"
     )
 
 

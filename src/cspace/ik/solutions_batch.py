@@ -41,13 +41,20 @@ class SolutionsBatch:
     """
 
     def __init__(
-        self, robot: Any, goal: Array, q: Array, count: npt.NDArray[np.int64], verdict: npt.NDArray[np.uint8]
+        self,
+        robot: Any,
+        goal: Array,
+        q: Array,
+        count: npt.NDArray[np.int64],
+        verdict: npt.NDArray[np.uint8],
+        partial: Any = None,
     ) -> None:
         self.robot = robot
         self.goal = goal
         self.q = q
         self.count = count
         self._verdict = verdict
+        self._partial = partial  # what was asked, where it is no pose
 
     def __len__(self) -> int:
         return len(self.count)
@@ -80,6 +87,11 @@ class SolutionsBatch:
         goal = np.broadcast_to(np.expand_dims(self.goal, self.count.ndim), (*self.q.shape[:-1], *shape))
         out = np.full(self.q.shape[:-1], np.nan)
         real = self._real
+        if self._partial is not None:
+            for index in np.argwhere(real):
+                one = self._partial.take(tuple(index[:-1]))
+                out[tuple(index)] = one.residual(self.robot.fk(self.q[tuple(index)]))
+            return out
         out[real] = pose_errors(self.robot, self.q[real], goal[real])
         return out
 
@@ -120,6 +132,8 @@ class SolutionsBatch:
             )
         goal = np.ascontiguousarray(self.goal[index])
         rows = self.q[index][: int(self.count[index])]
+        if self._partial is not None:
+            return partial_row(self, index, rows)
         prepare(self.robot)  # a robot out of a pickle comes without its solver
         is_pose = goal.shape == (4, 4)
         full = _core._ik_single(self.robot, goal) if is_pose else _core._ik_position(self.robot, goal)
@@ -148,9 +162,8 @@ class SolutionsBatch:
 
     def wrapped(self) -> SolutionsBatch:
         """The same solutions with revolute joints in (−π, π]."""
-        return SolutionsBatch(
-            self.robot, self.goal, wrap(self.q, self.robot.joint_types), self.count, self._verdict
-        )
+        q = wrap(self.q, self.robot.joint_types)
+        return SolutionsBatch(self.robot, self.goal, q, self.count, self._verdict, self._partial)
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Array:
         """Per goal the configuration nearest to q (dof,) or (..., dof), (..., dof); NaN where there is
@@ -182,7 +195,7 @@ class SolutionsBatch:
         sorted_q = np.take_along_axis(q, order[..., None], axis=-2)
         count = keep.sum(axis=-1)
         sorted_q[np.arange(q.shape[-2]) >= count[..., None]] = np.nan
-        return SolutionsBatch(self.robot, self.goal, sorted_q, count, self._verdict)
+        return SolutionsBatch(self.robot, self.goal, sorted_q, count, self._verdict, self._partial)
 
     def __repr__(self) -> str:
         reached = int(np.count_nonzero(self.count))
@@ -191,3 +204,15 @@ class SolutionsBatch:
             f"SolutionsBatch({self.robot.name}: {self.count.size} goals, {reached} with solutions, "
             f"{unreachable} unreachable, {int(self.count.sum())} configurations)"
         )
+
+
+def partial_row(batch: SolutionsBatch, index: Any, rows: Array) -> Solutions:
+    """The solutions of one partial goal: asked again, for what the rows do not say, and cut to the rows."""
+    from cspace.ik.solve import ask_partial
+
+    full = ask_partial(batch.robot, batch._partial.take(index))
+    turns = np.array([kind == "R" for kind in batch.robot.joint_types])
+    gaps = full.q[None] - rows[:, None]
+    gaps = np.where(turns, np.sin(gaps / 2), gaps)
+    kept = np.abs(gaps).max(axis=2).argmin(axis=1) if len(rows) else np.zeros(0, dtype=int)
+    return cast(Solutions, full._take(kept, rows, full._note))

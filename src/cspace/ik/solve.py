@@ -11,11 +11,15 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
+from cspace.ik.about import About
 from cspace.ik.conditions import NoClosedFormError
+from cspace.ik.partial import KEYWORDS, PartialGoal, is_open, partial_goal
 from cspace.ik.prepare import prepare
 from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.solve_partial import own_columns, solve_partial
 from cspace.ik.windings import wrap
+from cspace.kinematics.batch import check_robot
 from cspace.spare import spare_array
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
@@ -33,36 +37,58 @@ def inverse_kinematics(
     goal: Any = None,
     *,
     position: Any = None,
+    rotation: Any = None,
+    direction: Any = None,
+    look_at: Any = None,
+    ray: Any = None,
+    angle_to: Any = None,
+    tool_axis: Any = "z",
+    angle: Any = None,
     near: Any = None,
     least_squares: bool = False,
     threads: int | None = None,
 ) -> Solutions | SolutionsBatch:
     """Every configuration q with fk(q) = goal.
 
-    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. position: the tip alone [m],
-    (3,) or (..., 3), or (..., 2) for an arm in the plane; for arms of up to three joints. near: (dof,), a
-    configuration; the answer is the one solution nearest to it, and joints that the pose leaves free take
-    its values. least_squares: where nothing reaches the goal, answer with the configuration that misses it
-    least (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless
-    given; the answer does not depend on it.
+    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. Instead of it, parts of a pose,
+    alone or together: position: of the tip [m], (3,) or (..., 3), None for coordinates that do not matter,
+    or (..., 2) for an arm in the plane; rotation (3, 3); direction (3,): where the tool axis points.
+    position goes with rotation, direction, angle_to=(axis of the base, angle to it of the tool axis [rad]),
+    and in the plane with angle: of the tip [rad]. look_at (3,): a point on the tool axis, ahead of the tip.
+    ray=(p, d): the line through p along d on which the tool axis lies. tool_axis: "x", "y", "z", "-z" or a
+    direction in the tip.
+
+    near: (dof,), a configuration; the answer is the one solution nearest to it, and joints that the pose
+    leaves free take its values. least_squares: where nothing reaches the goal, answer with the configuration
+    that misses it least (a radian weighs like the arm's characteristic length). threads: for a batch, all
+    cores unless given; the answer does not depend on it.
 
     Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
     with the reason); a goal that is no pose raises InputError, an arm without a closed form
     NoClosedFormError.
     """
-    prepare(robot)
+    check_robot(robot)
     workers = count_of_threads(threads)
     if not isinstance(least_squares, (bool, np.bool_)):
         raise InputTypeError(f"least_squares must be True or False, got {type(least_squares).__name__}")
-    if (goal is None) == (position is None):
+    if angle is not None:
+        goal, position = planar_poses(robot, goal, position, angle), None
+    named = (position, rotation, direction, look_at, ray, angle_to)
+    given = {name: value for name, value in zip(KEYWORDS, named, strict=True) if value is not None}
+    if (goal is None) == (not given):
         raise InputTypeError(
-            "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or robot.ik(position=p)"
+            "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or parts of it by name,"
+            " such as robot.ik(position=p)"
         )
     found: Solutions | SolutionsBatch
-    if position is not None:
+    if given and not is_plain_position(robot, given):
+        found = ask_partial(robot, partial_goal(given, tool_axis), workers)
+    elif position is not None:
+        prepare(robot)
         p = points_in_base(robot, position)
         found = _core._ik_position(robot, p) if p.ndim == 1 else solve_positions(robot, p, workers)
     else:
+        prepare(robot)
         T = goal_array(goal)
         found = solve_many(robot, T, workers) if T.ndim > 2 else solve_one(robot, T, near)
     if isinstance(found, SolutionsBatch):
@@ -72,6 +98,20 @@ def inverse_kinematics(
     if least_squares and not found:
         return least_squares_answer(robot, found)
     return found if near is None else found.nearest(near)
+
+
+def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
+    """Whether a goal is a whole point for an arm of up to three joints, which are solved directly."""
+    short = len(robot.chain.joint_types) <= MAX_POSITION_JOINTS
+    return short and list(given) == ["position"] and not is_open(given["position"])
+
+
+def ask_partial(robot: Any, goal: PartialGoal, workers: int = 1) -> Any:
+    def ask(whole: Any, T: Array) -> Solutions | SolutionsBatch:
+        prepare(whole)
+        return solve_many(whole, T, workers) if T.ndim > 2 else solve_one(whole, T, None)
+
+    return solve_partial(robot, goal, ask)
 
 
 def points_in_base(robot: Any, position: Any) -> Array:
@@ -93,6 +133,24 @@ def points_in_base(robot: Any, position: Any) -> Array:
     if p.ndim == 1 and np.abs(p).sum() > FARTHEST:
         raise too_far("position", p)
     return np.ascontiguousarray(p)
+
+
+def planar_poses(robot: Any, goal: Any, position: Any, angle: Any) -> Array:
+    """Poses of an arm in the plane from points (..., 2) and angles (...) of the tip's x axis."""
+    if goal is not None or position is None:
+        raise InputTypeError("angle= goes with position=(x, y), the place of the tip of an arm in the plane")
+    p = as_floats(position, "position", last=(2,), largest=FARTHEST)
+    T_zero = robot.chain.T_zero
+    turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
+    p = lifted(robot, p)
+    T = np.zeros((*np.broadcast_shapes(p.shape[:-1], turn.shape), 4, 4))
+    T[..., 0, 0] = T[..., 1, 1] = np.cos(turn)
+    T[..., 1, 0] = np.sin(turn)
+    T[..., 0, 1] = -T[..., 1, 0]
+    T[..., 2, 2] = T[..., 3, 3] = 1.0
+    T[..., :3, :3] = T[..., :3, :3] @ T_zero[:3, :3]
+    T[..., :3, 3] = p
+    return T
 
 
 def lifted(robot: Any, p: Array) -> Array:
@@ -184,6 +242,8 @@ def shaped(
 
 def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
     goal = found.goal
+    if found._partial is not None:
+        return least_squares_partial(robot, found)
     if goal.shape == (3,):
         q, missing = _core._ik_position_miss(robot, goal)
         goal, text = position_goal(goal), f"{missing:.4g} m"
@@ -193,3 +253,17 @@ def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
     q = wrap(q, robot.joint_types)
     note = f"nothing reaches the goal; the nearest configuration misses it by {text}"
     return cast(Solutions, _core._ik_make(robot, goal, NEAREST, q[None, :], (-1,), (False,), note))
+
+
+def least_squares_partial(robot: Any, found: Solutions) -> Solutions:
+    """The nearest configuration of the longer arm, without the goal's joints."""
+    about, goal = found._about, found._partial
+    q, away, turned = _core._ik_miss(about.whole, found.goal, 1.0)
+    q = wrap(q, about.whole.joint_types)[None]
+    note = (
+        f"nothing reaches {goal.text}; the nearest configuration misses it by {away:.4g} m and "
+        f"{np.degrees(turned):.4g}°"
+    )
+    own = np.ascontiguousarray(q[:, own_columns(robot, goal)])
+    about = About(goal, about.whole, q, about.freedom)
+    return cast(Solutions, _core._ik_make(robot, found.goal, NEAREST, own, (-1,), (False,), note, about))

@@ -1,0 +1,141 @@
+"""Partial goals solved: as poses of the arm with the joints that stand for what the goal leaves open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.ik.about import About
+from cspace.ik.partial import PartialGoal
+from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions
+from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.model import from_screws
+
+__all__ = ["own_columns", "solve_partial", "whole_arm"]
+
+SAME = 1e-8
+"""Configurations of the arm itself closer than this [rad, m] are one: a goal's other joints may reach it in
+several ways.
+"""
+STILL = 1e-9
+"""Part of a family's direction below which a joint of the arm stands still in it."""
+
+
+def solve_partial(
+    robot: Any, goal: PartialGoal, ask: Callable[[Any, Array], Solutions | SolutionsBatch]
+) -> Solutions | SolutionsBatch:
+    """Every configuration that meets the goal. ask(whole, T): how the longer arm is asked for its poses."""
+    whole = whole_arm(robot, goal)
+    found = ask(whole, goal.T)
+    if isinstance(found, SolutionsBatch):
+        return batch_of_own(robot, goal, whole, found)
+    return of_own(robot, goal, whole, found)
+
+
+def own_columns(robot: Any, goal: PartialGoal) -> slice:
+    """The columns of the longer arm's configurations that are the arm's own."""
+    return slice(len(goal.before), len(goal.before) + robot.dof)
+
+
+def whole_arm(robot: Any, goal: PartialGoal) -> Any:
+    """The arm with the goal's joints behind its tip and before its base, built once per kind of goal."""
+    built = robot.__dict__.setdefault("_ik_wholes", {})
+    if goal.key not in built:
+        built[goal.key] = make_whole(robot, goal)
+    return built[goal.key]
+
+
+def make_whole(robot: Any, goal: PartialGoal) -> Any:
+    chain, T = robot.chain, robot.chain.T_zero.copy()
+    axes = [axis for _, axis in goal.before] + list(chain.axes)
+    points = [np.zeros(3) for _ in goal.before] + list(chain.points)
+    for i, (_, axis) in enumerate(goal.behind):
+        if goal.tilt and i == len(goal.behind) - 1:
+            T[:3, :3] = T[:3, :3] @ tilted(axis, goal.tilt)
+        axes.append(T[:3, :3] @ axis)
+        points.append(T[:3, 3])
+    first, last = len(goal.before), len(goal.behind)
+    lower, upper = robot.limits.lower, robot.limits.upper
+    description = from_screws(
+        axes,
+        points,
+        T,
+        joint_types="".join(kind for kind, _ in goal.before)
+        + robot.joint_types
+        + "".join(kind for kind, _ in goal.behind),
+        lower=np.concatenate([np.full(first, -np.inf), lower, np.full(last, -np.inf)]),
+        upper=np.concatenate([np.full(first, np.inf), upper, np.full(last, np.inf)]),
+        name=robot.name,
+        joint_names=[
+            *(f"goal_{i + 1}" for i in range(first)),
+            *robot.joint_names,
+            *(f"goal_{first + i + 1}" for i in range(last)),
+        ],
+    )
+    from cspace.robot import Robot
+
+    return Robot(description)
+
+
+def tilted(axis: Array, angle: float) -> Array:
+    """A rotation by `angle` about a direction square to `axis`."""
+    square = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    x, y, z = square / np.linalg.norm(square)
+    K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    return cast(Array, np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K)
+
+
+def of_own(robot: Any, goal: PartialGoal, whole: Any, found: Solutions) -> Solutions:
+    own = own_columns(robot, goal)
+    rows, families = [], []
+    kept: list[Array] = []
+    for row, q in enumerate(found.q):
+        moves = found._is_family[row] and moves_itself(whole, q, own)
+        if not meets(goal, robot, q[own]) or any(is_same(robot, q[own], other) for other in kept):
+            continue
+        kept.append(q[own])
+        rows.append(row)
+        families.append(moves)
+    status = found._status
+    if status in (EXACT, SINGULAR):
+        status = SINGULAR if any(families) else EXACT if rows else UNREACHABLE
+    verdict = status + (INCOMPLETE if not found.complete and status != NEAREST else 0)
+    about = About(goal, whole, found.q[rows], () if found._about is None else found._about.freedom)
+    q = np.ascontiguousarray(found.q[rows][:, own])
+    branches = tuple(range(len(rows)))
+    return cast(
+        Solutions, _core._ik_make(robot, goal.T, verdict, q, branches, tuple(families), found._note, about)
+    )
+
+
+def moves_itself(whole: Any, q: Array, own: slice) -> bool:
+    """Whether the arm's own joints take part in the family through q."""
+    direction = _core._ik_direction(whole, np.ascontiguousarray(q), True)
+    return direction is None or bool(np.abs(direction[own]).max() > STILL)
+
+
+def meets(goal: PartialGoal, robot: Any, q: Array) -> bool:
+    """A tool that looks at a point has it before it, not behind."""
+    return "look_at" not in goal.kind or bool(goal.residual(robot.fk(q)) < 1e-6)
+
+
+def is_same(robot: Any, a: Array, b: Array) -> bool:
+    turns = np.array([kind == "R" for kind in robot.joint_types])
+    gap = np.where(turns, (a - b + np.pi) % (2 * np.pi) - np.pi, a - b)
+    return bool(np.abs(gap).max() < SAME)
+
+
+def batch_of_own(robot: Any, goal: PartialGoal, whole: Any, found: SolutionsBatch) -> SolutionsBatch:
+    """Goal by goal: rows that differ in the goal's joints alone are one."""
+    q = np.full((*found.q.shape[:-1], robot.dof), np.nan)
+    count, verdict = np.zeros_like(found.count), found._verdict.copy()
+    for index in np.ndindex(found.count.shape):
+        one = of_own(robot, goal.take(index), whole, found[index])
+        count[index] = len(one)
+        q[index][: len(one)] = one.q
+        verdict[index] = one._verdict
+    return SolutionsBatch(robot, goal.T, q, count, verdict, goal)

@@ -1,0 +1,222 @@
+"""Goals that ask for less than a pose, on arms with as many joints as the goal asks for."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+import cspace as cs
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.partial import turn_to
+from cspace.model import from_screws
+from cspace.robot import Robot
+from ik.geometries import unit
+
+AHEAD = 0.7
+
+# How many joints a goal asks for, and the goal that a tip pose meets.
+GOALS = {
+    "position": (3, lambda T: {"position": T[:3, 3]}),
+    "rotation": (3, lambda T: {"rotation": T[:3, :3]}),
+    "direction": (2, lambda T: {"direction": 3 * T[:3, 2]}),
+    "position and rotation": (6, lambda T: {"position": T[:3, 3], "rotation": T[:3, :3]}),
+    "position and direction": (5, lambda T: {"position": T[:3, 3], "direction": T[:3, 2]}),
+    "look_at": (2, lambda T: {"look_at": T[:3, 3] + AHEAD * T[:3, 2]}),
+    "ray": (4, lambda T: {"ray": (T[:3, 3] - 0.3 * T[:3, 2], T[:3, 2])}),
+    "x and y": (2, lambda T: {"position": (T[0, 3], T[1, 3], None)}),
+    "height": (1, lambda T: {"position": (None, None, T[2, 3])}),
+    "position and angle": (
+        4,
+        lambda T: {"position": T[:3, 3], "angle_to": ("x", float(np.arccos(T[0, 2])))},
+    ),
+    "tool axis -x": (5, lambda T: {"position": T[:3, 3], "direction": -T[:3, 0], "tool_axis": "-x"}),
+}
+
+
+def random_arm(word, rng):
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = rng.uniform(-1, 1, 3)
+    axes = [unit(v) for v in rng.normal(size=(len(word), 3))]
+    return Robot(from_screws(axes, rng.uniform(-1, 1, (len(word), 3)), T_zero, joint_types=word))
+
+
+def gaps(robot, rows, q):
+    d = rows - q
+    turns = np.array([kind == "R" for kind in robot.joint_types])
+    return np.abs(np.where(turns, (d + np.pi) % (2 * np.pi) - np.pi, d)).max(axis=-1)
+
+
+def met_by(name, T, tool_axis="z"):
+    """The goal that T meets, measured plainly: the miss of a pose as a function."""
+    value = GOALS[name][1](T)
+    a = {"z": 2, "-x": 0}[tool_axis]
+    sign = -1 if tool_axis == "-x" else 1
+
+    def miss(S):
+        p, d = S[:3, 3], sign * S[:3, a]
+        out = []
+        if "position" in value:
+            out += [p[i] - v for i, v in enumerate(value["position"]) if v is not None]
+        if "rotation" in value:
+            out += list((S[:3, :3] - value["rotation"]).ravel())
+        if "direction" in value:
+            out += list(d - unit(np.asarray(value["direction"])))
+        if "look_at" in value:
+            away = value["look_at"] - p
+            out += [*np.cross(away, d), min(0.0, away @ d)]
+        if "ray" in value:
+            out += list(np.cross(p - value["ray"][0], value["ray"][1])) + list(d - value["ray"][1])
+        if "angle_to" in value:
+            out.append(d[0] - np.cos(value["angle_to"][1]))
+        return np.abs(out).max()
+
+    return value, miss
+
+
+@pytest.mark.parametrize("name", GOALS)
+@pytest.mark.parametrize("seed", range(3))
+def test_every_solution_meets_the_goal_and_the_generator_is_among_them(name, seed):
+    joints = GOALS[name][0]
+    rng = np.random.default_rng([1, seed, *map(ord, name)])
+    robot = random_arm("R" * joints, rng)
+    axis = "-x" if name.startswith("tool") else "z"
+    for q in rng.uniform(-np.pi, np.pi, (6, joints)):
+        value, miss = met_by(name, robot.fk(q), axis)
+        found = robot.ik(**value)
+        assert found.status == "exact"
+        assert gaps(robot, found.q, q).min() < 1e-6
+        assert max(miss(robot.fk(row)) for row in found.q) < 1e-8
+        assert found.residual.max() < 1e-8
+        assert found.complete
+        assert "pose" in found.asked or set(found.asked) <= set(value)
+
+
+@settings(max_examples=20, deadline=None)
+@given(slides=st.integers(1, 3), seed=st.integers(0, 10**6))
+def test_arms_that_slide_point_somewhere_from_somewhere(slides, seed):
+    rng = np.random.default_rng(seed)
+    robot = random_arm("".join(rng.permutation(list("P" * slides + "R" * (5 - slides)))), rng)
+    q = rng.uniform(-1, 1, 5)
+    T = robot.fk(q)
+    found = robot.ik(position=T[:3, 3], direction=T[:3, 2])
+    assert gaps(robot, found.q, q).min() < 1e-6
+
+
+def test_the_numbers_of_solutions_are_those_of_a_search():
+    """Newton's method from many starts finds no further configuration of a five-joint arm."""
+    rng = np.random.default_rng(4)
+    robot = random_arm("RRRRR", rng)
+    q = rng.uniform(-np.pi, np.pi, 5)
+    value, miss = met_by("position and direction", robot.fk(q))
+    found = robot.ik(**value)
+    seen = []
+    for start in rng.uniform(-np.pi, np.pi, (300, 5)):
+        x = start.copy()
+        for _ in range(40):
+            T, J = robot.fk(x), robot.jacobian(x)
+            e = np.r_[value["position"] - T[:3, 3], np.cross(T[:3, 2], value["direction"])]
+            across = np.eye(3) - np.outer(T[:3, 2], T[:3, 2])
+            A = np.vstack([J[:3], across @ J[3:]])
+            x = x + np.clip(np.linalg.lstsq(A, e, rcond=1e-9)[0], -0.3, 0.3)
+        if miss(robot.fk(x)) < 1e-10:
+            seen.append(x)
+    assert len(seen) > 50
+    assert max(gaps(robot, found.q, x).min() for x in seen) < 1e-6
+
+
+def test_many_goals_in_one_call():
+    rng = np.random.default_rng(5)
+    robot = random_arm("RRRRR", rng)
+    T = robot.fk(rng.uniform(-2, 2, (7, 5)))
+    batch = robot.ik(position=T[:, :3, 3], direction=T[:, :3, 2])
+    assert (batch.count > 0).all()
+    assert np.nanmax(batch.residual) < 1e-8
+    for i in range(7):
+        one = robot.ik(position=T[i, :3, 3], direction=T[i, :3, 2])
+        assert len(one) == batch.count[i] == len(batch[i])
+        assert np.abs(np.sin((one.q - batch.q[i, : len(one)]) / 2)).max() < 1e-7
+        assert batch[i].asked["position"].shape == (3,)
+
+
+def test_an_arm_in_the_plane_takes_a_point_and_an_angle():
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = [1.1, 0, 0.2]
+    robot = cs.Robot.from_screws([[0, 0, 1]] * 3, [[0, 0, 0], [0.5, 0, 0], [0.9, 0, 0]], T_zero)
+    q = np.array([0.4, -0.9, 0.3])
+    T = robot.fk(q)
+    found = robot.ik(position=T[:2, 3], angle=q.sum())
+    assert len(found) == 2
+    assert gaps(robot, found.q, q).min() < 1e-9
+    many = robot.ik(position=np.stack([T[:2, 3]] * 3), angle=[q.sum()] * 3)
+    assert (many.count == 2).all()
+
+
+def test_what_no_configuration_meets_is_said():
+    robot = random_arm("RRRRR", np.random.default_rng(6))
+    found = robot.ik(position=[50.0, 0, 0], direction=[0, 0, 1])
+    assert not found
+    assert found.status == "unreachable"
+    assert "the position and the direction of the tool axis" in found.reason
+    assert found.missing > 40
+    best = robot.ik(position=[50.0, 0, 0], direction=[0, 0, 1], least_squares=True)
+    assert best.status == "least_squares"
+    assert len(best.q) == 1
+    assert best.residual[0] > 40
+
+
+def test_a_five_joint_arm_asked_for_a_pose_says_why_not_and_comes_close():
+    robot = cs.load_robot("so101")
+    T = robot.fk(np.full(5, 0.3))
+    T[:3, :3] = cs.spatial.exp_so3([0.0, 0.3, 0.4]) @ T[:3, :3]
+    found = robot.ik(T)
+    assert not found
+    assert "5 joints" in found.reason
+    assert found.missing > 0.01
+    assert robot.ik(T, least_squares=True).status == "least_squares"
+
+
+def test_filters_keep_what_was_asked():
+    rng = np.random.default_rng(7)
+    robot = random_arm("RRRRR", rng)
+    T = robot.fk(rng.uniform(-2, 2, 5))
+    found = robot.ik(position=T[:3, 3], direction=T[:3, 2])
+    near = found.nearest(np.zeros(5))
+    assert near.asked.keys() == {"position", "direction"}
+    assert near.residual.max() < 1e-8
+    assert len(found.within()) == len(found)
+    slope = found.derivative
+    assert slope.shape == (len(found), 5, 6)
+
+
+@pytest.mark.parametrize(
+    ("keywords", "error", "words"),
+    [
+        ({"direction": [0, 0, 0]}, InputError, "direction is zero"),
+        ({"direction": [0, 0, 1], "look_at": [1, 0, 0]}, InputTypeError, "make no goal"),
+        ({"position": (None, None, None)}, InputError, "asks for nothing"),
+        ({"position": (0.1, None)}, InputError, "2 coordinates"),
+        ({"position": [0.1, np.nan, 0.2], "direction": [0, 0, 1]}, InputError, "finite"),
+        ({"ray": [1, 2, 3]}, InputTypeError, "pair"),
+        ({"position": [0.1, 0, 0.2], "angle_to": ("w", 0.2)}, InputError, "axis 'w'"),
+        ({"position": [0.1, 0, 0.2], "angle_to": ("x", 4.0)}, InputError, "0 to π"),
+        ({"rotation": np.ones((3, 3))}, InputError, "rotation"),
+        ({"direction": [0, 0, 1], "tool_axis": "up"}, InputError, "axis 'up'"),
+        ({"angle": 0.3}, InputTypeError, "angle= goes with position="),
+        ({}, InputTypeError, "one goal"),
+    ],
+)
+def test_goals_that_make_no_sense(keywords, error, words):
+    robot = random_arm("RRRRR", np.random.default_rng(8))
+    with pytest.raises(error, match=words):
+        robot.ik(**keywords)
+
+
+def test_a_turn_from_one_direction_to_another():
+    rng = np.random.default_rng(9)
+    a = unit(np.array([1.0, 2, -0.5]))
+    d = np.array([unit(v) for v in rng.normal(size=(100, 3))])
+    d[:4] = a, -a, unit(-a + 1e-7), unit(a + 1e-9)
+    R = turn_to(a, d)
+    assert np.abs(R @ a - d).max() < 1e-14
+    assert np.abs(R @ R.transpose(0, 2, 1) - np.eye(3)).max() < 1e-14
+    assert (np.linalg.det(R) > 0).all()
