@@ -139,7 +139,7 @@ def test_what_only_one_goal_or_another_arm_can_do_is_refused():
         robot.ik(position=points, near=np.zeros(2))
     with pytest.raises(InputTypeError, match="one goal"):
         robot.ik(position=points, least_squares=True)
-    with pytest.raises(NoClosedFormError, match="up to 3 joints"):
+    with pytest.raises(NoClosedFormError, match="up to six joints"):
         load("ur5e").ik(position=np.zeros((4, 3)))
     with pytest.raises(InputError, match="does not move in a plane"):
         load("simplified_puma").ik(position=points)

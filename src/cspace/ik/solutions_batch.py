@@ -54,7 +54,7 @@ class SolutionsBatch:
         self.q = q
         self.count = count
         self._verdict = verdict
-        self._partial = partial  # what was asked, where it is no pose
+        self._partial = partial  # solve_partial.Many, where the goals are no poses
 
     def __len__(self) -> int:
         return len(self.count)
@@ -89,7 +89,7 @@ class SolutionsBatch:
         real = self._real
         if self._partial is not None:
             for index in np.argwhere(real):
-                one = self._partial.take(tuple(index[:-1]))
+                one = self._partial.goal.take(tuple(index[:-1]))
                 out[tuple(index)] = one.residual(self.robot.fk(self.q[tuple(index)]))
             return out
         out[real] = pose_errors(self.robot, self.q[real], goal[real])
@@ -133,7 +133,7 @@ class SolutionsBatch:
         goal = np.ascontiguousarray(self.goal[index])
         rows = self.q[index][: int(self.count[index])]
         if self._partial is not None:
-            return partial_row(self, index, rows)
+            return self._row_of_partial(index, rows)
         prepare(self.robot)  # a robot out of a pickle comes without its solver
         is_pose = goal.shape == (4, 4)
         full = _core._ik_single(self.robot, goal) if is_pose else _core._ik_position(self.robot, goal)
@@ -178,6 +178,15 @@ class SolutionsBatch:
         row = np.argmin(np.where(self._real, distance, np.inf), axis=-1)
         return np.take_along_axis(moved, row[..., None, None], axis=-2)[..., 0, :]
 
+    def _row_of_partial(self, index: Any, rows: Array) -> Solutions:
+        """One goal is asked again, for what the rows do not say, and its answer cut to the rows."""
+        full = self._partial.one(self.robot, index)
+        turns = np.array([kind == "R" for kind in self.robot.joint_types])
+        gaps = full.q[None] - rows[:, None]
+        gaps = np.where(turns, np.sin(gaps / 2), gaps)
+        kept = np.abs(gaps).max(axis=2).argmin(axis=1) if len(rows) else np.zeros(0, dtype=int)
+        return cast(Solutions, full._take(kept, rows, full._note))
+
     def _seed(self, q: Any) -> Array:
         """One configuration per goal, (..., dof), from as many as given or one for all."""
         dof = self.robot.dof
@@ -204,15 +213,3 @@ class SolutionsBatch:
             f"SolutionsBatch({self.robot.name}: {self.count.size} goals, {reached} with solutions, "
             f"{unreachable} unreachable, {int(self.count.sum())} configurations)"
         )
-
-
-def partial_row(batch: SolutionsBatch, index: Any, rows: Array) -> Solutions:
-    """The solutions of one partial goal: asked again, for what the rows do not say, and cut to the rows."""
-    from cspace.ik.solve import ask_partial
-
-    full = ask_partial(batch.robot, batch._partial.take(index))
-    turns = np.array([kind == "R" for kind in batch.robot.joint_types])
-    gaps = full.q[None] - rows[:, None]
-    gaps = np.where(turns, np.sin(gaps / 2), gaps)
-    kept = np.abs(gaps).max(axis=2).argmin(axis=1) if len(rows) else np.zeros(0, dtype=int)
-    return cast(Solutions, full._take(kept, rows, full._note))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, cast
 
 import numpy as np
@@ -11,6 +12,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.about import About
 from cspace.ik.partial import PartialGoal
+from cspace.ik.prepare import prepare
 from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.model import from_screws
@@ -34,6 +36,21 @@ def solve_partial(
     if isinstance(found, SolutionsBatch):
         return batch_of_own(robot, goal, whole, found)
     return of_own(robot, goal, whole, found)
+
+
+@dataclass(frozen=True)
+class Many:
+    """The goals of a batch, each of which can be asked again."""
+
+    goal: PartialGoal
+
+    def one(self, robot: Any, index: Any) -> Solutions:
+        """The solutions of the goal at an index."""
+        goal = self.goal.take(index)
+        whole = whole_arm(robot, goal)
+        prepare(whole)
+        found = cast(Solutions, _core._ik_single(whole, np.ascontiguousarray(goal.T)))
+        return of_own(robot, goal, whole, found)
 
 
 def own_columns(robot: Any, goal: PartialGoal) -> slice:
@@ -76,9 +93,7 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
             *(f"goal_{first + i + 1}" for i in range(last)),
         ],
     )
-    from cspace.robot import Robot
-
-    return Robot(description)
+    return type(robot)(description)
 
 
 def tilted(axis: Array, angle: float) -> Array:
@@ -138,4 +153,4 @@ def batch_of_own(robot: Any, goal: PartialGoal, whole: Any, found: SolutionsBatc
         count[index] = len(one)
         q[index][: len(one)] = one.q
         verdict[index] = one._verdict
-    return SolutionsBatch(robot, goal.T, q, count, verdict, goal)
+    return SolutionsBatch(robot, goal.T, q, count, verdict, Many(goal))
