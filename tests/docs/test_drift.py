@@ -68,3 +68,10 @@ def test_the_benchmark_page_is_what_the_results_say(monkeypatch):
 
     page = (ROOT / "docs/benchmarks.md").read_text(encoding="utf-8")
     assert page == report.page(report.load()), "run benchmarks/report.py"
+
+
+def test_the_explained_arm_is_explained_as_the_library_does(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "tools"))
+    import explained
+
+    assert explained.PAGE.read_text(encoding="utf-8") == explained.page_text(), "run tools/explained.py"

@@ -65,9 +65,10 @@ def ik_plan(robot: Any) -> IkPlan:
             **common, family="none", summary="`robot.ik` does not solve this arm.", branches=0, reason=reason
         )
     inside = _core._ik_plan(robot)
-    if "form" in inside and seen["family"] in SUMMARIES:
+    known = chain.dof <= 6  # what holds joints of a longer arm still is not told from here
+    if known and "form" in inside and seen["family"] in SUMMARIES:
         return form_plan(Form.of(seen, inside["form"]), seen, common)
-    if "loop" in inside:
+    if known and "loop" in inside:
         return general_plan(Loop.of(inside["loop"]), common)
     if len(chain.joint_types) <= 3:
         return short_plan(chain, common)

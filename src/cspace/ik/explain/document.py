@@ -15,6 +15,8 @@ __all__ = ["blocks", "document"]
 
 LEAST: Final = 1e-5
 """Factors below this (of the arm's length, where they are lengths) are not printed: rounded right angles."""
+EXACT: Final = 1e-12
+"""What is missed by less [m, rad] is not missed: rounding."""
 MOST_TERMS: Final = 16
 """An equation of more terms is printed with symbols alone."""
 
@@ -63,22 +65,24 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
         head = ("axes", "joints", "angle [°]", "distance [m]", "relation")
         out += [page.Heading("Neighbouring axes"), page.Rows(head, rows)]
     for point in plan.still_points:
-        place = ", ".join(shown(x) for x in point.place)
-        out.append(
-            page.Paragraph(
-                f"Axes {listed(point.joints)} meet in a point, ({place}) m at zero (missed by "
-                f"{point.miss:.1g} m): their joints leave it where it is."
-            )
-        )
+        meet = f"meet in a point, ({vector(point.place)}) m at zero{missed(point.miss, 'm')}"
+        words = f"Axes {listed(point.joints)} {meet}: their joints leave it where it is."
+        out.append(page.Paragraph(words))
     for each in plan.still_directions:
-        n = ", ".join(shown(x) for x in each.direction)
-        out.append(
-            page.Paragraph(
-                f"Axes {listed(each.joints)} are parallel to ({n}) at zero (missed by {each.miss:.1g} "
-                "rad): their joints change neither heights along it nor angles with it."
-            )
-        )
+        parallel = f"are parallel to ({vector(each.direction)}) at zero{missed(each.miss, 'rad')}"
+        still = "their joints change neither heights along it nor angles with it."
+        out.append(page.Paragraph(f"Axes {listed(each.joints)} {parallel}: {still}"))
     return out
+
+
+def vector(v: Any) -> str:
+    """A vector without rounding noise."""
+    return ", ".join(shown(round(float(x), 8)) for x in v)
+
+
+def missed(miss: float, unit: str) -> str:
+    """By how much axes fail to meet or to be parallel, if it is more than rounding."""
+    return f" (missed by {miss:.1g} {unit})" if miss > EXACT else ""
 
 
 def listed(joints: tuple[int, ...]) -> str:

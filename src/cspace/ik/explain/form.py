@@ -105,21 +105,20 @@ class Form:
         rows = []
         for i, joint in enumerate(self.joint):
             name = f"`{names[joint]}`" if joint >= 0 else "virtual, held at 0"
-            offset = shown(np.degrees(self.offset[i]))
-            q = "0" if joint < 0 else f"q_{{{joint + 1}}}"
-            sign = "−" if self.sign[i] < 0 and joint >= 0 else ""
             alpha = np.degrees(np.arctan2(self.sa[i], self.ca[i]))
-            rows.append(
-                (
-                    f"{i + 1}",
-                    name,
-                    shown(alpha),
-                    shown(self.a[i]),
-                    shown(self.d[i]),
-                    f"{sign}${q}$ + {offset}" if joint >= 0 else offset,
-                )
-            )
+            numbers = (shown(x) for x in (alpha, self.a[i], self.d[i]))
+            rows.append((f"{i + 1}", name, *numbers, self.angle_text(i)))
         return Rows(("i", "joint", r"$\alpha_i$ [°]", "$a_i$ [m]", "$d_i$ [m]", "$t_i$ [°]"), rows)
+
+    def angle_text(self, i: int) -> str:
+        """t_i from the joint's own angle: $q_2$ + 180."""
+        offset = shown(np.degrees(self.offset[i]))
+        if self.joint[i] < 0:
+            return offset
+        q = f"{'−' if self.sign[i] < 0 else ''}$q_{{{self.joint[i] + 1}}}$"
+        if offset == "0":
+            return q
+        return f"{q} − {offset[1:]}" if offset.startswith("-") else f"{q} + {offset}"
 
     @property
     def left(self) -> Array:
