@@ -171,3 +171,42 @@ def test_axes_parallel_and_square_in_odd_places():
     batch = robot.ik(robot.fk(q))
     assert np.nanmin(gap(robot, batch.q, q[:, None]), axis=1).max() < 1e-5
     assert np.nanmax(batch.residual) < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("name", "q"),
+    [
+        ("Stanford", [0.3, 0.4, 0.5, 0.2, 0.0, 0.6]),
+        ("gantry with wrist", [0.3, 0.4, 0.5, 0.2, 0.0, 0.6]),
+        ("cylindrical", [0.3, 0.4, 0.5, 0.2, 0.0, 0.6]),
+        ("arm on a cross slide", [0.3, 0.4, 0.5, 0.2, 0.0, 0.6]),
+    ],
+)
+def test_a_wrist_in_line_is_one_family_and_not_a_handful(name, q):
+    robot, q = MACHINES[name], np.array(q)
+    T = robot.fk(q)
+    found = robot.ik(T)
+    lost = np.linalg.svd(robot.jacobian(q), compute_uv=False)[-1] < 1e-9
+    assert (found.status == "singular") == lost
+    assert found.residual.max() < 1e-9
+    for family in found.families:
+        moved = (
+            family.q
+            + np.linspace(-np.pi, np.pi, 73)[:, None] * family.direction / np.abs(family.direction).max()
+        )
+        if np.abs(robot.fk(moved) - T).max() > 1e-9:
+            continue  # a curve that is not straight
+        apart = [gap(robot, moved, row).min() for k, row in enumerate(found.q) if k != family.row]
+        assert min(apart, default=1) > 0.05
+    again = robot.ik(T, near=q)
+    assert gap(robot, again.q, q).min() < 1e-6
+
+
+def test_free_joints_of_a_family_stand_at_zero_or_where_they_were():
+    robot = MACHINES["gantry with wrist"]
+    T = robot.fk([0.3, 0.4, 0.5, 0.2, 0.0, 0.6])
+    found = robot.ik(T)
+    assert len(found) == 1
+    assert found.q[0] == pytest.approx([0.3, 0.4, 0.5, 0.0, 0.0, 0.8], abs=1e-9)
+    kept = robot.ik(T, near=[0, 0, 0, -1.0, 0, 0])
+    assert kept.q[0] == pytest.approx([0.3, 0.4, 0.5, -1.0, 0.0, 1.8], abs=1e-9)

@@ -56,7 +56,7 @@ ik::Solutions from_short(const ik::Chain& chain, const Found& found) {
 
 inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
     if (arm.has_plan) return solve_carefully(arm.plan, goal, idle);
-    if (arm.is_general) return solve_general_carefully(arm.general, goal);
+    if (arm.is_general) return solve_general_carefully(arm.general, goal, idle);
     return from_short(arm.plan.chain, solve_short_pose(arm.plan.chain, goal));
 }
 

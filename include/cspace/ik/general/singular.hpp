@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cspace/ik/general/completion.hpp"
+#include "cspace/ik/general/one_per_family.hpp"
 #include "cspace/ik/self_motion.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -59,8 +60,9 @@ inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed&
     return out;
 }
 
-// goal: in metres, as is the answer.
-inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Posed& goal_in_metres) {
+// goal and `idle`, the values that leading joints of families take (null: zero): in metres, as is the answer.
+inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Posed& goal_in_metres,
+                                             const double* idle = nullptr) {
     const double length = arm.plan.length;
     const Posed goal = {goal_in_metres.R, (1 / length) * goal_in_metres.t};
     ik::Chain chain = arm.plan.chain;
@@ -76,6 +78,11 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
     for (int k = 0; k < out.count; ++k)
         if (out.family[k]) out.status = ik::Status::singular;
+    if (out.status == ik::Status::singular) {
+        double rest[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) rest[i] = idle ? idle[i] / (chain.prismatic[i] ? length : 1) : 0;
+        keep_one_per_family(chain, goal, rest, out);
+    }
     if (arm.plan.slides > 0) in_metres(chain, length, out);
     return out;
 }

@@ -1,0 +1,121 @@
+// One solution for each family: those found on one curve are one, and stand where its leading joint is at an
+// agreed value.
+#pragma once
+
+#include "cspace/ik/careful.hpp"
+#include "cspace/ik/family_curve.hpp"
+
+namespace cspace::ik {
+
+// The member of a family at which its leading joint, the first that moves clearly, comes nearest to a value.
+struct Representative {
+    int joint = -1;
+    double value = 0;
+    double gap = 1e300;
+    double q[max_joints], direction[max_joints];
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline int leading_joint(const double* direction, int n) {
+    constexpr double clearly = 0.1;
+    for (int i = 0; i < n; ++i)
+        if (std::fabs(direction[i]) > clearly) return i;
+    return 0;
+}
+
+inline double from_value(const ik::Chain& chain, const ik::Representative& r, const double* q) {
+    const double d = q[r.joint] - r.value;
+    return chain.prismatic[r.joint] ? d : short_way(d);
+}
+
+inline void offer_member(const ik::Chain& chain, ik::Representative& r, const double* q, const double* t) {
+    const double gap = std::fabs(from_value(chain, r, q));
+    if (!(gap < r.gap)) return;
+    r.gap = gap;
+    for (int i = 0; i < chain.n; ++i) {
+        r.q[i] = q[i];
+        r.direction[i] = t[i];
+    }
+}
+
+// Between two members beside each other the leading joint passes its value: the member that has it, by the
+// secant.
+inline void offer_between(const ik::Chain& chain, const ik::Held& held, ik::Representative& r,
+                          const double* a, const double* b, const double* t) {
+    double low = from_value(chain, r, a), high = from_value(chain, r, b), q[ik::max_joints],
+           left[ik::max_joints];
+    if (!(low * high < 0) || std::fabs(high - low) > 1) return;
+    double right[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) left[i] = a[i], right[i] = b[i];
+    for (int step = 0; step < 30; ++step) {
+        const double part = low / (low - high);
+        PoseError at;
+        for (int i = 0; i < chain.n; ++i) q[i] = left[i] + part * (right[i] - left[i]);
+        if (!onto_curve(chain, held, q, at)) return;
+        const double here = from_value(chain, r, q);
+        offer_member(chain, r, q, t);
+        if (std::fabs(here) < 1e-15) return;
+        const bool below = (here < 0) == (low < 0);
+        (below ? low : high) = here;
+        for (int i = 0; i < chain.n; ++i) (below ? left : right)[i] = q[i];
+    }
+}
+
+// Whether a solution lies on the piece of the curve around q, of about a step's length.
+inline bool lies_beside(const ik::Chain& chain, const double* q, const double* t, const double* other) {
+    constexpr double reach = 0.06, narrow = 0.05;
+    double gap[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i)
+        gap[i] = chain.prismatic[i] ? other[i] - q[i] : short_way(other[i] - q[i]);
+    const double along = dot_n(gap, t, chain.n), size2 = dot_n(gap, gap, chain.n);
+    return size2 < reach * reach && size2 - along * along < narrow * narrow * size2 + 1e-12;
+}
+
+// `idle`: the values that leading joints take, zero if null. Lengths are over the arm's.
+inline void keep_one_per_family(const ik::Chain& chain, const Posed& goal, const double* idle,
+                                ik::Solutions& out) {
+    const ik::Held held = {goal, true, 1};
+    bool dropped[ik::max_solutions] = {};
+    for (int k = 0; k < out.count; ++k) {
+        if (!out.family[k] || dropped[k]) continue;
+        ik::Representative r;
+        r.joint = leading_joint(out.direction[k], chain.n);
+        r.value = idle ? idle[r.joint] : 0;
+        double start[ik::max_joints], along[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
+        for (const double sign : {1.0, -1.0}) {
+            double way[ik::max_joints], before[ik::max_joints];
+            bool first = true;
+            for (int i = 0; i < chain.n; ++i) way[i] = sign * along[i];
+            const auto visit = [&](const double* q, const double* t) {
+                offer_member(chain, r, q, t);
+                if (!first) offer_between(chain, held, r, before, q, t);
+                first = false;
+                for (int i = 0; i < chain.n; ++i) before[i] = q[i];
+                for (int m = k + 1; m < out.count; ++m)
+                    dropped[m] = dropped[m] || (out.family[m] && lies_beside(chain, q, t, out.q[m]));
+            };
+            if (follow_curve(chain, held, start, way, visit) == ik::CurveEnd::closed) break;
+        }
+        for (int i = 0; i < chain.n; ++i) {
+            out.q[k][i] = chain.prismatic[i] ? r.q[i] : wrap_once(short_way(r.q[i]));
+            out.direction[k][i] = r.direction[i];
+        }
+    }
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k) {
+        if (dropped[k]) continue;
+        for (int i = 0; i < chain.n; ++i) {
+            out.q[kept][i] = out.q[k][i];
+            out.direction[kept][i] = out.direction[k][i];
+        }
+        out.branch[kept] = static_cast<signed char>(kept);
+        out.family[kept++] = out.family[k];
+    }
+    out.count = kept;
+}
+
+}  // namespace cspace::inline CSPACE_ISA
