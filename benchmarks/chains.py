@@ -18,7 +18,7 @@ Array = npt.NDArray[np.float64]
 @dataclass(frozen=True)
 class Arm:
     """A serial arm by its screws at zero: axes (n, 3), a point on each (n, 3) [m], T_zero (4, 4), limits
-    (n,).
+    (n,), joint_types, a string of R (turns) and P (slides).
 
     dh: (n, 4) rows alpha, a, d, theta offset (standard convention) between T_base and T_tool (4, 4), for
     peers that take nothing else.
@@ -33,10 +33,16 @@ class Arm:
     dh: Array
     T_dh_base: Array
     T_dh_tool: Array
+    joint_types: str
 
     @property
     def dof(self) -> int:
         return len(self.axes)
+
+    @property
+    def turns(self) -> npt.NDArray[np.bool_]:
+        """Which joints turn (n,); the others slide."""
+        return np.array([kind == "R" for kind in self.joint_types])
 
     def save(self, path: Path) -> None:
         np.savez(path, **self.__dict__)
@@ -44,28 +50,7 @@ class Arm:
     @staticmethod
     def load(path: Path) -> Arm:
         with np.load(path) as data:
-            return Arm(**{key: str(data[key]) if key == "name" else data[key] for key in data.files})
-
-
-def load_arm(name: str) -> Arm:
-    """The arm of this name in the catalogue of cspace, as numbers."""
-    import cspace as cs
-    import cspace.model
-
-    robot = cs.load_robot(name)
-    chain = robot.chain
-    table = cspace.model.to_dh(chain, convention="standard")
-    return Arm(
-        name=name,
-        axes=chain.axes,
-        points=chain.points,
-        T_zero=chain.T_zero,
-        lower=robot.limits.lower,
-        upper=robot.limits.upper,
-        dh=table.rows,
-        T_dh_base=table.T_base,
-        T_dh_tool=table.T_tool,
-    )
+            return Arm(**{key: data[key] if data[key].ndim else str(data[key]) for key in data.files})
 
 
 def skew(v: Array) -> Array:
@@ -82,16 +67,24 @@ def rotations(axis: Array, angle: Array) -> Array:
     return np.eye(3) + s * K + (1 - c) * (K @ K)
 
 
+def motion(arm: Arm, joint: int, q: Array) -> Array:
+    """exp(ξ q) (..., 4, 4) of one joint at q (...): a turn about its axis or a slide along it."""
+    T = np.broadcast_to(np.eye(4), (*q.shape, 4, 4)).copy()
+    if arm.joint_types[joint] == "P":
+        T[..., :3, 3] = q[..., None] * arm.axes[joint]
+    else:
+        T[..., :3, :3] = rotations(arm.axes[joint], q)
+        T[..., :3, 3] = arm.points[joint] - T[..., :3, :3] @ arm.points[joint]
+    return T
+
+
 def fk(arm: Arm, q: Array) -> Array:
     """Poses (..., 4, 4) of the tip at q (..., n): the product of the exponentials of the screws, then
     T_zero."""
     q = np.asarray(q, dtype=float)
     T = np.broadcast_to(np.eye(4), (*q.shape[:-1], 4, 4)).copy()
     for i in range(arm.dof):
-        step = np.broadcast_to(np.eye(4), T.shape).copy()
-        step[..., :3, :3] = rotations(arm.axes[i], q[..., i])
-        step[..., :3, 3] = arm.points[i] - step[..., :3, :3] @ arm.points[i]
-        T = T @ step
+        T = T @ motion(arm, i, q[..., i])
     return T @ arm.T_zero
 
 
@@ -103,12 +96,12 @@ def jacobian(arm: Arm, q: Array) -> Array:
     for i in range(arm.dof):
         axes.append(T[..., :3, :3] @ arm.axes[i])
         points.append(T[..., :3, :3] @ arm.points[i] + T[..., :3, 3])
-        step = np.broadcast_to(np.eye(4), T.shape).copy()
-        step[..., :3, :3] = rotations(arm.axes[i], q[..., i])
-        step[..., :3, 3] = arm.points[i] - step[..., :3, :3] @ arm.points[i]
-        T = T @ step
+        T = T @ motion(arm, i, q[..., i])
     tip = (T @ arm.T_zero)[..., :3, 3]
-    columns = [np.concatenate([np.cross(w, tip - p), w], axis=-1) for w, p in zip(axes, points, strict=True)]
+    columns = [
+        np.concatenate([np.cross(w, tip - p), w] if turns else [w, np.zeros_like(w)], axis=-1)
+        for w, p, turns in zip(axes, points, arm.turns, strict=True)
+    ]
     return np.stack(columns, axis=-1)
 
 

@@ -12,16 +12,16 @@ import sys
 import tempfile
 from pathlib import Path
 
-import chains
+import arms
 
 HERE = Path(__file__).resolve().parent
-ARMS = ["ur5e", "puma560", "kr6_r900"]
+ARMS = arms.CLASSIC
 
 
 def arms_as_text() -> str:
     """The arms as the C++ programs read them: name, n, axes, points, tip at zero."""
     lines = []
-    for arm in map(chains.load_arm, ARMS):
+    for arm in map(arms.load, ARMS):
         numbers = [*arm.axes.ravel(), *arm.points.ravel(), *arm.T_zero.ravel()]
         lines.append(f"{arm.name} {arm.dof} " + " ".join(repr(float(x)) for x in numbers))
     return "\n".join(lines) + "\n"
@@ -29,13 +29,13 @@ def arms_as_text() -> str:
 
 def main() -> None:
     results = {}
-    with tempfile.NamedTemporaryFile("w", suffix=".txt") as arms:
-        arms.write(arms_as_text())
-        arms.flush()
+    with tempfile.NamedTemporaryFile("w", suffix=".txt") as file:
+        file.write(arms_as_text())
+        file.flush()
         for program in sorted(Path(sys.argv[1]).glob("bench_*")):
             if not program.is_file() or not os.access(program, os.X_OK):
                 continue
-            output = subprocess.run([program, arms.name], capture_output=True, text=True, check=True).stdout
+            output = subprocess.run([program, file.name], capture_output=True, text=True, check=True).stdout
             for line in output.splitlines():
                 entry = json.loads(line)
                 results[entry.pop("name")] = entry

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-ARMS = {"ur5e": "UR5e", "puma560": "PUMA 560", "kr6_r900": "KR6"}
+import arms
+from arms import CLASSIC as ARMS
+
 Results = dict[str, Any]
 
 
@@ -24,9 +26,10 @@ class Row:
 
 def find(results: Results, arm: str, task: str, contender: str) -> dict[str, Any] | None:
     """The measurements of a contender; None where it refused or was not run."""
-    for row in results["measurements"]["rows"]:
-        if (row["arm"], row["task"], row["contender"]) == (arm, task, contender) and "ready" in row:
-            return dict(row)
+    for name in arms.SETS:
+        for row in results[name].get("rows", []):
+            if (row["arm"], row["task"], row["contender"]) == (arm, task, contender) and "ready" in row:
+                return dict(row)
     return None
 
 
@@ -36,8 +39,8 @@ def pairs(results: Results, task: str, peer: str) -> list[tuple[str, dict[str, A
     return [(arm, ours, theirs) for arm, ours, theirs in found if ours and theirs]
 
 
-def ours(results: Results, task: str) -> list[tuple[str, dict[str, Any]]]:
-    found = [(arm, find(results, arm, task, "cspace_")) for arm in ARMS]
+def ours(results: Results, task: str, names: Iterable[str] = ARMS) -> list[tuple[str, dict[str, Any]]]:
+    found = [(arm, find(results, arm, task, "cspace_")) for arm in names]
     return [(arm, row) for arm, row in found if row]
 
 
@@ -99,9 +102,10 @@ def residual_row(results: Results) -> Row:
 
 def recorded_row(results: Results) -> Row:
     entries = results["recorded"]
-    text = "; ".join(f"{arm} {e['found']}/{e['true']}" for arm, e in entries.items())
-    holds = all(e["found"] == e["true"] for e in entries.values())
-    return row("all solutions of the recorded poses", "100 %", "", text, holds)
+    found, true = (sum(e[key] for e in entries.values()) for key in ("found", "true"))
+    lost = [f"{arm} {e['found']}/{e['true']}" for arm, e in entries.items() if e["found"] < e["true"]]
+    text = "; ".join([f"{found}/{true} on {len(entries)} arms", *lost]) if entries else ""
+    return row("all solutions of the recorded poses", "100 %", "", text, found == true)
 
 
 def near_row(results: Results) -> Row:
@@ -109,6 +113,72 @@ def near_row(results: Results) -> Row:
     found, true = sum(e["found"] for e in judged), sum(e["true"] for e in judged)
     text = f"{100 * found / true:.2f} % ({found}/{true})" if true else ""
     return row("recovered at 1e-6 rad from singularities", "≥ 99.9 %", "", text, found >= 0.999 * true)
+
+
+def general_row(results: Results) -> Row:
+    texts, ratios, times = [], [], []
+    for arm, mine in ours(results, "ik", arms.GENERAL):
+        theirs = find(results, arm, "ik", "ssik_")
+        if theirs:
+            ratio = min(theirs[key]["median"] / mine[key]["median"] for key in ("call", "read"))
+            times.append(mine["call"]["median"])
+            ratios.append(ratio)
+            texts.append(
+                f"{arms.TITLES[arm]} {times[-1]:.1f} against {theirs['call']['median']:.0f} µs, {ratio:.0f}×"
+            )
+    what = "six joints in general position, one Python call, median"
+    holds, aimed = min(ratios, default=0) >= 20, max(times, default=99) <= 10
+    return row(what, "≥ 20× ssik", "≤ 10 µs", "; ".join(texts), holds, aimed)
+
+
+def tail_row(results: Results) -> Row:
+    times = {arm: entry["call"]["p99"] for arm, entry in ours(results, "ik", arms.GENERAL)}
+    text = "; ".join(f"{arms.TITLES[arm]} {time:.0f} µs" for arm, time in times.items())
+    worst = max(times.values(), default=999)
+    return row("the same, 99 of 100 calls", "≤ 100 µs", "≤ 30 µs", text, worst <= 100, worst <= 30)
+
+
+def calibrated_row(results: Results) -> Row:
+    found = ours(results, "ik", arms.CALIBRATED | arms.LOCKED)
+    times = {arm: entry["call"]["median"] for arm, entry in found}
+    text = "; ".join(f"{arms.TITLES[arm]} {time:.1f} µs" for arm, time in times.items())
+    worst = max(times.values(), default=999)
+    what = "calibrated arms, iiwa with a joint held, one Python call, median"
+    return row(what, "≤ 30 µs", "≤ 10 µs", text, worst <= 30, worst <= 10)
+
+
+def examined(results: Results, kind: str) -> list[dict[str, Any]]:
+    """Every run of the completeness test on this kind of poses."""
+    return [run[kind] for sizes in results["completeness"].values() for run in sizes.values()]
+
+
+def missed_row(results: Results) -> Row:
+    entries = examined(results, "random")
+    missed, poses = (sum(e[key] for e in entries) for key in ("missed", "poses"))
+    text = f"{missed} of {poses:,}" if poses else ""
+    what = "generating configuration missed, every six-joint arm, nominal and calibrated"
+    return row(what, "≤ 1 in 10⁵", "0", text, missed * 1e5 <= poses, missed == 0)
+
+
+def singular_row(results: Results) -> Row:
+    texts, holds = [], True
+    for kind, bound in (("1e-02", 1.0), ("1e-04", 0.999), ("1e-06", 0.995)):
+        entries = examined(results, kind)
+        missed, poses = (sum(e[key] for e in entries) for key in ("missed", "poses"))
+        if poses:
+            texts.append(f"{poses - missed:,} of {poses:,}")
+            holds &= poses - missed >= bound * poses
+    what = "generating configuration recovered at 1e-2 / 1e-4 / 1e-6 rad from singularities, the same arms"
+    return row(what, "100 / ≥ 99.9 / ≥ 99.5 %", "", " / ".join(texts), holds)
+
+
+def false_row(results: Results) -> Row:
+    entries = [e for kind in ("random", "1e-02", "1e-04", "1e-06") for e in examined(results, kind)]
+    false = sum(e["false"] for e in entries)
+    worst = max((e["residual"] for e in entries), default=1.0)
+    text = f"{worst:.0e} / {false}" if entries else ""
+    what = "worst residual / falsely certified, the same runs"
+    return row(what, "≤ 1e-9 / 0", "", text, worst <= 1e-9 and false == 0)
 
 
 def fk_row(results: Results) -> Row:
@@ -155,6 +225,12 @@ ROWS: list[Callable[[Results], Row]] = [
     residual_row,
     recorded_row,
     near_row,
+    general_row,
+    tail_row,
+    calibrated_row,
+    missed_row,
+    singular_row,
+    false_row,
     fk_row,
     jacobian_row,
     forward_batch_row,

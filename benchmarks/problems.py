@@ -35,19 +35,25 @@ class Problems:
 
 def random_configurations(arm: Arm, count: int, rng: np.random.Generator) -> Array:
     """Uniform angles (count, n) in (−π, π], whatever the limits: the peers filter by limits or they do
-    not."""
-    return rng.uniform(-np.pi, np.pi, (count, arm.dof))
+    not. Slides are at 0 to 1 m."""
+    q = rng.uniform(-np.pi, np.pi, (count, arm.dof))
+    return np.where(arm.turns, q, (q + np.pi) / (2 * np.pi))
 
 
 def singular_configurations(arm: Arm, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
     """Singular configurations (count, n) and the joint of each that leads into the singularity.
 
     A joint of a random configuration is turned until det J changes sign; the root is refined by bisection.
+    Arms whose Jacobian is not square have none here.
     """
+    if arm.dof != 6:
+        return np.zeros((0, arm.dof)), np.zeros(0, dtype=int)
     found, joints = [], []
     while len(found) < count:
         q = random_configurations(arm, 1, rng)[0]
         joint = int(rng.integers(1, arm.dof - 1))
+        if not arm.turns[joint]:
+            continue
         grid = np.linspace(-np.pi, np.pi, 181)
         line = np.repeat(q[None], len(grid), axis=0)
         line[:, joint] = grid
@@ -75,6 +81,6 @@ def make(arm: Arm, count: int, near_count: int, seed: int = 2026) -> Problems:
     near = []
     for distance in SINGULAR_DISTANCES:
         moved = singular.copy()
-        moved[np.arange(near_count), joints] += distance * rng.choice([-1, 1], near_count)
+        moved[np.arange(len(joints)), joints] += distance * rng.choice([-1, 1], len(joints))
         near.append(moved)
     return Problems(q, fk(arm, q), near[0], fk(arm, near[0]), near[1], fk(arm, near[1]))

@@ -8,34 +8,54 @@ from __future__ import annotations
 import json
 import os
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
+import arms
 import score
+from chains import Arm, Array
 
 HERE = Path(__file__).resolve().parent
-FAMILIES = {"6R spherical", "6R three-parallel"}
+
+
+def chain(record: dict[str, Any]) -> Arm:
+    """An arm of chains.json."""
+    joints = record["joints"]
+    axes, points = (np.array([joint[key] for joint in joints], dtype=float) for key in ("axis", "point"))
+    types = "".join("P" if joint["type"] == "prismatic" else "R" for joint in joints)
+    free = np.full(len(joints), np.inf)
+    return arms.numbers(record["name"], axes, points, np.array(record["tool_zero"]), types, -free, free)
+
+
+def count(arm: Arm, T: Array, known: Array) -> int:
+    """How many of the known configurations (k, n) of a pose we list."""
+    import cspace as cs
+
+    screws = cs.model.from_screws(arm.axes, arm.points, arm.T_zero, joint_types=arm.joint_types)
+    answer = cs.Robot(screws).ik(T).q
+    return sum(bool(len(answer)) and bool(score.same(arm, answer, q, 1e-6).any()) for q in known)
 
 
 def main() -> None:
-    import cspace as cs
-
     folder = Path(os.environ.get("CSPACE_DATA") or HERE.parents[1] / "shared/data") / "arms"
-    classes = json.loads((folder / "solutions_meta.json").read_text())
-    chains = {record["name"]: record for record in json.loads((folder / "chains.json").read_text())}
+    facts = json.loads((folder / "solutions_meta.json").read_text())
+    records = {record["name"]: record for record in json.loads((folder / "chains.json").read_text())}
     results = {}
     with np.load(folder / "solutions.npz") as data:
-        for name in (name for name, entry in classes.items() if entry["klass"] in FAMILIES):
-            joints = chains[name]["joints"]
-            axes, points = ([joint[key] for joint in joints] for key in ("axis", "point"))
-            robot = cs.Robot(cs.model.from_screws(axes, points, chains[name]["tool_zero"]))
+        for name, fact in facts.items():
+            arm, locked = chain(records[name]), fact["locked_joint"]
             found = true = 0
-            for T, count, Q in zip(data[f"{name}/T"], data[f"{name}/nsol"], data[f"{name}/Q"], strict=True):
-                known = Q[:count]
-                answer = robot.ik(T).q
-                found += sum(bool(len(answer)) and bool(score.same(answer, q, 1e-6).any()) for q in known)
-                true += int(count)
-            results[name] = {"found": found, "true": true}
+            for i, T in enumerate(data[f"{name}/T"]):
+                known, solved = data[f"{name}/Q"][i][: data[f"{name}/nsol"][i]], arm
+                if locked is not None:
+                    solved = arms.held(arm, locked, data[f"{name}/q_true"][i][locked], name)
+                    known = np.delete(known, locked, axis=1) if known.shape[1] > solved.dof else known
+                found += count(solved, T, known)
+                true += len(known)
+            label = name if locked is None else f"{name}, joint {locked + 1} held"
+            results[label] = {"found": found, "true": true}
+            print(label, f"{found}/{true}", flush=True)
     (HERE / "results/recorded.json").write_text(json.dumps(results, indent=1) + "\n")
 
 

@@ -1,8 +1,8 @@
 """Runs the benchmarks: every contender in a fresh process, the same seeded problems, interleaved repetitions.
 
-Usage: python benchmarks/run.py [--python PEER=interpreter …] [--rounds 7] [--only PEER …] [--arms NAME …]
-Writes benchmarks/results/: measurements.json, tables.md, numbers.json, numbers.md and the plots. The arms
-come from the catalogue of cspace, as numbers; see CONTRIBUTING.md for what the peers need.
+Usage: python benchmarks/run.py [--set measurements|general|calibrated|slides] [--rounds 7] [--only PEER …]
+[--python PEER=interpreter …]. Writes benchmarks/results/SET.json. The arms come from the catalogue of cspace,
+as numbers (benchmarks/arms.py); see CONTRIBUTING.md for what the peers need.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from pathlib import Path
 
 import numpy as np
 
+import arms
 import chains
 import peers
 import problems
@@ -28,15 +29,16 @@ import score
 
 HERE = Path(__file__).resolve().parent
 RESULTS = HERE / "results"
-ARMS = ["ur5e", "puma560", "kr6_r900"]
 TASKS = ["ik", "fk", "jacobian", "fk_jacobian"]
 BATCH = 100_000
+SLOW_BATCH = 10_000
+"""Poses of a batch where one takes more than a few microseconds."""
 
 
 class Process:
     """A contender's process and the line of talk with it."""
 
-    def __init__(self, peer: str, task: str, folder: Path, python: str) -> None:
+    def __init__(self, peer: str, task: str, folder: Path, python: str, patience: float) -> None:
         self.peer = peer
         command = [
             python,
@@ -45,6 +47,7 @@ class Process:
             task,
             str(folder / "arm.npz"),
             str(folder / "q.npz"),
+            str(patience),
         ]
         env = one_thread()
         self.process = subprocess.Popen(
@@ -66,9 +69,15 @@ class Process:
 
     def ask(self, **words: object) -> dict:
         assert self.process.stdin
+        if self.process.poll() is not None:
+            return {"refused": "the process has ended"}
         self.process.stdin.write(json.dumps(words) + "\n")
         self.process.stdin.flush()
         return self.listen()
+
+    def quick(self) -> bool:
+        """Whether a large batch of this contender takes a blink."""
+        return self.peer == "cspace_" and np.median(self.samples["call"]) < 2000
 
     def quit(self) -> None:
         if self.process.poll() is None and self.process.stdin:
@@ -80,7 +89,7 @@ class Process:
 def answers(process: Process, field: str, folder: Path) -> list[np.ndarray] | None:
     """What the contender says to each problem of the field; None if it did not survive."""
     reply = process.ask(do="answers", of=field, to=str(folder / f"{process.peer}.npz"))
-    if "to" not in reply:
+    if not reply.get("to"):
         return None
     with np.load(reply["to"]) as data:
         return np.split(data["values"], np.cumsum(data["counts"])[:-1])
@@ -98,6 +107,8 @@ def judge_ik(
     ]
     sets.append(("near_1e-6", "T_near_6", given.q_near_6, given.T_near_6, 5e-7))
     for label, field, q_true, T, tolerance in sets:
+        if len(T) == 0:
+            continue
         said = {p.peer: answers(p, field, folder) for p in alive}
         said = {peer: found for peer, found in said.items() if found is not None}
         true = [
@@ -140,30 +151,38 @@ def measure(alive: list[Process], rounds: int, seconds: float) -> None:
             for key in ("call", "read"):
                 process.samples[key] += reply.get(key, [])
             if turn < 5:
-                each = process.ask(do="batch", count=BATCH if process.peer == "cspace_" else BATCH // 10)
+                each = process.ask(do="batch", count=BATCH if process.quick() else SLOW_BATCH)
                 if each.get("batch") is not None:
                     process.samples["batch"].append(each["batch"])
 
 
 def summary(samples: Iterable[float]) -> dict[str, float] | None:
-    """Median and 95th percentile in microseconds."""
+    """Median, 95th and 99th percentile in microseconds."""
     values = np.array(list(samples)) / 1000
     if len(values) == 0:
         return None
-    return {"median": float(np.median(values)), "p95": float(np.percentile(values, 95))}
+    median, p95, p99 = (float(np.percentile(values, share)) for share in (50, 95, 99))
+    return {"median": median, "p95": p95, "p99": p99}
 
 
 def compete(
-    name: str, task: str, names: list[str], pythons: dict[str, str], rounds: int, seconds: float
+    name: str,
+    task: str,
+    names: list[str],
+    pythons: dict[str, str],
+    rounds: int,
+    seconds: float,
+    counts: tuple[int, int],
+    patience: float,
 ) -> list[dict]:
-    """All contenders at one task on one arm."""
-    arm = chains.load_arm(name)
-    given = problems.make(arm, 1000, 200)
+    """All contenders at one task on one arm; counts: random poses and poses at each distance."""
+    arm = arms.load(name)
+    given = problems.make(arm, *counts)
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         arm.save(folder / "arm.npz")
         given.save(folder / "q.npz")
-        started = [Process(peer, task, folder, pythons.get(peer, sys.executable)) for peer in names]
+        started = [Process(peer, task, folder, pythons.get(peer, sys.executable), patience) for peer in names]
         alive = [p for p in started if "ready" in p.first]
         measure(alive, rounds, seconds)
         if task == "ik":
@@ -224,6 +243,11 @@ def declared_module(peer: str) -> str:
     raise LookupError(f"{peer} declares no MODULE")
 
 
+def load() -> float | None:
+    """Processes that wanted a core in the last five minutes, on average: whether the machine was quiet."""
+    return round(os.getloadavg()[1], 1) if hasattr(os, "getloadavg") else None
+
+
 def machine() -> dict[str, object]:
     """What the numbers were taken on."""
     model = platform.processor()
@@ -247,19 +271,39 @@ def main() -> None:
     parser.add_argument("--rounds", type=int, default=7)
     parser.add_argument("--seconds", type=float, default=0.3)
     parser.add_argument("--only", nargs="*", default=peers.NAMES)
-    parser.add_argument("--arms", nargs="*", default=ARMS)
-    parser.add_argument("--tasks", nargs="*", default=TASKS)
+    parser.add_argument("--set", default="measurements", choices=arms.SETS)
+    parser.add_argument("--arms", nargs="*")
+    parser.add_argument("--counts", nargs=2, type=int, default=(1000, 200))
+    parser.add_argument("--patience", type=float, default=60.0)
     options = parser.parse_args()
     pythons = dict(pair.split("=", 1) for pair in options.python)
+    tasks = TASKS if options.set == "measurements" else ["ik"]
+    busy = load()
     rows = [
         row
-        for name in options.arms
-        for task in options.tasks
-        for row in compete(name, task, options.only, pythons, options.rounds, options.seconds)
+        for name in options.arms or arms.SETS[options.set]
+        for task in tasks
+        for row in compete(
+            name,
+            task,
+            options.only,
+            pythons,
+            options.rounds,
+            options.seconds,
+            tuple(options.counts),
+            options.patience,
+        )
     ]
     RESULTS.mkdir(exist_ok=True)
-    measured = {"machine": machine(), "imports": imports(pythons, options.only), "rows": rows}
-    (RESULTS / "measurements.json").write_text(json.dumps(measured, indent=1) + "\n")
+    measured: dict[str, object] = {
+        "machine": machine(),
+        "load": busy,
+        "patience": options.patience,
+        "rows": rows,
+    }
+    if options.set == "measurements":
+        measured["imports"] = imports(pythons, options.only)
+    (RESULTS / f"{options.set}.json").write_text(json.dumps(measured, indent=1) + "\n")
 
 
 if __name__ == "__main__":

@@ -27,16 +27,17 @@ def residuals(arm: Arm, q: Array, T: Array) -> Array:
     return np.abs(fk(arm, q) - T).max(axis=(-1, -2)) if len(q) else np.zeros(0)
 
 
-def same(a: Array, b: Array, tolerance: float) -> Array:
-    """Which rows of a (k, n) are the configuration b (n,), up to turns."""
-    return np.abs(wrap(a - b)).max(axis=-1) <= tolerance
+def same(arm: Arm, a: Array, b: Array, tolerance: float) -> Array:
+    """Which rows of a (k, n) are the configuration b (n,), up to turns of the joints that turn."""
+    gap = a - b
+    return np.abs(np.where(arm.turns, wrap(gap), gap)).max(axis=-1) <= tolerance
 
 
-def distinct(q: Array, tolerance: float) -> Array:
+def distinct(arm: Arm, q: Array, tolerance: float) -> Array:
     """The rows of q (k, n) without repetitions, up to turns."""
     kept: list[Array] = []
     for row in q:
-        if not kept or not same(np.array(kept), row, tolerance).any():
+        if not kept or not same(arm, np.array(kept), row, tolerance).any():
             kept.append(row)
     return np.array(kept).reshape(-1, q.shape[-1])
 
@@ -58,7 +59,11 @@ def polish(arm: Arm, q: Array, T: Array) -> Array:
             [turn[:, 2, 1] - turn[:, 1, 2], turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]]
         )
         twist = np.concatenate([T[:3, 3] - now[:, :3, 3], spin.T / 2], axis=-1)
-        step = np.linalg.solve(jacobian(arm, q), twist[..., None])[..., 0]
+        J = jacobian(arm, q)
+        if arm.dof == 6:
+            step = np.linalg.solve(J, twist[..., None])[..., 0]
+        else:
+            step = (np.linalg.pinv(J) @ twist[..., None])[..., 0]
         q = q + np.clip(step, -1e-2, 1e-2)
     return q[residuals(arm, q, T) <= SOLVED]
 
@@ -67,7 +72,7 @@ def truth(arm: Arm, q_true: Array, T: Array, answers: list[Array], tolerance: fl
     """The configurations (k, n) that reach T: the one it was made from and what any contender found,
     polished."""
     pool = np.concatenate([q_true[None], *(a for a in answers if len(a))])
-    return distinct(np.concatenate([q_true[None], polish(arm, pool, T)]), tolerance)
+    return distinct(arm, np.concatenate([q_true[None], polish(arm, pool, T)]), tolerance)
 
 
 def resolution(arm: Arm, q: Array) -> Array:
@@ -83,4 +88,4 @@ def count_found(arm: Arm, true: Array, answer: Array, tolerance: float) -> int:
     if len(answer) == 0 or len(true) == 0:
         return 0
     limits = np.maximum(tolerance, resolution(arm, true))
-    return sum(bool(same(answer, row, limit).any()) for row, limit in zip(true, limits, strict=True))
+    return sum(bool(same(arm, answer, row, limit).any()) for row, limit in zip(true, limits, strict=True))

@@ -14,15 +14,19 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
-import numpy as np
-import numpy.typing as npt
+from chains import Arm, Array
 
-Array = npt.NDArray[np.float64]
 NAMES = ["cspace_", "eaik_", "ik_geo_", "ssik_", "ur_analytic", "pinocchio_", "toolbox"]
 
 
 class Refused(Exception):
     """The contender does not do this arm or this task; the message is its reason."""
+
+
+def need_turns(arm: Arm) -> None:
+    """For contenders whose input has no word for a slide."""
+    if not arm.turns.all():
+        raise Refused("takes joints that turn only")
 
 
 @dataclass

@@ -9,7 +9,9 @@ VERSION = cs.__version__
 
 
 def robot(arm):
-    screws = cs.model.from_screws(arm.axes, arm.points, arm.T_zero, lower=arm.lower, upper=arm.upper)
+    screws = cs.model.from_screws(
+        arm.axes, arm.points, arm.T_zero, joint_types=arm.joint_types, lower=arm.lower, upper=arm.upper
+    )
     return cs.Robot(screws)
 
 

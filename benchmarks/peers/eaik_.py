@@ -4,12 +4,13 @@ import numpy as np
 from eaik.IK_HP import HPRobot
 
 from chains import offsets
-from peers import Refused, Task
+from peers import Refused, Task, need_turns
 
 NAME, PACKAGE, MODULE = "EAIK", "EAIK", "eaik.IK_HP"
 
 
 def ik(arm):
+    need_turns(arm)
     robot = HPRobot(arm.axes, offsets(arm))
     if not robot.hasKnownDecomposition():
         raise Refused("no known decomposition")

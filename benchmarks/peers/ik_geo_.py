@@ -4,7 +4,7 @@ import numpy as np
 from ik_geo import Robot
 
 from chains import offsets
-from peers import Refused, Task
+from peers import Refused, Task, need_turns
 
 NAME, PACKAGE, MODULE = "ik-geo", "ik-geo", "ik_geo"
 
@@ -33,6 +33,7 @@ def factory(arm):
 
 
 def ik(arm):
+    need_turns(arm)
     robot = factory(arm)(arm.axes, offsets(arm))
     unturn = arm.T_zero[:3, :3].T
 

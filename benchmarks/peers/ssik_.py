@@ -1,10 +1,17 @@
-"""ssik: subproblem and algebraic solvers behind one manipulator class."""
+"""ssik: subproblem and algebraic solvers behind one manipulator class.
+
+Its general solver derives equations for each arm, which takes seconds to minutes; it ships them for the arms
+it knows and keeps those of others on disk. Here every process begins without any kept from before.
+"""
+
+import os
+import tempfile
 
 import numpy as np
 from ssik import Manipulator
 
 from chains import alignment, offsets
-from peers import Task
+from peers import Task, need_turns
 
 NAME, PACKAGE, MODULE = "ssik", "ssik", "ssik"
 
@@ -24,12 +31,24 @@ def fastest(arm):
             return prebuilt, *frames
     unturn = np.eye(4)
     unturn[:3, :3] = arm.T_zero[:3, :3].T
-    return Manipulator.from_axes(arm.axes, offsets(arm)), np.eye(4), unturn
+    return from_axes(arm), np.eye(4), unturn
+
+
+def from_axes(arm):
+    return Manipulator.from_axes(arm.axes, offsets(arm))
+
+
+def derive(robot):
+    """The work that the general solver needs once for an arm, without what it kept on disk from before."""
+    with tempfile.TemporaryDirectory() as empty:
+        os.environ["SSIK_DERIVATION_CACHE"] = empty
+        robot.prepare()
 
 
 def ik(arm):
+    need_turns(arm)
     robot, base, tool = fastest(arm)
-    robot.prepare()
+    derive(robot)  # of a shipped arm this returns at once
 
     def call(T):
         return robot.solve(T, respect_limits=False, enumerate_windings=False)

@@ -13,7 +13,9 @@ NAME, PACKAGE, MODULE = "Robotics Toolbox", "roboticstoolbox-python", "roboticst
 def dh_robot(arm):
     links = [
         rtb.RevoluteDH(a=a, alpha=alpha, d=d, offset=offset, qlim=[-np.pi, np.pi])
-        for alpha, a, d, offset in arm.dh
+        if turns
+        else rtb.PrismaticDH(a=a, alpha=alpha, theta=offset, offset=d, qlim=[-10, 10])
+        for (alpha, a, d, offset), turns in zip(arm.dh, arm.turns, strict=True)
     ]
     robot = rtb.DHRobot(links, base=SE3(arm.T_dh_base), tool=SE3(arm.T_dh_tool), name=arm.name)
     q = np.linspace(0.3, 1.3, arm.dof)

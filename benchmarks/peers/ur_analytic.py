@@ -12,7 +12,7 @@ NAME, PACKAGE, MODULE = "ur-analytic-ik", "ur_analytic_ik", "ur_analytic_ik"
 def ik(arm):
     model = getattr(ur_analytic_ik, arm.name, None)
     if model is None:
-        raise Refused("not an arm of Universal Robots")
+        raise Refused("not a nominal arm of Universal Robots")
     frames = alignment(arm, lambda q: np.asarray(model.forward_kinematics(*q)))
     if frames is None:
         raise Refused("its frames and those of the arm differ by more than base and tool")
