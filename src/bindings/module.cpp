@@ -18,4 +18,5 @@ NB_MODULE(_core, m) {
     bind_ik_numeric(m);
     bind_ik_tasks(m);
     bind_ik_plan(m);
+    bind_ik_numbers(m);
 }

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from cspace.errors import CspaceError
 
 if TYPE_CHECKING:
-    from cspace import ik, kinematics, model, plot, robots, spatial
+    from cspace import export, ik, kinematics, model, plot, robots, spatial
     from cspace._core import __version__
     from cspace.ik import (
         CenterOfMassTask,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
-__all__ = ["CspaceError", "Robot", "__version__", "ik", "kinematics", "load_robot", "model", "plot"]
+__all__ = ["CspaceError", "Robot", "__version__", "export", "ik", "kinematics", "load_robot", "model", "plot"]
 __all__ += ["robots", "spatial", "subproblems"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
@@ -42,6 +42,7 @@ _LATER = {
     "PostureTask": "cspace.ik",
     "Robot": "cspace.robot",
     "__version__": "cspace._core",
+    "export": "",
     "ik": "",
     "kinematics": "",
     "load_robot": "cspace.robots",

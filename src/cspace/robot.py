@@ -17,6 +17,7 @@ from cspace.spatial import as_pose
 from cspace.spatial.checks import PoseLike
 
 if TYPE_CHECKING:
+    from cspace.export import Export
     from cspace.ik import IkPlan, NumericSolution, SampledSolutions, TaskSolution
 
     Seed = int | np.random.Generator | None
@@ -163,6 +164,22 @@ class Robot(RobotBase):
     def to_screws(self) -> Chain:
         """The joint axes at zero from base to tip, tool and mounting included; the same as chain."""
         return self.chain
+
+    def export(
+        self,
+        lang: str | None = None,
+        path: str | os.PathLike[str] | None = None,
+        *,
+        name: str | None = None,
+    ) -> Export:
+        """The inverse kinematics as source code that needs nothing of cspace, written to `path` if there is
+        one; see export.export, which also names the errors.
+
+        lang: "cpp" or "c"; by the ending of path unless given. name: of the namespace in it.
+        """
+        from cspace.export import export
+
+        return export(self, lang, path, name=name)
 
     def _whole(self) -> Description:
         """The description with the tool as a link on the tip and the mounting under a new root."""

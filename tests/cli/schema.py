@@ -87,6 +87,13 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "lost_direction": VECTOR,
         "lost_by": [TEXT],
     },
+    "cspace.export/1": {
+        "language": TEXT,
+        "name": TEXT,
+        "method": TEXT,
+        "written": [TEXT],
+        "files": dict,
+    },
     "cspace.dh/1": {
         "robot": TEXT,
         "convention": TEXT,

@@ -17,6 +17,7 @@ LINES = {
     "ik": "ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 pi 0",
     "jacobian": "jacobian ur5e 0.1 -1.2 1 0.2 0.4 0.3",
     "dh": "dh ur5e",
+    "export": "export planar_2r",
     "doctor": "doctor",
 }
 Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]

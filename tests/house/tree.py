@@ -22,6 +22,7 @@ TIERS: list[set[str]] = [
     {"model", "shapes"},
     {"kinematics", "dynamics", "collision", "maps", "mobile"},
     {"ik", "planning", "trajectory", "navigation", "localization"},
+    {"export"},
     {"robot"},
     {"robots", "reach"},
     {"plot", "lab"},

@@ -45,9 +45,15 @@ CSPACE_INLINE ik::Quick solve_quickly(const ik::Plan& plan, const double* T, dou
                 return ik::Quick::doubtful;
     // Branch 2 l + e is lane l of angles[e].
     for (int e = 0; e < 2; ++e) store_rows(angles[e], 6, q + 6 * e, 12, 4);
+    const unsigned ok[2] = {bits_of(found.ok[0]), bits_of(found.ok[1])};
+    if ((ok[0] & ok[1]) == 15) {
+        for (int k = 0; k < max_branches; ++k) branch[k] = static_cast<signed char>(k);
+        *count = max_branches;
+        return ik::Quick::settled;
+    }
     int n = 0;
     for (int k = 0; k < max_branches; ++k) {
-        if (!lane(found.ok[k & 1], k >> 1)) continue;
+        if (!(ok[k & 1] >> (k >> 1) & 1)) continue;
         if (n != k)
             for (int i = 0; i < 6; ++i) q[6 * n + i] = q[6 * k + i];
         branch[n++] = static_cast<signed char>(k);

@@ -1,0 +1,77 @@
+"""`cspace export`: an arm's inverse kinematics as source code."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING, Final
+
+from cspace.cli.arguments import add_chain, add_robot
+from cspace.cli.exits import Exit, UsageError
+from cspace.cli.files import check_writable
+from cspace.cli.output import Output
+from cspace.cli.robot import load, need_chain
+
+if TYPE_CHECKING:
+    from cspace.export import Export
+
+__all__ = ["EXAMPLES", "arguments", "run"]
+
+EXAMPLES: Final = """
+cspace export ur5e --lang cpp -o ur5e_ik.hpp
+cspace export gen3_lite --lang c -o gen3_lite_ik.h --example main.c
+cspace export arm.urdf --name my_arm > my_arm.hpp
+"""
+
+
+def arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the arguments."""
+    add_robot(parser)
+    parser.add_argument(
+        "--lang", metavar="LANGUAGE", help="cpp or c; by the ending of FILE unless given, else cpp"
+    )
+    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="where to write it, else shown")
+    parser.add_argument(
+        "--name", help="the namespace, or the prefix; made from the robot's name unless given"
+    )
+    parser.add_argument("--example", type=Path, metavar="FILE", help="write a main program that uses it")
+    add_chain(parser)
+
+
+def run(args: argparse.Namespace, out: Output) -> int:
+    """Write the files, or show the one there is."""
+    targets = [path for path in (args.output, args.example) if path is not None]
+    for path in targets:
+        check_writable(path)
+    robot = load(args)
+    need_chain(robot)
+    made = robot.export(args.lang, args.output, name=args.name)
+    if args.output is None and len(made.files) > 1 and not out.as_json:
+        raise UsageError(f"{made.language} needs {len(made.files)} files: say where with -o FILE")
+    if args.example is not None:
+        made.write_example(args.example)
+    report(made, args, out)
+    return Exit.DONE
+
+
+def report(made: Export, args: argparse.Namespace, out: Output) -> None:
+    """What was written, or the text itself."""
+    written = [] if args.output is None else [str(args.output.parent / name) for name in made.files]
+    written += [str(args.example)] * (args.example is not None)
+    if out.as_json:
+        texts = dict(made.files) if args.output is None else {}
+        out.document(
+            {
+                "schema": "cspace.export/1",
+                "language": made.language,
+                "name": made.name,
+                "method": made.method,
+                "written": written,
+                "files": texts,
+            }
+        )
+    elif args.output is None:
+        out.stream.write(made.text)
+    else:
+        for path in written:
+            out.line(path)

@@ -1,0 +1,100 @@
+"""One arm as one self-contained C++17 header."""
+
+from __future__ import annotations
+
+import re
+from string import Template
+from typing import Any
+
+from cspace.export.amalgam import amalgamate
+from cspace.export.arm import ExportedArm
+from cspace.export.family import general_method, only_this_family, other_families
+from cspace.export.numbers import bounds, initialiser, literal, quoted
+from cspace.export.plain import in_ascii
+from cspace.export.words import filled, template
+
+__all__ = ["cpp_header", "words_of"]
+
+ALWAYS_INCLUDED = {"cmath", "initializer_list", "limits"}
+
+
+# A table that is made when the program starts; one made on first use, or shared between files, would need the
+# run-time library of C++.
+TABLE_AT_START = (
+    "static const ik::SamplerTables tables_of_sampler = make_sampler_tables();\n"
+    "inline const ik::SamplerTables& sampler_tables() { return tables_of_sampler; }"
+)
+
+
+def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
+    """The text of the header: the arm's numbers, what of the core's headers they need, the interface.
+
+    one_file: only one file of the program will include it, and link without the run-time library of C++.
+    """
+    words = {**words_of(arm), "storage": "static" if one_file else "inline"}
+    headers, code, replaced = solver(arm)
+    if one_file:
+        replaced["sampler_tables"] = TABLE_AT_START
+    code = Template(code).substitute(words, plan=initialiser(plan_of(arm)))
+    interface = filled("interface.hpp.in", words)
+    unwanted = other_families(arm.kind, arm.plan)
+    standard, core = amalgamate(headers, code + interface, replaced, unwanted)
+    solve = f"namespace cspace {{\ninline namespace CSPACE_ISA {{\n\n{code}\n}}\n}}  // namespace cspace\n"
+    text = renamed("\n".join([in_ascii(core), filled("types.hpp.in", words), solve, interface]), words)
+    includes = "".join(f"#include <{name}>\n" for name in sorted({*standard, *ALWAYS_INCLUDED}))
+    undefined = "".join(f"#undef {macro}\n" for macro in left_macros(text, words["MACRO"]))
+    return f"{filled('head.hpp.in', words)}{includes}\n{text}\n{undefined}\n#endif\n"
+
+
+def words_of(arm: ExportedArm) -> dict[str, Any]:
+    """The words that the templates leave open."""
+    return {
+        "name": arm.identifier,
+        "title": arm.title,
+        "version": arm.version,
+        "method": arm.method,
+        "MACRO": f"{arm.identifier.upper()}_IK_",
+        "dof": arm.dof,
+        "room": arm.room,
+        "joint_names": ", ".join(quoted(name) for name in arm.joint_names),
+        "prismatic": literal([kind == "P" for kind in arm.joint_types])[1:-1],
+        "lower": bounds(arm.lower),
+        "upper": bounds(arm.upper),
+    }
+
+
+def plan_of(arm: ExportedArm) -> dict[str, Any]:
+    return {**arm.plan, "solve": "&solve_general"} if arm.kind == "general" else arm.plan
+
+
+def solver(arm: ExportedArm) -> tuple[list[str], str, dict[str, str]]:
+    """Which headers of the core solve the arm, the code that calls them, and what it replaces in them."""
+    headers = ["cspace/ik/goal.hpp", "cspace/ik/chain.hpp"]
+    parts, replaced = ["refused", "given", f"solve_{arm.kind}"], {}
+    if arm.kind == "short":
+        headers += ["cspace/ik/position/pose.hpp"]
+        parts.remove("given")
+    elif arm.kind == "general":
+        headers += ["cspace/ik/general/singular.hpp"]
+        replaced = general_method(arm.plan)
+    elif arm.kind == "closed":
+        quick = arm.plan["on_lanes"] and not arm.plan["virtual_joints"]
+        headers += ["cspace/ik/careful.hpp", *["cspace/ik/quick.hpp"] * quick]
+        parts.append("solve_closed_quick" if quick else "solve_closed_slow")
+        replaced = only_this_family(arm.plan)
+    else:
+        headers += ["cspace/ik/arm.hpp"]
+    return headers, "\n".join(template(f"{part}.hpp.in") for part in parts), replaced
+
+
+def renamed(text: str, words: dict[str, Any]) -> str:
+    """The namespace and the macros of the core under the name of the arm, so that nothing meets its like."""
+    inner = f"{words['name']}::detail"
+    text = re.sub(r"\bnamespace cspace\b", f"namespace {inner}", text)
+    return re.sub(r"\bcspace::(?=\w)", f"{inner}::", text).replace("CSPACE_", words["MACRO"])
+
+
+def left_macros(text: str, prefix: str) -> list[str]:
+    """The macros that the text defines and leaves behind."""
+    defined = set(re.findall(rf"^#define ({prefix}\w+)", text, re.M))
+    return sorted(defined - set(re.findall(rf"^#undef ({prefix}\w+)", text, re.M)))

@@ -1,0 +1,112 @@
+"""The languages that an arm can be exported to."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path, PurePath
+from types import MappingProxyType
+from typing import Any
+
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.export.arm import ExportedArm, exported_arm
+from cspace.export.c import c_files
+from cspace.export.cpp import cpp_header, words_of
+from cspace.export.words import filled
+from cspace.model.files import path_of, write_text
+
+__all__ = ["LANGUAGES", "Export", "export"]
+
+LANGUAGES = MappingProxyType({"cpp": "a C++17 header", "c": "a C99 header and a C++17 file behind it"})
+BY_SUFFIX = MappingProxyType({".hpp": "cpp", ".hh": "cpp", ".hxx": "cpp", ".h": "c"})
+SUFFIXES = MappingProxyType({"cpp": ".hpp", "c": ".h"})
+
+
+@dataclass(frozen=True)
+class Export:
+    """An arm as source code. language: one of LANGUAGES; name: of the namespace, or the prefix; method: how
+    it solves; files: the texts by file name, the one that users include first; example: a program with it.
+    """
+
+    language: str
+    name: str
+    method: str
+    files: Mapping[str, str]
+    example: str
+
+    @property
+    def text(self) -> str:
+        """The file that users include or import."""
+        return next(iter(self.files.values()))
+
+    def write(self, folder: str | os.PathLike[str] = ".") -> list[Path]:
+        """Write every file into a folder, each whole or not at all; returns their paths.
+
+        Raises InputError where writing is impossible.
+        """
+        paths = [Path(path_of(folder)) / name for name in self.files]
+        for path, text in zip(paths, self.files.values(), strict=True):
+            write_text(path, text)
+        return paths
+
+    def write_example(self, path: str | os.PathLike[str]) -> None:
+        """Write the program that uses it; raises InputError where writing is impossible."""
+        write_text(path, self.example)
+
+
+def export(
+    robot: Any,
+    lang: str | None = None,
+    path: str | os.PathLike[str] | None = None,
+    *,
+    name: str | None = None,
+) -> Export:
+    """The inverse and forward kinematics of an arm as source code that needs nothing of cspace.
+
+    lang: "cpp", "c"; by the ending of path unless given, else "cpp". path: where to write the (first) file.
+    name: the namespace in it, or the prefix; made from the robot's name unless given.
+
+    Raises UnknownNameError for a language that is none, InputError for a name or a path that cannot be used,
+    NoClosedFormError for an arm that robot.ik does not solve.
+    """
+    target = None if path is None else PurePath(path_of(path))
+    language = language_of(lang, target)
+    arm = exported_arm(robot, name)
+    main = f"{arm.identifier}_ik{SUFFIXES[language]}" if target is None else target.name
+    if not main:
+        raise InputError(f"path is {str(path)!r}, expected the name of a file")
+    made = write_out(arm, language, main)
+    if target is not None:
+        made.write(target.parent)
+    return made
+
+
+def language_of(lang: str | None, target: PurePath | None) -> str:
+    """The language asked for, or that of the file's ending."""
+    if lang is None:
+        return BY_SUFFIX.get(target.suffix, "cpp") if target is not None else "cpp"
+    if not isinstance(lang, str):
+        raise InputTypeError(f"lang is a {type(lang).__name__}, expected one of {', '.join(LANGUAGES)}")
+    if lang not in LANGUAGES:
+        raise suggest("language", lang, LANGUAGES)
+    return lang
+
+
+def write_out(arm: ExportedArm, language: str, main: str) -> Export:
+    files = {main: cpp_header(arm)} if language == "cpp" else c_files(arm, main)
+    ending = ".cpp" if language == "cpp" else ".c"
+    words = {**words_of(arm), "header": main, "file": f"main{ending}", "sample": sample(arm)}
+    words["source"] = PurePath(main).with_suffix(".cpp").name
+    words["object"] = PurePath(main).with_suffix(".o").name
+    example = filled(f"example{ending}.in", words)
+    return Export(language, arm.identifier, arm.method, MappingProxyType(files), example)
+
+
+def sample(arm: ExportedArm) -> str:
+    """A configuration without a pattern inside the limits, as a list of numbers."""
+    values = []
+    for i, (lower, upper) in enumerate(zip(arm.lower, arm.upper, strict=True)):
+        low, high = max(lower, -2.0), min(upper, 2.0)
+        values.append(round(low + (high - low) * (0.37 + 0.31 * i) % 1.0, 3))
+    return ", ".join(map(str, values))

@@ -1,0 +1,57 @@
+"""Text in ASCII: compilers differ in what else they take in comments."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from types import MappingProxyType
+
+__all__ = ["in_ascii"]
+
+WORDS = MappingProxyType(
+    {
+        **{
+            "−": "-",
+            "–": "-",
+            "·": "*",
+            "×": "x",
+            "‖": "|",
+            "≤": "<=",
+            "≥": ">=",
+            "≠": "!=",
+            "…": "...",
+            "½": "1/2",
+        },
+        **{
+            "±": "+-",
+            "∓": "-+",
+            "√": "sqrt",
+            "∥": "||",
+            "⊥": "_|_",
+            "∂": "d",
+            "°": " deg",
+            "∞": "inf",
+            "↦": "->",
+        },
+        **{"→": "->", "∈": "in", "∝": "~", "§": "sec. ", "″": "''", "′": "'", "’": "'"},
+    }
+)
+RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻ⁿᵏⁱᵀ", "0123456789-nkiT")
+
+
+def in_ascii(text: str) -> str:
+    """Greek letters by name, raised letters as powers, signs as people type them; what is left, as ?."""
+    text = re.sub("[⁰¹²³⁴-⁹⁻ⁿᵏⁱᵀ]+", lambda found: "^" + found[0].translate(RAISED), text)
+    return re.sub(r"[^\x00-\x7f]", lambda found: letter(found[0]), text)
+
+
+def letter(sign: str) -> str:
+    if sign in WORDS:
+        return WORDS[sign]
+    name = unicodedata.name(sign, "")
+    if name.startswith("GREEK"):
+        word = name.split()[-1].lower()
+        return word.capitalize() if "CAPITAL" in name else word
+    if unicodedata.combining(sign):
+        return ""
+    return unicodedata.normalize("NFKD", sign).encode("ascii", "ignore").decode() or "?"

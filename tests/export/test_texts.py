@@ -1,0 +1,138 @@
+"""Every arm that robot.ik solves can be written down, whole, free of the library and of allocation."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.errors import InputError, InputTypeError, UnknownNameError
+from cspace.export import LANGUAGES
+from cspace.ik import NoClosedFormError, geometry
+
+STANDARD = {
+    *("array", "cfloat", "climits", "cmath", "cstddef", "cstdint", "cstdlib", "cstring", "initializer_list"),
+    *("limits", "type_traits", "utility", "algorithm"),
+}
+REGISTERS = {"immintrin.h", "arm_neon.h"}
+ALLOCATION = re.compile(r"\b(new|malloc|std::vector|std::string|unique_ptr|shared_ptr|throw|std::function)\b")
+
+
+def code_of(text):
+    """C or C++ without comments and literals."""
+    return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\])*"', "", text, flags=re.S)
+
+
+@pytest.mark.parametrize("name", cs.robots.names())
+def test_every_arm_of_the_catalogue(name):
+    robot = cs.load_robot(name)
+    for lang in ("cpp", "c"):
+        if geometry(robot).family == "none":
+            with pytest.raises(NoClosedFormError, match=robot.name):
+                robot.export(lang)
+            continue
+        made = robot.export(lang)
+        for text in made.files.values():
+            assert text.isascii()
+            assert "0BSD" in text.split("#ifndef")[0] or text.startswith("#include")
+            code = code_of(text)
+            assert not ALLOCATION.search(code)
+            assert "cspace" not in code.lower()
+            assert code.count("{") == code.count("}")
+            assert "$" not in text
+            included = set(re.findall(r"#include <([^>]+)>", text))
+            assert included <= STANDARD | REGISTERS
+        assert made.name in made.text
+
+
+def test_only_what_the_arm_needs_is_there():
+    """A spherical wrist carries neither the general solver nor the other families, and so on."""
+    words = {
+        "irb120": ({"place_wrist"}, {"eliminate", "solve_middle_parallel", "any_three", "solve_short_pose"}),
+        "ur5e": ({"finish_in_plane"}, {"eliminate", "solve_middle_parallel", "any_three", "turn_wrist"}),
+        "gen3_lite": ({"eliminate"}, {"place_wrist", "solve_short_pose", "make_general_plan"}),
+        "planar_2r": ({"solve_short_pose"}, {"eliminate", "place_wrist", "solve_carefully"}),
+    }
+    for name, (there, missing) in words.items():
+        code = code_of(cs.load_robot(name).export("cpp").text)
+        found = set(re.findall(r"[A-Za-z_]\w*", code))
+        assert there <= found
+        assert not missing & found, name
+
+
+def test_macros_do_not_outlive_the_header():
+    text = cs.load_robot("crx10ia").export("cpp").text
+    defined = set(re.findall(r"^ *# *define (\w+)", text, re.M))
+    removed = set(re.findall(r"^ *# *undef (\w+)", text, re.M))
+    assert defined - removed == {"CRX10IA_IK_HPP"}
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("ur5e", "ur5e"),
+        ("My Arm 2", "my_arm_2"),
+        ("7-dof", "arm_7_dof"),
+        ("double", "double_arm"),
+        ("ünö", "n"),
+    ],
+)
+def test_names_become_identifiers(name, expected):
+    robot = cs.Robot.from_screws([[0, 0, 1]], [[0, 0, 0]], np.eye(4), name=name)
+    assert robot.export().name == expected
+
+
+@pytest.mark.parametrize("name", ["", "1a", "a-b", "a b", "int", "a__b", "std", "ä", "a;b"])
+def test_names_that_are_none_are_refused(name):
+    with pytest.raises(InputError, match="name is"):
+        cs.load_robot("ur5e").export(name=name)
+
+
+def test_names_with_quotes_and_accents_stay_literals():
+    robot = cs.Robot.from_screws(
+        [[0, 0, 1]], [[0, 0, 0]], np.eye(4), name='evil "; */ \n // é', joint_names=['j"\\ é?']
+    )
+    for lang in LANGUAGES:
+        text = robot.export(lang).text
+        assert "\n // é" not in text
+
+
+def test_the_language_follows_the_ending(tmp_path):
+    robot = cs.load_robot("planar_2r")
+    assert robot.export(path=tmp_path / "a.hpp").language == "cpp"
+    assert robot.export(path=tmp_path / "a.h").language == "c"
+    assert robot.export("cpp", tmp_path / "b.h").language == "cpp"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.cpp", "a.h", "a.hpp", "b.h"]
+
+
+def test_unknown_languages_are_named():
+    with pytest.raises(UnknownNameError, match=r"no language 'c\+\+'.*cpp"):
+        cs.load_robot("ur5e").export("c++")
+    with pytest.raises(InputTypeError, match="lang is a int"):
+        cs.load_robot("ur5e").export(3)
+
+
+def test_what_cannot_be_written_leaves_nothing_behind(tmp_path):
+    robot = cs.load_robot("ur5e")
+    with pytest.raises(InputError, match="cannot be written"):
+        robot.export("cpp", tmp_path / "missing" / "a.hpp")
+    with pytest.raises(InputError, match="cannot be written"):
+        robot.export("cpp", tmp_path)
+    (tmp_path / "a.hpp").write_text("old")
+    with pytest.raises(NoClosedFormError):
+        cs.load_robot("panda").export("cpp", tmp_path / "a.hpp")
+    assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.hpp", "old")]
+
+
+def test_tools_and_mountings_count(tmp_path):
+    T = np.eye(4)
+    T[:3, 3] = 0.1, 0.2, 0.3
+    robot = cs.load_robot("ur5e")
+    assert robot.with_tool(T).export().text != robot.export().text
+    assert robot.with_base(T).export().text != robot.export().text
+
+
+def test_the_same_arm_gives_the_same_text():
+    assert cs.load_robot("irb120").export().text == cs.load_robot("irb120").export().text
