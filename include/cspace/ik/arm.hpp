@@ -54,10 +54,37 @@ ik::Solutions from_short(const ik::Chain& chain, const Found& found) {
     return out;
 }
 
+// Solutions of a short arm brought to the last digit.
+inline void refine_short(const ik::Chain& chain, const Posed& goal, double length, ik::Solutions& out) {
+    for (int k = 0; k < out.count; ++k) {
+        double q[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i];
+        PoseError error;
+        measure(chain, goal, length, q, error);
+        if (size_of_error(error) <= tolerance::exact) continue;
+        refine(chain, goal, length, q, error, 10);
+        for (int i = 0; i < chain.n; ++i)
+            out.q[k][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
+    }
+}
+
 inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
-    if (arm.has_plan) return solve_carefully(arm.plan, goal, idle);
+    constexpr int starts = 12;
+    const ik::Chain& chain = arm.plan.chain;
+    const double length = arm.plan.form.length;
     if (arm.is_general) return solve_general_carefully(arm.general, goal, idle);
-    return from_short(arm.plan.chain, solve_short_pose(arm.plan.chain, goal));
+    if (arm.has_plan) {
+        ik::Solutions out = solve_carefully(arm.plan, goal, idle);
+        // Where the completed arm is singular the arm itself need not be.
+        if (out.count == 0 && arm.plan.virtual_joints > 0 &&
+            closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
+            search_by_descent(chain, goal, length, 4 * starts, out);
+        return out;
+    }
+    ik::Solutions out = from_short(chain, solve_short_pose(chain, goal));
+    if (out.count == 0) search_by_descent(chain, goal, length, starts, out);
+    refine_short(chain, goal, length, out);
+    return out;
 }
 
 // Minimises (‖Δp‖ / length)² + (weight · angle)²: weight 1 weighs a radian like the arm's length, a large one

@@ -180,7 +180,7 @@ inline bool start_direction(const ik::Chain& chain, const ik::Held& held, const 
 // the tangent there, the start first; where the curve closes, the start comes last again, its angles unwound.
 template <class Visit>
 ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const double* start,
-                          const double* direction, Visit&& visit) {
+                          const double* direction, Visit&& visit, int most_steps = ik::most_curve_steps) {
     constexpr double longest = 0.05, shortest = 1e-7;
     const int n = chain.n;
     double q[ik::max_joints] = {}, t[ik::max_joints] = {}, first[ik::max_joints] = {};
@@ -191,7 +191,7 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const do
     visit(q, t);
     if (!leaves) return ik::CurveEnd::lost;
     double h = first_step(at.jacobian), room = longest;
-    for (int step = 0; step < ik::most_curve_steps; ++step) {
+    for (int step = 0; step < most_steps; ++step) {
         double next[ik::max_joints] = {}, next_t[ik::max_joints] = {};
         if (step > 2 && start_is_next(chain, held, q, t, start, first, 1.5 * h, next)) {
             visit(next, first);

@@ -78,9 +78,10 @@ inline bool lies_beside(const ik::Chain& chain, const double* q, const double* t
 inline void keep_one_per_family(const ik::Chain& chain, const Posed& goal, const double* idle,
                                 ik::Solutions& out) {
     const ik::Held held = {goal, true, 1};
+    int steps_left = 4000;  // of all curves together
     bool dropped[ik::max_solutions] = {};
     for (int k = 0; k < out.count; ++k) {
-        if (!out.family[k] || dropped[k]) continue;
+        if (!out.family[k] || dropped[k] || steps_left <= 0) continue;
         ik::Representative r;
         r.joint = leading_joint(out.direction[k], chain.n);
         r.value = idle ? idle[r.joint] : 0;
@@ -94,11 +95,13 @@ inline void keep_one_per_family(const ik::Chain& chain, const Posed& goal, const
                 offer_member(chain, r, q, t);
                 if (!first) offer_between(chain, held, r, before, q, t);
                 first = false;
+                --steps_left;
                 for (int i = 0; i < chain.n; ++i) before[i] = q[i];
                 for (int m = k + 1; m < out.count; ++m)
                     dropped[m] = dropped[m] || (out.family[m] && lies_beside(chain, q, t, out.q[m]));
             };
-            if (follow_curve(chain, held, start, way, visit) == ik::CurveEnd::closed) break;
+            const int most_steps = min(steps_left, 1000);
+            if (follow_curve(chain, held, start, way, visit, most_steps) == ik::CurveEnd::closed) break;
         }
         for (int i = 0; i < chain.n; ++i) {
             out.q[k][i] = chain.prismatic[i] ? r.q[i] : wrap_once(short_way(r.q[i]));

@@ -20,15 +20,21 @@ inline void mark_families(const ik::GeneralPlan& plan, const Posed& goal, ik::So
     }
 }
 
-// Where the determinant vanishes all round the circle, a family runs through every hidden angle: its members
-// are found by descent from configurations all over the joints.
-inline void search_family(const ik::Chain& chain, const Posed& goal, ik::Solutions& out) {
-    constexpr int starts = 48, most_steps = 60;
+// Where a determinant vanishes all round the circle a family runs through every hidden angle, and where a
+// completed arm is singular the arm itself need not be: what is there is found by descent from configurations
+// all over the joints.
+inline void search_by_descent(const ik::Chain& chain, const Posed& goal, double length, int starts,
+                              ik::Solutions& out) {
+    constexpr int most_steps = 60;
     for (int k = 0; k < starts && out.count < ik::max_solutions; ++k) {
         double q[ik::max_joints];
         spread_configuration(k, chain.n, q);
-        admit(out, chain, goal, 1, q, out.count, most_steps);
+        for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
+        admit(out, chain, goal, length, q, out.count, most_steps);
     }
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    for (int k = 0; k < out.count; ++k)
+        if (out.family[k]) out.status = ik::Status::singular;
 }
 
 // Slides in metres again, and directions of length one.
@@ -71,10 +77,13 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     arm.solve(arm, goal, out);
     const bool all = out.complete && !out.crowded;
     if (chain.n < 6) out = without_virtual_joints(chain, goal, out);
-    if (!all) {
-        if (!out.complete && out.count == 0) search_family(chain, goal, out);
-        if (chain.n == 6) mark_families(arm.plan, goal, out);
-    }
+    const bool completed = chain.n < 6;
+    // Of six turning joints a certified empty list is believed; slides and wrists may hide a singular pose.
+    if (!all)
+        search_by_descent(chain, goal, 1, 48, out);
+    else if (out.count == 0 && (completed || arm.plan.slides > 0))
+        search_by_descent(chain, goal, 1, 16, out);
+    if (!all && !completed) mark_families(arm.plan, goal, out);
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
     for (int k = 0; k < out.count; ++k)
         if (out.family[k]) out.status = ik::Status::singular;

@@ -58,6 +58,15 @@ inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, in
     }
 }
 
+// Whether no slide has run away: where two of them are nearly parallel Newton's method may send them where
+// nothing is left of the tip but rounding.
+inline bool is_sane(const ik::Chain& chain, const Posed& goal, const double* q) {
+    constexpr double far = 1e4;  // lengths of the arm, and of the way to the goal
+    for (int i = 0; i < chain.n; ++i)
+        if (chain.prismatic[i] && !(std::fabs(q[i]) < far * (1 + norm(goal.t)))) return false;
+    return true;
+}
+
 // Adds a polished solution unless it is there or the room is used up.
 inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, const Posed& goal,
                            const double* q) {
@@ -66,7 +75,7 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
         if (gap < tolerance::same_solution) return;
         if (gap < 1e-3 && are_one(plan.chain, goal, 1.0, out.q[k], q)) return;
     }
-    if (out.count == ik::max_solutions) return;
+    if (out.count == ik::max_solutions || !is_sane(plan.chain, goal, q)) return;
     const int n = out.count++;
     for (int i = 0; i < 6; ++i) out.q[n][i] = plan.chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
     out.branch[n] = static_cast<signed char>(n);
@@ -289,7 +298,7 @@ inline bool solve_orientation_first(const ik::GeneralPlan& plan, const Posed& go
     ik::Candidates found;
     for (int k = 0; k < both.count; ++k) put(found, both.q[k], both.inside < 1e-6);
     admit_candidates(plan, goal, 0, found, out);
-    return both.volume > flat && (std::fabs(both.inside) > clear || out.count == 2);
+    return both.volume > flat && std::fabs(both.inside) > clear;
 }
 
 }  // namespace cspace::inline CSPACE_ISA
