@@ -30,7 +30,11 @@ inline void search_by_descent(const ik::Chain& chain, const Posed& goal, double 
         double q[ik::max_joints];
         spread_configuration(k, chain.n, q);
         for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
-        admit(out, chain, goal, length, q, out.count, most_steps);
+        // Beside solutions a valley that almost reaches the goal is none of them.
+        PoseError error;
+        const double left = refine(chain, goal, length, q, error, most_steps);
+        if (left <= (out.count ? tolerance::exact : tolerance::reached))
+            admit(out, chain, goal, length, q, out.count, 2);
     }
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
     for (int k = 0; k < out.count; ++k)
@@ -79,7 +83,7 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     if (chain.n < 6) out = without_virtual_joints(chain, goal, out);
     const bool completed = chain.n < 6;
     // Of six turning joints a certified empty list is believed; slides and wrists may hide a singular pose.
-    if (!all)
+    if (!all && (out.count == 0 || completed || arm.plan.slides > 0))
         search_by_descent(chain, goal, 1, 48, out);
     else if (out.count == 0 && (completed || arm.plan.slides > 0))
         search_by_descent(chain, goal, 1, 16, out);
