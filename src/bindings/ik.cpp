@@ -15,7 +15,7 @@
 using namespace cspace;
 
 const char robot_ik_doc[] =
-    R"doc(ik($self, goal=None, *, position=None, near=None, least_squares=False, threads=None)
+    R"doc(ik($self, goal=None, *, position=None, near=None, fixed=None, samples=None, least_squares=False, threads=None)
 --
 
 Every configuration q with fk(q) = goal.
@@ -23,8 +23,9 @@ Every configuration q with fk(q) = goal.
 goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. position: instead of it the place of the
 tip alone [m], (3,) or (..., 3), or (..., 2) for an arm in the plane; for arms of up to three joints. near
 (dof,) [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its
-values. least_squares: where nothing reaches the goal, answer with the configuration that misses it least.
-threads: of a batch, all cores unless given.
+values. fixed: joints held at given values, {"joint7": 0.3}, by name or number. samples: of an arm with one
+joint to spare, at how many of its values the branches are listed (16). least_squares: where nothing reaches
+the goal, answer with the configuration that misses it least. threads: of a batch, all cores unless given.
 
 Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, residual,
 branch, families, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns SolutionsBatch for
@@ -158,7 +159,7 @@ PyObject* miss(PyObject*, PyObject* args) {
     double stiffness;
     if (!PyArg_ParseTuple(args, "OOd", &robot, &goal, &stiffness)) return nullptr;
     const ik::Arm* arm = arm_of(robot);
-    if (!arm || !can_solve(*arm) || !is_doubles(goal, 16)) {
+    if (!arm || !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError,
                         "_ik_miss takes a robot with a solver and a contiguous float64 goal");
         return nullptr;

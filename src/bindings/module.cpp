@@ -16,6 +16,7 @@ NB_MODULE(_core, m) {
     bind_subproblems(m);
     bind_ik(m);
     bind_ik_numeric(m);
+    bind_ik_redundant(m);
     bind_ik_tasks(m);
     bind_ik_plan(m);
     bind_ik_numbers(m);

@@ -27,7 +27,7 @@ cspace._core.RobotBase.fk_jacobian:
         \doc
 
 cspace._core.RobotBase.ik$:
-    def ik(self, goal: Any = None, *, position: ArrayLike | None = None, near: ArrayLike | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         \doc
 
 cspace._core.RobotBase.__suffix__:

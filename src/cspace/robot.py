@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -18,7 +18,7 @@ from cspace.spatial.checks import PoseLike
 
 if TYPE_CHECKING:
     from cspace.export import Export
-    from cspace.ik import IkPlan, NumericSolution, SampledSolutions, TaskSolution
+    from cspace.ik import IkPlan, NumericSolution, Redundancy, SampledSolutions, TaskSolution
 
     Seed = int | np.random.Generator | None
 
@@ -77,6 +77,7 @@ class Robot(RobotBase):
         self.mass = float(assembly.mass.sum())
 
     _ik_room = 0  # rows that the solutions of a goal may need; 0 before a solver is built
+    _ik_uncounted: tuple[int, ...] = ()  # joints that stand for a goal and count in no distance
 
     @classmethod
     def from_urdf(
@@ -246,6 +247,14 @@ class Robot(RobotBase):
         (−π, π]; a sliding one needs reach [m]. Returns q (n, n_joints) or (n_joints,) [rad or m].
         """
         return kinematics.random_configurations(self.limits, self.joint_types, n, rng=rng, reach=reach)
+
+    def redundancy(
+        self, goal: PoseLike, parameter: str | int | None = None, *, fixed: Mapping[Any, float] | None = None
+    ) -> Redundancy:
+        """Where a joint to spare may be while all keep their limits and reach a goal; see ik.redundancy."""
+        from cspace.ik import redundancy
+
+        return redundancy(self, goal, parameter, fixed=fixed)
 
     def ik_numeric(self, goal: Any = None, start: Any = None, **options: Any) -> NumericSolution:
         """One configuration that reaches a goal (..., 4, 4), by descent from start (dof,) and further starts.

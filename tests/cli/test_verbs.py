@@ -210,7 +210,7 @@ def test_info_tells_the_geometry():
     np.testing.assert_allclose(limits, cs.load_robot("ur5e").limits.upper)
 
 
-@pytest.mark.parametrize(("name", "reason"), [("stanford", "joints slide"), ("panda", "7 joints")])
+@pytest.mark.parametrize(("name", "reason"), [("stanford", "joints slide")])
 def test_info_tells_first_why_there_is_no_closed_form(name, reason):
     text = cspace(f"info {name} --json").json["geometry"]["text"]
     assert text.startswith(f"no closed form for {name}")

@@ -171,13 +171,10 @@ def test_an_arm_without_a_closed_form_says_which_condition_failed_by_how_much(na
     assert robot.ik(robot.fk(np.full(6, 0.4)))
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [("panda", "7 joints"), ("iiwa14", "7 joints"), ("p8", "8 joints")],
-)
-def test_arms_of_later_versions_are_refused_by_kind(name, words):
-    robot = load(name)
-    with pytest.raises(NoClosedFormError, match=words) as caught:
+def test_arms_of_more_than_sixteen_joints_are_refused():
+    axes = np.eye(3)[np.arange(17) % 3]
+    robot = Robot.from_screws(axes, 0.1 * np.arange(51).reshape(17, 3), np.eye(4))
+    with pytest.raises(NoClosedFormError, match="17 joints") as caught:
         robot.ik(np.eye(4))
     assert str(geometry(robot)) == geometry(robot).reason == str(caught.value)
 

@@ -56,6 +56,9 @@ def test_every_arm_of_the_catalogue_is_explained(name):
     if not plan:
         assert plan.reason in plan.to_text().replace("\n", " ")
         return
+    if len(robot.joint_names) > 6:  # with joints to spare: what the axes share, and no equations
+        assert plan.family == "other"
+        return
     expect_true(robot, np.random.default_rng(2))
     goals = robot.fk(configurations(robot, np.random.default_rng(3), 20))
     assert max(len(robot.ik(T)) for T in goals) <= plan.branches

@@ -20,6 +20,8 @@ from cspace.ik.numeric import (
     resolved_rate,
     task_velocity,
 )
+from cspace.ik.redundancy import Interval, Redundancy
+from cspace.ik.redundant import redundancy
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve import inverse_kinematics
@@ -31,11 +33,13 @@ __all__ = [
     "Family",
     "Geometry",
     "IkPlan",
+    "Interval",
     "NoClosedFormError",
     "NumericSolution",
     "PoseTask",
     "PositionTask",
     "PostureTask",
+    "Redundancy",
     "Relation",
     "SampledSolutions",
     "Solutions",
@@ -50,6 +54,7 @@ __all__ = [
     "ik_plan",
     "ik_tasks",
     "inverse_kinematics",
+    "redundancy",
     "resolved_rate",
     "subproblems",
     "task_velocity",

@@ -102,8 +102,8 @@ def explain_missing_form(robot: Any) -> str:
         return f"{subject}: no joint moves"
     if robot.floating:
         return f"{subject}: its base floats; a robot made without floating=True has a fixed one"
-    if len(kinds) > 6:
-        return f"{subject}: this version solves full poses for up to six joints"
+    if len(kinds) > 16:
+        return f"{subject}: this version solves arms of up to sixteen joints"
     best = best_conditioning(robot)
     if best < _core.AXIS_RELATION:
         return (

@@ -7,7 +7,7 @@ from typing import Any
 
 from cspace import _core
 from cspace.ik.conditions import Condition, NoClosedFormError, conditions, explain_missing_form
-from cspace.ik.prepare import prepare
+from cspace.ik.prepare import MAX_SETTLED, prepare
 
 __all__ = ["Geometry", "geometry"]
 
@@ -69,6 +69,8 @@ def geometry(robot: Any) -> Geometry:
     tested = conditions(robot) if len(robot.chain.axes) >= 3 else ()
     if missing:
         return Geometry("none", "", False, 0.0, tested, missing)
+    if len(robot.joint_types) > MAX_SETTLED:
+        return redundant_geometry(robot, tested)
     seen = _core._ik_geometry(robot)
     if seen["general"]:
         return Geometry("general", "", False, 0.0, tested, f"{explain_missing_form(robot)}. {GENERAL}")
@@ -80,3 +82,13 @@ def geometry(robot: Any) -> Geometry:
     if seen["virtual_joints"]:
         detail += f"; completed to six by {seen['virtual_joints']} joints held at zero"
     return Geometry(family, detail, bool(seen["reversed"]), float(seen["deviation"]), tested)
+
+
+def redundant_geometry(robot: Any, tested: tuple[Condition, ...]) -> Geometry:
+    """Of an arm with joints to spare: which of them are held, and how the others are solved."""
+    from cspace.ik.held import hold
+
+    solver = hold(robot, {}).solver
+    names = ", ".join(robot.joint_names[k] for k in solver.held)
+    method = "a closed form of the others" if solver.closed_form else "the general method for the others"
+    return Geometry("redundant", f"{names} held, {method}", False, 0.0, tested)

@@ -12,12 +12,15 @@ from cspace.kinematics.batch import check_robot
 
 __all__ = ["prepare"]
 
-MAX_JOINTS = 6
+MAX_JOINTS = 16
+MAX_SETTLED = 6
+"""Joints that a pose settles; those beyond are held."""
+MOST_SOLUTIONS = 16
 
 
-def prepare(robot: Any) -> None:
+def prepare(robot: Any, *, some_held: bool = False) -> None:
     """Build the solver of `robot` once: its axes, points and tip at zero go to the core, which looks for a
-    form.
+    form. some_held: some joints will be held, so that the arm as a whole need not have one.
 
     Raises InputTypeError for what is no robot, NoClosedFormError for an arm without a form.
     """
@@ -36,6 +39,8 @@ def prepare(robot: Any) -> None:
         prismatic,
         np.ascontiguousarray(chain.T_zero, dtype=np.float64),
     )
-    if not room:
+    if not room and joints <= MAX_SETTLED:
+        if some_held:
+            return
         raise NoClosedFormError(explain_missing_form(robot))
-    robot._ik_room = room
+    robot._ik_room = room or MOST_SOLUTIONS

@@ -10,8 +10,9 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.ik.about import About
 from cspace.ik.derivative import derivative
-from cspace.ik.prepare import prepare
+from cspace.ik.prepare import MAX_SETTLED, prepare
 from cspace.ik.solutions import (
     INCOMPLETE,
     METRICS,
@@ -37,7 +38,8 @@ class SolutionsBatch:
 
     q: (..., k_max, dof) [rad, m], the solutions of each goal first, NaN behind them. count: (...,)
     solutions per goal. goal: (..., 4, 4), or (..., 3) for positions. status: (...,) strings as of
-    `Solutions`. Index with one goal's index to get its `Solutions`: batch[i].branch, batch[i].families.
+    `Solutions`. freedom: what the goals leave free, as of `Solutions`. Index with one goal's index to get its
+    `Solutions`: batch[i].branch, batch[i].families.
     """
 
     def __init__(
@@ -48,6 +50,7 @@ class SolutionsBatch:
         count: npt.NDArray[np.int64],
         verdict: npt.NDArray[np.uint8],
         partial: Any = None,
+        freedom: tuple[str, ...] = (),
     ) -> None:
         self.robot = robot
         self.goal = goal
@@ -55,6 +58,7 @@ class SolutionsBatch:
         self.count = count
         self._verdict = verdict
         self._partial = partial  # solve_partial.Many, where the goals are no poses
+        self.freedom = freedom
 
     def __len__(self) -> int:
         return len(self.count)
@@ -134,6 +138,8 @@ class SolutionsBatch:
         rows = self.q[index][: int(self.count[index])]
         if self._partial is not None:
             return self._row_of_partial(index, rows)
+        if len(self.robot.joint_types) > MAX_SETTLED or self.freedom:
+            return self._row_of_redundant(goal, int(verdict), np.ascontiguousarray(rows))
         prepare(self.robot)  # a robot out of a pickle comes without its solver
         is_pose = goal.shape == (4, 4)
         full = _core._ik_single(self.robot, goal) if is_pose else _core._ik_position(self.robot, goal)
@@ -154,6 +160,13 @@ class SolutionsBatch:
         )
         return cast(Solutions, made)
 
+    def _row_of_redundant(self, goal: Array, verdict: int, rows: Array) -> Solutions:
+        """One goal's rows as a result, without the names of their branches."""
+        k = len(rows)
+        about = About(freedom=self.freedom)
+        made = _core._ik_make(self.robot, goal, verdict, rows, (-1,) * k, (False,) * k, None, about)
+        return cast(Solutions, made)
+
     def within(self, limits: Limits | None = None) -> SolutionsBatch:
         """The solutions inside the limits, each joint first moved by whole turns to where it fits."""
         bounds = bounds_of(self.robot, limits)
@@ -163,7 +176,9 @@ class SolutionsBatch:
     def wrapped(self) -> SolutionsBatch:
         """The same solutions with revolute joints in (−π, π]."""
         q = wrap(self.q, self.robot.joint_types)
-        return SolutionsBatch(self.robot, self.goal, q, self.count, self._verdict, self._partial)
+        return SolutionsBatch(
+            self.robot, self.goal, q, self.count, self._verdict, self._partial, self.freedom
+        )
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Array:
         """Per goal the configuration nearest to q (dof,) or (..., dof), (..., dof); NaN where there is
@@ -204,7 +219,9 @@ class SolutionsBatch:
         sorted_q = np.take_along_axis(q, order[..., None], axis=-2)
         count = keep.sum(axis=-1)
         sorted_q[np.arange(q.shape[-2]) >= count[..., None]] = np.nan
-        return SolutionsBatch(self.robot, self.goal, sorted_q, count, self._verdict, self._partial)
+        return SolutionsBatch(
+            self.robot, self.goal, sorted_q, count, self._verdict, self._partial, self.freedom
+        )
 
     def __repr__(self) -> str:
         reached = int(np.count_nonzero(self.count))

@@ -14,7 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.partial import KEYWORDS, PartialGoal, is_open, partial_goal
-from cspace.ik.prepare import prepare
+from cspace.ik.prepare import MAX_SETTLED, prepare
 from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve_partial import own_columns, solve_partial
@@ -45,6 +45,8 @@ def inverse_kinematics(
     tool_axis: Any = "z",
     angle: Any = None,
     near: Any = None,
+    fixed: Any = None,
+    samples: int | None = None,
     least_squares: bool = False,
     threads: int | None = None,
 ) -> Solutions | SolutionsBatch:
@@ -59,9 +61,16 @@ def inverse_kinematics(
     direction in the tip.
 
     near: (dof,), a configuration; the answer is the one solution nearest to it, and joints that the pose
-    leaves free take its values. least_squares: where nothing reaches the goal, answer with the configuration
-    that misses it least (a radian weighs like the arm's characteristic length). threads: for a batch, all
-    cores unless given; the answer does not depend on it.
+    leaves free take its values. fixed: joints held at given values, by name or number, {"joint7": 0.3};
+    arrays of values are solved together with the goals. samples: of an arm with one joint to spare, at how
+    many values of it the branches are listed (16 unless given). least_squares: where nothing reaches the
+    goal, answer with the configuration that misses it least (a radian weighs like the arm's characteristic
+    length). threads: for a batch, all cores unless given; the answer does not depend on it.
+
+    An arm with more than six joints leaves freedom, which `freedom` of the answer names. With fixed= for all
+    of the joints to spare every solution of the others is listed; with near= the nearest of all
+    configurations, limits aside; else, with one joint to spare, all branches at values of it spread over its
+    feasible intervals, and with more the configuration nearest to the middle of the limits.
 
     Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
     with the reason); a goal that is no pose raises InputError, an arm without a closed form
@@ -80,16 +89,20 @@ def inverse_kinematics(
             "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or parts of it by name,"
             " such as robot.ik(position=p)"
         )
+    if given and (fixed is not None or samples is not None):
+        raise InputTypeError("fixed= and samples= go with a full pose")
     found: Solutions | SolutionsBatch
     if given and not is_plain_position(robot, given):
-        found = ask_partial(robot, partial_goal(given, tool_axis), workers)
+        found = ask_partial(robot, partial_goal(given, tool_axis), workers, near)
     elif position is not None:
         prepare(robot)
         p = points_in_base(robot, position)
         found = _core._ik_position(robot, p) if p.ndim == 1 else solve_positions(robot, p, workers)
     else:
-        prepare(robot)
+        prepare(robot, some_held=fixed is not None)
         T = goal_array(goal)
+        if fixed is not None or samples is not None or len(robot.joint_types) > MAX_SETTLED:
+            return redundant(robot, T, fixed, samples, near, least_squares, workers)
         found = solve_many(robot, T, workers) if T.ndim > 2 else solve_one(robot, T, near)
     if isinstance(found, SolutionsBatch):
         if near is not None or least_squares:
@@ -100,18 +113,50 @@ def inverse_kinematics(
     return found if near is None else found.nearest(near)
 
 
+def redundant(
+    robot: Any, T: Array, fixed: Any, samples: Any, near: Any, least_squares: bool, workers: int
+) -> Solutions | SolutionsBatch:
+    from cspace.ik.redundant import redundant_answer
+
+    T = as_pose(T, "goal")  # a plain batch comes unchecked
+    if len(beyond := np.argwhere(np.abs(T[..., :3, 3]).sum(axis=-1) > FARTHEST)):
+        index = tuple(map(int, beyond[0]))
+        raise too_far(f"goal {index}" if index else "goal", T[index][:3, 3])
+    found = redundant_answer(robot, T, fixed=fixed, samples=samples, near=near, threads=workers)
+    if isinstance(found, SolutionsBatch):
+        if least_squares:
+            raise InputTypeError("least_squares= is for one goal")
+        return found
+    if least_squares and not found:
+        if fixed:
+            raise InputTypeError("least_squares= does not go with fixed=: it moves every joint")
+        return least_squares_answer(robot, found)
+    return found
+
+
 def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
     """Whether a goal is a whole point for an arm of up to three joints, which are solved directly."""
     short = len(robot.chain.joint_types) <= MAX_POSITION_JOINTS
     return short and list(given) == ["position"] and not is_open(given["position"])
 
 
-def ask_partial(robot: Any, goal: PartialGoal, workers: int = 1) -> Any:
+def ask_partial(robot: Any, goal: PartialGoal, workers: int = 1, near: Any = None) -> Any:
     def ask(whole: Any, T: Array) -> Solutions | SolutionsBatch:
         prepare(whole)
+        if len(whole.joint_types) > MAX_SETTLED:
+            seed = None if near is None else near_of_whole(robot, goal, whole, near)
+            return redundant(whole, T, None, None, seed, False, workers)
         return solve_many(whole, T, workers) if T.ndim > 2 else solve_one(whole, T, None)
 
     return solve_partial(robot, goal, ask)
+
+
+def near_of_whole(robot: Any, goal: PartialGoal, whole: Any, near: Any) -> Array:
+    """A configuration of the arm with zeros for the joints that stand for what the goal leaves open."""
+    seed = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
+    out = np.zeros((*seed.shape[:-1], whole.dof))
+    out[..., own_columns(robot, goal)] = seed
+    return out
 
 
 def points_in_base(robot: Any, position: Any) -> Array:

@@ -12,7 +12,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.about import About
 from cspace.ik.partial import PartialGoal
-from cspace.ik.prepare import prepare
+from cspace.ik.prepare import MAX_SETTLED, prepare
 from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.model import from_screws
@@ -49,6 +49,11 @@ class Many:
         goal = self.goal.take(index)
         whole = whole_arm(robot, goal)
         prepare(whole)
+        if len(whole.joint_types) > MAX_SETTLED:
+            from cspace.ik.redundant import redundant_answer
+
+            answer = redundant_answer(whole, goal.T, fixed=None, samples=None, near=None, threads=1)
+            return of_own(robot, goal, whole, cast(Solutions, answer))
         found = cast(Solutions, _core._ik_single(whole, np.ascontiguousarray(goal.T)))
         return of_own(robot, goal, whole, found)
 
@@ -93,7 +98,9 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
             *(f"goal_{first + i + 1}" for i in range(last)),
         ],
     )
-    return type(robot)(description)
+    whole = type(robot)(description)
+    whole._ik_uncounted = (*range(first), *range(first + robot.dof, whole.dof))
+    return whole
 
 
 def tilted(axis: Array, angle: float) -> Array:

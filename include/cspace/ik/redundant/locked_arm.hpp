@@ -1,0 +1,164 @@
+// An arm with some of its joints held still, so that those which move can be solved. Held joints at either
+// end of the chain only move the goal; one held between others changes a link.
+#pragma once
+
+#include "cspace/ik/arm.hpp"
+#include "cspace/ik/quick.hpp"
+
+namespace cspace::ik {
+
+inline constexpr int max_moving = 6;
+
+struct LockedArm {
+    Chain whole;
+    int held[max_joints], moving[max_joints];
+    int n_held = 0, n_moving = 0;
+    bool at_ends = true;  // the joints that move follow one another
+    Arm arm;              // of those that move; the held ones at zero, or at typical values if not at_ends
+    bool (*plan_general)(const Chain&, GeneralArm&) = nullptr;
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline bool is_solvable(const ik::Arm& arm) { return arm.has_plan || arm.is_short || arm.is_general; }
+
+// The chain of the joints that move. `at`: the value of every joint that is held, by its number in the whole
+// chain.
+inline ik::Chain locked_chain(const ik::LockedArm& locked, const double* at) {
+    const ik::Chain& whole = locked.whole;
+    ik::Chain out;
+    Posed before = identity_pose();
+    int next = 0;
+    for (int i = 0; i < whole.n; ++i) {
+        if (next < locked.n_held && locked.held[next] == i) {
+            before = before * joint_motion(whole, i, at[i]);
+            ++next;
+            continue;
+        }
+        out.axis[out.n] = before.R * whole.axis[i];
+        out.point[out.n] = before * whole.point[i];
+        out.prismatic[out.n++] = whole.prismatic[i];
+    }
+    out.tip = before * whole.tip;
+    return out;
+}
+
+// held: the numbers of the joints to hold, ascending; typical: a value for each joint of the chain at which
+// nothing special is expected.
+inline ik::LockedArm lock_joints(const ik::Chain& whole, const int* held, int n_held, const double* typical,
+                                 bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
+    ik::LockedArm out;
+    out.whole = whole;
+    out.plan_general = plan_general;
+    out.n_held = n_held;
+    for (int k = 0; k < n_held; ++k) out.held[k] = held[k];
+    for (int i = 0, k = 0; i < whole.n; ++i) {
+        if (k < n_held && held[k] == i)
+            ++k;
+        else
+            out.moving[out.n_moving++] = i;
+    }
+    if (out.n_moving > ik::max_moving || out.n_moving == 0) return out;
+    out.at_ends = out.moving[out.n_moving - 1] - out.moving[0] == out.n_moving - 1;
+    const double zero[ik::max_joints] = {};
+    out.arm = make_arm(locked_chain(out, out.at_ends ? zero : typical), plan_general);
+    return out;
+}
+
+// What the held joints before (after) those that move do to the goal.
+struct EndMotions {
+    Posed before, after;
+};
+inline EndMotions end_motions(const ik::LockedArm& locked, const double* at) {
+    EndMotions out{identity_pose(), identity_pose()};
+    for (int k = 0; k < locked.n_held; ++k) {
+        const int i = locked.held[k];
+        Posed& side = i < locked.moving[0] ? out.before : out.after;
+        side = side * joint_motion(locked.whole, i, at[i]);
+    }
+    return out;
+}
+// The goal for an arm whose held joints stand at its ends.
+inline Posed goal_between_ends(const ik::LockedArm& locked, const Posed& goal, const double* at) {
+    const EndMotions ends = end_motions(locked, at);
+    const Posed& tip = locked.whole.tip;
+    return inverse(ends.before) * goal * inverse(tip) * inverse(ends.after) * tip;
+}
+
+// The arm with joints held between others at these values. A general one keeps the order of formulations of
+// its typical values: to rank them takes a thousand times as long as to use them.
+inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
+    const ik::Chain chain = locked_chain(locked, at);
+    if (!locked.arm.is_general) return make_arm(chain, locked.plan_general);
+    ik::Arm arm;
+    arm.has_plan = make_plan(arm.plan, chain);
+    if (arm.has_plan) return arm;
+    arm.plan.form.length = characteristic_length(chain);
+    arm.is_general = renumber_general_arm(locked.arm.general, chain, arm.general);
+    return arm;
+}
+
+// Members of what may be a family of an arm that nothing else solves: by descent from configurations all over
+// the joints.
+inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal) {
+    constexpr int starts = 48;
+    ik::Solutions out;
+    out.complete = false;
+    const double length = characteristic_length(chain);
+    for (int k = 0; k < starts && out.count < ik::max_solutions; ++k) {
+        double q[ik::max_joints];
+        spread_configuration(k, chain.n, q);
+        admit(out, chain, goal, length, q, out.count, 60);
+    }
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    for (int k = 0; k < out.count; ++k)
+        if (out.family[k]) out.status = ik::Status::singular;
+    return out;
+}
+
+// By the closed form alone where it is sure of itself.
+inline ik::Solutions solve_arm_quickly(const ik::Arm& arm, const Posed& goal) {
+    ik::Solutions out;
+    if (arm.has_plan) {
+        double T[16] = {0, 0, 0, goal.t.x, 0, 0, 0, goal.t.y, 0, 0, 0, goal.t.z, 0, 0, 0, 1},
+               q[max_branches * 6];
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) T[4 * i + j] = goal.R.m[i][j];
+        if (solve_quickly(arm.plan, T, q, out.branch, &out.count) == ik::Quick::settled) {
+            out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+            for (int k = 0; k < out.count; ++k) {
+                for (int i = 0; i < 6; ++i) out.q[k][i] = q[6 * k + i];
+                out.family[k] = false;
+            }
+            return out;
+        }
+        out.count = 0;
+    }
+    return solve_pose(arm, goal, nullptr);
+}
+
+inline ik::Solutions solve_arm(const ik::Arm& arm, const Posed& goal, const double* idle) {
+    if (!idle && arm.has_plan) return solve_arm_quickly(arm, goal);
+    return is_solvable(arm) ? solve_pose(arm, goal, idle) : solve_by_descent(arm.plan.chain, goal);
+}
+
+// Every solution for the joints that move, the others at their values `at`; idle (null, or of the whole
+// chain): what joints take that the goal leaves free.
+inline ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed& goal, const double* at,
+                                  const double* idle) {
+    double rest[ik::max_joints] = {};
+    for (int k = 0; idle && k < locked.n_moving; ++k) rest[k] = idle[locked.moving[k]];
+    if (locked.at_ends)
+        return solve_arm(locked.arm, goal_between_ends(locked, goal, at), idle ? rest : nullptr);
+    return solve_arm(arm_at(locked, at), goal, idle ? rest : nullptr);
+}
+
+// A row of the joints that move, together with the held ones.
+inline void whole_row(const ik::LockedArm& locked, const double* at, const double* row, double* q) {
+    for (int k = 0; k < locked.n_held; ++k) q[locked.held[k]] = at[locked.held[k]];
+    for (int k = 0; k < locked.n_moving; ++k) q[locked.moving[k]] = row[k];
+}
+
+}  // namespace cspace::inline CSPACE_ISA

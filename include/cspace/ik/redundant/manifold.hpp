@@ -1,0 +1,159 @@
+// The configurations that reach a goal when joints are to spare form a manifold. At a configuration: the
+// error that is left, the Jacobian split into what corrects it and what moves along the manifold.
+#pragma once
+
+#include "cspace/ik/chain.hpp"
+#include "cspace/math/lanes.hpp"
+
+namespace cspace {
+
+// The error of q against a goal, and the tip's Jacobian, columns [linear over the arm's length; angular].
+template <class V>
+struct TipMotion {
+    V error[6];
+    V aligned;  // trace of the rotation that is left: 3 at the goal, −1 half a turn from it
+    V column[ik::max_joints][6];
+};
+
+// Jᵀ = Q R by reflections: the first six columns of Q span what moves the tip, the others what does not.
+template <class V>
+struct SplitJacobian {
+    V reflector[ik::max_joints][6];  // v_k below and on the diagonal
+    V upper[6][6];                   // R
+    V factor[6];
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// The functions below are compiled for arms of `N` joints, or with N = 0 for any number of them: loops of
+// known length are unrolled, which halves their time.
+template <int N>
+CSPACE_INLINE int size_or(int n) {
+    return N ? N : n;
+}
+
+template <int N, class V>
+CSPACE_INLINE void tip_motion(const ik::Chain& chain, const Pose<V>& goal, double length, const V* q,
+                              TipMotion<V>& out) {
+    const int n = size_or<N>(chain.n);
+    Mat3<V> R = fill33<V>(identity_pose().R);
+    Vec3<V> t = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)};
+    Vec3<V> axis[ik::max_joints], point[ik::max_joints];
+    for (int i = 0; i < n; ++i) {
+        const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
+        axis[i] = R * h;
+        point[i] = R * p + t;
+        if (chain.prismatic[i]) {
+            t = t + q[i] * axis[i];
+            continue;
+        }
+        V s, c;
+        sincos(q[i], s, c);
+        R = R * rotation_about(h, c, s);
+        t = point[i] - R * p;
+    }
+    const Vec3<V> tip = R * fill3<V>(chain.tip.t) + t;
+    const Mat3<V> Q = R * fill33<V>(chain.tip.R);
+    const Vec3<V> dp = (1 / length) * (goal.t - tip);
+    // Half the sum of the cross products of the axes is the rotation that is missing, to first order.
+    Vec3<V> w = 0.5 * cross(column(Q, 0), column(goal.R, 0));
+    for (int k = 1; k < 3; ++k) w = w + 0.5 * cross(column(Q, k), column(goal.R, k));
+    out.aligned = dot(column(Q, 0), column(goal.R, 0)) + dot(column(Q, 1), column(goal.R, 1)) +
+                  dot(column(Q, 2), column(goal.R, 2));
+    const V error[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
+    for (int k = 0; k < 6; ++k) out.error[k] = error[k];
+    const V zero = fill<V>(0.0);
+    for (int i = 0; i < n; ++i) {
+        const bool slides = chain.prismatic[i];
+        const Vec3<V> v = (1 / length) * (slides ? axis[i] : cross(axis[i], tip - point[i]));
+        const Vec3<V> h = slides ? Vec3<V>{zero, zero, zero} : axis[i];
+        const V entries[6] = {v.x, v.y, v.z, h.x, h.y, h.z};
+        for (int k = 0; k < 6; ++k) out.column[i][k] = entries[k];
+    }
+}
+
+template <int N, class V>
+CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, SplitJacobian<V>& out) {
+    const int n = size_or<N>(size);
+    V(*A)[6] = out.reflector;
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < 6; ++k) A[i][k] = motion.column[i][k];
+    for (int k = 0; k < 6; ++k) {
+        V square = A[k][k] * A[k][k];
+        for (int i = k + 1; i < n; ++i) square = mul_add(A[i][k], A[i][k], square);
+        const V diagonal = -copysign(sqrt(square), A[k][k]);
+        for (int j = 0; j < k; ++j) out.upper[j][k] = A[j][k];
+        out.upper[k][k] = diagonal;
+        A[k][k] = A[k][k] - diagonal;
+        const V scale = diagonal * A[k][k];
+        out.factor[k] = -1.0 / select(scale == 0.0, fill<V>(1.0), scale);
+        for (int j = k + 1; j < 6; ++j) {
+            V along = A[k][k] * A[k][j];
+            for (int i = k + 1; i < n; ++i) along = mul_add(A[i][k], A[i][j], along);
+            along = along * out.factor[k];
+            for (int i = k; i < n; ++i) A[i][j] = mul_add(-along, A[i][k], A[i][j]);
+        }
+    }
+}
+
+template <int N, class V>
+CSPACE_INLINE void reflect_once(const SplitJacobian<V>& split, int size, int k, V* b) {
+    const int n = size_or<N>(size);
+    V along = split.reflector[k][k] * b[k];
+    for (int i = k + 1; i < n; ++i) along = mul_add(split.reflector[i][k], b[i], along);
+    along = along * split.factor[k];
+    for (int i = k; i < n; ++i) b[i] = mul_add(-along, split.reflector[i][k], b[i]);
+}
+// b := Q b and b := Qᵀ b.
+template <int N, class V>
+CSPACE_INLINE void turn_out(const SplitJacobian<V>& split, int size, V* b) {
+    const int n = size_or<N>(size);
+    for (int k = 5; k >= 0; --k) reflect_once<N>(split, n, k, b);
+}
+template <int N, class V>
+CSPACE_INLINE void turn_in(const SplitJacobian<V>& split, int size, V* b) {
+    const int n = size_or<N>(size);
+    for (int k = 0; k < 6; ++k) reflect_once<N>(split, n, k, b);
+}
+
+template <class V>
+CSPACE_INLINE V away_from_zero(V x) {
+    return select(abs(x) < 1e-14, copysign(fill<V>(1e-14), x), x);
+}
+
+// The shortest step of the joints that moves the tip by e: Rᵀ y = e, Q y.
+template <int N, class V>
+CSPACE_INLINE void shortest_step(const SplitJacobian<V>& split, int size, const V* e, V* step) {
+    const int n = size_or<N>(size);
+    for (int i = 6; i < n; ++i) step[i] = fill<V>(0.0);
+    for (int k = 0; k < 6; ++k) {
+        step[k] = e[k];
+        for (int j = 0; j < k; ++j) step[k] = mul_add(-split.upper[j][k], step[j], step[k]);
+        step[k] = step[k] / away_from_zero(split.upper[k][k]);
+    }
+    turn_out<N>(split, n, step);
+}
+// Direction number k (of n − 6) along the manifold, unit.
+template <int N, class V>
+CSPACE_INLINE void free_direction(const SplitJacobian<V>& split, int size, int k, V* direction) {
+    const int n = size_or<N>(size);
+    for (int i = 0; i < n; ++i) direction[i] = fill<V>(i == 6 + k ? 1.0 : 0.0);
+    turn_out<N>(split, n, direction);
+}
+// The λ of least |Jᵀ λ − g|.
+template <int N, class V>
+CSPACE_INLINE void multipliers(const SplitJacobian<V>& split, int size, const V* g, V* lambda) {
+    const int n = size_or<N>(size);
+    V b[ik::max_joints];
+    for (int i = 0; i < n; ++i) b[i] = g[i];
+    turn_in<N>(split, n, b);
+    for (int k = 5; k >= 0; --k) {
+        for (int j = k + 1; j < 6; ++j) b[k] = mul_add(-split.upper[k][j], b[j], b[k]);
+        b[k] = b[k] / away_from_zero(split.upper[k][k]);
+        lambda[k] = b[k];
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

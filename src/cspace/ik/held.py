@@ -1,0 +1,133 @@
+"""Joints held at values: which they are, and the solver of the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.tolerances import FARTHEST
+
+__all__ = ["Held", "fixed_values", "hold", "joint_number"]
+
+
+@dataclass(frozen=True)
+class Held:
+    """An arm with some joints at given values: the solver of the others, whose rows become the arm's."""
+
+    solver: _core.RedundantSolver
+    robot: Any
+    free: tuple[int, ...]  # the joints that the solver knows
+    fixed: dict[int, float]
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        return tuple(self.robot.joint_names[self.free[k]] for k in self.solver.held)
+
+    @property
+    def freedom(self) -> tuple[str, ...]:
+        """What the goal leaves free, by the joints held in its place."""
+        return self.parameters if self.solver.spare else ()
+
+    def whole(self, q: Array) -> Array:
+        """Rows (..., n free joints) as rows of the arm."""
+        if not self.fixed:
+            return q
+        out = np.empty((*q.shape[:-1], self.robot.dof))
+        out[..., list(self.free)] = q
+        for joint, value in self.fixed.items():
+            out[..., joint] = value
+        return out
+
+
+def joint_number(robot: Any, key: Any, subject: str) -> int:
+    names = robot.joint_names
+    if isinstance(key, str):
+        if key not in names:
+            raise suggest("joint", key, names, owner=robot.name)
+        return int(names.index(key))
+    if isinstance(key, bool) or not isinstance(key, (int, np.integer)):
+        raise InputTypeError(
+            f"{subject} names a joint by a {type(key).__name__}, expected its name or number"
+        )
+    if not -len(names) <= key < len(names):
+        raise InputError(f"{subject} has joint {key}, but {robot.name} has joints 0 to {len(names) - 1}")
+    return int(key) % len(names)
+
+
+def fixed_values(robot: Any, fixed: Any) -> dict[int, Any]:
+    """The held joints by number, ascending, each with a number or an array of them."""
+    if not isinstance(fixed, Mapping):
+        raise InputTypeError(
+            f"fixed is a {type(fixed).__name__}, expected a dict from joints to values: {{'joint_7': 0.3}}"
+        )
+    out: dict[int, Any] = {}
+    for key, value in fixed.items():
+        joint = joint_number(robot, key, "fixed")
+        if joint in out:
+            raise InputError(f"fixed names {robot.joint_names[joint]!r} twice")
+        out[joint] = as_floats(value, f"fixed[{key!r}]", largest=FARTHEST)
+    if len(out) >= len(robot.joint_names):
+        raise InputError(f"fixed holds every joint of {robot.name}: none is left to move")
+    return dict(sorted(out.items()))
+
+
+def make_solver(
+    robot: Any, keep: tuple[int, ...], fixed: dict[int, float], limited: bool
+) -> _core.RedundantSolver:
+    """The solver of the joints `keep`; those between them stand at their fixed values."""
+    chain = robot.chain
+    axes, points, T_zero = chain.axes, chain.points, chain.T_zero
+    if fixed:
+        axes, points, T_zero = with_joints_held(chain, fixed)
+    rows = list(keep)
+    weight = np.array([float(k not in robot._ik_uncounted) for k in rows])
+    far = np.full(len(rows), np.inf)
+    lower, upper = (robot.limits.lower[rows], robot.limits.upper[rows]) if limited else (-far, far)
+    return _core.RedundantSolver(
+        np.ascontiguousarray(axes[rows], dtype=np.float64),
+        np.ascontiguousarray(points[rows], dtype=np.float64),
+        np.array([chain.joint_types[k] == "P" for k in rows]),
+        np.ascontiguousarray(T_zero, dtype=np.float64),
+        np.ascontiguousarray(lower, dtype=np.float64),
+        np.ascontiguousarray(upper, dtype=np.float64),
+        weight,
+    )
+
+
+def with_joints_held(chain: Any, fixed: dict[int, float]) -> tuple[Array, Array, Array]:
+    """The screws of a chain behind joints that stand still: each held joint displaces all that follow."""
+    from cspace.spatial import exp_se3
+
+    axes, points = chain.axes.copy(), chain.points.copy()
+    T = np.eye(4)
+    for k in range(len(axes)):
+        h, p = chain.axes[k], chain.points[k]
+        axes[k], points[k] = T[:3, :3] @ h, T[:3, :3] @ p + T[:3, 3]
+        if k in fixed:
+            turns = chain.joint_types[k] == "R"
+            twist = np.concatenate([np.cross(p, h), h]) if turns else np.concatenate([h, np.zeros(3)])
+            T = T @ exp_se3(twist * fixed[k])
+    return axes, points, T @ chain.T_zero
+
+
+MOST_KEPT = 8
+"""Solvers kept per robot for different held values: more are a loop over values, which builds its own."""
+
+
+def hold(robot: Any, fixed: dict[int, float], *, limited: bool = True) -> Held:
+    """The solver with these joints at their values, with or without limits; the last few are kept."""
+    free = tuple(k for k in range(len(robot.joint_names)) if k not in fixed)
+    kept: dict[Any, Held] = robot.__dict__.setdefault("_held", {})
+    key = (limited, *fixed.items())
+    found = kept.get(key)
+    if found is None:
+        if len(kept) >= MOST_KEPT:
+            kept.pop(next(iter(kept)), None)
+        found = kept[key] = Held(make_solver(robot, free, fixed, limited), robot, free, fixed)
+    return found

@@ -1,0 +1,104 @@
+"""Joints to spare: where a free joint can be."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import InputError, InputTypeError
+
+__all__ = ["Interval", "Redundancy"]
+
+
+@dataclass(frozen=True, eq=False)
+class Interval:
+    """Values of the parameter, lower to upper [rad or m], at which one branch keeps all limits.
+
+    branch: its number, as in the names of solutions; for arms without a closed form, and with a parameter of
+    one's own choice, the pieces of the self-motion between its turns are numbered instead. ends: what ends it
+    below and above: a joint at a limit ("elbow at lower limit"), a "fold", where the branch meets another one
+    and both vanish, or "nothing" for a whole turn. q (dof,): a configuration inside it.
+    """
+
+    lower: float
+    upper: float
+    branch: int
+    ends: tuple[str, str]
+    q: Array
+
+    def __contains__(self, value: object) -> bool:
+        turn = 2 * np.pi
+        number = float(value)  # type: ignore[arg-type]
+        return any(self.lower <= number + k * turn <= self.upper for k in (-1, 0, 1))
+
+
+@dataclass(frozen=True, eq=False)
+class Redundancy:
+    """The feasible intervals of a parameter for one goal, falsy if there is none.
+
+    parameter: the joint that is held. intervals: sorted by branch and lower end; they are computed from the
+    limits that joints reach and from the folds of the branches, not sampled. complete: whether none is
+    missing. Changes closer together than 1e-6 (1e-4 for axes rounded in a file) count as one, so an interval
+    shorter than that may be left out.
+    """
+
+    robot: Any
+    goal: Array
+    parameter: str
+    intervals: tuple[Interval, ...]
+    complete: bool
+    _slides: bool = field(repr=False, default=False)
+
+    def __bool__(self) -> bool:
+        return bool(self.intervals)
+
+    def __len__(self) -> int:
+        return len(self.intervals)
+
+    def __iter__(self) -> Iterator[Interval]:
+        return iter(self.intervals)
+
+    def feasible(self, value: float) -> tuple[int, ...]:
+        """The branches that keep all limits at this value of the parameter."""
+        return tuple(interval.branch for interval in self.intervals if value in interval)
+
+    def union(self) -> Array:
+        """Where some branch is feasible: disjoint (lower, upper), ascending, (k, 2)."""
+        out: list[list[float]] = []
+        for interval in sorted(self.intervals, key=lambda i: i.lower):
+            if out and interval.lower <= out[-1][1]:
+                out[-1][1] = max(out[-1][1], interval.upper)
+            else:
+                out.append([interval.lower, interval.upper])
+        return np.array(out, dtype=float).reshape(-1, 2)
+
+    def spread(self, n: int) -> Array:
+        """n values of the parameter, (n,): the middles of n equal parts of all that is feasible."""
+        if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
+            raise InputTypeError(f"n is a {type(n).__name__}, expected a number of values")
+        if n < 1:
+            raise InputError(f"n is {n}, expected 1 or more values")
+        parts = self.union()
+        if not len(parts):
+            return np.empty(0)
+        ends = np.cumsum(parts[:, 1] - parts[:, 0])
+        along = (np.arange(n) + 0.5) / n * ends[-1]
+        row = np.minimum(np.searchsorted(ends, along, side="right"), len(parts) - 1)
+        return np.asarray(parts[row, 1] - (ends[row] - along))
+
+    def __str__(self) -> str:
+        unit = "m" if self._slides else "rad"
+        if not self:
+            return f"no value of {self.parameter} lets {self.robot.name} reach the goal within its limits"
+        title = f"{self.robot.name}: feasible intervals of {self.parameter} [{unit}]"
+        if not self.complete:
+            title += "; some may be missing"
+        rows = [
+            f"  branch {i.branch:2d}  {i.lower: .6f} … {i.upper: .6f}  from {i.ends[0]} to {i.ends[1]}"
+            for i in self.intervals
+        ]
+        return "\n".join([title, *rows])

@@ -1,0 +1,308 @@
+"""Arms with joints to spare: which are held, and how a goal is then answered."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any, cast
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.about import About
+from cspace.ik.held import Held, fixed_values, hold, joint_number
+from cspace.ik.prepare import prepare
+from cspace.ik.redundancy import Interval, Redundancy
+from cspace.ik.solutions import EXACT, INCOMPLETE, UNREACHABLE, Solutions, how_many
+from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.spare import spare_array
+from cspace.spatial import as_pose
+from cspace.tolerances import FARTHEST
+
+__all__ = ["redundancy", "redundant_answer"]
+
+SAMPLES = 16
+MOVING = 6
+"""How many joints a pose settles."""
+MOST_SAMPLES = 100_000
+END_NOTHING, END_FOLD = -1, -2
+
+
+def redundant_answer(
+    robot: Any,
+    T: Array,
+    *,
+    fixed: Any,
+    samples: Any,
+    near: Any,
+    threads: int,
+) -> Solutions | SolutionsBatch:
+    """The answer of an arm with joints to spare, or with joints held: see inverse_kinematics."""
+    values = fixed_values(robot, {} if fixed is None else fixed)
+    joints = len(robot.joint_types)
+    spare = joints - len(values) - MOVING
+    if samples is not None and (near is not None or spare != 1):
+        raise InputTypeError(
+            "samples= goes with one free dimension, and without near="
+            if near is not None or spare < 1
+            else f"samples= goes with one free dimension; here {spare} are free: hold joints with fixed="
+        )
+    if spare <= 0:
+        return solve_held(robot, T, values, near, threads)
+    if any(np.ndim(value) for value in values.values()):
+        raise InputTypeError(
+            "fixed= takes one value per joint while dimensions stay free; hold all of them, or ask in a loop"
+        )
+    held = hold(robot, {joint: float(value) for joint, value in values.items()})
+    if near is not None:
+        return nearest(held, T, near, threads)
+    if spare > 1:
+        return nearest(held, T, middle_of(robot), threads)
+    count = sample_count(samples)
+    if T.ndim == 2:
+        return sampled(held, T, count)
+    return sampled_batch(held, T, count)
+
+
+def redundancy(
+    robot: Any, goal: Any, parameter: str | int | None = None, *, fixed: Mapping[Any, float] | None = None
+) -> Redundancy:
+    """For which values of a joint to spare a goal can be reached within all limits, branch by branch.
+
+    The ends are where another joint reaches a limit (it is locked there, and the others are solved) and where
+    branches fold: the determinant of the others' Jacobian vanishes. goal (4, 4): T_base_tip. parameter: the
+    joint, by name or number; the solver's own choice unless given (`ik(goal).freedom` names it). fixed:
+    values of other joints [rad, m], so that one is left to spare.
+
+    Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a joint to spare
+    or with more than one. For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
+    """
+    prepare(robot)
+    T = as_pose(goal, "goal")
+    if T.ndim != 2:
+        raise InputError(f"goal has shape {T.shape}, expected one pose (4, 4)")
+    values = fixed_values(robot, {} if fixed is None else fixed)
+    if any(np.ndim(value) for value in values.values()):
+        raise InputTypeError("fixed= takes one value per joint here")
+    spare = len(robot.joint_types) - len(values) - MOVING
+    if spare != 1:
+        raise InputError(
+            f"{robot.name} has {max(spare, 0)} joints to spare here, expected one: "
+            + ("hold the others with fixed=" if spare > 1 else "six joints are settled by the goal")
+        )
+    held = hold(robot, {joint: float(value) for joint, value in values.items()})
+    joint = (
+        held.solver.held[0] if parameter is None else held.free.index(free_joint(robot, parameter, values))
+    )
+    return intervals_of(held, np.ascontiguousarray(T), joint)
+
+
+def free_joint(robot: Any, parameter: Any, fixed: Mapping[int, Any]) -> int:
+    joint = joint_number(robot, parameter, "parameter")
+    if joint in fixed:
+        raise InputError(f"parameter {robot.joint_names[joint]!r} is held by fixed=: it is not free")
+    return joint
+
+
+def intervals_of(held: Held, T: Array, joint: int) -> Redundancy:
+    rows, complete = held.solver.intervals(joint, T)
+    names = [held.robot.joint_names[k] for k in held.free]
+
+    def end(what: int, side: int) -> str:
+        if what == END_FOLD:
+            return "fold"
+        return "nothing" if what == END_NOTHING else f"{names[what]} at {'upper' if side else 'lower'} limit"
+
+    made = [
+        Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), held.whole(np.array(q)))
+        for low, high, branch, a, sa, b, sb, q in rows
+    ]
+    made.sort(key=lambda interval: (interval.branch, interval.lower))
+    slides = held.robot.joint_types[held.free[joint]] == "P"
+    return Redundancy(held.robot, T, names[joint], tuple(made), complete, slides)
+
+
+# --- answers ----------------------------------------------------------------------------------------------
+def solve_held(
+    robot: Any, T: Array, values: dict[int, Any], near: Any, threads: int
+) -> Solutions | SolutionsBatch:
+    """All joints to spare are held: every solution of the others."""
+    solver = hold(robot, {}).solver
+    joints = list(values)
+    shape = np.broadcast_shapes(T.shape[:-2], *(np.shape(v) for v in values.values()))
+    goals = np.ascontiguousarray(np.broadcast_to(T, (*shape, 4, 4)))
+    n, N = robot.dof, int(np.prod(shape))
+    at = np.zeros((N, n))
+    for joint, value in values.items():
+        at[:, joint] = np.broadcast_to(value, shape).reshape(-1)
+    seed = np.empty(0) if near is None else seed_row(robot, near)
+    room = solver.room(joints)
+    q = spare_array((N, room, n))
+    branch, family = np.zeros((N, room), dtype=np.int8), np.zeros((N, room), dtype=bool)
+    count, status = np.empty(N, dtype=np.int64), np.empty(N, dtype=np.uint8)
+    solver.solve(joints, at, goals.reshape(-1, 4, 4), seed, q, branch, family, count, status, threads)
+    if shape:
+        if near is not None:
+            raise InputTypeError("near= with fixed= is for one goal; a batch has .nearest(q)")
+        return SolutionsBatch(
+            robot, goals, q.reshape(*shape, room, n), count.reshape(shape), status.reshape(shape)
+        )
+    k = int(count[0])
+    note = None
+    if k == 0:
+        held = ", ".join(f"{robot.joint_names[j]} = {float(v):.6g}" for j, v in values.items())
+        note = f"nothing reaches the goal with {held}"
+    made = make(robot, goals, int(status[0]), q[0, :k], branch[0, :k], family[0, :k], note, ())
+    return made if near is None else made.nearest(near)
+
+
+def nearest(held: Held, T: Array, near: Any, threads: int) -> Solutions | SolutionsBatch:
+    robot = held.robot
+    seeds = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
+    shape = T.shape[:-2]
+    if seeds.ndim > 1 and seeds.shape[:-1] != shape:
+        raise InputError(
+            f"near has shape {seeds.shape}, expected ({robot.dof},) for all goals or"
+            f" {(*shape, robot.dof)}, one for each"
+        )
+    goals = T.reshape(-1, 4, 4)
+    rows = np.ascontiguousarray(seeds.reshape(-1, robot.dof)[:, list(held.free)])
+    q, found = np.empty((len(goals), len(held.free))), np.empty(len(goals), dtype=bool)
+    held.solver.nearest(goals, rows, q, found, threads)
+    whole = held.whole(q)
+    if shape:
+        status = np.where(found, EXACT, UNREACHABLE).astype(np.uint8)
+        count = found.astype(np.int64).reshape(shape)
+        batch = SolutionsBatch(
+            robot, T, whole.reshape(*shape, 1, robot.dof), count, status.reshape(shape), None, held.freedom
+        )
+        return batch
+    if not found[0]:
+        return unreachable(held, T)
+    made = make(
+        robot, T, EXACT, whole, np.full(1, -1), np.zeros(1, dtype=bool), near_note(held), held.freedom
+    )
+    return made.nearest(seeds)
+
+
+def near_note(held: Held) -> str:
+    return f"the nearest of the configurations that reach the goal; free: {free_text(held)}"
+
+
+def free_text(held: Held) -> str:
+    k = held.solver.spare
+    return f"{k} dimension{'s' if k > 1 else ''}, held in {', '.join(held.parameters)}"
+
+
+def unreachable(held: Held, T: Array) -> Solutions:
+    nothing = np.empty((0, held.robot.dof))
+    note = None
+    if held.fixed:
+        at = ", ".join(f"{held.robot.joint_names[j]} = {v:.6g}" for j, v in held.fixed.items())
+        note = f"nothing reaches the goal with {at}"
+    empty = np.empty(0, dtype=np.int8)
+    return make(held.robot, T, UNREACHABLE, nothing, empty, empty.astype(bool), note, held.freedom)
+
+
+def sampled(held: Held, T: Array, count: int) -> Solutions:
+    """All branches at values spread over the feasible intervals; over all that exist if none is feasible."""
+    robot, joint = held.robot, held.solver.held[0]
+    T = np.ascontiguousarray(T)
+    found = intervals_of(held, T, joint)
+    where = "its feasible intervals"
+    if not found:
+        free = hold(robot, held.fixed, limited=False)
+        found = intervals_of(free, T, joint)
+        where = "the values that reach it, none of them within limits"
+    values = found.spread(count)
+    if not len(values):
+        return unreachable(held, T)
+    q, branch, counts, complete = sweep(held, T, joint, values)
+    real = np.arange(q.shape[1]) < counts[:, None]
+    rows = held.whole(q[real])
+    note = (
+        f"{how_many(len(rows))} the goal, at {len(values)} values of {held.parameters[0]} spread over {where}"
+    )
+    verdict = EXACT + (0 if complete and found.complete else INCOMPLETE)
+    family = np.zeros(len(rows), dtype=bool)
+    return make(robot, T, verdict, rows, branch[real], family, note, held.freedom)
+
+
+def sampled_batch(held: Held, T: Array, count: int) -> SolutionsBatch:
+    shape = T.shape[:-2]
+    answers = [sampled(held, goal, count) for goal in T.reshape(-1, 4, 4)]
+    room = max((len(answer) for answer in answers), default=1) or 1
+    q = np.full((len(answers), room, held.robot.dof), np.nan)
+    for row, answer in zip(q, answers, strict=True):
+        row[: len(answer)] = answer.q
+    counts = np.array([len(answer) for answer in answers], dtype=np.int64)
+    verdicts = np.array([answer._verdict for answer in answers], dtype=np.uint8)
+    return SolutionsBatch(
+        held.robot,
+        T,
+        q.reshape(*shape, room, held.robot.dof),
+        counts.reshape(shape),
+        verdicts.reshape(shape),
+        None,
+        held.freedom,
+    )
+
+
+def sweep(
+    held: Held, T: Array, joint: int, values: Array
+) -> tuple[Array, npt.NDArray[np.int8], npt.NDArray[np.int64], bool]:
+    """Every solution at many values of one joint: q (m, 16, n), branch (m, 16), count (m,)."""
+    m, n = len(values), len(held.free)
+    q = np.empty((m, 16, n))
+    branch, count = np.zeros((m, 16), dtype=np.int8), np.empty(m, dtype=np.int64)
+    complete = held.solver.sweep(joint, T, np.zeros(n), np.ascontiguousarray(values), q, branch, count)
+    return q, branch, count, complete
+
+
+def make(
+    robot: Any,
+    T: Array,
+    verdict: int,
+    q: Array,
+    branch: Any,
+    family: Any,
+    note: str | None,
+    freedom: tuple[str, ...],
+) -> Solutions:
+    made = _core._ik_make(
+        robot,
+        np.ascontiguousarray(T),
+        verdict,
+        np.ascontiguousarray(q),
+        tuple(int(b) for b in branch),
+        tuple(bool(f) for f in family),
+        note,
+        About(freedom=freedom),
+    )
+    return cast(Solutions, made)
+
+
+def middle_of(robot: Any) -> Array:
+    """The middle of the limits; 0 for joints that have none."""
+    lower, upper = robot.limits.lower, robot.limits.upper
+    bounded = np.isfinite(lower) & np.isfinite(upper)
+    return np.where(bounded, 0.5 * (np.where(bounded, lower, 0) + np.where(bounded, upper, 0)), 0.0)
+
+
+def seed_row(robot: Any, near: Any) -> Array:
+    seed = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
+    if seed.ndim != 1:
+        raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
+    return np.ascontiguousarray(seed)
+
+
+def sample_count(samples: Any) -> int:
+    if samples is None:
+        return SAMPLES
+    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
+        raise InputTypeError(f"samples is a {type(samples).__name__}, expected a number of values")
+    if not 1 <= samples <= MOST_SAMPLES:
+        raise InputError(f"samples is {samples}, expected 1 to {MOST_SAMPLES}")
+    return int(samples)

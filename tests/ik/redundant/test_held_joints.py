@@ -1,0 +1,157 @@
+"""Arms with joints held at given values: every recorded solution, the same for names, numbers and batches."""
+
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.errors import InputError, InputTypeError, UnknownNameError
+from data import shared_data
+from ik.arms import robot_from_chain, shared_chains
+
+
+def wrapped(difference):
+    return np.abs(np.angle(np.exp(1j * difference)))
+
+
+def recorded_sets():
+    folder = shared_data() / "arms"
+    meta = json.loads((folder / "solutions_meta.json").read_text())
+    sets = np.load(folder / "solutions.npz")
+    for name, about in meta.items():
+        if about["locked_joint"] is not None:
+            yield (
+                name,
+                about["locked_joint"],
+                {key: sets[f"{name}/{key}"] for key in ("T", "q_true", "nsol", "Q")},
+            )
+
+
+def test_every_recorded_solution_of_the_locked_arms_is_found():
+    names = []
+    for name, locked, data in recorded_sets():
+        robot = robot_from_chain(shared_chains()[name])
+        names.append(name)
+        for T, q_true, count, recorded in zip(
+            data["T"], data["q_true"], data["nsol"], data["Q"], strict=True
+        ):
+            s = robot.ik(T, fixed={locked: q_true[locked]})
+            assert len(s) == count, name
+            assert s.residual.max() < 1e-11
+            for row in recorded[:count]:
+                assert wrapped(s.q - row).max(axis=1).min() < 1e-7, name
+    assert sorted(names) == ["franka_panda", "gen3", "iiwa14", "rizon4"]
+
+
+@pytest.mark.parametrize("joint", range(7))
+@pytest.mark.parametrize("name", ["panda", "gen3"])
+def test_any_joint_may_be_held(name, joint):
+    robot = cs.load_robot(name)
+    for q in robot.random_configuration(5, rng=joint):
+        s = robot.ik(robot.fk(q), fixed={robot.joint_names[joint]: q[joint]})
+        assert s.residual.max() < 1e-11
+        assert (s.q[:, joint] == q[joint]).all()
+        assert wrapped(s.q - q).max(axis=1).min() < 1e-8
+        assert not s.freedom
+
+
+def test_names_numbers_and_batches_give_the_same():
+    robot = cs.load_robot("panda")
+    q = robot.random_configuration(40, rng=3)
+    Ts = robot.fk(q)
+    together = robot.ik(Ts, fixed={6: q[:, 6]}, threads=2)
+    assert together.q.shape == (40, 8, 7)
+    for k, (T, row) in enumerate(zip(Ts, q, strict=True)):
+        one = robot.ik(T, fixed={"panda_joint7": row[6]})
+        assert together.count[k] == len(one) > 0
+        assert np.array_equal(together.q[k, : len(one)], one.q)
+        assert np.array_equal(together[k].q, one.q)
+    values = np.linspace(-2.8, 2.8, 9)
+    swept = robot.ik(Ts[0], fixed={-1: values})
+    for k, value in enumerate(values):
+        assert np.array_equal(swept.q[k, : swept.count[k]], robot.ik(Ts[0], fixed={-1: value}).q)
+
+
+def test_joints_of_arms_without_any_to_spare_may_be_held_too():
+    robot = cs.load_robot("ur5e")
+    q = robot.random_configuration(rng=2)
+    s = robot.ik(robot.fk(q), fixed={"wrist_3_joint": q[5]})
+    assert len(s)
+    assert wrapped(s.q - q).max(axis=1).min() < 1e-9
+    assert (s.q[:, 5] == q[5]).all()
+    missed = robot.ik(robot.fk(q), fixed={"wrist_3_joint": q[5] + 0.1})
+    assert not missed
+    assert "wrist_3_joint" in missed.reason
+
+
+def test_eight_joints_are_solved_by_holding_two():
+    robot = cs.load_robot("pr2_right_torso")
+    q = robot.random_configuration(rng=5)
+    s = robot.ik(robot.fk(q), fixed={0: q[0], 1: q[1]})
+    assert s.residual.max() < 1e-11
+    assert wrapped(s.q - q).max(axis=1).min() < 1e-8
+    nearest = robot.ik(robot.fk(q), near=q + 0.01)
+    assert nearest.residual.max() < 1e-11
+    assert np.linalg.norm(nearest.q - (q + 0.01)) <= 0.01 * np.sqrt(8) + 1e-9
+    assert len(nearest.freedom) == 2
+    one_left = robot.ik(robot.fk(q), fixed={0: q[0]})
+    assert len(one_left.freedom) == 1
+    assert one_left.residual.max() < 1e-9
+    assert np.allclose(one_left.q[:, 0], q[0])
+    middle = robot.ik(robot.fk(q))
+    assert len(middle) == 1
+    assert middle.residual.max() < 1e-11
+
+
+def test_a_family_that_a_held_joint_leaves_is_found():
+    robot = cs.load_robot("iiwa14")
+    q = robot.random_configuration(rng=4)
+    s = robot.ik(
+        robot.fk(q), fixed={3: q[3]}
+    )  # the elbow's angle is given by the goal: the arm still swivels
+    assert s.status == "singular"
+    assert s.residual.max() < 1e-8
+    assert not robot.ik(robot.fk(q), fixed={3: q[3] + 0.2})
+
+
+def test_answers_survive_pickling():
+    robot = cs.load_robot("panda")
+    q = robot.random_configuration(rng=1)
+    s = robot.ik(robot.fk(q))
+    again = pickle.loads(pickle.dumps(s))
+    assert np.array_equal(again.q, s.q)
+    assert again.freedom == s.freedom
+    assert again.reason == s.reason
+
+
+@pytest.mark.parametrize(
+    ("fixed", "error", "words"),
+    [
+        ({"panda_joint9": 0.1}, UnknownNameError, "panda_joint"),
+        ({7: 0.1}, InputError, "joints 0 to 6"),
+        ({6: np.nan}, InputError, "finite"),
+        ({6: 0.1, "panda_joint7": 0.2}, InputError, "twice"),
+        ({1.5: 0.1}, InputTypeError, "name or number"),
+        ([0.1], InputTypeError, "dict"),
+        (dict.fromkeys(range(7), 0.0), InputError, "none is left"),
+    ],
+)
+def test_what_cannot_be_held_is_refused(fixed, error, words):
+    robot = cs.load_robot("panda")
+    with pytest.raises(error, match=words):
+        robot.ik(robot.fk(np.zeros(7)), fixed=fixed)
+
+
+def test_samples_and_near_need_freedom_of_the_right_kind():
+    robot = cs.load_robot("panda")
+    T = robot.fk(np.zeros(7))
+    with pytest.raises(InputTypeError, match="one free dimension"):
+        robot.ik(T, fixed={6: 0.1}, samples=4)
+    with pytest.raises(InputTypeError, match="near"):
+        robot.ik(T, near=np.zeros(7), samples=4)
+    with pytest.raises(InputError, match="samples is 0"):
+        robot.ik(T, samples=0)
+    with pytest.raises(InputError, match="near has shape"):
+        robot.ik(T, near=np.zeros((2, 7)))

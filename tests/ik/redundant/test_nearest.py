@@ -1,0 +1,75 @@
+"""The nearest of all configurations of an arm with a joint to spare, against dense samples of all of them."""
+
+import numpy as np
+import pytest
+
+import cspace as cs
+
+
+def distances(q, seed):
+    return np.linalg.norm(np.angle(np.exp(1j * (q - seed))), axis=-1)
+
+
+def sampled_distance(robot, T, seed, joint, n):
+    values = np.linspace(-np.pi, np.pi, n, endpoint=False)
+    b = robot.ik(T, fixed={joint: values})
+    return np.nanmin(distances(b.q, seed))
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "pr2_right"])
+@pytest.mark.parametrize("noise", [0.02, 0.3, 2.0])
+def test_no_sample_is_nearer(name, noise):
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(11)
+    joint = int(robot.joint_names.index(robot.ik(robot.fk(np.full(7, 0.3))).freedom[0]))
+    for q in robot.random_configuration(25, rng=rng):
+        seed = q + rng.uniform(-noise, noise, 7)
+        T = robot.fk(q)
+        s = robot.ik(T, near=seed)
+        found = distances(s.q, seed)[0]
+        assert s.residual[0] < 1e-10
+        assert found <= distances(q, seed) + 1e-12
+        assert found <= sampled_distance(robot, T, seed, joint, 2000) + 1e-9
+
+
+@pytest.mark.parametrize("name", ["gen3", "rizon4"])
+def test_arms_without_a_closed_form(name):
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(5)
+    for q in robot.random_configuration(8, rng=rng, reach=1):
+        seed = q + rng.uniform(-0.05, 0.05, 7)
+        s = robot.ik(robot.fk(q), near=seed)
+        assert s.residual[0] < 1e-10
+        assert distances(s.q, seed)[0] <= distances(q, seed) + 1e-12
+
+
+@pytest.mark.parametrize("name", ["panda", "gen3"])
+def test_the_way_to_the_seed_is_square_to_the_self_motion(name):
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(7)
+    for q in robot.random_configuration(10, rng=rng):
+        seed = q + rng.uniform(-0.1, 0.1, 7)
+        s = robot.ik(robot.fk(q), near=seed)
+        motion = np.linalg.svd(robot.jacobian(s.q[0]))[2][-1]
+        gap = np.angle(np.exp(1j * (s.q[0] - seed)))
+        assert abs(motion @ gap) < 1e-9
+
+
+def test_batches_and_unreachable_goals():
+    robot = cs.load_robot("panda")
+    q = robot.random_configuration(30, rng=9)
+    Ts = robot.fk(q)
+    b = robot.ik(Ts, near=q + 0.01)
+    assert b.q.shape == (30, 1, 7)
+    assert b.count.min() == 1
+    assert np.nanmax(b.residual) < 1e-10
+    one = robot.ik(Ts[3], near=q[3] + 0.01)
+    assert np.allclose(np.angle(np.exp(1j * (b.q[3, 0] - one.q[0]))), 0, atol=1e-12)
+    far = Ts[0].copy()
+    far[:3, 3] = [3.0, 0, 0]
+    s = robot.ik(far, near=q[0])
+    assert not s
+    assert s.status == "unreachable"
+    assert s.missing > 1
+    assert not robot.ik(far)
+    assert "out of reach" in robot.ik(far).reason
