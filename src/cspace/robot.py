@@ -176,7 +176,7 @@ class Robot(RobotBase):
         """The inverse kinematics as source code that needs nothing of cspace, written to `path` if there is
         one; see export.export, which also names the errors.
 
-        lang: "cpp" or "c"; by the ending of path unless given. name: of the namespace in it.
+        lang: "cpp", "c" or "python"; by the ending of path unless given. name: of the namespace in it.
         """
         from cspace.export import export
 

@@ -10,7 +10,7 @@ import pytest
 import cspace as cs
 from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.export import LANGUAGES
-from cspace.ik import NoClosedFormError, geometry
+from cspace.ik import NoClosedFormError
 
 STANDARD = {
     *("array", "cfloat", "climits", "cmath", "cstddef", "cstdint", "cstdlib", "cstring", "initializer_list"),
@@ -29,7 +29,7 @@ def code_of(text):
 def test_every_arm_of_the_catalogue(name):
     robot = cs.load_robot(name)
     for lang in ("cpp", "c"):
-        if geometry(robot).family == "none":
+        if robot.dof > 6:
             with pytest.raises(NoClosedFormError, match=robot.name):
                 robot.export(lang)
             continue

@@ -11,6 +11,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.export.plain import in_ascii
+from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.prepare import prepare
 
 __all__ = ["ExportedArm", "exported_arm"]
@@ -26,6 +27,8 @@ TAKEN = frozenset(
         *("typename", "union", "unsigned", "using", "virtual", "void", "volatile", "xor"),
     ]
 )
+
+SETTLED = 6
 
 METHODS = {
     "closed": "solved in closed form",
@@ -65,6 +68,12 @@ class ExportedArm:
 def exported_arm(robot: Any, name: str | None) -> ExportedArm:
     """The robot as the exports see it; raises NoClosedFormError and InputError."""
     prepare(robot)
+    joints = len(robot.chain.joint_types)
+    if joints > SETTLED:
+        raise NoClosedFormError(
+            f"{robot.name} has {joints} joints, more than the {SETTLED} that a pose settles; arms of up to"
+            f" {SETTLED} can be exported"
+        )
     kind, plan = _core._ik_numbers(robot)
     chain = robot.chain
     return ExportedArm(

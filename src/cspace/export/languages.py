@@ -13,14 +13,21 @@ from cspace.errors import InputError, InputTypeError, suggest
 from cspace.export.arm import ExportedArm, exported_arm
 from cspace.export.c import c_files
 from cspace.export.cpp import cpp_header, words_of
+from cspace.export.python_file import python_file, python_method
 from cspace.export.words import filled
 from cspace.model.files import path_of, write_text
 
 __all__ = ["LANGUAGES", "Export", "export"]
 
-LANGUAGES = MappingProxyType({"cpp": "a C++17 header", "c": "a C99 header and a C++17 file behind it"})
-BY_SUFFIX = MappingProxyType({".hpp": "cpp", ".hh": "cpp", ".hxx": "cpp", ".h": "c"})
-SUFFIXES = MappingProxyType({"cpp": ".hpp", "c": ".h"})
+LANGUAGES = MappingProxyType(
+    {
+        "cpp": "a C++17 header",
+        "c": "a C99 header and a C++17 file behind it",
+        "python": "a file that needs numpy alone",
+    }
+)
+BY_SUFFIX = MappingProxyType({".hpp": "cpp", ".hh": "cpp", ".hxx": "cpp", ".h": "c", ".py": "python"})
+SUFFIXES = MappingProxyType({"cpp": ".hpp", "c": ".h", "python": ".py"})
 
 
 @dataclass(frozen=True)
@@ -64,8 +71,8 @@ def export(
 ) -> Export:
     """The inverse and forward kinematics of an arm as source code that needs nothing of cspace.
 
-    lang: "cpp", "c"; by the ending of path unless given, else "cpp". path: where to write the (first) file.
-    name: the namespace in it, or the prefix; made from the robot's name unless given.
+    lang: "cpp", "c" or "python"; by the ending of path unless given, else "cpp". path: where to write the
+    (first) file. name: the namespace in it, or the prefix; made from the robot's name unless given.
 
     Raises UnknownNameError for a language that is none, InputError for a name or a path that cannot be used,
     NoClosedFormError for an arm that robot.ik does not solve.
@@ -94,13 +101,21 @@ def language_of(lang: str | None, target: PurePath | None) -> str:
 
 
 def write_out(arm: ExportedArm, language: str, main: str) -> Export:
-    files = {main: cpp_header(arm)} if language == "cpp" else c_files(arm, main)
-    ending = ".cpp" if language == "cpp" else ".c"
+    if language == "c":
+        files = c_files(arm, main)
+    else:
+        files = {main: cpp_header(arm) if language == "cpp" else python_file(arm)}
+    ending = {"cpp": ".cpp", "c": ".c", "python": ".py"}[language]
     words = {**words_of(arm), "header": main, "file": f"main{ending}", "sample": sample(arm)}
     words["source"] = PurePath(main).with_suffix(".cpp").name
     words["object"] = PurePath(main).with_suffix(".o").name
+    words["module"] = PurePath(main).stem
     example = filled(f"example{ending}.in", words)
-    return Export(language, arm.identifier, arm.method, MappingProxyType(files), example)
+    return Export(language, arm.identifier, method(arm, language), MappingProxyType(files), example)
+
+
+def method(arm: ExportedArm, language: str) -> str:
+    return python_method(arm) if language == "python" else arm.method
 
 
 def sample(arm: ExportedArm) -> str:

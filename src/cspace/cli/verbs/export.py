@@ -20,7 +20,7 @@ __all__ = ["EXAMPLES", "arguments", "run"]
 EXAMPLES: Final = """
 cspace export ur5e --lang cpp -o ur5e_ik.hpp
 cspace export gen3_lite --lang c -o gen3_lite_ik.h --example main.c
-cspace export arm.urdf --name my_arm > my_arm.hpp
+cspace export arm.urdf --lang python --name my_arm > my_arm.py
 """
 
 
@@ -28,7 +28,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_robot(parser)
     parser.add_argument(
-        "--lang", metavar="LANGUAGE", help="cpp or c; by the ending of FILE unless given, else cpp"
+        "--lang", metavar="LANGUAGE", help="cpp, c or python; by the ending of FILE unless given, else cpp"
     )
     parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="where to write it, else shown")
     parser.add_argument(

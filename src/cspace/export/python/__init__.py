@@ -1,0 +1,3 @@
+"""Solvers in plain numpy, of which an exported Python file is put together."""
+
+__all__: list[str] = []

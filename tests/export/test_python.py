@@ -1,0 +1,106 @@
+"""Exported Python files need numpy alone and find what the library finds."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from types import ModuleType
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from export import agree, arms
+
+ALLOWED = {"__future__", "dataclasses", "typing", "numpy"}
+SAMPLED = {"scara", "stanford", "RRPRRR", "PRRPRR", "PPPRRR", "RRPRP", "neighbours"}
+
+
+def module_of(text):
+    """The text as a module that has been imported."""
+    module = ModuleType("exported")
+    sys.modules["exported"] = module  # where dataclasses look for the names of types
+    exec(compile(text, "exported.py", "exec"), module.__dict__)
+    return module
+
+
+def check(name, count, seed):
+    robot = arms.arm(name)
+    module = module_of(robot.export("python").text)
+    goals, regular = agree.goals(robot, count, seed)
+    for k, goal in enumerate(goals):
+        answer, found = module.ik(goal), robot.ik(goal)
+        assert bool(answer) == bool(found), goal
+        for q in answer.q:
+            np.testing.assert_allclose(robot.fk(q), goal, atol=1e-8 * max(1.0, np.abs(goal[:3, 3]).max()))
+            np.testing.assert_allclose(module.fk(q), robot.fk(q), atol=1e-12 * max(1.0, np.abs(q).max()))
+            np.testing.assert_allclose(
+                module.jacobian(q), robot.jacobian(q), atol=1e-11 * (1 + np.abs(q).max())
+            )
+        if k >= regular:
+            continue
+        assert answer.status == found.status
+        assert len(answer) == len(found)
+        assert answer.complete == (name not in SAMPLED)
+        for q in found.q:
+            assert agree.apart(q, answer.q, robot.joint_types) < 1e-6
+
+
+@pytest.mark.parametrize("name", ["ur5e", "irb120", "so101", "planar_2r", "rpr", "calibrated"])
+def test_it_finds_what_the_library_finds(name):
+    check(name, 5, seed=1)
+
+
+@pytest.mark.oracle
+@pytest.mark.parametrize("name", arms.KINDS)
+def test_every_kind_of_arm(name):
+    check(name, 6 if name in SAMPLED else 25, seed=2)
+
+
+@pytest.mark.parametrize("name", cs.robots.names())
+def test_every_arm_of_the_catalogue_is_a_module_on_its_own(name):
+    robot = cs.load_robot(name)
+    if robot.dof > 6:
+        return
+    made = robot.export("python")
+    tree = ast.parse(made.text)
+    for node in ast.walk(tree):
+        names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+        names += [node.module] if isinstance(node, ast.ImportFrom) else []
+        assert {name.split(".")[0] for name in names} <= ALLOWED
+    assert "0BSD" in ast.get_docstring(tree)
+    assert max(map(len, made.text.splitlines()), default=0) < 2000
+    q = robot.random_configuration(rng=1, reach=0.3)
+    found = module_of(made.text).ik(robot.fk(q)) if robot.dof <= 6 and made.method.endswith("form") else None
+    assert found is None or agree.apart(q, found.q, robot.joint_types) < 1e-5
+
+
+def test_what_is_no_pose_is_refused():
+    robot = cs.load_robot("ur5e")
+    module = module_of(robot.export("python").text)
+    for bad in (*agree.nonsense(robot), np.eye(3)):
+        with pytest.raises(ValueError, match="T"):
+            module.ik(bad)
+    with pytest.raises(ValueError, match="expected 6 joints"):
+        module.fk([0.0])
+
+
+def test_limits():
+    robot = cs.load_robot("irb120")
+    module = module_of(robot.export("python").text)
+    middle = (robot.limits.lower + robot.limits.upper) / 2
+    q, inside = module.into_limits(middle + 2 * np.pi * np.array([1, -1, 0, 2, 0, 0]))
+    assert inside
+    np.testing.assert_allclose(q, middle, atol=1e-12)
+    assert not module.into_limits(robot.limits.upper + 0.1)[1]
+
+
+def test_the_file_and_its_example_run_alone(tmp_path):
+    made = cs.load_robot("ur5e").export("python", tmp_path / "arm.py")
+    made.write_example(tmp_path / "main.py")
+    for script in ("arm.py", "main.py"):
+        words = [sys.executable, "-W", "error", script]
+        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
+        assert "configurations reach" in done.stdout
