@@ -93,7 +93,7 @@ def test_every_layout_of_the_same_numbers_has_the_same_answer(goal):
     assert np.array_equal(ARM.ik(np.asarray(goal)[None])[0].q, ARM.ik(GOAL[None])[0].q)
 
 
-@pytest.mark.parametrize("n", [0, 7, 40])
+@pytest.mark.parametrize("n", [0, 17, 40])
 def test_a_chain_of_no_joints_or_too_many_has_no_closed_form_and_says_so(n):
     links = "".join(f"<link name='l{i}'/>" for i in range(n + 1))
     joints = "".join(
