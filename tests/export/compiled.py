@@ -13,6 +13,7 @@ import pytest
 
 HERE = Path(__file__).parent
 STRICT = ["-Wall", "-Wextra", "-Werror", "-pedantic"]
+COMPILERS = [name for name in ("g++", "clang++") if shutil.which(name)]
 STATUS = ("unreachable", "exact", "singular", "not_a_pose")
 
 
