@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import numpy as np
 
 import cspace as cs
@@ -17,6 +19,9 @@ KINDS = [
     *("scara", "stanford", "RRPRRR", "PRRPRR", "PPPRRR", "RRPRP", "neighbours"),
     *("wrist_12_meet", "wrist_23_meet", "wrist_12_parallel", "wrist_skew", "parallel_234", "parallel_123"),
 ]
+
+ASKED = KINDS if os.environ.get("CSPACE_EVERY_EXPORT") else ["irb120", "stanford", "rpr"]
+"""The kinds that the tests compile and ask: to compile them all takes a quarter of an hour."""
 
 
 def arm(name: str) -> Robot:
