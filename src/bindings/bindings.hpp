@@ -10,5 +10,6 @@ void bind_ik(nanobind::module_& m);
 void bind_ik_plan(nanobind::module_& m);
 void bind_ik_numeric(nanobind::module_& m);
 void bind_ik_redundant(nanobind::module_& m);
+void bind_ik_swivel(nanobind::module_& m);
 void bind_ik_tasks(nanobind::module_& m);
 void bind_ik_numbers(nanobind::module_& m);

@@ -15,7 +15,7 @@
 using namespace cspace;
 
 const char robot_ik_doc[] =
-    R"doc(ik($self, goal=None, *, position=None, rotation=None, direction=None, look_at=None, ray=None, angle_to=None, tool_axis='z', angle=None, near=None, fixed=None, samples=None, least_squares=False, threads=None)
+    R"doc(ik($self, goal=None, *, position=None, rotation=None, direction=None, look_at=None, ray=None, angle_to=None, tool_axis='z', angle=None, near=None, fixed=None, swivel=None, samples=None, least_squares=False, threads=None)
 --
 
 Every configuration q with fk(q) = goal.
@@ -26,9 +26,10 @@ position (..., 3) [m], None for coordinates that do not matter, or (..., 2) for 
 the tool axis to it [rad]) or, in the plane, angle [rad]; look_at (3,), a point ahead on the tool axis; ray=(p,
 d), the line on which the tool axis lies. tool_axis: "x", "y", "z", "-z" or a direction in the tip. near (dof,)
 [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its values.
-fixed: joints held at given values, {"joint7": 0.3}, by name or number. samples: of an arm with one joint to
-spare, at how many of its values the branches are listed (16). least_squares: where nothing reaches the goal,
-answer with the configuration that misses it least. threads: of a batch, all cores unless given.
+fixed: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of the elbow of an arm with
+two spherical joints. samples: of an arm with one joint to spare, at how many of its values the branches are
+listed (16). least_squares: where nothing reaches the goal, answer with the configuration that misses it least.
+threads: of a batch, all cores unless given.
 
 Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,
 branch, families, freedom, derivative, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns

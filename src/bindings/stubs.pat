@@ -27,7 +27,7 @@ cspace._core.RobotBase.fk_jacobian:
         \doc
 
 cspace._core.RobotBase.ik$:
-    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         \doc
 
 cspace._core.RobotBase.__suffix__:

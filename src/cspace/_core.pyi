@@ -87,6 +87,17 @@ class RobotBase:
         fixed: joints held at given values, {"joint7": 0.3}, by name or number. samples: of an arm with one joint to
         spare, at how many of its values the branches are listed (16). least_squares: where nothing reaches the goal,
         answer with the configuration that misses it least. threads: of a batch, all cores unless given.
+    def ik(self, goal: Any = None, *, position: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+        """
+        Every configuration q with fk(q) = goal.
+
+        goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. position: instead of it the place of the
+        tip alone [m], (3,) or (..., 3), or (..., 2) for an arm in the plane; for arms of up to three joints. near
+        (dof,) [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its
+        values. fixed: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of
+        the elbow of an arm with two spherical joints. samples: of an arm with one
+        joint to spare, at how many of its values the branches are listed (16). least_squares: where nothing reaches
+        the goal, answer with the configuration that misses it least. threads: of a batch, all cores unless given.
 
         Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,
         branch, families, freedom, derivative, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns
@@ -212,6 +223,22 @@ class RedundantSolver:
         """
         Every solution at many values of one held joint; whether none is missing.
         """
+
+class SwivelSolver:
+    """Arms with two spherical joints and an elbow between them."""
+
+    def __init__(self, axes: Annotated[NDArray[numpy.float64], dict(shape=(7, 3), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(shape=(7, 3), order='C', device='cpu', writable=False)], T_zero: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C', device='cpu', writable=False)]) -> None:
+        """From the screws of seven turns."""
+
+    @property
+    def serves(self) -> bool:
+        """Whether axes 1, 2, 3 and 5, 6, 7 meet."""
+
+    def solve(self, goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 4), order='C', device='cpu', writable=False)], swivels: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, 8, 7), order='C', device='cpu')]) -> None:
+        """Every solution at given swivels."""
+
+    def swivels(self, q: Annotated[NDArray[numpy.float64], dict(shape=(None, 7), order='C', device='cpu', writable=False)], out: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')]) -> None:
+        """The swivel of configurations."""
 
 def _ik_build(*arguments: Any) -> bool: ...
 def _ik_careful(*arguments: Any) -> Any: ...

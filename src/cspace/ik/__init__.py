@@ -25,6 +25,7 @@ from cspace.ik.redundant import redundancy
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve import inverse_kinematics
+from cspace.ik.swivel import swivel
 
 __all__ = [
     "CenterOfMassTask",
@@ -57,5 +58,6 @@ __all__ = [
     "redundancy",
     "resolved_rate",
     "subproblems",
+    "swivel",
     "task_velocity",
 ]

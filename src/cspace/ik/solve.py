@@ -46,6 +46,7 @@ def inverse_kinematics(
     angle: Any = None,
     near: Any = None,
     fixed: Any = None,
+    swivel: Any = None,
     samples: int | None = None,
     least_squares: bool = False,
     threads: int | None = None,
@@ -62,10 +63,12 @@ def inverse_kinematics(
 
     near: (dof,), a configuration; the answer is the one solution nearest to it, and joints that the pose
     leaves free take its values. fixed: joints held at given values, by name or number, {"joint7": 0.3};
-    arrays of values are solved together with the goals. samples: of an arm with one joint to spare, at how
-    many values of it the branches are listed (16 unless given). least_squares: where nothing reaches the
-    goal, answer with the configuration that misses it least (a radian weighs like the arm's characteristic
-    length). threads: for a batch, all cores unless given; the answer does not depend on it.
+    arrays of values are solved together with the goals. swivel: of an arm with two spherical joints, the
+    angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or an array.
+    samples: of an arm with one joint to spare, at how many values of it the branches are listed (16 unless
+    given). least_squares: where nothing reaches the goal, answer with the configuration that misses it least
+    (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
+    answer does not depend on it.
 
     An arm with more than six joints leaves freedom, which `freedom` of the answer names. With fixed= for all
     of the joints to spare every solution of the others is listed; with near= the nearest of all
@@ -89,8 +92,8 @@ def inverse_kinematics(
             "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or parts of it by name,"
             " such as robot.ik(position=p)"
         )
-    if given and (fixed is not None or samples is not None):
-        raise InputTypeError("fixed= and samples= go with a full pose")
+    if given and (fixed is not None or samples is not None or swivel is not None):
+        raise InputTypeError("fixed=, swivel= and samples= go with a full pose")
     found: Solutions | SolutionsBatch
     if given and not is_plain_position(robot, given):
         found = ask_partial(robot, partial_goal(given, tool_axis), workers, near)
@@ -101,6 +104,10 @@ def inverse_kinematics(
     else:
         prepare(robot, some_held=fixed is not None)
         T = goal_array(goal)
+        if swivel is not None:
+            if fixed is not None or samples is not None or least_squares:
+                raise InputTypeError("swivel= goes with near= alone: it holds what is to spare")
+            return at_swivel(robot, T, swivel, near)
         if fixed is not None or samples is not None or len(robot.joint_types) > MAX_SETTLED:
             return redundant(robot, T, fixed, samples, near, least_squares, workers)
         found = solve_many(robot, T, workers) if T.ndim > 2 else solve_one(robot, T, near)
@@ -113,16 +120,29 @@ def inverse_kinematics(
     return found if near is None else found.nearest(near)
 
 
+def at_swivel(robot: Any, T: Array, swivel: Any, near: Any) -> Solutions | SolutionsBatch:
+    from cspace.ik.swivel import solve_swivel
+
+    return solve_swivel(robot, checked_poses(T), swivel, near)
+
+
+def checked_poses(T: Array) -> Array:
+    """Poses that may have come unchecked, none of them too far away."""
+    T = as_pose(T, "goal")
+    if len(beyond := np.argwhere(np.abs(T[..., :3, 3]).sum(axis=-1) > FARTHEST)):
+        index = tuple(map(int, beyond[0]))
+        raise too_far(f"goal {index}" if index else "goal", T[index][:3, 3])
+    return T
+
+
 def redundant(
     robot: Any, T: Array, fixed: Any, samples: Any, near: Any, least_squares: bool, workers: int
 ) -> Solutions | SolutionsBatch:
     from cspace.ik.redundant import redundant_answer
 
-    T = as_pose(T, "goal")  # a plain batch comes unchecked
-    if len(beyond := np.argwhere(np.abs(T[..., :3, 3]).sum(axis=-1) > FARTHEST)):
-        index = tuple(map(int, beyond[0]))
-        raise too_far(f"goal {index}" if index else "goal", T[index][:3, 3])
-    found = redundant_answer(robot, T, fixed=fixed, samples=samples, near=near, threads=workers)
+    found = redundant_answer(
+        robot, checked_poses(T), fixed=fixed, samples=samples, near=near, threads=workers
+    )
     if isinstance(found, SolutionsBatch):
         if least_squares:
             raise InputTypeError("least_squares= is for one goal")
