@@ -19,6 +19,7 @@ NB_MODULE(_core, m) {
     bind_ik_redundant(m);
     bind_ik_swivel(m);
     bind_ik_tasks(m);
+    bind_ik_tracking(m);
     bind_ik_plan(m);
     bind_ik_numbers(m);
 }

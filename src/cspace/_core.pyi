@@ -74,7 +74,7 @@ class RobotBase:
         Returns (T, J): T (..., 4, 4) as of fk, J (..., 6, dof) as of jacobian.
         """
 
-    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
         Every configuration q with fk(q) = goal.
 
@@ -84,20 +84,10 @@ class RobotBase:
         the tool axis to it [rad]) or, in the plane, angle [rad]; look_at (3,), a point ahead on the tool axis; ray=(p,
         d), the line on which the tool axis lies. tool_axis: "x", "y", "z", "-z" or a direction in the tip. near (dof,)
         [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its values.
-        fixed: joints held at given values, {"joint7": 0.3}, by name or number. samples: of an arm with one joint to
-        spare, at how many of its values the branches are listed (16). least_squares: where nothing reaches the goal,
-        answer with the configuration that misses it least. threads: of a batch, all cores unless given.
-    def ik(self, goal: Any = None, *, position: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
-        """
-        Every configuration q with fk(q) = goal.
-
-        goal: T_base_tip (4, 4) or (..., 4, 4), or anything as_pose takes. position: instead of it the place of the
-        tip alone [m], (3,) or (..., 3), or (..., 2) for an arm in the plane; for arms of up to three joints. near
-        (dof,) [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its
-        values. fixed: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of
-        the elbow of an arm with two spherical joints. samples: of an arm with one
-        joint to spare, at how many of its values the branches are listed (16). least_squares: where nothing reaches
-        the goal, answer with the configuration that misses it least. threads: of a batch, all cores unless given.
+        fixed: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of the elbow of an arm with
+        two spherical joints. samples: of an arm with one joint to spare, at how many of its values the branches are
+        listed (16). least_squares: where nothing reaches the goal, answer with the configuration that misses it least.
+        threads: of a batch, all cores unless given.
 
         Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,
         branch, families, freedom, derivative, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns
@@ -260,6 +250,7 @@ def _ik_single(*arguments: Any) -> Any: ...
 def _ik_descend(*arguments: Any) -> None: ...
 def _ik_sample(*arguments: Any) -> int: ...
 def _ik_moving(robot: Any, frame: int) -> int: ...
+def _ik_track(*arguments: Any) -> None: ...
 def _task_velocity(*arguments: Any) -> bool: ...
 def _task_serve(*arguments: Any) -> tuple[int, bool, float]: ...
 def _resolved_rate(*arguments: Any) -> None: ...

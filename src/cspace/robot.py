@@ -18,7 +18,7 @@ from cspace.spatial.checks import PoseLike
 
 if TYPE_CHECKING:
     from cspace.export import Export
-    from cspace.ik import IkPlan, NumericSolution, Redundancy, SampledSolutions, TaskSolution
+    from cspace.ik import IkPlan, NumericSolution, Redundancy, SampledSolutions, TaskSolution, Track
 
     Seed = int | np.random.Generator | None
 
@@ -294,6 +294,16 @@ class Robot(RobotBase):
         from cspace.ik import task_velocity
 
         return task_velocity(self, q, tasks, dt, **options)
+
+    def track(self, poses: Any, start: Any = None, **options: Any) -> Track:
+        """The branches of configurations that follow a path of poses (n, 4, 4), and where the others end.
+
+        start (dof,): follow the branch nearest to it alone. options: limits, cost, max_step, as in ik.track,
+        which also names the errors.
+        """
+        from cspace.ik import track
+
+        return track(self, poses, start, **options)
 
     def resolved_rate(self, q: Any, twist: Any, **options: Any) -> Array:
         """The least joint velocities (..., dof) that give the tip a twist (..., 6) at q (..., n).

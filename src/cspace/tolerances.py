@@ -16,6 +16,7 @@ __all__ = [
     "FARTHEST",
     "FRAME_SNAP",
     "GIMBAL_LOCK",
+    "HALF_TURN",
     "INERTIA_SYMMETRY",
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
@@ -35,6 +36,7 @@ __all__ = [
     "SINGULAR_VALUE",
     "TANGENT_PLACE",
     "TOML_BYTES",
+    "TRACK_BEYOND",
     "UNLIMITED",
     "WEAK_DIRECTION",
     "WHOLE_TURN",
@@ -176,3 +178,11 @@ XACRO_SECONDS: Final = 60.0
 
 XACRO_ELEMENTS: Final = 200_000
 """Most steps and elements of the expansion of a xacro file: the largest robots take ten thousand."""
+
+HALF_TURN: Final = 1e-12
+"""1 + trace R (unitless, the square of the angle that is missing) below which neighbouring poses of a path
+are half a turn apart: the axis of such a turn carries the rounding of the poses, a million times larger."""
+
+TRACK_BEYOND: Final = 1e-3
+"""Share of the way between two poses, beyond the place where a branch ends, at which it is asked whether
+anything reaches the path there: before it the certificate of a solver may be missing, near a fold."""

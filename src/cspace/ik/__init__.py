@@ -26,8 +26,10 @@ from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve import inverse_kinematics
 from cspace.ik.swivel import swivel
+from cspace.ik.tracking import Branch, Track, track
 
 __all__ = [
+    "Branch",
     "CenterOfMassTask",
     "Condition",
     "DirectionTask",
@@ -49,6 +51,7 @@ __all__ = [
     "StillDirection",
     "StillPoint",
     "TaskSolution",
+    "Track",
     "geometry",
     "ik_many_starts",
     "ik_numeric",
@@ -60,4 +63,5 @@ __all__ = [
     "subproblems",
     "swivel",
     "task_velocity",
+    "track",
 ]

@@ -1,0 +1,183 @@
+// Branches followed along a path of poses, one per lane: predicted by slope and bend, corrected by Newton's
+// method, with steps cut until the correction is small beside the step (Allgower and Georg 1990). A lane
+// whose branch has ended takes the next branch.
+#pragma once
+
+#include "cspace/ik/tracking/ending.hpp"
+
+namespace cspace {
+
+// The lanes of a track: what is measured next.
+template <class V>
+struct TrackLanes {
+    Pose<V> goal;
+    Twist<V> twist;
+    V q[ik::max_joints];
+    Motion<V> motion;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+template <class V>
+CSPACE_INLINE void set_lane(Vec3<V>& to, int l, const Vec3d& from) {
+    set_lane(to.x, l, from.x);
+    set_lane(to.y, l, from.y);
+    set_lane(to.z, l, from.z);
+}
+
+// Puts the trial of a walker into lane l. What is measured there serves the step after it.
+template <class V>
+CSPACE_INLINE void load_trial(const ik::Track& t, const ik::Walker& w, int l, TrackLanes<V>& lanes) {
+    const bool row = !w.starts && to_a_row(w);
+    const Posed& to_row = t.poses[w.row + row];
+    const Posed goal = row || w.starts ? to_row : pose_on(t.ways[w.row], w.u + w.du);
+    const std::size_t next = row && w.row + 2 < t.count ? w.row + 1 : w.row;
+    const Twist<double> twist = twist_of(t.ways[next], t.path->length);
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) set_lane(lanes.goal.R.m[i][j], l, goal.R.m[i][j]);
+    set_lane(lanes.goal.t, l, goal.t);
+    for (int r = 0; r < 6; ++r) set_lane(lanes.twist.entry[r], l, twist.entry[r]);
+    for (int j = 0; j < t.path->n; ++j) set_lane(lanes.q[j], l, w.trial[j]);
+}
+
+// A branch at its start, which is corrected to the first pose.
+inline void begin(const ik::Track& t, std::size_t branch, ik::Walker& w) {
+    w.branch = branch;
+    w.row = 0;
+    w.u = w.du = 0;
+    w.reach = 1e300;
+    w.by_rows = false;
+    w.starts = w.rows_tried = true;
+    w.corrections = w.tries = 0;
+    const double* start = t.starts + branch * std::size_t(t.path->n);
+    for (int j = 0; j < t.path->n; ++j) {
+        w.q[j] = w.trial[j] = w.least[j] = w.most[j] = start[j];
+        w.planned[j] = w.slope[j] = w.bend[j] = w.turns[j] = 0;
+        w.lower[j] = t.lower[j];
+        w.upper[j] = t.upper[j];
+    }
+}
+
+// The branch stands on its next pose; true if that is the last one.
+inline bool arrive(const ik::Track& t, ik::Walker& w) {
+    w.u = 0;
+    w.rows_tried = false;
+    w.tries = 0;
+    copy_numbers(w.q, t.path->n, row_of(t, w, w.row));
+    if (w.row + 1 < t.count) return false;
+    finish(t, w, ik::Fate::end, -1, t.count);
+    return true;
+}
+
+// Takes the trial as the place of the walker; true if the branch has ended.
+inline bool take(const ik::Track& t, ik::Walker& w) {
+    const int broken = run_to(t, w, w.trial);
+    if (w.starts) {
+        copy_numbers(w.trial, t.path->n, w.q);
+        if (broken >= 0) finish(t, w, ik::Fate::limit, broken, 0);
+        w.starts = false;
+        return broken >= 0 || arrive(t, w);
+    }
+    if (broken >= 0) {
+        const Outside met = meet_limit(t, w);
+        finish(t, w, ik::Fate::limit, met.joint, w.row + 1);
+        return true;
+    }
+    const int far = too_far(t, w, w.trial);
+    if (far >= 0) {
+        finish(t, w, ik::Fate::jump, far, w.row + 1);
+        return true;
+    }
+    const bool row = to_a_row(w);
+    copy_numbers(w.trial, t.path->n, w.q);
+    w.u += w.du;
+    w.reach *= 2;
+    w.by_rows = false;
+    w.row += row;
+    return row && arrive(t, w);
+}
+
+// After a step that was not taken: a step read off the rows before, else one half as long.
+inline void think_again(const ik::Track& t, ik::Walker& w) {
+    if (w.by_rows) {
+        w.by_rows = false;
+        return;
+    }
+    w.by_rows = !w.rows_tried && rows_can_tell(t, w);
+    w.reach = 0.5 * w.du * t.ways[w.row].length;
+}
+
+// Judges what was measured at the trial of a walker and plans what to measure next; true if its branch has
+// ended.
+inline bool go_on(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
+    const std::size_t reached = w.row + !w.starts;
+    switch (judge(t, w, at)) {
+        case Verdict::again:
+            return false;
+        case Verdict::infeasible:
+            finish(t, w, ik::Fate::unreachable, -1, reached);
+            return true;
+        case Verdict::failed:
+            if (w.starts) {
+                finish(t, w, ik::Fate::singularity, -1, 0);
+                return true;
+            }
+            think_again(t, w);
+            break;
+        case Verdict::taken:
+            if (take(t, w)) return true;
+            copy_numbers(at.slope, t.path->n, w.slope);
+            copy_numbers(at.bend, t.path->n, w.bend);
+    }
+    if (++w.tries < track::most_tries && plan(t, w)) return false;
+    finish(t, w, ik::Fate::singularity, -1, reached);
+    t.fate[w.branch] = t.weakest[w.branch] < track::near_singular ? ik::Fate::singularity : ik::Fate::jump;
+    return true;
+}
+
+template <class V>
+CSPACE_INLINE Motion<double> lane_of(const Motion<V>& motion, int n, int l) {
+    Motion<double> out;
+    out.error = lane(motion.error, l);
+    out.weakest = lane(motion.weakest, l);
+    for (int j = 0; j < n; ++j) {
+        out.correction[j] = lane(motion.correction[j], l);
+        out.slope[j] = lane(motion.slope[j], l);
+        out.bend[j] = lane(motion.bend[j], l);
+    }
+    return out;
+}
+
+template <class V>
+void follow_branches(const ik::Track& t) {
+    constexpr int lanes = Lanes<V>::count;
+    if (t.branches == 0) return;
+    ik::Walker walker[lanes];
+    bool live[lanes];
+    TrackLanes<V> at;
+    std::size_t next = 0;
+    for (int l = 0; l < lanes; ++l) {
+        live[l] = next < t.branches;
+        begin(t, live[l] ? next++ : 0, walker[l]);
+        load_trial(t, walker[l], l, at);
+    }
+    for (bool alive = true; alive;) {
+        measure_motion(*t.path, at.goal, at.twist, at.q, at.motion);
+        alive = false;
+        for (int l = 0; l < lanes; ++l) {
+            ik::Walker& w = walker[l];
+            if (!live[l]) continue;
+            if (go_on(t, w, lane_of(at.motion, t.path->n, l))) {
+                live[l] = next < t.branches;
+                if (!live[l]) continue;
+                begin(t, next++, w);
+            }
+            load_trial(t, w, l, at);
+            alive = true;
+        }
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

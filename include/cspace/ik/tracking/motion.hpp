@@ -1,0 +1,254 @@
+// How configurations follow a moving pose, on lanes: the correction to where the pose is, the slope q' and
+// the bend q'' of the joints as the pose moves on.
+//
+// With the twist t = [v; ω] of the pose, constant along its way,
+//     J q' = t,    J q'' = −J' q'.
+// With joints to spare q' is the least one, q' = J⁺ t, and q'' has the part (I − J⁺J) J'ᵀ (J Jᵀ)⁻¹ t besides,
+// the rate of J⁺ across the rows of J (Golub and Pereyra 1973). With fewer than six coordinates all three are
+// solved by least squares.
+#pragma once
+
+#include "cspace/ik/numeric/path.hpp"
+
+namespace cspace {
+
+// The joints of a path at configurations, in base.
+template <class V>
+struct PlacedJoints {
+    Vec3<V> point[ik::max_path], axis[ik::max_path];
+    Pose<V> tip;
+};
+
+// Twists [v; ω], lengths over that of the path, slides likewise.
+template <class V>
+struct Twist {
+    V entry[6];
+};
+
+// A = L Q, the k rows of Q orthonormal: of the rows of J where it is wide, else of its columns.
+template <class V>
+struct Factors {
+    V Q[6][ik::max_joints], L[6][6], inverse[6];
+    V weakest;  // the least diagonal entry of L
+    int k, width;
+    bool wide;
+};
+
+template <class V>
+struct Motion {
+    V correction[ik::max_joints], slope[ik::max_joints], bend[ik::max_joints];
+    V error;    // of the pose before the correction: its largest part
+    V weakest;  // see Factors
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// A row of J that the others leave this short of is lost: its direction cannot be told from rounding.
+inline constexpr double lost_direction = 1e-10;
+
+template <class V>
+CSPACE_INLINE PlacedJoints<V> place_joints(const ik::Path& path, const V* q) {
+    V s[ik::max_path + 3], c[ik::max_path + 3];
+    PlacedJoints<V> at;
+    const Chain chain = view_of(path);
+    chain_sines(chain, q, s, c);
+    at.tip = follow_chain(chain, fill_pose<V>(path.T_base_first), q, s, c,
+                          [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
+                              at.point[i] = p;
+                              at.axis[i] = d;
+                          });
+    return at;
+}
+
+// What one unit of the scaled coordinate of joint i moves.
+CSPACE_INLINE double unit_of(const ik::Path& path, int i) {
+    const ChainJoint& joint = path.joint[i];
+    return joint.ratio * (path.slides[joint.coordinate] ? path.length : 1.0);
+}
+
+template <class V>
+CSPACE_INLINE void add_twist(double unit, double per_length, const Vec3<V>& v, const Vec3<V>& w,
+                             Twist<V>& to) {
+    const V entry[6] = {per_length * v.x, per_length * v.y, per_length * v.z, w.x, w.y, w.z};
+    for (int r = 0; r < 6; ++r) to.entry[r] = mul_add(fill<V>(unit), entry[r], to.entry[r]);
+}
+
+template <class V>
+CSPACE_INLINE void clear(Twist<V>& twist) {
+    for (V& x : twist.entry) x = fill<V>(0.0);
+}
+
+// The columns of J, one twist per coordinate.
+template <class V>
+CSPACE_INLINE void columns_of(const ik::Path& path, int n, const PlacedJoints<V>& at, Twist<V>* J) {
+    const V zero = fill<V>(0.0);
+    const double per_length = 1 / path.length;
+    for (int j = 0; j < n; ++j) clear(J[j]);
+    for (int i = 0; i < path.joints; ++i) {
+        const ChainJoint& joint = path.joint[i];
+        const Vec3<V>& h = at.axis[i];
+        const Vec3<V> none = {zero, zero, zero};
+        const Vec3<V> v = joint.prismatic ? h : cross(h, at.tip.t - at.point[i]);
+        add_twist(unit_of(path, i), per_length, v, joint.prismatic ? none : h, J[joint.coordinate]);
+    }
+}
+
+// The columns of J' for the rates `slope` of the scaled coordinates.
+template <class V>
+CSPACE_INLINE void column_rates(const ik::Path& path, int n, const PlacedJoints<V>& at, const V* slope,
+                                Twist<V>* J) {
+    const V zero = fill<V>(0.0);
+    const Vec3<V> none = {zero, zero, zero};
+    Vec3<V> v_point[ik::max_path], w_joint[ik::max_path];  // of the link that carries joint i
+    Vec3<V> v = none, w = none, p = at.point[0];
+    for (int i = 0; i < path.joints; ++i) {
+        v = v + cross(w, at.point[i] - p);
+        p = at.point[i];
+        v_point[i] = v;
+        w_joint[i] = w;
+        const Vec3<V> moved = (unit_of(path, i) * slope[path.joint[i].coordinate]) * at.axis[i];
+        (path.joint[i].prismatic ? v : w) = (path.joint[i].prismatic ? v : w) + moved;
+    }
+    const Vec3<V> v_tip = v + cross(w, at.tip.t - p);
+    for (int j = 0; j < n; ++j) clear(J[j]);
+    for (int i = 0; i < path.joints; ++i) {
+        const ChainJoint& joint = path.joint[i];
+        const Vec3<V> h_rate = cross(w_joint[i], at.axis[i]);
+        const Vec3<V> rate =
+            joint.prismatic ? h_rate
+                            : cross(h_rate, at.tip.t - at.point[i]) + cross(at.axis[i], v_tip - v_point[i]);
+        add_twist(unit_of(path, i), 1 / path.length, rate, joint.prismatic ? none : h_rate,
+                  J[joint.coordinate]);
+    }
+}
+
+// By the modified Gram–Schmidt process (Björck 1967).
+template <class V>
+CSPACE_INLINE void factor(int n, const Twist<V>* J, Factors<V>& f) {
+    f.wide = n >= 6;
+    f.k = f.wide ? 6 : n;
+    f.width = f.wide ? n : 6;
+    f.weakest = fill<V>(1e300);
+    for (int r = 0; r < f.k; ++r) {
+        V a[ik::max_joints];
+        for (int j = 0; j < f.width; ++j) a[j] = f.wide ? J[j].entry[r] : J[r].entry[j];
+        for (int s = 0; s < r; ++s) {
+            V along = fill<V>(0.0);
+            for (int j = 0; j < f.width; ++j) along = mul_add(f.Q[s][j], a[j], along);
+            for (int j = 0; j < f.width; ++j) a[j] = mul_add(-along, f.Q[s][j], a[j]);
+            f.L[r][s] = along;
+        }
+        V square = fill<V>(0.0);
+        for (int j = 0; j < f.width; ++j) square = mul_add(a[j], a[j], square);
+        const V left = sqrt(square);
+        const mask_of<V> lost = left < lost_direction;
+        f.inverse[r] = where(!lost, 1.0 / select(lost, fill<V>(1.0), left));
+        f.weakest = min(f.weakest, left);
+        for (int j = 0; j < f.width; ++j) f.Q[r][j] = f.inverse[r] * a[j];
+    }
+}
+
+// y with L y = e.
+template <class V>
+CSPACE_INLINE void forward_solve(const Factors<V>& f, const V* e, V* y) {
+    for (int r = 0; r < f.k; ++r) {
+        y[r] = e[r];
+        for (int s = 0; s < r; ++s) y[r] = mul_add(-f.L[r][s], y[s], y[r]);
+        y[r] = f.inverse[r] * y[r];
+    }
+}
+// y with Lᵀ y = b.
+template <class V>
+CSPACE_INLINE void backward_solve(const Factors<V>& f, const V* b, V* y) {
+    for (int r = f.k - 1; r >= 0; --r) {
+        y[r] = b[r];
+        for (int s = r + 1; s < f.k; ++s) y[r] = mul_add(-f.L[s][r], y[s], y[r]);
+        y[r] = f.inverse[r] * y[r];
+    }
+}
+
+// x with J x = e: the least one, or that of the least squares. y (k,) is Q x.
+template <class V>
+CSPACE_INLINE void solve_for(const Factors<V>& f, const V* e, V* x, V* y) {
+    if (!f.wide) {
+        V b[6];
+        for (int r = 0; r < f.k; ++r) {
+            b[r] = fill<V>(0.0);
+            for (int j = 0; j < 6; ++j) b[r] = mul_add(f.Q[r][j], e[j], b[r]);
+        }
+        return backward_solve(f, b, x);
+    }
+    forward_solve(f, e, y);
+    for (int j = 0; j < f.width; ++j) {
+        x[j] = fill<V>(0.0);
+        for (int r = 0; r < 6; ++r) x[j] = mul_add(y[r], f.Q[r][j], x[j]);
+    }
+}
+
+// Adds to q'' the part of it that only joints to spare have; y = Q q'.
+template <class V>
+CSPACE_INLINE void add_rate_of_inverse(const Factors<V>& f, const Twist<V>* J_rate, const V* y, V* bend) {
+    V z[6], g[ik::max_joints];
+    backward_solve(f, y, z);
+    for (int j = 0; j < f.width; ++j) {
+        g[j] = fill<V>(0.0);
+        for (int r = 0; r < 6; ++r) g[j] = mul_add(J_rate[j].entry[r], z[r], g[j]);
+    }
+    for (int r = 0; r < 6; ++r) {
+        V along = fill<V>(0.0);
+        for (int j = 0; j < f.width; ++j) along = mul_add(f.Q[r][j], g[j], along);
+        for (int j = 0; j < f.width; ++j) g[j] = mul_add(-along, f.Q[r][j], g[j]);
+    }
+    for (int j = 0; j < f.width; ++j) bend[j] = bend[j] + g[j];
+}
+
+// The error of the tip against the goal, to first order in the rotation, and the largest part of it.
+template <class V>
+CSPACE_INLINE Twist<V> error_of(const Pose<V>& tip, const Pose<V>& goal, double length, V& largest) {
+    const Vec3<V> dp = (1 / length) * (goal.t - tip.t);
+    Vec3<V> w = 0.5 * cross(column(tip.R, 0), column(goal.R, 0));
+    V trace = dot(column(tip.R, 0), column(goal.R, 0));
+    for (int k = 1; k < 3; ++k) {
+        w = w + 0.5 * cross(column(tip.R, k), column(goal.R, k));
+        trace = trace + dot(column(tip.R, k), column(goal.R, k));
+    }
+    const Twist<V> e = {{dp.x, dp.y, dp.z, w.x, w.y, w.z}};
+    largest = abs(3.0 - trace);  // a half turn has no first order
+    for (const V& x : e.entry) largest = max(largest, abs(x));
+    return e;
+}
+
+template <class V>
+CSPACE_INLINE void measure_coordinates(const ik::Path& path, int n, const Pose<V>& goal,
+                                       const Twist<V>& twist, const V* q, Motion<V>& out) {
+    const PlacedJoints<V> at = place_joints(path, q);
+    Twist<V> J[ik::max_joints], turning;
+    columns_of(path, n, at, J);
+    Factors<V> f;
+    factor(n, J, f);
+    out.weakest = f.weakest;
+    V y[6], unused[6];
+    const Twist<V> e = error_of(at.tip, goal, path.length, out.error);
+    solve_for(f, e.entry, out.correction, unused);
+    solve_for(f, twist.entry, out.slope, y);
+    column_rates(path, n, at, out.slope, J);
+    clear(turning);
+    for (int j = 0; j < n; ++j)
+        for (int r = 0; r < 6; ++r)
+            turning.entry[r] = mul_add(-out.slope[j], J[j].entry[r], turning.entry[r]);
+    solve_for(f, turning.entry, out.bend, unused);
+    if (n > 6) add_rate_of_inverse(f, J, y, out.bend);
+}
+
+// slope and bend are by the share of the way whose twist is given.
+template <class V>
+CSPACE_NOINLINE void measure_motion(const ik::Path& path, const Pose<V>& goal, const Twist<V>& twist,
+                                    const V* q, Motion<V>& out) {
+    // A number that the compiler knows unrolls the loops of most arms.
+    if (path.n == 6) return measure_coordinates(path, 6, goal, twist, q, out);
+    measure_coordinates(path, path.n, goal, twist, q, out);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

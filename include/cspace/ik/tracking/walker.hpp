@@ -1,0 +1,227 @@
+// One branch on its way along a path of poses: where it is, the step it tries next, and what is made of it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "cspace/ik/tracking/motion.hpp"
+#include "cspace/ik/tracking/way.hpp"
+
+namespace cspace::ik {
+
+enum class Fate : unsigned char {
+    end,          // it follows the whole path
+    limit,        // a joint would leave its limits
+    singularity,  // the joints run into a singular configuration that lets them go no further
+    jump,         // a joint would move too far between two neighbouring poses
+    unreachable,  // an arm of fewer than six joints cannot keep to the poses
+};
+
+// What all branches share, and where their results go.
+struct Track {
+    const Path* path;
+    const Posed* poses;
+    const Way* ways;  // between poses; the last one is not used
+    std::size_t count;
+    const double *lower, *upper;  // (n,)
+    const double* stride;         // (n,): how far a coordinate may move from one pose to the next
+    bool whole_turns;             // a branch may begin whole turns away from its start
+    const double* starts;         // (branches, n)
+    std::size_t branches;
+    // Outputs, one per branch.
+    double* q;              // (count, n): of the poses it reaches
+    double* last;           // (n,): where it ends
+    std::int64_t* reached;  // how many poses
+    double* ends;           // number of a pose and the share of the way to the next
+    double* weakest;        // the least singular value at its end
+    std::int32_t* joint;    // the coordinate that ended it, or −1
+    Fate* fate;
+};
+
+struct Walker {
+    std::size_t branch;
+    std::size_t row;  // the last pose reached
+    double u, du;     // how far on the way to the next, and the step tried
+    double reach;     // longest step that failures leave, as lengths of ways
+    bool by_rows;     // the step is read off the rows before it
+    bool starts, rows_tried;
+    int corrections, tries;  // of this step; steps tried since the last pose
+    double q[max_joints], slope[max_joints], bend[max_joints];  // at u; the latter scaled
+    double trial[max_joints], planned[max_joints];              // planned: the step before its corrections
+    double least[max_joints], most[max_joints];                 // run through so far
+    double lower[max_joints], upper[max_joints], turns[max_joints];  // limits where it stands
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+namespace track {
+// Largest change of a coordinate in one step [rad, lengths of the path], and largest part of it that the bend
+// may have: what neglects the third derivative stays a few percent.
+inline constexpr double longest_step = 0.25, most_bend = 0.15;
+// Largest part of a step that corrections may have: other branches closer than this are nobody's.
+inline constexpr double most_correction = 0.1;
+inline constexpr double free_correction = 1e-8;  // [rad, lengths] that is never too much
+inline constexpr int most_corrections = 6;
+// A fold takes some hundred steps, a joint a hundred per turn: whoever needs more gets nowhere.
+inline constexpr int most_tries = 20000;
+// A correction below `small` leaves its square. What is closer than `met` is there.
+inline constexpr double small = 1e-7, met = 1e-13;
+// Error of a pose that counts as reached where corrections do not vanish with it.
+inline constexpr double feasible = 1e-9;
+// Steps shorter than this share of a way, or than this length, are not tried: the branch ends.
+inline constexpr double least_share = 1e-8, least_length = 1e-11;
+inline constexpr double slack = 1e-11;         // of limits [rad, m]
+inline constexpr double singular_row = 1e-7;   // least diagonal entry that leaves joints free
+inline constexpr double near_singular = 0.01;  // singular value at an end that calls it a singularity
+inline constexpr double whole_turn = 6.283185307179586476925287;
+}  // namespace track
+
+CSPACE_INLINE double* row_of(const ik::Track& t, const ik::Walker& w, std::size_t row) {
+    return t.q + (w.branch * t.count + row) * std::size_t(t.path->n);
+}
+CSPACE_INLINE double scale_of(const ik::Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
+
+CSPACE_INLINE void copy_numbers(const double* from, int n, double* to) {
+    for (int j = 0; j < n; ++j) to[j] = from[j];
+}
+// The largest of n numbers, taken positive.
+CSPACE_INLINE double largest_of(const double* x, int n) {
+    double largest = 0;
+    for (int j = 0; j < n; ++j) largest = max(largest, std::fabs(x[j]));
+    return largest;
+}
+
+// The step read off the last three rows: the parabola through them, over the length of the ways between.
+inline void plan_by_rows(const ik::Track& t, ik::Walker& w) {
+    const double a = t.ways[w.row - 2].length, b = t.ways[w.row - 1].length, h = t.ways[w.row].length;
+    const double *q0 = row_of(t, w, w.row - 2), *q1 = row_of(t, w, w.row - 1);
+    for (int j = 0; j < t.path->n; ++j) {
+        const double first = (q1[j] - q0[j]) / a, second = (w.q[j] - q1[j]) / b;
+        const double bend = (second - first) / (a + b);
+        w.planned[j] = h * (second + (b + h) * bend) / scale_of(*t.path, j);
+    }
+}
+CSPACE_INLINE bool rows_can_tell(const ik::Track& t, const ik::Walker& w) {
+    return w.u == 0 && w.row >= 2 && t.ways[w.row - 2].length > 0 && t.ways[w.row - 1].length > 0;
+}
+
+// The longest step that slope and bend let hope for.
+inline double hopeful_step(const ik::Track& t, const ik::Walker& w) {
+    const double slope = largest_of(w.slope, t.path->n), bend = largest_of(w.bend, t.path->n);
+    const double length = t.ways[w.row].length;
+    double du = 1 - w.u;
+    if (length * du > w.reach) du = w.reach / length;
+    if (slope * du > track::longest_step) du = track::longest_step / slope;
+    if (bend * du > 2 * track::most_bend * slope && bend * du * du > track::free_correction)
+        du = max(2 * track::most_bend * slope / bend, std::sqrt(track::free_correction / bend));
+    return du;
+}
+
+// Sets du, planned and trial; false where the step would be too short to be taken.
+inline bool plan(const ik::Track& t, ik::Walker& w) {
+    const double left = 1 - w.u;
+    w.corrections = 0;
+    w.du = hopeful_step(t, w);
+    // What slope and bend refuse the rows may still tell: they look past a singular pose.
+    if (!w.rows_tried && rows_can_tell(t, w) && (w.by_rows || w.du < 1)) {
+        w.rows_tried = true;
+        plan_by_rows(t, w);
+        w.by_rows = largest_of(w.planned, t.path->n) <= track::longest_step;
+    } else {
+        w.by_rows = false;
+    }
+    if (w.by_rows) {
+        w.du = 1;
+    } else {
+        if (w.du < left && w.du > 0.5 * left) w.du = 0.5 * left;  // no crumbs
+        if (!(w.du < left)) w.du = left;
+        const bool short_step =
+            w.du < track::least_share || w.du * t.ways[w.row].length < track::least_length;
+        if (short_step && w.du < left) return false;
+        for (int j = 0; j < t.path->n; ++j) w.planned[j] = w.du * (w.slope[j] + 0.5 * w.du * w.bend[j]);
+    }
+    for (int j = 0; j < t.path->n; ++j) w.trial[j] = w.q[j] + scale_of(*t.path, j) * w.planned[j];
+    return true;
+}
+CSPACE_INLINE bool to_a_row(const ik::Walker& w) { return w.du == 1 - w.u; }
+
+enum class Verdict { again, taken, failed, infeasible };
+
+// Takes a correction of the trial and judges the step.
+inline Verdict judge(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
+    const int n = t.path->n;
+    double total = 0;
+    for (int j = 0; j < n; ++j) {
+        const double scale = scale_of(*t.path, j);
+        w.trial[j] += scale * at.correction[j];
+        total = max(total, std::fabs((w.trial[j] - w.q[j]) / scale - w.planned[j]));
+    }
+    const double size = largest_of(w.planned, n), last = largest_of(at.correction, n);
+    const double allowed = track::most_correction * size + track::free_correction;
+    if (!w.starts && !(total <= allowed)) return Verdict::failed;
+    // A pose that is singular itself leaves joints free: the rows before it tell where they go on.
+    if (at.weakest < track::singular_row && !w.by_rows && !w.rows_tried && rows_can_tell(t, w))
+        return Verdict::failed;
+    if (at.error <= track::met) return Verdict::taken;
+    if (n >= 6 && at.weakest > lost_direction && last <= track::small) return Verdict::taken;
+    if (last <= track::small) {
+        // Only what is feasible can be met; between poses the nearest will do.
+        if (at.error <= track::feasible || (n < 6 && !to_a_row(w))) return Verdict::taken;
+        if (w.corrections > 1) return n < 6 ? Verdict::infeasible : Verdict::failed;
+    }
+    return ++w.corrections < track::most_corrections ? Verdict::again : Verdict::failed;
+}
+
+// Moves the limits of coordinate j by the whole turns nearest to none that keep all that it has run through
+// between them; false where none do.
+inline bool fit_turns(const ik::Track& t, ik::Walker& w, int j) {
+    if (!t.whole_turns || t.path->slides[j]) return false;
+    constexpr double turn = track::whole_turn;
+    const double low = std::ceil((t.lower[j] - track::slack - w.least[j]) / turn);
+    const double high = std::floor((t.upper[j] + track::slack - w.most[j]) / turn);
+    if (!(low <= high)) return false;
+    w.turns[j] = min(max(0.0, low), high);
+    w.lower[j] = t.lower[j] - turn * w.turns[j];
+    w.upper[j] = t.upper[j] - turn * w.turns[j];
+    return true;
+}
+
+// By how much q is outside the limits where the walker stands, and the coordinate it concerns.
+struct Outside {
+    double by;
+    int joint;
+};
+inline Outside outside(const ik::Track& t, const ik::Walker& w, const double* q) {
+    Outside worst = {-1e300, -1};
+    for (int j = 0; j < t.path->n; ++j) {
+        const double by = max(w.lower[j] - q[j], q[j] - w.upper[j]);
+        if (by > worst.by) worst = {by, j};
+    }
+    worst.by -= track::slack;
+    return worst;
+}
+
+// Widens what the coordinates have run through to q. Returns the coordinate whose limits whole turns cannot
+// save, or −1.
+inline int run_to(const ik::Track& t, ik::Walker& w, const double* q) {
+    int broken = -1;
+    for (int j = 0; j < t.path->n; ++j) {
+        w.least[j] = min(w.least[j], q[j]);
+        w.most[j] = max(w.most[j], q[j]);
+        const bool inside = q[j] >= w.lower[j] - track::slack && q[j] <= w.upper[j] + track::slack;
+        if (!inside && !fit_turns(t, w, j)) broken = j;
+    }
+    return broken;
+}
+
+// The coordinate that has gone too far since the last pose, or −1.
+inline int too_far(const ik::Track& t, const ik::Walker& w, const double* q) {
+    const double* from = row_of(t, w, w.row);
+    for (int j = 0; j < t.path->n; ++j)
+        if (std::fabs(q[j] - from[j]) > t.stride[j]) return j;
+    return -1;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

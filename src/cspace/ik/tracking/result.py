@@ -1,0 +1,163 @@
+"""What tracking answers: every branch with the poses it reaches and why it ends, and the best of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.branches import branch_labels
+
+__all__ = ["Branch", "Track"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Branch:
+    """One way of the joints along the poses, as far as it goes.
+
+    q (m, dof) [rad, m]: the configurations at the m poses it reaches, each angle continuous from pose to
+    pose. end: where it ends, 12.25 being a quarter of the way from pose 12 to pose 13 and n − 1 the last.
+    why: "end", "limit", "singularity", "jump" or "unreachable"; joint: the one that ended it, for a limit and
+    a jump. last (dof,): the configuration there. singular_value: the least one of the Jacobian there, lengths
+    over the arm's. cost: of q. Truthy if it reaches every pose.
+    """
+
+    robot: Any
+    poses: Array
+    q: Array
+    end: float
+    why: str
+    joint: str | None
+    last: Array
+    singular_value: float
+    cost: float
+    number: int = -1
+
+    def __bool__(self) -> bool:
+        return self.why == "end"
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    @property
+    def name(self) -> str:
+        """The name of the solution it begins with, as robot.ik gives it; empty for a start of one's own."""
+        if self.number < 0:
+            return ""
+        return branch_labels(self.robot, self.q[:1] if len(self.q) else self.last[None], (self.number,))[0]
+
+    @property
+    def reason(self) -> str:
+        """Where it ends and why, in a sentence."""
+        if self:
+            return f"follows all {len(self.poses)} poses"
+        return f"ends {where(self.end, len(self.q))}: {self._cause()}"
+
+    def _cause(self) -> str:
+        if self.why == "limit":
+            return f"{self.joint} would leave its limits"
+        if self.why == "unreachable":
+            return "no configuration reaches what follows"
+        if self.why == "singularity":
+            joints = self.robot.singularity(self.last).joints
+            lost = f" ({', '.join(joints)} are dependent)" if len(joints) < len(self.last) else ""
+            return f"the arm is singular{lost} and cannot go on"
+        if self.joint is None:
+            return "the joints would have to jump"
+        return f"{self.joint} would move further than max_step before the next pose"
+
+    def __repr__(self) -> str:
+        label = f" ({self.name})" if self.name else ""
+        return f"<Branch of {self.robot.name}{label}: {self.reason}>"
+
+
+class Track:
+    """The branches along a path of poses, best first choice at hand.
+
+    branches: every one, in the order of the solutions at the first pose. best: the one that follows all poses
+    at the least cost; where none does, the one that gets farthest (None where not even the first pose is
+    reached). q (m, dof) [rad, m]: that of best, m = n poses if the track is truthy. poses (n, 4, 4).
+    complete: whether branches holds every one there is. Truthy if a branch follows every pose.
+    """
+
+    __slots__ = ("_note", "best", "branches", "complete", "poses", "robot")
+
+    def __init__(
+        self, robot: Any, poses: Array, branches: tuple[Branch, ...], complete: bool, note: str
+    ) -> None:
+        self.robot, self.poses, self.branches = robot, poses, branches
+        self.complete, self._note = complete, note
+        self.best = min(branches, key=_order) if branches else None
+
+    def __bool__(self) -> bool:
+        return bool(self.best)
+
+    def __len__(self) -> int:
+        return len(self.branches)
+
+    def __iter__(self) -> Iterator[Branch]:
+        return iter(self.branches)
+
+    def __getitem__(self, number: int) -> Branch:
+        return self.branches[number]
+
+    @property
+    def q(self) -> Array:
+        """The configurations of the best branch, (m, dof)."""
+        return np.empty((0, len(self.robot.joint_names))) if self.best is None else self.best.q
+
+    @property
+    def cost(self) -> float:
+        """The cost of the best branch; inf if none follows every pose."""
+        return self.best.cost if self.best else math.inf
+
+    @property
+    def ends(self) -> Array:
+        """Where each branch ends, (b,): number of a pose and the share of the way to the next."""
+        return np.array([branch.end for branch in self.branches])
+
+    @property
+    def why(self) -> tuple[str, ...]:
+        """Why each branch ends: "end", "limit", "singularity", "jump" or "unreachable"."""
+        return tuple(branch.why for branch in self.branches)
+
+    @property
+    def reason(self) -> str:
+        """The verdict in a sentence."""
+        if self.best is None:
+            return f"no branch begins: {self._note}"
+        through, b, n = sum(map(bool, self.branches)), len(self.branches), len(self.poses)
+        of = "the branch" if b == 1 else f"{through or 'none'} of {b} branches"
+        verb = "follow" if through > 1 else "follows"
+        if through:
+            return f"{of} {verb} all {n} poses; the cost is {self.cost:.4g}" + self._note
+        if b == 1:
+            return f"the branch {self.best.reason}" + self._note
+        return f"{of} follows all {n} poses; the best {self.best.reason}" + self._note
+
+    def __repr__(self) -> str:
+        lines = [f"<Track of {self.robot.name}: {self.reason}"]
+        lines += [f"  {branch.name or 'branch'}: {branch.reason}" for branch in self.branches]
+        return "\n".join(lines) + ">"
+
+
+def where(end: float, reached: int) -> str:
+    """The place of an end in words; reached: how many poses before it."""
+    if reached == 0:
+        return "before pose 0"
+    row = min(int(end), reached - 1)
+    share = end - row
+    if share == 0:
+        return f"at pose {row}"
+    return f"{share:.3g} of the way from pose {row} to pose {row + 1}"
+
+
+def _order(branch: Branch) -> tuple[bool, float, float]:
+    """Branches that follow every pose first, the cheapest of them; then those that get farthest."""
+    if branch:
+        return False, branch.cost, 0.0
+    return True, -branch.end if len(branch) else math.inf, branch.cost

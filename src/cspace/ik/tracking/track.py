@@ -1,0 +1,197 @@
+"""The words around tracking: which path, from where, within what, and what a good branch is."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any, Final
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.conditions import NoClosedFormError
+from cspace.ik.numeric import ik_numeric
+from cspace.ik.numeric.question import Question, ask, middle
+from cspace.ik.solutions import pose_errors
+from cspace.ik.solve import inverse_kinematics
+from cspace.ik.tracking.result import Branch, Track
+from cspace.kinematics.batch import choice
+from cspace.spatial import interpolate_decoupled
+from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
+
+__all__ = ["COSTS", "track"]
+
+COSTS: Final = ("length", "step", "time")
+"""What a branch may cost: Σ ‖Δq‖; the largest Δq of a joint; Σ of the times that the velocity limits ask."""
+
+FATES: Final = ("end", "limit", "singularity", "jump", "unreachable")
+MAX_STEP: Final = np.pi / 2
+SIX: Final = 6
+Cost = str | Callable[[Array], Any]
+Starts = tuple[Array, tuple[int, ...], bool, str]
+"""Configurations (b, dof), the numbers of their branches, whether they are all, and a note."""
+
+
+def track(
+    robot: Any,
+    poses: Any,
+    start: Any = None,
+    *,
+    limits: Any = True,
+    cost: Cost = "length",
+    max_step: Any = MAX_STEP,
+) -> Track:
+    """The branches that follow a path of poses, and where and why each of the others ends.
+
+    Between two poses the tip moves on a straight line and turns about an axis that stands still, both at
+    constant speed. A branch is followed by predictor and corrector: with the twist t of the path,
+    J q' = t and J q'' = −J' q' say where the joints go, Newton's method corrects, and a step counts only if
+    the correction is small beside it. A singular pose is passed where the joints go on smoothly through it.
+    Angles are continuous from pose to pose.
+
+    poses (n, 4, 4): T_base_tip. start (dof,): follow one branch alone, from the solution of the first pose
+    that is nearest to it; unless given, every solution of the first pose begins a branch, each angle with the
+    whole turns that keep it within limits for longest. An arm with joints to spare is followed by the least
+    motion of its joints, from start or else from the solution nearest the middle of its limits; one of fewer
+    than six joints has to reach the poses alone, and stays as near as it can between them. limits: True for
+    the robot's, False for none, or Limits. cost: of the best branch: "length" Σ‖Δq‖, "step" the largest
+    change of a joint between neighbouring poses, "time" Σ max |Δq| / velocity limit, or a function of
+    q (n, dof). max_step: how far a joint may turn from one pose to the next [rad], or (dof,) for each joint
+    in its own unit; inf allows any.
+
+    Returns Track: q, branches, ends, reason; falsy where no branch follows every pose. Raises InputError for
+    poses that are none, neighbours half a turn apart (the way between is open), a start of the wrong shape,
+    or a floating base; NoClosedFormError for an arm whose solutions cannot be listed, if there is no start.
+
+    Allgower and Georg 1990, chapter 6 (predictor and corrector).
+    """
+    question = ask(robot, poses, None, None, None, limits, NUMERIC_TOLERANCE)
+    T = path_of(question.goals)
+    price = cost_of(robot, cost)
+    bounds = np.stack([*open_bounds(robot, question), strides(robot, max_step)])
+    starts, numbers, complete, note = starts_of(robot, question, T, start)
+    whole_turns = start is None and not to_spare(robot, question)
+    b, n = len(starts), len(robot.joint_names)
+    q, last, info = np.empty((b, len(T), n)), np.empty((b, n)), np.empty((b, 5))
+    _core._ik_track(robot, question.frame, T, starts, bounds, whole_turns, q, last, info)
+    branches = []
+    for k, (reached, end, fate, joint, sigma) in enumerate(info.tolist()):
+        rows, why = q[k, : int(reached)], FATES[int(fate)]
+        if why == "singularity" and len(rows) and is_out_of_reach(robot, question, T, end):
+            why = "unreachable"
+        who = robot.joint_names[int(joint)] if joint >= 0 else None
+        paid = price(rows) if len(rows) else np.inf
+        branches.append(Branch(robot, T, rows, end, why, who, last[k], sigma, paid, numbers[k]))
+    return Track(robot, T, tuple(branches), complete, note)
+
+
+def path_of(poses: Array) -> Array:
+    """The poses as (n, 4, 4), C-contiguous, each less than half a turn from the one before."""
+    if poses.ndim != 3 or not len(poses):
+        raise InputError(f"poses has shape {poses.shape}, expected (n, 4, 4): one path of one pose or more")
+    R = poses[:, :3, :3]
+    trace = np.einsum("nij,nij->n", R[:-1], R[1:])
+    half = np.flatnonzero(trace < HALF_TURN - 1.0)
+    if len(half):
+        k = int(half[0])
+        raise InputError(
+            f"poses {k} and {k + 1} are half a turn apart, which leaves the way between them open;"
+            " put a pose between them"
+        )
+    return np.ascontiguousarray(poses)
+
+
+def open_bounds(robot: Any, question: Question) -> tuple[Array, Array]:
+    """The limits lower and upper (n,), infinite where there are none."""
+    if question.limits.size:
+        return question.limits[0], question.limits[1]
+    free = np.full(len(robot.joint_names), np.inf)
+    return -free, free
+
+
+def strides(robot: Any, max_step: Any) -> Array:
+    """How far each joint may move between neighbouring poses (n,); one number counts for those that turn."""
+    steps = as_floats(max_step, "max_step", finite=False)
+    n = len(robot.joint_names)
+    if steps.ndim == 0:
+        steps = np.where([kind == "R" for kind in robot.joint_types], steps, np.inf)
+    if steps.shape != (n,) or not (steps > 0).all():
+        raise InputError(
+            f"max_step is {max_step!r}; expected one positive angle, or {n} steps, one per joint"
+        )
+    return np.asarray(steps)
+
+
+def to_spare(robot: Any, question: Question) -> bool:
+    """Whether more than six joints move the tip."""
+    return bool(_core._ik_moving(robot, question.frame) > SIX)
+
+
+def starts_of(robot: Any, question: Question, T: Array, start: Any) -> Starts:
+    """Where the branches begin."""
+    first, n = T[0], len(robot.joint_names)
+    if start is not None:
+        seed = as_floats(start, "start", last=(n,), largest=FARTHEST)
+        if seed.ndim != 1:
+            raise InputError(f"start has shape {seed.shape}, expected ({n},): one configuration")
+        return nearest_start(robot, question, first, seed)
+    if to_spare(robot, question):
+        q, numbers, complete, note = nearest_start(robot, question, first, middle(robot, question.limits))
+        return q, numbers, complete, note or "; it begins nearest the middle of the limits"
+    s: Any = inverse_kinematics(robot, first)
+    note = "" if s else f"the first pose is not reached: {s.reason}"
+    return np.ascontiguousarray(s.q), s._branch_numbers, s.complete and not s.families, note
+
+
+def nearest_start(robot: Any, question: Question, first: Array, seed: Array) -> Starts:
+    """The solution of the first pose nearest to a configuration: itself, if it is one."""
+    if pose_errors(robot, seed, first) <= NUMERIC_TOLERANCE:
+        return np.ascontiguousarray(seed)[None], (-1,), False, ""
+    if to_spare(robot, question):  # near= looks past limits, a descent keeps them
+        d = ik_numeric(robot, first, seed, rest=seed, limits=limits_of(robot, question))
+        if d:
+            return np.ascontiguousarray(d.q)[None], (-1,), False, ""
+    try:
+        s: Any = inverse_kinematics(robot, first, near=seed)
+    except NoClosedFormError:
+        s = ik_numeric(robot, first, seed, rest=seed, limits=limits_of(robot, question))
+    if s:
+        return np.ascontiguousarray(s.q.reshape(-1, len(seed))[:1]), (-1,), False, ""
+    return np.empty((0, len(seed))), (), False, f"the first pose is not reached: {s.reason}"
+
+
+def limits_of(robot: Any, question: Question) -> Any:
+    """The limits of a question as ik_numeric takes them."""
+    if not question.limits.size:
+        return False
+    return replace(robot.limits, lower=question.limits[0], upper=question.limits[1])
+
+
+def is_out_of_reach(robot: Any, question: Question, T: Array, end: float) -> bool:
+    """Whether nothing reaches the path just beyond an end."""
+    if to_spare(robot, question):
+        return False
+    k = min(int(end), len(T) - 2)
+    beyond = interpolate_decoupled(T[k], T[k + 1], min(end - k + TRACK_BEYOND, 1.0))
+    try:
+        found: Any = inverse_kinematics(robot, beyond)
+    except NoClosedFormError:
+        return False
+    return not found
+
+
+def cost_of(robot: Any, cost: Cost) -> Callable[[Array], float]:
+    """The price of a branch q (m, dof)."""
+    if callable(cost):
+        return lambda q: float(cost(q))
+    word = choice(cost, "cost", COSTS)
+    if word == "length":
+        return lambda q: float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())
+    if word == "step":
+        return lambda q: float(np.abs(np.diff(q, axis=0)).max(initial=0.0))
+    speed = robot.limits.velocity
+    if not np.isfinite(speed).any():
+        raise InputTypeError(f"{robot.name} has no velocity limits; cost='time' needs them")
+    return lambda q: float((np.abs(np.diff(q, axis=0)) / speed).max(axis=1, initial=0.0).sum())
