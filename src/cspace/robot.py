@@ -210,15 +210,17 @@ class Robot(RobotBase):
         """
         return kinematics.screws(self._assembly, self.name)
 
-    def ik_plan(self) -> IkPlan:
+    def ik_plan(self, *, asked: Any = None, fixed: Any = None, tool_axis: Any = "z") -> IkPlan:
         """How ik solves this arm: the geometry found, the steps, the equations with its numbers.
 
-        The result prints, has to_markdown(), to_latex() and residuals(q, T), and is false, with a reason, for
-        an arm that nothing solves; see cspace.ik.ik_plan.
+        asked: for goals that ask for less than a pose, their keywords, such as ("position", "direction"), or
+        a dict with values. fixed: joints that will be held, with their values. The result prints, has
+        to_markdown(), to_latex() and residuals(q, T), and is false, with a reason, for an arm that nothing
+        solves; see cspace.ik.ik_plan.
         """
         from cspace.ik.explain import ik_plan
 
-        return ik_plan(self)
+        return ik_plan(self, asked=asked, fixed=fixed, tool_axis=tool_axis)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:
         """The same robot with a tool on its tip; the new tip is the frame "tool", and it counts everywhere.

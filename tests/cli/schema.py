@@ -138,6 +138,10 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "notes": [TEXT],
         "constants": dict,
         "matrices": dict,
+        "held": [TEXT],
+        "counted": TEXT,
+        "calls": [TEXT],
+        "other_ways": dict,
         "steps": [
             {
                 "finds": TEXT,

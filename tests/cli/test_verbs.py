@@ -252,7 +252,7 @@ def test_products_of_link_matrices_in_every_form():
     assert "products" not in cspace("dh planar_2r --json").json
 
 
-@pytest.mark.parametrize("robot", ["ur5e", "jaco2", "planar_2r", "al5d"])
+@pytest.mark.parametrize("robot", ["ur5e", "jaco2", "planar_2r", "al5d", "iiwa14"])
 def test_explanations_in_every_form(robot):
     result = cspace(f"ik {robot} --explain --json")
     assert result.code == 0
@@ -260,6 +260,14 @@ def test_explanations_in_every_form(robot):
     assert cspace(f"ik {robot} --explain").out.startswith(f"{robot}: ")
     assert "$$" in cspace(f"ik {robot} --explain --markdown").out
     assert r"\begin{align*}" in cspace(f"ik {robot} --explain --latex").out
+
+
+def test_goals_that_ask_for_less_are_explained():
+    result = cspace("ik al5d --explain --asked position direction --tool-axis x --json")
+    assert result.code == 0
+    schema.check(result.json, "cspace.ik_plan/1")
+    assert "goal_1" in result.json["joints"]
+    assert cspace("ik al5d --explain --asked positon").code == 2
 
 
 def test_an_explanation_of_an_arm_that_nothing_solves_is_a_negative_answer():
@@ -276,6 +284,7 @@ def test_an_explanation_of_an_arm_that_nothing_solves_is_a_negative_answer():
         ("ik ur5e --explain --xyz 1 0 0", "leave --xyz out"),
         ("ik ur5e --explain --plot a.png", "leave --plot out"),
         ("ik ur5e --xyz 1 0 0 --latex", "add --explain"),
+        ("ik ur5e --xyz 1 0 0 --asked position", "add --explain"),
     ],
 )
 def test_goals_and_explanations_do_not_mix(line, words):

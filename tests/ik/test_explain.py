@@ -11,6 +11,10 @@ import pytest
 import cspace as cs
 from cspace import _core
 from cspace.ik import ik_plan
+from cspace.ik.explain.asked import goal_asked
+from cspace.ik.explain.held import Split
+from cspace.ik.prepare import prepare
+from cspace.ik.solve_partial import whole_arm
 from cspace.model import from_screws
 from cspace.robot import Robot
 from ik import geometries
@@ -25,14 +29,20 @@ def configurations(robot, rng, n=6):
     return rng.uniform(-1.5, 1.5, (n, robot.dof))
 
 
-def expect_true(robot, rng):
-    """The plan of an arm, after its equations were found to hold, and not to hold for other joint values."""
-    plan = ik_plan(robot)
+def expect_true(robot, rng, held=None, **question):
+    """The plan of an arm, after its equations were found to hold, and not to hold for other joint values.
+
+    held: values of held joints, by number. question: what ik_plan is asked.
+    """
+    plan = ik_plan(robot, **question)
     assert plan, plan.reason
     q = configurations(robot, rng)
+    for joint, value in (held or {}).items():
+        q[:, joint] = value
     T = robot.fk(q)
-    seen = _core._ik_geometry(robot)
-    allowed = 1e-11 + 2 * (seen["deviation"] if seen["family"] >= 0 else 0.0)
+    seen = _core._ik_geometry(solved_by_steps(robot, plan, held, question))
+    reach = max(1.0, np.abs(T[:, :3, 3]).max() / seen["length"])  # a square of it is off by 2 reach deviation
+    allowed = 1e-11 + 2 * reach * (seen["deviation"] if seen["family"] >= 0 else 0.0)
     assert plan.residuals(q, T).shape == (6, len(plan.equations))
     assert plan.residuals(q, T).max() < allowed
     for joint in range(robot.dof):
@@ -42,6 +52,19 @@ def expect_true(robot, rng):
             f"no equation depends on joint {joint + 1}"
         )
     return plan
+
+
+def solved_by_steps(robot, plan, held, question):
+    """The arm that the steps of a plan belong to: without held joints, with those of the goal."""
+    if "asked" in question:
+        robot = whole_arm(robot, goal_asked(question["asked"], question.get("tool_axis", "z")))
+        prepare(robot)
+    if not plan.held:
+        return robot
+    joints = tuple(robot.joint_names.index(name) for name in plan.held)
+    others = Split(robot, joints, {k: (held or {}).get(k, 0.0) for k in joints}).others()
+    prepare(others)
+    return others
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -56,12 +79,16 @@ def test_every_arm_of_the_catalogue_is_explained(name):
     if not plan:
         assert plan.reason in plan.to_text().replace("\n", " ")
         return
-    if len(robot.joint_names) > 6:  # with joints to spare: what the axes share, and no equations
-        assert plan.family == "other"
-        return
     expect_true(robot, np.random.default_rng(2))
-    goals = robot.fk(configurations(robot, np.random.default_rng(3), 20))
-    assert max(len(robot.ik(T)) for T in goals) <= plan.branches
+    q = configurations(robot, np.random.default_rng(3), 20)
+    goals = robot.fk(q)
+    if len(robot.joint_names) > 6:
+        at = [{name: row[robot.joint_names.index(name)] for name in plan.held} for row in q]
+        found = [robot.ik(T, fixed=values) for T, values in zip(goals, at, strict=True)]
+        assert plan.held == robot.ik(goals[0]).freedom
+    else:
+        found = [robot.ik(T) for T in goals]
+    assert max(map(len, found)) <= plan.branches
 
 
 @pytest.mark.parametrize("square", [False, True])
@@ -226,6 +253,83 @@ def test_latex_and_markdown_are_well_formed(name):
     assert markdown.count("$$") % 2 == 0
     outside = "".join(latex.split("$")[::2])
     assert "_" not in outside.replace(r"\_", "") or "align*" in outside
+
+
+@pytest.mark.parametrize("name", ["iiwa14", "lwr4", "openarm_left", "xmatepro7"])
+def test_two_spherical_joints_are_explained_by_the_swivel_too(name):
+    robot = load(name)
+    plan = expect_true(robot, np.random.default_rng(11))
+    (steps,) = plan.other_ways.values()
+    assert np.prod([step.ways for step in steps]) == 8
+    assert {f"$t_{i}$" for i in range(1, 8)} < {step.finds for step in steps}
+    own = len(plan.equations) - sum(len(step.equations) for step in steps)
+    q = configurations(robot, np.random.default_rng(12), 3)
+    for row in q:  # one swivel, eight configurations: they share K up to the elbow, and all of them fit
+        found = robot.ik(robot.fk(row), swivel=cs.ik.swivel(robot, row))
+        assert plan.residuals(found.q, np.broadcast_to(found.goal, (len(found), 4, 4)))[:, own:].max() < 1e-9
+    assert not load("panda").ik_plan().other_ways
+
+
+@pytest.mark.parametrize("joint", range(7))
+def test_any_joint_may_be_held_and_the_others_are_explained_at_its_value(joint):
+    robot = load("panda")
+    plan = expect_true(robot, np.random.default_rng(joint), held={joint: 0.4}, fixed={joint: 0.4})
+    assert plan.held == (f"panda_joint{joint + 1}",)
+    assert ("numbers below are for" in plan.to_text()) == (0 < joint < 6)
+    q = configurations(robot, np.random.default_rng(20 + joint))
+    q[:, joint] = 0.4
+    assert max(len(robot.ik(T, fixed={joint: 0.4})) for T in robot.fk(q)) <= plan.branches
+
+
+def test_six_joints_with_one_held_are_an_arm_of_five():
+    plan = expect_true(load("ur5e"), np.random.default_rng(8), held={2: 1.1}, fixed={"elbow_joint": 1.1})
+    assert plan.family == "held"
+    assert "Joints 1 to 5 of the steps are those that move" in plan.to_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "asked"),
+    [
+        ("ur5e", "position"),
+        ("ur5e", ("position", "direction")),
+        ("ur5e", "rotation"),
+        ("planar_3r", "rotation"),
+        ("scara", {"position": (0.1, None, None)}),
+        ("al5d", ("position", "direction")),
+        ("al5d", {"position": (0.2, 0.1, 0.3), "angle_to": ("z", 0.7)}),
+        ("simplified_puma", "look_at"),
+        ("panda", "ray"),
+        ("puma560", "direction"),
+    ],
+)
+def test_goals_that_ask_for_less_are_explained_by_the_arm_that_they_make(name, asked):
+    robot = load(name)
+    plan = ik_plan(robot, asked=asked)
+    if not plan:
+        assert "two of its joints do one's work" in plan.reason
+        return
+    expect_true(robot, np.random.default_rng(9), asked=asked)
+    for form in FORMS:
+        assert "goal_1" in getattr(plan, form)().replace("\\_", "_")
+
+
+def test_a_pose_or_a_plain_point_of_a_short_arm_needs_no_joints_of_the_goal():
+    assert ik_plan(load("ur5e"), asked="position+rotation").to_dict() == load("ur5e").ik_plan().to_dict()
+    assert "goal_1" not in ik_plan(load("planar_3r"), asked="position").to_text()
+
+
+def test_questions_that_make_no_sense_are_refused():
+    robot = load("ur5e")
+    with pytest.raises(KeyError, match="did you mean 'position'"):
+        robot.ik_plan(asked="postion")
+    with pytest.raises(TypeError, match="make no goal"):
+        robot.ik_plan(asked=("rotation", "direction"))
+    with pytest.raises(TypeError, match="leave asked= out"):
+        robot.ik_plan(asked="position", fixed={0: 0.1})
+    with pytest.raises(TypeError, match="asked is a float"):
+        robot.ik_plan(asked=1.0)
+    with pytest.raises(KeyError, match="wrist"):
+        robot.ik_plan(fixed={"wrist": 0.1})
 
 
 def test_what_is_no_robot_is_refused():

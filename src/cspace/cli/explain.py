@@ -21,6 +21,13 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
     """The words of an explanation."""
     group = parser.add_argument_group("explanation", "how the arm is solved, instead of an answer to a goal")
     group.add_argument("--explain", action="store_true", help="the geometry found, the steps, the equations")
+    group.add_argument(
+        "--asked",
+        nargs="+",
+        metavar="PART",
+        help="goals of parts: position, rotation, direction, look_at, ray, angle_to (alone or together)",
+    )
+    group.add_argument("--tool-axis", metavar="AXIS", help="with --asked: x, y, z, or =-z, in the tip")
     form = group.add_mutually_exclusive_group()
     form.add_argument("--markdown", action="store_true", help="as Markdown with formulas")
     form.add_argument("--latex", action="store_true", help="as LaTeX, for a document with amsmath")
@@ -29,9 +36,9 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
 def explanation_asked(args: argparse.Namespace) -> bool:
     """Whether an explanation is asked for; words of a goal beside it or its forms without it are refused."""
     if not args.explain:
-        for name in ("markdown", "latex"):
+        for name in ("markdown", "latex", "asked", "tool_axis"):
             if getattr(args, name):
-                raise UsageError(f"--{name} is a form of the explanation: add --explain")
+                raise UsageError(f"--{name.replace('_', '-')} belongs to the explanation: add --explain")
         return False
     for name in GOAL_WORDS:
         if getattr(args, name) is not None:
@@ -41,7 +48,7 @@ def explanation_asked(args: argparse.Namespace) -> bool:
 
 def explain(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     """Print the explanation; an arm that nothing solves is a negative answer, with what its axes share."""
-    plan = robot.ik_plan()
+    plan = robot.ik_plan(asked=args.asked, tool_axis=args.tool_axis or "z")
     if out.as_json:
         out.document({"schema": "cspace.ik_plan/1", **plan.to_dict()})
     else:

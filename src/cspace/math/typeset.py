@@ -62,7 +62,7 @@ def sum_of_terms(terms: Sequence[tuple[float, str]]) -> str:
     out = ""
     for factor, text in terms:
         size = abs(factor)
-        unit = abs(size - 1.0) < 1e-12 and text
+        unit = number_text(size) == "1" and text
         shown = text if unit else f"{number_text(size)} {text}".rstrip()
         sign = "−" if factor < 0 else "+" if out else ""
         out += f" {sign} {shown}" if out else f"{sign}{shown}"

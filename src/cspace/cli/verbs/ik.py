@@ -28,6 +28,7 @@ cspace ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace ik puma560 --xyz 0.5 0 0.3 --wxyz 0 1 0 0 --near 0 0 0 0 0 0 --plot puma.png
 cspace ik planar_2r --xy 0.6 0.3 --limits drop --json
 cspace ik ur5e --explain
+cspace ik so101 --explain --asked position direction --tool-axis x --markdown
 """
 
 

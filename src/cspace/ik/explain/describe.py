@@ -1,4 +1,4 @@
-"""From the solver of a robot to its explanation."""
+"""From the solver of an arm of up to six joints to its explanation."""
 
 from __future__ import annotations
 
@@ -15,14 +15,14 @@ from cspace.ik.explain.general import Loop
 from cspace.ik.explain.parallel import first_parallel_steps, middle_parallel_steps, three_parallel_steps
 from cspace.ik.explain.placed_wrist import orientation_steps, placed_wrist_steps
 from cspace.ik.explain.plan import IkPlan
-from cspace.ik.explain.screws import goal_values, joint_values
+from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.explain.short import short_steps, short_values
 from cspace.ik.explain.survey import relations, still_directions, still_points
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
 from cspace.ik.geometry import FIRST_THREE
 from cspace.ik.prepare import prepare
 
-__all__ = ["ik_plan"]
+__all__ = ["refused_plan", "settled_plan", "survey_of"]
 
 SPHERICAL_WRIST, THREE_PARALLEL, MIDDLE_PARALLEL, FIRST_PARALLEL = 1, 2, 3, 4
 """The families of the core."""
@@ -36,23 +36,14 @@ SUMMARIES = {
 }
 
 
-def ik_plan(robot: Any) -> IkPlan:
-    """How `robot.ik` solves an arm: the geometry found, the steps, the equations with its numbers.
-
-    The answer is built from what the solver itself holds. It prints, has to_markdown() and to_latex(), and
-    plan.residuals(q, T) evaluates every equation. An arm that nothing solves gets a plan that is false and
-    says why. Raises InputTypeError for what is no robot.
-    """
-    reason = ""
-    try:
-        prepare(robot)
-    except NoClosedFormError as error:
-        reason = str(error)
+def survey_of(robot: Any) -> dict[str, Any]:
+    """What an explanation says of every arm: its joints, its length, what its axes share."""
     chain = robot.chain
-    seen = None if reason else _core._ik_geometry(robot)
     measurable = chain.dof == len(chain.joint_types) and len(chain.joint_types) > 0
-    length = seen["length"] if seen else arm_length(robot) if measurable else 1.0
-    common: dict[str, Any] = {
+    length = arm_length(robot) if measurable else 1.0
+    if measurable and robot._ik_room:
+        length = _core._ik_geometry(robot)["length"]
+    return {
         "robot": robot.name,
         "joints": tuple(chain.joint_names),
         "length": length,
@@ -60,27 +51,45 @@ def ik_plan(robot: Any) -> IkPlan:
         "still_points": still_points(chain, length),
         "still_directions": still_directions(chain, length),
     }
-    if seen is None:
-        return IkPlan(
-            **common, family="none", summary="`robot.ik` does not solve this arm.", branches=0, reason=reason
-        )
-    inside = _core._ik_plan(robot)
-    known = chain.dof <= 6  # what holds joints of a longer arm still is not told from here
-    if known and "form" in inside and seen["family"] in SUMMARIES:
-        return form_plan(Form.of(seen, inside["form"]), seen, common)
-    if known and "loop" in inside:
+
+
+def settled_plan(robot: Any, common: dict[str, Any], numbers: tuple[int, ...] | None = None) -> IkPlan:
+    """An arm of up to six joints. numbers: by which (from 1) the user knows them, 1, 2, … unless given."""
+    try:
+        prepare(robot)
+    except NoClosedFormError as error:
+        return refused_plan(common, str(error))
+    chain = robot.chain
+    seen, inside = _core._ik_geometry(robot), _core._ik_plan(robot)
+    common = {**common, "length": seen["length"]}
+    if "form" in inside and seen["family"] in SUMMARIES:
+        return form_plan(Form.of(seen, inside["form"]), seen, common, numbers)
+    if "loop" in inside:
         return general_plan(Loop.of(inside["loop"]), common)
-    if len(chain.joint_types) <= 3:
-        return short_plan(chain, common)
+    return short_plan(chain, common)
+
+
+def refused_plan(common: dict[str, Any], reason: str) -> IkPlan:
+    """An arm that nothing solves: what its axes share."""
     return IkPlan(
-        **common,
-        family="other",
-        summary="`robot.ik` solves this arm by a method that has no explanation yet. What its axes share:",
-        branches=robot._ik_room,
+        **common, family="none", summary="`robot.ik` does not solve this arm.", branches=0, reason=reason
     )
 
 
-def form_plan(form: Form, seen: dict[str, Any], common: dict[str, Any]) -> IkPlan:
+ONE_CALL = (
+    "`robot.ik(T)` lists every solution of the steps above; `near=` picks the nearest of them.",
+    "`robot.track(poses)` begins a branch at each solution of the first pose and follows it by the joints' "
+    "velocity and acceleration along the path, $J q' = t$, and Newton's method, until a joint meets its "
+    "limit or two branches meet and vanish.",
+)
+"""What is asked of an arm whose solutions are finite in number."""
+COMPLETED = " of the completed arm; the arm's own are those with its virtual joints at zero"
+"""Whose solutions are counted, where virtual joints complete an arm."""
+
+
+def form_plan(
+    form: Form, seen: dict[str, Any], common: dict[str, Any], numbers: tuple[int, ...] | None = None
+) -> IkPlan:
     """An arm with a closed form."""
     family = seen["family"]
     constants = form.constants()
@@ -104,8 +113,9 @@ def form_plan(form: Form, seen: dict[str, Any], common: dict[str, Any]) -> IkPla
         family=name,
         summary=f"{name}. {summary[0].upper()}{summary[1:]}.",
         branches=ways(steps),
+        counted=COMPLETED if seen["virtual_joints"] else "",
         notes=notes_of(form, seen),
-        tables={"Denavit–Hartenberg form of the solver": form.table(common["joints"])},
+        tables={"Denavit–Hartenberg form of the solver": form.table(common["joints"], numbers)},
         matrices={"B": form.base, "C": form.tool},
         constants=constants,
         steps=tuple(steps),
@@ -171,6 +181,7 @@ def general_plan(loop: Loop, common: dict[str, Any]) -> IkPlan:
         summary="joints in general position. No closed form: all but one angle are eliminated from the "
         "loop that arm and goal close.",
         branches=ways(steps),
+        counted=COMPLETED if n < 6 else "",
         notes=tuple(notes),
         tables={"Formulations": loop.formulations(common["joints"])},
         matrices=loop.matrices(),
@@ -207,6 +218,7 @@ def neighbour_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPl
         "its axes disturbed a little to either side, have neither fault; they are solved by elimination "
         "to one hidden angle.",
         branches=most,
+        counted=COMPLETED if len(common["joints"]) < 6 else "",
         notes=(*notes, loop_note(loop)),
         matrices=loop.matrices(),
         steps=(step,),
@@ -222,11 +234,18 @@ def slides_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
         family="orientation first",
         summary="three turning joints make the orientation, three slides the position.",
         branches=ways(steps),
+        counted=COMPLETED if len(common["joints"]) < 6 else "",
         notes=(*notes, loop_note(loop)),
         matrices=loop.matrices(),
         steps=tuple(steps),
         _values=loop.values,
     )
+
+
+def behind(names: tuple[str, ...], *, reverse: bool) -> tuple[str, ...]:
+    """The joints' names with the virtual ones behind them, from the tip if so asked."""
+    whole = (*names, *("",) * (6 - len(names)))
+    return whole[::-1] if reverse else whole
 
 
 def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
@@ -252,6 +271,8 @@ def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
     return IkPlan(
         **common,
         family="wrist behind three joints",
+        counted=COMPLETED if len(common["joints"]) < 6 else "",
+        tables={"Joints at zero": arm.table(behind(common["joints"], reverse=bool(loop.wrist)))},
         summary="three axes meet in a point, the wrist: the three joints before it, some of which slide, "
         "place it, and the wrist makes the orientation.",
         branches=ways(steps),
@@ -287,6 +308,7 @@ def short_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
     return IkPlan(
         **common,
         family="short arm",
+        tables={"Joints at zero": Screws.of(chain).table(common["joints"])},
         summary=f"an arm of {len(chain.joint_types)} joint{'s' if len(chain.joint_types) > 1 else ''} "
         f"({chain.joint_types}), solved directly.",
         branches=ways(steps),

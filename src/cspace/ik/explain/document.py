@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Final
 
 import numpy as np
 
 from cspace.ik.explain import page
 from cspace.ik.explain.findings import Findings, Step
+from cspace.ik.explain.screws import vector
 from cspace.math import Equation, MatrixEquation
 from cspace.model.text import aligned, shown
 
@@ -33,19 +35,34 @@ def blocks(plan: Findings) -> list[page.Block]:
     for name, T in plan.matrices.items():
         out.append(page.Formulas([(matrix_text(name, T), matrix_latex(name, T))]))
     if plan.steps:
-        out.append(page.Heading("Steps"))
-    for number, step in enumerate(plan.steps, 1):
+        out += [page.Heading("Steps"), *step_blocks(plan, plan.steps)]
+        out.append(page.Paragraph(f"Together {total(plan.steps)} solutions{plan.counted}."))
+    for name, steps in plan.other_ways.items():
+        out += [page.Heading(name), *step_blocks(plan, steps)]
+        out.append(page.Paragraph(f"Together {total(steps)} solutions."))
+    if plan.calls:
+        out += [page.Heading("What calls do"), *map(page.Paragraph, plan.calls)]
+    return out
+
+
+def step_blocks(plan: Findings, steps: Sequence[Step]) -> list[page.Block]:
+    """Steps with their equations."""
+    out: list[page.Block] = []
+    for number, step in enumerate(steps, 1):
         ways = "" if step.ways == 1 else f"up to {step.ways} ways"
         how = ", ".join(word for word in (ways, step.method) if word)
         how = f" ({how})" if how else ""
         out.append(page.Paragraph(f"{number}. {step.finds}{how}. {step.words}"))
         out += equation_blocks(plan, step)
-    if plan.steps:
-        factors = [str(step.ways) for step in plan.steps if step.ways > 1]
-        product = r" \times ".join(factors)
-        count = f"${product} = {plan.branches}$" if len(factors) > 1 else str(plan.branches)
-        out.append(page.Paragraph(f"Together up to {count} solutions."))
     return out
+
+
+def total(steps: Sequence[Step]) -> str:
+    """How many solutions the steps have together, with the product."""
+    factors = [str(step.ways) for step in steps if step.ways > 1]
+    most = int(np.prod([step.ways for step in steps]))
+    product = r" \times ".join(factors)
+    return f"up to ${product} = {most}$" if len(factors) > 1 else f"up to {most}"
 
 
 def geometry_blocks(plan: Findings) -> list[page.Block]:
@@ -73,11 +90,6 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
         still = "their joints change neither heights along it nor angles with it."
         out.append(page.Paragraph(f"Axes {listed(each.joints)} {parallel}: {still}"))
     return out
-
-
-def vector(v: Any) -> str:
-    """A vector without rounding noise."""
-    return ", ".join(shown(round(float(x), 8)) for x in v)
 
 
 def missed(miss: float, unit: str) -> str:
@@ -182,6 +194,12 @@ def document(plan: Findings) -> dict[str, Any]:
         "constants": dict(plan.constants),
         "matrices": {name: np.asarray(T).tolist() for name, T in plan.matrices.items()},
         "steps": [step_document(plan, step) for step in plan.steps],
+        "calls": [page.plain_sentence(call) for call in plan.calls],
+        "held": list(plan.held),
+        "counted": plan.counted.strip(),
+        "other_ways": {
+            name: [step_document(plan, step) for step in steps] for name, steps in plan.other_ways.items()
+        },
     }
 
 

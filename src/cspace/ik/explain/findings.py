@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -41,7 +41,10 @@ class Findings:
     summary: the method in a sentence. branches: how many solutions a goal has at most. reason: why nothing
     solves the arm, else "". relations, still_points, still_directions: the geometry found. notes: sentences
     about signs, frames and goals. tables: named rows of numbers that the equations refer to. matrices: named
-    displacements (4, 4). constants: numbers of the symbols that belong to the arm. steps: what is done.
+    displacements (4, 4). constants: numbers of the symbols that belong to the arm. steps: what is done. held:
+    the joints that are parameters. counted: whose solutions `branches` counts, where that needs saying.
+    calls: how the functions that
+    ask for solutions use the steps. other_ways: further ways to a solution, by name, each with its steps.
     """
 
     robot: str
@@ -58,16 +61,22 @@ class Findings:
     matrices: Mapping[str, Array] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
+    held: tuple[str, ...] = ()
+    counted: str = ""
+    calls: tuple[str, ...] = ()
+    other_ways: Mapping[str, tuple[Step, ...]] = field(default_factory=dict)
     length: float = 1.0
     _values: Values | None = field(default=None, repr=False)
+    _other_values: Values | None = field(default=None, repr=False)
 
     def __bool__(self) -> bool:
         return not self.reason
 
     @property
     def equations(self) -> tuple[Equation | MatrixEquation, ...]:
-        """Every equation of every step, in order."""
-        return tuple(equation for step in self.steps for equation in step.equations)
+        """Every equation of every step, in order, those of other ways behind."""
+        ways = (self.steps, *self.other_ways.values())
+        return tuple(equation for steps in ways for step in steps for equation in step.equations)
 
     def residuals(self, q: Any, T: Any) -> Array:
         """How far each equation is off, (..., k), at configurations q (..., n) that reach T (..., 4, 4).
@@ -79,11 +88,17 @@ class Findings:
         shape = q.shape[:-1]
         if self._values is None:
             return np.zeros((*shape, 0))
-        values: dict[str, Any] = {**self.constants, **self._values(q, T)}
+        out = self._off(self.steps, {**self.constants, **self._values(q, T)}, shape)
+        for steps in self.other_ways.values():
+            out += self._off(steps, dict(self._other_values(q, T)) if self._other_values else {}, shape)
+        return np.stack(out, axis=-1) if out else np.zeros((*shape, 0))
+
+    def _off(self, steps: Sequence[Step], values: dict[str, Any], shape: tuple[int, ...]) -> list[Array]:
+        """How far the equations of some steps are off, (...) each."""
         out = []
-        for equation in self.equations:
+        for equation in (each for step in steps for each in step.equations):
             if isinstance(equation, Equation) and equation.defines:
                 values[equation.defines] = equation.right.evaluate(values)
             scale = self.length ** {"m": 1, "m²": 2, "m⁴": 4}.get(equation.unit, 0)
             out.append(np.broadcast_to(np.abs(equation.residual(values)) / scale, shape))
-        return np.stack(out, axis=-1) if out else np.zeros((*shape, 0))
+        return out

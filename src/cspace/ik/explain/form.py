@@ -100,22 +100,23 @@ class Form:
         rotation = [[goal[i, j] if 3 not in (i, j) else TrigPolynomial() for j in range(4)] for i in range(4)]
         return TrigMatrix(rows) @ TrigMatrix(rotation)
 
-    def table(self, names: tuple[str, ...]) -> Rows:
-        """The table of the form with the joints behind it."""
+    def table(self, names: tuple[str, ...], numbers: tuple[int, ...] | None = None) -> Rows:
+        """The table of the form with the joints behind it. numbers: theirs in the arm, else 1, 2, …"""
         rows = []
         for i, joint in enumerate(self.joint):
             name = f"`{names[joint]}`" if joint >= 0 else "virtual, held at 0"
             alpha = np.degrees(np.arctan2(self.sa[i], self.ca[i]))
-            numbers = (shown(x) for x in (alpha, self.a[i], self.d[i]))
-            rows.append((f"{i + 1}", name, *numbers, self.angle_text(i)))
+            entries = (shown(x) for x in (alpha, self.a[i], self.d[i]))
+            rows.append((f"{i + 1}", name, *entries, self.angle_text(i, numbers)))
         return Rows(("i", "joint", r"$\alpha_i$ [°]", "$a_i$ [m]", "$d_i$ [m]", "$t_i$ [°]"), rows)
 
-    def angle_text(self, i: int) -> str:
+    def angle_text(self, i: int, numbers: tuple[int, ...] | None) -> str:
         """t_i from the joint's own angle: $q_2$ + 180."""
         offset = shown(np.degrees(self.offset[i]))
         if self.joint[i] < 0:
             return offset
-        q = f"{'−' if self.sign[i] < 0 else ''}$q_{{{self.joint[i] + 1}}}$"
+        number = self.joint[i] + 1 if numbers is None else numbers[self.joint[i]]
+        q = f"{'−' if self.sign[i] < 0 else ''}$q_{{{number}}}$"
         if offset == "0":
             return q
         return f"{q} − {offset[1:]}" if offset.startswith("-") else f"{q} + {offset}"

@@ -106,8 +106,10 @@ class Loop:
                 t[0],
                 16,
                 "elimination",
-                f"Both sides move the z axis and the origin alike, and {t[3]} moves neither. Six "
-                f"combinations of the fourteen invariants do not see {t[4]} and {t[5]}; times sine and "
+                f"Both sides move the z axis and the origin alike, and {t[3]} moves neither. With $l$ and "
+                "$p$ where they go, both sides have $p$, $l$, $p \\cdot p$, $p \\cdot l$, $p \\times l$ and "
+                "$(p \\cdot p) l - 2 (p \\cdot l) p$ alike: fourteen equations (Raghavan and Roth 1990). Six "
+                f"combinations of them do not see {t[4]} and {t[5]}; times sine and "
                 f"cosine of half of {t[1]} they are twelve linear equations in twelve products of {t[1]} "
                 f"and {t[2]}{slides}. Their determinant, a trigonometric polynomial of degree 8 in "
                 f"{t[0]}, the hidden angle, vanishes at the solutions: up to 16.",

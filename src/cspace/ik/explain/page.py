@@ -22,6 +22,12 @@ PLAIN: Final = (
     (r"\\times", "×"),
     (r"\\tan", "tan"),
     (r"\\cdot", "·"),
+    (r"\\cos", "cos"),
+    (r"\\sin", "sin"),
+    (r"\\text", ""),
+    (r" - ", " − "),
+    (r"\^2", "²"),
+    (r"\^\+", "⁺"),
     (r"\\ldots", "…"),
     (r"\^T", "ᵀ"),
     (r"\^\{-1\}", "⁻¹"),
@@ -36,6 +42,7 @@ IN_LATEX: Final = (
     ("±", r"$\pm$"),
     ("ᵀ", r"$^T$"),
     ("⁻¹", r"$^{-1}$"),
+    ("…", r"\ldots{}"),
 )
 """What a character of prose is in LaTeX."""
 

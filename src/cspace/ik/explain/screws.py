@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.ik.explain.page import Rows
 from cspace.math import Angle, TrigPolynomial
+from cspace.model.text import shown
 
 __all__ = [
     "Screws",
@@ -20,6 +23,7 @@ __all__ = [
     "numbers",
     "symbols",
     "turned",
+    "vector",
 ]
 
 Vector = list[TrigPolynomial]
@@ -34,12 +38,32 @@ class Screws:
     points: Array
     T_zero: Array
 
+    @classmethod
+    def of(cls, chain: Any) -> Screws:
+        """The joints of a robot."""
+        return cls(chain.joint_types, chain.axes, chain.points, chain.T_zero)
+
+    def table(self, names: Sequence[str]) -> Rows:
+        """Where the joints are at zero; a joint without a name is virtual."""
+        rows = []
+        for i, kind in enumerate(self.joint_types):
+            name = f"`{names[i]}`" if i < len(names) and names[i] else "virtual, held at 0"
+            point = vector(self.points[i]) if kind == "R" else "–"
+            what = "turns" if kind == "R" else "slides"
+            rows.append((f"{i + 1}", name, what, vector(self.axes[i]), point))
+        return Rows(("i", "joint", "does", "along", "through [m]"), rows)
+
     def reversed(self) -> Screws:
         """The same joints read from the tip."""
         back = np.linalg.inv(self.T_zero)
         axes = -(self.axes @ back[:3, :3].T)[::-1]
         points = (self.points @ back[:3, :3].T + back[:3, 3])[::-1]
         return Screws(self.joint_types[::-1], axes, points, np.asarray(back, dtype=np.float64))
+
+
+def vector(v: Any) -> str:
+    """A vector without rounding noise."""
+    return ", ".join(shown(round(float(x), 8)) for x in v)
 
 
 def joint_values(kinds: str, q: Array, *, length: float = 1.0) -> dict[str, Any]:
