@@ -172,15 +172,17 @@ class Robot(RobotBase):
         path: str | os.PathLike[str] | None = None,
         *,
         name: str | None = None,
+        fixed: Any = None,
     ) -> Export:
         """The inverse kinematics as source code that needs nothing of cspace, written to `path` if there is
         one; see export.export, which also names the errors.
 
         lang: "cpp", "c" or "python"; by the ending of path unless given. name: of the namespace in it.
+        fixed: joints whose values the caller of the code gives; of arms of more than six the solver's choice.
         """
         from cspace.export import export
 
-        return export(self, lang, path, name=name)
+        return export(self, lang, path, name=name, fixed=fixed)
 
     def _whole(self) -> Description:
         """The description with the tool as a link on the tip and the mounting under a new root."""

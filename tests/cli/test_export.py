@@ -45,7 +45,12 @@ def test_refusals(tmp_path):
     result = cspace("export ur5e -o", str(tmp_path / "nowhere" / "a.hpp"))
     assert result.code == 2
     assert "there is no folder" in result.err
-    result = cspace("export panda -o", str(tmp_path / "a.hpp"))
+    result = cspace("export panda --fixed panda_join7 -o", str(tmp_path / "a.hpp"))
     assert result.code == 2
-    assert "panda" in result.err
+    assert "panda_joint7" in result.err
+    for example in ("a.h", "a.cpp"):
+        words = ["-o", str(tmp_path / "a.h"), "--example", str(tmp_path / example)]
+        result = cspace("export ur5e --lang c", *words)
+        assert result.code == 2
+        assert "would overwrite" in result.err
     assert list(tmp_path.iterdir()) == []

@@ -38,11 +38,11 @@ def apart(q, others, joint_types):
     return away.max(axis=1).min()
 
 
-def check_regular(robot, answer, goal):
+def check_regular(robot, answer, goal, **asked):
     """The same verdict and the same set of solutions, each of which reaches the goal; is the certificate the
     same too?
     """
-    found = robot.ik(goal)
+    found = robot.ik(goal, **asked)
     assert answer.status == found.status, goal
     assert len(answer.q) == len(found.q), goal
     for q in answer.q:
@@ -51,12 +51,12 @@ def check_regular(robot, answer, goal):
     return answer.complete == found.complete
 
 
-def check_special(robot, answer, goal):
+def check_special(robot, answer, goal, **asked):
     """Reached or not alike, every row reaches the goal, and isolated solutions are the same.
 
     At a singular pose rounding, and so the instruction set, decides whether two solutions are one.
     """
-    found = robot.ik(goal)
+    found = robot.ik(goal, **asked)
     assert bool(len(answer.q)) == bool(found), goal
     assert (answer.status == "unreachable") == (found.status == "unreachable"), goal
     check_rows(robot, answer, goal)

@@ -8,15 +8,24 @@
 #define JOIN(a, b) PASTE(a, b)
 #define NAME(word) JOIN(ARM, word)
 
+#ifndef HELD
+#define HELD 0
+#endif
+#if HELD
+#define ASK(goal, found) NAME(_ik)(goal, goal + 16, 0, found)
+#else
+#define ASK(goal, found) NAME(_ik)(goal, 0, found)
+#endif
+
 int main(void) {
     int n = 0, j, k;
     if (fread(&n, sizeof n, 1, stdin) != 1) return 2;
     for (k = 0; k < n; ++k) {
-        double goal[16];
+        double goal[16 + HELD];
         NAME(_solutions) found;
         int head[3];
-        if (fread(goal, sizeof(double), 16, stdin) != 16) return 2;
-        head[0] = NAME(_ik)(goal, 0, &found);
+        if (fread(goal, sizeof(double), 16 + HELD, stdin) != 16 + HELD) return 2;
+        head[0] = ASK(goal, &found);
         head[1] = (int)found.status;
         head[2] = found.complete;
         fwrite(head, sizeof(int), 3, stdout);

@@ -1,4 +1,5 @@
-// Answers goals with an exported arm: reads their number and 16 doubles each, writes per goal count, status,
+// Answers goals with an exported arm: reads their number and 16 doubles each, and HELD values of held joints,
+// writes per goal count, status,
 // complete (int), the rows, their families (int), and the poses and Jacobians of the rows.
 #include HEADER
 
@@ -6,6 +7,20 @@
 #include <vector>
 
 namespace arm = ARM;
+
+#ifndef HELD
+#define HELD 0
+#endif
+constexpr std::size_t stride = 16 + HELD;
+
+static arm::Solutions solutions(const double* goal) {
+#if HELD
+    static_assert(arm::held == HELD, "as many values as the arm holds joints");
+    return arm::ik(goal, goal + 16);
+#else
+    return arm::ik(goal);
+#endif
+}
 
 template <class T>
 static void put(const T* values, std::size_t count) {
@@ -15,10 +30,10 @@ static void put(const T* values, std::size_t count) {
 int main() {
     int n = 0;
     if (std::fread(&n, sizeof n, 1, stdin) != 1) return 2;
-    std::vector<double> goals(16 * static_cast<std::size_t>(n));
+    std::vector<double> goals(stride * static_cast<std::size_t>(n));
     if (std::fread(goals.data(), sizeof(double), goals.size(), stdin) != goals.size()) return 2;
     for (int k = 0; k < n; ++k) {
-        const arm::Solutions found = arm::ik(&goals[16 * static_cast<std::size_t>(k)]);
+        const arm::Solutions found = solutions(&goals[stride * static_cast<std::size_t>(k)]);
         const int head[3] = {found.count, static_cast<int>(found.status), found.complete};
         put(head, 3);
         for (int j = 0; j < found.count; ++j) {

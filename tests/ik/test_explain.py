@@ -328,6 +328,8 @@ def test_questions_that_make_no_sense_are_refused():
         robot.ik_plan(asked="position", fixed={0: 0.1})
     with pytest.raises(TypeError, match="asked is a float"):
         robot.ik_plan(asked=1.0)
+    with pytest.raises(TypeError, match="one value per joint"):
+        robot.ik_plan(fixed={0: [0.1, 0.2]})
     with pytest.raises(KeyError, match="wrist"):
         robot.ik_plan(fixed={"wrist": 0.1})
 

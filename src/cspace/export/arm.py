@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import keyword
 import re
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.export.plain import in_ascii
-from cspace.ik.conditions import NoClosedFormError
-from cspace.ik.prepare import prepare
+from cspace.ik.held import between_others, hold, joint_number, without_held
+from cspace.ik.prepare import MAX_SETTLED, prepare
 
 __all__ = ["ExportedArm", "exported_arm"]
 
@@ -28,20 +29,21 @@ TAKEN = frozenset(
     ]
 )
 
-SETTLED = 6
-
 METHODS = {
     "closed": "solved in closed form",
     "general": "solved by elimination to one joint's angle",
     "short": "solved directly",
     "any": "solved by a plan made when the program starts",
+    "locked": "solved by a plan made for every value of a joint held between others",
 }
 
 
 @dataclass(frozen=True)
 class ExportedArm:
     """kind: how it is solved (closed, general, short, any); plan: the numbers of that solver, named as in the
-    headers; room: rows that its solutions may need; identifier: its name as one of C++.
+    headers; room: rows that its solutions may need; identifier: its name as one of C++. held: the joints
+    whose values the caller gives, by number from 0; moving: the arm of the others, those held at zero, where
+    they stand at the ends.
     """
 
     identifier: str
@@ -57,24 +59,81 @@ class ExportedArm:
     axes: Array
     points: Array
     T_zero: Array
+    held: tuple[int, ...] = ()
+    moving: ExportedArm | None = None
     version: str = _core.__version__
+
+    @property
+    def solved(self) -> ExportedArm:
+        """The arm that the solver knows: without joints held at the ends."""
+        return self.moving or self
 
     @property
     def method(self) -> str:
         """How it is solved, as half a sentence."""
-        return METHODS[self.kind]
+        if not self.held:
+            return METHODS[self.kind]
+        return f"{METHODS[self.kind]}, with {self.held_names} held"
+
+    @property
+    def held_names(self) -> str:
+        """The held joints, for comments of any language."""
+        return ", ".join(re.sub(r"[^\w .:/-]|/(?=/)", "", in_ascii(self.joint_names[k])) for k in self.held)
 
 
-def exported_arm(robot: Any, name: str | None) -> ExportedArm:
-    """The robot as the exports see it; raises NoClosedFormError and InputError."""
-    prepare(robot)
-    joints = len(robot.chain.joint_types)
-    if joints > SETTLED:
-        raise NoClosedFormError(
-            f"{robot.name} has {joints} joints, more than the {SETTLED} that a pose settles; arms of up to"
-            f" {SETTLED} can be exported"
+def exported_arm(robot: Any, name: str | None, fixed: Any = None) -> ExportedArm:
+    """The robot as the exports see it. fixed: names or numbers of the joints whose values the caller gives.
+
+    Raises NoClosedFormError and InputError.
+    """
+    prepare(robot, some_held=fixed is not None)
+    held = held_joints(robot, fixed)
+    if not held:
+        kind, plan = _core._ik_numbers(robot)
+        return described(robot, name, kind, plan)
+    if between_others(len(robot.joint_names), held):
+        return described(robot, name, "locked", {}, held=held)
+    others = without_held(robot, dict.fromkeys(held, 0.0))
+    prepare(others)
+    kind, plan = _core._ik_numbers(others)
+    return described(robot, name, kind, plan, held=held, moving=described(others, "moving", kind, plan))
+
+
+def vector(v: Array) -> dict[str, float]:
+    """As the headers keep it."""
+    return {axis: float(x) for axis, x in zip("xyz", v, strict=True)}
+
+
+def held_joints(robot: Any, fixed: Any) -> tuple[int, ...]:
+    """The joints to hold, by number, ascending: those named, else the solver's own choice."""
+    joints = len(robot.joint_names)
+    if fixed is None:
+        return tuple(hold(robot, {}).solver.held) if joints > MAX_SETTLED else ()
+    if isinstance(fixed, (str, int)):
+        fixed = [fixed]
+    if isinstance(fixed, Mapping) or not isinstance(fixed, Iterable):
+        raise InputTypeError(
+            f"fixed is a {type(fixed).__name__}, expected names of joints: each call gives their values"
         )
-    kind, plan = _core._ik_numbers(robot)
+    held = [joint_number(robot, key, "fixed") for key in fixed]
+    if len(set(held)) < len(held):
+        raise InputError("fixed names a joint twice")
+    if not 1 <= joints - len(held) <= MAX_SETTLED:
+        raise InputError(
+            f"fixed holds {len(held)} of {joints} joints; from 1 to {MAX_SETTLED} must be left to move"
+        )
+    return tuple(sorted(held))
+
+
+def described(
+    robot: Any,
+    name: str | None,
+    kind: str,
+    plan: dict[str, Any],
+    held: tuple[int, ...] = (),
+    moving: ExportedArm | None = None,
+) -> ExportedArm:
+    """The words and numbers of an arm."""
     chain = robot.chain
     return ExportedArm(
         identifier=checked(name) if name is not None else identifier_from(robot.name),
@@ -90,6 +149,8 @@ def exported_arm(robot: Any, name: str | None) -> ExportedArm:
         axes=chain.axes,
         points=chain.points,
         T_zero=chain.T_zero,
+        held=held,
+        moving=moving,
     )
 
 

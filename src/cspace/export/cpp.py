@@ -7,7 +7,7 @@ from string import Template
 from typing import Any
 
 from cspace.export.amalgam import amalgamate
-from cspace.export.arm import ExportedArm
+from cspace.export.arm import ExportedArm, vector
 from cspace.export.family import general_method, only_this_family, other_families
 from cspace.export.numbers import bounds, initialiser, literal, quoted
 from cspace.export.plain import in_ascii
@@ -36,6 +36,9 @@ def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
     if one_file:
         replaced["sampler_tables"] = TABLE_AT_START
     code = Template(code).substitute(words, plan=initialiser(plan_of(arm)))
+    if arm.moving:
+        around = {**words, "solver": code, "plan": initialiser(chain_of(arm)), "moving_room": arm.moving.room}
+        code = filled("solve_held.hpp.in", around)
     interface = filled("interface.hpp.in", words)
     unwanted = other_families(arm.kind, arm.plan)
     standard, core = amalgamate(headers, code + interface, replaced, unwanted)
@@ -60,10 +63,60 @@ def words_of(arm: ExportedArm) -> dict[str, Any]:
         "prismatic": literal([kind == "P" for kind in arm.joint_types])[1:-1],
         "lower": bounds(arm.lower),
         "upper": bounds(arm.upper),
+        **words_of_held(arm),
+    }
+
+
+HELD_WORDS = (
+    *("held_types", "held_types_c", "held_extern", "held_extern_c", "fixed_parameter", "fixed_argument"),
+    *("fixed_sample", "fixed_of_sample", "fixed_of_q", "fixed_words", "fixed_words_c"),
+)
+
+
+def words_of_held(arm: ExportedArm) -> dict[str, Any]:
+    """The words about joints whose values the caller gives; empty ones without such joints."""
+    if not arm.held:
+        return dict.fromkeys(HELD_WORDS, "")
+    count, numbers = len(arm.held), ", ".join(map(str, arm.held))
+    names = arm.held_names
+    moving = [k for k in range(arm.dof) if k not in arm.held]
+    return {
+        "held_count": count,
+        "held_joints": numbers,
+        "moving_count": len(moving),
+        "moving_joints": ", ".join(map(str, moving)),
+        "held_types": (
+            f"inline constexpr int held = {count}, held_joints[held] = {{{numbers}}};  // {names}\n"
+        ),
+        "held_types_c": f"enum {{ {arm.identifier}_held = {count} }}; /* {names} */\n",
+        "held_extern": f"extern const int {arm.identifier}_held_joints[{count}];\n",
+        "held_extern_c": f"const int {arm.identifier}_held_joints[{count}] = {{{numbers}}};\n",
+        "fixed_of_sample": f"    const double fixed[] = {{{', '.join(f'q[{k}]' for k in arm.held)}}};\n",
+        "fixed_parameter": "const double* fixed, ",
+        "fixed_argument": "fixed, ",
+        "fixed_sample": ", fixed",
+        "fixed_of_q": f", [{', '.join(f'q[{k}]' for k in arm.held)}]",
+        "fixed_words": (
+            f"// fixed: the values of the held joints ({names}), {count} in the order of held_joints.\n"
+        ),
+        "fixed_words_c": f"\n * fixed: the values of the held joints ({names}), {count} in this order.",
+    }
+
+
+def chain_of(arm: ExportedArm) -> dict[str, Any]:
+    """The whole arm as the headers keep a chain."""
+    return {
+        "n": arm.dof,
+        "axis": [vector(axis) for axis in arm.axes],
+        "point": [vector(point) for point in arm.points],
+        "prismatic": [kind == "P" for kind in arm.joint_types],
+        "tip": {"R": {"m": arm.T_zero[:3, :3].tolist()}, "t": vector(arm.T_zero[:3, 3])},
     }
 
 
 def plan_of(arm: ExportedArm) -> dict[str, Any]:
+    if arm.kind == "locked":
+        return chain_of(arm)
     return {**arm.plan, "solve": "&solve_general"} if arm.kind == "general" else arm.plan
 
 
@@ -82,6 +135,9 @@ def solver(arm: ExportedArm) -> tuple[list[str], str, dict[str, str]]:
         headers += ["cspace/ik/careful.hpp", *["cspace/ik/quick.hpp"] * quick]
         parts.append("solve_closed_quick" if quick else "solve_closed_slow")
         replaced = only_this_family(arm.plan)
+    elif arm.kind == "locked":
+        headers += ["cspace/ik/redundant/locked_arm.hpp"]
+        parts = ["solve_locked"]
     else:
         headers += ["cspace/ik/arm.hpp"]
     return headers, "\n".join(template(f"{part}.hpp.in") for part in parts), replaced

@@ -54,7 +54,7 @@ def general_method(arm: dict[str, Any]) -> dict[str, str]:
 
 def other_families(kind: str, plan: dict[str, Any]) -> set[str]:
     """Names by which solvers that this arm does not need, called alike, are told from its own."""
-    if kind == "any":
+    if kind in ("any", "locked"):
         return set()
     if kind == "closed":
         unwanted = {SPHERICAL_WRIST: {"finish_in_plane"}, THREE_PARALLEL: {"place_wrist"}}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import keyword
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -33,7 +34,8 @@ SUFFIXES = MappingProxyType({"cpp": ".hpp", "c": ".h", "python": ".py"})
 @dataclass(frozen=True)
 class Export:
     """An arm as source code. language: one of LANGUAGES; name: of the namespace, or the prefix; method: how
-    it solves; files: the texts by file name, the one that users include first; example: a program with it.
+    it solves; files: the texts by file name, the one that users include first; example: a program with it;
+    held: the joints whose values its caller gives.
     """
 
     language: str
@@ -41,6 +43,7 @@ class Export:
     method: str
     files: Mapping[str, str]
     example: str
+    held: tuple[str, ...] = ()
 
     @property
     def text(self) -> str:
@@ -53,6 +56,9 @@ class Export:
         Raises InputError where writing is impossible.
         """
         paths = [Path(path_of(folder)) / name for name in self.files]
+        for path in paths:  # before the first of them is written
+            if path.is_dir():
+                raise InputError(f"{path} cannot be written: it is a folder")
         for path, text in zip(paths, self.files.values(), strict=True):
             write_text(path, text)
         return paths
@@ -68,21 +74,23 @@ def export(
     path: str | os.PathLike[str] | None = None,
     *,
     name: str | None = None,
+    fixed: Any = None,
 ) -> Export:
     """The inverse and forward kinematics of an arm as source code that needs nothing of cspace.
 
     lang: "cpp", "c" or "python"; by the ending of path unless given, else "cpp". path: where to write the
     (first) file. name: the namespace in it, or the prefix; made from the robot's name unless given.
+    fixed: joints, by name or number, whose values the caller of the code gives with each goal; of an arm of
+    more than six joints the solver's own choice unless given.
 
-    Raises UnknownNameError for a language that is none, InputError for a name or a path that cannot be used,
-    NoClosedFormError for an arm that robot.ik does not solve.
+    Raises UnknownNameError for a language that is none, InputError for a name, a path or joints that cannot
+    be used, NoClosedFormError for an arm that robot.ik does not solve.
     """
     target = None if path is None else PurePath(path_of(path))
     language = language_of(lang, target)
-    arm = exported_arm(robot, name)
+    arm = exported_arm(robot, name, fixed)
     main = f"{arm.identifier}_ik{SUFFIXES[language]}" if target is None else target.name
-    if not main:
-        raise InputError(f"path is {str(path)!r}, expected the name of a file")
+    check_file_name(main, language)
     made = write_out(arm, language, main)
     if target is not None:
         made.write(target.parent)
@@ -100,6 +108,19 @@ def language_of(lang: str | None, target: PurePath | None) -> str:
     return lang
 
 
+def check_file_name(name: str, language: str) -> None:
+    """Refuse names that the files, which name each other, could not carry."""
+    if not name:
+        raise InputError("path is empty, expected the name of a file")
+    if not name.isprintable() or set(name) & set('"\\'):
+        raise InputError(f"the file name {name!r} holds signs that no #include can carry")
+    stem, suffix = PurePath(name).stem, PurePath(name).suffix
+    if language == "c" and suffix == ".cpp":
+        raise InputError(f"the file name {name!r} is that of the source behind the header; end it in .h")
+    if language == "python" and (not stem.isidentifier() or keyword.iskeyword(stem) or suffix != ".py"):
+        raise InputError(f"the file name {name!r} names no module; expected letters, digits, _ and .py")
+
+
 def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     if language == "c":
         files = c_files(arm, main)
@@ -111,7 +132,8 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     words["object"] = PurePath(main).with_suffix(".o").name
     words["module"] = PurePath(main).stem
     example = filled(f"example{ending}.in", words)
-    return Export(language, arm.identifier, method(arm, language), MappingProxyType(files), example)
+    held = tuple(arm.joint_names[k] for k in arm.held)
+    return Export(language, arm.identifier, method(arm, language), MappingProxyType(files), example, held)
 
 
 def method(arm: ExportedArm, language: str) -> str:

@@ -39,7 +39,7 @@ SOLVERS = {"companion": "solve_by_companion", "sampled": "solve_by_sample", "sho
 def python_file(arm: ExportedArm) -> str:
     """The text of the file."""
     method = method_of(arm)
-    modules = [module_source(name) for name in METHODS[method]]
+    modules = [module_source(name) for name in (*METHODS[method], *["held"] * bool(arm.held))]
     body = "\n\n".join(without_imports(source) for source in modules)
     words: dict[str, Any] = {
         "name": arm.identifier,
@@ -48,25 +48,51 @@ def python_file(arm: ExportedArm) -> str:
         "method": python_method(arm),
         "imports": "\n".join(standard_imports(modules)),
         "body": body,
-        "solver": SOLVERS.get(method, "solve_closed"),
-        "arm": literal(numbers(arm, method), 1),
+        "arm": literal(numbers(arm.solved, method), 1),
         "free_turns": 'ARM["free_turns"] = free_turns\n' if method == "three_parallel" else "",
         "branches": "branches" if method in ("wrist", "three_parallel", "two_turns") else "None",
         "joint_names": repr(list(arm.joint_names)),
         "lower": literal(np.array(arm.lower), 0),
         "upper": literal(np.array(arm.upper), 0),
         "dof": arm.dof,
+        **python_words_of_held(arm),
     }
     return filled("module.py.in", words)
 
 
+def python_words_of_held(arm: ExportedArm) -> dict[str, str]:
+    """The words about joints whose values the caller gives, and how the solver is called."""
+    solver = SOLVERS.get(method_of(arm), "solve_closed")
+    if not arm.held:
+        none = dict.fromkeys(("fixed_sample", "fixed_of_q", "fixed_parameter", "fixed_words", "held_arm"), "")
+        return {**none, "whole": "ARM", "solve": f"{solver}(ARM, goal, rest)"}
+    count, held = len(arm.held), list(arm.held)
+    whole = "ARM" if arm.moving is None else "WHOLE"
+    lines = f"HELD = {held}  # {arm.held_names}\n"
+    if arm.moving:
+        lines += f"WHOLE: dict[str, Any] = {literal(numbers(arm, 'sampled'), 1)}\n"
+    values = f"values_of(fixed, {count})"
+    of_q = ", ".join(f"q[{k}]" for k in held)
+    return {
+        "fixed_sample": ", fixed",
+        "fixed_of_q": f", [{of_q}]",
+        "fixed_parameter": "fixed: npt.ArrayLike, ",
+        "fixed_words": f"    fixed ({count},): the values of the held joints, {arm.held_names}.\n",
+        "held_arm": lines,
+        "whole": whole,
+        "solve": f"solve_held({solver}, ARM, {whole}, HELD, {values}, goal, rest)",
+    }
+
+
 def python_method(arm: ExportedArm) -> str:
     """How the file solves the arm, as half a sentence."""
-    return WORDS.get(method_of(arm), "all solutions in closed form")
+    how = WORDS.get(method_of(arm), "all solutions in closed form")
+    return f"{how}, with {arm.held_names} held" if arm.held else how
 
 
 def method_of(arm: ExportedArm) -> str:
     """How the file solves the arm."""
+    arm = arm.solved
     if arm.kind == "closed":
         family = arm.plan["family"]
         return {WITH_WRIST: "wrist", THREE_PARALLEL: "three_parallel"}.get(family, "two_turns")
@@ -79,7 +105,7 @@ def method_of(arm: ExportedArm) -> str:
 
 def numbers(arm: ExportedArm, method: str) -> dict[str, Any]:
     """What the file's functions know of the arm."""
-    if arm.kind == "closed":
+    if arm.kind == "closed" and method != "sampled":
         plan: Any = {key: arm.plan[key] for key in arm.plan if key not in ("chain", "polish", "on_lanes")}
         length = plan["form"]["length"]
     else:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,9 +11,18 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.model import from_screws
 from cspace.tolerances import FARTHEST
 
-__all__ = ["Held", "fixed_values", "hold", "joint_number"]
+__all__ = [
+    "Held",
+    "between_others",
+    "fixed_values",
+    "hold",
+    "joint_number",
+    "with_joints_held",
+    "without_held",
+]
 
 
 @dataclass(frozen=True)
@@ -114,6 +123,29 @@ def with_joints_held(chain: Any, fixed: dict[int, float]) -> tuple[Array, Array,
             twist = np.concatenate([np.cross(p, h), h]) if turns else np.concatenate([h, np.zeros(3)])
             T = T @ exp_se3(twist * fixed[k])
     return axes, points, T @ chain.T_zero
+
+
+def without_held(robot: Any, held: Mapping[int, float]) -> Any:
+    """The arm of the joints that move, without limits; those held stand at their values."""
+    chain = robot.chain
+    rows = [k for k in range(len(chain.joint_types)) if k not in held]
+    axes, points, T_zero = with_joints_held(chain, dict(held))
+    return type(robot)(
+        from_screws(
+            axes[rows],
+            points[rows],
+            T_zero,
+            joint_types="".join(chain.joint_types[k] for k in rows),
+            name=robot.name,
+            joint_names=[chain.joint_names[k] for k in rows],
+        )
+    )
+
+
+def between_others(n: int, held: Collection[int]) -> tuple[int, ...]:
+    """The held joints of n that stand between joints that move: they change a link."""
+    moving = [k for k in range(n) if k not in held]
+    return tuple(k for k in sorted(held) if moving[0] < k < moving[-1])
 
 
 MOST_KEPT = 8

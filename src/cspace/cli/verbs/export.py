@@ -20,6 +20,7 @@ __all__ = ["EXAMPLES", "arguments", "run"]
 EXAMPLES: Final = """
 cspace export ur5e --lang cpp -o ur5e_ik.hpp
 cspace export gen3_lite --lang c -o gen3_lite_ik.h --example main.c
+cspace export panda -o panda_ik.hpp --fixed panda_joint7
 cspace export arm.urdf --lang python --name my_arm > my_arm.py
 """
 
@@ -34,6 +35,12 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--name", help="the namespace, or the prefix; made from the robot's name unless given"
     )
+    parser.add_argument(
+        "--fixed",
+        nargs="+",
+        metavar="JOINT",
+        help="joints whose values the caller of the code gives (of more than six some are anyway)",
+    )
     parser.add_argument("--example", type=Path, metavar="FILE", help="write a main program that uses it")
     add_chain(parser)
 
@@ -43,15 +50,27 @@ def run(args: argparse.Namespace, out: Output) -> int:
     targets = [path for path in (args.output, args.example) if path is not None]
     for path in targets:
         check_writable(path)
+    if args.output is not None and args.example is not None:
+        check_apart(args.lang, args.output, args.example)
     robot = load(args)
     need_chain(robot)
-    made = robot.export(args.lang, args.output, name=args.name)
+    made = robot.export(args.lang, args.output, name=args.name, fixed=args.fixed)
     if args.output is None and len(made.files) > 1 and not out.as_json:
         raise UsageError(f"{made.language} needs {len(made.files)} files: say where with -o FILE")
     if args.example is not None:
         made.write_example(args.example)
     report(made, args, out)
     return Exit.DONE
+
+
+def check_apart(lang: str | None, output: Path, example: Path) -> None:
+    """Refuse an example in the place of what it is an example of."""
+    from cspace.export.languages import language_of
+
+    behind = [output.with_suffix(".cpp")] if language_of(lang, output) == "c" else []
+    for path in (output, *behind):
+        if path.resolve() == example.resolve():
+            raise UsageError(f"--example {str(example)!r} would overwrite {path.name!r}: name it otherwise")
 
 
 def report(made: Export, args: argparse.Namespace, out: Output) -> None:

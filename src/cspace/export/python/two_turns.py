@@ -15,6 +15,8 @@ from cspace.export.python.steps import Care, align, turns_where_zero, two_link
 __all__ = ["branches"]
 
 FIRST_PARALLEL = 4
+ROUNDING = 1e-13  # of rows of size one
+NEARLY = 1e-5  # matrices nearer than this to singular ones have nearly double roots
 
 
 def link(form: dict[str, Any], i: int, t: complex) -> Array:
@@ -42,18 +44,57 @@ def turn_of(R: Array) -> complex:
 
 
 def pairs(alpha: Array, B: Array, C: Array) -> list[tuple[complex, complex]]:
-    """Turns u, w with alpha + B u + C w = 0 as vectors of the plane; B or C has an inverse."""
-    sizes = np.abs(alpha) + np.linalg.norm(B, axis=1) + np.linalg.norm(C, axis=1)
-    alpha, B, C = alpha / sizes.max(), B / sizes.max(), C / sizes.max()
-    if abs(np.linalg.det(B)) > abs(np.linalg.det(C)):
-        return [(u, w) for w, u in pairs_from(alpha, C, B)]
-    return pairs_from(alpha, B, C)
+    """Turns u, w with alpha + B u + C w = 0 as vectors of the plane.
+
+    B or C has an inverse, or B u and C w run on lines: crossed with one line, only the other turn is left.
+    """
+    sizes = np.maximum(np.abs(np.column_stack([alpha, B, C])).max(axis=1), 1e-300)
+    alpha, B, C = alpha / sizes, B / sizes[:, None], C / sizes[:, None]
+    found = []
+    if max(regular(B), regular(C)) > ROUNDING:
+        if regular(B) > regular(C):
+            found = [(u, w) for w, u in pairs_from(alpha, C, B)]
+        else:
+            found = pairs_from(alpha, B, C)
+    if max(regular(B), regular(C)) < NEARLY:
+        found += pairs_on_lines(alpha, B, C)
+    return found
+
+
+def regular(M: Array) -> float:
+    """About the smaller singular value of M (2, 2)."""
+    size = float(np.linalg.norm(M))
+    return abs(float(np.linalg.det(M))) / size if size > 0 else 0.0
+
+
+def pairs_on_lines(alpha: Array, B: Array, C: Array) -> list[tuple[complex, complex]]:
+    """B u along a line b, C w along a line c; where these are parallel too, one equation is left."""
+    b, c = (M[:, int(np.argmax(np.linalg.norm(M, axis=0)))] for M in (B, C))
+    if abs(cross(b, c)) <= ROUNDING * np.linalg.norm(b) * np.linalg.norm(c):
+        i = int(np.argmax(np.linalg.norm(C, axis=1)))
+        return [(1 + 0j, w) for w in turns_of(C[i, 0], C[i, 1], -alpha[i] - B[i, 0])]
+    us = turns_of(cross(c, B[:, 0]), cross(c, B[:, 1]), -cross(c, alpha))
+    ws = turns_of(cross(b, C[:, 0]), cross(b, C[:, 1]), -cross(b, alpha))
+    return [(u, w) for u in us for w in ws]
+
+
+def cross(a: Array, b: Array) -> float:
+    """The cross product of vectors of the plane."""
+    return float(a[0] * b[1] - a[1] * b[0])
+
+
+def turns_of(a: float, b: float, r: float) -> list[complex]:
+    """The turns t with a cos t + b sin t = r, rounding beyond the ends cut off."""
+    m = complex(a, b)
+    if abs(r) > (1 + 1e-6) * abs(m) or abs(m) == 0:
+        return []
+    h = np.sqrt(max(abs(m) ** 2 - r * r, 0.0))
+    turns = [m * complex(r, h) / abs(m) ** 2, m * complex(r, -h) / abs(m) ** 2]
+    return [complex(t / abs(t)) for t in turns]
 
 
 def pairs_from(alpha: Array, B: Array, C: Array) -> list[tuple[complex, complex]]:
     """w = -inv(C) (alpha + B u) has length one: a quartic for u."""
-    if not abs(np.linalg.det(C)) > 1e-15:
-        return []
     d, A = -np.linalg.solve(C, alpha), -np.linalg.solve(C, B)
     rows = [(1.0, float(d[i]), float(A[i, 0]), float(A[i, 1])) for i in range(2)]
     found = []

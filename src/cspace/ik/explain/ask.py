@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from cspace.errors import InputTypeError
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.explain.asked import asked_plan, goal_asked
@@ -46,7 +48,10 @@ def plan_of_poses(robot: Any, fixed: Any = None) -> IkPlan:
         prepare(robot, some_held=fixed is not None)
     except NoClosedFormError as error:
         return refused_plan(survey_of(robot), str(error))
-    values = {joint: float(value) for joint, value in fixed_values(robot, fixed or {}).items()}
+    given = fixed_values(robot, {} if fixed is None else fixed)
+    if any(np.ndim(value) for value in given.values()):
+        raise InputTypeError("fixed= takes one value per joint here: the plan is that of one arm")
+    values = {joint: float(value) for joint, value in given.items()}
     if values or len(robot.joint_names) > MAX_SETTLED:
         return held_plan(robot, values, survey_of(robot))
     return settled_plan(robot, survey_of(robot))

@@ -17,11 +17,10 @@ from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Rows
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.swivel import swivel_steps, swivel_values
-from cspace.ik.held import hold, with_joints_held
+from cspace.ik.held import between_others, hold, without_held
 from cspace.ik.prepare import MAX_SETTLED
 from cspace.ik.swivel import swivel_solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
-from cspace.model import from_screws
 from cspace.spatial import exp_se3
 
 __all__ = ["held_plan"]
@@ -50,20 +49,11 @@ class Split:
     @property
     def between(self) -> tuple[int, ...]:
         """The held joints between others: they change a link."""
-        return tuple(k for k in self.held if self.moving[0] < k < self.moving[-1])
+        return between_others(len(self.robot.joint_names), self.held)
 
     def others(self) -> Any:
         """The arm of the joints that move; those held at the ends at zero, which leaves the plan alone."""
-        chain, rows = self.robot.chain, list(self.moving)
-        values = {k: self.at[k] if k in self.between else 0.0 for k in self.held}
-        axes, points, T_zero = with_joints_held(chain, values)
-        names = [chain.joint_names[k] for k in rows]
-        kinds = "".join(chain.joint_types[k] for k in rows)
-        return type(self.robot)(
-            from_screws(
-                axes[rows], points[rows], T_zero, joint_types=kinds, name=self.robot.name, joint_names=names
-            )
-        )
+        return without_held(self.robot, {k: self.at[k] if k in self.between else 0.0 for k in self.held})
 
     def frame(self, k: int) -> Array:
         """A frame (4, 4) on the axis of a joint at an end, z along it: in the base, or in the tip."""
