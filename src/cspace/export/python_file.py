@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import itertools
 import re
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,8 @@ from cspace.export.words import filled
 __all__ = ["METHODS", "python_file", "python_method"]
 
 PACKAGE = "cspace.export.python"
+EXACT, SKEW = 1e-12, 1e-3
+"""Sines below and above which axes count as parallel, and not; arms in between are left to samples."""
 WITH_WRIST = 1
 THREE_PARALLEL = 2
 
@@ -26,14 +29,21 @@ METHODS = {
     "two_turns": (*CLOSED, "two_turns"),
     "companion": ("base", "sampled", "companion"),
     "short": ("base", "short"),
+    "turns_first": ("base", "turns_first"),
     "sampled": ("base", "sampled"),
 }
 WORDS = {
     "companion": "all solutions by the eigenvalues of a 24 x 24 matrix",
     "sampled": "a sample of solutions by descents from many starts",
     "short": "all solutions, directly",
+    "turns_first": "all solutions, the turns first and the slides by linear equations",
 }
-SOLVERS = {"companion": "solve_by_companion", "sampled": "solve_by_sample", "short": "solve_short"}
+SOLVERS = {
+    "companion": "solve_by_companion",
+    "sampled": "solve_by_sample",
+    "short": "solve_short",
+    "turns_first": "solve_turns_first",
+}
 
 
 def python_file(arm: ExportedArm) -> str:
@@ -98,9 +108,33 @@ def method_of(arm: ExportedArm) -> str:
         return {WITH_WRIST: "wrist", THREE_PARALLEL: "three_parallel"}.get(family, "two_turns")
     if arm.kind == "short":
         return "short"
+    if arm.kind == "general" and can_turn_first(arm):
+        return "turns_first"
     turning = arm.dof == 6 and "P" not in arm.joint_types
     alone = arm.kind == "general" and turning and arm.plan["plan"]["regular"] > 0
     return "companion" if alone and not arm.plan["has_neighbours"] else "sampled"
+
+
+def can_turn_first(arm: ExportedArm) -> bool:
+    """Whether slides take care of the position: up to three turns, about different directions or all about
+    one with slides along it.
+    """
+    h = np.asarray(arm.axes)
+    slides = np.array([kind == "P" for kind in arm.joint_types])
+    turns = h[~slides]
+    sines = [float(np.linalg.norm(np.cross(a, b))) for a, b in itertools.pairwise(turns)]
+    if len(turns) > 3 or not slides.any():
+        return False
+    if len(turns) == 3 and max(sines) < EXACT:
+        along = all(np.linalg.norm(np.cross(axis, turns[0])) < EXACT for axis in h)
+        return along and apart(np.asarray(arm.points)[~slides], turns[0])
+    return min(sines, default=1.0) > SKEW
+
+
+def apart(points: Any, axis: Any) -> bool:
+    """Whether neighbouring parallel axes stand apart."""
+    steps = np.linalg.norm(np.cross(np.diff(points, axis=0), axis), axis=1)
+    return bool(steps.min() > SKEW * steps.max())
 
 
 def numbers(arm: ExportedArm, method: str) -> dict[str, Any]:

@@ -195,18 +195,24 @@ def is_family(arm: dict[str, Any], goal: Array, q: Array) -> bool:
     return any(moves_freely(arm, goal, q, direction) for direction in null[:40])
 
 
+def blur(arm: dict[str, Any], goal: Array, q: Array) -> float:
+    """How far rounding may move a configuration along its weakest direction."""
+    e, J = measure(arm, goal, q)
+    weakest = float(np.linalg.svd(J, compute_uv=False)[-1])
+    return 10 * max(float(np.linalg.norm(e)), 1e-15) / max(weakest, 1e-9)
+
+
 def admit(arm: dict[str, Any], goal: Array, found: list[Array], candidate: Array, steps: int = 60) -> bool:
     """Add what the candidate leads to, unless it is no solution or there already."""
     q, left = refine(arm, goal, candidate, steps)
     if not left <= REACHED:
         return False
-    weakest = float(np.linalg.svd(measure(arm, goal, q)[1], compute_uv=False)[-1])
-    near = 10 * max(left, 1e-15) / max(weakest, 1e-9)
+    near = blur(arm, goal, q)
     for other in found:
         away = gap(arm, other, q)
         if away < SAME:
             return False
-        if away < near:
+        if away < near or (away < 1e-3 and away < blur(arm, goal, other)):
             halfway = other + np.where(arm["slides"], q - other, wrapped(arm, q - other)) / 2
             if np.linalg.norm(measure(arm, goal, halfway)[0]) < 2e-14:
                 return False
