@@ -93,6 +93,12 @@ PyObject* answer_single(PyObject* robot, const ik::Arm& arm, const double* goal)
 
 const char words[] = "cspace.ik.solve";
 
+// The value of near= where it is the one keyword beside one goal; else null.
+PyObject* only_near(PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+    if (nargs != 1 || !kwnames || PyTuple_GET_SIZE(kwnames) != 1) return nullptr;
+    return PyUnicode_CompareWithASCIIString(PyTuple_GET_ITEM(kwnames, 0), "near") == 0 ? args[1] : nullptr;
+}
+
 }  // namespace
 
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
@@ -102,6 +108,11 @@ PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
         arm && can_solve(*arm) && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
     if (goal) {
         PyObject* answer = answer_single(self, *arm, goal);
+        if (answer || PyErr_Occurred()) return answer;
+    }
+    PyObject* seed = reinterpret_cast<RobotObject*>(self)->near ? only_near(args, nargs, kwnames) : nullptr;
+    if (const double* T = seed ? goal_in_place(args[0], copy) : nullptr) {
+        PyObject* answer = ik_near(self, T, seed);
         if (answer || PyErr_Occurred()) return answer;
     }
     return robot_call_python(words, "inverse_kinematics", "ik", self, args, nargs, kwnames);

@@ -17,7 +17,9 @@
 #include "bindings.hpp"
 #include "cspace/ik/goal.hpp"
 #include "cspace/math/threads.hpp"
+#include "ik.hpp"
 #include "ik_general.hpp"
+#include "ik_shared.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -44,7 +46,8 @@ class RedundantSolver {
     // The plan with these joints held, built when first asked for.
     const ik::LockedArm& holding(const std::vector<int>& held) {
         const std::lock_guard<std::mutex> guard(mutex_);
-        if (int(held.size()) == arm.locked.n_held && std::equal(held.begin(), held.end(), arm.locked.held))
+        if (arm.locked.n_moving > 0 && int(held.size()) == arm.locked.n_held &&
+            std::equal(held.begin(), held.end(), arm.locked.held))
             return arm.locked;
         auto& slot = plans_[held];
         if (!slot) {
@@ -115,10 +118,46 @@ const ik::LockedArm& plan_of(RedundantSolver& solver, const std::vector<int>& he
     return solver.holding(held);
 }
 
+int spare_with_held(const RedundantSolver& solver, const std::vector<int>& held) {
+    unsigned bits = 0;
+    for (const int joint : held) {
+        if (joint < 0 || joint >= solver.arm.chain.n) throw nb::value_error("held joints are of the arm");
+        bits |= 1u << joint;
+    }
+    return spare_with(solver.arm, bits);
+}
+
 int room_of(RedundantSolver& solver, const std::vector<int>& held) {
     const ik::LockedArm& locked = plan_of(solver, held);
     return locked.at_ends && locked.arm.has_plan ? max_branches : ik::max_solutions;
 }
+
+// Goals of joints that stand at the ends, by the kernel of the others. Returns false for what it left open.
+struct EndRows {
+    const ik::LockedArm& locked;
+    std::size_t n, room;
+    static constexpr std::size_t most = 64;
+    double T[most][16], q[most][max_branches * 6];
+    std::int64_t count[most];
+    ik::Quick quick[most];
+
+    void solve(const double* goals, const double* at, std::size_t stride, std::size_t rows) {
+        for (std::size_t i = 0; i < rows; ++i) {
+            const Posed goal = goal_between_ends(locked, pose_of(goals + 16 * i), at + stride * i);
+            for (int r = 0; r < 3; ++r)
+                for (int c = 0; c < 3; ++c) T[i][4 * r + c] = goal.R.m[r][c];
+            T[i][3] = goal.t.x, T[i][7] = goal.t.y, T[i][11] = goal.t.z;
+            T[i][12] = T[i][13] = T[i][14] = 0;
+            T[i][15] = 1;
+        }
+        kernels::ik_many(locked.arm.plan, T[0], rows, q[0], count, quick);
+    }
+    void put(std::size_t i, const double* at, double* rows) const {
+        std::fill(rows, rows + room * n, none);
+        for (std::int64_t k = 0; k < count[i]; ++k)
+            whole_row(locked, at, q[i] + 6 * k, rows + n * std::size_t(k));
+    }
+};
 
 // Fills q (N, room, n) with NaN behind the solutions; the solutions themselves stand for what they show.
 void solve_rows(RedundantSolver& solver, const std::vector<int>& held, Rows at, Goals goals, Row idle,
@@ -132,11 +171,25 @@ void solve_rows(RedundantSolver& solver, const std::vector<int>& held, Rows at, 
         count.shape(0) != N || status.shape(0) != N || (idle.shape(0) != n && idle.shape(0) != 0))
         throw nb::value_error("arrays of matching sizes are needed");
     const double* rest = idle.shape(0) ? idle.data() : nullptr;
+    const std::size_t stride = at.shape(0) == 1 ? 0 : n;
+    const bool by_kernel =
+        N > 1 && !rest && locked.at_ends && rank_of(locked.arm) == 3 && room >= max_branches;
     const nb::gil_scoped_release release;
     over_rows(N, threads, 1, 64, [&](std::size_t from, std::size_t to) {
         ik::Solutions found;
+        const auto ends = by_kernel ? std::make_unique<EndRows>(EndRows{locked, n, room}) : nullptr;
         for (std::size_t i = from; i < to; ++i) {
-            const double* values = at.data() + (at.shape(0) == 1 ? 0 : n * i);
+            const double* values = at.data() + stride * i;
+            const std::size_t in = (i - from) % EndRows::most;
+            if (ends && in == 0)
+                ends->solve(goals.data() + 16 * i, values, stride, std::min(to - i, EndRows::most));
+            if (ends && ends->quick[in] == ik::Quick::settled) {
+                ends->put(in, values, q.data() + room * n * i);
+                count.data()[i] = ends->count[in];
+                status.data()[i] =
+                    std::uint8_t(int(ends->count[in] ? ik::Status::exact : ik::Status::unreachable));
+                continue;
+            }
             kernels::redundant_locked(locked, pose_of(goals.data() + 16 * i), values, rest, found);
             double* rows = q.data() + room * n * i;
             std::fill(rows, rows + room * n, none);
@@ -156,7 +209,6 @@ void solve_rows(RedundantSolver& solver, const std::vector<int>& held, Rows at, 
 void nearest_rows(RedundantSolver& solver, Goals goals, Rows seeds, Array<double, nb::ndim<2>> q,
                   Array<bool, nb::ndim<1>> found, int threads) {
     const std::size_t n = std::size_t(solver.arm.chain.n), N = goals.shape(0);
-    if (!solver.arm.spare) throw nb::value_error("the arm has no joint to spare");
     if (seeds.shape(1) != n || (seeds.shape(0) != N && seeds.shape(0) != 1) || q.shape(0) != N ||
         q.shape(1) != n || found.shape(0) != N)
         throw nb::value_error("arrays of matching sizes are needed");
@@ -233,10 +285,21 @@ void bind_ik_redundant(nb::module_& m) {
              "weight"_a, "Builds the solver from screws at zero, limits, and weights of distances (n,).")
         .def_prop_ro("held", &default_held, "The joints held unless others are named, ascending.")
         .def_prop_ro(
-            "spare", [](const RedundantSolver& s) { return s.arm.spare; }, "Joints beyond six.")
+            "spare", [](const RedundantSolver& s) { return s.arm.spare; },
+            "Joints beyond those that the tip needs to move as it can.")
+        .def("spare_with", &spare_with_held, "held"_a, "How many dimensions stay free with joints held.")
         .def_prop_ro(
             "closed_form", [](const RedundantSolver& s) { return rank_of(s.arm.locked.arm) > 1; },
             "Whether the joints that move have a closed form.")
+        .def(
+            "serve_near",
+            [](nb::handle self, nb::handle robot, nb::handle about) {
+                if (!PyObject_TypeCheck(robot.ptr(), robot_type)) throw nb::type_error("a robot comes first");
+                const ik::Redundant& arm = nb::cast<const RedundantSolver&>(self).arm;
+                ik_set_near(robot.ptr(), &arm, self.ptr(), about.ptr());
+            },
+            "robot"_a, "about"_a,
+            "Answers near= of this robot from now on, for one goal without other keywords.")
         .def("room", &room_of, "held"_a, "Rows that the solutions of a goal may need.")
         .def("solve", &solve_rows, "held"_a, "at"_a, "goals"_a, "idle"_a, "q"_a, "branch"_a, "family"_a,
              "count"_a, "status"_a, "threads"_a, "Every solution with joints held at their values.")

@@ -52,6 +52,13 @@ inline bool is_writable(PyObject* array) {
     return PyArray_ISWRITEABLE(reinterpret_cast<PyArrayObject*>(array));
 }
 
+// --- near= of arms with joints to spare (ik_near.cpp) ----------------------------------------------------
+namespace cspace::ik {
+struct Redundant;
+}
+void ik_set_near(PyObject* robot, const cspace::ik::Redundant* arm, PyObject* solver, PyObject* about);
+PyObject* ik_near(PyObject* robot, const double* goal, PyObject* seed);
+
 // --- the functions of each file ------------------------------------------------------------------------
 // ik_result.cpp
 int ik_add_result_type(PyObject* module);

@@ -18,6 +18,7 @@ struct RobotObject {
     bool floating;
     std::shared_ptr<void>
         ik;  // the solver, built by the first call of ik; never replaced: threads may be in it
+    std::shared_ptr<void> near;  // what near= of an arm with joints to spare needs (ik_near.cpp); likewise
 };
 
 extern PyTypeObject* robot_type;  // RobotBase; null until the module is filled

@@ -191,11 +191,19 @@ class RedundantSolver:
 
     @property
     def spare(self) -> int:
-        """Joints beyond six."""
+        """Joints beyond those that the tip needs to move as it can."""
+
+    def spare_with(self, held: Sequence[int]) -> int:
+        """How many dimensions stay free with joints held."""
 
     @property
     def closed_form(self) -> bool:
         """Whether the joints that move have a closed form."""
+
+    def serve_near(self, robot: object, about: object) -> None:
+        """
+        Answers near= of this robot from now on, for one goal without other keywords.
+        """
 
     def room(self, held: Sequence[int]) -> int:
         """Rows that the solutions of a goal may need."""

@@ -103,7 +103,7 @@ TEST(the_way_to_the_nearest_is_square_to_the_self_motion) {
         CHECK(distance_from_seed(arm, seed, best) <= distance_from_seed(arm, seed, q) + 1e-12);
         CurvePoint at;
         for (int i = 0; i < 7; ++i) at.q[i] = best[i];
-        onto_curve(arm.chain, goal, arm.length, at);
+        onto_curve(arm.chain, arm.rank, goal, arm.length, at);
         double along = 0;
         for (int i = 0; i < 7; ++i) along += at.tangent[i] * short_way(best[i] - seed[i]);
         CHECK(std::fabs(along) < 1e-9);

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from cspace.ik import NoClosedFormError, geometry
+from cspace.ik import geometry
 from cspace.model import from_screws
 from cspace.robot import Robot
 from ik.geometries import angle_gap, random_arm, random_q
@@ -85,13 +85,18 @@ def arm(axes, points):
 
 
 @pytest.mark.parametrize("name", ALWAYS_SINGULAR)
-def test_an_arm_with_a_joint_to_spare_is_refused_with_the_reason(name):
+def test_an_arm_with_a_joint_to_spare_is_answered_with_the_freedom_named(name):
     robot = arm(*ALWAYS_SINGULAR[name])
     q = random_q(np.random.default_rng(1), 20, 6)
     assert np.linalg.svd(robot.jacobian(q), compute_uv=False)[:, -1].max() < 1e-12
-    with pytest.raises(NoClosedFormError, match=r"odd.*every configuration is singular.*smallest singular"):
-        robot.ik(robot.fk(q[0]))
-    assert not geometry(robot)
+    for row, T in zip(q, robot.fk(q), strict=True):
+        found = robot.ik(T)
+        assert found
+        assert found.residual.max() < 1e-11
+        assert len(found.freedom) >= 1
+        near = robot.ik(T, near=row)
+        assert angle_gap(near.q, row).max() < 1e-7
+    assert geometry(robot).family == "redundant"
 
 
 @pytest.mark.parametrize("name", REGULAR)
@@ -105,10 +110,13 @@ def test_an_arm_that_only_looks_odd_is_solved(name):
 
 
 @pytest.mark.parametrize("seed", range(10))
-def test_random_arms_with_two_wrists_are_refused(seed):
-    robot = random_arm("MSXMS", np.random.default_rng(seed))
-    with pytest.raises(NoClosedFormError, match="every configuration is singular"):
-        robot.ik(np.eye(4))
+def test_random_arms_with_two_wrists(seed):
+    rng = np.random.default_rng(seed)
+    robot = random_arm("MSXMS", rng)
+    found = robot.ik(robot.fk(random_q(rng, 6)))
+    assert found
+    assert found.residual.max() < 1e-11
+    assert len(found.freedom) == 1
 
 
 @pytest.mark.parametrize("bend", [1e-7, 1e-6, 4e-6])
@@ -119,8 +127,6 @@ def test_a_joint_to_spare_hidden_by_rounding_is_never_answered_wrongly(bend):
     robot = arm(axes, points)
     q = random_q(np.random.default_rng(3), 10, 6)
     for row, T in zip(q, robot.fk(q), strict=True):
-        try:
-            found = robot.ik(T)
-        except NoClosedFormError:
-            continue
+        found = robot.ik(T, near=row)
+        assert found.residual.max() < 1e-9
         assert angle_gap(found.q, row).min() < 1e-4

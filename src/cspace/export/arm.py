@@ -12,6 +12,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.export.plain import in_ascii
+from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.held import between_others, hold, joint_number, without_held
 from cspace.ik.prepare import MAX_SETTLED, prepare
 
@@ -86,17 +87,24 @@ def exported_arm(robot: Any, name: str | None, fixed: Any = None) -> ExportedArm
 
     Raises NoClosedFormError and InputError.
     """
-    prepare(robot, some_held=fixed is not None)
+    prepare(robot)
     held = held_joints(robot, fixed)
     if not held:
-        kind, plan = _core._ik_numbers(robot)
+        kind, plan = numbers_of(robot)
         return described(robot, name, kind, plan)
     if between_others(len(robot.joint_names), held):
         return described(robot, name, "locked", {}, held=held)
     others = without_held(robot, dict.fromkeys(held, 0.0))
     prepare(others)
-    kind, plan = _core._ik_numbers(others)
+    kind, plan = numbers_of(others)
     return described(robot, name, kind, plan, held=held, moving=described(others, "moving", kind, plan))
+
+
+def numbers_of(robot: Any) -> tuple[str, dict[str, Any]]:
+    """How an arm is solved, and its numbers; NoClosedFormError if some joints do the work of others."""
+    if not robot._ik_direct:
+        raise NoClosedFormError(explain_missing_form(robot))
+    return _core._ik_numbers(robot)
 
 
 def vector(v: Array) -> dict[str, float]:

@@ -7,7 +7,7 @@ from typing import Any
 
 from cspace import _core
 from cspace.ik.conditions import Condition, NoClosedFormError, conditions, explain_missing_form
-from cspace.ik.prepare import MAX_SETTLED, prepare
+from cspace.ik.prepare import prepare
 
 __all__ = ["Geometry", "geometry"]
 
@@ -69,7 +69,7 @@ def geometry(robot: Any) -> Geometry:
     tested = conditions(robot) if len(robot.chain.axes) >= 3 else ()
     if missing:
         return Geometry("none", "", False, 0.0, tested, missing)
-    if len(robot.joint_types) > MAX_SETTLED:
+    if not robot._ik_direct:
         return redundant_geometry(robot, tested)
     seen = _core._ik_geometry(robot)
     if seen["general"]:
@@ -89,6 +89,9 @@ def redundant_geometry(robot: Any, tested: tuple[Condition, ...]) -> Geometry:
     from cspace.ik.held import hold
 
     solver = hold(robot, {}).solver
+    if not solver.held:
+        detail = "no closed form, and the general method finds no good condition: descents from many starts"
+        return Geometry("redundant", detail, False, 0.0, tested)
     names = ", ".join(robot.joint_names[k] for k in solver.held)
     method = "a closed form of the others" if solver.closed_form else "the general method for the others"
     return Geometry("redundant", f"{names} held, {method}", False, 0.0, tested)

@@ -14,15 +14,17 @@ __all__ = ["prepare"]
 
 MAX_JOINTS = 16
 MAX_SETTLED = 6
-"""Joints that a pose settles; those beyond are held."""
+"""Joints that a pose settles at most."""
 MOST_SOLUTIONS = 16
 
 
-def prepare(robot: Any, *, some_held: bool = False) -> None:
+def prepare(robot: Any) -> None:
     """Build the solver of `robot` once: its axes, points and tip at zero go to the core, which looks for a
-    form. some_held: some joints will be held, so that the arm as a whole need not have one.
+    form. Afterwards robot._ik_direct says whether a pose settles its joints and that solver answers; else
+    some of them are held, see cspace.ik.redundant.
 
-    Raises InputTypeError for what is no robot, NoClosedFormError for an arm without a form.
+    Raises InputTypeError for what is no robot, NoClosedFormError for joints that mimic others, a floating
+    base, no joint or more than sixteen.
     """
     check_robot(robot)
     if robot._ik_room:
@@ -39,8 +41,5 @@ def prepare(robot: Any, *, some_held: bool = False) -> None:
         prismatic,
         np.ascontiguousarray(chain.T_zero, dtype=np.float64),
     )
-    if not room and joints <= MAX_SETTLED:
-        if some_held:
-            return
-        raise NoClosedFormError(explain_missing_form(robot))
+    robot._ik_direct = room > 0
     robot._ik_room = room or MOST_SOLUTIONS

@@ -24,8 +24,6 @@ from cspace.tolerances import FARTHEST
 __all__ = ["redundancy", "redundant_answer"]
 
 SAMPLES = 16
-MOVING = 6
-"""How many joints a pose settles."""
 MOST_SAMPLES = 100_000
 END_NOTHING, END_FOLD = -1, -2
 
@@ -41,8 +39,7 @@ def redundant_answer(
 ) -> Solutions | SolutionsBatch:
     """The answer of an arm with joints to spare, or with joints held: see inverse_kinematics."""
     values = fixed_values(robot, {} if fixed is None else fixed)
-    joints = len(robot.joint_types)
-    spare = joints - len(values) - MOVING
+    spare = to_spare(robot, values)
     if samples is not None and (near is not None or spare != 1):
         raise InputTypeError(
             "samples= goes with one free dimension, and without near="
@@ -57,13 +54,15 @@ def redundant_answer(
         )
     held = hold(robot, {joint: float(value) for joint, value in values.items()})
     if near is not None:
+        if not values:
+            held.solver.serve_near(robot, About(freedom=held.freedom))
         return nearest(held, T, near, threads)
-    if spare > 1:
+    if held.solver.spare != 1:
         return nearest(held, T, middle_of(robot), threads)
     count = sample_count(samples)
     if T.ndim == 2:
-        return sampled(held, T, count)
-    return sampled_batch(held, T, count)
+        return sampled(held, T, count, threads)
+    return sampled_batch(held, T, count, threads)
 
 
 def redundancy(
@@ -86,17 +85,22 @@ def redundancy(
     values = fixed_values(robot, {} if fixed is None else fixed)
     if any(np.ndim(value) for value in values.values()):
         raise InputTypeError("fixed= takes one value per joint here")
-    spare = len(robot.joint_types) - len(values) - MOVING
+    held = hold(robot, {joint: float(value) for joint, value in values.items()})
+    spare = held.solver.spare
     if spare != 1:
         raise InputError(
-            f"{robot.name} has {max(spare, 0)} joints to spare here, expected one: "
-            + ("hold the others with fixed=" if spare > 1 else "six joints are settled by the goal")
+            f"{robot.name} has {spare} joints to spare here, expected one: "
+            + ("hold the others with fixed=" if spare > 1 else "the goal settles all of them")
         )
-    held = hold(robot, {joint: float(value) for joint, value in values.items()})
     joint = (
         held.solver.held[0] if parameter is None else held.free.index(free_joint(robot, parameter, values))
     )
     return intervals_of(held, np.ascontiguousarray(T), joint)
+
+
+def to_spare(robot: Any, fixed: Mapping[int, Any]) -> int:
+    """How many dimensions a pose leaves free with some joints held, at values without a pattern."""
+    return hold(robot, {}).solver.spare_with(list(fixed))
 
 
 def free_joint(robot: Any, parameter: Any, fixed: Mapping[int, Any]) -> int:
@@ -206,7 +210,7 @@ def unreachable(held: Held, T: Array) -> Solutions:
     return make(held.robot, T, UNREACHABLE, nothing, empty, empty.astype(bool), note, held.freedom)
 
 
-def sampled(held: Held, T: Array, count: int) -> Solutions:
+def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
     """All branches at values spread over the feasible intervals; over all that exist if none is feasible."""
     robot, joint = held.robot, held.solver.held[0]
     T = np.ascontiguousarray(T)
@@ -218,7 +222,7 @@ def sampled(held: Held, T: Array, count: int) -> Solutions:
         where = "the values that reach it, none of them within limits"
     values = found.spread(count)
     if not len(values):
-        return unreachable(held, T)
+        return cast(Solutions, nearest(held, T, middle_of(robot), threads))
     q, branch, counts, complete = sweep(held, T, joint, values)
     real = np.arange(q.shape[1]) < counts[:, None]
     rows = held.whole(q[real])
@@ -230,9 +234,9 @@ def sampled(held: Held, T: Array, count: int) -> Solutions:
     return make(robot, T, verdict, rows, branch[real], family, note, held.freedom)
 
 
-def sampled_batch(held: Held, T: Array, count: int) -> SolutionsBatch:
+def sampled_batch(held: Held, T: Array, count: int, threads: int) -> SolutionsBatch:
     shape = T.shape[:-2]
-    answers = [sampled(held, goal, count) for goal in T.reshape(-1, 4, 4)]
+    answers = [sampled(held, goal, count, threads) for goal in T.reshape(-1, 4, 4)]
     room = max((len(answer) for answer in answers), default=1) or 1
     q = np.full((len(answers), room, held.robot.dof), np.nan)
     for row, answer in zip(q, answers, strict=True):

@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.about import About
 from cspace.ik.derivative import derivative
-from cspace.ik.prepare import MAX_SETTLED, prepare
+from cspace.ik.prepare import prepare
 from cspace.ik.solutions import (
     INCOMPLETE,
     METRICS,
@@ -138,9 +138,9 @@ class SolutionsBatch:
         rows = self.q[index][: int(self.count[index])]
         if self._partial is not None:
             return self._row_of_partial(index, rows)
-        if len(self.robot.joint_types) > MAX_SETTLED or self.freedom:
-            return self._row_of_redundant(goal, int(verdict), np.ascontiguousarray(rows))
         prepare(self.robot)  # a robot out of a pickle comes without its solver
+        if not self.robot._ik_direct or self.freedom:
+            return self._row_of_redundant(goal, int(verdict), np.ascontiguousarray(rows))
         is_pose = goal.shape == (4, 4)
         full = _core._ik_single(self.robot, goal) if is_pose else _core._ik_position(self.robot, goal)
         if len(full) == len(rows) and np.array_equal(full.q, rows):

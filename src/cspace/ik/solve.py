@@ -14,7 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.partial import KEYWORDS, PartialGoal, is_open, partial_goal
-from cspace.ik.prepare import MAX_SETTLED, prepare
+from cspace.ik.prepare import prepare
 from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve_partial import own_columns, solve_partial
@@ -70,14 +70,15 @@ def inverse_kinematics(
     (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
     answer does not depend on it.
 
-    An arm with more than six joints leaves freedom, which `freedom` of the answer names. With fixed= for all
-    of the joints to spare every solution of the others is listed; with near= the nearest of all
-    configurations, limits aside; else, with one joint to spare, all branches at values of it spread over its
-    feasible intervals, and with more the configuration nearest to the middle of the limits.
+    An arm with more than six joints, or some of which do the work of others, leaves freedom, which
+    `freedom` of the answer names. With fixed= for all of the joints to spare every solution of the others is
+    listed; with near= the nearest of all configurations, limits aside; else, with one joint to spare, all
+    branches at values of it spread over its feasible intervals, and with more the configuration nearest to
+    the middle of the limits.
 
     Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
-    with the reason); a goal that is no pose raises InputError, an arm without a closed form
-    NoClosedFormError.
+    with the reason); a goal that is no pose raises InputError; joints that mimic others, a floating base or
+    more than sixteen joints raise NoClosedFormError.
     """
     check_robot(robot)
     workers = count_of_threads(threads)
@@ -102,13 +103,13 @@ def inverse_kinematics(
         p = points_in_base(robot, position)
         found = _core._ik_position(robot, p) if p.ndim == 1 else solve_positions(robot, p, workers)
     else:
-        prepare(robot, some_held=fixed is not None)
+        prepare(robot)
         T = goal_array(goal)
         if swivel is not None:
             if fixed is not None or samples is not None or least_squares:
                 raise InputTypeError("swivel= goes with near= alone: it holds what is to spare")
             return at_swivel(robot, T, swivel, near)
-        if fixed is not None or samples is not None or len(robot.joint_types) > MAX_SETTLED:
+        if fixed is not None or samples is not None or not robot._ik_direct:
             return redundant(robot, T, fixed, samples, near, least_squares, workers)
         found = solve_many(robot, T, workers) if T.ndim > 2 else solve_one(robot, T, near)
     if isinstance(found, SolutionsBatch):
@@ -163,7 +164,7 @@ def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
 def ask_partial(robot: Any, goal: PartialGoal, workers: int = 1, near: Any = None) -> Any:
     def ask(whole: Any, T: Array) -> Solutions | SolutionsBatch:
         prepare(whole)
-        if len(whole.joint_types) > MAX_SETTLED:
+        if not whole._ik_direct:
             seed = None if near is None else near_of_whole(robot, goal, whole, near)
             return redundant(whole, T, None, None, seed, False, workers)
         return solve_many(whole, T, workers) if T.ndim > 2 else solve_one(whole, T, None)

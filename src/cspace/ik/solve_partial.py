@@ -12,7 +12,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.about import About
 from cspace.ik.partial import PartialGoal
-from cspace.ik.prepare import MAX_SETTLED, prepare
+from cspace.ik.prepare import prepare
 from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.model import from_screws
@@ -49,7 +49,7 @@ class Many:
         goal = self.goal.take(index)
         whole = whole_arm(robot, goal)
         prepare(whole)
-        if len(whole.joint_types) > MAX_SETTLED:
+        if not whole._ik_direct:
             from cspace.ik.redundant import redundant_answer
 
             answer = redundant_answer(whole, goal.T, fixed=None, samples=None, near=None, threads=1)
@@ -82,6 +82,7 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
         points.append(T[:3, 3])
     first, last = len(goal.before), len(goal.behind)
     lower, upper = robot.limits.lower, robot.limits.upper
+    ahead = [0.0 if kind == "P" and "look_at" in goal.kind else -np.inf for kind, _ in goal.behind]
     description = from_screws(
         axes,
         points,
@@ -89,7 +90,7 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
         joint_types="".join(kind for kind, _ in goal.before)
         + robot.joint_types
         + "".join(kind for kind, _ in goal.behind),
-        lower=np.concatenate([np.full(first, -np.inf), lower, np.full(last, -np.inf)]),
+        lower=np.concatenate([np.full(first, -np.inf), lower, ahead]),
         upper=np.concatenate([np.full(first, np.inf), upper, np.full(last, np.inf)]),
         name=robot.name,
         joint_names=[

@@ -73,3 +73,41 @@ def test_batches_and_unreachable_goals():
     assert s.missing > 1
     assert not robot.ik(far)
     assert "out of reach" in robot.ik(far).reason
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14"])
+def test_what_is_proven_is_the_nearest(name):
+    """Seeds close by, where most answers are proven and not searched for, against samples of all."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(3)
+    joint = robot.joint_names.index(robot.ik(robot.fk(np.full(7, 0.3))).freedom[0])
+    for q in robot.random_configuration(15, rng=rng):
+        for size in (0.01, 0.05, 0.1):
+            way = rng.normal(size=7)
+            seed = q + size * way / np.linalg.norm(way)
+            T = robot.fk(q)
+            found = distances(robot.ik(T, near=seed).q, seed)[0]
+            assert found <= size + 1e-12
+            assert found <= sampled_distance(robot, T, seed, joint, 3000) + 1e-9
+
+
+def test_one_call_answers_like_a_batch_and_like_words():
+    """The compiled entry takes a plain pose and a plain seed; everything else goes the long way."""
+    robot = cs.load_robot("panda")
+    q = robot.random_configuration(20, rng=8)
+    seeds = q + np.random.default_rng(1).uniform(-0.3, 0.3, q.shape)
+    Ts = robot.fk(q)
+    batch = robot.ik(Ts, near=seeds)
+    for T, seed, row in zip(Ts, seeds, batch.q, strict=True):
+        long_way = robot.ik(T, near=list(seed))
+        short = robot.ik(T, near=seed)
+        assert np.array_equal(short.q, long_way.q)
+        assert short.freedom == long_way.freedom == ("panda_joint7",)
+        assert short.branch == long_way.branch
+        assert np.allclose(np.angle(np.exp(1j * (short.q - row))), 0, atol=1e-12)
+    with pytest.raises(cs.errors.InputError):
+        robot.ik(Ts[0], near=np.full(7, np.nan))
+    with pytest.raises(cs.errors.InputError):
+        robot.ik(np.full((4, 4), np.nan), near=q[0])
+    with pytest.raises(cs.errors.InputError):
+        robot.ik(Ts[0], near=q[0, :6])

@@ -17,13 +17,13 @@ struct CurvePoint {
 namespace cspace::inline CSPACE_ISA {
 
 // One Newton step from q back onto the curve, and what is known at q before it.
-inline void onto_curve(const ik::Chain& chain, const Posed& goal, double length, CurvePoint& at) {
+inline void onto_curve(const ik::Chain& chain, int rank, const Posed& goal, double length, CurvePoint& at) {
     TipMotion<double> motion;
     SplitJacobian<double> split;
     const int n = chain.n;
     double step[ik::max_joints];
     tip_motion<0>(chain, goal, length, at.q, motion);
-    split_jacobian<0>(motion, n, split);
+    split_jacobian<0>(motion, n, rank, split);
     free_direction<0>(split, n, 0, at.tangent);
     // The pose's second derivative along the tangent; what bends the curve takes it back.
     Vec3d linear = {0, 0, 0}, angular = {0, 0, 0}, turned = {0, 0, 0};
@@ -48,12 +48,12 @@ inline void onto_curve(const ik::Chain& chain, const Posed& goal, double length,
 
 // Walks q along the curve to where joint p turns back: Newton's method on the p-th part of the tangent. False
 // if that leads farther than `reach` away or nowhere.
-inline bool settle_fold(const ik::Chain& chain, const Posed& goal, double length, int p, double reach,
-                        CurvePoint& at) {
+inline bool settle_fold(const ik::Chain& chain, int rank, const Posed& goal, double length, int p,
+                        double reach, CurvePoint& at) {
     double start[ik::max_joints];
     for (int i = 0; i < chain.n; ++i) start[i] = at.q[i];
     for (int k = 0; k < 20; ++k) {
-        onto_curve(chain, goal, length, at);
+        onto_curve(chain, rank, goal, length, at);
         const double slope = at.bend[p];
         double step = std::fabs(slope) > 1e-9 ? -at.tangent[p] / slope : 1;
         const bool settled = std::fabs(step) < 1e-10 && at.error < 1e-10;

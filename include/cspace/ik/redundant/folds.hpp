@@ -80,7 +80,7 @@ inline void add_true_folds(const ik::Redundant& arm, const Sweep& sweep, double 
         at.q[sweep.parameter] = value;
         for (int i = 0; i < 6; ++i)
             at.q[sweep.locked->moving[plan.joint[i]]] = joint_angle(plan, i, b.t[k][i]);
-        if (settle_fold(arm.chain, sweep.goal, arm.length, sweep.parameter, 0.1, at))
+        if (settle_fold(arm.chain, arm.rank, sweep.goal, arm.length, sweep.parameter, 0.1, at))
             add_fold(out, at.q[sweep.parameter], k);
     }
 }

@@ -48,6 +48,7 @@ inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out,
                             ? arm.locked
                             : lock_joints(arm.chain, &i, 1, at, plan_general);
         for (int side = 0; side < 2 && !out.locked[k].at_ends; ++side) {
+            if (!std::isfinite(limit_of(arm, i, side))) continue;
             double there[ik::max_joints];
             there[i] = limit_of(arm, i, side);
             out.at_limit[k][side] = arm_at(out.locked[k], there);
@@ -72,6 +73,7 @@ inline void find_limit_points(const ik::Redundant& arm, const ik::LimitArms& arm
         const int joint = arms.joint[k];
         if (joint == except) continue;
         for (int side = 0; side < 2; ++side) {
+            if (!std::isfinite(limit_of(arm, joint, side))) continue;
             at[joint] = limit_of(arm, joint, side);
             const ik::LockedArm& locked = arms.locked[k];
             const ik::Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[k][side];

@@ -15,23 +15,31 @@ struct TipMotion {
     V column[ik::max_joints][6];
 };
 
-// Jᵀ = Q R by reflections: the first six columns of Q span what moves the tip, the others what does not.
+// Jᵀ = Q R by reflections: the first columns of Q span what moves the tip, the others what does not. Of a
+// Jacobian of lower rank r the r coordinates of the pose that say most come first, in the order `chosen`; the
+// others follow from them.
 template <class V>
 struct SplitJacobian {
     V reflector[ik::max_joints][6];  // v_k below and on the diagonal
     V upper[6][6];                   // R
     V factor[6];
+    int rank = 6;
+    int chosen[6] = {0, 1, 2, 3, 4, 5};
 };
 
 }  // namespace cspace
 
 namespace cspace::inline CSPACE_ISA {
 
-// The functions below are compiled for arms of `N` joints, or with N = 0 for any number of them: loops of
-// known length are unrolled, which halves their time.
+// The functions below are compiled for arms of `N` joints and rank 6, or with N = 0 for any number and rank:
+// loops of known length are unrolled, which halves their time.
 template <int N>
 CSPACE_INLINE int size_or(int n) {
     return N ? N : n;
+}
+template <int N, class V>
+CSPACE_INLINE int rank_in(const SplitJacobian<V>& split) {
+    return N ? 6 : split.rank;
 }
 
 template <int N, class V>
@@ -74,13 +82,38 @@ CSPACE_INLINE void tip_motion(const ik::Chain& chain, const Pose<V>& goal, doubl
     }
 }
 
+// Brings the coordinate that is left with most to place k.
+inline void choose_coordinate(SplitJacobian<double>& out, int n, int k) {
+    int best = k;
+    double most = -1;
+    for (int j = k; j < 6; ++j) {
+        double square = 0;
+        for (int i = k; i < n; ++i) square += out.reflector[i][j] * out.reflector[i][j];
+        if (!(square > most)) continue;
+        most = square;
+        best = j;
+    }
+    for (int i = 0; i < n; ++i) {
+        const double kept = out.reflector[i][k];
+        out.reflector[i][k] = out.reflector[i][best];
+        out.reflector[i][best] = kept;
+    }
+    const int kept = out.chosen[k];
+    out.chosen[k] = out.chosen[best];
+    out.chosen[best] = kept;
+}
+
+// rank: how many coordinates of the pose the joints move independently; below six on one lane alone.
 template <int N, class V>
-CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, SplitJacobian<V>& out) {
+CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, int rank, SplitJacobian<V>& out) {
     const int n = size_or<N>(size);
     V(*A)[6] = out.reflector;
     for (int i = 0; i < n; ++i)
         for (int k = 0; k < 6; ++k) A[i][k] = motion.column[i][k];
-    for (int k = 0; k < 6; ++k) {
+    out.rank = rank;
+    for (int k = 0; k < rank_in<N>(out); ++k) {
+        if constexpr (N == 0 && Lanes<V>::count == 1)
+            if (rank < 6) choose_coordinate(out, n, k);
         V square = A[k][k] * A[k][k];
         for (int i = k + 1; i < n; ++i) square = mul_add(A[i][k], A[i][k], square);
         const V diagonal = -copysign(sqrt(square), A[k][k]);
@@ -110,12 +143,12 @@ CSPACE_INLINE void reflect_once(const SplitJacobian<V>& split, int size, int k, 
 template <int N, class V>
 CSPACE_INLINE void turn_out(const SplitJacobian<V>& split, int size, V* b) {
     const int n = size_or<N>(size);
-    for (int k = 5; k >= 0; --k) reflect_once<N>(split, n, k, b);
+    for (int k = rank_in<N>(split) - 1; k >= 0; --k) reflect_once<N>(split, n, k, b);
 }
 template <int N, class V>
 CSPACE_INLINE void turn_in(const SplitJacobian<V>& split, int size, V* b) {
     const int n = size_or<N>(size);
-    for (int k = 0; k < 6; ++k) reflect_once<N>(split, n, k, b);
+    for (int k = 0; k < rank_in<N>(split); ++k) reflect_once<N>(split, n, k, b);
 }
 
 template <class V>
@@ -126,33 +159,34 @@ CSPACE_INLINE V away_from_zero(V x) {
 // The shortest step of the joints that moves the tip by e: Rᵀ y = e, Q y.
 template <int N, class V>
 CSPACE_INLINE void shortest_step(const SplitJacobian<V>& split, int size, const V* e, V* step) {
-    const int n = size_or<N>(size);
-    for (int i = 6; i < n; ++i) step[i] = fill<V>(0.0);
-    for (int k = 0; k < 6; ++k) {
-        step[k] = e[k];
+    const int n = size_or<N>(size), rank = rank_in<N>(split);
+    for (int i = rank; i < n; ++i) step[i] = fill<V>(0.0);
+    for (int k = 0; k < rank; ++k) {
+        step[k] = e[N ? k : split.chosen[k]];
         for (int j = 0; j < k; ++j) step[k] = mul_add(-split.upper[j][k], step[j], step[k]);
         step[k] = step[k] / away_from_zero(split.upper[k][k]);
     }
     turn_out<N>(split, n, step);
 }
-// Direction number k (of n − 6) along the manifold, unit.
+// Direction number k (of n − rank) along the manifold, unit.
 template <int N, class V>
 CSPACE_INLINE void free_direction(const SplitJacobian<V>& split, int size, int k, V* direction) {
     const int n = size_or<N>(size);
-    for (int i = 0; i < n; ++i) direction[i] = fill<V>(i == 6 + k ? 1.0 : 0.0);
+    for (int i = 0; i < n; ++i) direction[i] = fill<V>(i == rank_in<N>(split) + k ? 1.0 : 0.0);
     turn_out<N>(split, n, direction);
 }
 // The λ of least |Jᵀ λ − g|.
 template <int N, class V>
 CSPACE_INLINE void multipliers(const SplitJacobian<V>& split, int size, const V* g, V* lambda) {
-    const int n = size_or<N>(size);
+    const int n = size_or<N>(size), rank = rank_in<N>(split);
     V b[ik::max_joints];
     for (int i = 0; i < n; ++i) b[i] = g[i];
     turn_in<N>(split, n, b);
-    for (int k = 5; k >= 0; --k) {
-        for (int j = k + 1; j < 6; ++j) b[k] = mul_add(-split.upper[k][j], b[j], b[k]);
+    for (int k = rank; k < 6; ++k) lambda[N ? k : split.chosen[k]] = fill<V>(0.0);
+    for (int k = rank - 1; k >= 0; --k) {
+        for (int j = k + 1; j < rank; ++j) b[k] = mul_add(-split.upper[k][j], b[j], b[k]);
         b[k] = b[k] / away_from_zero(split.upper[k][k]);
-        lambda[k] = b[k];
+        lambda[N ? k : split.chosen[k]] = b[k];
     }
 }
 

@@ -50,7 +50,7 @@ CSPACE_INLINE void lagrangian_times(const ik::Chain& chain, const TipMotion<V>& 
     }
 }
 
-inline constexpr int max_free = ik::max_joints - 6;
+inline constexpr int max_free = ik::max_joints - 1;
 
 // Solves H x = b for the leading k × k of a symmetric H, by Cholesky's factors; false in lanes where H is not
 // well positive.
@@ -79,18 +79,19 @@ CSPACE_INLINE mask_of<V> solve_positive(V (&H)[max_free][max_free], int k, V* x)
     return good;
 }
 
-// One step of q towards the nearest point; returns the largest change of a joint asked for.
+// One step of q towards the nearest point; returns the largest change of a joint asked for. motion, lambda:
+// what was found before the step, and its multipliers.
 template <int N, class V>
-CSPACE_NOINLINE V step_to_nearest(const ik::Chain& chain, const Pose<V>& goal, double length,
-                                  const double* seed, const double* weight, V* q) {
+CSPACE_NOINLINE V step_to_nearest(const ik::Chain& chain, int rank, const Pose<V>& goal, double length,
+                                  const double* seed, const double* weight, V* q, TipMotion<V>& motion,
+                                  V (&lambda)[6]) {
     constexpr double stride = 0.4;
     constexpr int room = N ? N : ik::max_joints, most_free = N ? N - 6 : max_free;
-    const int n = size_or<N>(chain.n), free = n - 6;
-    TipMotion<V> motion;
+    const int n = size_or<N>(chain.n), free = N ? N - 6 : n - rank;
     SplitJacobian<V> split;
     tip_motion<N>(chain, goal, length, q, motion);
-    split_jacobian<N>(motion, n, split);
-    V gap[room], lambda[6], step[room], bent[room], along[most_free][room];
+    split_jacobian<N>(motion, n, rank, split);
+    V gap[room], step[room], bent[room], along[most_free][room];
     V newton[max_free], plain[max_free], H[max_free][max_free], G[max_free][max_free];
     from_seed<N>(chain, seed, weight, q, gap);
     multipliers<N>(split, n, gap, lambda);

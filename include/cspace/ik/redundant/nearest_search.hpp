@@ -5,7 +5,7 @@
 
 #include "cspace/ik/redundant/folds.hpp"
 #include "cspace/ik/redundant/narrow_valleys.hpp"
-#include "cspace/ik/redundant/nearest.hpp"
+#include "cspace/ik/redundant/nearest_proof.hpp"
 
 namespace cspace {
 
@@ -46,6 +46,7 @@ inline void add_start(const ik::Redundant& arm, Starts& starts, const double* q,
 // Keeps a start unless it is worse than all, or shares the valley of a better one.
 inline void keep_start(const ik::Redundant& arm, Starts& starts, const double* q, double distance) {
     constexpr double valley = 0.4;
+    if (!is_allowed(arm, q)) return;
     for (int k = 0; k < starts.count; ++k) {
         if (joint_gap(arm.chain, starts.q[k], q) > valley) continue;
         if (distance >= starts.distance[k]) return;
@@ -65,18 +66,19 @@ struct Nearest {
     double q[ik::max_joints];
 };
 
-// Newton's method on up to four starts abreast; the best that settles is kept.
-template <int N>
-inline void settle_four(const ik::Redundant& arm, const Posed& goal, const double* seed,
-                        const double* const* starts, int count, Nearest& best) {
-    using V = Pack<4>;
+// Newton's method on starts abreast, as many as V has lanes; the best that settles is kept.
+template <int N, class V>
+inline void settle_abreast(const ik::Redundant& arm, const Posed& goal, const double* seed,
+                           const double* const* starts, int count, Nearest& best) {
     V q[ik::max_joints], step = fill<V>(1.0);
     for (int i = 0; i < arm.chain.n; ++i)
-        for (int l = 0; l < 4; ++l) set_lane(q[i], l, starts[l < count ? l : 0][i]);
+        for (int l = 0; l < Lanes<V>::count; ++l) set_lane(q[i], l, starts[l < count ? l : 0][i]);
     const Pose<V> goals = fill_pose<V>(goal);
-    for (int k = 0; k < most_nearest_steps && any(step > settled_step); ++k)
-        step = step_to_nearest<N>(arm.chain, goals, arm.length, seed, arm.weight, q);
     TipMotion<V> motion;
+    V lambda[6];
+    for (int k = 0; k < most_nearest_steps && any(step > settled_step); ++k)
+        step =
+            step_to_nearest<N>(arm.chain, arm.rank, goals, arm.length, seed, arm.weight, q, motion, lambda);
     tip_motion<N>(arm.chain, goals, arm.length, q, motion);
     double row[ik::max_joints];
     for (int l = 0; l < count; ++l) {
@@ -86,11 +88,24 @@ inline void settle_four(const ik::Redundant& arm, const Posed& goal, const doubl
             !(lane(motion.aligned, l) > 2))
             continue;
         for (int i = 0; i < arm.chain.n; ++i) row[i] = lane(q[i], l);
+        if (!is_allowed(arm, row)) continue;
         const double distance = distance_from_seed(arm, seed, row);
         if (!(distance < best.distance)) continue;
         best.distance = distance;
         for (int i = 0; i < arm.chain.n; ++i) best.q[i] = row[i];
     }
+}
+
+// Abreast where the rank is full: which coordinates of a pose say most differs from start to start.
+inline void settle_all(const ik::Redundant& arm, const Posed& goal, const double* seed,
+                       const double* const* starts, int count, Nearest& best) {
+    const bool full = arm.rank == 6;
+    const int lanes = full ? 4 : 1;
+    const auto settle = !full              ? settle_abreast<0, double>
+                        : arm.chain.n == 7 ? settle_abreast<7, Pack<4>>
+                                           : settle_abreast<0, Pack<4>>;
+    for (int first = 0; first < count; first += lanes)
+        settle(arm, goal, seed, starts + first, min(lanes, count - first), best);
 }
 
 // The starts from which a valley may lead below the best one; `also`: one more, on the manifold or not.
@@ -103,9 +118,7 @@ inline void settle_starts(const ik::Redundant& arm, const Posed& goal, const dou
     for (int k = 0; k < starts.count; ++k) nearest = min(nearest, starts.distance[k]);
     for (int k = 0; k < starts.count; ++k)
         if (starts.distance[k] <= 1.5 * nearest + 0.2) chosen[count++] = starts.q[k];
-    const auto settle = arm.chain.n == 7 ? settle_four<7> : settle_four<0>;
-    for (int first = 0; first < count; first += 4)
-        settle(arm, goal, seed, chosen + first, min(4, count - first), best);
+    settle_all(arm, goal, seed, chosen, count, best);
 }
 
 // From the seed and from two places beside it along the curve, about as far off as the curve is from the
@@ -116,7 +129,7 @@ inline void settle_around(const ik::Redundant& arm, const Posed& goal, const dou
     SplitJacobian<double> split;
     double step[ik::max_joints], along[ik::max_joints], beside[3][ik::max_joints];
     tip_motion<0>(arm.chain, goal, arm.length, seed, motion);
-    split_jacobian<0>(motion, n, split);
+    split_jacobian<0>(motion, n, arm.rank, split);
     shortest_step<0>(split, n, motion.error, step);
     free_direction<0>(split, n, 0, along);
     const double far = min(0.5, 1.5 * std::sqrt(dot_n(step, step, n)));
@@ -124,7 +137,7 @@ inline void settle_around(const ik::Redundant& arm, const Posed& goal, const dou
     for (int k = 0; k < 3; ++k)
         for (int i = 0; i < n; ++i)
             beside[k][i] = seed[i] + (k == 0 ? far : k == 1 ? -far : 2 * far) * along[i];
-    (n == 7 ? settle_four<7> : settle_four<0>)(arm, goal, seed, starts, 4, best);
+    settle_all(arm, goal, seed, starts, 4, best);
 }
 
 // The lowest samples of a curve whose closed form runs on lanes, within a window of the parameter.
@@ -217,7 +230,7 @@ inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, cons
     }
     settle_starts(arm, goal, seed, starts, nullptr, best);
     for (int k = 0; k < starts.count; ++k) {  // at least a solution, where Newton's method did not settle
-        if (!(starts.distance[k] < best.distance)) continue;
+        if (!(starts.distance[k] < best.distance) || !is_allowed(arm, starts.q[k])) continue;
         best.distance = starts.distance[k];
         for (int i = 0; i < arm.chain.n; ++i) best.q[i] = starts.q[k][i];
     }
@@ -226,8 +239,14 @@ inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, cons
 // False where nothing reaches the goal. q: turning joints in (−π, π].
 inline bool nearest_configuration(const ik::Redundant& arm, const Posed& goal, const double* seed,
                                   double* q) {
+    const auto prove = arm.chain.n == 7 && arm.rank == 6 ? nearest_by_proof<7> : nearest_by_proof<0>;
+    if (prove(arm.chain, arm.rank, goal, arm.length, seed, arm.weight, q)) {
+        for (int i = 0; i < arm.chain.n; ++i)
+            if (!arm.chain.prismatic[i]) q[i] = wrap_once(short_way(q[i]));
+        return true;
+    }
     Nearest best;
-    if (rank_of(arm.locked.arm) > 0) {
+    if (rank_of(arm.locked.arm) > 0 && arm.spare > 0) {
         if (arm.spare == 1)
             nearest_of_curve(arm, goal, seed, best);
         else

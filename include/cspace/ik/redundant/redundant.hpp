@@ -2,6 +2,7 @@
 // for a value of them.
 #pragma once
 
+#include "cspace/ik/redundant/basis.hpp"
 #include "cspace/ik/redundant/locked_arm.hpp"
 
 namespace cspace::ik {
@@ -12,15 +13,16 @@ struct Redundant {
     double weight[max_joints];                    // 1, or 0 for joints that do not count in distances
     double middle[max_joints];                    // of the limits; 0 without
     double length = 1;                            // of the arm [m]
-    int spare = 0;                                // how many joints are held: n − 6
+    int rank = 6;                                 // of the Jacobian where nothing special happens
+    int spare = 0;                                // how many joints are held: n − rank
     LockedArm locked;                             // with the default choice of them
 };
 
 // Where a joint may be: a turning joint with a whole turn of room or more is never stopped.
 inline bool is_stopped(const Redundant& arm, int i) {
     constexpr double turn = 6.283185307179586;
-    const double room = arm.upper[i] - arm.lower[i];
-    return arm.chain.prismatic[i] ? room < 1e300 : room < turn;
+    if (arm.chain.prismatic[i]) return std::isfinite(arm.lower[i]) || std::isfinite(arm.upper[i]);
+    return arm.upper[i] - arm.lower[i] < turn;
 }
 
 }  // namespace cspace::ik
@@ -40,6 +42,14 @@ inline bool is_within(const ik::Redundant& arm, const double* q, double slack) {
     return true;
 }
 
+// Joints that do not count in distances stand for what a goal leaves open, and keep to it: a tool looks
+// ahead.
+inline bool is_allowed(const ik::Redundant& arm, const double* q) {
+    for (int i = 0; i < arm.chain.n; ++i)
+        if (arm.weight[i] == 0 && excess(arm, i, q[i]) > 1e-9 * arm.length) return false;
+    return true;
+}
+
 // The largest difference of a joint, turning ones the short way round.
 inline double joint_gap(const ik::Chain& chain, const double* a, const double* b) {
     double most = 0;
@@ -48,6 +58,14 @@ inline double joint_gap(const ik::Chain& chain, const double* a, const double* b
         most = max(most, std::fabs(chain.prismatic[i] ? gap : short_way(gap)));
     }
     return most;
+}
+
+// Twice as far as anything of the arm is from its base or from the goal [m]: slides without limits are
+// followed so far.
+inline double far_away(const ik::Redundant& arm, const Posed& goal) {
+    double reach = norm(goal.t) + norm(arm.chain.tip.t);
+    for (int i = 0; i < arm.chain.n; ++i) reach += 2 * norm(arm.chain.point[i]);
+    return reach > 0 ? 2 * reach : 2.0;
 }
 
 // The values a parameter takes: [lower, upper], a whole turn, or as far as a slide can be from the goal.
@@ -59,9 +77,8 @@ inline Domain domain_of(const ik::Redundant& arm, int parameter, const Posed& go
     const double lower = arm.lower[parameter], upper = arm.upper[parameter];
     if (!arm.chain.prismatic[parameter])
         return ik::is_stopped(arm, parameter) ? Domain{lower, upper, false} : Domain{-pi, pi, true};
-    double reach = norm(goal.t) + norm(arm.chain.tip.t);
-    for (int i = 0; i < arm.chain.n; ++i) reach += 2 * norm(arm.chain.point[i]);
-    return {max(lower, -2 * reach), min(upper, 2 * reach), false};
+    const double far = far_away(arm, goal);
+    return {max(lower, -far), min(upper, far), false};
 }
 
 // A value for each joint at which nothing special is expected.
@@ -74,48 +91,97 @@ inline void typical_values(const ik::Redundant& arm, double* at) {
     }
 }
 
-// How good it is to hold the joints outside six neighbours from `first` on: closed forms on lanes before
-// other closed forms before the general solver before nothing.
+// How good an arm is to be left with: closed forms on lanes before other closed forms before the general
+// solver before nothing.
 inline int rank_of(const ik::Arm& arm) {
     if (arm.has_plan) return arm.plan.on_lanes && arm.plan.virtual_joints == 0 ? 3 : 2;
+    if (arm.is_short) return 2;
     return is_solvable(arm) ? 1 : 0;
 }
-inline ik::LockedArm lock_outside(const ik::Redundant& arm, int first, const double* typical,
+// The arm with all joints held but those of a basis.
+inline ik::LockedArm lock_outside(const ik::Redundant& arm, unsigned basis, const double* typical,
                                   bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
     int held[ik::max_joints], n_held = 0;
     for (int i = 0; i < arm.chain.n; ++i)
-        if (i < first || i >= first + 6) held[n_held++] = i;
+        if (!(basis >> i & 1)) held[n_held++] = i;
     return lock_joints(arm.chain, held, n_held, typical, plan_general);
 }
 inline bool no_general_arm(const ik::Chain&, ik::GeneralArm&) { return false; }
 
-// Chooses the joints to hold: at the ends, so that six neighbours move and a value only moves the goal; the
-// last ones if that is as good as any. Only if nothing solves six neighbours, one between others is held.
+// Sets of joints that may be left to move, the best to try first: neighbours from each joint on, with those
+// nearest behind and before them where neighbours do each other's work; then all but one joint.
+struct Bases {
+    static constexpr int room = 2 * ik::max_joints;
+    int count = 0;
+    unsigned joints[room];
+};
+inline void add_basis(const ik::Redundant& arm, const int* order, Bases& out) {
+    const Basis found = basis_of(arm.chain, arm.length, order, arm.chain.n);
+    for (int k = 0; k < out.count; ++k)
+        if (out.joints[k] == found.joints) return;
+    if (found.rank == arm.rank) out.joints[out.count++] = found.joints;
+}
+inline bool are_neighbours(unsigned joints) {
+    while (!(joints & 1)) joints >>= 1;
+    return (joints & (joints + 1)) == 0;
+}
+inline Bases bases_of(const ik::Redundant& arm) {
+    Bases out;
+    const int n = arm.chain.n;
+    int order[ik::max_joints];
+    for (int first = 0; first <= arm.spare; ++first) {
+        int k = 0;
+        for (int i = first; i < n; ++i) order[k++] = i;
+        for (int i = first - 1; i >= 0; --i) order[k++] = i;
+        add_basis(arm, order, out);
+    }
+    for (int last = 0; last < n; ++last) {
+        int k = 0;
+        for (int i = 0; i < n; ++i)
+            if (i != last) order[k++] = i;
+        order[k] = last;
+        add_basis(arm, order, out);
+    }
+    return out;
+}
+
+// Chooses the joints to hold: at the ends, so that neighbours move and a value only moves the goal; the last
+// ones if that is as good as any. Only if nothing solves neighbours, one between others is held.
 inline void choose_locks(ik::Redundant& arm, bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
     double typical[ik::max_joints];
     typical_values(arm, typical);
-    int best = -1, best_rank = 1;
-    for (int first = 0; first <= arm.spare; ++first) {
-        const int rank = rank_of(lock_outside(arm, first, typical, no_general_arm).arm);
-        if (rank <= best_rank) continue;
-        best = first;
-        best_rank = rank;
+    const Bases bases = bases_of(arm);
+    int best = -1, best_score = 0;
+    for (int k = 0; k < bases.count; ++k) {
+        if (arm.rank == 6 && !are_neighbours(bases.joints[k])) continue;
+        const ik::LockedArm locked = lock_outside(arm, bases.joints[k], typical, no_general_arm);
+        const int rank = locked.at_ends ? rank_of(locked.arm) : min(rank_of(locked.arm), 2);
+        const int score = 2 * rank + locked.at_ends;
+        if (rank < 2 || score <= best_score) continue;
+        best = k;
+        best_score = score;
     }
     if (best >= 0) {
-        arm.locked = lock_outside(arm, best, typical, plan_general);
+        arm.locked = lock_outside(arm, bases.joints[best], typical, plan_general);
         return;
     }
-    for (int first = 0; first <= arm.spare; ++first) {
-        arm.locked = lock_outside(arm, first, typical, plan_general);
-        if (rank_of(arm.locked.arm) > 0) return;
-    }
-    for (int i = 1; arm.spare == 1 && i < arm.chain.n - 1; ++i) {
-        arm.locked = lock_joints(arm.chain, &i, 1, typical, plan_general);
-        if (rank_of(arm.locked.arm) > 0) return;
-    }
+    for (const bool at_ends : {true, false})
+        for (int k = 0; k < bases.count; ++k) {
+            if (are_neighbours(bases.joints[k]) != at_ends) continue;
+            arm.locked = lock_outside(arm, bases.joints[k], typical, plan_general);
+            if (rank_of(arm.locked.arm) > 0) return;
+        }
 }
 
-// lower, upper, weight: per joint. Arms of up to six joints have none to spare and nothing to hold.
+// How many dimensions a pose leaves free when some joints are held, one bit each.
+inline int spare_with(const ik::Redundant& arm, unsigned held) {
+    int order[ik::max_joints], count = 0;
+    for (int i = 0; i < arm.chain.n; ++i)
+        if (!(held >> i & 1)) order[count++] = i;
+    return count - basis_of(arm.chain, arm.length, order, count).rank;
+}
+
+// lower, upper, weight: per joint. An arm without a joint to spare has nothing to hold.
 inline ik::Redundant make_redundant(const ik::Chain& chain, const double* lower, const double* upper,
                                     const double* weight,
                                     bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
@@ -129,7 +195,8 @@ inline ik::Redundant make_redundant(const ik::Chain& chain, const double* lower,
         const bool bounded = std::isfinite(lower[i]) && std::isfinite(upper[i]);
         arm.middle[i] = bounded ? 0.5 * (lower[i] + upper[i]) : 0;
     }
-    arm.spare = chain.n > 6 ? chain.n - 6 : 0;
+    arm.rank = basis_of(chain, arm.length).rank;
+    arm.spare = chain.n - arm.rank;
     if (arm.spare) choose_locks(arm, plan_general);
     return arm;
 }

@@ -24,10 +24,11 @@ struct Tracer {
     int parameter;
     Trail* trail;
     ik::Intervals* out;
+    double far;  // how far slides without limits are followed; 0 if there are none
     int branches = 0;
 };
 
-enum class ArcEnd { limit, closed, lost };
+enum class ArcEnd { limit, closed, open, lost };
 
 }  // namespace cspace
 
@@ -35,7 +36,7 @@ namespace cspace::inline CSPACE_ISA {
 
 inline void put_on_curve(const Tracer& tracer, CurvePoint& at) {
     for (int k = 0; k < 4; ++k) {
-        onto_curve(tracer.arm->chain, tracer.goal, tracer.arm->length, at);
+        onto_curve(tracer.arm->chain, tracer.arm->rank, tracer.goal, tracer.arm->length, at);
         if (at.error < 1e-14) break;
     }
 }
@@ -44,12 +45,23 @@ inline void orient(CurvePoint& at, const double* along, int n) {
     for (int i = 0; i < n; ++i) at.tangent[i] = -at.tangent[i];
 }
 
+// How far a step may lead: a turning joint by 0.25 rad, slides in proportion where the curve goes far.
+inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
+    constexpr double longest = 0.25, steps_across = 64;
+    if (!(tracer.far > 0)) return longest;
+    const double slide = max(longest, tracer.far / steps_across);
+    double most = 0;
+    for (int i = 0; i < tracer.arm->chain.n; ++i)
+        most = max(most, std::fabs(from.tangent[i]) / (tracer.arm->chain.prismatic[i] ? slide : longest));
+    return 1 / most;
+}
+
 // One step; halved until the curve was followed closely. False where it cannot be followed.
 inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& stride, CurvePoint& to) {
-    constexpr double longest = 0.25, shortest = 1e-7;
+    constexpr double shortest = 1e-7;
     const int n = tracer.arm->chain.n;
     const double bend = std::sqrt(dot_n(from.bend, from.bend, n));
-    stride = min(min(2 * stride, longest), 0.25 / (bend + 1e-3));
+    stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + 1e-3));
     for (; stride > shortest; stride *= 0.5) {
         double guess[ik::max_joints];
         for (int i = 0; i < n; ++i)
@@ -97,6 +109,14 @@ inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) 
         orient(at, along, arm.chain.n);
         if (std::fabs(gap) < 1e-13) return;
     }
+}
+
+// Whether a slide without limits has gone as far as it is followed.
+inline bool is_far(const Tracer& tracer, const double* q) {
+    bool far = false;
+    for (int i = 0; i < tracer.arm->chain.n && tracer.far > 0; ++i)
+        far = far || (tracer.arm->chain.prismatic[i] && std::fabs(q[i]) > tracer.far);
+    return far;
 }
 
 // Of the known points at limits the first that a step passed over: a joint may leave its limits and come back
@@ -214,7 +234,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Critical start) {
             CurvePoint fold = at;
             const double part = at.tangent[p] / (at.tangent[p] - next.tangent[p]);
             for (int i = 0; i < n; ++i) fold.q[i] += part * (next.q[i] - at.q[i]);
-            if (settle_fold(arm.chain, tracer.goal, arm.length, p, 0.3, fold)) {
+            if (settle_fold(arm.chain, arm.rank, tracer.goal, arm.length, p, 0.3, fold)) {
                 add_piece(tracer, start, {fold.q[p], ik::end_fold, 0}, middle);
                 start = {fold.q[p], ik::end_fold, 0};
                 for (int i = 0; i < n; ++i) middle[i] = fold.q[i];
@@ -227,6 +247,10 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Critical start) {
             use_point(tracer, next.q);
             add_piece(tracer, start, {next.q[p], stop, side}, middle);
             return ArcEnd::limit;
+        }
+        if (is_far(tracer, next.q)) {
+            add_piece(tracer, start, {next.q[p], ik::end_none, 0}, middle);
+            return ArcEnd::open;
         }
         // Back at the origin, from where the arc may have started in the middle of a piece.
         const double before = home;
@@ -300,14 +324,41 @@ inline void trace_from_limits(Tracer& tracer) {
     }
 }
 
-// Arcs that close within all limits: a configuration of one of them.
+// Two pieces that begin at one point and lead away from it to either side are one.
+inline void join_pieces(Tracer& tracer, int a, int b, double value) {
+    ik::Intervals& out = *tracer.out;
+    if (a >= b || b >= out.count) return;
+    const bool upwards = out.interval[a].upper > value + limit_slack;
+    const int low = upwards ? b : a, high = upwards ? a : b;
+    ik::Interval joined = out.interval[a];
+    joined.lower = out.interval[low].lower;
+    joined.upper = out.interval[high].upper;
+    joined.end[0] = out.interval[low].end[0];
+    joined.side[0] = out.interval[low].side[0];
+    joined.end[1] = out.interval[high].end[1];
+    joined.side[1] = out.interval[high].side[1];
+    out.interval[a] = joined;
+    for (int k = b; k + 1 < out.count; ++k) out.interval[k] = out.interval[k + 1];
+    --out.count;
+}
+
+// Arcs that close within all limits, or go on for ever along a slide that has none: a configuration of one of
+// them.
 inline void trace_loop(Tracer& tracer, const double* q) {
-    if (!is_within(*tracer.arm, q, -limit_slack) || is_on_trail(tracer, q)) return;
+    if (!is_within(*tracer.arm, q, -limit_slack) || is_far(tracer, q) || is_on_trail(tracer, q)) return;
     CurvePoint at;
     for (int i = 0; i < tracer.arm->chain.n; ++i) at.q[i] = q[i];
     put_on_curve(tracer, at);
-    if (follow_arc(tracer, at, {at.q[tracer.parameter], ik::end_none, 0}) != ArcEnd::closed)
-        tracer.out->complete = false;
+    const double value = at.q[tracer.parameter];
+    const int first = tracer.out->count;
+    ArcEnd end = follow_arc(tracer, at, {value, ik::end_none, 0});
+    if (end == ArcEnd::open) {
+        const int back = tracer.out->count;
+        for (double& t : at.tangent) t = -t;
+        end = follow_arc(tracer, at, {value, ik::end_none, 0});
+        if (end == ArcEnd::open) join_pieces(tracer, first, back, value);
+    }
+    if (end != ArcEnd::closed && end != ArcEnd::open) tracer.out->complete = false;
 }
 // They are met by the solutions at some values of the parameter; and of the other joints that have limits,
 // for a loop that hardly moves one joint moves others.
@@ -323,9 +374,9 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms&
     for (int k = 0; k < arms.count; ++k) {
         const int joint = arms.joint[k];
         if (joint == tracer.parameter) continue;
+        const Domain other = domain_of(*tracer.arm, joint, tracer.goal);
         for (int look = 0; look < other_looks; ++look) {
-            const double lower = tracer.arm->lower[joint], upper = tracer.arm->upper[joint];
-            at[joint] = lower + (look + 0.5) / other_looks * (upper - lower);
+            at[joint] = other.lower + (look + 0.5) / other_looks * (other.upper - other.lower);
             const ik::Solutions found = solve_locked(arms.locked[k], tracer.goal, at, nullptr);
             for (int j = 0; j < found.count; ++j) {
                 whole_row(arms.locked[k], at, found.q[j], q);
@@ -345,7 +396,11 @@ inline void intervals_by_arcs(const ik::Redundant& arm, const ik::LockedArm& loc
     out.complete = points.complete;
     trail.count = 0;
     for (int k = 0; k < points.count; ++k) trail.used[k] = false;
-    Tracer tracer{&arm, &points, goal, parameter, &trail, &out};
+    double far = 0;
+    for (int i = 0; i < arm.chain.n; ++i)
+        if (arm.chain.prismatic[i] && !(std::isfinite(arm.lower[i]) && std::isfinite(arm.upper[i])))
+            far = far_away(arm, goal);
+    Tracer tracer{&arm, &points, goal, parameter, &trail, &out, far};
     trace_from_limits(tracer);
     trace_loops(tracer, make_sweep(locked, parameter, goal, arm.middle), arms);
 }

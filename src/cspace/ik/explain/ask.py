@@ -13,7 +13,7 @@ from cspace.ik.explain.describe import refused_plan, settled_plan, survey_of
 from cspace.ik.explain.held import held_plan
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.held import fixed_values
-from cspace.ik.prepare import MAX_SETTLED, prepare
+from cspace.ik.prepare import prepare
 from cspace.kinematics.batch import check_robot
 
 __all__ = ["ik_plan"]
@@ -45,13 +45,13 @@ def ik_plan(robot: Any, *, asked: Any = None, fixed: Any = None, tool_axis: Any 
 def plan_of_poses(robot: Any, fixed: Any = None) -> IkPlan:
     """How full poses are answered."""
     try:
-        prepare(robot, some_held=fixed is not None)
+        prepare(robot)
     except NoClosedFormError as error:
         return refused_plan(survey_of(robot), str(error))
     given = fixed_values(robot, {} if fixed is None else fixed)
     if any(np.ndim(value) for value in given.values()):
         raise InputTypeError("fixed= takes one value per joint here: the plan is that of one arm")
     values = {joint: float(value) for joint, value in given.items()}
-    if values or len(robot.joint_names) > MAX_SETTLED:
+    if values or not robot._ik_direct:
         return held_plan(robot, values, survey_of(robot))
     return settled_plan(robot, survey_of(robot))

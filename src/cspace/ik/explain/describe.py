@@ -8,7 +8,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.ik.conditions import NoClosedFormError, arm_length, common_point
+from cspace.ik.conditions import NoClosedFormError, arm_length, common_point, explain_missing_form
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form
 from cspace.ik.explain.general import Loop
@@ -59,6 +59,8 @@ def settled_plan(robot: Any, common: dict[str, Any], numbers: tuple[int, ...] | 
         prepare(robot)
     except NoClosedFormError as error:
         return refused_plan(common, str(error))
+    if not robot._ik_direct:
+        return refused_plan(common, explain_missing_form(robot))
     chain = robot.chain
     seen, inside = _core._ik_geometry(robot), _core._ik_plan(robot)
     common = {**common, "length": seen["length"]}

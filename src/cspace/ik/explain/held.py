@@ -91,11 +91,9 @@ class Split:
 
 def held_plan(robot: Any, fixed: Mapping[int, float], common: dict[str, Any]) -> IkPlan:
     """An arm with joints to spare, or with joints held. fixed: joints that the user holds, and where."""
-    spare = max(len(robot.joint_names) - len(fixed) - MAX_SETTLED, 0)
-    default: tuple[int, ...] = ()
-    if spare:
-        held = hold(robot, dict(fixed))
-        default = tuple(held.free[k] for k in held.solver.held)
+    held = hold(robot, dict(fixed))
+    spare = held.solver.spare
+    default = tuple(held.free[k] for k in held.solver.held)
     at = {**{k: typical(robot, k) for k in default}, **fixed}
     split = Split(robot, tuple(sorted(at)), at)
     others = split.others()
@@ -145,8 +143,10 @@ def summary(split: Split, default: tuple[int, ...], spare: int, inner: IkPlan) -
     """The method in a sentence."""
     n, robot = len(split.robot.joint_names), split.robot
     moving = len(split.moving)
-    if spare:
+    if spare and moving == MAX_SETTLED:
         more = f"{n} joints, {n - MAX_SETTLED} more than the {MAX_SETTLED} that a pose settles"
+    elif spare:
+        more = f"{n} joints, {spare} more than the tip has ways to move"
     else:
         more = f"{n} joints, some of them held"
     how = inner.summary if inner else "nothing solves exactly: members are found by descents from 48 starts"
@@ -171,7 +171,7 @@ def reasons(split: Split, default: tuple[int, ...]) -> list[str]:
             + ("this one leaves" if one else "these leave")
             + " the others the simplest method (the last joints where it makes no difference)"
             if ends
-            else "six neighbouring joints have no method, and one held between others does"
+            else "neighbours alone have no method, and with one held between others there is one"
         )
         out.append(
             f"The choice is made when the solver is built. Held {'is' if one else 'are'} "
