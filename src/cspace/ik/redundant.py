@@ -72,7 +72,8 @@ def redundancy(
 
     The ends are where another joint reaches a limit (it is locked there, and the others are solved) and where
     branches fold: the determinant of the others' Jacobian vanishes. goal (4, 4): T_base_tip. parameter: the
-    joint, by name or number; the solver's own choice unless given (`ik(goal).freedom` names it). fixed:
+    joint, by name or number, or "swivel" of an arm with two spherical joints; the solver's own choice unless
+    given (`ik(goal).freedom` names it). fixed:
     values of other joints [rad, m], so that one is left to spare.
 
     Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a joint to spare
@@ -82,6 +83,12 @@ def redundancy(
     T = as_pose(goal, "goal")
     if T.ndim != 2:
         raise InputError(f"goal has shape {T.shape}, expected one pose (4, 4)")
+    if parameter == "swivel" and "swivel" not in robot.joint_names:
+        from cspace.ik.swivel_intervals import swivel_intervals
+
+        if fixed is not None:
+            raise InputTypeError("the swivel is what seven joints leave free: fixed= does not go with it")
+        return swivel_intervals(robot, np.ascontiguousarray(T))
     values = fixed_values(robot, {} if fixed is None else fixed)
     if any(np.ndim(value) for value in values.values()):
         raise InputTypeError("fixed= takes one value per joint here")
