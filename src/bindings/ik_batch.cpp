@@ -29,8 +29,8 @@ std::size_t solve_poses(const ik::Arm& arm, const double* T, std::size_t n, doub
                         unsigned char* status) {
     auto* quick = reinterpret_cast<ik::Quick*>(status);
     const bool has_kernel = arm.has_plan && arm.plan.on_lanes && arm.plan.virtual_joints == 0;
-    if (has_kernel) kernels::ik_many(arm.plan, T, n, q, count, quick);
     const int dof = arm.plan.chain.n, room = room_for(arm), row = room * dof;
+    if (has_kernel) kernels::ik_many(arm.plan, T, n, room, q, count, quick);
     for (std::size_t i = 0; i < n; ++i) {
         if (!has_kernel) quick[i] = read_goal(T + 16 * i).is_pose ? ik::Quick::doubtful : ik::Quick::refused;
         if (quick[i] == ik::Quick::refused) return i;

@@ -98,15 +98,15 @@ nb::dict plan(nb::object robot) {
     nb::dict out;
     const ik::Arm* arm = arm_of(robot.ptr());
     if (arm && arm->has_plan) out["form"] = form_of(arm->plan);
-    if (arm && arm->is_general) out["loop"] = loop_of(arm->general);
+    if (arm && arm->is_general && !arm->has_plan) out["loop"] = loop_of(arm->general);
     return out;
 }
 
 // _ik_determinant(robot, goal rows, formulation, a0) → f(a0), whose zeros are the solutions' hidden angles.
 double hidden_determinant(nb::object robot, const std::vector<double>& goal, int number, double a0) {
     const ik::Arm* arm = arm_of(robot.ptr());
-    if (!arm || !arm->is_general || arm->general.plan.regular == 0 || arm->general.plan.slides > 2 ||
-        goal.size() != 16)
+    if (!arm || !arm->is_general || arm->has_plan || arm->general.plan.regular == 0 ||
+        arm->general.plan.slides > 2 || goal.size() != 16)
         throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
     const ik::GeneralPlan& plan = arm->general.plan;
     Posed T = read_goal(goal.data()).T;

@@ -129,7 +129,7 @@ int spare_with_held(const RedundantSolver& solver, const std::vector<int>& held)
 
 int room_of(RedundantSolver& solver, const std::vector<int>& held) {
     const ik::LockedArm& locked = plan_of(solver, held);
-    return locked.at_ends && locked.arm.has_plan ? max_branches : ik::max_solutions;
+    return locked.at_ends ? room_for(locked.arm) : ik::max_solutions;
 }
 
 // Goals of joints that stand at the ends, by the kernel of the others. Returns false for what it left open.

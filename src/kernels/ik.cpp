@@ -8,9 +8,9 @@ namespace {
 using V = Pack<native_width>;
 
 // Moves the rows that hold to the front; NaN behind them. Returns how many there are.
-CSPACE_INLINE int compact(unsigned ok, double* rows) {
+CSPACE_INLINE int compact(unsigned ok, double* rows, int room) {
     constexpr unsigned all = (1u << max_branches) - 1;
-    if (ok == all) return max_branches;
+    if (ok == all && room == max_branches) return max_branches;
     int count = 0;
     for (int k = 0; k < max_branches; ++k) {
         if (!(ok >> k & 1)) continue;
@@ -18,7 +18,7 @@ CSPACE_INLINE int compact(unsigned ok, double* rows) {
             for (int i = 0; i < 6; ++i) rows[6 * count + i] = rows[6 * k + i];
         ++count;
     }
-    for (int i = 6 * count; i < 6 * max_branches; ++i) rows[i] = std::numeric_limits<double>::quiet_NaN();
+    for (int i = 6 * count; i < 6 * room; ++i) rows[i] = std::numeric_limits<double>::quiet_NaN();
     return count;
 }
 
@@ -34,11 +34,11 @@ ik::Quick ik_one(const ik::Plan& plan, const double* T, double* q, std::int8_t* 
     return solve_quickly(plan, T, q, branch, count);
 }
 
-void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, std::int64_t* count,
+void ik_many(const ik::Plan& plan, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
              ik::Quick* quick) {
     const Care care = care_of(plan);
-    constexpr std::size_t row = max_branches * 6;
-    alignas(64) double stage[native_width * row];
+    const std::size_t row = std::size_t(room) * 6;
+    alignas(64) double stage[native_width * ik::max_solutions * 6];
     const bool past_cache = goes_past_cache(n * row) && is_aligned(q);
     for (std::size_t first = 0; first < n; first += native_width) {
         const int lanes = int(n - first < native_width ? n - first : native_width);
@@ -53,7 +53,7 @@ void ik_many(const ik::Plan& plan, const double* T, std::size_t n, double* q, st
             store_rows(angles, 6, stage + 6 * k, row, lanes);
         }
         for (int l = 0; l < lanes; ++l) {
-            count[first + l] = compact(branches_of_lane(b.ok, l), stage + row * l);
+            count[first + l] = compact(branches_of_lane(b.ok, l), stage + row * l, room);
             quick[first + l] = !lane(goal.is_pose, l) ? ik::Quick::refused
                                : lane(b.doubt, l)     ? ik::Quick::doubtful
                                                       : ik::Quick::settled;

@@ -10,8 +10,8 @@
 CSPACE_KERNEL(cspace::ik::Quick, ik_one,
               (const cspace::ik::Plan& plan, const double* T, double* q, std::int8_t* branch, int* count))
 
-// n goals of 16 numbers each; q (n, max_branches, 6) is filled up with NaN behind the solutions. `quick`
-// takes a verdict per goal.
+// n goals of 16 numbers each; q (n, room, 6), room from max_branches to max_solutions, is filled up with NaN
+// behind the solutions. `quick` takes a verdict per goal.
 CSPACE_KERNEL(void, ik_many,
-              (const cspace::ik::Plan& plan, const double* T, std::size_t n, double* q, std::int64_t* count,
-               cspace::ik::Quick* quick))
+              (const cspace::ik::Plan& plan, const double* T, std::size_t n, int room, double* q,
+               std::int64_t* count, cspace::ik::Quick* quick))

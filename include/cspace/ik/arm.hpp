@@ -12,10 +12,10 @@ namespace cspace::ik {
 
 struct Arm {
     Plan plan;                // plan.chain is the arm, plan or no plan
-    GeneralArm general;       // of the others
+    GeneralArm general;       // of the others, and of arms whose closed form idealises them
     bool has_plan = false;    // four to six revolute joints with a closed form
     bool is_short = false;    // up to three joints of any kind, solved directly
-    bool is_general = false;  // up to six joints of any kind without a closed form
+    bool is_general = false;  // up to six joints of any kind for which the closed form does not suffice
 };
 
 // How many rows the solutions of a goal may need.
@@ -33,6 +33,11 @@ inline ik::Arm make_arm(const ik::Chain& chain,
     arm.is_short = chain.n <= ik::max_position_joints;
     if (!arm.has_plan) arm.plan.form.length = characteristic_length(chain);
     if (!arm.has_plan && !arm.is_short && chain.n <= 6) arm.is_general = plan_general(chain, arm.general);
+    // Behind a form that idealises visibly stands the arm itself; neighbours would idealise it once more.
+    if (arm.has_plan && arm.plan.form.deviation > tolerance::visible_deviation && chain.n == 6) {
+        arm.is_general = plan_general(chain, arm.general) && arm.general.plan.regular > 0;
+        arm.general.has_neighbours = false;
+    }
     return arm;
 }
 
@@ -68,17 +73,59 @@ inline void refine_short(const ik::Chain& chain, const Posed& goal, double lengt
     }
 }
 
+// An arm whose closed form idealises it: by the elimination, and where that is unsure by the closed form too.
+// Closer to a fold than the idealisation moves it the two may lack the same pair; elsewhere both lists agree
+// if they lack nothing.
+inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, const double* idle) {
+    ik::Solutions out = solve_general_carefully(arm.general, goal, idle);
+    if (!out.complete) {
+        const int alone = out.count;
+        const ik::Solutions form = solve_carefully(arm.plan, goal, idle);
+        for (int k = 0; k < form.count; ++k) {
+            double q[ik::max_joints];
+            for (int i = 0; i < 6; ++i) q[i] = form.q[k][i];
+            admit(out, arm.plan.chain, goal, arm.plan.form.length, q, form.branch[k], 2);
+        }
+        Care care;
+        care.band = 2 * arm.plan.form.deviation;
+        const bool agree = form.count == alone && out.count == alone && alone % 2 == 0;
+        out.complete = agree && !closed_form(arm.plan, goal_in_form(arm.plan, goal), care).doubt;
+        judge(out);
+    }
+    number_by_branches(arm.plan, goal, out);
+    return out;
+}
+
+// By the closed form at goals beside this one, wherever virtual joints stand there.
+inline bool search_beside_form(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
+    const auto propose = [&](const Posed& beside, const auto& offer) {
+        const Branches<double> b = closed_form(plan, goal_in_form(plan, beside), care_of(plan));
+        for (int k = 0; k < max_branches; ++k) {
+            if (!b.ok[k]) continue;
+            double q[ik::max_joints] = {};
+            for (int i = 0; i < 6; ++i)
+                if (plan.joint[i] >= 0) q[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
+            offer(q);
+        }
+    };
+    return search_beside(plan.chain, goal, plan.form.length, propose, out);
+}
+
 inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
     constexpr int starts = 12;
     const ik::Chain& chain = arm.plan.chain;
     const double length = arm.plan.form.length;
-    if (arm.is_general) return solve_general_carefully(arm.general, goal, idle);
+    if (arm.is_general)
+        return arm.has_plan ? solve_both_ways(arm, goal, idle)
+                            : solve_general_carefully(arm.general, goal, idle);
     if (arm.has_plan) {
         ik::Solutions out = solve_carefully(arm.plan, goal, idle);
         // Where the completed arm is singular the arm itself need not be.
-        if (out.count == 0 && arm.plan.virtual_joints > 0 &&
-            closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
-            search_by_descent(chain, goal, length, 4 * starts, out);
+        if (arm.plan.virtual_joints == 0 ||
+            !closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
+            return out;
+        if (search_beside_form(arm.plan, goal, out)) out.complete = false;
+        if (out.count == 0) search_by_descent(chain, goal, length, 4 * starts, out);
         return out;
     }
     ik::Solutions out = from_short(chain, solve_short_pose(chain, goal));

@@ -11,6 +11,13 @@
 
 namespace cspace::inline CSPACE_ISA {
 
+// The verdict on a list of solutions.
+inline void judge(ik::Solutions& out) {
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    for (int k = 0; k < out.count; ++k)
+        if (out.family[k]) out.status = ik::Status::singular;
+}
+
 // The largest difference of a joint between two configurations, angles the short way round.
 inline double distance(const ik::Chain& chain, const double* a, const double* b) {
     double worst = 0;
@@ -153,9 +160,39 @@ inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care c
     }
 }
 
-// `idle`: the angles of the chain's joints that free joints take.
-inline ik::Solutions solve_carefully(const ik::Plan& plan, const Posed& goal, const double* idle) {
-    ik::Solutions out;
+// Solutions that were found otherwise get the number of the branch next to them, each branch once and the
+// nearest pairs first; those without one get numbers beyond the branches.
+inline void number_by_branches(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
+    Care care = care_of(plan);
+    care.spread = 4 * plan.form.deviation;
+    const Branches<double> b = closed_form(plan, goal_in_form(plan, goal), care);
+    const auto gap = [&](int m, int k) {
+        double worst = 0;
+        for (int i = 0; i < 6; ++i)
+            worst =
+                max(worst, std::fabs(short_way(out.q[m][plan.joint[i]] - joint_angle(plan, i, b.t[k][i]))));
+        return worst;
+    };
+    bool used[max_branches] = {};
+    for (int m = 0; m < out.count; ++m) out.branch[m] = -1;
+    for (int round = 0; round < out.count; ++round) {
+        int solution = -1, branch = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (int m = 0; m < out.count; ++m)
+            for (int k = 0; k < max_branches && out.branch[m] < 0; ++k)
+                if (b.ok[k] && !used[k] && gap(m, k) < least) least = gap(m, k), solution = m, branch = k;
+        if (solution < 0) break;
+        out.branch[solution] = static_cast<signed char>(branch);
+        used[branch] = true;
+    }
+    int beyond = max_branches;
+    for (int m = 0; m < out.count; ++m)
+        if (out.branch[m] < 0) out.branch[m] = static_cast<signed char>(beyond++);
+}
+
+// Adds the solutions that are not in `out` yet; `idle`: the angles of the chain's joints that free joints
+// take.
+inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const double* idle, ik::Solutions& out) {
     Care care = care_of(plan);
     const double slack = 4 * plan.form.deviation;
     care.free = max(tolerance::free_joint, slack);
@@ -172,9 +209,16 @@ inline ik::Solutions solve_carefully(const ik::Plan& plan, const Posed& goal, co
     if (plan.idealised && plan.virtual_joints && out.count == 0) try_beside(plan, goal_form, care, out, goal);
     if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
     if (plan.family == ik::Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
-    out.status = out.count == 0 ? ik::Status::unreachable : ik::Status::exact;
-    for (int k = 0; k < out.count; ++k)
-        if (out.family[k]) out.status = ik::Status::singular;
+    judge(out);
+    // Merging pairs of the true arm may lie where the form has none.
+    if (plan.form.deviation > tolerance::visible_deviation &&
+        closed_form(plan, goal_form, care_of(plan)).doubt)
+        out.complete = false;
+}
+
+inline ik::Solutions solve_carefully(const ik::Plan& plan, const Posed& goal, const double* idle) {
+    ik::Solutions out;
+    solve_carefully(plan, goal, idle, out);
     return out;
 }
 

@@ -127,12 +127,14 @@ inline bool newton(const ik::Chain& chain, const Posed& goal, double length, dou
 }
 
 // Walks q to the nearest configuration that meets the goal, or that misses it least nearby, by damped least
-// squares; returns the error left. On return `error` belongs to q and its Jacobian is decomposed. Damping
-// starts at the square of the smallest singular value, where it begins to hold the weakest direction back.
+// squares; returns the error left. On return `error` belongs to q and its Jacobian is decomposed. The square
+// of the error damps enough to come down to a family fast (Yamashita & Fukushima 2001); more damping starts
+// at the square of the smallest singular value, where it begins to hold the weakest direction back.
 inline double descend(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
                       int most_steps) {
     constexpr double settled = 1e-15, noise = 1e-13;
-    double damping = 0;
+    constexpr double growth = 4;
+    double damping = 0, grow = growth;
     int stalls = 0;
     measure(chain, goal, length, q, error);
     double size = size_of_error(error);
@@ -140,19 +142,25 @@ inline double descend(const ik::Chain& chain, const Posed& goal, double length, 
     for (int step = 0; step < most_steps && size > settled && stalls < 6; ++step) {
         double dq[ik::max_joints], next[ik::max_joints];
         PoseError trial;
-        damped_step(error, damping, dq);
+        damped_step(error, damping + size * size, dq);
         const double trial_size = take_step(chain, goal, length, q, dq, next, trial);
-        if (trial_size < size) {
-            stalls = trial_size > 0.99 * size ? stalls + 1 : 0;
+        const bool closer = trial_size < size, stalled = trial_size > 0.99 * size;
+        const double sigma = error.jacobian.sigma[weakest(error.jacobian)];
+        if (!closer && (size < noise || damping > 1e3)) break;
+        if (closer) {
             for (int i = 0; i < chain.n; ++i) q[i] = next[i];
             error = trial;
             decompose(error.jacobian);
             size = trial_size;
+            stalls = stalled ? stalls + 1 : 0;
+        }
+        if (!stalled) {
             damping *= 0.1;
-        } else {
-            const double sigma = error.jacobian.sigma[weakest(error.jacobian)];
-            if (size < noise || damping > 1e3) break;
-            damping = max(4 * damping, max(0.1 * sigma * sigma, 1e-20));
+            grow = growth;
+        } else if (size > noise) {
+            // It may have to rise by many powers of ten (Nielsen 1999).
+            damping = max(grow * damping, max(0.1 * sigma * sigma, 1e-20));
+            grow *= growth;
         }
     }
     return size;

@@ -24,7 +24,7 @@ inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double lengt
             PoseError error;
             if (refine(chain, goal, length, moved, error, steps_back) > 1e-12) continue;
             for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
-            moved_on = along / way > 0.8;
+            moved_on = 0.8 < along / way && along / way < 1.25;
         }
         if (!moved_on) return false;
     }

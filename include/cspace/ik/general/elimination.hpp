@@ -23,6 +23,7 @@ struct Elimination {
     double inverse_w[2][6];  // of the first two columns of W, in the least-squares sense
     double a4_rank;          // ratio of their two singular sizes; 0 where they fix only one of the two
     double a5_rank;          // the same of the four complex parts, of rank three
+    double faintest;         // size of an equation, before all are made of one size
 };
 
 }  // namespace cspace
@@ -31,6 +32,9 @@ namespace cspace::inline CSPACE_ISA {
 
 // Angles at which the half angles of a1 and a2 are zero: away from what arms are fond of.
 inline constexpr double a1_origin = 0.7, a2_origin = 2.1;
+
+// An equation of this size is nothing but rounding: at some goals of special arms one vanishes.
+inline constexpr double vanished_equation = 1e-11;
 
 struct Complex {
     double re, im;
@@ -202,6 +206,7 @@ inline Elimination eliminate(const ik::Loop& loop) {
     Invariants g[6], B[9];
     right_side(loop, e, g);
     left_side(loop, B);
+    e.faintest = 1e300;
     for (int i = 0; i < 6; ++i) {
         const Invariants behind = pulled_back(loop.M[5], g[i]);
         double size = 0;
@@ -212,7 +217,9 @@ inline Elimination eliminate(const ik::Loop& loop) {
             size += e.level[i][m] * e.level[i][m] + e.across[i][m] * e.across[i][m] +
                     e.quarter[i][m] * e.quarter[i][m];
         }
-        const double scale = size > 0 ? 1 / std::sqrt(size) : 0;
+        size = std::sqrt(size);
+        e.faintest = min(e.faintest, size);
+        const double scale = size > vanished_equation ? 1 / size : 0;
         for (int m = 0; m < 9; ++m) {
             e.level[i][m] *= scale;
             e.across[i][m] *= scale;

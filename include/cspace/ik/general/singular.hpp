@@ -1,6 +1,7 @@
 // General arms at poses that leave them freedom: which of the solutions stand for a family.
 #pragma once
 
+#include "cspace/ik/beside.hpp"
 #include "cspace/ik/general/completion.hpp"
 #include "cspace/ik/general/one_per_family.hpp"
 #include "cspace/ik/self_motion.hpp"
@@ -36,9 +37,7 @@ inline void search_by_descent(const ik::Chain& chain, const Posed& goal, double 
         if (left <= (out.count ? tolerance::exact : tolerance::reached))
             admit(out, chain, goal, length, q, out.count, 2);
     }
-    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
-    for (int k = 0; k < out.count; ++k)
-        if (out.family[k]) out.status = ik::Status::singular;
+    judge(out);
 }
 
 // Slides in metres again, and directions of length one.
@@ -83,14 +82,30 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     if (chain.n < 6) out = without_virtual_joints(chain, goal, out);
     const bool completed = chain.n < 6;
     // Of six turning joints a certified empty list is believed; slides and wrists may hide a singular pose.
-    if (!all && (out.count == 0 || completed || arm.plan.slides > 0))
-        search_by_descent(chain, goal, 1, 48, out);
-    else if (out.count == 0 && (completed || arm.plan.slides > 0))
-        search_by_descent(chain, goal, 1, 16, out);
+    if (!all || (out.count == 0 && (completed || arm.plan.slides > 0))) {
+        int there = 0;
+        const auto propose = [&](const Posed& beside, const auto& offer) {
+            ik::Solutions six;
+            arm.solve(arm, beside, six);
+            there += six.count;
+            for (int k = 0; k < six.count; ++k) {
+                double q[ik::max_joints], turned[ik::max_joints];
+                for (int i = 0; i < chain.n; ++i) {
+                    q[i] = six.q[k][i];
+                    turned[i] = chain.prismatic[i] ? 0 : q[i];
+                }
+                offer(q);
+                // Slides that have become parallel run far away beside the goal.
+                if (arm.plan.slides > 0) offer(turned);
+            }
+        };
+        if (search_beside(chain, goal, 1, propose, out)) out.complete = false;
+        if (out.count == 0) search_by_descent(chain, goal, 1, all ? 16 : 48, out);
+        // Nothing here and something close by: the goal may lie just on the border.
+        if (out.count == 0 && there > 0 && !completed) out.complete = false;
+    }
     if (!all && !completed) mark_families(arm.plan, goal, out);
-    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
-    for (int k = 0; k < out.count; ++k)
-        if (out.family[k]) out.status = ik::Status::singular;
+    judge(out);
     if (out.status == ik::Status::singular) {
         double rest[ik::max_joints];
         for (int i = 0; i < chain.n; ++i) rest[i] = idle ? idle[i] / (chain.prismatic[i] ? length : 1) : 0;

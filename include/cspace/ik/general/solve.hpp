@@ -32,6 +32,8 @@ struct Candidates {
 
 namespace cspace::inline CSPACE_ISA {
 
+inline constexpr double clear_equation =
+    1e-8;                                   // its rounding moves no pair of roots that the signs would miss
 inline constexpr double near_roots = 3e-3;  // [rad] hidden angles this close share a null plane
 
 inline void put(ik::Candidates& out, const double* q, bool close) {
@@ -288,7 +290,9 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
         for (int k = 0; k < hidden.count; ++k) any_close |= close[k];
         if (any_close) split_close_roots(loop, e, hidden, close, found);
     };
-    return solve_by_hidden_angle(plan, goal, loop, f, follow, out);
+    ik::Certificate seen = solve_by_hidden_angle(plan, goal, loop, f, follow, out);
+    seen.complete = seen.complete && e.faintest > clear_equation;
+    return seen;
 }
 
 // Of three joints that turn and three that slide.

@@ -94,7 +94,7 @@ inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
     if (!locked.arm.is_general) return make_arm(chain, locked.plan_general);
     ik::Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
-    if (arm.has_plan) return arm;
+    if (arm.has_plan && !arm.plan.idealised) return arm;
     arm.plan.form.length = characteristic_length(chain);
     arm.is_general = renumber_general_arm(locked.arm.general, chain, arm.general);
     return arm;
@@ -112,9 +112,7 @@ inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal)
         spread_configuration(k, chain.n, q);
         admit(out, chain, goal, length, q, out.count, 60);
     }
-    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
-    for (int k = 0; k < out.count; ++k)
-        if (out.family[k]) out.status = ik::Status::singular;
+    judge(out);
     return out;
 }
 
