@@ -273,7 +273,7 @@ PyObject* geometry(PyObject*, PyObject* robot) {
     if (!arm) Py_RETURN_NONE;
     const ik::Plan& plan = arm->plan;
     return Py_BuildValue("{s:i,s:O,s:i,s:i,s:O,s:O,s:d,s:d}", "family", arm->has_plan ? int(plan.family) : -1,
-                         "general", arm->is_general ? Py_True : Py_False, "virtual_joints",
+                         "general", arm->is_general && !arm->has_plan ? Py_True : Py_False, "virtual_joints",
                          plan.virtual_joints, "first_three", first_three(*arm), "reversed",
                          plan.reversed ? Py_True : Py_False, "polish", plan.polish ? Py_True : Py_False,
                          "deviation", plan.form.deviation, "length", plan.form.length);

