@@ -90,7 +90,8 @@ def test_a_batch_is_its_single_calls(name):
     goals = mixed_goals(robot, np.random.default_rng(1), 30)
     batch = robot.ik(goals)
     room = batch.q.shape[1]
-    assert batch.q.shape == (90, room, robot.dof) and room >= 8
+    assert batch.q.shape == (90, room, robot.dof)
+    assert room in {8, 16}
     for i, T in enumerate(goals):
         single = robot.ik(T)
         assert batch.count[i] == min(len(single), room)
