@@ -31,7 +31,8 @@ SLIDES = {
     "random:RRPRPR": "random RRPRPR",
     "scara": "SCARA (RRPR)",
 }
-TITLES = CLASSIC | GENERAL | CALIBRATED | LOCKED | SLIDES
+SEVEN = {"panda": "Panda", "iiwa14": "iiwa 14"}
+TITLES = CLASSIC | GENERAL | CALIBRATED | LOCKED | SLIDES | SEVEN
 SETS = {"measurements": CLASSIC, "general": GENERAL, "calibrated": CALIBRATED | LOCKED, "slides": SLIDES}
 """File of results → its arms."""
 

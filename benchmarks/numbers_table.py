@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import arms
+import further_tables
 from arms import CLASSIC as ARMS
 
 Results = dict[str, Any]
@@ -181,6 +182,63 @@ def false_row(results: Results) -> Row:
     return row(what, "≤ 1e-9 / 0", "", text, worst <= 1e-9 and false == 0)
 
 
+def seven_times(results: Results, what: str, key: str = "median") -> dict[str, float]:
+    """Arm with seven joints → our median [µs]; key: or another share of the calls."""
+    rows = results["seven"].get("rows", [])
+    mine = [r for r in rows if (r["what"], r["contender"]) == (what, "cspace_")]
+    return {arms.TITLES[r["arm"]]: r["time"][key] for r in mine}
+
+
+def sample_row(results: Results) -> Row:
+    sweep = seven_times(results, "joint 7 held: 1000 values for a goal")
+    each = seven_times(results, "joint 7 held: a value for each goal")
+    text = "; ".join(f"{arm} {time:.2f} µs, of many goals {each[arm]:.2f} µs" for arm, time in sweep.items())
+    what = "seven joints, one held: all branches, per sample"
+    times = {arm: max(time, each[arm]) for arm, time in sweep.items()}
+    panda, iiwa = (times.get(arms.SEVEN[arm], 9.0) for arm in ("panda", "iiwa14"))
+    holds, aimed = panda <= 1 and iiwa <= 0.6, panda <= 0.15 and iiwa <= 0.1
+    return row(what, "≤ 1 µs Panda, ≤ 0.6 µs iiwa", "≤ 0.15 / 0.1 µs", text, holds, aimed)
+
+
+def nearest_row(results: Results) -> Row:
+    texts, near = [], []
+    for seed, batch in (("0.05 rad away", ""), ("random", ""), ("0.05 rad away", ", batch")):
+        times = seven_times(results, f"nearest to a seed {seed}{batch}")
+        texts += [f"{arm}, seed {seed}{batch}, {time:.1f} µs" for arm, time in times.items()]
+        near += list(times.values())
+    what = "seven joints, nearest of all to a seed"
+    return row(what, "≤ 3 µs", "", "; ".join(texts), max(near, default=99) <= 3)
+
+
+def intervals_row(results: Results) -> Row:
+    asked = "feasible intervals of joint 7"
+    times, tails = (seven_times(results, asked, key) for key in ("median", "p95"))
+    text = "; ".join(f"{arm} {time:.0f} µs, 95 of 100 in {tails[arm]:.0f} µs" for arm, time in times.items())
+    time = times.get(arms.SEVEN["panda"], 999.0)
+    return row(
+        "exact feasible intervals, Panda, median", "≤ 400 µs", "≤ 100 µs", text, time <= 400, time <= 100
+    )
+
+
+def building_row(results: Results) -> Row:
+    times = {entry["arm"]: entry["median"] for entry in results["building"].get("rows", [])}
+    named = {name: times[name] for name in ("jaco2", "crx10ia", "ur5e+1e-3", "neighbours") if name in times}
+    slow = {name: time for name, time in times.items() if time > 20 and name not in named}
+    titles = {**arms.TITLES, "neighbours": "an arm solved through neighbours"}
+    parts = [f"{titles.get(name, name)} {time:.1f} ms" for name, time in {**named, **slow}.items()]
+    what = f"building a solver, {len(times)} arms"
+    return row(what, "≤ 20 ms", "", "; ".join(parts), max(times.values(), default=99) <= 20)
+
+
+def sound_row(results: Results) -> Row:
+    tallies = further_tables.tallies(results["soundness"]).values()
+    goals, *bad = (sum(t[key] for t in tallies) for key in ("goals", "false", "crashes", "hangs"))
+    text = f"{' / '.join(map(str, bad))} of {goals:,}" if goals else ""
+    what = "false solutions (residual > 1e-9) / crashes / hangs in random and adversarial calls"
+    holds = None if goals < 10**6 and not any(bad) else not any(bad)
+    return row(what, "0 / 0 / 0 of 10⁶", "", text, holds)
+
+
 def fk_row(results: Results) -> Row:
     return ratio_row(results, "forward kinematics, one call", "fk", "pinocchio_", 1.5, 2)
 
@@ -231,6 +289,11 @@ ROWS: list[Callable[[Results], Row]] = [
     missed_row,
     singular_row,
     false_row,
+    sound_row,
+    building_row,
+    sample_row,
+    nearest_row,
+    intervals_row,
     fk_row,
     jacobian_row,
     forward_batch_row,

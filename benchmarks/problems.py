@@ -40,6 +40,11 @@ def random_configurations(arm: Arm, count: int, rng: np.random.Generator) -> Arr
     return np.where(arm.turns, q, (q + np.pi) / (2 * np.pi))
 
 
+def within_limits(arm: Arm, count: int, rng: np.random.Generator) -> Array:
+    """Uniform configurations (count, n) within the limits of the arm."""
+    return rng.uniform(arm.lower, arm.upper, (count, arm.dof))
+
+
 def singular_configurations(arm: Arm, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
     """Singular configurations (count, n) and the joint of each that leads into the singularity.
 

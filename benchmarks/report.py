@@ -18,6 +18,7 @@ sys.path.insert(0, str(HERE))
 
 import arms  # noqa: E402
 import completeness_table  # noqa: E402
+import further_tables  # noqa: E402
 import numbers_table  # noqa: E402
 
 NAMES = {
@@ -38,7 +39,8 @@ def load() -> dict[str, Any]:
         path = RESULTS / f"{name}.json"
         return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
 
-    names = [*arms.SETS, "cpp", "recorded", "install", "derived", "completeness"]
+    names = [*arms.SETS, "cpp", "recorded", "install", "derived", "completeness", "seven", "following"]
+    names += ["building", "soundness"]
     results = {name: read(name) for name in names}
     results["measurements"] = results["measurements"] or {"machine": {}, "imports": {}, "rows": []}
     return results
@@ -232,6 +234,41 @@ Beside some singularities of an iiwa with a joint held the rounding of a pose mo
 ## Arms that slide
 
 {set_section(results, "slides")}
+
+## Seven joints
+
+Times are processor time in µs per value, goal or configuration asked for. Of a held joint and of the swivel
+all branches are listed; "answers" is their number on average, since the held joint may stand where the goal
+cannot be reached. A seed has every joint as far away as named from the configuration that made the goal, or
+is random within the limits. An answer is right if it is as near to the seed as that configuration, by the
+sum of squares; ssik is given the seed and that measure, and asked for one solution. Feasible intervals are
+right if they hold the value that the joint had.
+
+{further_tables.seven(results["seven"])}
+
+## Paths and descents
+
+A path is timed per pose and branch. A descent ends at 1e-9, limits aside, from one start without others;
+"reached" counts what is within 1e-6. Pinocchio has the Jacobian and the logarithm; the loop around them,
+damped least squares with whole steps, is the one its users write in Python.
+
+{further_tables.following(results["following"])}
+
+## Building a solver
+
+What the first answer of a fresh robot takes beyond a second one, in processor time: every six-joint arm of
+the catalogue, calibrated ones, and one with special axes that is solved through its neighbours.
+
+{further_tables.building(results["building"])}
+
+## False solutions
+
+A false solution misses its goal by more than 1e-9. Goals are poses of random configurations, of joints at
+multiples of a right angle or almost there, of singular configurations and up to 1e-3 beside them, these
+pushed in and out along the way from the base, goals far out of reach, and places with turns that they may
+not allow.
+
+{further_tables.soundness(results["soundness"])}
 
 ## Completeness
 

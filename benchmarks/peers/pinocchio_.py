@@ -49,3 +49,28 @@ def jacobian(arm):
         return pin.computeFrameJacobian(built, data, q, frame, pin.LOCAL_WORLD_ALIGNED)
 
     return Task(lambda q: q, call, lambda J: J)
+
+
+MOST_STEPS, REACHED, DAMPING = 200, 1e-9, 1e-10
+"""Steps of a descent, the error [m, rad] at which it ends, and what keeps its equations solvable."""
+
+
+def descent(arm):
+    """The loop that its users write: q ← q + Jᵀ (J Jᵀ + λ I)⁻¹ e with e = log of the goal seen from the tip,
+    J the Jacobian in the tip. Answers with NaN where it does not arrive."""
+    built, data, frame = model(arm)
+    damping, nothing = DAMPING * np.eye(6), np.full(arm.dof, np.nan)
+
+    def call(goal):
+        target, q = goal
+        for _ in range(MOST_STEPS):
+            pin.forwardKinematics(built, data, q)
+            gap = pin.updateFramePlacement(built, data, frame).actInv(target)
+            error = pin.log6(gap).vector
+            if np.abs(error).max() < REACHED:
+                return q
+            J = pin.computeFrameJacobian(built, data, q, frame, pin.LOCAL)
+            q = q + J.T @ np.linalg.solve(J @ J.T + damping, error)
+        return nothing
+
+    return call, pin.SE3

@@ -58,3 +58,34 @@ def ik(arm):
         call,
         lambda found: np.array([s.q for s in found]).reshape(-1, arm.dof),
     )
+
+
+def nearest(arm):
+    """Its first answer to a pose and a seed, NaN for none, and what brings a pose into its frames."""
+    robot, base, tool = fastest(arm)
+    derive(robot)
+    asked = {
+        "max_solutions": 1,
+        "seed_metric": "wrap_l2",
+        "respect_limits": False,
+        "enumerate_windings": False,
+    }
+    nothing = np.full(arm.dof, np.nan)
+
+    def call(goal):
+        found = robot.solve(goal[0], q_seed=goal[1], **asked)
+        return found[0].q if found else nothing
+
+    return call, lambda T: np.ascontiguousarray(base @ T @ tool)
+
+
+def path(arm):
+    """All branches along a path of poses (n, 4, 4), and what brings the poses into its frames."""
+    robot, base, tool = fastest(arm)
+    derive(robot)
+    return robot.solve_path, lambda T: np.ascontiguousarray(base @ T @ tool)
+
+
+def tracks(answer):
+    """The configurations (n, dof) of each branch of a path."""
+    return [np.array([step.q for step in track]) for track in answer.tracks.values()]
