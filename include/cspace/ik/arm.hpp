@@ -35,8 +35,8 @@ inline ik::Arm make_arm(const ik::Chain& chain,
     if (!arm.has_plan && !arm.is_short && chain.n <= 6) arm.is_general = plan_general(chain, arm.general);
     // Behind a form that idealises visibly stands the arm itself; neighbours would idealise it once more.
     if (arm.has_plan && arm.plan.form.deviation > tolerance::visible_deviation && chain.n == 6) {
+        arm.general.alone = true;
         arm.is_general = plan_general(chain, arm.general) && arm.general.plan.regular > 0;
-        arm.general.has_neighbours = false;
     }
     return arm;
 }
@@ -126,6 +126,7 @@ inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const dou
             return out;
         if (search_beside_form(arm.plan, goal, out)) out.complete = false;
         if (out.count == 0) search_by_descent(chain, goal, length, 4 * starts, out);
+        out.complete = out.complete && out.count > 0;
         return out;
     }
     ik::Solutions out = from_short(chain, solve_short_pose(chain, goal));

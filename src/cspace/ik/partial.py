@@ -23,7 +23,7 @@ KEYWORDS = ("position", "rotation", "direction", "look_at", "ray", "angle_to")
 X, Y, Z = np.eye(3)
 BALL = (("R", X), ("R", Y), ("R", Z))
 ANY = np.array([[0, -0.6, 0.8], [0.8, -0.48, -0.36], [0.6, 0.64, 0.48]])
-"""The orientation to which BALL turns the tip back: in line with no arm, so that no two of its axes come to be
+"""The orientation to which BALL turns the tip back: in line with no arm, so that no two of its axes become
 one."""
 CROSS = (("P", X), ("P", Y), ("P", Z))
 AXES = {"x": X, "y": Y, "z": Z}

@@ -89,9 +89,12 @@ inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
     return false;
 }
 
-// The solver of an arm of up to six joints none of which is to spare; false for others.
+// The solver of an arm of up to six joints none of which is to spare; false for others. `arm.alone` says
+// whether it has to do without neighbours.
 inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
+    const bool alone = arm.alone;
     arm = {};
+    arm.alone = alone;
     arm.chain = chain;
     arm.solve = &solve_general;
     const double length = characteristic_length(chain);
@@ -106,7 +109,7 @@ inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
         make_general_plan(six, arm.plan);
     arm.plan.length = length;
     if (arm.position_first.serves) return true;
-    if (!serves_alone(arm.plan)) make_neighbours(arm);
+    if (!alone && !serves_alone(arm.plan)) make_neighbours(arm);
     return arm.plan.regular > 0 || arm.has_neighbours;
 }
 

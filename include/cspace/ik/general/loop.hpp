@@ -47,6 +47,7 @@ struct GeneralArm {
     GeneralPlan plan;  // virtual joints behind its own complete it to six (completion.hpp)
     PositionFirst position_first;
     GeneralPlan neighbour[2];
+    bool alone = false;  // without neighbours, asked for by who has another way
     bool has_neighbours = false;
     // Every solution of a goal, by the code of the instruction set that the plan was made with.
     void (*solve)(const GeneralArm& arm, const Posed& goal, Solutions& out) = nullptr;

@@ -28,10 +28,13 @@ inline ik::Chain disturbed(const ik::Chain& chain, double size) {
     return out;
 }
 
+// What serves the one serves the other.
 inline void make_neighbours(ik::GeneralArm& arm) {
-    for (int k = 0; k < 2; ++k)
-        make_general_plan(disturbed(arm.plan.chain, k ? -disturbance : disturbance), arm.neighbour[k]);
-    arm.has_neighbours = arm.neighbour[0].regular > 0 && arm.neighbour[1].regular > 0;
+    make_general_plan(disturbed(arm.plan.chain, disturbance), arm.neighbour[0]);
+    arm.neighbour[1] = arm.neighbour[0];
+    arm.neighbour[1].chain = disturbed(arm.plan.chain, -disturbance);
+    arm.neighbour[1].frames = loop_frames(arm.neighbour[1].chain);
+    arm.has_neighbours = arm.neighbour[0].regular > 0;
 }
 
 inline bool is_about_to_merge(const ik::Chain& chain, const Posed& goal, const double* q) {

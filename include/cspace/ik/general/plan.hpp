@@ -8,9 +8,10 @@ namespace cspace {
 
 // How a formulation did on the poses of an arm.
 struct FormulationTrial {
+    static constexpr int most_poses = 24;
     int poses = 0, drowned = 0, work = 0;
     double sensitivity = 0;
-    int found[24];
+    int found[most_poses];
 };
 
 }  // namespace cspace
@@ -77,13 +78,12 @@ inline double sensitivity(const ik::GeneralPlan& plan, const Posed& goal, int nu
     return change / (slip * largest);
 }
 
-// Tries one on poses of its own arm; one that drowns in noise, or whose roots always come in close pairs, is
-// known for it after a few.
-inline FormulationTrial try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int poses,
-                                        int number) {
+// Tries one on poses of its own arm, up to number `last`; one that drowns in noise, or whose roots always
+// come in close pairs, is known for it after a few.
+inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int last, int number,
+                            FormulationTrial& trial) {
     constexpr int first_look = 4, heavy = 400;
-    FormulationTrial trial;
-    for (int k = 0; k < poses; ++k) {
+    for (int k = trial.poses; k < last; ++k) {
         if (k < first_look) trial.sensitivity = max(trial.sensitivity, sensitivity(plan, goal[k], number));
         if (!(trial.sensitivity < useless_sensitivity)) break;
         if (k == first_look && (trial.drowned == k || trial.work > heavy * k)) break;
@@ -93,7 +93,6 @@ inline FormulationTrial try_formulation(const ik::GeneralPlan& plan, const Posed
         trial.work += seen.work;
         trial.found[trial.poses++] = out.count;
     }
-    return trial;
 }
 
 // Whether two of the joints do one's work, or would but for rounded axes: then every configuration is
@@ -124,27 +123,14 @@ inline void describe(const ik::Chain& chain, ik::GeneralPlan& plan) {
     for (int i = 0; i < 6; ++i) plan.slides += chain.prismatic[i];
 }
 
-// For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
-// them at great cost. The regular ones are ordered by what they miss, by their work and by how
-// much they enlarge rounding.
-inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
-    constexpr int poses = 24;
-    describe(chain, plan);
-    if (plan.slides > 3) return;
-    if (plan.slides == 3) {
-        plan.regular = is_regular(orientation_first(chain).turns);
-        return;
-    }
-    Posed goal[poses];
-    for (int k = 0; k < poses; ++k) goal[k] = own_pose(chain, k);
-    FormulationTrial trial[ik::formulations];
-    int most[poses] = {};
-    for (int number = 0; number < ik::formulations; ++number) {
-        trial[number] = try_formulation(plan, goal, poses, number);
-        for (int k = 0; k < trial[number].poses; ++k)
-            most[k] = trial[number].found[k] > most[k] ? trial[number].found[k] : most[k];
-    }
+// The formulations in the order of their prices: what they miss, their work and how much they enlarge
+// rounding.
+inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations], ik::GeneralPlan& plan) {
+    int most[FormulationTrial::most_poses] = {};
+    for (const FormulationTrial& t : trial)
+        for (int k = 0; k < t.poses; ++k) most[k] = t.found[k] > most[k] ? t.found[k] : most[k];
     double price[ik::formulations];
+    plan.regular = 0;
     for (int number = 0; number < ik::formulations; ++number) {
         const FormulationTrial& t = trial[number];
         if (t.drowned == t.poses || !(t.sensitivity < useless_sensitivity)) continue;
@@ -156,6 +142,27 @@ inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
         for (; at > 0 && price[plan.order[at - 1]] > price[number]; --at) plan.order[at] = plan.order[at - 1];
         plan.order[at] = number;
     }
+}
+
+// For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
+// them at great cost. All regular ones are ordered after a few poses, the best of them once more after many.
+inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
+    constexpr int few = 6, best = 4;
+    describe(chain, plan);
+    if (plan.slides > 3) return;
+    if (plan.slides == 3) {
+        plan.regular = is_regular(orientation_first(chain).turns);
+        return;
+    }
+    Posed goal[FormulationTrial::most_poses];
+    for (int k = 0; k < FormulationTrial::most_poses; ++k) goal[k] = own_pose(chain, k);
+    FormulationTrial trial[ik::formulations];
+    for (int number = 0; number < ik::formulations; ++number)
+        try_formulation(plan, goal, few, number, trial[number]);
+    rank_formulations(trial, plan);
+    for (int k = 0; k < best && k < plan.regular; ++k)
+        try_formulation(plan, goal, FormulationTrial::most_poses, plan.order[k], trial[plan.order[k]]);
+    rank_formulations(trial, plan);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

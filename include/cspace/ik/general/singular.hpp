@@ -82,7 +82,9 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     if (chain.n < 6) out = without_virtual_joints(chain, goal, out);
     const bool completed = chain.n < 6;
     // Of six turning joints a certified empty list is believed; slides and wrists may hide a singular pose.
-    if (!all || (out.count == 0 && (completed || arm.plan.slides > 0))) {
+    const bool may_hide = completed || arm.plan.slides > 0;
+    const bool empty = out.count == 0 && (may_hide || arm.has_neighbours);
+    if (!out.complete || empty || (!all && may_hide)) {
         int there = 0;
         const auto propose = [&](const Posed& beside, const auto& offer) {
             ik::Solutions six;
