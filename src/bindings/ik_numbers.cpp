@@ -121,7 +121,8 @@ nb::object numbers(const ik::PositionFirst& p) {
 nb::object numbers(const ik::GeneralArm& a) {
     return Fields()("chain", a.chain)("plan", a.plan)(
         "position_first", a.position_first.serves ? numbers(a.position_first) : nb::dict())(
-        "neighbour", list_of(a.neighbour, a.has_neighbours ? 2 : 0))("has_neighbours", a.has_neighbours);
+        "neighbour", list_of(a.neighbour, a.has_neighbours ? 2 : 0))("alone", a.alone)("has_neighbours",
+                                                                                       a.has_neighbours);
 }
 
 nb::object solver_numbers(nb::handle robot) {
