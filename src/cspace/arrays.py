@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from cspace.errors import InputError, InputTypeError
 
-__all__ = ["Array", "as_floats", "as_generator"]
+__all__ = ["Array", "as_floats", "as_generator", "leading_axes"]
 
 Array = npt.NDArray[np.float64]
 
@@ -46,6 +46,17 @@ def as_floats(
             f"{subject} holds {array[index]:g} at index {index}; at most ±{largest:g} makes sense"
         )
     return array
+
+
+def leading_axes(**shapes: tuple[int, ...]) -> tuple[int, ...]:
+    """The axes to which the leading axes of several arguments broadcast; InputError if they do not fit."""
+    try:
+        return np.broadcast_shapes(*shapes.values())
+    except ValueError:
+        each = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        raise InputError(
+            f"the leading axes of {each} do not fit together; expected as many of each, or one for all"
+        ) from None
 
 
 def _converted(value: Any, subject: str) -> Array:

@@ -166,3 +166,10 @@ def test_an_arm_without_joints_is_refused(tmp_path):
     robot = cs.load_robot(tmp_path / "still.urdf")
     with pytest.raises(NoClosedFormError, match="no joint moves"):
         robot.export()
+
+
+def test_an_ending_that_names_no_language_is_refused():
+    with pytest.raises(InputError, match=r"'arm.foo' names no language"):
+        cs.load_robot("ur5e").export(path="arm.foo")
+    with pytest.raises(InputTypeError, match="a file is given by its path"):
+        cs.load_robot("ur5e").export("cpp", 5)

@@ -10,6 +10,7 @@ import pytest
 
 import cspace as cs
 from cspace import _core
+from cspace.errors import InputError, UnknownNameError
 from cspace.ik import ik_plan
 from cspace.ik.explain.asked import goal_asked
 from cspace.ik.explain.held import Split
@@ -341,3 +342,17 @@ def test_questions_that_make_no_sense_are_refused():
 def test_what_is_no_robot_is_refused():
     with pytest.raises(TypeError, match="robot"):
         ik_plan("ur5e")
+
+
+def test_residuals_take_configurations_and_poses():
+    robot = cs.load_robot("ur5e")
+    plan, q = robot.ik_plan(), np.full(6, 0.3)
+    T = robot.fk(q)
+    for bad_q, bad_T in ((q[:5], T), (q * np.nan, T), (q, np.eye(3)), (np.stack([q] * 2), np.stack([T] * 3))):
+        with pytest.raises(InputError):
+            plan.residuals(bad_q, bad_T)
+    drill = robot.ik_plan(asked=("position", "direction"))
+    with pytest.raises(InputError, match=r"expected \(..., 6\)"):
+        drill.residuals(np.zeros(7), T)
+    with pytest.raises(UnknownNameError, match="no part"):
+        robot.ik_plan(asked=(np.zeros(3),))

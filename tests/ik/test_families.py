@@ -238,3 +238,10 @@ def test_what_is_no_number_of_samples_is_refused():
     for n, error in ((0, InputError), (-3, InputError), (2.5, InputTypeError), (True, InputTypeError)):
         with pytest.raises(error, match="n is"):
             family.sample(n)
+
+
+def test_more_configurations_than_make_sense_are_refused():
+    robot = load("puma560")
+    family = robot.ik(robot.fk(CASES["puma560, wrist straight"][1])).families[0]
+    with pytest.raises(InputError, match="1 to 100000"):
+        family.sample(10**9)

@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 
 import cspace as cs
 from cspace.errors import InputError, InputTypeError
+from cspace.ik import NoClosedFormError
 from cspace.ik.partial import turn_to
-from cspace.model import from_screws
+from cspace.model import Description, Joint, Link, Mimic, from_screws
 from cspace.robot import Robot
 from ik.geometries import unit
 
@@ -201,6 +202,16 @@ def test_filters_keep_what_was_asked():
         ({"position": [0.1, 0, 0.2], "angle_to": ("x", 4.0)}, InputError, "0 to π"),
         ({"rotation": np.ones((3, 3))}, InputError, "rotation"),
         ({"direction": [0, 0, 1], "tool_axis": "up"}, InputError, "axis 'up'"),
+        ({"direction": [0, 0, 1], "tool_axis": "--x"}, InputError, "axis '--x'"),
+        ({"direction": [0, 0, 1], "tool_axis": np.eye(3)}, InputError, "tool_axis has shape"),
+        ({"direction": [0, 0, 1], "tool_axis": np.empty((0, 3))}, InputError, "tool_axis has shape"),
+        ({"position": [0.1, 0, 0.2], "tool_axis": "x"}, InputTypeError, "tool_axis= goes with direction="),
+        ({"goal": np.eye(4), "tool_axis": "x"}, InputTypeError, "tool_axis= goes with direction="),
+        ({"position": np.ones((2, 3)), "direction": np.ones((3, 3))}, InputError, r"position \(2,\), dir"),
+        ({"position": np.ones((2, 3)), "rotation": [np.eye(3)] * 3}, InputError, r"position \(2,\), rot"),
+        ({"ray": (np.ones((2, 3)), np.ones((3, 3)))}, InputError, r"ray\[0\] \(2,\), ray\[1\] \(3,\)"),
+        ({"position": [0.1, 0, 0.2], "angle_to": ("x", [0.1, 0.2])}, InputError, "one angle"),
+        ({"position": [0.1, 0, 0.2], "angle_to": (np.eye(3), 0.1)}, InputError, r"angle_to\[0\] has shape"),
         ({"angle": 0.3}, InputTypeError, "angle= goes with position="),
         ({}, InputTypeError, "one goal"),
     ],
@@ -209,6 +220,33 @@ def test_goals_that_make_no_sense(keywords, error, words):
     robot = random_arm("RRRRR", np.random.default_rng(8))
     with pytest.raises(error, match=words):
         robot.ik(**keywords)
+
+
+def test_points_and_angles_that_do_not_fit_together():
+    planar = cs.load_robot("planar_3r")
+    with pytest.raises(InputError, match=r"position \(3,\), angle \(2,\)"):
+        planar.ik(position=np.ones((3, 2)), angle=[0.1, 0.2])
+
+
+def test_points_beyond_all_numbers_are_refused_without_overflow():
+    with np.errstate(all="raise"), pytest.raises(InputError, match="position lies at"):
+        cs.load_robot("planar_2r").ik(position=[1e308, 1e308, 1e308])
+
+
+@pytest.mark.parametrize("keywords", [{"position": [1, 0, 0]}, {"direction": [0, 0, 1]}])
+def test_robots_whose_poses_have_no_answer_have_none_for_parts_of_them(keywords):
+    floating = cs.Robot(cs.load_robot("ur5e").description, floating=True)
+    links = tuple(Link(name) for name in "abc")
+    lead = Joint("lead", "continuous", "a", "b", axis=(0, 0, 1))
+    follow = Joint("follow", "continuous", "b", "c", cs.pose([1, 0, 0]), (0, 0, 1), mimic=Mimic("lead", 2.0))
+    mimic = cs.Robot(Description("mimic", links, (lead, follow)))
+    still = cs.Robot(Description("still", links[:1], ()))
+    for robot, words in ((floating, "base floats"), (mimic, "mimic"), (still, "no joint moves")):
+        with pytest.raises(NoClosedFormError, match=words):
+            robot.ik(**keywords)
+        plan = robot.ik_plan(asked=tuple(keywords))
+        assert not plan
+        assert words in plan.reason
 
 
 def test_a_turn_from_one_direction_to_another():

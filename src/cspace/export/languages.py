@@ -100,7 +100,14 @@ def export(
 def language_of(lang: str | None, target: PurePath | None) -> str:
     """The language asked for, or that of the file's ending."""
     if lang is None:
-        return BY_SUFFIX.get(target.suffix, "cpp") if target is not None else "cpp"
+        if target is None:
+            return "cpp"
+        if target.suffix not in BY_SUFFIX:
+            raise InputError(
+                f"the ending of {target.name!r} names no language; endings: {', '.join(BY_SUFFIX)}; "
+                "or say which with lang="
+            )
+        return BY_SUFFIX[target.suffix]
     if not isinstance(lang, str):
         raise InputTypeError(f"lang is a {type(lang).__name__}, expected one of {', '.join(LANGUAGES)}")
     if lang not in LANGUAGES:

@@ -92,12 +92,21 @@ def best_conditioning(robot: Any) -> float:
     return float(np.linalg.svd(J, compute_uv=False)[:, -1].max())
 
 
+def how_many_joints(n: int) -> str:
+    return "1 joint" if n == 1 else f"{n} joints"
+
+
 def explain_missing_form(robot: Any) -> str:
     """Why `robot` has no closed form, as a sentence: the first reason that rules it out."""
     kinds = robot.chain.joint_types
-    subject = f"no closed form for {robot.name} ({kinds}, {len(kinds)} joints)"
+    subject = (
+        f"no closed form for {robot.name} ({f'{kinds}, ' if kinds else ''}{how_many_joints(len(kinds))})"
+    )
     if robot.chain.dof != len(kinds):
-        return f"{subject}: joints that mimic others are not solved by this version"
+        return (
+            f"{subject}: joints that mimic others are not solved by this version; robot.ik_numeric(T) finds "
+            "one configuration"
+        )
     if not kinds:
         return f"{subject}: no joint moves"
     if robot.floating:

@@ -13,6 +13,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.family_curve import Arc, arc_through
+from cspace.ik.redundancy import MOST_SAMPLES
 from cspace.ik.windings import wrap
 
 __all__ = ["Family", "family_at"]
@@ -72,8 +73,8 @@ class Family:
         """
         if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
             raise InputTypeError(f"n is a {type(n).__name__}, expected a number of configurations")
-        if n < 1:
-            raise InputError(f"n is {n}, expected 1 or more configurations")
+        if not 1 <= n <= MOST_SAMPLES:
+            raise InputError(f"n is {n}, expected 1 to {MOST_SAMPLES} configurations")
         if self._arc is None:
             return np.empty((0, len(self.q)))
         endless = np.flatnonzero(np.isinf(self.bounds).any(axis=1))

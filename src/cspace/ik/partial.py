@@ -7,17 +7,18 @@ a longer arm, and its solutions, those joints left out, are the goal's.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial import as_rotation
 from cspace.tolerances import FARTHEST
 
-__all__ = ["KEYWORDS", "PartialGoal", "partial_goal"]
+__all__ = ["KEYWORDS", "PartialGoal", "check_tool_axis", "partial_goal"]
 
 KEYWORDS = ("position", "rotation", "direction", "look_at", "ray", "angle_to")
 X, Y, Z = np.eye(3)
@@ -27,6 +28,8 @@ ANY = np.array([[0, -0.6, 0.8], [0.8, -0.48, -0.36], [0.6, 0.64, 0.48]])
 one."""
 CROSS = (("P", X), ("P", Y), ("P", Z))
 AXES = {"x": X, "y": Y, "z": Z}
+POINTED = ("direction", "look_at", "ray", "angle_to")
+"""The keywords that ask something of the tool axis."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,12 +128,22 @@ def angle(a: Array, b: Array) -> Array:
     return np.asarray(2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
 
 
+def check_tool_axis(tool_axis: Any, names: Iterable[str]) -> None:
+    """Refuse a tool axis where nothing is asked of it: it would change nothing."""
+    if (isinstance(tool_axis, str) and tool_axis == "z") or any(name in POINTED for name in names):
+        return
+    raise InputTypeError(
+        f"tool_axis= goes with {', '.join(name + '=' for name in POINTED)}: nothing else asks where the tool "
+        "points; leave it out"
+    )
+
+
 def partial_goal(given: dict[str, Any], tool_axis: Any) -> PartialGoal:
     """The goal that some of KEYWORDS ask for; `given` holds those that are not None.
 
     Raises InputTypeError for keywords that do not go together, InputError for values that make no sense.
     """
-    axis = unit(tool_axis if not isinstance(tool_axis, str) else axis_named(tool_axis), "tool_axis")
+    axis = one_axis(tool_axis, "tool_axis")
     kind = "+".join(name for name in KEYWORDS if name in given)
     makers = {
         "position": position,
@@ -167,6 +180,7 @@ def rotation(given: dict[str, Any], axis: Array) -> PartialGoal:
 
 def position_and_rotation(given: dict[str, Any], axis: Array) -> PartialGoal:
     p, R = point(given["position"], "position"), turned(given["rotation"])
+    leading_axes(position=p.shape[:-1], rotation=R.shape[:-2])
     return PartialGoal("position+rotation", pose(p, R), (), {"position": p, "rotation": R}, axis)
 
 
@@ -178,6 +192,7 @@ def direction(given: dict[str, Any], axis: Array) -> PartialGoal:
 
 def position_and_direction(given: dict[str, Any], axis: Array) -> PartialGoal:
     p, d = point(given["position"], "position"), unit(given["direction"], "direction")
+    leading_axes(position=p.shape[:-1], direction=d.shape[:-1])
     value = {"position": p, "direction": d}
     return PartialGoal("position+direction", pose(p, turn_to(axis, d)), (("R", axis),), value, axis)
 
@@ -192,6 +207,7 @@ def ray(given: dict[str, Any], axis: Array) -> PartialGoal:
     if not isinstance(value, (tuple, list)) or len(value) != 2:
         raise InputTypeError("ray must be a pair: a point on it (3,) and its direction (3,)")
     p, d = point(value[0], "ray[0]"), unit(value[1], "ray[1]")
+    leading_axes(**{"ray[0]": p.shape[:-1], "ray[1]": d.shape[:-1]})
     behind = (("P", axis), ("R", axis))
     return PartialGoal("ray", pose(p, turn_to(axis, d)), behind, {"ray": (p, d)}, axis)
 
@@ -200,9 +216,12 @@ def position_and_angle(given: dict[str, Any], axis: Array) -> PartialGoal:
     value = given["angle_to"]
     if not isinstance(value, (tuple, list)) or len(value) != 2:
         raise InputTypeError("angle_to must be a pair: an axis of the base and the angle to it [rad]")
-    h = unit(value[0] if not isinstance(value[0], str) else axis_named(value[0]), "angle_to[0]")
-    tilt = float(as_floats(value[1], "angle_to[1]"))
-    if not 0 <= tilt <= np.pi or h.ndim != 1:
+    h = one_axis(value[0], "angle_to[0]")
+    angle = as_floats(value[1], "angle_to[1]")
+    if angle.ndim:
+        raise InputError(f"angle_to[1] has shape {angle.shape}, expected one angle for all goals [rad]")
+    tilt = float(angle)
+    if not 0 <= tilt <= np.pi:
         raise InputError(f"angle_to[1] is {tilt:g}, expected 0 to π rad, the angle between two directions")
     p = point(given["position"], "position")
     behind = (("R", axis), ("R", axis))
@@ -240,11 +259,19 @@ def unit(value: Any, subject: str) -> Array:
     return np.asarray(d / size)
 
 
+def one_axis(value: Any, subject: str) -> Array:
+    """A unit vector (3,), by its name or as a direction."""
+    axis = axis_named(value) if isinstance(value, str) else unit(value, subject)
+    if axis.ndim != 1:
+        raise InputError(f"{subject} has shape {axis.shape}, expected (3,): one axis for all goals")
+    return axis
+
+
 def axis_named(name: str) -> Array:
     sign = -1.0 if name.startswith("-") else 1.0
-    if name.lstrip("-") not in AXES:
+    if name.removeprefix("-") not in AXES:
         raise InputError(f"axis {name!r} is unknown, expected x, y, z, -x, -y, -z or a direction (3,)")
-    return np.asarray(sign * AXES[name.lstrip("-")])
+    return np.asarray(sign * AXES[name.removeprefix("-")])
 
 
 def turned(value: Any) -> Array:

@@ -10,7 +10,7 @@ from cspace import _core
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.kinematics.batch import check_robot
 
-__all__ = ["prepare"]
+__all__ = ["check_chain", "prepare"]
 
 MAX_JOINTS = 16
 MAX_SETTLED = 6
@@ -29,10 +29,8 @@ def prepare(robot: Any) -> None:
     check_robot(robot)
     if robot._ik_room:
         return
+    check_chain(robot)
     chain = robot.chain
-    joints = len(chain.joint_types)
-    if chain.dof != joints or robot.floating or not 1 <= joints <= MAX_JOINTS:
-        raise NoClosedFormError(explain_missing_form(robot))
     prismatic = np.array([kind == "P" for kind in chain.joint_types], dtype=np.float64)
     room = _core._ik_build(
         robot,
@@ -43,3 +41,11 @@ def prepare(robot: Any) -> None:
     )
     robot._ik_direct = room > 0
     robot._ik_room = room or MOST_SOLUTIONS
+
+
+def check_chain(robot: Any) -> None:
+    """Raise NoClosedFormError for mimic joints, a floating base, no joint or more than sixteen."""
+    chain = robot.chain
+    joints = len(chain.joint_types)
+    if chain.dof != joints or robot.floating or not 1 <= joints <= MAX_JOINTS:
+        raise NoClosedFormError(explain_missing_form(robot))

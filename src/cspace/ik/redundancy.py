@@ -8,10 +8,14 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array
+from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
+from cspace.tolerances import FARTHEST
 
-__all__ = ["Interval", "Redundancy"]
+__all__ = ["MOST_SAMPLES", "Interval", "Redundancy"]
+
+MOST_SAMPLES = 100_000
+"""Values of a free joint that one call answers for."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,9 +33,10 @@ class Interval:
     branch: int
     ends: tuple[str, str]
     q: Array
+    _slides: bool = field(repr=False, default=False)
 
     def __contains__(self, value: object) -> bool:
-        turn = 2 * np.pi
+        turn = 0.0 if self._slides else 2 * np.pi
         number = float(value)  # type: ignore[arg-type]
         return any(self.lower <= number + k * turn <= self.upper for k in (-1, 0, 1))
 
@@ -63,7 +68,10 @@ class Redundancy:
         return iter(self.intervals)
 
     def feasible(self, value: float) -> tuple[int, ...]:
-        """The branches that keep all limits at this value of the parameter."""
+        """The branches that keep all limits at this value of the parameter [rad or m], whole turns aside."""
+        number = as_floats(value, "value", largest=FARTHEST)
+        if number.ndim:
+            raise InputError(f"value has shape {number.shape}, expected one number: ask in a loop")
         return tuple(interval.branch for interval in self.intervals if value in interval)
 
     def union(self) -> Array:
@@ -80,8 +88,8 @@ class Redundancy:
         """n values of the parameter, (n,): the middles of n equal parts of all that is feasible."""
         if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
             raise InputTypeError(f"n is a {type(n).__name__}, expected a number of values")
-        if n < 1:
-            raise InputError(f"n is {n}, expected 1 or more values")
+        if not 1 <= n <= MOST_SAMPLES:
+            raise InputError(f"n is {n}, expected 1 to {MOST_SAMPLES} values")
         parts = self.union()
         if not len(parts):
             return np.empty(0)

@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
 from cspace.ik.held import Held, fixed_values, hold, joint_number
 from cspace.ik.prepare import prepare
-from cspace.ik.redundancy import Interval, Redundancy
+from cspace.ik.redundancy import MOST_SAMPLES, Interval, Redundancy
 from cspace.ik.solutions import EXACT, INCOMPLETE, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.spare import spare_array
@@ -24,8 +24,9 @@ from cspace.tolerances import FARTHEST
 __all__ = ["redundancy", "redundant_answer"]
 
 SAMPLES = 16
-MOST_SAMPLES = 100_000
 END_NOTHING, END_FOLD = -1, -2
+STILL = 1e-6
+"""Part of the self-motion's direction below which a joint stands still in it: files round axes."""
 
 
 def redundant_answer(
@@ -40,11 +41,12 @@ def redundant_answer(
     """The answer of an arm with joints to spare, or with joints held: see inverse_kinematics."""
     values = fixed_values(robot, {} if fixed is None else fixed)
     spare = to_spare(robot, values)
-    if samples is not None and (near is not None or spare != 1):
+    if samples is not None and near is not None:
+        raise InputTypeError("samples= and near= do not go together: near= answers with one configuration")
+    if samples is not None and spare != 1:
         raise InputTypeError(
-            "samples= goes with one free dimension, and without near="
-            if near is not None or spare < 1
-            else f"samples= goes with one free dimension; here {spare} are free: hold joints with fixed="
+            f"samples= goes with one free dimension, but {robot.name} has {max(spare, 0)} here: "
+            + ("leave samples= out" if spare < 1 else "hold joints with fixed=")
         )
     if spare <= 0:
         return solve_held(robot, T, values, near, threads)
@@ -77,13 +79,14 @@ def redundancy(
     values of other joints [rad, m], so that one is left to spare.
 
     Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a joint to spare
-    or with more than one. For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
+    or with more than one, and for a joint that the goal settles.
+    For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
     """
     prepare(robot)
     T = as_pose(goal, "goal")
     if T.ndim != 2:
         raise InputError(f"goal has shape {T.shape}, expected one pose (4, 4)")
-    if parameter == "swivel" and "swivel" not in robot.joint_names:
+    if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in robot.joint_names:
         from cspace.ik.swivel_intervals import swivel_intervals
 
         if fixed is not None:
@@ -102,7 +105,27 @@ def redundancy(
     joint = (
         held.solver.held[0] if parameter is None else held.free.index(free_joint(robot, parameter, values))
     )
-    return intervals_of(held, np.ascontiguousarray(T), joint)
+    found = intervals_of(held, np.ascontiguousarray(T), joint)
+    if not found and joint != held.solver.held[0]:
+        check_moves(held, found.goal, joint)
+    return found
+
+
+def check_moves(held: Held, T: Array, joint: int) -> None:
+    """Raise InputError for a joint that stands still while the tip does: the goal settles it."""
+    own = held.solver.held[0]
+    seen = intervals_of(held, T, own)
+    if not seen:
+        return
+    J = held.robot.jacobian(np.array([interval.q for interval in seen]))[..., list(held.free)]
+    if np.abs(np.linalg.svd(J)[2][:, -1, joint]).max() > STILL:
+        return
+    names = [held.robot.joint_names[k] for k in held.free]
+    at = ", ".join(sorted({f"{interval.q[held.free[joint]]:.6g}" for interval in seen}))
+    raise InputError(
+        f"parameter {names[joint]!r} is settled by the goal, at {at}, and does not move with what is free; "
+        f"take another joint, such as {names[own]!r}"
+    )
 
 
 def to_spare(robot: Any, fixed: Mapping[int, Any]) -> int:
@@ -120,6 +143,7 @@ def free_joint(robot: Any, parameter: Any, fixed: Mapping[int, Any]) -> int:
 def intervals_of(held: Held, T: Array, joint: int) -> Redundancy:
     rows, complete = held.solver.intervals(joint, T)
     names = [held.robot.joint_names[k] for k in held.free]
+    slides = held.robot.joint_types[held.free[joint]] == "P"
 
     def end(what: int, side: int) -> str:
         if what == END_FOLD:
@@ -127,11 +151,10 @@ def intervals_of(held: Held, T: Array, joint: int) -> Redundancy:
         return "nothing" if what == END_NOTHING else f"{names[what]} at {'upper' if side else 'lower'} limit"
 
     made = [
-        Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), held.whole(np.array(q)))
+        Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), held.whole(np.array(q)), slides)
         for low, high, branch, a, sa, b, sb, q in rows
     ]
     made.sort(key=lambda interval: (interval.branch, interval.lower))
-    slides = held.robot.joint_types[held.free[joint]] == "P"
     return Redundancy(held.robot, T, names[joint], tuple(made), complete, slides)
 
 
@@ -142,7 +165,8 @@ def solve_held(
     """All joints to spare are held: every solution of the others."""
     solver = hold(robot, {}).solver
     joints = list(values)
-    shape = np.broadcast_shapes(T.shape[:-2], *(np.shape(v) for v in values.values()))
+    given = {f"fixed[{robot.joint_names[joint]!r}]": np.shape(v) for joint, v in values.items()}
+    shape = leading_axes(goal=T.shape[:-2], **given)
     goals = np.ascontiguousarray(np.broadcast_to(T, (*shape, 4, 4)))
     n, N = robot.dof, int(np.prod(shape))
     at = np.zeros((N, n))
@@ -234,7 +258,8 @@ def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
     real = np.arange(q.shape[1]) < counts[:, None]
     rows = held.whole(q[real])
     note = (
-        f"{how_many(len(rows))} the goal, at {len(values)} values of {held.parameters[0]} spread over {where}"
+        f"{how_many(len(rows))} the goal, at {len(values)} value{'s' if len(values) > 1 else ''} of "
+        f"{held.parameters[0]} spread over {where}"
     )
     verdict = EXACT + (0 if complete and found.complete else INCOMPLETE)
     family = np.zeros(len(rows), dtype=bool)

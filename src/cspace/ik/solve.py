@@ -9,12 +9,12 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
 from cspace.ik.conditions import NoClosedFormError
-from cspace.ik.partial import KEYWORDS, PartialGoal, is_open, partial_goal
-from cspace.ik.prepare import prepare
+from cspace.ik.partial import KEYWORDS, PartialGoal, check_tool_axis, is_open, partial_goal
+from cspace.ik.prepare import check_chain, prepare
 from cspace.ik.solutions import NEAREST, Solutions, position_goal
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve_partial import own_columns, solve_partial
@@ -88,6 +88,7 @@ def inverse_kinematics(
         goal, position = planar_poses(robot, goal, position, angle), None
     named = (position, rotation, direction, look_at, ray, angle_to)
     given = {name: value for name, value in zip(KEYWORDS, named, strict=True) if value is not None}
+    check_tool_axis(tool_axis, given)
     if (goal is None) == (not given):
         raise InputTypeError(
             "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or parts of it by name,"
@@ -130,7 +131,7 @@ def at_swivel(robot: Any, T: Array, swivel: Any, near: Any) -> Solutions | Solut
 def checked_poses(T: Array) -> Array:
     """Poses that may have come unchecked, none of them too far away."""
     T = as_pose(T, "goal")
-    if len(beyond := np.argwhere(np.abs(T[..., :3, 3]).sum(axis=-1) > FARTHEST)):
+    if len(beyond := np.argwhere(is_far(T[..., :3, 3]))):
         index = tuple(map(int, beyond[0]))
         raise too_far(f"goal {index}" if index else "goal", T[index][:3, 3])
     return T
@@ -169,6 +170,7 @@ def ask_partial(robot: Any, goal: PartialGoal, workers: int = 1, near: Any = Non
             return redundant(whole, T, None, None, seed, False, workers)
         return solve_many(whole, T, workers) if T.ndim > 2 else solve_one(whole, T, None)
 
+    check_chain(robot)
     return solve_partial(robot, goal, ask)
 
 
@@ -196,7 +198,7 @@ def points_in_base(robot: Any, position: Any) -> Array:
         raise InputError(
             f"position has shape {p.shape}, expected (..., 3), or (..., 2) for an arm in the plane"
         )
-    if p.ndim == 1 and np.abs(p).sum() > FARTHEST:
+    if p.ndim == 1 and is_far(p):
         raise too_far("position", p)
     return np.ascontiguousarray(p)
 
@@ -209,7 +211,7 @@ def planar_poses(robot: Any, goal: Any, position: Any, angle: Any) -> Array:
     T_zero = robot.chain.T_zero
     turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
     p = lifted(robot, p)
-    T = np.zeros((*np.broadcast_shapes(p.shape[:-1], turn.shape), 4, 4))
+    T = np.zeros((*leading_axes(position=p.shape[:-1], angle=turn.shape), 4, 4))
     T[..., 0, 0] = T[..., 1, 1] = np.cos(turn)
     T[..., 1, 0] = np.sin(turn)
     T[..., 0, 1] = -T[..., 1, 0]
@@ -249,9 +251,14 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
     seed = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
     if seed.ndim != 1:
         raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
-    if np.abs(T[:3, 3]).sum() > FARTHEST:
+    if is_far(T[:3, 3]):
         raise too_far("goal", T[:3, 3])
     return cast(Solutions, _core._ik_careful(robot, T, np.ascontiguousarray(seed)))
+
+
+def is_far(p: Array) -> Any:
+    """Whether points (..., 3) lie too far away, (...); sums that no float64 holds are not formed."""
+    return np.minimum(np.abs(p), 2 * FARTHEST).sum(axis=-1) > FARTHEST
 
 
 def too_far(subject: str, p: Array) -> InputError:

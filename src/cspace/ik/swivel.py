@@ -7,7 +7,7 @@ from typing import Any, cast
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.solutions import EXACT, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
@@ -60,7 +60,7 @@ def solve_swivel(robot: Any, T: Array, angle: Any, near: Any) -> Solutions | Sol
     """Every solution at given swivels; goals and swivels are broadcast against each other."""
     solver = swivel_solver(robot)
     angles = as_floats(angle, "swivel", largest=FARTHEST)
-    shape = np.broadcast_shapes(T.shape[:-2], angles.shape)
+    shape = leading_axes(goal=T.shape[:-2], swivel=angles.shape)
     goals = np.broadcast_to(T, (*shape, 4, 4)).reshape(-1, 4, 4) if T.ndim > 2 else T[None]
     swivels = np.ascontiguousarray(np.broadcast_to(angles, shape).reshape(-1))
     q = np.empty((len(swivels), BRANCHES, JOINTS))

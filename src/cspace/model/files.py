@@ -26,7 +26,7 @@ def path_of(source: Any) -> str:
     try:
         return os.fsdecode(source)
     except TypeError:
-        message = f"a robot file is given by its path or its text, got {type(source).__name__}"
+        message = f"a file is given by its path, a robot also by its text, got {type(source).__name__}"
         raise InputTypeError(message) from None
 
 

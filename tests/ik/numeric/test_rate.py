@@ -114,3 +114,16 @@ def test_bad_input_is_refused():
             robot.resolved_rate(q, twist, **options)
     with pytest.raises(InputError, match="threads"):
         robot.resolved_rate(np.zeros(6), np.zeros(6), threads=-1)
+
+
+@pytest.mark.parametrize("damping", [np.zeros(7), [], -0.1, np.nan, [0.1, 0.2]])
+def test_damping_is_one_number(damping):
+    robot = cs.load_robot("panda")
+    with pytest.raises(InputError, match="damping"):
+        robot.resolved_rate(np.full(7, 0.3), np.ones(6), damping=damping)
+
+
+def test_a_robot_without_joints_has_no_rates():
+    still = cs.Robot.from_urdf('<robot name="still"><link name="a"/></robot>')
+    assert still.resolved_rate(np.empty(0), np.ones(6)).shape == (0,)
+    assert still.ik_numeric(np.eye(4), np.empty(0))

@@ -161,3 +161,19 @@ def test_samples_and_near_need_freedom_of_the_right_kind():
         robot.ik(T, samples=0)
     with pytest.raises(InputError, match="near has shape"):
         robot.ik(T, near=np.zeros((2, 7)))
+
+
+@pytest.mark.parametrize(("name", "words"), [("ur5e", "ur5e has 0 here: leave samples= out")])
+def test_samples_without_freedom_say_so(name, words):
+    robot = cs.load_robot(name)
+    with pytest.raises(InputTypeError, match=words):
+        robot.ik(robot.fk(np.full(6, 0.3)), samples=4)
+
+
+def test_goals_and_values_that_do_not_fit_together_are_refused():
+    robot = cs.load_robot("iiwa14")
+    T = np.stack([robot.fk(np.full(7, 0.3))] * 2)
+    with pytest.raises(InputError, match=r"goal \(2,\), fixed\['iiwa_joint_1'\] \(3,\)"):
+        robot.ik(T, fixed={0: [0.1, 0.2, 0.3]})
+    with pytest.raises(InputError, match=r"goal \(2,\), swivel \(3,\)"):
+        robot.ik(T, swivel=[0.1, 0.2, 0.3])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 
 TURN = 2 * np.pi
 
@@ -146,3 +146,42 @@ def test_arms_with_none_or_more_to_spare_are_told_so():
     found = pr2.redundancy(pr2.fk(q), fixed={0: q[0]})
     assert found
     assert found.intervals[0].q[0] == q[0]
+
+
+def test_a_joint_that_the_goal_settles_is_no_parameter():
+    iiwa = cs.load_robot("iiwa14")
+    T = iiwa.fk([0.3, 0.7, -0.2, -1.2, 0.3, 0.9, 0.6])
+    with pytest.raises(InputError, match=r"settled by the goal, at -1\.2, 1\.2"):
+        iiwa.redundancy(T, parameter="iiwa_joint_4")
+    assert iiwa.redundancy(T, parameter="iiwa_joint_1")
+
+
+def test_a_slide_is_not_the_same_after_a_turn():
+    chain = cs.load_robot("ur5e").chain
+    robot = cs.Robot.from_screws(
+        np.vstack([[[1, 0, 0]], chain.axes]),
+        np.vstack([np.zeros((1, 3)), chain.points]),
+        chain.T_zero,
+        joint_types="PRRRRRR",
+        lower=[0.0] + [-6.0] * 6,
+        upper=[0.4] + [6.0] * 6,
+    )
+    found = robot.redundancy(robot.fk([0.2] + [0.3] * 6), parameter=0)
+    assert found.feasible(0.2)
+    assert not found.feasible(0.2 + TURN)
+    assert not found.feasible(0.2 - TURN)
+
+
+@pytest.mark.parametrize(
+    ("value", "error"),
+    [(np.nan, InputError), ([0.1, 0.2], InputError), ("x", InputTypeError), (None, InputError)],
+)
+def test_values_that_are_none_are_refused(value, error):
+    panda = cs.load_robot("panda")
+    found = panda.redundancy(panda.fk([0.3, 0.4, -0.2, -1.9, 0.3, 2.1, 0.6]))
+    with pytest.raises(error, match="value"):
+        found.feasible(value)
+    with pytest.raises(InputTypeError, match="parameter names a joint by a ndarray"):
+        panda.redundancy(found.goal, parameter=np.zeros(2))
+    with pytest.raises(InputError, match="1 to 100000"):
+        found.spread(10**9)

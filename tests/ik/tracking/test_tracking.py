@@ -311,3 +311,13 @@ def test_bad_questions_are_refused_by_name():
         cs.load_robot("puma560_dh").track([T], cost="time")
     with pytest.raises(InputError, match="goal"):
         robot.track(np.full((2, 4, 4), np.nan))
+
+
+@pytest.mark.parametrize(
+    ("answer", "error"), [(np.nan, InputError), ("x", InputTypeError), ([1, 2], InputError)]
+)
+def test_costs_that_are_no_number_are_refused(answer, error):
+    robot = cs.load_robot("ur5e")
+    T = robot.fk(np.full(6, 0.3))
+    with pytest.raises(error, match="answer of cost="):
+        robot.track([T, T], cost=lambda q: answer)

@@ -13,7 +13,8 @@ from cspace.ik.explain.describe import refused_plan, settled_plan, survey_of
 from cspace.ik.explain.held import held_plan
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.held import fixed_values
-from cspace.ik.prepare import prepare
+from cspace.ik.partial import check_tool_axis
+from cspace.ik.prepare import check_chain, prepare
 from cspace.kinematics.batch import check_robot
 
 __all__ = ["ik_plan"]
@@ -38,8 +39,18 @@ def ik_plan(robot: Any, *, asked: Any = None, fixed: Any = None, tool_axis: Any 
         if fixed is not None:
             raise InputTypeError("fixed= goes with a full pose: leave asked= out")
         goal = goal_asked(asked, tool_axis)
-        return asked_plan(robot, goal, plan_of_poses)
+        return asked_plan(robot, goal, plan_of_poses) if is_chain(robot) else plan_of_poses(robot)
+    check_tool_axis(tool_axis, ())
     return plan_of_poses(robot, fixed)
+
+
+def is_chain(robot: Any) -> bool:
+    """Whether the robot is one that robot.ik answers for."""
+    try:
+        check_chain(robot)
+    except NoClosedFormError:
+        return False
+    return True
 
 
 def plan_of_poses(robot: Any, fixed: Any = None) -> IkPlan:

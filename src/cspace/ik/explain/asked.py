@@ -45,7 +45,7 @@ def goal_asked(asked: Any, tool_axis: Any) -> PartialGoal:
         )
     names = list(asked)
     for name in names:
-        if name not in KEYWORDS:
+        if not isinstance(name, str) or name not in KEYWORDS:
             raise suggest("part", str(name), KEYWORDS, owner="a pose")
     if not names:
         raise InputTypeError(f"asked is empty, expected some of {', '.join(KEYWORDS)}")
@@ -93,6 +93,7 @@ def asked_plan(robot: Any, goal: PartialGoal, plan_of: Callable[[Any], IkPlan]) 
         other_ways={},
         _values=values if plan._values else None,
         _other_values=None,
+        _dof=robot.dof,
     )
 
 

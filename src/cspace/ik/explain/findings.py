@@ -8,10 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.ik.explain import page
 from cspace.ik.explain.survey import Relation, StillDirection, StillPoint
 from cspace.math import Equation, MatrixEquation
+from cspace.spatial import as_pose
+from cspace.tolerances import FARTHEST
 
 __all__ = ["Findings", "Step"]
 
@@ -68,6 +70,7 @@ class Findings:
     length: float = 1.0
     _values: Values | None = field(default=None, repr=False)
     _other_values: Values | None = field(default=None, repr=False)
+    _dof: int | None = field(default=None, repr=False)
 
     def __bool__(self) -> bool:
         return not self.reason
@@ -82,10 +85,12 @@ class Findings:
         """How far each equation is off, (..., k), at configurations q (..., n) that reach T (..., 4, 4).
 
         Lengths count in units of the arm's length. Definitions introduce symbols for those behind them and
-        are never off.
+        are never off. Raises InputError for a wrong shape, NaN, and what is no pose.
         """
-        q, T = np.asarray(q, dtype=np.float64), np.asarray(T, dtype=np.float64)
-        shape = q.shape[:-1]
+        n = len(self.joints) if self._dof is None else self._dof
+        q, T = as_floats(q, "q", last=(n,), largest=FARTHEST), as_pose(T, "T")
+        shape = leading_axes(q=q.shape[:-1], T=T.shape[:-2])
+        q = np.broadcast_to(q, (*shape, n))
         if self._values is None:
             return np.zeros((*shape, 0))
         out = self._off(self.steps, {**self.constants, **self._values(q, T)}, shape)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -166,7 +167,7 @@ def _starts(robot: Any, start: Any, lead: tuple[int, ...]) -> Array:
             raise InputError(
                 f"start has shape {rows.shape}, expected ({n},) or {(*lead, n)}: one per goal"
             ) from None
-    return np.ascontiguousarray(rows.reshape(-1, n))
+    return np.ascontiguousarray(rows.reshape(math.prod(rows.shape[:-1]), n))
 
 
 def _posture(robot: Any, rest: Any, rest_weights: Any) -> Array:

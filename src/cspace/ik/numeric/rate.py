@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,6 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.ik.numeric.question import positive
 from cspace.kinematics.batch import whole_number
 from cspace.kinematics.jacobian import jacobian
 from cspace.tolerances import FARTHEST, WEAK_DIRECTION
@@ -54,7 +54,7 @@ def resolved_rate(
     dof = robot.dof
     if dof > MOST_JOINTS:
         raise InputError(f"{robot.name} has {dof} velocities; resolved_rate takes up to {MOST_JOINTS}")
-    wanted = as_floats(twist, "twist", last=(6,))
+    wanted = as_floats(twist, "twist", last=(6,), largest=FARTHEST)
     wish = None if null_space is None else as_floats(null_space, "null_space", last=(dof,), largest=FARTHEST)
     try:
         lead = np.broadcast_shapes(J.shape[:-2], wanted.shape[:-1], () if wish is None else wish.shape[:-1])
@@ -63,25 +63,35 @@ def resolved_rate(
             f"the leading axes of q {J.shape[:-2]}, twist {wanted.shape} and null_space do not fit together"
         ) from None
 
+    number = math.prod(lead)
+
     def rows(array: Array, own: int) -> Array:
         last = array.shape[array.ndim - own :]
         if array.shape == lead + last:
-            return np.ascontiguousarray(array.reshape(-1, *last))
-        return np.ascontiguousarray(np.broadcast_to(array, lead + last).reshape(-1, *last))
+            return np.ascontiguousarray(array.reshape(number, *last))
+        return np.ascontiguousarray(np.broadcast_to(array, lead + last).reshape(number, *last))
 
     workers = (0 if lead else 1) if threads is None else whole_number(threads, "threads", 0, 1024)
-    qd = np.empty((int(np.prod(lead)), dof))
+    qd = np.empty((number, dof))
     _core._resolved_rate(
         rows(J, 2),
         rows(wanted, 1),
         np.empty((0, dof)) if wish is None else rows(wish, 1),
         _speeds(robot, velocity),
-        -1.0 if damping is None else 0.0 if damping == 0 else positive(damping, "damping"),
+        -1.0 if damping is None else _damping(damping),
         WEAK_DIRECTION,
         workers,
         qd,
     )
     return qd.reshape(*lead, dof)
+
+
+def _damping(value: Any) -> float:
+    """One number, 0 or more."""
+    number = as_floats(value, "damping", largest=FARTHEST)
+    if number.ndim or number < 0:
+        raise InputError(f"damping is {value!r}; it must be one number, 0 or more")
+    return float(number)
 
 
 def _speeds(robot: Any, velocity: Any) -> Array:

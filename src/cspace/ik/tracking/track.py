@@ -182,10 +182,18 @@ def is_out_of_reach(robot: Any, question: Question, T: Array, end: float) -> boo
     return not found
 
 
+def price_of(value: Any) -> float:
+    """What a caller's function of the configurations answers, as one number; inf rules a branch out."""
+    number = as_floats(value, "the answer of cost=", finite=False)
+    if number.ndim or np.isnan(number):
+        raise InputError(f"the answer of cost= is {value!r}, expected one number for q (n, dof)")
+    return float(number)
+
+
 def cost_of(robot: Any, cost: Cost) -> Callable[[Array], float]:
     """The price of a branch q (m, dof)."""
     if callable(cost):
-        return lambda q: float(cost(q))
+        return lambda q: price_of(cost(q))
     word = choice(cost, "cost", COSTS)
     if word == "length":
         return lambda q: float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())
