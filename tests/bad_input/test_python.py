@@ -49,8 +49,8 @@ CALLS = [
     (lambda: cs.kinematics.center_of_mass(None, np.zeros(6)), InputTypeError, "got NoneType; cspace.load"),
     (lambda: cs.kinematics.workspace(ARM.description), InputTypeError, "got Description"),
     (lambda: cs.Robot("ur5e"), InputTypeError, "Robot takes a Description, got str; load_robot"),
-    (lambda: cs.Robot.from_urdf(None), InputTypeError, "path or its text, got NoneType"),
-    (lambda: cs.Robot.from_toml([]), InputTypeError, "path or its text, got list"),
+    (lambda: cs.Robot.from_urdf(None), InputTypeError, "by its path, a robot also by its text, got NoneType"),
+    (lambda: cs.Robot.from_toml([]), InputTypeError, "by its path, a robot also by its text, got list"),
     (lambda: cs.load_robot("ur5e", tip=["tool0"]), UnknownNameError, "no link"),
     (
         lambda: cs.load_robot("planar_2r").ik(position=(1e300, 1e300)),
