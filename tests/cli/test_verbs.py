@@ -266,7 +266,7 @@ def test_goals_that_ask_for_less_are_explained():
     result = cspace("ik al5d --explain --asked position direction --tool-axis x --json")
     assert result.code == 0
     schema.check(result.json, "cspace.ik_plan/1")
-    assert "goal_1" in result.json["joints"]
+    assert "goal_tool_turn_x" in result.json["joints"]
     assert cspace("ik al5d --explain --asked positon").code == 2
 
 

@@ -315,12 +315,12 @@ def test_goals_that_ask_for_less_are_explained_by_the_arm_that_they_make(name, a
     if "numbers below are for" not in plan.to_text():  # a joint of the goal stands at a value
         expect_true(robot, np.random.default_rng(9), asked=asked)
     for form in FORMS:
-        assert "goal_1" in getattr(plan, form)().replace("\\_", "_")
+        assert "goal_" in getattr(plan, form)().replace("\\_", "_")
 
 
 def test_a_pose_or_a_plain_point_of_a_short_arm_needs_no_joints_of_the_goal():
     assert ik_plan(load("ur5e"), asked="position+rotation").to_dict() == load("ur5e").ik_plan().to_dict()
-    assert "goal_1" not in ik_plan(load("planar_3r"), asked="position").to_text()
+    assert "goal_" not in ik_plan(load("planar_3r"), asked="position").to_text()
 
 
 def test_questions_that_make_no_sense_are_refused():

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import tomllib
 
+import cspace as cs
 from ik.arms import ALL, FEW, is_idealised, load
 from ik.geometries import CLASSES, angle_gap, random_arm, random_direction, random_pose, random_q
 
@@ -112,3 +113,26 @@ def test_poses_that_once_went_wrong(case):
     assert found.residual.max() < 1e-9
     if case["status"] == "exact":
         assert angle_gap(found.q, q).min() < 1e-6
+
+
+def arm_of(case):
+    if "robot" in case:
+        return load(case["robot"])
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = case["tip"]
+    axes, points = np.array(case["axes"], dtype=float), np.array(case["points"], dtype=float)
+    return cs.Robot(cs.model.from_screws(axes, points, T_zero, joint_types=case["joint_types"]))
+
+
+@pytest.mark.parametrize("case", CASES["lost"], ids=lambda c: c["shows"])
+def test_configurations_that_were_once_lost(case):
+    robot, q = arm_of(case), np.array(case["q"])
+    T = robot.fk(q)
+    found = robot.ik(T)
+    assert found.residual.max() < 1e-9
+    if found.status == "singular":
+        return
+    slides = np.array([kind == "P" for kind in robot.joint_types])
+    gap = np.abs(np.where(slides, found.q - q, np.angle(np.exp(1j * (found.q - q))))).max(axis=1)
+    weakest = np.linalg.svd(robot.jacobian(q), compute_uv=False)[-1]
+    assert gap.min() < max(1e-5, 1e-13 / max(weakest, 1e-9))

@@ -57,6 +57,17 @@ class PartialGoal:
         return self.kind, joints, len(self.before), self.tilt
 
     @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names for the joints of the goal, before and behind: what they let the base or the tool do."""
+        names: list[str] = []
+        for i, (kind, axis) in enumerate((*self.before, *self.behind)):
+            body = "base" if i < len(self.before) else "tool"
+            letter = next((f"_{name}" for name, e in AXES.items() if abs(axis @ e) == 1.0), "")
+            name = f"goal_{body}_{'turn' if kind == 'R' else 'slide'}{letter}"
+            names.append(name if name not in names else f"{name}_again")
+        return tuple(names)
+
+    @property
     def text(self) -> str:
         """The goal in words."""
         return " and ".join(WORDS[name] for name in self.kind.split("+"))

@@ -94,9 +94,9 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
         upper=np.concatenate([np.full(first, np.inf), upper, np.full(last, np.inf)]),
         name=robot.name,
         joint_names=[
-            *(f"goal_{i + 1}" for i in range(first)),
+            *goal.joint_names[:first],
             *robot.joint_names,
-            *(f"goal_{first + i + 1}" for i in range(last)),
+            *goal.joint_names[first:],
         ],
     )
     whole = type(robot)(description)

@@ -124,5 +124,5 @@ def goal_joints(goal: PartialGoal, whole: Any) -> Rows:
         before = i < len(goal.before)
         what = "slides along" if kind == "P" else "turns about"
         where = "before the base" if before else "behind the tip"
-        rows.append((f"`goal_{i + 1}`", where, what, vector(axis), "base" if before else "tip"))
+        rows.append((f"`{goal.joint_names[i]}`", where, what, vector(axis), "base" if before else "tip"))
     return Rows(("joint", "place", "does", "direction", "seen in"), rows)
