@@ -8,6 +8,7 @@ NUMBER = (int, float)
 TEXT = str
 TEXT_OR_NULL = (str, type(None))
 NUMBER_OR_NULL = (int, float, type(None))
+LIST_OR_NULL = (list, type(None))
 VECTOR = [NUMBER]
 MATRIX = [[NUMBER]]
 
@@ -109,10 +110,24 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "base": TEXT,
         "tip": TEXT,
         "joints": [TEXT],
-        "goal": {"matrix": (list, type(None)), "position": (list, type(None))},
+        "goal": {
+            "matrix": LIST_OR_NULL,
+            "position": LIST_OR_NULL,
+            "rotation": LIST_OR_NULL,
+            "angle": NUMBER_OR_NULL,
+            "direction": LIST_OR_NULL,
+            "look_at": LIST_OR_NULL,
+            "ray": LIST_OR_NULL,
+            "angle_to": LIST_OR_NULL,
+            "tool_axis": (list, str, type(None)),
+        },
+        "fixed": dict,
+        "swivel": NUMBER_OR_NULL,
         "status": TEXT,
+        "complete": bool,
         "reason": TEXT,
         "missing": NUMBER,
+        "freedom": [TEXT],
         "solutions": [
             {
                 "q": VECTOR,

@@ -37,6 +37,10 @@ def test_json(tmp_path):
     assert set(shown["files"]) == {"ur5e_ik.h", "ur5e_ik.cpp"}
 
 
+def test_a_joint_is_named_or_numbered():
+    assert cspace("export panda --fixed q7").out == cspace("export panda --fixed panda_joint7").out
+
+
 def test_refusals(tmp_path):
     result = cspace("export ur5e --lang fortran")
     assert result.code == 2

@@ -54,7 +54,9 @@ def test_every_point_of_a_spatial_arm_has_its_ways():
     assert len(found["solutions"]) == 4
     reached = cs.load_robot("simplified_puma").fk([row["q"] for row in found["solutions"]])
     np.testing.assert_allclose(reached[:, :3, 3], np.tile([0.4, 0.2, 0.1], (4, 1)), atol=1e-12)
-    assert found["goal"] == {"matrix": None, "position": [0.4, 0.2, 0.1]}
+    assert {name: value for name, value in found["goal"].items() if value is not None} == {
+        "position": [0.4, 0.2, 0.1]
+    }
 
 
 @pytest.mark.parametrize("name", ["planar_1r", "planar_2r", "planar_3r", "simplified_puma", "rpr"])

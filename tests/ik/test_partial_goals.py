@@ -139,6 +139,32 @@ def test_many_goals_in_one_call():
         assert batch[i].asked["position"].shape == (3,)
 
 
+def test_the_derivatives_of_many_goals_are_those_of_each():
+    robot = random_arm("RRRRR", np.random.default_rng(4))
+    T = robot.fk(np.random.default_rng(5).uniform(-1.5, 1.5, (4, 5)))
+    b = robot.ik(position=T[:, :3, 3], direction=T[:, :3, 2])
+    assert b.count.min() >= 1
+    for i, k in enumerate(b.count):
+        one = robot.ik(position=T[i, :3, 3], direction=T[i, :3, 2]).derivative
+        np.testing.assert_allclose(b.derivative[i, :k], one, rtol=1e-6, atol=1e-9)
+        assert np.isnan(b.derivative[i, k:]).all()
+
+
+def test_the_reason_counts_the_rows_and_names_what_is_free():
+    scara = cs.load_robot("scara")
+    T = scara.fk([0.3, 0.5, 0.1, 0.2])
+    s = scara.ik(position=T[:3, 3])
+    assert s.reason.startswith(f"{len(s)} configurations reach the goal, at 16 values of {s.freedom[0]}")
+    ur5e = cs.load_robot("ur5e")
+    s = ur5e.ik(position=[0.4, 0.1, 0.3])
+    assert s.reason.startswith(
+        "1 of the configurations that reach the goal, which leaves 3 dimensions free: "
+    )
+    assert s.reason.endswith(", ".join(s.freedom))
+    b = ur5e.ik(position=[[0.4, 0.1, 0.3], [0.4, 0.2, 0.3]])
+    assert (b.freedom, b[0].freedom) == (s.freedom, s.freedom)
+
+
 def test_an_arm_in_the_plane_takes_a_point_and_an_angle():
     T_zero = np.eye(4)
     T_zero[:3, 3] = [1.1, 0, 0.2]
@@ -196,6 +222,8 @@ def test_filters_keep_what_was_asked():
         ({"direction": [0, 0, 1], "look_at": [1, 0, 0]}, InputTypeError, "make no goal"),
         ({"position": (None, None, None)}, InputError, "asks for nothing"),
         ({"position": (0.1, None)}, InputError, "2 coordinates"),
+        ({"position": (0.1, None, 0), "rotation": np.eye(3)}, InputTypeError, "none left open"),
+        ({"position": (0.1, None, 0), "direction": [0, 0, 1]}, InputTypeError, "none left open"),
         ({"position": [0.1, np.nan, 0.2], "direction": [0, 0, 1]}, InputError, "finite"),
         ({"ray": [1, 2, 3]}, InputTypeError, "pair"),
         ({"position": [0.1, 0, 0.2], "angle_to": ("w", 0.2)}, InputError, "axis 'w'"),

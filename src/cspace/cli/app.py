@@ -70,7 +70,7 @@ def dispatch(words: list[str]) -> int:
 
 def run_verb(verb: str, words: list[str]) -> int:
     """Parse the words of one verb and run its file."""
-    from cspace.cli.arguments import Parser, guard_negative_numbers
+    from cspace.cli.arguments import Parser, separate_values
     from cspace.cli.output import Output
     from cspace.cli.timing import limit
 
@@ -78,7 +78,7 @@ def run_verb(verb: str, words: list[str]) -> int:
     parser = Parser(verb, VERBS[verb], module.EXAMPLES)
     module.arguments(parser)
     try:
-        args = parser.parse_intermixed_args(guard_negative_numbers(words))
+        args = parser.parse_intermixed_args(separate_values(words))
     except SystemExit as stop:  # argparse leaves this way after --help; faults are raised by Parser.error
         return int(stop.code or 0)
     with limit(args.time_limit):

@@ -19,14 +19,20 @@ __all__ = [
     "add_degrees",
     "add_joints",
     "add_robot",
-    "guard_negative_numbers",
+    "coordinate",
+    "named_number",
     "named_value",
     "number",
     "seconds",
+    "separate_values",
 ]
 
 OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?))?")
 """Multiples of π: pi, -pi/2, 3pi/4, 0.5*pi."""
+
+NEGATIVE_AXES: Final = frozenset({"-x", "-y", "-z"})
+OPEN: Final = "any"
+"""What is typed for a coordinate that does not matter."""
 
 
 class Parser(argparse.ArgumentParser):
@@ -93,9 +99,40 @@ def named_value(text: str) -> tuple[str, str]:
     return name, value.strip()
 
 
-def guard_negative_numbers(words: Sequence[str]) -> list[str]:
-    """Put a blank before words such as -1e-3 or -pi/2: argparse then takes them as values, not as options."""
-    return [" " + word if word.startswith("-") and is_number(word) else word for word in words]
+def named_number(text: str) -> tuple[str, float]:
+    """A name and a finite number with = between them."""
+    name, value = named_value(text)
+    return name, number(value)
+
+
+def coordinate(text: str) -> float | None:
+    """A number, or `any` for a coordinate that does not matter."""
+    return None if text.strip().lower() == OPEN else number(text)
+
+
+def separate_values(words: Sequence[str]) -> list[str]:
+    """Words as argparse takes them: 1,-2,3 as three, and a blank before -1e-3, -pi/2 or -z, which are values
+    and no options.
+    """
+    out: list[str] = []
+    for word in words:
+        option, sign, value = word.partition("=")
+        if sign and option.startswith("--") and is_list(value):
+            out.append(option)
+            word = value
+        parts = word.split(",") if is_list(word) else [word]
+        out += [" " + part if part.startswith("-") and is_value(part) else part for part in parts]
+    return out
+
+
+def is_list(word: str) -> bool:
+    """Whether a word is several numbers with commas between them."""
+    return "," in word and all(is_value(part) for part in word.split(","))
+
+
+def is_value(word: str) -> bool:
+    """Whether a word that begins with a sign may be a value: a number, a coordinate, an axis."""
+    return word in NEGATIVE_AXES or word.lower() == OPEN or is_number(word)
 
 
 def is_number(word: str) -> bool:

@@ -6,6 +6,8 @@ import argparse
 from typing import TYPE_CHECKING
 
 from cspace.cli.exits import Exit, UsageError
+from cspace.cli.freedom import FREEDOM_WORDS, held_joints
+from cspace.cli.goals import GOAL_WORDS, axis_of
 from cspace.cli.output import Output
 
 if TYPE_CHECKING:
@@ -13,8 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["add_explanation", "explain", "explanation_asked"]
 
-GOAL_WORDS = ("xyz", "xy", "rpy", "wxyz", "xyzw", "matrix", "near", "plot")
-"""What belongs to a goal, and not to an explanation."""
+NOT_ASKED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
+"""What belongs to a goal and its answer, and not to an explanation."""
 
 
 def add_explanation(parser: argparse.ArgumentParser) -> None:
@@ -25,9 +27,8 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
         "--asked",
         nargs="+",
         metavar="PART",
-        help="goals of parts: position, rotation, direction, look_at, ray, angle_to (alone or together)",
+        help="for goals of parts: position, rotation, direction, look-at, ray, angle-to (alone or together)",
     )
-    group.add_argument("--tool-axis", metavar="AXIS", help="with --asked: x, y, z, or =-z, in the tip")
     form = group.add_mutually_exclusive_group()
     form.add_argument("--markdown", action="store_true", help="as Markdown with formulas")
     form.add_argument("--latex", action="store_true", help="as LaTeX, for a document with amsmath")
@@ -36,19 +37,22 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
 def explanation_asked(args: argparse.Namespace) -> bool:
     """Whether an explanation is asked for; words of a goal beside it or its forms without it are refused."""
     if not args.explain:
-        for name in ("markdown", "latex", "asked", "tool_axis"):
+        for name in ("markdown", "latex", "asked"):
             if getattr(args, name):
-                raise UsageError(f"--{name.replace('_', '-')} belongs to the explanation: add --explain")
+                raise UsageError(f"--{name} belongs to the explanation: add --explain")
         return False
-    for name in GOAL_WORDS:
+    for name in NOT_ASKED:
         if getattr(args, name) is not None:
-            raise UsageError(f"--explain is about the arm, not about a goal: leave --{name} out")
+            option = "--" + name.replace("_", "-")
+            raise UsageError(f"--explain is about the arm, not about a goal: leave {option} out")
     return True
 
 
 def explain(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     """Print the explanation; an arm that nothing solves is a negative answer, with what its axes share."""
-    plan = robot.ik_plan(asked=args.asked, tool_axis=args.tool_axis or "z")
+    fixed = None if args.fixed is None else held_joints(args, robot)
+    asked = None if args.asked is None else [part.replace("-", "_") for part in args.asked]
+    plan = robot.ik_plan(asked=asked, fixed=fixed, tool_axis=axis_of(args))
     if out.as_json:
         out.document({"schema": "cspace.ik_plan/1", **plan.to_dict()})
     else:

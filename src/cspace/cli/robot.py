@@ -10,11 +10,21 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.cli.exits import UsageError
+from cspace.errors import suggest
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["angle_unit", "configuration", "headings", "joint_texts", "load", "need_chain"]
+__all__ = [
+    "angle_unit",
+    "configuration",
+    "headings",
+    "joint_called",
+    "joint_texts",
+    "load",
+    "need_chain",
+    "turning",
+]
 
 
 def load(args: argparse.Namespace) -> Robot:
@@ -64,6 +74,17 @@ def headings(robot: Robot) -> list[str]:
     """Column headings of the joints: their names where they are short, else q1, q2, …"""
     names = list(robot.joint_names)
     return names if max(map(len, names), default=0) <= 8 else [f"q{k + 1}" for k in range(len(names))]
+
+
+def joint_called(word: str, robot: Robot) -> str:
+    """The joint of a name, or of a heading: q3 is the third. Raises UnknownNameError, with what is near."""
+    names = robot.joint_names
+    if word in names:
+        return word
+    numbered = {f"q{k + 1}": name for k, name in enumerate(names)}
+    if word in numbered:
+        return numbered[word]
+    raise suggest("joint", word, names, owner=robot.name)
 
 
 def joint_texts(q: Array, robot: Robot, *, degrees: bool) -> list[str]:

@@ -171,6 +171,9 @@ def partial_goal(given: dict[str, Any], tool_axis: Any) -> PartialGoal:
             f"{' and '.join(name + '=' for name in given)} make no goal; what goes together is "
             + ", ".join(" and ".join(part + "=" for part in k.split("+")) for k in makers)
         )
+    if kind != "position" and is_open(given.get("position")):
+        others = " and ".join(name + "=" for name in given if name != "position")
+        raise InputTypeError(f"position= goes beside {others} with all three coordinates, none left open")
     return makers[kind](given, axis)
 
 

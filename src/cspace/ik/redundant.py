@@ -216,19 +216,8 @@ def nearest(held: Held, T: Array, near: Any, threads: int) -> Solutions | Soluti
         return batch
     if not found[0]:
         return unreachable(held, T)
-    made = make(
-        robot, T, EXACT, whole, np.full(1, -1), np.zeros(1, dtype=bool), near_note(held), held.freedom
-    )
+    made = make(robot, T, EXACT, whole, np.full(1, -1), np.zeros(1, dtype=bool), None, held.freedom)
     return made.nearest(seeds)
-
-
-def near_note(held: Held) -> str:
-    return f"the nearest of the configurations that reach the goal; free: {free_text(held)}"
-
-
-def free_text(held: Held) -> str:
-    k = held.solver.spare
-    return f"{k} dimension{'s' if k > 1 else ''}, held in {', '.join(held.parameters)}"
 
 
 def unreachable(held: Held, T: Array) -> Solutions:

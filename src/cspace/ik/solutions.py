@@ -138,6 +138,10 @@ class Solutions(_core.SolutionsBase):
         if self._status == UNREACHABLE:
             return unreachable_reason(self)
         text = how_many(len(self)) + " the goal"
+        if self.freedom:
+            text = (
+                f"{len(self)} of the configurations that reach the goal, which leaves {named(self.freedom)}"
+            )
         if self._status == SINGULAR:
             moving = sorted({name for family in self.families for name in family.joints})
             is_pose = self.goal.shape == (4, 4) and self._partial is None
@@ -277,6 +281,12 @@ def pose_errors(robot: Any, q: Array, goal: Array) -> Array:
 
 def how_many(k: int) -> str:
     return "1 configuration reaches" if k == 1 else f"{k} configurations reach"
+
+
+def named(freedom: tuple[str, ...]) -> str:
+    """The dimensions that a goal leaves free."""
+    k = len(freedom)
+    return f"{k} dimension{'s' if k > 1 else ''} free: {', '.join(freedom)}"
 
 
 def position_goal(p: Array) -> Array:

@@ -102,7 +102,12 @@ class SolutionsBatch:
     @property
     def derivative(self) -> Array:
         """dq per base twist [v; ω] of each goal, (..., k_max, dof, 6), NaN padded, as of `Solutions`."""
-        return derivative(self.robot, self.q, self.goal.shape[self.count.ndim :] == (3,))
+        if self._partial is None:
+            return derivative(self.robot, self.q, self.goal.shape[self.count.ndim :] == (3,))
+        out = np.full((*self.q.shape, 6), np.nan)
+        for index in np.ndindex(self.count.shape):  # the joints of each goal are known to its own answer
+            out[index][: self.count[index]] = self[index].derivative
+        return out
 
     @property
     def reason(self) -> npt.NDArray[np.object_]:

@@ -13,7 +13,7 @@ from cspace.arrays import Array
 from cspace.ik.about import About
 from cspace.ik.partial import PartialGoal
 from cspace.ik.prepare import prepare
-from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions
+from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.model import from_screws
 
@@ -129,10 +129,10 @@ def of_own(robot: Any, goal: PartialGoal, whole: Any, found: Solutions) -> Solut
     verdict = status + (INCOMPLETE if not found.complete and status != NEAREST else 0)
     about = About(goal, whole, found.q[rows], () if found._about is None else found._about.freedom)
     q = np.ascontiguousarray(found.q[rows][:, own])
-    branches = tuple(range(len(rows)))
-    return cast(
-        Solutions, _core._ik_make(robot, goal.T, verdict, q, branches, tuple(families), found._note, about)
-    )
+    branches, note = tuple(range(len(rows))), found._note
+    if note is not None and len(rows) != len(found):
+        note = note.replace(how_many(len(found)), how_many(len(rows)), 1)
+    return cast(Solutions, _core._ik_make(robot, goal.T, verdict, q, branches, tuple(families), note, about))
 
 
 def moves_itself(whole: Any, q: Array, own: slice) -> bool:
@@ -161,4 +161,4 @@ def batch_of_own(robot: Any, goal: PartialGoal, whole: Any, found: SolutionsBatc
         count[index] = len(one)
         q[index][: len(one)] = one.q
         verdict[index] = one._verdict
-    return SolutionsBatch(robot, goal.T, q, count, verdict, Many(goal))
+    return SolutionsBatch(robot, goal.T, q, count, verdict, Many(goal), found.freedom)

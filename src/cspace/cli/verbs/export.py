@@ -10,7 +10,7 @@ from cspace.cli.arguments import add_chain, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.files import check_writable
 from cspace.cli.output import Output
-from cspace.cli.robot import load, need_chain
+from cspace.cli.robot import joint_called, load, need_chain
 
 if TYPE_CHECKING:
     from cspace.export import Export
@@ -39,7 +39,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--fixed",
         nargs="+",
         metavar="JOINT",
-        help="joints whose values the caller of the code gives (of more than six some are anyway)",
+        help="joints, or q7 for the seventh, whose values the caller of the code gives",
     )
     parser.add_argument("--example", type=Path, metavar="FILE", help="write a main program that uses it")
     add_chain(parser)
@@ -54,7 +54,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
         check_apart(args.lang, args.output, args.example)
     robot = load(args)
     need_chain(robot)
-    made = robot.export(args.lang, args.output, name=args.name, fixed=args.fixed)
+    fixed = None if args.fixed is None else [joint_called(word, robot) for word in args.fixed]
+    made = robot.export(args.lang, args.output, name=args.name, fixed=fixed)
     if args.output is None and len(made.files) > 1 and not out.as_json:
         raise UsageError(f"{made.language} needs {len(made.files)} files: say where with -o FILE")
     if args.example is not None:

@@ -1,0 +1,77 @@
+"""What decides where a goal leaves freedom: joints held, the swivel, samples, the configuration nearby."""
+
+from __future__ import annotations
+
+import argparse
+from typing import TYPE_CHECKING, Any, Final
+
+import numpy as np
+
+from cspace.cli.arguments import named_number, number
+from cspace.cli.exits import UsageError
+from cspace.cli.robot import joint_called
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+
+__all__ = ["FREEDOM_WORDS", "add_freedom", "held_joints", "options_of"]
+
+FREEDOM_WORDS: Final = ("swivel", "samples", "near", "least_squares")
+"""The words of these that say nothing of how an arm is solved; held joints do."""
+
+
+def add_freedom(parser: argparse.ArgumentParser) -> None:
+    """The words of one who has more joints than the goal asks for."""
+    group = parser.add_argument_group(
+        "freedom", "of arms with joints to spare, and of goals that leave something open"
+    )
+    group.add_argument(
+        "--fixed",
+        nargs="+",
+        action="extend",
+        type=named_number,
+        metavar="JOINT=VALUE",
+        help="joints held at values; q7 is the seventh joint, whatever its name",
+    )
+    group.add_argument("--swivel", type=number, metavar="A", help="the elbow's angle on its circle")
+    group.add_argument(
+        "--samples", type=int, metavar="N", help="at how many values of what is free (16 unless given)"
+    )
+    group.add_argument(
+        "--near",
+        nargs="+",
+        type=number,
+        metavar="Q",
+        help="a configuration: the nearest solution comes first, alone where the goal leaves freedom",
+    )
+    group.add_argument(
+        "--least-squares",
+        action="store_const",
+        const=True,
+        help="where nothing reaches the goal: what comes closest",
+    )
+
+
+def options_of(args: argparse.Namespace, robot: Robot) -> dict[str, Any]:
+    """The keywords of robot.ik for what was typed, `near` apart."""
+    options: dict[str, Any] = {}
+    if args.fixed is not None:
+        options["fixed"] = held_joints(args, robot)
+    if args.swivel is not None:
+        options["swivel"] = np.radians(args.swivel) if args.deg else args.swivel
+    for name in ("samples", "least_squares"):
+        if getattr(args, name) is not None:
+            options[name] = getattr(args, name)
+    return options
+
+
+def held_joints(args: argparse.Namespace, robot: Robot) -> dict[str, float]:
+    """The joints of --fixed by name, with their values [rad, m]."""
+    held: dict[str, float] = {}
+    for word, value in args.fixed:
+        name = joint_called(word, robot)
+        if name in held:
+            raise UsageError(f"--fixed holds {name} twice; give each joint one value")
+        turns = robot.joint_types[robot.joint_names.index(name)] == "R"
+        held[name] = float(np.radians(value)) if args.deg and turns else value
+    return held

@@ -1,0 +1,180 @@
+"""The goal of `cspace ik`: a pose, or the parts of one that matter, by the words of robot.ik."""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import dataclass, field
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.cli.arguments import OPEN, coordinate, number
+from cspace.cli.exits import UsageError
+
+__all__ = ["GOAL_WORDS", "Goal", "add_goal", "axis_of", "goal_of"]
+
+ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
+"""The forms of an orientation."""
+POINTED: Final = ("direction", "look_at", "ray", "angle_to")
+"""What asks something of the tool axis."""
+GOAL_WORDS: Final = ("xyz", "xy", "angle", *ORIENTATIONS, "matrix", *POINTED)
+"""Every word of a goal."""
+NO_GOAL: Final = (
+    "no goal is given: give a pose (--matrix, or --xyz with one of --rpy, --wxyz, --xyzw and --rotation), or"
+    " the parts of one that matter (--xyz, --xy, --direction, --look-at, --ray, an orientation alone)"
+)
+
+
+@dataclass(frozen=True)
+class Goal:
+    """What is asked for: a pose T (4, 4), or parts of one by the keywords of robot.ik, with the tool axis."""
+
+    T: Array | None = None
+    parts: dict[str, Any] = field(default_factory=dict)
+    tool_axis: Any = "z"
+
+    def ask(self, robot: Any, **options: Any) -> Any:
+        """The library's answer."""
+        return robot.ik(self.T, **self.parts, tool_axis=self.tool_axis, **options)
+
+    @property
+    def rows(self) -> str:
+        """The rows of the Jacobian that count where joints are judged by this goal."""
+        one = next(iter(self.parts)) if len(self.parts) == 1 else ""
+        return {"position": "linear", "rotation": "angular"}.get(one, "all")
+
+    @property
+    def mark(self) -> Array | None:
+        """What a picture can show of the goal: a pose (4, 4), a point (3,) or (2,), or nothing."""
+        if self.T is not None:
+            return self.T
+        point = self.parts.get("position", self.parts.get("look_at"))
+        return None if point is None or None in point else np.array(point)
+
+    def document(self) -> dict[str, Any]:
+        """The goal as JSON data, [rad] and [m]; null for what is not asked."""
+        asked = {name: self.parts.get(name) for name in ("position", "rotation", "angle", *POINTED)}
+        pointed = any(name in self.parts for name in POINTED)
+        return {"matrix": self.T, **asked, "tool_axis": self.tool_axis if pointed else None}
+
+
+def add_goal(parser: argparse.ArgumentParser) -> None:
+    """The words of a goal."""
+    group = parser.add_argument_group(
+        "goal", "the tip in the base: a pose (a place and an orientation), or the parts of it that matter"
+    )
+
+    def add(*names: str, letters: str, text: str, kind: Any = number) -> None:
+        words = tuple(letters.split())
+        group.add_argument(*names, nargs=len(words), metavar=words, type=kind, help=text)
+
+    add("--xyz", "--position", letters="X Y Z", kind=coordinate, text=f"place [m]; {OPEN}: does not matter")
+    add("--xy", letters="X Y", text="place of an arm in the plane [m]")
+    group.add_argument("--angle", metavar="A", type=number, help="with --xy: the angle of the tip's x axis")
+    add("--rpy", letters="R P Y", text="orientation: roll, pitch, yaw about fixed x, y, z")
+    add("--wxyz", letters="W X Y Z", text="orientation: quaternion, real part first")
+    add("--xyzw", letters="X Y Z W", text="orientation: quaternion, real part last")
+    group.add_argument(
+        "--rotation", nargs=9, metavar="R", type=number, help="orientation: matrix, row by row"
+    )
+    group.add_argument("--matrix", nargs=16, metavar="M", type=number, help="the whole pose, row by row")
+    add("--direction", letters="X Y Z", text="where the tool axis points")
+    add("--look-at", letters="X Y Z", text="a point on the tool axis, ahead of the tip [m]")
+    add("--ray", letters="X Y Z DX DY DZ", text="a point [m] and the direction of the line of the tool axis")
+    group.add_argument(
+        "--angle-to", nargs=2, metavar=("AXIS", "A"), help="with --xyz: an axis of the base, the angle to it"
+    )
+    group.add_argument(
+        "--tool-axis", nargs="+", metavar="AXIS", help="the axis of the tip that points: z, -x, or 3 numbers"
+    )
+
+
+def goal_of(args: argparse.Namespace) -> Goal:
+    """The goal that the words ask for. Raises UsageError for words that make none."""
+    from cspace.spatial import as_pose
+
+    given = [name for name in GOAL_WORDS if getattr(args, name) is not None]
+    if not given:
+        raise UsageError(NO_GOAL)
+    if args.matrix is not None:
+        if len(given) > 1:
+            other = next(name for name in given if name != "matrix").replace("_", "-")
+            raise UsageError(f"--matrix is the whole pose already; leave --{other} out")
+        return Goal(as_pose(np.reshape(args.matrix, (4, 4)), "--matrix"), tool_axis=axis_of(args))
+    place, R = place_of(args), rotation_of(args)
+    parts = {"position": place, "rotation": R, **pointing_of(args)}
+    parts = {name: value for name, value in parts.items() if value is not None}
+    if set(parts) == {"position", "rotation"} and None not in parts["position"]:
+        return Goal(as_pose(pose_at(place, R), "goal"), tool_axis=axis_of(args))
+    if args.angle is not None:
+        parts["angle"] = np.radians(args.angle) if args.deg else args.angle
+    return Goal(None, parts, axis_of(args))
+
+
+def place_of(args: argparse.Namespace) -> list[float | None] | None:
+    """The place asked for, of three coordinates or two."""
+    if args.xyz is not None and args.xy is not None:
+        raise UsageError("--xyz and --xy both give a place: leave one out")
+    if args.angle is not None and args.xy is None:
+        raise UsageError("--angle is that of an arm in the plane: give --xy with it")
+    if args.xy is not None:
+        forms = [name for name in ORIENTATIONS if getattr(args, name) is not None]
+        if forms:
+            raise UsageError(f"--xy is a point of the plane: instead of --{forms[0]} give --angle, or --xyz")
+        return list(args.xy)
+    return None if args.xyz is None else list(args.xyz)
+
+
+def rotation_of(args: argparse.Namespace) -> Array | None:
+    """The orientation asked for (3, 3), in one of its forms."""
+    from cspace.spatial import as_rotation, pose
+
+    forms = [name for name in ORIENTATIONS if getattr(args, name) is not None]
+    if len(forms) > 1:
+        raise UsageError(f"one orientation only; {' and '.join('--' + name for name in forms)} were given")
+    if not forms:
+        return None
+    values = np.array(getattr(args, forms[0]))
+    if forms[0] == "rotation":
+        return np.asarray(as_rotation(values.reshape(3, 3), "--rotation"))
+    if forms[0] == "rpy" and args.deg:
+        values = np.radians(values)
+    arguments: dict[str, Any] = {forms[0]: values}
+    return np.asarray(pose(np.zeros(3), **arguments)[:3, :3])
+
+
+def pointing_of(args: argparse.Namespace) -> dict[str, Any]:
+    """What is asked of the tool axis."""
+    parts: dict[str, Any] = {"direction": args.direction, "look_at": args.look_at}
+    if args.ray is not None:
+        parts["ray"] = (args.ray[:3], args.ray[3:])
+    if args.angle_to is not None:
+        axis, angle = args.angle_to
+        try:
+            value = number(angle)
+        except argparse.ArgumentTypeError as error:
+            raise UsageError(f"--angle-to takes an axis and an angle: {error}") from None
+        parts["angle_to"] = (axis.strip(), np.radians(value) if args.deg else value)
+    return parts
+
+
+def axis_of(args: argparse.Namespace) -> Any:
+    """The tool axis: a name, or a direction in the tip."""
+    words = args.tool_axis or ["z"]
+    if len(words) == 1:
+        return words[0].strip()
+    try:
+        axis = [number(word) for word in words]
+    except argparse.ArgumentTypeError as error:
+        raise UsageError(f"--tool-axis takes a name or three numbers: {error}") from None
+    if len(axis) != 3:
+        raise UsageError(f"--tool-axis takes a name or three numbers, got {len(axis)}")
+    return axis
+
+
+def pose_at(place: Any, R: Any) -> Array:
+    """The pose (4, 4) of a place (3,) and an orientation (3, 3)."""
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = R, place
+    return T

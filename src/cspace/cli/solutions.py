@@ -1,0 +1,140 @@
+"""The solutions of `cspace ik`: their order, the table, the document."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.cli.goals import Goal
+from cspace.cli.output import Cell, Output, Table
+from cspace.cli.robot import angle_unit, headings, joint_texts, turning
+
+if TYPE_CHECKING:
+    from cspace.robot import Robot
+
+__all__ = ["Rows", "document", "show"]
+
+
+class Rows:
+    """The solutions in the order of the table: as found, or the nearest to `near` first.
+
+    q: (k, dof), each joint moved into its limits by whole turns where they are checked. branch: k labels.
+    residual, singularity: (k,). out: per row the joints out of limits and by how much. distance: (k,) from
+    `near`, or None.
+    """
+
+    def __init__(self, robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str) -> None:
+        from cspace.ik.windings import into_limits
+        from cspace.kinematics import distance_to_singularity
+
+        q = np.asarray(answer.q, dtype=np.float64)
+        if check:  # each joint where its limits are, if a whole turn brings it there
+            limits = robot.limits
+            q = into_limits(q, robot.joint_types, limits.lower, limits.upper)[0]
+        self.distance: Array | None = None
+        order = np.arange(len(q))
+        if near is not None:
+            gap = q - near
+            gap = np.where(turning(robot), np.pi - np.mod(np.pi - gap, 2 * np.pi), gap)
+            distance = np.linalg.norm(gap, axis=1)
+            order = np.argsort(distance, kind="stable")
+            self.distance = distance[order]
+        self.q = q[order]
+        self.branch = [str(answer.branch[k]) for k in order]
+        self.residual = np.asarray(answer.residual)[order]
+        out = answer.violations() if check else [{}] * len(q)
+        self.out: list[dict[str, float]] = [out[k] for k in order]
+        self.checked = check
+        self.singularity = distance_to_singularity(robot, self.q, rows=counting)
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+
+def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[str, Any]) -> dict[str, Any]:
+    """The answer as JSON data, [rad] and [m]."""
+    solutions = [
+        {
+            "q": rows.q[k].tolist(),
+            "branch": rows.branch[k],
+            "within_limits": not rows.out[k] if rows.checked else None,
+            "out_of_limits": rows.out[k],
+            "singularity": float(rows.singularity[k]),
+            "residual": float(rows.residual[k]),
+            "distance": None if rows.distance is None else float(rows.distance[k]),
+        }
+        for k in range(len(rows))
+    ]
+    return {
+        "schema": "cspace.ik/1",
+        "robot": robot.name,
+        "base": robot.base,
+        "tip": robot.tip,
+        "joints": list(robot.joint_names),
+        "goal": goal.document(),
+        "fixed": options.get("fixed", {}),
+        "swivel": options.get("swivel"),
+        "status": answer.status,
+        "complete": answer.complete,
+        "reason": answer.reason,
+        "missing": float(answer.missing),
+        "freedom": list(answer.freedom),
+        "solutions": solutions,
+    }
+
+
+def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -> None:
+    """The answer for people: a table, or why there is none."""
+    out.line(f"{robot.name}: {answer.reason}", style="bold" if answer else "yellow")
+    if not len(rows):
+        return
+    out.table(table_of(robot, rows, degrees=degrees))
+    names = ", ".join(
+        f"{short} {name}" for short, name in zip(headings(robot), robot.joint_names, strict=True)
+    )
+    units = f"angles in {angle_unit(degrees)}" + (", slides in m" if "P" in robot.joint_types else "")
+    out.hint(
+        f"{units}; singularity: distance to the nearest singular configuration; residual: of the true pose"
+    )
+    if headings(robot) != list(robot.joint_names):
+        out.hint(names)
+
+
+def table_of(robot: Robot, rows: Rows, *, degrees: bool) -> Table:
+    """One row per solution; columns in which nothing would stand are left out."""
+    limits = ["limits"] if rows.checked else []
+    branch = ["branch"] if any(rows.branch) else []
+    near = [] if rows.distance is None else ["distance"]
+    columns = ["", *headings(robot), *limits, "singularity", *branch, "residual", *near]
+    table = Table(columns, left=frozenset(columns.index(name) for name in (*limits, *branch)))
+    for k in range(len(rows)):
+        cells: list[Cell | str] = [f"{k + 1}", *joint_texts(rows.q[k], robot, degrees=degrees)]
+        if limits:
+            cells.append(limits_cell(rows.out[k], robot, degrees=degrees))
+        cells.append(f"{rows.singularity[k]:.4f}")
+        if branch:
+            cells.append(rows.branch[k])
+        cells.append(f"{rows.residual[k]:.1e}")
+        if rows.distance is not None:
+            cells.append(f"{rows.distance[k]:.4f}")
+        table.add(*cells)
+    return table
+
+
+def limits_cell(out_by: dict[str, float], robot: Robot, *, degrees: bool) -> Cell:
+    """Whether a row is within limits, and which joints are not, by how much."""
+    if not out_by:
+        return Cell("ok", "green")
+    texts = []
+    short = dict(zip(robot.joint_names, headings(robot), strict=True))
+    kinds = dict(zip(robot.joint_names, robot.joint_types, strict=True))
+    for name, excess in out_by.items():
+        size, unit, digits = excess, "m" if kinds[name] == "P" else "rad", 4
+        if degrees and kinds[name] == "R":
+            size, unit, digits = float(np.degrees(excess)), "deg", 2
+        least = 10.0**-digits
+        amount = f"< {least:g}" if size < 0.5 * least else f"{size:.{digits}f}"
+        texts.append(f"{short[name]} out by {amount} {unit}")
+    return Cell(", ".join(texts), "red")

@@ -1,0 +1,210 @@
+"""`cspace ik` asks what robot.ik can: parts of a pose, held joints, the swivel, samples, the nearest."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cli import schema
+from cli.run import cspace
+
+POSE = "--xyz 0.4 0.1 0.4 --rpy 3 0.1 0.2"
+T = cs.pose([0.4, 0.1, 0.4], rpy=[3, 0.1, 0.2])
+P = [0.4, 0.1, 0.3]
+
+PARTS = {
+    "ur5e --xyz 0.4 0.1 0.3": {"position": P},
+    "ur5e --position 0.4 0.1 0.3": {"position": P},
+    "ur5e --xyz 0.4,0.1,0.3": {"position": P},
+    "ur5e --xyz 0.4 any any": {"position": (0.4, None, None)},
+    "ur5e --xyz=0.4,any,-0.1": {"position": (0.4, None, -0.1)},
+    "ur5e --rpy 0.1 -0.2 0.3": {"rotation": cs.pose([0, 0, 0], rpy=[0.1, -0.2, 0.3])[:3, :3]},
+    "ur5e --rotation 0 -1 0 1 0 0 0 0 1": {"rotation": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]},
+    "ur5e --direction 0 0.6 -0.8": {"direction": [0, 0.6, -0.8]},
+    "ur5e --direction 0,0.6,-0.8 --tool-axis -x": {"direction": [0, 0.6, -0.8], "tool_axis": "-x"},
+    "ur5e --xyz 0.4 0.1 0.3 --direction 0 0 -1": {"position": P, "direction": [0, 0, -1]},
+    "so101 --xyz 0.2 0.05 0.1 --direction 0 0 -1 --tool-axis 1 0 0": {
+        "position": [0.2, 0.05, 0.1],
+        "direction": [0, 0, -1],
+        "tool_axis": [1, 0, 0],
+    },
+    "ur5e --look-at 0.6 0.2 -0.1": {"look_at": [0.6, 0.2, -0.1]},
+    "ur5e --ray 0.4 0.1 0.3 0 0.6 -0.8": {"ray": (P, [0, 0.6, -0.8])},
+    "ur5e --xyz 0.4 0.1 0.3 --angle-to -z 0.5": {"position": P, "angle_to": ("-z", 0.5)},
+    "planar_3r --xy 1.5 0.8 --angle -0.4": {"position": [1.5, 0.8], "angle": -0.4},
+}
+
+
+@pytest.mark.parametrize("line", PARTS)
+def test_parts_of_a_pose_are_answered_as_the_library_does(line):
+    result = cspace(f"ik {line} --limits keep --json")
+    assert result.code == 0, result.err
+    schema.check(result.json, "cspace.ik/1")
+    answer = cs.load_robot(line.split()[0]).ik(**PARTS[line])
+    np.testing.assert_allclose([row["q"] for row in result.json["solutions"]], answer.q, atol=1e-12)
+    assert result.json["freedom"] == list(answer.freedom)
+    assert result.json["reason"] == answer.reason
+    assert result.json["complete"] == answer.complete
+    assert max(row["residual"] for row in result.json["solutions"]) < 1e-9
+
+
+@pytest.mark.parametrize("line", PARTS)
+def test_the_goal_is_repeated_in_the_document(line):
+    goal = cspace(f"ik {line} --json").json["goal"]
+    asked = {name: value for name, value in goal.items() if value is not None}
+    wanted = dict(PARTS[line])
+    if {"direction", "look_at", "ray", "angle_to"} & set(wanted):
+        wanted.setdefault("tool_axis", "z")
+    assert set(asked) == set(wanted)
+    for name, value in wanted.items():
+        assert np.shape(asked[name]) == np.shape(value) if name != "angle_to" else asked[name][0] == value[0]
+
+
+def test_a_place_and_an_orientation_by_its_matrix_are_a_pose():
+    words = " ".join(map(repr, T[:3, :3].ravel().tolist()))
+    found = cspace(f"ik ur5e --xyz 0.4 0.1 0.4 --rotation {words} --json").json
+    np.testing.assert_allclose(found["goal"]["matrix"], T, atol=1e-15)
+    assert found["solutions"] == cspace(f"ik ur5e {POSE} --json").json["solutions"]
+
+
+@pytest.mark.parametrize(
+    ("deg", "rad"),
+    [
+        ("planar_3r --xy 1.5 0.8 --angle 30", "planar_3r --xy 1.5 0.8 --angle pi/6"),
+        ("ur5e --xyz 0.4 0.1 0.3 --angle-to z 150", "ur5e --xyz 0.4 0.1 0.3 --angle-to z 5pi/6"),
+        ("ur5e --rpy 30 0 -45", "ur5e --rpy pi/6 0 -pi/4"),
+        (
+            "panda --xyz 0.4 0.1 0.4 --rpy 180 0 0 --fixed panda_joint7=45",
+            "panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --fixed panda_joint7=pi/4",
+        ),
+        (
+            "iiwa14 --xyz 0.5 0.1 0.4 --rpy 180 0 0 --swivel -30",
+            "iiwa14 --xyz 0.5 0.1 0.4 --rpy pi 0 0 --swivel -pi/6",
+        ),
+    ],
+)
+def test_angles_of_goals_and_held_joints_are_typed_in_degrees(deg, rad):
+    found, wanted = cspace(f"ik {deg} --deg --json").json, cspace(f"ik {rad} --json").json
+    assert wanted["solutions"]
+    np.testing.assert_allclose(
+        [row["q"] for row in found["solutions"]], [row["q"] for row in wanted["solutions"]], atol=1e-9
+    )
+
+
+def test_a_slide_is_held_in_metres_whatever_the_angles_are_in():
+    robot = cs.load_robot("stanford")
+    words = " ".join(map(repr, robot.fk([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]).ravel().tolist()))
+    found = cspace(f"ik stanford --deg --json --fixed q3=0.3 --matrix {words}").json
+    assert found["solutions"]
+    assert found["fixed"] == {robot.joint_names[2]: 0.3}
+    assert all(row["q"][2] == 0.3 for row in found["solutions"])
+
+
+@pytest.mark.parametrize("word", ["panda_joint7", "q7"])
+def test_a_held_joint_stands_at_its_value_and_every_solution_of_the_others_is_listed(word):
+    found = cspace(f"ik panda {POSE} --fixed {word}=0.7 --limits keep --json").json
+    answer = cs.load_robot("panda").ik(T, fixed={"panda_joint7": 0.7})
+    assert len(answer)
+    np.testing.assert_allclose([row["q"] for row in found["solutions"]], answer.q, atol=1e-12)
+    assert found["fixed"] == {"panda_joint7": 0.7}
+    assert found["freedom"] == []
+
+
+def test_two_joints_are_held_in_one_word_or_two():
+    one = cspace(f"ik panda {POSE} --fixed q7=0.7 q1=0.2 --json")
+    two = cspace(f"ik panda {POSE} --fixed q7=0.7 --fixed q1:=0.2 --json")
+    assert (one.code, one.out) == (two.code, two.out)
+    assert one.json["fixed"] == {"panda_joint7": 0.7, "panda_joint1": 0.2}
+
+
+def test_the_swivel_is_that_of_every_solution():
+    found = cspace("ik iiwa14 --xyz 0.5 0.1 0.4 --rpy pi 0 0 --swivel 0.5 --limits keep --json").json
+    robot = cs.load_robot("iiwa14")
+    assert len(found["solutions"]) == 8
+    assert found["swivel"] == 0.5
+    np.testing.assert_allclose(cs.ik.swivel(robot, [row["q"] for row in found["solutions"]]), 0.5, atol=1e-9)
+
+
+def test_samples_spread_over_what_is_free():
+    for count in (1, 5):
+        found = cspace(f"ik panda {POSE} --samples {count} --limits keep --json").json
+        values = {round(row["q"][6], 9) for row in found["solutions"]}
+        assert len(values) == count
+        assert found["freedom"] == ["panda_joint7"]
+        assert f"at {count} value" in cspace(f"ik panda {POSE} --samples {count}").out
+
+
+def test_the_nearest_of_a_self_motion_comes_alone():
+    near = [0.2, 0.1, 0.1, -2.0, 0.1, 2.0, 0.5]
+    found = cspace(f"ik panda {POSE} --json --near", ",".join(map(str, near))).json
+    best = cs.load_robot("panda").ik(T, near=near)
+    assert len(found["solutions"]) == 1
+    np.testing.assert_allclose(found["solutions"][0]["q"], best.q[0], atol=1e-12)
+    np.testing.assert_allclose(
+        found["solutions"][0]["distance"], np.linalg.norm(best.q[0] - near), atol=1e-12
+    )
+    listed = cspace(f"ik panda {POSE} --samples 50 --json").json["solutions"]
+    assert found["solutions"][0]["distance"] <= min(np.linalg.norm(np.array(r["q"]) - near) for r in listed)
+
+
+def test_at_a_singular_pose_the_nearest_is_that_of_the_family():
+    robot = cs.load_robot("puma560")
+    q = np.array([0.1, 0.2, 0.3, 0.4, 0.0, 0.5])
+    words = " ".join(map(repr, robot.fk(q).ravel().tolist()))
+    found = cspace(f"ik puma560 --matrix {words} --near {' '.join(map(str, q))} --json").json
+    assert found["solutions"][0]["distance"] < 1e-6
+
+
+def test_what_comes_closest_is_told_on_request_only():
+    line = "ik ur5e --xyz 0.8 0.2 0.9 --rpy 0 0 0"
+    assert cspace(line).code == 1
+    found = cspace(line, "--least-squares", "--json")
+    assert (found.code, found.json["status"], len(found.json["solutions"])) == (0, "least_squares", 1)
+    robot = cs.load_robot("ur5e")
+    np.testing.assert_allclose(
+        found.json["solutions"][0]["q"],
+        robot.ik(cs.pose([0.8, 0.2, 0.9]), least_squares=True).q[0],
+        atol=1e-9,
+    )
+
+
+def test_freedom_is_told_in_the_text():
+    assert "leaves 4 dimensions free: goal_tool_slide_z" in cspace("ik ur5e --look-at 0.6 0.2 0").out
+    assert "branch" not in cspace("ik ur5e --look-at 0.6 0.2 0").out, "a column without a word is left out"
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "ur5e --look-at 0.6 0.2 0",
+        "ur5e --direction 0 0 -1",
+        f"panda {POSE} --samples 2",
+        "ur5e --xyz 0.4 any 0.2",
+    ],
+)
+def test_pictures_of_every_kind_of_goal(line, tmp_path):
+    pytest.importorskip("matplotlib")
+    picture = tmp_path / "all.png"
+    assert cspace(f"ik {line} --plot", str(picture)).code == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_an_explanation_knows_the_joints_that_are_held():
+    result = cspace("ik panda --explain --fixed q4=-pi/2 --json")
+    assert result.code == 0, result.err
+    schema.check(result.json, "cspace.ik_plan/1")
+    assert result.json["held"] == ["panda_joint4"]
+    assert (
+        cspace("ik panda --explain --fixed q4=-90 --deg").out
+        == cspace("ik panda --explain --fixed q4=-pi/2").out
+    )
+    assert cspace("ik al5d --explain --asked look-at").out == cspace("ik al5d --explain --asked look_at").out
+
+
+@pytest.mark.parametrize("verb", ["fk", "jacobian"])
+def test_numbers_may_stand_with_commas_between_them(verb):
+    assert (
+        cspace(f"{verb} ur5e 0.1,-1.2,pi/2,-pi/4,0,3").out
+        == cspace(f"{verb} ur5e 0.1 -1.2 pi/2 -pi/4 0 3").out
+    )
