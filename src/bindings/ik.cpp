@@ -93,10 +93,21 @@ PyObject* answer_single(PyObject* robot, const ik::Arm& arm, const double* goal)
 
 const char words[] = "cspace.ik.solve";
 
-// The value of near= where it is the one keyword beside one goal; else null.
-PyObject* only_near(PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    if (nargs != 1 || !kwnames || PyTuple_GET_SIZE(kwnames) != 1) return nullptr;
-    return PyUnicode_CompareWithASCIIString(PyTuple_GET_ITEM(kwnames, 0), "near") == 0 ? args[1] : nullptr;
+// The answer where near= or fixed= is the one keyword beside one goal; null without an error for what is not
+// answered here.
+PyObject* answer_keyword(PyObject* robot, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+    const auto* self = reinterpret_cast<RobotObject*>(robot);
+    if ((!self->near && !self->held) || nargs != 1 || !kwnames || PyTuple_GET_SIZE(kwnames) != 1)
+        return nullptr;
+    double copy[16];
+    PyObject* name = PyTuple_GET_ITEM(kwnames, 0);
+    if (PyUnicode_CompareWithASCIIString(name, "near") == 0) {
+        const double* goal = self->near ? goal_in_place(args[0], copy) : nullptr;
+        return goal ? ik_near(robot, goal, args[1]) : nullptr;
+    }
+    if (PyUnicode_CompareWithASCIIString(name, "fixed") != 0) return nullptr;
+    const double* goal = self->held ? goal_in_place(args[0], copy) : nullptr;
+    return goal ? ik_held(robot, goal, args[1]) : nullptr;
 }
 
 }  // namespace
@@ -110,11 +121,8 @@ PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
         PyObject* answer = answer_single(self, *arm, goal);
         if (answer || PyErr_Occurred()) return answer;
     }
-    PyObject* seed = reinterpret_cast<RobotObject*>(self)->near ? only_near(args, nargs, kwnames) : nullptr;
-    if (const double* T = seed ? goal_in_place(args[0], copy) : nullptr) {
-        PyObject* answer = ik_near(self, T, seed);
-        if (answer || PyErr_Occurred()) return answer;
-    }
+    PyObject* answer = answer_keyword(self, args, nargs, kwnames);
+    if (answer || PyErr_Occurred()) return answer;
     return robot_call_python(words, "inverse_kinematics", "ik", self, args, nargs, kwnames);
 }
 

@@ -300,6 +300,18 @@ void bind_ik_redundant(nb::module_& m) {
             },
             "robot"_a, "about"_a,
             "Answers near= of this robot from now on, for one goal without other keywords.")
+        .def(
+            "serve_held",
+            [](nb::handle self, nb::handle robot, const std::vector<int>& held, nb::handle about) {
+                if (!PyObject_TypeCheck(robot.ptr(), robot_type)) throw nb::type_error("a robot comes first");
+                const nb::object names = robot.attr("joint_names");
+                auto& solver = nb::cast<RedundantSolver&>(self);
+                if (!PyTuple_CheckExact(names.ptr()) || int(nb::len(names)) != solver.arm.chain.n)
+                    throw nb::type_error("the solver is that of the robot's joints");
+                ik_add_held(robot.ptr(), self.ptr(), names.ptr(), about.ptr(), held, &plan_of(solver, held));
+            },
+            "robot"_a, "held"_a, "about"_a,
+            "Answers fixed= with these joints from now on, for one goal without other keywords.")
         .def("room", &room_of, "held"_a, "Rows that the solutions of a goal may need.")
         .def("solve", &solve_rows, "held"_a, "at"_a, "goals"_a, "idle"_a, "q"_a, "branch"_a, "family"_a,
              "count"_a, "status"_a, "threads"_a, "Every solution with joints held at their values.")

@@ -2,6 +2,8 @@
 // read.
 #pragma once
 
+#include <vector>
+
 #include "cspace/ik/arm.hpp"
 #include "robot.hpp"
 
@@ -52,12 +54,16 @@ inline bool is_writable(PyObject* array) {
     return PyArray_ISWRITEABLE(reinterpret_cast<PyArrayObject*>(array));
 }
 
-// --- near= of arms with joints to spare (ik_near.cpp) ----------------------------------------------------
+// --- near= of arms with joints to spare (ik_near.cpp), fixed= of any arm (ik_held.cpp) -------------------
 namespace cspace::ik {
 struct Redundant;
-}
+struct LockedArm;
+}  // namespace cspace::ik
 void ik_set_near(PyObject* robot, const cspace::ik::Redundant* arm, PyObject* solver, PyObject* about);
 PyObject* ik_near(PyObject* robot, const double* goal, PyObject* seed);
+void ik_add_held(PyObject* robot, PyObject* solver, PyObject* names, PyObject* about,
+                 const std::vector<int>& held, const cspace::ik::LockedArm* locked);
+PyObject* ik_held(PyObject* robot, const double* goal, PyObject* fixed);
 
 // --- the functions of each file ------------------------------------------------------------------------
 // ik_result.cpp

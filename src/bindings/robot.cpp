@@ -183,6 +183,7 @@ PyObject* create(PyTypeObject* type, PyObject*, PyObject*) {
     new (&robot->model) std::unique_ptr<const RobotModel>();
     new (&robot->ik) std::shared_ptr<void>();
     new (&robot->near) std::shared_ptr<void>();
+    new (&robot->held) std::shared_ptr<void>();
     robot->frame_index = nullptr;
     robot->tip = -1;
     robot->floating = false;
@@ -194,6 +195,7 @@ void destroy(PyObject* self) {
     Py_CLEAR(robot->frame_index);
     robot->ik.~shared_ptr();
     robot->near.~shared_ptr();
+    robot->held.~shared_ptr();
     robot->model.~unique_ptr();
     type->tp_free(self);
     Py_DECREF(type);

@@ -109,3 +109,116 @@ TEST(the_way_to_the_nearest_is_square_to_the_self_motion) {
         CHECK(std::fabs(along) < 1e-9);
     }
 }
+
+// Arms of seven and eight joints, some of them slides, in millimetres and in metres.
+static ik::Chain random_chain(arms::Rng& rng, int k) {
+    ik::Chain chain;
+    const double size = k % 3 == 0 ? 1e-3 : 1;
+    chain.n = 7 + k % 2;
+    for (int i = 0; i < chain.n; ++i) {
+        const Posed at = arms::random_pose(rng);
+        chain.axis[i] = column(at.R, 2);
+        chain.point[i] = size * at.t;
+        chain.prismatic[i] = k % 4 == 3 && i % 4 == k % 5;
+    }
+    chain.tip = arms::random_pose(rng);
+    chain.tip.t = size * chain.tip.t;
+    return chain;
+}
+
+// The derivative of the frames' points, and the angular velocity, as the joints q of the halves move along x.
+struct HalvesSpeed {
+    Vec3d linear[2] = {}, angular[2] = {};
+};
+static HalvesSpeed speed_of(const ik::Halves& halves, const Posed& goal, double length, const double (*q)[2],
+                            const double (*x)[2], double t) {
+    Pack<2> at[4];
+    for (int k = 0; k < 4; ++k)
+        for (int half = 0; half < 2; ++half) set_lane(at[k], half, q[k][half] + t * x[k][half]);
+    HalvesMotion motion;
+    move_halves(halves, goal, 1 / length, at, motion);
+    HalvesSpeed out;
+    for (int half = 0; half < 2; ++half)
+        for (int k = 0; k < 4; ++k) {
+            out.linear[half] = out.linear[half] + x[k][half] * vector_of_half(motion.linear[k], half);
+            out.angular[half] = out.angular[half] + x[k][half] * vector_of_half(motion.axis[k], half);
+        }
+    return out;
+}
+
+// Where the proof stands on: the second derivatives against differences of the first, and the third ones
+// within their bounds.
+TEST(derivatives_of_the_halves) {
+    arms::Rng rng(4);
+    for (int trial = 0; trial < 400; ++trial) {
+        const ik::Chain chain = random_chain(rng, trial);
+        const double length = characteristic_length(chain), h = 1e-3;
+        const ik::Halves halves = make_halves(chain, length);
+        const Posed goal = arms::random_pose(rng);
+        double q[4][2], x[4][2], square[2] = {0, 0};
+        Pack<2> at[4];
+        for (int k = 0; k < 4; ++k)
+            for (int half = 0; half < 2; ++half) {
+                const bool slides = halves.sliding[k][half] > 0;
+                q[k][half] = slides ? length * arms::uniform(rng, -1, 1) : arms::uniform(rng, -pi, pi);
+                x[k][half] = halves.joint[k][half] < 0 ? 0 : arms::uniform(rng, -1, 1);
+                if (slides) x[k][half] *= min(1.0, length);
+                set_lane(at[k], half, q[k][half]);
+                square[half] += x[k][half] * x[k][half];
+            }
+        const HalvesSpeed before = speed_of(halves, goal, length, q, x, -h),
+                          now = speed_of(halves, goal, length, q, x, 0),
+                          after = speed_of(halves, goal, length, q, x, h);
+        double lambda[6];
+        for (double& weight : lambda) weight = arms::uniform(rng, -1, 1);
+        HalvesMotion motion;
+        Pack<2> bent[4][4];
+        move_halves(halves, goal, 1 / length, at, motion);
+        bend_halves(motion, lambda, bent);
+        const Vec3d force = {lambda[0], lambda[1], lambda[2]}, moment = {lambda[3], lambda[4], lambda[5]};
+        double by_formula = square[0] + square[1], by_difference = 0;
+        for (int half = 0; half < 2; ++half) {
+            for (int a = 0; a < 4; ++a)
+                for (int b = 0; b < 4; ++b)
+                    by_formula -= x[a][half] * x[b][half] * lane(a < b ? bent[b][a] : bent[a][b], half);
+            by_difference += dot(force, after.linear[half] - before.linear[half]) / (2 * h) +
+                             dot(moment, after.angular[half] - before.angular[half]) / (2 * h);
+            const Vec3d v2 =
+                (1 / (h * h)) * (after.linear[half] + before.linear[half] - 2.0 * now.linear[half]);
+            const Vec3d w = now.angular[half], w1 = (0.5 / h) * (after.angular[half] - before.angular[half]);
+            const Vec3d w2 =
+                (1 / (h * h)) * (after.angular[half] + before.angular[half] - 2.0 * now.angular[half]);
+            const double cube = square[half] * std::sqrt(square[half]), way = half ? -1 : 1;
+            double reach = halves.reach[half];
+            for (int k = 0; k < 4; ++k) reach += halves.slid[k][half] * std::fabs(q[k][half]);
+            CHECK(norm(v2) <= reach * cube + 1e-4);
+            CHECK(norm(w2 + (0.5 * way) * cross(w1, w) - dot(w, w) * w) <= halves.turn[half] * cube + 1e-4);
+        }
+        CHECK_NEAR(by_formula, by_difference, 1e-4 * (1 + std::fabs(by_formula)));
+    }
+}
+
+TEST(what_is_proven_is_the_nearest) {
+    const ik::Redundant arm = shoulder_arm();
+    arms::Rng rng(5);
+    int proven = 0;
+    for (int trial = 0; trial < 300; ++trial) {
+        double q[7], seed[7], found[7], values[64];
+        random_within(rng, arm, q);
+        const double size = trial % 3 == 0 ? 0.02 : trial % 3 == 1 ? 0.08 : 0.2;
+        for (int i = 0; i < 7; ++i) seed[i] = q[i] + arms::uniform(rng, -size, size);
+        const Posed goal = forward(arm.chain, q);
+        if (!nearest_by_proof(arm.halves, goal, arm.length, seed, found)) continue;
+        ++proven;
+        CHECK(pose_difference(forward(arm.chain, found), goal, 1) < 1e-9);
+        const double distance = distance_from_seed(arm, seed, found);
+        CHECK(distance <= distance_from_seed(arm, seed, q) + 1e-12);
+        for (int k = 0; k < 64; ++k) values[k] = seed[6] + distance * ((k + 0.5) / 32 - 1);
+        const Sweep sweep = make_sweep(arm.locked, 6, goal, seed);
+        sweep_values(sweep, values, 64, [&](int, const SweptRows& rows) {
+            for (int k = 0; k < rows.count; ++k)
+                CHECK(distance <= distance_from_seed(arm, seed, rows.q[k]) + 1e-9);
+        });
+    }
+    CHECK(proven > 200);
+}

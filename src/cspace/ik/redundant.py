@@ -184,6 +184,8 @@ def solve_held(
         return SolutionsBatch(
             robot, goals, q.reshape(*shape, room, n), count.reshape(shape), status.reshape(shape)
         )
+    if near is None:
+        solver.serve_held(robot, joints, About())
     k = int(count[0])
     note = None
     if k == 0:

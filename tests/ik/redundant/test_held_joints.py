@@ -177,3 +177,30 @@ def test_goals_and_values_that_do_not_fit_together_are_refused():
         robot.ik(T, fixed={0: [0.1, 0.2, 0.3]})
     with pytest.raises(InputError, match=r"goal \(2,\), swivel \(3,\)"):
         robot.ik(T, swivel=[0.1, 0.2, 0.3])
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "pr2_right_torso", "ur5e"])
+def test_one_number_answers_like_an_array_of_it(name):
+    """The compiled entry takes numbers; whatever else is given goes the long way."""
+    robot = cs.load_robot(name)
+    held = {"panda": (6,), "iiwa14": (2,), "pr2_right_torso": (0, 3), "ur5e": (5,)}[name]
+    for q in robot.random_configuration(6, rng=4):
+        T = robot.fk(q)
+        numbers = {robot.joint_names[j]: float(q[j]) for j in held}
+        long_way = robot.ik(T, fixed={j: np.array(q[j]) for j in held})
+        for given in (numbers, numbers, {j: q[j] for j in held}, {j - robot.dof: q[j] for j in held}):
+            short = robot.ik(T, fixed=given)
+            assert np.array_equal(short.q, long_way.q)
+            for what in ("branch", "complete", "status", "reason", "freedom", "families"):
+                assert getattr(short, what) == getattr(long_way, what), what
+    far = T.copy()
+    far[:3, 3] = 50.0
+    assert not robot.ik(far, fixed=numbers)
+    assert robot.joint_names[held[0]] in robot.ik(far, fixed=numbers).reason
+    for wrong in (np.nan, np.inf, 1e200):
+        with pytest.raises(InputError):
+            robot.ik(T, fixed=numbers | {robot.joint_names[held[0]]: wrong})
+    with pytest.raises(InputError, match="twice"):
+        robot.ik(T, fixed=numbers | {held[0]: 0.1})
+    with pytest.raises(UnknownNameError):
+        robot.ik(T, fixed={"no_such_joint": 0.1})

@@ -111,3 +111,28 @@ def test_one_call_answers_like_a_batch_and_like_words():
         robot.ik(np.full((4, 4), np.nan), near=q[0])
     with pytest.raises(cs.errors.InputError):
         robot.ik(Ts[0], near=q[0, :6])
+
+
+@pytest.mark.parametrize("name", ["panda", "iiwa14", "pr2_right_torso"])
+def test_seeds_in_awkward_places(name):
+    """Seeds that are solutions, at the limits, turns away, and beside stretched and folded arms."""
+    robot = cs.load_robot(name)
+    rng = np.random.default_rng(13)
+    turning = np.array([kind == "R" for kind in robot.joint_types])
+    lower, upper = np.maximum(robot.limits.lower, -np.pi), np.minimum(robot.limits.upper, np.pi)
+    middle = 0.5 * (lower + upper)
+    ways = rng.normal(size=(6, robot.dof))
+    ways *= 0.03 / np.linalg.norm(ways, axis=1)[:, None]
+    for q in [*robot.random_configuration(3, rng=rng), middle, np.zeros(robot.dof), lower, upper]:
+        T = robot.fk(q)
+        assert np.allclose(distances(robot.ik(T, near=q).q, q), 0, atol=1e-7)
+        for way in ways:
+            seed = q + way
+            near = robot.ik(T, near=seed)
+            assert near.residual[0] < 1e-9
+            assert distances(near.q, seed)[0] <= np.linalg.norm(way) + 1e-9
+            turned = seed + 2 * np.pi * rng.integers(-3, 4, robot.dof) * turning
+            far = robot.ik(T, near=turned)
+            assert distances(far.q, seed)[0] == pytest.approx(distances(near.q, seed)[0], abs=1e-7)
+            inside = (far.q[0] >= robot.limits.lower) & (far.q[0] <= robot.limits.upper)
+            assert (inside | (np.abs(far.q[0] - turned) < np.pi + 1e-9)).all()

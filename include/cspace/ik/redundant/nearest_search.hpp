@@ -66,9 +66,10 @@ struct Nearest {
     double q[ik::max_joints];
 };
 
-// Newton's method on starts abreast, as many as V has lanes; the best that settles is kept.
+// Newton's method on starts abreast, as many as V has lanes; the best that settles is kept. rank: of the
+// Jacobian along what they lead to.
 template <int N, class V>
-inline void settle_abreast(const ik::Redundant& arm, const Posed& goal, const double* seed,
+inline void settle_abreast(const ik::Redundant& arm, int rank, const Posed& goal, const double* seed,
                            const double* const* starts, int count, Nearest& best) {
     V q[ik::max_joints], step = fill<V>(1.0);
     for (int i = 0; i < arm.chain.n; ++i)
@@ -77,8 +78,7 @@ inline void settle_abreast(const ik::Redundant& arm, const Posed& goal, const do
     TipMotion<V> motion;
     V lambda[6];
     for (int k = 0; k < most_nearest_steps && any(step > settled_step); ++k)
-        step =
-            step_to_nearest<N>(arm.chain, arm.rank, goals, arm.length, seed, arm.weight, q, motion, lambda);
+        step = step_to_nearest<N>(arm.chain, rank, goals, arm.length, seed, arm.weight, q, motion, lambda);
     tip_motion<N>(arm.chain, goals, arm.length, q, motion);
     double row[ik::max_joints];
     for (int l = 0; l < count; ++l) {
@@ -105,7 +105,7 @@ inline void settle_all(const ik::Redundant& arm, const Posed& goal, const double
                         : arm.chain.n == 7 ? settle_abreast<7, Pack<4>>
                                            : settle_abreast<0, Pack<4>>;
     for (int first = 0; first < count; first += lanes)
-        settle(arm, goal, seed, starts + first, min(lanes, count - first), best);
+        settle(arm, arm.rank, goal, seed, starts + first, min(lanes, count - first), best);
 }
 
 // The starts from which a valley may lead below the best one; `also`: one more, on the manifold or not.
@@ -122,8 +122,8 @@ inline void settle_starts(const ik::Redundant& arm, const Posed& goal, const dou
 }
 
 // From the seed and from two places beside it along the curve, about as far off as the curve is from the
-// seed: beside a singularity it doubles back.
-inline void settle_around(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
+// seed: beside a singularity it doubles back. Returns how far off.
+inline double settle_around(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
     const int n = arm.chain.n;
     TipMotion<double> motion;
     SplitJacobian<double> split;
@@ -132,12 +132,13 @@ inline void settle_around(const ik::Redundant& arm, const Posed& goal, const dou
     split_jacobian<0>(motion, n, arm.rank, split);
     shortest_step<0>(split, n, motion.error, step);
     free_direction<0>(split, n, 0, along);
-    const double far = min(0.5, 1.5 * std::sqrt(dot_n(step, step, n)));
+    const double off = std::sqrt(dot_n(step, step, n)), far = min(0.5, 1.5 * off);
     const double* starts[4] = {seed, beside[0], beside[1], beside[2]};
     for (int k = 0; k < 3; ++k)
         for (int i = 0; i < n; ++i)
             beside[k][i] = seed[i] + (k == 0 ? far : k == 1 ? -far : 2 * far) * along[i];
     settle_all(arm, goal, seed, starts, 4, best);
+    return off;
 }
 
 // The lowest samples of a curve whose closed form runs on lanes, within a window of the parameter.
@@ -171,7 +172,7 @@ inline void nearest_of_curve(const ik::Redundant& arm, const Posed& goal, const 
     const bool slides = arm.chain.prismatic[p];
     const Domain domain = domain_of(arm, p, goal);
     const double far = slides ? max(domain.upper - seed[p], seed[p] - domain.lower) : pi;
-    settle_around(arm, goal, seed, best);
+    const double off = settle_around(arm, goal, seed, best);
     const double window = arm.weight[p] > 0 ? min(best.distance, far) : far;
     const Sweep sweep = make_sweep(arm.locked, p, goal, seed);
     const double unit = slides ? 2 * far / most : spacing;
@@ -188,6 +189,8 @@ inline void nearest_of_curve(const ik::Redundant& arm, const Posed& goal, const 
         });
     }
     settle_starts(arm, goal, seed, starts, nullptr, best);
+    // Close by there is more than a curve where the tip cannot move as it should: axes in line, say.
+    if (best.distance > 3 * off) settle_abreast<0, double>(arm, arm.rank - 1, goal, seed, &seed, 1, best);
 }
 
 // More joints to spare: the held ones at the seed, and spread around it ever farther.
@@ -239,8 +242,7 @@ inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, cons
 // False where nothing reaches the goal. q: turning joints in (−π, π].
 inline bool nearest_configuration(const ik::Redundant& arm, const Posed& goal, const double* seed,
                                   double* q) {
-    const auto prove = arm.chain.n == 7 && arm.rank == 6 ? nearest_by_proof<7> : nearest_by_proof<0>;
-    if (prove(arm.chain, arm.rank, goal, arm.length, seed, arm.weight, q)) {
+    if (arm.halves.exist && nearest_by_proof(arm.halves, goal, arm.length, seed, q)) {
         for (int i = 0; i < arm.chain.n; ++i)
             if (!arm.chain.prismatic[i]) q[i] = wrap_once(short_way(q[i]));
         return true;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cspace/ik/redundant/basis.hpp"
+#include "cspace/ik/redundant/halves.hpp"
 #include "cspace/ik/redundant/locked_arm.hpp"
 
 namespace cspace::ik {
@@ -16,6 +17,7 @@ struct Redundant {
     int rank = 6;                                 // of the Jacobian where nothing special happens
     int spare = 0;                                // how many joints are held: n − rank
     LockedArm locked;                             // with the default choice of them
+    Halves halves;  // where all joints count alike and none is missing to rank 6
 };
 
 // Where a joint may be: a turning joint with a whole turn of room or more is never stopped.
@@ -198,6 +200,9 @@ inline ik::Redundant make_redundant(const ik::Chain& chain, const double* lower,
     arm.rank = basis_of(chain, arm.length).rank;
     arm.spare = chain.n - arm.rank;
     if (arm.spare) choose_locks(arm, plan_general);
+    bool alike = arm.rank == 6;
+    for (int i = 0; i < chain.n; ++i) alike = alike && weight[i] == 1;
+    if (alike) arm.halves = make_halves(chain, arm.length);
     return arm;
 }
 

@@ -1,0 +1,107 @@
+// An arm cut in its middle: the joints from the base on and those from the tip back move two frames that meet
+// where a goal is reached. Each frame depends on its own half of the joints, so that second derivatives do
+// not couple the halves, and both are walked abreast, one on each lane.
+#pragma once
+
+#include <initializer_list>
+#include <limits>
+
+#include "cspace/ik/chain.hpp"
+#include "cspace/math/rows.hpp"
+
+namespace cspace::ik {
+
+// Lengths count over the arm's own. Lane 0: the joints from the base to the middle; lane 1: from the tip
+// back, turning the other way. The frame of a joint has it turn about (slide along) its z.
+struct Halves {
+    static constexpr int longest = 4;
+    bool exist = false;                              // for arms of up to eight joints
+    bool slides = false;                             // whether any joint does
+    int joint[longest][2];                           // −1 beyond the shorter half
+    double frame[longest][9][2], at[longest][3][2];  // of each joint in the one before
+    double meeting[9][2], middle[3][2];  // the frames that meet, and a point of them, in the last ones
+    double turning[longest][2], sliding[longest][2];  // what a unit of the joint does: 1 or 0; 1/length or 0
+    // No third derivative of that point in a direction of unit length is larger, nor one of a frame's turn;
+    // `slid` is what each slide adds for each unit it is out.
+    double reach[2], turn[2], slid[longest][2];
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline Mat3d frame_along(const Vec3d& z) {
+    const Vec3d x = any_perpendicular(z);
+    return from_columns(x, cross(z, x), z);
+}
+inline double to_the_three_halves(int k) { return k * std::sqrt(double(k)); }
+
+// The halves of a chain with `front` joints before the middle, which is at c, a point at zero; length: of the
+// arm. The point of each joint is the nearest of its axis to the next one towards the middle, so that the
+// joints' third derivatives, each at most the cube of all angles before a link times its length, are bounded
+// well: (Σ |x_j|)³ ≤ k^(3/2) |x|³ for k of them.
+inline ik::Halves halves_at(const ik::Chain& chain, double length, int front, const Vec3d& c) {
+    ik::Halves out;
+    out.exist = true;
+    const Mat3d last[2] = {frame_along(chain.axis[front - 1]), frame_along(chain.axis[front])};
+    for (int half = 0; half < 2; ++half) {
+        const int count = half ? chain.n - front : front;
+        Vec3d point[ik::Halves::longest];
+        Vec3d next = c;
+        out.reach[half] = 0;
+        out.turn[half] = to_the_three_halves(count);
+        for (int k = count - 1; k >= 0; --k) {
+            const int i = half ? chain.n - 1 - k : k;
+            const Vec3d h = chain.axis[i];
+            point[k] = chain.prismatic[i] ? next : chain.point[i] + dot(h, next - chain.point[i]) * h;
+            const double most = to_the_three_halves(k + 1) / length;
+            out.slid[k][half] = chain.prismatic[i] ? most : 0;
+            out.reach[half] += most * (norm(next - point[k]) + chain.prismatic[i]);
+            next = point[k];
+        }
+        Posed before = half ? chain.tip : identity_pose();
+        for (int k = 0; k < ik::Halves::longest; ++k) {
+            const int i = half ? chain.n - 1 - k : k;
+            const bool real = k < count;
+            const Posed now = real ? Posed{frame_along(chain.axis[i]), point[k]} : before;
+            const Posed relative = inverse(before) * now;
+            out.joint[k][half] = real ? i : -1;
+            out.turning[k][half] = real && !chain.prismatic[i];
+            out.sliding[k][half] = real && chain.prismatic[i] ? 1 / length : 0;
+            out.slides = out.slides || (real && chain.prismatic[i]);
+            if (!real) out.slid[k][half] = 0;
+            for (int j = 0; j < 9; ++j) out.frame[k][j][half] = relative.R.m[j / 3][j % 3];
+            const double t[3] = {relative.t.x, relative.t.y, relative.t.z};
+            for (int j = 0; j < 3; ++j) out.at[k][j][half] = t[j] / length;
+            before = now;
+        }
+        const Mat3d meeting = transpose(before.R) * last[0];
+        for (int j = 0; j < 9; ++j) out.meeting[j][half] = meeting.m[j / 3][j % 3];
+        const Vec3d from = transpose_times(before.R, c - before.t);
+        const double t[3] = {from.x, from.y, from.z};
+        for (int j = 0; j < 3; ++j) out.middle[j][half] = t[j] / length;
+    }
+    return out;
+}
+
+// Cut where the bounds come out least, at a point of one of the axes beside the cut.
+inline ik::Halves make_halves(const ik::Chain& chain, double length) {
+    constexpr int longest = ik::Halves::longest;
+    ik::Halves best;
+    if (chain.n < 2 || chain.n > 2 * longest) return best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int front = max(1, chain.n - longest); front <= min(longest, chain.n - 1); ++front)
+        for (const int beside : {front - 1, front})
+            for (int i = 0; i < chain.n; ++i) {
+                const Vec3d h = chain.axis[beside], p = chain.point[beside];
+                const Vec3d c = p + dot(h, chain.point[i] - p) * h;
+                const ik::Halves found = halves_at(chain, length, front, c);
+                const double most = max(found.reach[0], found.reach[1]);
+                if (!(most < least)) continue;
+                least = most;
+                best = found;
+            }
+    return best;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

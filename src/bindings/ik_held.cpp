@@ -1,0 +1,106 @@
+// robot.ik(T, fixed={…}): the compiled entry for one goal with joints held at numbers. The first call with a
+// set of joints goes through cspace.ik.redundant, which leaves their plan here.
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "cspace/ik/goal.hpp"
+#include "ik_redundant.hpp"
+#include "ik_shared.hpp"
+
+using namespace cspace;
+
+namespace {
+
+struct HeldPlan {
+    unsigned joints;  // one bit each
+    const ik::LockedArm* locked;
+};
+struct HeldEntry {
+    PyObject* solver;  // keeps the plans
+    PyObject* names;   // of all joints, a tuple
+    PyObject* about;   // that no freedom is left
+    std::vector<HeldPlan> plans;
+
+    HeldEntry(PyObject* solver_, PyObject* names_, PyObject* about_)
+        : solver(Py_NewRef(solver_)), names(Py_NewRef(names_)), about(Py_NewRef(about_)) {}
+    ~HeldEntry() {
+        Py_DECREF(solver);
+        Py_DECREF(names);
+        Py_DECREF(about);
+    }
+};
+
+HeldEntry* entry_of(PyObject* robot) {
+    return static_cast<HeldEntry*>(reinterpret_cast<RobotObject*>(robot)->held.get());
+}
+
+// The joint that a key of fixed= names; −1 for what is not answered here.
+Py_ssize_t joint_of(PyObject* names, PyObject* key) {
+    const Py_ssize_t n = PyTuple_GET_SIZE(names);
+    if (PyUnicode_CheckExact(key)) {
+        for (Py_ssize_t i = 0; i < n; ++i)
+            if (PyTuple_GET_ITEM(names, i) == key || PyUnicode_Compare(PyTuple_GET_ITEM(names, i), key) == 0)
+                return i;
+        return -1;
+    }
+    if (!PyLong_CheckExact(key)) return -1;
+    int overflow;
+    const long number = PyLong_AsLongAndOverflow(key, &overflow);
+    return overflow || number < -n || number >= n ? -1 : number < 0 ? number + n : number;
+}
+
+// Reads fixed= into the values of the joints; returns which, and none for what is not answered here.
+unsigned read_held(PyObject* names, PyObject* fixed, double* at) {
+    if (!PyDict_CheckExact(fixed) || PyTuple_GET_SIZE(names) > ik::max_joints) return 0;
+    unsigned joints = 0;
+    PyObject *key, *value;
+    for (Py_ssize_t next = 0; PyDict_Next(fixed, &next, &key, &value);) {
+        const Py_ssize_t joint = joint_of(names, key);
+        if (joint < 0 || joints >> joint & 1 || !PyFloat_Check(value)) return 0;
+        at[joint] = PyFloat_AS_DOUBLE(value);
+        if (!(std::fabs(at[joint]) <= tolerance::farthest)) return 0;
+        joints |= 1u << joint;
+    }
+    return joints;
+}
+
+}  // namespace
+
+void ik_add_held(PyObject* robot, PyObject* solver, PyObject* names, PyObject* about,
+                 const std::vector<int>& held, const ik::LockedArm* locked) {
+    auto& slot = reinterpret_cast<RobotObject*>(robot)->held;
+    if (!slot) slot = std::make_shared<HeldEntry>(solver, names, about);
+    unsigned joints = 0;
+    for (const int joint : held) joints |= 1u << joint;
+    std::vector<HeldPlan>& plans = entry_of(robot)->plans;
+    const auto same = [joints](const HeldPlan& plan) { return plan.joints == joints; };
+    if (std::none_of(plans.begin(), plans.end(), same)) plans.push_back({joints, locked});
+}
+
+// Null without an error for what is not answered here: where nothing reaches the goal there is more to say.
+PyObject* ik_held(PyObject* robot, const double* goal, PyObject* fixed) {
+    const HeldEntry* entry = entry_of(robot);
+    double at[ik::max_joints] = {};
+    const unsigned joints = entry ? read_held(entry->names, fixed, at) : 0;
+    if (!joints) return nullptr;
+    const auto plan = std::find_if(entry->plans.begin(), entry->plans.end(),
+                                   [joints](const HeldPlan& known) { return known.joints == joints; });
+    const ReadGoal<double> read = read_goal(goal);
+    if (plan == entry->plans.end() || !read.is_pose) return nullptr;
+    const ik::LockedArm& locked = *plan->locked;
+    ik::Solutions found;
+    kernels::redundant_locked(locked, read.T, at, nullptr, found);
+    if (found.count == 0) return nullptr;
+    const int n = locked.whole.n;
+    SolutionsObject* made = new_solutions(robot, goal, found.count, n, found.status);
+    if (!made) return nullptr;
+    made->complete = found.complete;
+    for (int k = 0; k < found.count; ++k) {
+        whole_row(locked, at, found.q[k], made->q + n * k);
+        branches_of(made)[k] = std::int8_t(found.branch[k]);
+        families_of(made)[k] = found.family[k];
+    }
+    made->about = Py_NewRef(entry->about);
+    return reinterpret_cast<PyObject*>(made);
+}
