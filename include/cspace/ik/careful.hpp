@@ -28,17 +28,26 @@ inline double distance(const ik::Chain& chain, const double* a, const double* b)
     return worst;
 }
 
-// Whether two configurations stand for one solution: what lies between them reaches the goal as they do.
-inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, const double* a,
-                    const double* b) {
+inline double miss_of(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
+    PoseError error;
+    measure(chain, goal, length, q, error);
+    return size_of_error(error);
+}
+
+inline double miss_halfway(const ik::Chain& chain, const Posed& goal, double length, const double* a,
+                           const double* b) {
     double q[ik::max_joints];
     for (int i = 0; i < chain.n; ++i) {
         const double step = b[i] - a[i];
         q[i] = a[i] + 0.5 * (chain.prismatic[i] ? step : std::remainder(step, 2 * pi));
     }
-    PoseError error;
-    measure(chain, goal, length, q, error);
-    return size_of_error(error) <= tolerance::halfway;
+    return miss_of(chain, goal, length, q);
+}
+
+// Whether two configurations stand for one solution: what lies between them reaches the goal as they do.
+inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, const double* a,
+                    const double* b) {
+    return miss_halfway(chain, goal, length, a, b) <= tolerance::halfway;
 }
 
 // Adds q to the solutions unless it is no solution or already there.

@@ -69,17 +69,38 @@ inline bool is_sane(const ik::Chain& chain, const Posed& goal, const double* q) 
     return true;
 }
 
-// Adds a polished solution unless it is there or the room is used up.
+inline void drop_row(ik::Solutions& out, int row) {
+    --out.count;
+    for (int k = row; k < out.count; ++k)
+        for (int i = 0; i < 6; ++i) out.q[k][i] = out.q[k + 1][i];
+}
+
+// Adds a polished solution unless it is there or the room is used up. Of those that differ by no more than
+// what Newton's method left of them, as it does on a fold, the best one stays.
 inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, const Posed& goal,
                            const double* q) {
-    for (int k = 0; k < out.count; ++k) {
-        const double gap = distance(plan.chain, out.q[k], q);
+    const ik::Chain& chain = plan.chain;
+    if (!is_sane(chain, goal, q)) return;
+    double here = -1;
+    for (int k = 0; k < out.count;) {
+        const double gap = distance(chain, out.q[k], q);
         if (gap < tolerance::same_solution) return;
-        if (gap < 1e-3 && are_one(plan.chain, goal, 1.0, out.q[k], q)) return;
+        if (!(gap < 1e-3)) {
+            ++k;
+            continue;
+        }
+        if (here < 0) here = miss_of(chain, goal, 1.0, q);
+        const double there = miss_of(chain, goal, 1.0, out.q[k]), left = max(here, there);
+        if (!(miss_halfway(chain, goal, 1.0, out.q[k], q) <= max(tolerance::halfway, left))) {
+            ++k;
+            continue;
+        }
+        if (there <= here) return;
+        drop_row(out, k);
     }
-    if (out.count == ik::max_solutions || !is_sane(plan.chain, goal, q)) return;
+    if (out.count == ik::max_solutions) return;
     const int n = out.count++;
-    for (int i = 0; i < 6; ++i) out.q[n][i] = plan.chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
+    for (int i = 0; i < 6; ++i) out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
     out.branch[n] = static_cast<signed char>(n);
     out.family[n] = false;
 }
@@ -302,6 +323,7 @@ inline bool solve_orientation_first(const ik::GeneralPlan& plan, const Posed& go
     ik::Candidates found;
     for (int k = 0; k < both.count; ++k) put(found, both.q[k], both.inside < 1e-6);
     admit_candidates(plan, goal, 0, found, out);
+    refine_unsettled(plan, goal, found, out);
     return both.volume > flat && std::fabs(both.inside) > clear;
 }
 
