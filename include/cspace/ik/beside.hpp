@@ -18,6 +18,17 @@ inline Posed goal_beside(const Posed& goal, double length, int k) {
     return {rotation_about((1 / angle) * turn, std::cos(angle), std::sin(angle)) * goal.R, goal.t + away};
 }
 
+// Comes down from q; a new solution is admitted. Beside solutions a valley that almost reaches the goal is
+// none of them.
+inline void descend_to_solution(const ik::Chain& chain, const Posed& goal, double length, double* q,
+                                int steps, ik::Solutions& out) {
+    if (out.count == ik::max_solutions) return;
+    PoseError error;
+    const double left = refine(chain, goal, length, q, error, steps);
+    if (left <= (out.count ? tolerance::exact : tolerance::reached))
+        admit(out, chain, goal, length, q, out.count, 2);
+}
+
 // propose(goal, offer): calls offer(q) for every solution of a goal, as a configuration of the chain. Returns
 // whether there was anything new.
 template <class Propose>
@@ -25,14 +36,7 @@ inline bool search_beside(const ik::Chain& chain, const Posed& goal, double leng
                           ik::Solutions& out) {
     constexpr int most_steps = 40;
     const int before = out.count;
-    const auto offer = [&](double* q) {
-        if (out.count == ik::max_solutions) return;
-        // Beside solutions a valley that almost reaches the goal is none of them.
-        PoseError error;
-        const double left = refine(chain, goal, length, q, error, most_steps);
-        if (left <= (out.count ? tolerance::exact : tolerance::reached))
-            admit(out, chain, goal, length, q, out.count, 2);
-    };
+    const auto offer = [&](double* q) { descend_to_solution(chain, goal, length, q, most_steps, out); };
     for (int k = 0; k < goals_beside; ++k) propose(goal_beside(goal, length, k), offer);
     judge(out);
     return out.count > before;

@@ -126,6 +126,38 @@ inline bool newton(const ik::Chain& chain, const Posed& goal, double length, dou
     return true;
 }
 
+// On the floor of a valley that hardly rises Newton's steps leave it sideways by more than the floor has to
+// say: here they alternate, down to the floor and along it. For six joints; true if it arrived, q is then a
+// solution, else untouched.
+inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double length, double* q,
+                          PoseError& error) {
+    constexpr int most_steps = 48;
+    constexpr double narrow = 1e-4, settled = 1e-15, arrived = 1e-12;
+    double at[ik::max_joints], size = 1;
+    for (int i = 0; i < chain.n; ++i) at[i] = q[i];
+    measure(chain, goal, length, at, error);
+    for (int step = 0; step < most_steps; ++step) {
+        size = size_of_error(error);
+        if (size < settled) break;
+        PoseSvd& J = error.jacobian;
+        decompose(J);
+        const int weak = weakest(J);
+        if (!(J.sigma[weak] < narrow) || J.sigma[weak] <= tolerance::free_joint) break;
+        const double along = dot_n(J.us[weak], error.e, 6) / J.sigma[weak];
+        const bool on_floor = size * size < 1.01 * along * along;
+        double dq[ik::max_joints] = {};
+        for (int j = 0; j < chain.n; ++j) {
+            if (j == weak && !on_floor) continue;
+            const double part = dot_n(J.us[j], error.e, 6) / (J.sigma[j] * J.sigma[j]);
+            for (int i = 0; i < chain.n; ++i) dq[i] += part * J.v[j][i];
+        }
+        take_step(chain, goal, length, at, dq, at, error);
+    }
+    if (!(size < arrived)) return false;
+    for (int i = 0; i < chain.n; ++i) q[i] = at[i];
+    return true;
+}
+
 // Walks q to the nearest configuration that meets the goal, or that misses it least nearby, by damped least
 // squares; returns the error left. On return `error` belongs to q and its Jacobian is decomposed. The square
 // of the error damps enough to come down to a family fast (Yamashita & Fukushima 2001); more damping starts
@@ -169,7 +201,8 @@ inline double descend(const ik::Chain& chain, const Posed& goal, double length, 
 // A candidate made a solution, or as near to one as descent brings it.
 inline double refine(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
                      int most_steps = 60) {
-    const bool arrived = newton(chain, goal, length, q, error);
+    const bool arrived = newton(chain, goal, length, q, error) ||
+                         (chain.n == 6 && follow_valley(chain, goal, length, q, error));
     return descend(chain, goal, length, q, error, arrived ? 2 : most_steps);
 }
 

@@ -32,10 +32,15 @@ CSPACE_INLINE int count_bits(unsigned x) {
 template <int n>
 inline Variations variations(const double* b, double noise) {
     Variations out;
+    double lowest = b[0], highest = b[0];
+    for (int i = 1; i <= n; ++i) {
+        lowest = b[i] < lowest ? b[i] : lowest;
+        highest = b[i] > highest ? b[i] : highest;
+    }
+    out.largest = highest > -lowest ? highest : -lowest;
+    if (lowest > noise || highest < -noise) return out;
     unsigned above = 0, below = 0;
     for (int i = 0; i <= n; ++i) {
-        const double size = std::fabs(b[i]);
-        out.largest = size > out.largest ? size : out.largest;
         above |= unsigned(b[i] > noise) << i;
         below |= unsigned(b[i] < -noise) << i;
     }
@@ -61,20 +66,6 @@ inline Variations variations(const double* b, double noise) {
     }
     out.most += unknown;
     return out;
-}
-
-// The same polynomial on [0, ½] and on [½, 1] (de Casteljau 1959).
-template <int n>
-inline void halve(const double* b, double* lower, double* upper) {
-    double t[n + 1];
-    for (int i = 0; i <= n; ++i) t[i] = b[i];
-    lower[0] = t[0];
-    upper[n] = t[n];
-    for (int k = n; k >= 1; --k) {
-        for (int i = 0; i < k; ++i) t[i] = 0.5 * (t[i] + t[i + 1]);
-        lower[n + 1 - k] = t[0];
-        upper[k - 1] = t[k - 1];
-    }
 }
 
 template <int n>

@@ -26,11 +26,17 @@ struct HiddenAngles {
     bool overflow = false;
 };
 
-// Pieces of the circle that are still to be looked at.
+// A part of the circle with the signs of its coefficients.
+struct Piece {
+    Arc arc;
+    Variations signs;
+};
+
+// Pieces that may hold roots.
 struct Pieces {
     static constexpr int room = 64;
     int count = 0;
-    Arc piece[room];
+    Piece piece[room];
 };
 
 }  // namespace cspace::ik
@@ -44,6 +50,16 @@ inline constexpr double regular_alias = 1e-6;  // above, a formulation vanishes 
 
 inline double angle_at(const ik::Arc& arc, double u) {
     return arc.centre + arc_angle(arc.from + (arc.to - arc.from) * u, arc.quarter);
+}
+
+// About the angle that a piece spans, to a twentieth: arcs bend their parameter little.
+inline double width_of(const ik::Arc& arc) { return 4 * arc.quarter * (arc.to - arc.from); }
+
+// The last arc written is one of the pieces if it may hold roots.
+inline void keep_if_crossed(ik::Pieces& pieces) {
+    ik::Piece& last = pieces.piece[pieces.count];
+    last.signs = variations<ik::degree>(last.arc.b, last.arc.noise);
+    pieces.count += last.signs.most > 0;
 }
 
 inline void put(ik::HiddenAngles& out, const ik::HiddenAngle& root) {
@@ -85,14 +101,15 @@ inline void close_roots(const Function& f, const ik::Arc& arc, const Variations&
 
 // The pieces with one root each, four at a time.
 inline void find_simple_roots(const ik::Pieces& simple, ik::HiddenAngles& out) {
+    constexpr double last_step = 1e-5;  // the error behind it is its square
     using V = Pack<4>;
     for (int first = 0; first < simple.count; first += 4) {
         const int lanes = simple.count - first < 4 ? simple.count - first : 4;
         V b[ik::padded];
         for (int i = 0; i <= ik::degree; ++i)
-            for (int k = 0; k < 4; ++k) set_lane(b[i], k, simple.piece[first + (k < lanes ? k : 0)].b[i]);
-        const V u = only_roots<ik::degree>(b, 1e-8);
-        for (int k = 0; k < lanes; ++k) put(out, {angle_at(simple.piece[first + k], lane(u, k)), 0, 1});
+            for (int k = 0; k < 4; ++k) set_lane(b[i], k, simple.piece[first + (k < lanes ? k : 0)].arc.b[i]);
+        const V u = only_roots<ik::degree>(b, last_step);
+        for (int k = 0; k < lanes; ++k) put(out, {angle_at(simple.piece[first + k].arc, lane(u, k)), 0, 1});
     }
 }
 
@@ -100,7 +117,7 @@ inline void find_simple_roots(const ik::Pieces& simple, ik::HiddenAngles& out) {
 inline void note_near_misses(const ik::Pieces& dips, ik::HiddenAngles& out) {
     const int found = out.count;
     for (int i = 0; i < dips.count; ++i) {
-        const ik::Arc& dip = dips.piece[i];
+        const ik::Arc& dip = dips.piece[i].arc;
         const double from = angle_at(dip, 0), to = angle_at(dip, 1);
         bool has_root = false;
         for (int k = 0; k < found; ++k)
@@ -113,23 +130,39 @@ inline void note_near_misses(const ik::Pieces& dips, ik::HiddenAngles& out) {
     }
 }
 
+// Both halves of an arc, as far as they may hold roots.
+inline void divide(const ik::SamplerTables& t, const ik::Arc& arc, ik::Pieces& pieces) {
+    const double middle = 0.5 * (arc.from + arc.to);
+    for (const bool upper : {false, true}) {
+        ik::Arc& half = pieces.piece[pieces.count].arc;
+        combine(upper ? t.upper_half : t.lower_half, arc.b, ik::degree + 1, half.b);
+        half.centre = arc.centre;
+        half.quarter = arc.quarter;
+        half.from = upper ? middle : arc.from;
+        half.to = upper ? arc.to : middle;
+        half.noise = arc.noise;
+        half.resampled = arc.resampled;
+        keep_if_crossed(pieces);
+    }
+}
+
 // f(c, s) on packs of four: a trigonometric polynomial of degree 8.
 template <class Function>
 inline void isolate(const Function& f, ik::HiddenAngles& out) {
     using V = Pack<4>;
     const ik::SamplerTables& tables = sampler_tables();
-    alignas(32) double sampled[ik::samples];
+    double sampled[2 * ik::samples];
     for (int j = 0; j < ik::samples; j += 4)
         store(sampled + j, f(load<V>(tables.cosine + j), load<V>(tables.sine + j)));
     out.evaluations = ik::samples / 4;
     double largest = 0;
-    for (double value : sampled) largest = max(largest, std::fabs(value));
+    for (int j = 0; j < ik::samples; ++j) largest = max(largest, std::fabs(sampled[j]));
     out.largest = largest;
     if (!(largest > 0) || !std::isfinite(largest)) {
         out.alias = 1;
         return;
     }
-    for (double& value : sampled) value /= largest;
+    for (int j = 0; j < ik::samples; ++j) sampled[ik::samples + j] = sampled[j] /= largest;
     for (const auto& harmonic : tables.alias) {
         double sum = 0;
         for (int j = 0; j < ik::samples; ++j) sum += harmonic[j] * sampled[j];
@@ -139,32 +172,33 @@ inline void isolate(const Function& f, ik::HiddenAngles& out) {
     ik::Pieces stack, simple, dips;
     const double noise = max(30 * out.alias, 1e-15) * tables.arc_gain;
     for (int k = 0; k < ik::arcs; ++k) {
-        ik::Arc& arc = stack.piece[stack.count];
+        ik::Arc& arc = stack.piece[stack.count].arc;
         read_arc(tables, sampled, k, arc);
         arc.noise = noise;
-        const Variations signs = variations<ik::degree>(arc.b, noise);
-        if (signs.most > 0) ++stack.count;
+        keep_if_crossed(stack);
     }
     int samplings = 0, divisions = 0;
     while (stack.count > 0) {
-        const ik::Arc arc = stack.piece[--stack.count];
-        const Variations signs = variations<ik::degree>(arc.b, arc.noise);
-        if (signs.most == 0) continue;
-        const double from = angle_at(arc, 0), to = angle_at(arc, 1), width = to - from;
+        const ik::Piece piece = stack.piece[--stack.count];
+        const ik::Arc& arc = piece.arc;
+        const Variations& signs = piece.signs;
+        const double width = width_of(arc);
         const bool whole = arc.from == 0 && arc.to == 1;
         const bool drowning = signs.largest < 1e3 * arc.noise || signs.most != signs.count;
         if (drowning && width > 2 * cluster_width && !(whole && arc.resampled) &&
             samplings < most_samplings) {
             ++samplings;
             out.evaluations += ik::padded / 4;
-            resample(tables, f, largest, 0.5 * (from + to), 0.25 * width, stack.piece[stack.count++]);
+            const double from = angle_at(arc, 0), to = angle_at(arc, 1);
+            resample(tables, f, largest, 0.5 * (from + to), 0.25 * (to - from), stack.piece[stack.count].arc);
+            keep_if_crossed(stack);
             continue;
         }
         if (signs.most == 1 && signs.ends_known) {
-            if (simple.count == ik::max_roots)
+            if (simple.count == ik::Pieces::room)
                 out.overflow = true;
             else
-                simple.piece[simple.count++] = arc;
+                simple.piece[simple.count++] = piece;
             continue;
         }
         if (width < cluster_width) {
@@ -177,11 +211,8 @@ inline void isolate(const Function& f, ik::HiddenAngles& out) {
         }
         if (signs.count >= 2 && width < near_miss && width >= 0.5 * near_miss &&
             dips.count < ik::Pieces::room)
-            dips.piece[dips.count++] = arc;
-        ik::Arc &lower = stack.piece[stack.count++], &upper = stack.piece[stack.count++];
-        lower = upper = arc;
-        halve<ik::degree>(arc.b, lower.b, upper.b);
-        lower.to = upper.from = 0.5 * (arc.from + arc.to);
+            dips.piece[dips.count++] = piece;
+        divide(tables, arc, stack);
     }
     find_simple_roots(simple, out);
     note_near_misses(dips, out);

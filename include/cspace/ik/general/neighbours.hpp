@@ -90,6 +90,7 @@ inline void solve_with_wrist(const ik::GeneralArm& arm, const Posed& goal, ik::S
     ik::Candidates start;
     for (int k = 0; k < found.count; ++k) put(start, found.q[k], found.close[k]);
     admit_candidates(arm.plan, goal, 0, start, out);
+    admit_twins(arm.plan, goal, start, out);
     refine_unsettled(arm.plan, goal, start, out);
     out.complete = true;
     out.crowded = found.doubt;

@@ -25,21 +25,29 @@ inline bool is_beyond_reach(const ik::LoopFrames& frames, const Posed& goal) {
     return norm(closing_link(frames, goal).t) > (1 + 1e-9) * others;
 }
 
-// One formulation after the other until one of them certifies that nothing is missing. Returns the work.
+// One formulation after the other until one of them certifies that nothing is missing; where none does, what
+// all of them found together may be what one of them announced. Returns the work.
 inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
     out.crowded = false;
-    int work = 0;
+    int work = 0, asked = 0;
+    ik::Certificate seen[ik::formulations];
     if (plan.slides == 3) {
         out.complete = plan.regular > 0 && solve_orientation_first(plan, goal, out);
         out.crowded = !out.complete;
     } else {
         out.complete = plan.slides == 0 && is_beyond_reach(plan.frames, goal);
     }
-    for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete; ++k) {
-        const ik::Certificate seen = solve_formulation(plan, goal, plan.order[k], out);
-        out.complete = seen.complete;
-        out.crowded = out.crowded || seen.clusters > 0;
-        work += seen.work;
+    for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete; ++k, ++asked) {
+        seen[k] = solve_formulation(plan, goal, plan.order[k], out);
+        out.complete = seen[k].complete;
+        out.crowded = out.crowded || seen[k].clusters > 0;
+        work += seen[k].work;
+    }
+    if (asked > 0 && !out.complete) {
+        bool twice[ik::max_solutions];
+        mark_doubles(plan, goal, out, twice);
+        for (int k = 0; k < asked; ++k)
+            out.complete = out.complete || (seen[k].trusted && all_matched(seen[k], out, twice));
     }
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
     return work;
@@ -89,7 +97,7 @@ inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int 
         if (k == first_look && (trial.drowned == k || trial.work > heavy * k)) break;
         ik::Solutions out;
         const ik::Certificate seen = solve_formulation(plan, goal[k], number, out);
-        trial.drowned += seen.alias > regular_alias;
+        trial.drowned += seen.hidden.alias > regular_alias;
         trial.work += seen.work;
         trial.found[trial.poses++] = out.count;
     }

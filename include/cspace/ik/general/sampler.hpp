@@ -26,6 +26,8 @@ struct SamplerTables {
     double to_chebyshev[degree + 1][padded];  // values at the nodes to Chebyshev coefficients, a row each
     double to_bernstein[degree + 1][padded];  // T_n in Bernstein form, a row each
     double bernstein_gain[degree + 1];        // its largest coefficient
+    // The coefficients of an arc, a row each, to those of its two halves.
+    double lower_half[degree + 1][padded], upper_half[degree + 1][padded];
 };
 
 // A piece of the circle: the part [from, to] of an arc sampled at once.
@@ -111,6 +113,17 @@ inline void fill_node_matrices(ik::SamplerTables& t) {
     }
 }
 
+// de Casteljau (1959): coefficient i of the lower half is the mean of those up to i by the weights of i
+// tosses.
+inline void fill_halves(ik::SamplerTables& t) {
+    for (int i = 0; i <= ik::degree; ++i)
+        for (int j = 0; j <= i; ++j) {
+            const double weight = std::ldexp(binomial(i, j), -i);
+            t.lower_half[j][i] = weight;
+            t.upper_half[ik::degree - j][ik::degree - i] = weight;
+        }
+}
+
 inline ik::SamplerTables make_sampler_tables() {
     ik::SamplerTables t{};
     for (int j = 0; j < ik::samples; ++j) {
@@ -123,6 +136,7 @@ inline ik::SamplerTables make_sampler_tables() {
     }
     fill_arc_matrix(t);
     fill_node_matrices(t);
+    fill_halves(t);
     return t;
 }
 inline const ik::SamplerTables& sampler_tables() {
@@ -130,13 +144,20 @@ inline const ik::SamplerTables& sampler_tables() {
     return tables;
 }
 
-// The arc that starts at sample 2 k.
+// out = Σ x_j row_j
+CSPACE_INLINE void combine(const double (*row)[ik::padded], const double* x, int count, double* out) {
+    using V = Pack<4>;
+    V sum[ik::padded / 4];
+    for (V& v : sum) v = fill<V>(0.0);
+    for (int j = 0; j < count; ++j)
+        for (int i = 0; i < ik::padded / 4; ++i)
+            sum[i] = mul_add(fill<V>(x[j]), load<V>(row[j] + 4 * i), sum[i]);
+    for (int i = 0; i < ik::padded / 4; ++i) store(out + 4 * i, sum[i]);
+}
+
+// The arc that starts at sample 2 k; f: the samples, twice round.
 inline void read_arc(const ik::SamplerTables& t, const double* f, int k, ik::Arc& arc) {
-    for (double& b : arc.b) b = 0;
-    for (int j = 0; j < ik::samples; ++j) {
-        const double value = f[(2 * k + j) % ik::samples];
-        for (int i = 0; i < ik::padded; ++i) arc.b[i] += value * t.to_arc[j][i];
-    }
+    combine(t.to_arc, f + 2 * k, ik::samples, arc.b);
     arc.centre = t.angle[2 * k] + pi / ik::samples;
     arc.quarter = 2 * pi / ik::arcs / 4;
     arc.from = 0;
@@ -176,9 +197,7 @@ inline void resample(const ik::SamplerTables& t, const Function& f, double unit,
     int top = 0;
     for (int n = 0; n <= ik::degree; ++n)
         if (std::fabs(c[n]) > noise) top = n;
-    for (double& b : arc.b) b = 0;
-    for (int n = 0; n <= top; ++n)
-        for (int i = 0; i < ik::padded; ++i) arc.b[i] += c[n] * t.to_bernstein[n][i];
+    combine(t.to_bernstein, c, top + 1, arc.b);
     arc.centre = centre;
     arc.quarter = quarter;
     arc.from = 0;

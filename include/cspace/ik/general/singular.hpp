@@ -31,11 +31,7 @@ inline void search_by_descent(const ik::Chain& chain, const Posed& goal, double 
         double q[ik::max_joints];
         spread_configuration(k, chain.n, q);
         for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
-        // Beside solutions a valley that almost reaches the goal is none of them.
-        PoseError error;
-        const double left = refine(chain, goal, length, q, error, most_steps);
-        if (left <= (out.count ? tolerance::exact : tolerance::reached))
-            admit(out, chain, goal, length, q, out.count, 2);
+        descend_to_solution(chain, goal, length, q, most_steps, out);
     }
     judge(out);
 }

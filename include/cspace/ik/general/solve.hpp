@@ -2,30 +2,23 @@
 #pragma once
 
 #include "cspace/ik/careful.hpp"
+#include "cspace/ik/general/candidates.hpp"
 #include "cspace/ik/general/close_pairs.hpp"
 #include "cspace/ik/general/isolate.hpp"
 #include "cspace/ik/general/orientation_first.hpp"
 #include "cspace/ik/general/two_sheets.hpp"
-#include "cspace/ik/general/weak_direction.hpp"
-#include "cspace/ik/polish.hpp"
 
 namespace cspace::ik {
 
 // What one formulation saw of a goal.
 struct Certificate {
     bool complete = false;
-    double alias = 1;
-    int roots = 0, clusters = 0;
+    bool trusted = false;  // its hidden angles are all there are
+    HiddenAngles hidden;   // of joint number `joint`, times `sign`
+    int joint = 0;
+    double sign = 1;
+    int clusters = 0;
     int work = 0;  // about in units of one evaluation of the determinant
-};
-
-// Configurations near solutions, before they are polished.
-struct Candidates {
-    static constexpr int room = 4 * max_roots;
-    int count = 0;
-    double q[room][6];
-    bool close[room];    // beside another solution: it may have a twin, and may lead nowhere
-    bool settled[room];  // polished
 };
 
 }  // namespace cspace::ik
@@ -36,200 +29,88 @@ inline constexpr double clear_equation =
     1e-8;                                   // its rounding moves no pair of roots that the signs would miss
 inline constexpr double near_roots = 3e-3;  // [rad] hidden angles this close share a null plane
 
-inline void put(ik::Candidates& out, const double* q, bool close) {
-    if (out.count == ik::Candidates::room) return;
-    for (int i = 0; i < 6; ++i) out.q[out.count][i] = q[i];
-    out.close[out.count++] = close;
-}
-
-// Newton's method on four candidates abreast, from number `first` on.
-inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, int first,
-                              ik::Candidates& all) {
-    using V = Pack<4>;
-    const Pose<V> goal4 = fill_pose<V>(goal);
-    for (; first < all.count; first += 4) {
-        const int lanes = all.count - first < 4 ? all.count - first : 4;
-        V q[6], step = fill<V>(1.0);
-        load_rows(&all.q[first][0], 6, lanes, 6, q);
-        for (int k = 0; k < 8 && any(step > 1e-9); ++k) step = newton_step(plan.chain, goal4, 1.0, q, 0.3);
-        for (int k = 0; k < lanes; ++k) {
-            all.settled[first + k] = lane(step, k) < 1e-7;
-            if (!all.settled[first + k]) continue;
-            for (int i = 0; i < 6; ++i) all.q[first + k][i] = lane(q[i], k);
-        }
-    }
-}
-
-// Whether no slide has run away: where two of them are nearly parallel Newton's method may send them where
-// nothing is left of the tip but rounding.
-inline bool is_sane(const ik::Chain& chain, const Posed& goal, const double* q) {
-    constexpr double far = 1e4;  // lengths of the arm, and of the way to the goal
-    for (int i = 0; i < chain.n; ++i)
-        if (chain.prismatic[i] && !(std::fabs(q[i]) < far * (1 + norm(goal.t)))) return false;
-    return true;
-}
-
-inline void drop_row(ik::Solutions& out, int row) {
-    --out.count;
-    for (int k = row; k < out.count; ++k)
-        for (int i = 0; i < 6; ++i) out.q[k][i] = out.q[k + 1][i];
-}
-
-// Adds a polished solution unless it is there or the room is used up. Of those that differ by no more than
-// what Newton's method left of them, as it does on a fold, the best one stays.
-inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, const Posed& goal,
-                           const double* q) {
-    const ik::Chain& chain = plan.chain;
-    if (!is_sane(chain, goal, q)) return;
-    double here = -1;
-    for (int k = 0; k < out.count;) {
-        const double gap = distance(chain, out.q[k], q);
-        if (gap < tolerance::same_solution) return;
-        if (!(gap < 1e-3)) {
-            ++k;
-            continue;
-        }
-        if (here < 0) here = miss_of(chain, goal, 1.0, q);
-        const double there = miss_of(chain, goal, 1.0, out.q[k]), left = max(here, there);
-        if (!(miss_halfway(chain, goal, 1.0, out.q[k], q) <= max(tolerance::halfway, left))) {
-            ++k;
-            continue;
-        }
-        if (there <= here) return;
-        drop_row(out, k);
-    }
-    if (out.count == ik::max_solutions) return;
-    const int n = out.count++;
-    for (int i = 0; i < 6; ++i) out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
-    out.branch[n] = static_cast<signed char>(n);
-    out.family[n] = false;
-}
-
-// Beside a fold a solution has a twin: along the weakest direction v the error is σ t u + ½ κ t² u + …, which
-// vanishes again at t = −2 σ/κ.
-inline void propose_twin(const ik::GeneralPlan& plan, const Posed& goal, const double* q,
-                         ik::Candidates& out) {
-    PoseError error;
-    const double length = 1.0;
-    measure(plan.chain, goal, length, q, error);
-    const WeakDirection weak = weak_direction(&error.jacobian.us[0]);
-    if (weak.sigma > 0.1) return;
-    constexpr double h = 1e-3;
-    double there[6], bend = 2 * dot_n(weak.u, error.e, 6);
-    for (const double way : {h, -h}) {
-        PoseError moved;
-        for (int i = 0; i < 6; ++i) there[i] = q[i] + way * weak.v[i];
-        measure(plan.chain, goal, length, there, moved);
-        bend -= dot_n(weak.u, moved.e, 6);  // the error is goal less pose
-    }
-    bend /= h * h;
-    const double t = -2 * weak.sigma / bend;
-    if (!(std::fabs(t) < 0.5)) return;
-    for (int i = 0; i < 6; ++i) there[i] = q[i] + t * weak.v[i];
-    put(out, there, false);
-}
-
-// Roots that stand alone: null vectors of four at a time.
-inline void follow_roots(const ik::Loop& loop, const Elimination& e, const ik::HiddenAngles& hidden,
-                         const bool* close, ik::Candidates& out) {
+// The null vectors of hidden angles, four at a time.
+inline void follow_roots(const ik::Loop& loop, const Elimination& e, const double* angle, int count,
+                         bool close, ik::Candidates& out) {
     using V = Pack<4>;
     const bool doubled = !(e.a4_rank > 1e-6);
-    for (int first = 0; first < hidden.count; first += 4) {
-        const int lanes = hidden.count - first < 4 ? hidden.count - first : 4;
-        V angle, q[6], second[6];
-        for (int k = 0; k < 4; ++k)
-            set_lane(angle, k, hidden.root[first + (k < lanes ? k : lanes - 1)].angle);
-        const Turn<V> a0 = turn_by(angle);
+    for (int first = 0; first < count; first += 4) {
+        const int lanes = count - first < 4 ? count - first : 4;
+        V at, q[6], second[6];
+        for (int k = 0; k < 4; ++k) set_lane(at, k, angle[first + (k < lanes ? k : lanes - 1)]);
+        const Turn<V> a0 = turn_by(at);
         ReducedEquations<V> reduced;
         reduce_equations(e, a0.c, a0.s, reduced);
         joints_from(loop, e, a0, half_angles(null_vector(reduced)), q, second);
-        double row[6];
         for (int k = 0; k < lanes; ++k) {
-            for (int i = 0; i < 6; ++i) row[i] = lane(q[i], k);
-            put(out, row, close[first + k] || doubled);
-            if (!doubled) continue;
-            for (int i = 0; i < 6; ++i) row[i] = lane(second[i], k);
-            put(out, row, true);
+            put_lane(out, q, k, close || doubled);
+            if (doubled) put_lane(out, second, k, true);
         }
     }
 }
 
-// Roots beside each other: both solutions of their null plane.
-inline void split_close_roots(const ik::Loop& loop, const Elimination& e, const ik::HiddenAngles& hidden,
-                              const bool* close, ik::Candidates& out) {
-    double last = 100;
-    for (int k = 0; k < hidden.count; ++k) {
-        if (!close[k]) continue;
-        if (std::fabs(hidden.root[k].angle - last) < 1e-4) continue;  // the same plane
-        last = hidden.root[k].angle;
-        const Turn<double> a0 = turn_by(hidden.root[k].angle);
-        ReducedEquations<double> reduced;
+// Both solutions of the null planes that belong to hidden angles, four at a time.
+inline void split_planes(const ik::Loop& loop, const Elimination& e, const double* angle, int count,
+                         ik::Candidates& out) {
+    using V = Pack<4>;
+    const bool doubled = !(e.a4_rank > 1e-6);
+    for (int first = 0; first < count; first += 4) {
+        const int lanes = count - first < 4 ? count - first : 4;
+        V at;
+        for (int k = 0; k < 4; ++k) set_lane(at, k, angle[first + (k < lanes ? k : lanes - 1)]);
+        const Turn<V> a0 = turn_by(at);
+        ReducedEquations<V> reduced;
         reduce_equations(e, a0.c, a0.s, reduced);
-        Monomials<double> both[2];
-        const int count = split_plane(weak_plane(reduced), both);
-        for (int j = 0; j < count; ++j) {
-            double q[6], second[6];
-            joints_from(loop, e, a0, half_angles(both[j]), q, second);
-            put(out, q, true);
-            if (!(e.a4_rank > 1e-6)) put(out, second, true);
+        WeakPlane<V> plane;
+        weak_plane(reduced, plane);
+        Monomials<V> both[2];
+        const mask_of<V> split = split_plane(plane, both);
+        for (const Monomials<V>& one : both) {
+            V q[6], second[6];
+            joints_from(loop, e, a0, half_angles(one), q, second);
+            for (int k = 0; k < lanes; ++k) {
+                if (!lane(split, k)) continue;
+                put_lane(out, q, k, true);
+                if (doubled) put_lane(out, second, k, true);
+            }
         }
-    }
-}
-
-// Polishes the candidates from number `first` on, and with them the twins that they turn out to have.
-inline void admit_candidates(const ik::GeneralPlan& plan, const Posed& goal, int first, ik::Candidates& all,
-                             ik::Solutions& out) {
-    polish_candidates(plan, goal, first, all);
-    const int direct = all.count;
-    for (int k = first; k < direct; ++k) {
-        if (!all.settled[k]) continue;
-        const int before = out.count;
-        admit_polished(out, plan, goal, all.q[k]);
-        if (all.close[k] && out.count > before) propose_twin(plan, goal, all.q[k], all);
-    }
-    polish_candidates(plan, goal, direct, all);
-    for (int k = direct; k < all.count; ++k)
-        if (all.settled[k]) admit_polished(out, plan, goal, all.q[k]);
-}
-
-// Candidates that Newton's method did not settle, once more with damping.
-inline void refine_unsettled(const ik::GeneralPlan& plan, const Posed& goal, ik::Candidates& all,
-                             ik::Solutions& out) {
-    const int count = all.count;
-    for (int k = 0; k < count; ++k) {
-        if (all.settled[k]) continue;
-        PoseError error;
-        const double left = refine(plan.chain, goal, 1.0, all.q[k], error, 10);
-        if (!(left <= tolerance::reached)) continue;
-        const int before = out.count;
-        admit_polished(out, plan, goal, all.q[k]);
-        if (all.close[k] && out.count > before) propose_twin(plan, goal, all.q[k], all);
     }
 }
 
 // Whether every announced root has brought its solutions: around each hidden angle there are at least as many
-// solutions as roots. Where noise hides how many roots there are, nothing can be said.
-inline bool all_matched(const ik::Loop& loop, const ik::HiddenAngles& hidden, const ik::Solutions& found) {
+// solutions as roots, and an even number in all; a solution may count twice. Where noise hides whether there
+// is a pair of roots, two solutions say so.
+inline bool all_matched(const ik::Certificate& seen, const ik::Solutions& found, const bool* twice) {
     const auto is_near = [](double a, double b) { return std::fabs(short_way(a - b)) < near_roots; };
+    const ik::HiddenAngles& hidden = seen.hidden;
+    int count = 0;
+    for (int j = 0; j < found.count; ++j) count += twice[j] ? 2 : 1;
+    if (count % 2 != 0) return false;
     for (int k = 0; k < hidden.count; ++k) {
         if (hidden.root[k].expected == ik::nearly_two) continue;
         int expected = 0, there = 0;
         for (int j = 0; j < hidden.count; ++j) {
             if (!is_near(hidden.root[j].angle, hidden.root[k].angle)) continue;
-            if (hidden.root[j].expected == ik::unknown) return false;
-            expected += hidden.root[j].expected > 0 ? hidden.root[j].expected : 0;
+            const int announced = hidden.root[j].expected;
+            expected += announced == ik::unknown ? 2 : max(announced, 0);
         }
         for (int j = 0; j < found.count; ++j)
-            there += is_near(loop.sign * found.q[j][loop.joint[0]], hidden.root[k].angle);
+            if (is_near(seen.sign * found.q[j][seen.joint], hidden.root[k].angle)) there += twice[j] ? 2 : 1;
         if (there < expected) return false;
     }
     return true;
 }
 
+inline void mark_doubles(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& found,
+                         bool* twice) {
+    for (int k = 0; k < found.count; ++k) twice[k] = is_double(plan, goal, found.q[k]);
+}
+
 // On both sheets of each hidden angle: one of them is meant, unless noise hides which.
-inline void follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidden, const bool* close,
+inline bool follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidden, const bool* close,
                           ik::Candidates& out) {
     constexpr double clearly = 1e-3;
+    bool doubtful = false;
     for (int k = 0; k < hidden.count; ++k) {
         const AtHiddenAngle<double> at = at_hidden_angle(sheets, turn_by(hidden.root[k].angle));
         const Turn<double> g = lack(at);
@@ -239,45 +120,82 @@ inline void follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidde
             if (there[1 - side] < clearly * there[side]) continue;
             double q[6];
             joints_on_sheet(sheets, at, side ? -1 : 1, q);
-            put(out, q, close[k] || !(there[side] < clearly * there[1 - side]));
+            const bool either = !(there[side] < clearly * there[1 - side]);
+            put(out, q, close[k] || either);
+            doubtful |= either;
         }
     }
+    return doubtful;
 }
 
-// All solutions by the roots of f, a function of the hidden angle; `follow` makes candidates of them.
-template <class Function, class Follow>
-inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const Posed& goal,
-                                             const ik::Loop& loop, const Function& f, const Follow& follow,
-                                             ik::Solutions& out) {
-    ik::Certificate seen;
-    ik::HiddenAngles hidden;
-    isolate(f, hidden);
-    seen.alias = hidden.alias;
-    seen.roots = hidden.count;
-    seen.work = hidden.evaluations;
-    if (hidden.alias > regular_alias) return seen;
-    bool close[ik::max_roots] = {};
+// Null vectors of the hidden angles that stand alone, null planes of the others; these by null vectors too if
+// asked `again`. True where each angle has two candidates, of which one may be a solution's twin.
+inline bool follow_angles(const ik::Loop& loop, const Elimination& e, const ik::HiddenAngles& hidden,
+                          const bool* close, bool again, ik::Candidates& out) {
+    constexpr double same_plane = 1e-4;
+    double alone[ik::max_roots], beside[ik::max_roots], plane[ik::max_roots], last = 100;
+    int n_alone = 0, n_beside = 0, n_planes = 0;
+    for (int k = 0; k < hidden.count; ++k) {
+        const double angle = hidden.root[k].angle;
+        (close[k] ? beside[n_beside++] : alone[n_alone++]) = angle;
+        if (close[k] && !(std::fabs(angle - last) < same_plane)) plane[n_planes++] = last = angle;
+    }
+    if (again) {
+        follow_roots(loop, e, beside, n_beside, true, out);
+    } else {
+        follow_roots(loop, e, alone, n_alone, false, out);
+        split_planes(loop, e, plane, n_planes, out);
+    }
+    return !(e.a4_rank > 1e-6);
+}
+
+// Hidden angles that stand beside others, or are themselves more than one.
+inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
+    int count = 0;
     for (int k = 0; k < hidden.count; ++k) {
         close[k] = hidden.root[k].width > 0;
         for (int j = 0; j < hidden.count && !close[k]; ++j)
             close[k] =
                 j != k && std::fabs(short_way(hidden.root[j].angle - hidden.root[k].angle)) < near_roots;
-        seen.clusters += close[k];
+        count += close[k];
     }
+    return count;
+}
+
+// All solutions by the roots of f, a function of the hidden angle; `follow` makes candidates of them, and
+// more where its first did not bring as many solutions as there must be.
+template <class Function, class Follow>
+inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const Posed& goal,
+                                             const ik::Loop& loop, const Function& f, const Follow& follow,
+                                             ik::Solutions& out) {
+    ik::Certificate seen;
+    ik::HiddenAngles& hidden = seen.hidden;
+    isolate(f, hidden);
+    seen.joint = loop.joint[0];
+    seen.sign = loop.sign;
+    seen.work = hidden.evaluations;
+    if (hidden.alias > regular_alias) return seen;
+    bool close[ik::max_roots], folds = false;
+    seen.clusters = mark_close(hidden, close);
+    for (int k = 0; k < hidden.count; ++k) folds |= hidden.root[k].width > 0;
     ik::Candidates found;
-    follow(hidden, close, found);
+    folds |= follow(hidden, close, false, found);
     admit_candidates(plan, goal, 0, found, out);
-    const auto settled_all = [&] { return out.count % 2 == 0 && all_matched(loop, hidden, out); };
-    bool all = settled_all();
+    bool twice[ik::max_solutions] = {};
+    if (folds || !all_matched(seen, out, twice)) admit_twins(plan, goal, found, out);
     seen.work += found.count;
+    bool all = all_matched(seen, out, twice);
     if (!all) {
-        seen.work += 10 * found.count;
         const int direct = found.count;
-        refine_unsettled(plan, goal, found, out);
+        follow(hidden, close, true, found);
         admit_candidates(plan, goal, direct, found, out);
-        all = settled_all();
+        refine_unsettled(plan, goal, found, out);
+        seen.work += 10 * found.count;
+        mark_doubles(plan, goal, out, twice);
+        all = all_matched(seen, out, twice);
     }
-    seen.complete = all && seen.alias < 1e-9 && !hidden.overflow;
+    seen.trusted = hidden.alias < 1e-9 && !hidden.overflow;
+    seen.complete = all && seen.trusted;
     return seen;
 }
 
@@ -298,21 +216,21 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
         const TwoSheets sheets = two_sheets(loop);
         if (!(sheets.square_end > 1e-9)) return {};
         const auto f = [&](Pack<4> c, Pack<4> s) { return lack_on_both(sheets, c, s); };
-        const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, ik::Candidates& found) {
-            follow_sheets(sheets, hidden, close, found);
+        const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, bool again,
+                                ik::Candidates& found) {
+            return !again && follow_sheets(sheets, hidden, close, found);
         };
         return solve_by_hidden_angle(plan, goal, loop, f, follow, out);
     }
     const Elimination e = eliminate(loop);
     const auto f = [&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); };
-    const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, ik::Candidates& found) {
-        follow_roots(loop, e, hidden, close, found);
-        bool any_close = false;
-        for (int k = 0; k < hidden.count; ++k) any_close |= close[k];
-        if (any_close) split_close_roots(loop, e, hidden, close, found);
+    const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, bool again,
+                            ik::Candidates& found) {
+        return follow_angles(loop, e, hidden, close, again, found);
     };
     ik::Certificate seen = solve_by_hidden_angle(plan, goal, loop, f, follow, out);
-    seen.complete = seen.complete && e.faintest > clear_equation;
+    seen.trusted = seen.trusted && e.faintest > clear_equation;
+    seen.complete = seen.complete && seen.trusted;
     return seen;
 }
 
@@ -323,6 +241,7 @@ inline bool solve_orientation_first(const ik::GeneralPlan& plan, const Posed& go
     ik::Candidates found;
     for (int k = 0; k < both.count; ++k) put(found, both.q[k], both.inside < 1e-6);
     admit_candidates(plan, goal, 0, found, out);
+    admit_twins(plan, goal, found, out);
     refine_unsettled(plan, goal, found, out);
     return both.volume > flat && std::fabs(both.inside) > clear;
 }

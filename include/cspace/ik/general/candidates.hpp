@@ -1,0 +1,167 @@
+// Configurations near solutions become solutions: polished, told apart, with their twins beside folds.
+#pragma once
+
+#include "cspace/ik/evaluate.hpp"
+#include "cspace/ik/general/isolate.hpp"
+#include "cspace/ik/general/loop.hpp"
+#include "cspace/ik/general/weak_direction.hpp"
+#include "cspace/ik/polish.hpp"
+#include "cspace/math/rows.hpp"
+
+namespace cspace::ik {
+
+// Configurations near solutions, before they are polished.
+struct Candidates {
+    static constexpr int room = 4 * max_roots;
+    int count = 0;
+    double q[room][6];
+    bool close[room];    // beside another solution: it may have a twin, and may lead nowhere
+    bool settled[room];  // polished
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline void put(ik::Candidates& out, const double* q, bool close) {
+    if (out.count == ik::Candidates::room) return;
+    for (int i = 0; i < 6; ++i) out.q[out.count][i] = q[i];
+    out.close[out.count++] = close;
+}
+
+template <class V>
+inline void put_lane(ik::Candidates& out, const V* q, int k, bool close) {
+    double row[6];
+    for (int i = 0; i < 6; ++i) row[i] = lane(q[i], k);
+    put(out, row, close);
+}
+
+// Newton's method on four candidates abreast, from number `first` on.
+inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, int first,
+                              ik::Candidates& all) {
+    using V = Pack<4>;
+    const Pose<V> goal4 = fill_pose<V>(goal);
+    for (; first < all.count; first += 4) {
+        const int lanes = all.count - first < 4 ? all.count - first : 4;
+        V q[6], step = fill<V>(1.0);
+        load_rows(&all.q[first][0], 6, lanes, 6, q);
+        for (int k = 0; k < 8 && any(step > 1e-9); ++k) step = newton_step(plan.chain, goal4, 1.0, q, 0.3);
+        for (int k = 0; k < lanes; ++k) {
+            all.settled[first + k] = lane(step, k) < 1e-7;
+            if (!all.settled[first + k]) continue;
+            for (int i = 0; i < 6; ++i) all.q[first + k][i] = lane(q[i], k);
+        }
+    }
+}
+
+// Whether no slide has run away: where two of them are nearly parallel Newton's method may send them where
+// nothing is left of the tip but rounding.
+inline bool is_sane(const ik::Chain& chain, const Posed& goal, const double* q) {
+    constexpr double far = 1e4;  // lengths of the arm, and of the way to the goal
+    for (int i = 0; i < chain.n; ++i)
+        if (chain.prismatic[i] && !(std::fabs(q[i]) < far * (1 + norm(goal.t)))) return false;
+    return true;
+}
+
+inline void drop_row(ik::Solutions& out, int row) {
+    --out.count;
+    for (int k = row; k < out.count; ++k)
+        for (int i = 0; i < 6; ++i) out.q[k][i] = out.q[k + 1][i];
+}
+
+// Adds a polished solution unless it is there or the room is used up. Of those that differ by no more than
+// what Newton's method left of them, as it does on a fold, the best one stays.
+inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, const Posed& goal,
+                           const double* q) {
+    const ik::Chain& chain = plan.chain;
+    if (!is_sane(chain, goal, q)) return;
+    double here = -1;
+    for (int k = 0; k < out.count;) {
+        const double gap = distance(chain, out.q[k], q);
+        if (gap < tolerance::same_solution) return;
+        if (!(gap < 1e-3)) {
+            ++k;
+            continue;
+        }
+        if (here < 0) here = miss_of(chain, goal, 1.0, q);
+        const double there = miss_of(chain, goal, 1.0, out.q[k]), left = max(here, there);
+        if (!(miss_halfway(chain, goal, 1.0, out.q[k], q) <= max(tolerance::halfway, left))) {
+            ++k;
+            continue;
+        }
+        if (there <= here) return;
+        drop_row(out, k);
+    }
+    if (out.count == ik::max_solutions) return;
+    const int n = out.count++;
+    for (int i = 0; i < 6; ++i) out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
+    out.branch[n] = static_cast<signed char>(n);
+    out.family[n] = false;
+}
+
+// Beside a fold a solution has a twin: along the weakest direction v the error is σ t u + ½ κ t² u + …, which
+// vanishes again at t = −2 σ/κ. False where there is no fold; a family does not bend.
+inline bool find_twin(const ik::GeneralPlan& plan, const Posed& goal, const double* q, double* twin) {
+    PoseError error;
+    const double length = 1.0;
+    measure(plan.chain, goal, length, q, error);
+    const WeakDirection weak = weak_direction(&error.jacobian.us[0]);
+    if (weak.sigma > 0.1) return false;
+    constexpr double h = 1e-3, straight = 1e-4;
+    double bend = 2 * dot_n(weak.u, error.e, 6);
+    for (const double way : {h, -h}) {
+        PoseError moved;
+        for (int i = 0; i < 6; ++i) twin[i] = q[i] + way * weak.v[i];
+        measure(plan.chain, goal, length, twin, moved);
+        bend -= dot_n(weak.u, moved.e, 6);  // the error is goal less pose
+    }
+    bend /= h * h;
+    const double t = -2 * weak.sigma / bend;
+    for (int i = 0; i < 6; ++i) twin[i] = q[i] + t * weak.v[i];
+    return std::fabs(t) < 0.5 && std::fabs(bend) > straight;
+}
+// Whether a solution is its own twin, as far as rounding can tell: two in one.
+inline bool is_double(const ik::GeneralPlan& plan, const Posed& goal, const double* q) {
+    double twin[6];
+    if (!find_twin(plan, goal, q, twin)) return false;
+    return distance(plan.chain, q, twin) < 1e-3 && are_one(plan.chain, goal, 1.0, q, twin);
+}
+
+// Polishes the candidates from number `first` on.
+inline void admit_candidates(const ik::GeneralPlan& plan, const Posed& goal, int first, ik::Candidates& all,
+                             ik::Solutions& out) {
+    polish_candidates(plan, goal, first, all);
+    for (int k = first; k < all.count; ++k)
+        if (all.settled[k]) admit_polished(out, plan, goal, all.q[k]);
+}
+
+// The twins of solutions that stand beside others, or may.
+inline void admit_twins(const ik::GeneralPlan& plan, const Posed& goal, ik::Candidates& all,
+                        ik::Solutions& out) {
+    const int direct = all.count;
+    double twin[6];
+    for (int k = 0; k < direct; ++k)
+        if (all.close[k] && all.settled[k] && find_twin(plan, goal, all.q[k], twin)) put(all, twin, false);
+    admit_candidates(plan, goal, direct, all, out);
+}
+
+// Candidates that Newton's method did not settle, once more with damping.
+inline void refine_unsettled(const ik::GeneralPlan& plan, const Posed& goal, ik::Candidates& all,
+                             ik::Solutions& out) {
+    const int direct = all.count;
+    for (int k = 0; k < direct; ++k) {
+        if (all.settled[k]) continue;
+        PoseError error;
+        const double left = refine(plan.chain, goal, 1.0, all.q[k], error, 10);
+        // Beside solutions a valley that almost reaches the goal is none of them.
+        if (!(left <= (out.count ? tolerance::exact : tolerance::reached))) continue;
+        const int before = out.count;
+        admit_polished(out, plan, goal, all.q[k]);
+        double twin[6];
+        if (all.close[k] && out.count > before && find_twin(plan, goal, all.q[k], twin))
+            put(all, twin, false);
+    }
+    admit_candidates(plan, goal, direct, all, out);
+}
+
+}  // namespace cspace::inline CSPACE_ISA
