@@ -73,12 +73,13 @@ inline void refine_short(const ik::Chain& chain, const Posed& goal, double lengt
     }
 }
 
-// An arm whose closed form idealises it: by the elimination, and where that is unsure by the closed form too.
-// Closer to a fold than the idealisation moves it the two may lack the same pair; elsewhere both lists agree
-// if they lack nothing.
+// An arm whose closed form idealises it: by the elimination, and where that or the closed form is unsure by
+// both. Closer to a fold than the idealisation moves it the two may lack the same pair; elsewhere both lists
+// agree if they lack nothing.
 inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, const double* idle) {
+    const Posed goal_form = goal_in_form(arm.plan, goal);
     ik::Solutions out = solve_general_carefully(arm.general, goal, idle);
-    if (!out.complete) {
+    if (!out.complete || closed_form(arm.plan, goal_form, care_of(arm.plan)).doubt) {
         const int alone = out.count;
         const ik::Solutions form = solve_carefully(arm.plan, goal, idle);
         for (int k = 0; k < form.count; ++k) {
@@ -88,8 +89,9 @@ inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, cons
         }
         Care care;
         care.band = 2 * arm.plan.form.deviation;
-        const bool agree = form.count == alone && out.count == alone && alone % 2 == 0;
-        out.complete = agree && !closed_form(arm.plan, goal_in_form(arm.plan, goal), care).doubt;
+        const bool agree = form.count == alone && alone % 2 == 0;
+        const bool certain = out.complete || (agree && !closed_form(arm.plan, goal_form, care).doubt);
+        out.complete = certain && out.count == alone;
         judge(out);
     }
     number_by_branches(arm.plan, goal, out);

@@ -9,9 +9,10 @@ namespace cspace::ik {
 inline constexpr int max_roots = 48;
 
 struct HiddenAngle {
-    double angle;  // [rad]
-    double width;  // of the piece that holds it; 0 where it is isolated
-    int expected;  // how many solutions the signs announce: 1, or 2 for a pair; see below
+    double angle;      // [rad]
+    double width;      // of the piece that holds it; 0 where it is isolated
+    int expected;      // how many solutions the signs announce: 1, or 2 for a pair; see below
+    double depth = 0;  // by how much a pair is missed, of the largest value
 };
 // Noise hides how many there are; or there are none, but so nearly two that a slip of the equations, which
 // the signs do not show, may have hidden them.
@@ -113,6 +114,12 @@ inline void find_simple_roots(const ik::Pieces& simple, ik::HiddenAngles& out) {
     }
 }
 
+inline double value_halfway(const ik::Arc& arc) {
+    double half[ik::padded];
+    combine(sampler_tables().lower_half, arc.b, ik::degree + 1, half);
+    return half[ik::degree];
+}
+
 // Where a small piece announced two roots and neither was found: the bottom of the dip.
 inline void note_near_misses(const ik::Pieces& dips, ik::HiddenAngles& out) {
     const int found = out.count;
@@ -123,10 +130,13 @@ inline void note_near_misses(const ik::Pieces& dips, ik::HiddenAngles& out) {
         for (int k = 0; k < found; ++k)
             has_root |= out.root[k].angle > from - 1e-3 && out.root[k].angle < to + 1e-3;
         if (has_root) continue;
-        const double* b = dip.b;
-        const double bend = b[0] - 2 * b[ik::degree / 2] + b[ik::degree];
-        const double u = 0.5 + 0.25 * (b[0] - b[ik::degree]) / bend;
-        put(out, {angle_at(dip, u > 0 && u < 1 ? u : 0.5), to - from, ik::nearly_two});
+        // The parabola through both ends and the middle.
+        const double left = dip.b[0], right = dip.b[ik::degree], middle = value_halfway(dip);
+        const double slope = right - left, bend = left - 2 * middle + right;
+        const double u = 0.5 - 0.25 * slope / bend, bottom = middle - 0.125 * slope * slope / bend;
+        const bool inside = u > 0 && u < 1;
+        put(out, {angle_at(dip, inside ? u : 0.5), to - from, ik::nearly_two,
+                  std::fabs(inside ? bottom : middle)});
     }
 }
 

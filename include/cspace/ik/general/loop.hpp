@@ -39,6 +39,8 @@ struct GeneralPlan {
     LoopFrames frames;
     int order[formulations];
     int regular = 0;  // how many of them do not vanish identically; 1 where no angle is hidden
+    // By how much each enlarges relative errors of its equations, by its number.
+    double sensitivity[formulations] = {};
 };
 
 // The plan of an arm, and where it cannot serve alone those of two neighbours (neighbours.hpp).

@@ -141,6 +141,7 @@ inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations],
     plan.regular = 0;
     for (int number = 0; number < ik::formulations; ++number) {
         const FormulationTrial& t = trial[number];
+        plan.sensitivity[number] = t.sensitivity;
         if (t.drowned == t.poses || !(t.sensitivity < useless_sensitivity)) continue;
         int missed = 0;
         for (int k = 0; k < t.poses; ++k) missed += most[k] - t.found[k];

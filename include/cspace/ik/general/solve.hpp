@@ -15,6 +15,7 @@ struct Certificate {
     bool complete = false;
     bool trusted = false;  // its hidden angles are all there are
     HiddenAngles hidden;   // of joint number `joint`, times `sign`
+    double slip = 0;       // what the errors of its equations may do to the determinant, of its largest value
     int joint = 0;
     double sign = 1;
     int clusters = 0;
@@ -26,8 +27,9 @@ struct Certificate {
 namespace cspace::inline CSPACE_ISA {
 
 inline constexpr double clear_equation =
-    1e-8;                                   // its rounding moves no pair of roots that the signs would miss
-inline constexpr double near_roots = 3e-3;  // [rad] hidden angles this close share a null plane
+    1e-8;  // its rounding moves no pair of roots that the signs would miss
+inline constexpr double equation_error = 3e-14;  // of their entries, with a margin
+inline constexpr double near_roots = 3e-3;       // [rad] hidden angles this close share a null plane
 
 // The null vectors of hidden angles, four at a time.
 inline void follow_roots(const ik::Loop& loop, const Elimination& e, const double* angle, int count,
@@ -87,12 +89,14 @@ inline bool all_matched(const ik::Certificate& seen, const ik::Solutions& found,
     for (int j = 0; j < found.count; ++j) count += twice[j] ? 2 : 1;
     if (count % 2 != 0) return false;
     for (int k = 0; k < hidden.count; ++k) {
-        if (hidden.root[k].expected == ik::nearly_two) continue;
+        if (hidden.root[k].expected == ik::nearly_two && !(hidden.root[k].depth < seen.slip)) continue;
         int expected = 0, there = 0;
         for (int j = 0; j < hidden.count; ++j) {
             if (!is_near(hidden.root[j].angle, hidden.root[k].angle)) continue;
             const int announced = hidden.root[j].expected;
-            expected += announced == ik::unknown ? 2 : max(announced, 0);
+            const bool hidden_pair =
+                announced == ik::unknown || (announced == ik::nearly_two && hidden.root[j].depth < seen.slip);
+            expected += hidden_pair ? 2 : max(announced, 0);
         }
         for (int j = 0; j < found.count; ++j)
             if (is_near(seen.sign * found.q[j][seen.joint], hidden.root[k].angle)) there += twice[j] ? 2 : 1;
@@ -166,9 +170,10 @@ inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
 // more where its first did not bring as many solutions as there must be.
 template <class Function, class Follow>
 inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const Posed& goal,
-                                             const ik::Loop& loop, const Function& f, const Follow& follow,
-                                             ik::Solutions& out) {
+                                             const ik::Loop& loop, double slip, const Function& f,
+                                             const Follow& follow, ik::Solutions& out) {
     ik::Certificate seen;
+    seen.slip = slip;
     ik::HiddenAngles& hidden = seen.hidden;
     isolate(f, hidden);
     seen.joint = loop.joint[0];
@@ -220,7 +225,7 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
                                 ik::Candidates& found) {
             return !again && follow_sheets(sheets, hidden, close, found);
         };
-        return solve_by_hidden_angle(plan, goal, loop, f, follow, out);
+        return solve_by_hidden_angle(plan, goal, loop, 0, f, follow, out);
     }
     const Elimination e = eliminate(loop);
     const auto f = [&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); };
@@ -228,7 +233,8 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
                             ik::Candidates& found) {
         return follow_angles(loop, e, hidden, close, again, found);
     };
-    ik::Certificate seen = solve_by_hidden_angle(plan, goal, loop, f, follow, out);
+    const double slip = plan.sensitivity[number] * equation_error / min(e.faintest, 1.0);
+    ik::Certificate seen = solve_by_hidden_angle(plan, goal, loop, slip, f, follow, out);
     seen.trusted = seen.trusted && e.faintest > clear_equation;
     seen.complete = seen.complete && seen.trusted;
     return seen;
