@@ -19,6 +19,7 @@
 #include "cspace/math/threads.hpp"
 #include "ik.hpp"
 #include "ik_general.hpp"
+#include "ik_held.hpp"
 #include "ik_shared.hpp"
 
 namespace nb = nanobind;
@@ -132,30 +133,17 @@ int room_of(RedundantSolver& solver, const std::vector<int>& held) {
     return locked.at_ends ? room_for(locked.arm) : ik::max_solutions;
 }
 
-// Goals of joints that stand at the ends, by the kernel of the others. Returns false for what it left open.
+// Goals of joints that stand at the ends, by the kernel of the others; `quick` says what it left open.
 struct EndRows {
-    const ik::LockedArm& locked;
-    std::size_t n, room;
     static constexpr std::size_t most = 64;
     double T[most][16], q[most][max_branches * 6];
     std::int64_t count[most];
     ik::Quick quick[most];
 
-    void solve(const double* goals, const double* at, std::size_t stride, std::size_t rows) {
-        for (std::size_t i = 0; i < rows; ++i) {
-            const Posed goal = goal_between_ends(locked, pose_of(goals + 16 * i), at + stride * i);
-            for (int r = 0; r < 3; ++r)
-                for (int c = 0; c < 3; ++c) T[i][4 * r + c] = goal.R.m[r][c];
-            T[i][3] = goal.t.x, T[i][7] = goal.t.y, T[i][11] = goal.t.z;
-            T[i][12] = T[i][13] = T[i][14] = 0;
-            T[i][15] = 1;
-        }
+    void solve(const ik::LockedArm& locked, const double* goals, const double* at, std::size_t stride,
+               std::size_t rows) {
+        kernels::held_goals(locked, goals, at, stride, rows, T[0]);
         kernels::ik_many(locked.arm.plan, T[0], rows, max_branches, q[0], count, quick);
-    }
-    void put(std::size_t i, const double* at, double* rows) const {
-        std::fill(rows, rows + room * n, none);
-        for (std::int64_t k = 0; k < count[i]; ++k)
-            whole_row(locked, at, q[i] + 6 * k, rows + n * std::size_t(k));
     }
 };
 
@@ -177,14 +165,15 @@ void solve_rows(RedundantSolver& solver, const std::vector<int>& held, Rows at, 
     const nb::gil_scoped_release release;
     over_rows(N, threads, 1, 64, [&](std::size_t from, std::size_t to) {
         ik::Solutions found;
-        const auto ends = by_kernel ? std::make_unique<EndRows>(EndRows{locked, n, room}) : nullptr;
+        const auto ends = by_kernel ? std::make_unique_for_overwrite<EndRows>() : nullptr;
         for (std::size_t i = from; i < to; ++i) {
             const double* values = at.data() + stride * i;
             const std::size_t in = (i - from) % EndRows::most;
             if (ends && in == 0)
-                ends->solve(goals.data() + 16 * i, values, stride, std::min(to - i, EndRows::most));
+                ends->solve(locked, goals.data() + 16 * i, values, stride, std::min(to - i, EndRows::most));
             if (ends && ends->quick[in] == ik::Quick::settled) {
-                ends->put(in, values, q.data() + room * n * i);
+                kernels::held_rows(locked, values, ends->q[in], ends->count[in], room,
+                                   q.data() + room * n * i);
                 count.data()[i] = ends->count[in];
                 status.data()[i] =
                     std::uint8_t(int(ends->count[in] ? ik::Status::exact : ik::Status::unreachable));

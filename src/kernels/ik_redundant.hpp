@@ -1,7 +1,7 @@
 #pragma once
 
+#include "cspace/ik/redundant/arcs.hpp"
 #include "cspace/ik/redundant/nearest_search.hpp"
-#include "cspace/ik/redundant/trace.hpp"
 #include "dispatch.hpp"
 
 // The configuration on the manifold of a goal nearest to a seed; false where nothing reaches the goal.

@@ -3,8 +3,8 @@
 #include <memory>
 
 #include "check.hpp"
+#include "cspace/ik/redundant/arcs.hpp"
 #include "cspace/ik/redundant/nearest_search.hpp"
-#include "cspace/ik/redundant/trace.hpp"
 #include "random_arms.hpp"
 
 using namespace cspace;

@@ -67,24 +67,31 @@ inline ik::LockedArm lock_joints(const ik::Chain& whole, const int* held, int n_
     return out;
 }
 
-// What the held joints before (after) those that move do to the goal.
-struct EndMotions {
-    Posed before, after;
-};
-inline EndMotions end_motions(const ik::LockedArm& locked, const double* at) {
-    EndMotions out{identity_pose(), identity_pose()};
-    for (int k = 0; k < locked.n_held; ++k) {
-        const int i = locked.held[k];
-        Posed& side = i < locked.moving[0] ? out.before : out.after;
-        side = side * joint_motion(locked.whole, i, at[i]);
-    }
-    return out;
+// The displacement of joint i by −q.
+template <class V>
+CSPACE_INLINE Pose<V> joint_undone(const ik::Chain& chain, int i, const V& q) {
+    const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
+    if (chain.prismatic[i]) return {fill33<V>(identity_pose().R), -q * h};
+    V s, c;
+    sincos(-q, s, c);
+    const Mat3<V> R = rotation_about(h, c, s);
+    return {R, p - R * p};
 }
-// The goal for an arm whose held joints stand at its ends.
-inline Posed goal_between_ends(const ik::LockedArm& locked, const Posed& goal, const double* at) {
-    const EndMotions ends = end_motions(locked, at);
-    const Posed& tip = locked.whole.tip;
-    return inverse(ends.before) * goal * inverse(tip) * inverse(ends.after) * tip;
+// The goal for an arm whose held joints stand at its ends: those before the others move the base, those
+// behind them the tip.
+template <class V>
+CSPACE_INLINE Pose<V> goal_between_ends(const ik::LockedArm& locked, const Pose<V>& goal, const V* at) {
+    const ik::Chain& whole = locked.whole;
+    const Posed& tip = whole.tip;
+    Pose<V> out = goal;
+    int last = locked.n_held;
+    for (int k = 0; k < locked.n_held && locked.held[k] < locked.moving[0]; ++k)
+        out = joint_undone(whole, locked.held[k], at[locked.held[k]]) * out;
+    if (last == 0 || locked.held[last - 1] < locked.moving[0]) return out;
+    out = out * fill_pose<V>(inverse(tip));
+    for (; last > 0 && locked.held[last - 1] > locked.moving[0]; --last)
+        out = out * joint_undone(whole, locked.held[last - 1], at[locked.held[last - 1]]);
+    return out * fill_pose<V>(tip);
 }
 
 // The arm with joints held between others at these values. A general one keeps the order of formulations of

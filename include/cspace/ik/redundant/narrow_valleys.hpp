@@ -8,10 +8,11 @@
 
 namespace cspace {
 
+// Branches stand side by side, so that they are compared on lanes.
 struct CurveSample {
     double value;
-    unsigned there;  // which branches
-    double q[max_branches][ik::max_joints];
+    unsigned there;  // which branches; the others are zero
+    double q[ik::max_joints][max_branches];
     double distance[max_branches];
     int next;  // in the order of values, or −1
 };
@@ -25,41 +26,58 @@ struct CurveSamples {
 
 namespace cspace::inline CSPACE_ISA {
 
-// Whether a branch may come nearer than `best` between two neighbours.
-inline bool may_hide(const ik::Redundant& arm, const CurveSample& a, const CurveSample& b, double best) {
-    constexpr double least_gap = 1e-4, detour = 1.2, short_way_between = 0.15;
-    if (!(b.value - a.value > least_gap)) return false;
-    for (int k = 0; k < max_branches; ++k) {
-        const bool in_a = a.there >> k & 1, in_b = b.there >> k & 1;
-        if (!in_a || !in_b) continue;
-        double way2 = 0;
-        for (int i = 0; i < arm.chain.n; ++i) {
-            const double gap = a.q[k][i] - b.q[k][i];
-            const double way = arm.chain.prismatic[i] ? gap : short_way(gap);
-            way2 += arm.weight[i] * way * way;
-        }
-        const double way = detour * std::sqrt(way2);
-        if (way > short_way_between && a.distance[k] + b.distance[k] - way < 2 * best) return true;
+// The sum of the squares of what joints differ by, on four branches; difference(i): of joint i.
+template <class Difference>
+CSPACE_INLINE Pack<4> squared_way(const ik::Redundant& arm, const Difference& difference) {
+    Pack<4> sum = fill<Pack<4>>(0.0);
+    for (int i = 0; i < arm.chain.n; ++i) {
+        const Pack<4> gap = difference(i), way = arm.chain.prismatic[i] ? gap : short_way(gap);
+        sum = mul_add(arm.weight[i] * way, way, sum);
     }
-    return false;
+    return sum;
 }
 
-// Adds the samples at some values; `distance(q)` from the seed. after[k]: the sample that value k follows.
-template <class Distance>
-inline void add_samples(const Sweep& sweep, const double* values, const int* after, int n,
-                        const Distance& distance, CurveSamples& all) {
+// Whether a branch may come nearer than `best` between two neighbours.
+inline bool may_hide(const ik::Redundant& arm, const CurveSample& a, const CurveSample& b, double best) {
+    using V = Pack<4>;
+    constexpr double least_gap = 1e-4, detour = 1.2, short_way_between = 0.15;
+    if (!(b.value - a.value > least_gap)) return false;
+    unsigned hidden = 0;
+    for (int k = 0; k < max_branches; k += 4) {
+        const V way =
+            detour * sqrt(squared_way(arm, [&](int i) { return load<V>(a.q[i] + k) - load<V>(b.q[i] + k); }));
+        const V sum = load<V>(a.distance + k) + load<V>(b.distance + k);
+        hidden |= bits_of(way > short_way_between && sum - way < 2 * best) << k;
+    }
+    return (hidden & a.there & b.there) != 0;
+}
+
+inline void measure_sample(const ik::Redundant& arm, const double* seed, CurveSample& at) {
+    using V = Pack<4>;
+    for (int k = 0; k < max_branches; k += 4) {
+        const V square = squared_way(arm, [&](int i) { return load<V>(at.q[i] + k) - seed[i]; });
+        store(at.distance + k, sqrt(square));
+    }
+}
+
+// Adds the samples at some values, with their distances from the seed. after[k]: the sample that value k
+// follows.
+inline void add_samples(const ik::Redundant& arm, const Sweep& sweep, const double* values, const int* after,
+                        int n, const double* seed, CurveSamples& all) {
     sweep_values(sweep, values, n, [&](int k, const SweptRows& rows) {
         const int at = all.count++;
         CurveSample& made = all.sample[at];
         made.value = values[k];
         made.there = 0;
+        for (int i = 0; i < arm.chain.n; ++i)
+            for (int b = 0; b < max_branches; ++b) made.q[i][b] = 0;
         for (int j = 0; j < rows.count; ++j) {
             const int b = rows.branch[j];
             if (b < 0 || b >= max_branches) continue;
             made.there |= 1u << b;
-            for (int i = 0; i < sweep.locked->whole.n; ++i) made.q[b][i] = rows.q[j][i];
-            made.distance[b] = distance(rows.q[j]);
+            for (int i = 0; i < arm.chain.n; ++i) made.q[i][b] = rows.q[j][i];
         }
+        measure_sample(arm, seed, made);
         made.next = -1;
         if (after && after[k] >= 0) {
             made.next = all.sample[after[k]].next;
@@ -71,9 +89,8 @@ inline void add_samples(const Sweep& sweep, const double* values, const int* aft
 }
 
 // Divides until nothing nearer than `best` (or than the nearest sample) can hide.
-template <class Distance>
-inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double best,
-                           const Distance& distance, CurveSamples& all) {
+inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double best, const double* seed,
+                           CurveSamples& all) {
     constexpr int most_rounds = 10;
     for (int round = 0; round < most_rounds; ++round) {
         double values[CurveSamples::room];
@@ -88,17 +105,19 @@ inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double 
             after[n++] = k;
         }
         if (n == 0) return;
-        add_samples(sweep, values, after, n, distance, all);
+        add_samples(arm, sweep, values, after, n, seed, all);
     }
 }
 
-// Whether q lies on the way from sample a to sample b of one branch.
-inline bool lies_between(const ik::Chain& chain, const double* a, const double* b, const double* q) {
+// Whether q lies on the way from sample a to sample b of a branch.
+inline bool lies_between(const ik::Chain& chain, const CurveSample& a, const CurveSample& b, int branch,
+                         const double* q) {
     double along = 0, length2 = 0, off2 = 0, gap[ik::max_joints], way[ik::max_joints];
     for (int i = 0; i < chain.n; ++i) {
         const bool slides = chain.prismatic[i];
-        gap[i] = slides ? q[i] - a[i] : short_way(q[i] - a[i]);
-        way[i] = slides ? b[i] - a[i] : short_way(b[i] - a[i]);
+        const double from = a.q[i][branch], to = b.q[i][branch];
+        gap[i] = slides ? q[i] - from : short_way(q[i] - from);
+        way[i] = slides ? to - from : short_way(to - from);
         along += gap[i] * way[i];
         length2 += way[i] * way[i];
     }
@@ -116,16 +135,19 @@ inline void lowest_samples(const ik::Chain& chain, const CurveSamples& all, cons
     const CurveSample* before = nullptr;
     for (int k = all.count ? 0 : -1; k >= 0;) {
         const CurveSample& at = all.sample[k];
-        const CurveSample* after = at.next >= 0 ? &all.sample[at.next] : nullptr;
+        const CurveSample* beside[2] = {before, at.next >= 0 ? &all.sample[at.next] : nullptr};
         for (int b = 0; b < max_branches; ++b) {
-            if (!(at.there >> b & 1)) continue;
-            bool lowest = true, is_found = false;
-            for (const CurveSample* other : {before, after}) {
-                if (!other || !(other->there >> b & 1)) continue;
-                lowest = lowest && at.distance[b] <= other->distance[b];
-                is_found = is_found || (found && lies_between(chain, at.q[b], other->q[b], found));
-            }
-            if (lowest && !is_found) visit(at.q[b], at.distance[b]);
+            bool wanted = at.there >> b & 1;
+            for (const CurveSample* other : beside)
+                wanted =
+                    wanted && (!other || !(other->there >> b & 1) || at.distance[b] <= other->distance[b]);
+            for (const CurveSample* other : beside)
+                wanted = wanted && !(found && other && other->there >> b & 1 &&
+                                     lies_between(chain, at, *other, b, found));
+            if (!wanted) continue;
+            double q[ik::max_joints];
+            for (int i = 0; i < chain.n; ++i) q[i] = at.q[i][b];
+            visit(q, at.distance[b]);
         }
         before = &at;
         k = at.next;

@@ -146,8 +146,7 @@ inline void sample_window(const ik::Redundant& arm, const Sweep& sweep, const do
                           const double* values, int count, double window, const Nearest& best,
                           Starts& starts) {
     CurveSamples samples;
-    const auto distance = [&](const double* q) { return distance_from_seed(arm, seed, q); };
-    add_samples(sweep, values, nullptr, count, distance, samples);
+    add_samples(arm, sweep, values, nullptr, count, seed, samples);
     if (has_changes(samples)) {
         const FoldValues folds = fold_values(arm, sweep);
         double between[CurveSamples::room];
@@ -155,10 +154,10 @@ inline void sample_window(const ik::Redundant& arm, const Sweep& sweep, const do
         const int n = values_between_folds(folds, at, window, between, CurveSamples::room - 64);
         if (n > 0) {
             samples.count = 0;
-            add_samples(sweep, between, nullptr, n, distance, samples);
+            add_samples(arm, sweep, between, nullptr, n, seed, samples);
         }
     }
-    divide_samples(arm, sweep, best.distance, distance, samples);
+    divide_samples(arm, sweep, best.distance, seed, samples);
     lowest_samples(arm.chain, samples, std::isfinite(best.distance) ? best.q : nullptr,
                    [&](const double* q, double d) { add_start(arm, starts, q, d); });
 }

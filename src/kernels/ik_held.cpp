@@ -1,0 +1,41 @@
+#include "ik_held.hpp"
+
+#include <limits>
+
+#include "cspace/math/rows.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+void held_goals(const ik::LockedArm& locked, const double* goals, const double* at, std::size_t stride,
+                std::size_t rows, double* moved) {
+    using V = Pack<native_width>;
+    for (std::size_t first = 0; first < rows; first += native_width) {
+        const int count = rows - first < native_width ? int(rows - first) : native_width;
+        V m[16], value[ik::max_joints];
+        load_rows(goals + 16 * first, 16, count, 12, m);
+        for (int k = 0; k < locked.n_held; ++k)
+            load_rows(at + stride * first + locked.held[k], stride, count, 1, value + locked.held[k]);
+        const Pose<V> goal = {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}},
+                              {m[3], m[7], m[11]}};
+        const Pose<V> T = goal_between_ends(locked, goal, value);
+        const Vec3<V>& t = T.t;
+        const V offset[3] = {t.x, t.y, t.z}, zero = fill<V>(0.0);
+        for (int i = 0; i < 3; ++i) {
+            for (int j = 0; j < 3; ++j) m[4 * i + j] = T.R.m[i][j];
+            m[4 * i + 3] = offset[i];
+        }
+        m[12] = m[13] = m[14] = zero;
+        m[15] = fill<V>(1.0);
+        store_rows(m, 16, moved + 16 * first, 16, count);
+    }
+}
+
+void held_rows(const ik::LockedArm& locked, const double* at, const double* q, std::int64_t count,
+               std::size_t room, double* rows) {
+    const std::size_t n = std::size_t(locked.whole.n);
+    for (std::int64_t k = 0; k < count; ++k) whole_row(locked, at, q + 6 * k, rows + n * std::size_t(k));
+    for (std::size_t i = n * std::size_t(count); i < n * room; ++i)
+        rows[i] = std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace cspace::inline CSPACE_ISA
