@@ -31,6 +31,41 @@ def kr6_r900_solutions() -> Sequence[Any]:
     )
 
 
+def jaco2_solutions() -> Sequence[Any]:
+    """The same of an arm in general position, at a pose with many of them."""
+    robot = cs.load_robot("jaco2")
+    poses = robot.fk(robot.random_configuration(300, rng=1))
+    answers = [robot.ik(T) for T in poses if T[2, 3] > 0.2]
+    most = max(answers, key=len)
+    return plot.solutions(robot, most, most.goal, title=f"jaco2: all {len(most)} ways to one pose")
+
+
+def torch_turns() -> Sequence[Any]:
+    """A place and a direction, at eight turns about the direction."""
+    robot = cs.load_robot("ur5e").with_tool(cs.pose([0.0, 0.08, 0.1], rpy=[-np.pi / 4, 0.0, 0.0]))
+    point, middle = [0.5, 0.0, 0.15], [0, -1.2, 1.6, -2, -1.57, 0]
+    found = robot.ik(position=point, direction=[0, 0, -1], samples=8)
+    x = robot.fk(found.q)[:, :3, 0]
+    turns = np.degrees(np.arctan2(x[:, 1], x[:, 0])).round(1)
+    away = np.linalg.norm(np.sin((found.q - middle) / 2), axis=1)
+    each = [int(np.argmin(np.where(turns == turn, away, np.inf))) for turn in np.unique(turns)]
+    labels = [f"turned {turns[k]:.0f}°" for k in each]
+    title = "ur5e with a torch: one place, one direction"
+    return plot.solutions(robot, found.q[each], point, near=found.q[each[3]], labels=labels, title=title)
+
+
+def iiwa14_swivel() -> Sequence[Any]:
+    """The self-motion of an arm of seven joints: one elbow, at nine swivels."""
+    robot = cs.load_robot("iiwa14")
+    T = cs.pose([0.5, 0.0, 0.45], rpy=[0.0, np.pi, 0.0])
+    angles = np.radians(np.linspace(-90, 90, 9))
+    start = robot.ik(T, swivel=0.0).within().nearest(np.zeros(7))[0]
+    q = np.array([robot.ik(T, swivel=angle).nearest(start)[0] for angle in angles])
+    labels = [f"swivel {np.degrees(angle):.1f}°" for angle in angles]
+    title = "iiwa14: the elbow swings, the tip stays"
+    return plot.solutions(robot, q, T, near=start, labels=labels, title=title)
+
+
 def panda() -> Sequence[Any]:
     """A Franka Panda ready to work."""
     robot = cs.load_robot("panda")
@@ -78,6 +113,9 @@ def manipulability() -> Sequence[Any]:
 PICTURES: tuple[Callable[[], Sequence[Any]], ...] = (
     ur5e_solutions,
     kr6_r900_solutions,
+    jaco2_solutions,
+    torch_turns,
+    iiwa14_swivel,
     panda,
     scara,
     frames,

@@ -52,6 +52,10 @@ inline constexpr double always_singular = 1e-9;
 // length): far above what rounding costs near a singularity, far below what any robot can tell.
 inline constexpr double reached = 1e-9;
 
+// A goal counts as beyond an arm only if it misses what the axes allow by this (rad, and m over the arm's
+// length): ten times what a solution may miss.
+inline constexpr double beyond = 1e-8;
+
 // Solutions closer than this [rad] are one, unless conditioning says otherwise (see ik/refine.hpp).
 inline constexpr double same_solution = 1e-9;
 

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "bindings.hpp"
+#include "chains.hpp"
 #include "cspace/ik/goal.hpp"
 #include "ik_general.hpp"
 #include "ik_shared.hpp"
@@ -37,10 +38,6 @@ SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Raise
 NoClosedFormError for an arm that this version does not solve.)doc";
 
 namespace {
-
-Posed pose_from(const double* m) {
-    return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
-}
 
 // The solutions as Python sees them; null with an error set.
 PyObject* to_python(PyObject* robot, const double* goal, int dof, const ik::Solutions& found) {
@@ -148,15 +145,8 @@ PyObject* build(PyObject*, PyObject* args) {
     }
     // Two threads may both come here first: the later one takes what the earlier one built and may be using.
     if (const ik::Arm* built = arm_of(robot)) return PyLong_FromLong(room_of(*built));
-    ik::Chain chain;
-    chain.n = int(n);
-    for (int i = 0; i < chain.n; ++i) {
-        const double *h = data_of(axes) + 3 * i, *p = data_of(points) + 3 * i;
-        chain.axis[i] = {h[0], h[1], h[2]};
-        chain.point[i] = {p[0], p[1], p[2]};
-        chain.prismatic[i] = data_of(prismatic)[i] != 0;
-    }
-    chain.tip = pose_from(data_of(tip));
+    const ik::Chain chain =
+        chain_from(int(n), data_of(axes), data_of(points), data_of(prismatic), data_of(tip));
     auto arm = std::make_shared<ik::Arm>(make_arm(chain, kernels::plan_general));
     const int room = room_of(*arm);
     reinterpret_cast<RobotObject*>(robot)->ik = std::move(arm);
@@ -193,6 +183,20 @@ PyObject* miss(PyObject*, PyObject* args) {
     if (!q) return nullptr;
     std::memcpy(data_of(q), best.q, sizeof(double) * std::size_t(n));
     return Py_BuildValue("Ndd", q, best.position, best.rotation);
+}
+
+// _ik_is_beyond(robot, goal (4, 4)) → whether the lengths and directions of its axes rule the goal out
+PyObject* beyond(PyObject*, PyObject* args) {
+    PyObject *robot, *goal;
+    if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
+    const ik::Arm* arm = arm_of(robot);
+    if (!arm || !is_doubles(goal, 16)) {
+        PyErr_SetString(PyExc_TypeError,
+                        "_ik_is_beyond takes a robot with a solver and a contiguous float64 goal");
+        return nullptr;
+    }
+    const ik::Plan& plan = arm->plan;
+    return PyBool_FromLong(is_beyond(plan.chain, read_goal(data_of(goal)).T, plan.form.length));
 }
 
 // The arm and the goal of a call about a position; null with an error set.
@@ -290,6 +294,7 @@ PyObject* geometry(PyObject*, PyObject* robot) {
 PyMethodDef functions[] = {
     {"_ik_build", build, METH_VARARGS, "Builds the solver of a robot from its screws at zero."},
     {"_ik_careful", careful, METH_VARARGS, "Solves one goal by the careful path, free joints as given."},
+    {"_ik_is_beyond", beyond, METH_VARARGS, "Whether the axes of an arm alone rule a goal out."},
     {"_ik_miss", miss, METH_VARARGS, "The configuration that comes nearest to a goal out of reach."},
     {"_ik_follow", ik_follow, METH_VARARGS, "The family through a configuration, as a curve."},
     {"_ik_onto", ik_onto, METH_VARARGS, "Configurations brought onto the family through another one."},

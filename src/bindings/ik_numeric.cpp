@@ -1,10 +1,9 @@
 // Numeric inverse kinematics: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
 #include "ik_numeric.hpp"
 
-#include <nanobind/ndarray.h>
-
 #include <array>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "cspace/ik/numeric/distinct.hpp"
 #include "cspace/math/threads.hpp"
@@ -15,11 +14,6 @@ using namespace nb::literals;
 using namespace cspace;
 
 namespace {
-
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
-using Rows2 = Array<const double, nb::ndim<2>>;
-using Goals = Array<const double, nb::shape<-1, 4, 4>>;
 
 constexpr int info_width = 5;  // position, rotation, steps, start, ending
 
@@ -40,25 +34,25 @@ ik::Task task_of(const RobotPath& on, const Array<const double, nb::shape<6>>& w
 }
 
 // Rows of the robot's coordinates as rows of those of the path.
-std::vector<double> gathered(const RobotPath& on, const Rows2& rows) {
+std::vector<double> gathered(const RobotPath& on, const Matrix& rows) {
     std::vector<double> out(rows.shape(0) * std::size_t(on.path.n));
     for (std::size_t k = 0; k < rows.shape(0); ++k)
         on.gather(rows.data() + rows.shape(1) * k, out.data() + std::size_t(on.path.n) * k);
     return out;
 }
 
-void check_columns(const RobotPath& on, const Rows2& rows) {
+void check_columns(const RobotPath& on, const Matrix& rows) {
     if (int(rows.shape(1)) != on.coordinates) throw nb::value_error("one column per coordinate of the robot");
 }
 
 // See ik_descend in the package for the meaning of each argument.
-void descend(nb::handle robot, int frame, Goals goals, Rows2 starts, Rows2 more, Rows2 posture,
+void descend(nb::handle robot, int frame, Goals goals, Matrix starts, Matrix more, Matrix posture,
              Array<const double, nb::shape<6>> weights, Array<const double, nb::shape<2, -1>> limits,
              double tolerance, int most_steps, bool newton, int threads, Array<double, nb::ndim<2>> q,
              Array<double, nb::shape<-1, info_width>> info) {
     const RobotPath on = path_on(robot, frame);
     const std::size_t count = goals.shape(0), n = std::size_t(on.path.n);
-    for (const Rows2* rows : {&starts, &more, &posture}) check_columns(on, *rows);
+    for (const Matrix* rows : {&starts, &more, &posture}) check_columns(on, *rows);
     if (q.shape(0) != count || int(q.shape(1)) != on.coordinates || info.shape(0) != count ||
         (starts.shape(0) != count && starts.shape(0) != 1) ||
         (limits.shape(1) != 0 && int(limits.shape(1)) != on.coordinates))
@@ -98,11 +92,10 @@ void descend(nb::handle robot, int frame, Goals goals, Rows2 starts, Rows2 more,
 }
 
 // From many starts to one goal; returns how many different solutions q and hits hold.
-std::size_t sample(nb::handle robot, int frame, Array<const double, nb::shape<4, 4>> goal, Rows2 starts,
-                   Rows2 wanted, Array<const double, nb::shape<6>> weights,
-                   Array<const double, nb::shape<2, -1>> limits, double tolerance, int most_steps,
-                   int threads, Array<double, nb::ndim<2>> q, Array<double, nb::ndim<1>> residual,
-                   Array<std::int64_t, nb::ndim<1>> hits) {
+std::size_t sample(nb::handle robot, int frame, Goal goal, Matrix starts, Matrix wanted,
+                   Array<const double, nb::shape<6>> weights, Array<const double, nb::shape<2, -1>> limits,
+                   double tolerance, int most_steps, int threads, Array<double, nb::ndim<2>> q,
+                   Array<double, nb::ndim<1>> residual, Array<std::int64_t, nb::ndim<1>> hits) {
     const RobotPath on = path_on(robot, frame);
     const std::size_t count = starts.shape(0), n = std::size_t(on.path.n);
     check_columns(on, starts);

@@ -1,10 +1,11 @@
 // Velocities: resolved rate, and several tasks at once. Plain checked arrays in, filled arrays out.
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/tuple.h>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "cspace/ik/numeric/rate.hpp"
 #include "cspace/ik/numeric/serve.hpp"
+#include "cspace/kinematics/forward.hpp"
 #include "cspace/math/threads.hpp"
 #include "numeric_path.hpp"
 
@@ -14,16 +15,8 @@ using namespace cspace;
 
 namespace {
 
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
-using Vector = Array<const double, nb::ndim<1>>;
-using Matrix = Array<const double, nb::ndim<2>>;
-
 void require(bool fits) {
     if (!fits) throw nb::value_error("arrays of matching sizes");
-}
-Posed pose_from(const double* m) {
-    return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
 }
 
 // The columns of a packed task: kind, frame, gain, target (16), weights (6), point (3).
@@ -35,7 +28,7 @@ FrameTask task_from(const double* row, const RobotModel& model) {
     task.frame = int(row[1]);
     require(task.kind == TaskKind::center_of_mass || (task.frame >= 0 && task.frame < model.n_frames()));
     task.gain = row[2];
-    task.target = pose_from(row + 3);
+    task.target = read_matrix(row + 3);
     std::copy_n(row + 19, 6, task.weight);
     task.point = {row[25], row[26], row[27]};
     return task;
@@ -72,7 +65,7 @@ void write_errors(const TaskPlace& at, const Array<double, nb::shape<-1, 2>>& er
 }
 
 // The bounds of a step of length dt: speeds, and the way to the limits. From outside it leads back in.
-void bound_by_speed(const TaskProblem& problem, const double* q, const Vector& speed, double dt, BoxQp& qp) {
+void bound_by_speed(const TaskProblem& problem, const double* q, const Row& speed, double dt, BoxQp& qp) {
     const std::size_t first = problem.floating ? 6 : 0;
     constexpr double endless = std::numeric_limits<double>::infinity();
     for (std::size_t j = 0; j < std::size_t(qp.n); ++j) {
@@ -95,10 +88,10 @@ double kept_inside(double qd, double q, double dt, double lower, double upper) {
     return qd;
 }
 
-bool task_velocity(nb::handle robot, Matrix tasks, Matrix postures, Vector q,
+bool task_velocity(nb::handle robot, Matrix tasks, Matrix postures, Row q,
                    Array<const double, nb::shape<4, 4>> T_world_base,
-                   Array<const double, nb::shape<2, -1>> limits, Vector speed, double dt, double damping,
-                   Array<double, nb::ndim<1>> qd, Array<double, nb::shape<-1, 2>> errors) {
+                   Array<const double, nb::shape<2, -1>> limits, Row speed, double dt, double damping,
+                   RowOut qd, Array<double, nb::shape<-1, 2>> errors) {
     const TaskProblem problem = problem_from(robot, tasks, postures, limits);
     const int n = problem.model->n_coordinates(), dof = dof_of(problem);
     require(int(q.shape(0)) == n && int(qd.shape(0)) == dof && errors.shape(0) == problem.tasks.size() &&
@@ -106,7 +99,7 @@ bool task_velocity(nb::handle robot, Matrix tasks, Matrix postures, Vector q,
     TaskWork work = task_work(problem);
     TaskPlace at;
     at.q.assign(q.data(), q.data() + n);
-    at.T_world_base = pose_from(T_world_base.data());
+    at.T_world_base = read_matrix(T_world_base.data());
     look(problem, work, at);
     BoxQp qp(dof);
     bound_by_speed(problem, q.data(), speed, dt, qp);
@@ -122,8 +115,7 @@ bool task_velocity(nb::handle robot, Matrix tasks, Matrix postures, Vector q,
     return true;
 }
 
-std::tuple<int, bool, double> task_serve(nb::handle robot, Matrix tasks, Matrix postures,
-                                         Array<double, nb::ndim<1>> q,
+std::tuple<int, bool, double> task_serve(nb::handle robot, Matrix tasks, Matrix postures, RowOut q,
                                          Array<double, nb::shape<4, 4>> T_world_base,
                                          Array<const double, nb::shape<2, -1>> limits, int most_steps,
                                          double settled, Array<double, nb::shape<-1, 2>> errors) {
@@ -132,7 +124,7 @@ std::tuple<int, bool, double> task_serve(nb::handle robot, Matrix tasks, Matrix 
     require(int(q.shape(0)) == n && errors.shape(0) == problem.tasks.size());
     TaskPlace at;
     at.q.assign(q.data(), q.data() + n);
-    at.T_world_base = pose_from(T_world_base.data());
+    at.T_world_base = read_matrix(T_world_base.data());
     Served served;
     {
         nb::gil_scoped_release free;
@@ -145,7 +137,7 @@ std::tuple<int, bool, double> task_serve(nb::handle robot, Matrix tasks, Matrix 
 }
 
 void rate(Array<const double, nb::shape<-1, 6, -1>> J, Array<const double, nb::shape<-1, 6>> twist,
-          Matrix wish, Vector most, double damping, double threshold, int threads,
+          Matrix wish, Row most, double damping, double threshold, int threads,
           Array<double, nb::ndim<2>> qd) {
     const std::size_t rows = J.shape(0), dof = J.shape(2);
     require(twist.shape(0) == rows && qd.shape(0) == rows && qd.shape(1) == dof &&
@@ -163,7 +155,7 @@ void rate(Array<const double, nb::shape<-1, 6, -1>> J, Array<const double, nb::s
     });
 }
 
-int box_qp_of(Matrix H, Vector g, Vector lower, Vector upper, Array<double, nb::ndim<1>> x) {
+int box_qp_of(Matrix H, Row g, Row lower, Row upper, RowOut x) {
     const std::size_t n = g.shape(0);
     require(H.shape(0) == n && H.shape(1) == n && lower.shape(0) == n && upper.shape(0) == n &&
             x.shape(0) == n);

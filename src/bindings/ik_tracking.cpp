@@ -1,10 +1,9 @@
 // Branches along a path of poses: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
 #include "ik_tracking.hpp"
 
-#include <nanobind/ndarray.h>
-
 #include <vector>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "cspace/ik/goal.hpp"
 #include "numeric_path.hpp"
@@ -14,10 +13,6 @@ using namespace nb::literals;
 using namespace cspace;
 
 namespace {
-
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
-using Rows2 = Array<const double, nb::ndim<2>>;
 
 constexpr int info_width = 5;  // poses reached, end, fate, joint, least singular value
 
@@ -35,7 +30,7 @@ struct Tracking {
     double*
         rows;  // where the configurations go: the caller's array, if its coordinates are those of the path
 
-    Tracking(const RobotPath& on, const double* matrices, std::size_t count, const Rows2& from, double* into)
+    Tracking(const RobotPath& on, const double* matrices, std::size_t count, const Matrix& from, double* into)
         : on(on), poses(count), ways(count) {
         for (std::size_t k = 0; k < count; ++k) poses[k] = read_goal(matrices + 16 * k).T;
         for (std::size_t k = 0; k < count; ++k)
@@ -63,7 +58,7 @@ struct Tracking {
 
 // See robot.track in the package for the meaning of each argument. q (branches, poses, coordinates), last
 // (branches, coordinates) and info take the results; q beyond the poses reached is left alone.
-void follow(nb::handle robot, int frame, Array<const double, nb::shape<-1, 4, 4>> poses, Rows2 starts,
+void follow(nb::handle robot, int frame, Goals poses, Matrix starts,
             Array<const double, nb::shape<3, -1>> bounds, bool whole_turns, Array<double, nb::ndim<3>> q,
             Array<double, nb::ndim<2>> last, Array<double, nb::shape<-1, info_width>> info) {
     const RobotPath on = path_on(robot, frame);

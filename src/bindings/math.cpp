@@ -1,22 +1,19 @@
-#include <nanobind/ndarray.h>
-
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "trig.hpp"
 
 namespace nb = nanobind;
-using In = nb::ndarray<const double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
-using Out = nb::ndarray<double, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 // The kernels write as many values as they read.
 template <class... Others>
-void same_size(const In& x, const Others&... others) {
+void same_size(const Row& x, const Others&... others) {
     if (((others.size() != x.size()) || ...)) throw nb::value_error("the arrays must have one length");
 }
 
 void bind_math(nb::module_& m) {
     m.def(
         "sincos",
-        [](In x, Out s, Out c) {
+        [](Row x, RowOut s, RowOut c) {
             same_size(x, s, c);
             cspace::kernels::sincos_n(x.data(), s.data(), c.data(), x.size());
         },
@@ -24,7 +21,7 @@ void bind_math(nb::module_& m) {
         "Sine and cosine of x (n,) [rad], written into sin and cos.");
     m.def(
         "atan2",
-        [](In y, In x, Out a) {
+        [](Row y, Row x, RowOut a) {
             same_size(x, y, a);
             cspace::kernels::atan2_n(y.data(), x.data(), a.data(), x.size());
         },
@@ -32,14 +29,14 @@ void bind_math(nb::module_& m) {
         "Angle of the vectors (x, y) [rad], written into angle.");
     m.def(
         "acos",
-        [](In x, Out a) {
+        [](Row x, RowOut a) {
             same_size(x, a);
             cspace::kernels::acos_n(x.data(), a.data(), x.size());
         },
         nb::arg("x"), nb::arg("angle"), "Inverse cosine of x (n,) [rad], written into angle.");
     m.def(
         "asin",
-        [](In x, Out a) {
+        [](Row x, RowOut a) {
             same_size(x, a);
             cspace::kernels::asin_n(x.data(), a.data(), x.size());
         },

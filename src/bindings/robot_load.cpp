@@ -3,6 +3,7 @@
 #include <climits>
 #include <vector>
 
+#include "cspace/kinematics/forward.hpp"
 #include "robot.hpp"
 
 using namespace cspace;
@@ -41,10 +42,6 @@ long integer(PyObject* owner, const char* name) {
     return number;
 }
 
-Posed pose(const double* m) {
-    return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
-}
-
 // The indices that the compiled loops follow blindly must be right.
 bool indices_fit(const std::vector<Joint>& joints, const std::vector<Frame>& frames, long n, long tip) {
     for (int k = 0; k < int(joints.size()); ++k) {
@@ -78,7 +75,7 @@ std::unique_ptr<const RobotModel> read_model(PyObject* assembly, long n_joints, 
 
     std::vector<Joint> joints(n_joints);
     for (long k = 0; k < n_joints; ++k) {
-        joints[k] = {pose(T_joint.data + 16 * k),
+        joints[k] = {read_matrix(T_joint.data + 16 * k),
                      int(parent.data[k]),
                      int(coordinate.data[k]),
                      ratio.data[k],
@@ -87,7 +84,8 @@ std::unique_ptr<const RobotModel> read_model(PyObject* assembly, long n_joints, 
                      0.0};
     }
     std::vector<Frame> frames(n_frames);
-    for (long k = 0; k < n_frames; ++k) frames[k] = {pose(T_frame.data + 16 * k), int(carrier.data[k])};
+    for (long k = 0; k < n_frames; ++k)
+        frames[k] = {read_matrix(T_frame.data + 16 * k), int(carrier.data[k])};
     std::vector<Body> bodies(n_joints + 1);
     for (long k = 0; k <= n_joints; ++k) {
         bodies[k] = {{center.data[3 * k], center.data[3 * k + 1], center.data[3 * k + 2]}, mass.data[k]};

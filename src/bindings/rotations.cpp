@@ -1,7 +1,6 @@
 #include "rotations.hpp"
 
-#include <nanobind/ndarray.h>
-
+#include "arrays.hpp"
 #include "bindings.hpp"
 
 namespace nb = nanobind;
@@ -9,11 +8,7 @@ using namespace nb::literals;
 
 namespace {
 
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
 using Quaternions = Array<const double, nb::shape<-1, 4>>;
-using Vectors = Array<const double, nb::shape<-1, 3>>;
-using Angles = Array<const double, nb::shape<-1>>;
 using Matrices = Array<double, nb::shape<-1, 3, 3>>;
 
 // The kernels write as many matrices as they read rows.
@@ -46,7 +41,7 @@ void bind_rotations(nb::module_& m) {
         "Rotations of rotation vectors (n, 3) [rad], written into R (n, 3, 3); False if a row needs care.");
     m.def(
         "axis_angle_matrices",
-        [](Vectors axis, Angles angle, Matrices R) {
+        [](Vectors axis, Row angle, Matrices R) {
             same_rows(R, axis, angle);
             nb::gil_scoped_release released;
             return cspace::kernels::axis_angle_matrices_n(axis.data(), angle.data(), R.data(), R.shape(0));

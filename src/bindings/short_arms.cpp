@@ -1,6 +1,6 @@
-#include <nanobind/ndarray.h>
-
+#include "arrays.hpp"
 #include "bindings.hpp"
+#include "chains.hpp"
 #include "cspace/ik/position/pose.hpp"
 
 namespace nb = nanobind;
@@ -9,28 +9,17 @@ using namespace cspace;
 
 namespace {
 
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
-using Rows = Array<const double, nb::shape<-1, 3>>;
+using Prismatic = Array<const bool, nb::ndim<1>>;
+using Solutions = Array<double, nb::shape<-1, 8, -1>>;
+using Free = Array<bool, nb::shape<-1, 8>>;
+using Count = Array<std::int32_t, nb::ndim<1>>;
 
-Vec3d vector(const double* v) { return {v[0], v[1], v[2]}; }
-Posed pose(const double* m) {
-    return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
-}
-ik::Chain chain_of(const Rows& axes, const Rows& points, const Array<const bool, nb::shape<-1>>& prismatic,
-                   const double* T_zero) {
-    ik::Chain chain;
-    chain.n = int(axes.shape(0));
-    if (chain.n < 1 || chain.n > ik::max_position_joints || points.shape(0) != axes.shape(0) ||
-        prismatic.shape(0) != axes.shape(0))
+ik::Chain chain_of(const Vectors& axes, const Vectors& points, const Prismatic& prismatic,
+                   const Goal& T_zero) {
+    const std::size_t n = axes.shape(0);
+    if (n < 1 || n > ik::max_position_joints || points.shape(0) != n || prismatic.shape(0) != n)
         throw nb::value_error("one to three joints, with as many axes, points and types");
-    for (int i = 0; i < chain.n; ++i) {
-        chain.axis[i] = vector(axes.data() + 3 * i);
-        chain.point[i] = vector(points.data() + 3 * i);
-        chain.prismatic[i] = prismatic.data()[i];
-    }
-    chain.tip = pose(T_zero);
-    return chain;
+    return chain_from(int(n), axes.data(), points.data(), prismatic.data(), T_zero.data());
 }
 
 // Every array that is written must have a row per goal; the last axis of q and direction counts joints.
@@ -62,23 +51,18 @@ void put(const Found& found, int n, double* q, double* direction, bool* free, st
 }  // namespace
 
 void bind_short_arms(nb::module_& m) {
-    using Prismatic = Array<const bool, nb::shape<-1>>;
-    using Matrix = Array<const double, nb::shape<4, 4>>;
-    using Solutions = Array<double, nb::shape<-1, 8, -1>>;
-    using Free = Array<bool, nb::shape<-1, 8>>;
-    using Count = Array<std::int32_t, nb::shape<-1>>;
     m.def(
         "position_solutions",
-        [](Rows axes, Rows points, Prismatic prismatic, Matrix T_zero, Rows goals, Solutions q,
-           Solutions direction, Free free, Count count, Array<double, nb::shape<-1>> missing,
-           Array<double, nb::shape<-1, -1>> nearest) {
-            const ik::Chain chain = chain_of(axes, points, prismatic, T_zero.data());
+        [](Vectors axes, Vectors points, Prismatic prismatic, Goal T_zero, Vectors goals, Solutions q,
+           Solutions direction, Free free, Count count, RowOut missing, Array<double, nb::ndim<2>> nearest) {
+            const ik::Chain chain = chain_of(axes, points, prismatic, T_zero);
             const std::size_t rows = goals.shape(0), row = 8 * std::size_t(chain.n);
             one_row_per_goal(rows, q, direction, free, count, missing, nearest);
             one_column_per_joint(chain.n, q, direction, nearest);
             nb::gil_scoped_release released;
             for (std::size_t k = 0; k < rows; ++k) {
-                const ik::PositionSolutions found = solve_position(chain, vector(goals.data() + 3 * k));
+                const double* p = goals.data() + 3 * k;
+                const ik::PositionSolutions found = solve_position(chain, {p[0], p[1], p[2]});
                 put(found, chain.n, q.data() + k * row, direction.data() + k * row, free.data() + 8 * k,
                     count.data() + k);
                 missing.data()[k] = found.missing;
@@ -91,16 +75,15 @@ void bind_short_arms(nb::module_& m) {
         "written.");
     m.def(
         "short_pose_solutions",
-        [](Rows axes, Rows points, Prismatic prismatic, Matrix T_zero,
-           Array<const double, nb::shape<-1, 4, 4>> goals, Solutions q, Solutions direction, Free free,
-           Count count) {
-            const ik::Chain chain = chain_of(axes, points, prismatic, T_zero.data());
+        [](Vectors axes, Vectors points, Prismatic prismatic, Goal T_zero, Goals goals, Solutions q,
+           Solutions direction, Free free, Count count) {
+            const ik::Chain chain = chain_of(axes, points, prismatic, T_zero);
             const std::size_t rows = goals.shape(0), row = 8 * std::size_t(chain.n);
             one_row_per_goal(rows, q, direction, free, count);
             one_column_per_joint(chain.n, q, direction);
             nb::gil_scoped_release released;
             for (std::size_t k = 0; k < rows; ++k)
-                put(solve_short_pose(chain, pose(goals.data() + 16 * k)), chain.n, q.data() + k * row,
+                put(solve_short_pose(chain, read_matrix(goals.data() + 16 * k)), chain.n, q.data() + k * row,
                     direction.data() + k * row, free.data() + 8 * k, count.data() + k);
         },
         "axes"_a, "points"_a, "prismatic"_a, "T_zero"_a, "goals"_a, "q"_a, "direction"_a, "free"_a, "count"_a,

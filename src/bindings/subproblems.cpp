@@ -1,7 +1,6 @@
 #include "subproblems.hpp"
 
-#include <nanobind/ndarray.h>
-
+#include "arrays.hpp"
 #include "bindings.hpp"
 
 namespace nb = nanobind;
@@ -9,12 +8,7 @@ using namespace nb::literals;
 
 namespace {
 
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
-using Vectors = Array<const double, nb::shape<-1, 3>>;
-using Scalars = Array<const double, nb::shape<-1>>;
 using Theta = Array<double, nb::ndim<3>>;
-using Residual = Array<double, nb::shape<-1>>;
 using Count = Array<std::int32_t, nb::shape<-1>>;
 using Flags = Array<bool, nb::shape<-1>>;
 
@@ -27,13 +21,13 @@ void same_rows(const Theta& theta, std::size_t most, std::size_t angles, std::si
         throw nb::value_error("every array needs one row per problem, and theta room for all answers");
 }
 
-cspace::SubproblemAnswers answers(Theta& theta, Residual& residual, Count& count, Flags& exact, Flags& free) {
+cspace::SubproblemAnswers answers(Theta& theta, RowOut& residual, Count& count, Flags& exact, Flags& free) {
     return {theta.data(), residual.data(), count.data(), exact.data(), free.data()};
 }
 
 }  // namespace
 
-#define ANSWERS_OUT Theta theta, Residual residual, Count count, Flags exact, Flags free
+#define ANSWERS_OUT Theta theta, RowOut residual, Count count, Flags exact, Flags free
 #define ANSWERS_ARGS "theta"_a, "residual"_a, "count"_a, "exact"_a, "free"_a
 #define SOLVE(kernel, ...)                                         \
     const auto out = answers(theta, residual, count, exact, free); \
@@ -59,7 +53,7 @@ void bind_subproblems(nb::module_& m) {
         "Subproblem 2 for rows (n, 3), answers written into the last five.");
     m.def(
         "subproblem_3",
-        [](Vectors k, Vectors p1, Vectors p2, Scalars d, ANSWERS_OUT) {
+        [](Vectors k, Vectors p1, Vectors p2, Row d, ANSWERS_OUT) {
             same_rows(theta, 2, 1, residual.size(), k, p1, p2, d, count, exact, free);
             SOLVE(subproblem_3_n, k.data(), p1.data(), p2.data(), d.data());
         },
@@ -67,7 +61,7 @@ void bind_subproblems(nb::module_& m) {
         "Subproblem 3 for rows (n, 3) and d (n,), answers written into the last five.");
     m.def(
         "subproblem_4",
-        [](Vectors h, Vectors k, Vectors p, Scalars d, ANSWERS_OUT) {
+        [](Vectors h, Vectors k, Vectors p, Row d, ANSWERS_OUT) {
             same_rows(theta, 2, 1, residual.size(), h, k, p, d, count, exact, free);
             SOLVE(subproblem_4_n, h.data(), k.data(), p.data(), d.data());
         },

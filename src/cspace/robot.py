@@ -11,10 +11,9 @@ import numpy as np
 from cspace import kinematics, model
 from cspace._core import RobotBase
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputTypeError
 from cspace.model import Chain, Description, DHTable, LinkMatrices
-from cspace.spatial import as_pose
-from cspace.spatial.checks import PoseLike
+from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
     from cspace.export import Export
@@ -58,8 +57,8 @@ class Robot(RobotBase):
                 " paths, Robot.from_urdf, from_dh, from_screws and from_toml what their names say"
             )
         self._made_from = (description, base, tip, floating)
-        self._T_world_base = None if T_world_base is None else _one_pose(T_world_base, "T_world_base")
-        self._T_tip_tool = None if T_tip_tool is None else _one_pose(T_tip_tool, "T_tip_tool")
+        self._T_world_base = None if T_world_base is None else one_pose(T_world_base, "T_world_base").copy()
+        self._T_tip_tool = None if T_tip_tool is None else one_pose(T_tip_tool, "T_tip_tool").copy()
         assembly = kinematics.assemble(description, base, tip, floating=floating)
         if self._T_world_base is not None:
             kinematics.mount(assembly, description.name, self._T_world_base)
@@ -135,7 +134,7 @@ class Robot(RobotBase):
         options: joint_types, lower, upper, velocity and the other limits, name, joint_names, base, tip, as in
         model.from_screws, which also names the errors.
         """
-        return cls(model.from_screws(axes, points, _one_pose(T_zero, "T_zero"), **options))
+        return cls(model.from_screws(axes, points, one_pose(T_zero, "T_zero"), **options))
 
     def to_urdf(self, path: str | os.PathLike[str] | None = None) -> str:
         """The text of a URDF file, written to `path` if there is one; see model.to_urdf.
@@ -231,7 +230,7 @@ class Robot(RobotBase):
         T_tip_tool (4, 4): the tool in the tip, after tools that are there already.
         Raises InputError for what is no pose, and for a tree without tip.
         """
-        tool = _one_pose(T_tip_tool, "T_tip_tool")
+        tool = one_pose(T_tip_tool, "T_tip_tool")
         return self._changed(T_tip_tool=tool if self._T_tip_tool is None else self._T_tip_tool @ tool)
 
     def with_base(self, T_world_base: PoseLike) -> Robot:
@@ -240,7 +239,7 @@ class Robot(RobotBase):
         T_world_base (4, 4): what was the base, in the world; on a mounted robot the mount itself is moved.
         Raises InputError for what is no pose, and for a floating base, which is placed in each call instead.
         """
-        mount = _one_pose(T_world_base, "T_world_base")
+        mount = one_pose(T_world_base, "T_world_base")
         return self._changed(T_world_base=mount if self._T_world_base is None else mount @ self._T_world_base)
 
     def random_configuration(
@@ -333,13 +332,6 @@ class Robot(RobotBase):
         freedom = f"{self.joint_types}, {self.dof} dof" + (" with a floating base" if self.floating else "")
         mounted = ", mounted in the world" if self._T_world_base is not None else ""
         return f"<Robot {self.name}: {freedom}, {ends}{mounted}>"
-
-
-def _one_pose(value: PoseLike, subject: str) -> Array:
-    T = as_pose(value, subject)
-    if T.ndim != 2:
-        raise InputError(f"{subject} has shape {T.shape}, expected one pose (4, 4)")
-    return T.copy()
 
 
 def _again(

@@ -28,9 +28,17 @@ HUGE = [[10**400] * 4] * 4
 CALLS = [
     (lambda: ARM.ik(HUGE), InputError, "no float64 can hold"),
     (lambda: ARM.ik(GOAL, least_squares=GOAL), InputTypeError, "least_squares must be True or False"),
-    (lambda: ARM.ik(np.stack([GOAL]), threads="2"), InputTypeError, "threads is a str"),
-    (lambda: ARM.ik(np.stack([GOAL]), threads=1.5), InputTypeError, "threads is a float"),
-    (lambda: ARM.ik(np.stack([GOAL]), threads=10**30), InputError, "expected 1 to 1024"),
+    (
+        lambda: ARM.ik(np.stack([GOAL]), threads="2"),
+        InputTypeError,
+        "threads must be a whole number, got str",
+    ),
+    (
+        lambda: ARM.ik(np.stack([GOAL]), threads=1.5),
+        InputTypeError,
+        "threads must be a whole number, got float",
+    ),
+    (lambda: ARM.ik(np.stack([GOAL]), threads=10**30), InputError, "must be 0 to 1024"),
     (lambda: ARM.ik(np.stack([GOAL]), threads=-1), InputError, "threads is -1"),
     (lambda: FOUND.within("upper"), InputTypeError, "limits is a str, expected cspace.model.Limits"),
     (lambda: MANY.within([0, 1]), InputTypeError, "limits is a list, expected cspace.model.Limits"),

@@ -133,11 +133,17 @@ def test_what_is_no_robot_is_refused_with_the_remedy(robot):
             call()
 
 
-@pytest.mark.parametrize("threads", [0, -1, 1.5, "2", True])
+@pytest.mark.parametrize("threads", [-1, 1025, 1.5, "2", True, np.True_])
 def test_threads_that_are_no_count(robot, goal, threads):
     for goals in (goal, goal[None]):
         with pytest.raises((InputError, InputTypeError), match="threads"):
             robot.ik(goals, threads=threads)
+    with pytest.raises((InputError, InputTypeError), match="threads"):
+        robot.ik_numeric(goal, threads=threads)
+
+
+def test_no_threads_are_as_many_as_there_are_processors(robot, goal):
+    np.testing.assert_array_equal(robot.ik(goal[None], threads=0).q, robot.ik(goal[None], threads=1).q)
 
 
 def test_a_seed_for_a_batch_is_refused_with_the_remedy(robot, goal):

@@ -150,6 +150,67 @@ def test_the_derivatives_of_many_goals_are_those_of_each():
         assert np.isnan(b.derivative[i, k:]).all()
 
 
+@pytest.mark.parametrize("joint", ["wrist_1_joint", 3, "goal_tool_turn_x"])
+def test_a_drill_with_a_joint_held_leaves_nothing_open(joint):
+    robot = cs.load_robot("ur5e")
+    q = np.array([0.3, -1.2, 1.4, -0.8, 0.7, 0.1])
+    T = robot.fk(q)
+    keywords = {"position": T[:3, 3], "direction": T[:3, 0], "tool_axis": "x"}
+    value = q[3]
+    if joint == "goal_tool_turn_x":  # the one that takes T to the solver's own pose of the goal
+        gap = T[:3, :3].T @ robot.ik(**keywords).goal[:3, :3]
+        value = float(np.arctan2(gap[2, 1], gap[1, 1]))
+    s = robot.ik(**keywords, fixed={joint: value})
+    assert s.freedom == ()
+    assert gaps(robot, s.q, q).min() < 1e-9
+    assert s.residual.max() < 1e-9
+    near = robot.ik(**keywords, fixed={joint: value}, near=q)
+    assert gaps(robot, near.q, q).max() < 1e-9
+    if joint != "goal_tool_turn_x":
+        assert np.abs(s.q[:, 3] - value).max() == 0
+
+
+def test_a_drill_is_sampled_at_as_many_turns_as_are_wanted():
+    robot = cs.load_robot("ur5e")
+    s = robot.ik(position=[0.4, 0.1, 0.3], direction=[0, 0, -1], samples=3)
+    assert "at 3 values of goal_tool_turn_z" in s.reason
+    x = robot.fk(s.q)[:, :3, 0]
+    assert len({round(float(np.arctan2(*v[1::-1])), 6) for v in x}) == 3
+    with pytest.raises(InputTypeError, match="one goal"):
+        robot.ik(position=np.full((2, 3), 0.3), direction=[0, 0, -1], samples=3)
+    with pytest.raises(InputTypeError, match="full pose"):
+        robot.ik(position=[0.4, 0.1, 0.3], direction=[0, 0, -1], swivel=0.1)
+
+
+def test_what_the_axes_rule_out_is_certified():
+    scara = cs.load_robot("scara")
+    p = scara.fk([0.3, 0.5, 0.1, 0.2])[:3, 3]
+    for keywords in (
+        {"rotation": np.eye(3)},
+        {"position": p, "direction": [0, 1, 0]},
+        {"position": [5, 5, 0]},
+    ):
+        s = scara.ik(**keywords)
+        assert not s
+        assert s.complete
+        assert "cannot reach" in s.reason
+        assert s.asked.keys() == keywords.keys()
+
+
+def test_a_direction_too_short_to_square_is_a_direction():
+    robot = cs.load_robot("ur5e")
+    p = [0.4, 0.1, 0.3]
+    tiny = robot.ik(position=p, direction=[0, 0, -1e-200])
+    np.testing.assert_array_equal(tiny.q, robot.ik(position=p, direction=[0, 0, -1]).q)
+
+
+def test_angles_of_a_loop_do_not_pile_up():
+    robot = cs.load_robot("ur5e")
+    for angle in np.linspace(0.1, 1.0, 40):
+        assert robot.ik(position=[0.4, 0.1, 0.3], angle_to=("z", angle), near=np.zeros(6))
+    assert len(robot._ik_wholes) <= 32
+
+
 def test_the_reason_counts_the_rows_and_names_what_is_free():
     scara = cs.load_robot("scara")
     T = scara.fk([0.3, 0.5, 0.1, 0.2])

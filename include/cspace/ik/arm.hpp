@@ -1,6 +1,7 @@
 // An arm ready to be asked: its plan, and the answers that need no instruction set of their own.
 #pragma once
 
+#include "cspace/ik/beyond.hpp"
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/complete.hpp"
 #include "cspace/ik/general/singular.hpp"
@@ -113,10 +114,16 @@ inline bool search_beside_form(const ik::Plan& plan, const Posed& goal, ik::Solu
     return search_beside(plan.chain, goal, plan.form.length, propose, out);
 }
 
+// Arms that can place their tip in every orientation are not asked for a proof that they cannot.
+inline bool is_limited(const ik::Arm& arm) {
+    return arm.plan.chain.n < 6 || (arm.is_general && arm.general.plan.slides > 0);
+}
+
 inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
     constexpr int starts = 12;
     const ik::Chain& chain = arm.plan.chain;
     const double length = arm.plan.form.length;
+    if (is_limited(arm) && is_beyond(chain, goal, length)) return {};
     if (arm.is_general)
         return arm.has_plan ? solve_both_ways(arm, goal, idle)
                             : solve_general_carefully(arm.general, goal, idle);

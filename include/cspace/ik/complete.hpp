@@ -71,13 +71,13 @@ inline ik::Chain with_axis(const ik::Chain& c, int at, const Axis& axis) {
 
 // The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some configurations
 // without a pattern; virtual joints stay at zero.
-inline double conditioning(const ik::Chain& six, const int* source, double length, int k) {
+inline double conditioning(const ik::Chain& chain, const int* source, double length, int k) {
     double q[6];
-    spread_configuration(k, 6, q);
-    for (int i = 0; i < 6; ++i)
+    spread_configuration(k, chain.n, q);
+    for (int i = 0; i < chain.n; ++i)
         if (source[i] < 0) q[i] = 0;
     PoseError error;
-    measure(six, six.tip, length, q, error);
+    measure(chain, chain.tip, length, q, error);
     decompose(error.jacobian);
     return error.jacobian.sigma[weakest(error.jacobian)];
 }
@@ -91,12 +91,11 @@ inline bool is_regular(const ik::Chain& six, const int* source, double length) {
     return 2 * regular > trials;
 }
 
-// Whether an arm of six joints has one to spare (two wrists, a wrist on axis 3, four parallel axes): each of
-// its poses is singular.
-inline bool is_always_singular(const ik::Plan& plan, const int* source) {
-    const double blind = max(tolerance::always_singular, 10 * plan.form.deviation);
+// Whether an arm has a joint to spare (two wrists, a wrist on axis 3, four parallel axes): each of its poses
+// is singular, to within `blind`, and so are those of every arm that it is completed to.
+inline bool is_always_singular(const ik::Chain& chain, const int* source, double length, double blind) {
     for (int k = 0; k < 8; ++k)
-        if (conditioning(plan.chain, source, plan.form.length, k) > blind) return false;
+        if (conditioning(chain, source, length, k) > blind) return false;
     return true;
 }
 
@@ -122,8 +121,13 @@ inline bool make_plan(ik::Plan& plan, const ik::Chain& chain) {
         if (chain.prismatic[i]) return false;
     const int source[6] = {0, 1, 2, 3, 4, 5};
     plan.virtual_joints = 6 - chain.n;
-    if (chain.n < 6) return complete(plan, chain, source);
-    if (plan_six(plan, chain, source) && !is_always_singular(plan, source)) return true;
+    constexpr double rounding = tolerance::always_singular;
+    if (chain.n < 6)
+        return !is_always_singular(chain, source, characteristic_length(chain), rounding) &&
+               complete(plan, chain, source);
+    if (plan_six(plan, chain, source) &&
+        !is_always_singular(chain, source, plan.form.length, max(rounding, 10 * plan.form.deviation)))
+        return true;
     plan.family = ik::Family::none;
     return false;
 }

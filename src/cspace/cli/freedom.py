@@ -19,6 +19,9 @@ __all__ = ["FREEDOM_WORDS", "add_freedom", "held_joints", "options_of"]
 FREEDOM_WORDS: Final = ("swivel", "samples", "near", "least_squares")
 """The words of these that say nothing of how an arm is solved; held joints do."""
 
+GOAL_JOINT: Final = "goal_"
+"""How the names begin of what a goal leaves open."""
+
 
 def add_freedom(parser: argparse.ArgumentParser) -> None:
     """The words of one who has more joints than the goal asks for."""
@@ -69,9 +72,10 @@ def held_joints(args: argparse.Namespace, robot: Robot) -> dict[str, float]:
     """The joints of --fixed by name, with their values [rad, m]."""
     held: dict[str, float] = {}
     for word, value in args.fixed:
-        name = joint_called(word, robot)
+        of_goal = word.startswith(GOAL_JOINT)  # judged by the library, which knows what the goal leaves open
+        name = word if of_goal else joint_called(word, robot)
         if name in held:
             raise UsageError(f"--fixed holds {name} twice; give each joint one value")
-        turns = robot.joint_types[robot.joint_names.index(name)] == "R"
+        turns = "turn" in name if of_goal else robot.joint_types[robot.joint_names.index(name)] == "R"
         held[name] = float(np.radians(value)) if args.deg and turns else value
     return held

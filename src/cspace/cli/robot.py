@@ -23,7 +23,6 @@ __all__ = [
     "joint_texts",
     "load",
     "need_chain",
-    "turning",
 ]
 
 
@@ -57,12 +56,8 @@ def configuration(values: Sequence[float], robot: Robot, subject: str, *, degree
         names = ", ".join(robot.joint_names)
         raise UsageError(f"{robot.name} has {n} joints, {subject} has {len(values)} values; joints: {names}")
     q = np.array(values, dtype=np.float64)
-    return np.where(turning(robot), np.radians(q), q) if degrees else q
-
-
-def turning(robot: Robot) -> Array:
-    """Which coordinates are angles, (n,)."""
-    return np.array([kind == "R" for kind in robot.joint_types])
+    turns = [kind == "R" for kind in robot.joint_types]
+    return np.where(turns, np.radians(q), q) if degrees else q
 
 
 def angle_unit(degrees: bool) -> str:

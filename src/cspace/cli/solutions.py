@@ -9,7 +9,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.goals import Goal
 from cspace.cli.output import Cell, Output, Table
-from cspace.cli.robot import angle_unit, headings, joint_texts, turning
+from cspace.cli.robot import angle_unit, headings, joint_texts
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -26,7 +26,7 @@ class Rows:
     """
 
     def __init__(self, robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str) -> None:
-        from cspace.ik.windings import into_limits
+        from cspace.ik.windings import into_limits, short_way
         from cspace.kinematics import distance_to_singularity
 
         q = np.asarray(answer.q, dtype=np.float64)
@@ -36,9 +36,7 @@ class Rows:
         self.distance: Array | None = None
         order = np.arange(len(q))
         if near is not None:
-            gap = q - near
-            gap = np.where(turning(robot), np.pi - np.mod(np.pi - gap, 2 * np.pi), gap)
-            distance = np.linalg.norm(gap, axis=1)
+            distance = np.linalg.norm(short_way(q - near, robot.joint_types), axis=1)
             order = np.argsort(distance, kind="stable")
             self.distance = distance[order]
         self.q = q[order]

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.prepare import prepare
-from cspace.ik.windings import into_limits
+from cspace.ik.windings import into_limits, turning
 
 __all__ = ["Arc", "arc_through"]
 
@@ -88,7 +88,7 @@ class Arc:
             low, high = np.where(drift < 0, -np.inf, low), np.where(drift > 0, np.inf, high)
         if self.is_loop:
             round_about = (shift != 0) | (high - low >= TURN)
-            round_about &= np.array([kind == "R" for kind in curve.robot.joint_types])
+            round_about &= turning(curve.robot.joint_types)
             low, high = np.where(round_about, -np.pi, low), np.where(round_about, np.pi, high)
         return np.stack([low, high], axis=1)
 
@@ -135,8 +135,7 @@ def trace(robot: Any, q: Array, direction: Array, whole_pose: bool) -> tuple[Cur
     ahead, along, end = _core._ik_follow(robot, q, np.ascontiguousarray(direction), whole_pose)
     start, ends, shift = 0, (end, end), None
     if end == CLOSED:
-        turns = np.array([kind == "R" for kind in robot.joint_types])
-        shift = np.where(turns, TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0)
+        shift = np.where(turning(robot.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0)
     else:
         behind, back, other = _core._ik_follow(robot, q, -np.ascontiguousarray(direction), whole_pose)
         start, ends = len(behind) - 1, (other, end)

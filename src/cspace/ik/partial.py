@@ -16,6 +16,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial import as_rotation
+from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
 __all__ = ["KEYWORDS", "PartialGoal", "check_tool_axis", "partial_goal"]
@@ -267,10 +268,10 @@ def point(value: Any, subject: str) -> Array:
 
 def unit(value: Any, subject: str) -> Array:
     d = as_floats(value, subject, last=(3,), largest=FARTHEST)
-    size = np.linalg.norm(d, axis=-1, keepdims=True)
+    size, direction = length_and_direction(d)
     if (size == 0).any():
         raise InputError(f"{subject} is zero and has no direction")
-    return np.asarray(d / size)
+    return direction
 
 
 def one_axis(value: Any, subject: str) -> Array:

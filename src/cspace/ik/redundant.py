@@ -12,13 +12,14 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
+from cspace.ik.goals import one_configuration
 from cspace.ik.held import Held, fixed_values, hold, joint_number
 from cspace.ik.prepare import prepare
 from cspace.ik.redundancy import MOST_SAMPLES, Interval, Redundancy
 from cspace.ik.solutions import EXACT, INCOMPLETE, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.spare import spare_array
-from cspace.spatial import as_pose
+from cspace.spatial.checks import one_pose
 from cspace.tolerances import FARTHEST
 
 __all__ = ["redundancy", "redundant_answer"]
@@ -55,6 +56,8 @@ def redundant_answer(
             "fixed= takes one value per joint while dimensions stay free; hold all of them, or ask in a loop"
         )
     held = hold(robot, {joint: float(value) for joint, value in values.items()})
+    if T.ndim == 2 and _core._ik_is_beyond(robot, np.ascontiguousarray(T)):
+        return unreachable(held, T)
     if near is not None:
         if not values:
             held.solver.serve_near(robot, About(freedom=held.freedom))
@@ -83,15 +86,13 @@ def redundancy(
     For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
     """
     prepare(robot)
-    T = as_pose(goal, "goal")
-    if T.ndim != 2:
-        raise InputError(f"goal has shape {T.shape}, expected one pose (4, 4)")
+    T = one_pose(goal, "goal")
     if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in robot.joint_names:
         from cspace.ik.swivel_intervals import swivel_intervals
 
         if fixed is not None:
             raise InputTypeError("the swivel is what seven joints leave free: fixed= does not go with it")
-        return swivel_intervals(robot, np.ascontiguousarray(T))
+        return swivel_intervals(robot, T)
     values = fixed_values(robot, {} if fixed is None else fixed)
     if any(np.ndim(value) for value in values.values()):
         raise InputTypeError("fixed= takes one value per joint here")
@@ -105,7 +106,7 @@ def redundancy(
     joint = (
         held.solver.held[0] if parameter is None else held.free.index(free_joint(robot, parameter, values))
     )
-    found = intervals_of(held, np.ascontiguousarray(T), joint)
+    found = intervals_of(held, T, joint)
     if not found and joint != held.solver.held[0]:
         check_moves(held, found.goal, joint)
     return found
@@ -172,7 +173,7 @@ def solve_held(
     at = np.zeros((N, n))
     for joint, value in values.items():
         at[:, joint] = np.broadcast_to(value, shape).reshape(-1)
-    seed = np.empty(0) if near is None else seed_row(robot, near)
+    seed = np.empty(0) if near is None else one_configuration(robot, near, "near")
     room = solver.room(joints)
     q = spare_array((N, room, n))
     branch, family = np.zeros((N, room), dtype=np.int8), np.zeros((N, room), dtype=bool)
@@ -316,13 +317,6 @@ def middle_of(robot: Any) -> Array:
     lower, upper = robot.limits.lower, robot.limits.upper
     bounded = np.isfinite(lower) & np.isfinite(upper)
     return np.where(bounded, 0.5 * (np.where(bounded, lower, 0) + np.where(bounded, upper, 0)), 0.0)
-
-
-def seed_row(robot: Any, near: Any) -> Array:
-    seed = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
-    if seed.ndim != 1:
-        raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
-    return np.ascontiguousarray(seed)
 
 
 def sample_count(samples: Any) -> int:

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.branches import branch_labels
 from cspace.ik.derivative import derivative
 from cspace.ik.families import Family, family_at
+from cspace.ik.goals import one_configuration
 from cspace.ik.prepare import prepare
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
-from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
     from cspace.model import Limits
@@ -189,9 +189,7 @@ class Solutions(_core.SolutionsBase):
         metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Turns that
         would leave the robot's limits are not taken where another one stays inside.
         """
-        seed = as_floats(q, "q", last=(self.robot.dof,), largest=FARTHEST)
-        if seed.ndim != 1:
-            raise InputError(f"q has shape {seed.shape}, expected ({self.robot.dof},): one configuration")
+        seed = one_configuration(self.robot, q, "q")
         choice(metric, "metric", METRICS)
         if not self:
             return self

@@ -23,7 +23,7 @@ from cspace.ik.solutions import (
     pose_errors,
     position_goal,
 )
-from cspace.ik.windings import into_limits, nearest_winding, wrap
+from cspace.ik.windings import into_limits, nearest_winding, short_way, wrap
 from cspace.kinematics.batch import choice
 from cspace.tolerances import FARTHEST
 
@@ -201,9 +201,7 @@ class SolutionsBatch:
     def _row_of_partial(self, index: Any, rows: Array) -> Solutions:
         """One goal is asked again, for what the rows do not say, and its answer cut to the rows."""
         full = self._partial.one(self.robot, index)
-        turns = np.array([kind == "R" for kind in self.robot.joint_types])
-        gaps = full.q[None] - rows[:, None]
-        gaps = np.where(turns, np.sin(gaps / 2), gaps)
+        gaps = short_way(full.q[None] - rows[:, None], self.robot.joint_types)
         kept = np.abs(gaps).max(axis=2).argmin(axis=1) if len(rows) else np.zeros(0, dtype=int)
         return cast(Solutions, full._take(kept, rows, full._note))
 

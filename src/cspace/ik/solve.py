@@ -3,33 +3,61 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any, cast
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, leading_axes
-from cspace.errors import InputError, InputTypeError
-from cspace.ik.about import About
-from cspace.ik.conditions import NoClosedFormError
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputTypeError
+from cspace.ik.goals import (
+    checked_poses,
+    goal_array,
+    is_far,
+    one_configuration,
+    planar_poses,
+    points_in_base,
+    too_far,
+)
+from cspace.ik.held import fixed_values, joint_number
+from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.partial import KEYWORDS, PartialGoal, check_tool_axis, is_open, partial_goal
 from cspace.ik.prepare import check_chain, prepare
-from cspace.ik.solutions import NEAREST, Solutions, position_goal
+from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve_partial import own_columns, solve_partial
-from cspace.ik.windings import wrap
-from cspace.kinematics.batch import check_robot
+from cspace.kinematics.batch import check_robot, thread_count
 from cspace.spare import spare_array
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
 
 __all__ = ["inverse_kinematics"]
 
-MOST_THREADS = 1024
 MAX_POSITION_JOINTS = 3
+"""Up to so many joints are settled by the place of the tip alone."""
 Counts = npt.NDArray[np.int64]
 Verdicts = npt.NDArray[np.uint8]
+Answer = Solutions | SolutionsBatch
+
+
+@dataclass(frozen=True)
+class Wish:
+    """Which of the solutions: the keywords of `inverse_kinematics` of these names."""
+
+    near: Any
+    fixed: Any
+    swivel: Any
+    samples: Any
+    least_squares: bool
+    threads: int
+
+    @property
+    def holds(self) -> bool:
+        """Whether something is held, or sampled at a number of values of one's own."""
+        return self.fixed is not None or self.samples is not None
 
 
 def inverse_kinematics(
@@ -81,9 +109,10 @@ def inverse_kinematics(
     more than sixteen joints raise NoClosedFormError.
     """
     check_robot(robot)
-    workers = count_of_threads(threads)
+    workers = thread_count(threads, (1,)) or os.cpu_count() or 1
     if not isinstance(least_squares, (bool, np.bool_)):
         raise InputTypeError(f"least_squares must be True or False, got {type(least_squares).__name__}")
+    wish = Wish(near, fixed, swivel, samples, bool(least_squares), workers)
     if angle is not None:
         goal, position = planar_poses(robot, goal, position, angle), None
     named = (position, rotation, direction, look_at, ray, angle_to)
@@ -94,66 +123,84 @@ def inverse_kinematics(
             "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or parts of it by name,"
             " such as robot.ik(position=p)"
         )
-    if given and (fixed is not None or samples is not None or swivel is not None):
-        raise InputTypeError("fixed=, swivel= and samples= go with a full pose")
-    found: Solutions | SolutionsBatch
-    if given and not is_plain_position(robot, given):
-        found = ask_partial(robot, partial_goal(given, tool_axis), workers, near)
-    elif position is not None:
-        prepare(robot)
-        p = points_in_base(robot, position)
-        found = _core._ik_position(robot, p) if p.ndim == 1 else solve_positions(robot, p, workers)
-    else:
-        prepare(robot)
-        T = goal_array(goal)
-        if swivel is not None:
-            if fixed is not None or samples is not None or least_squares:
-                raise InputTypeError("swivel= goes with near= alone: it holds what is to spare")
-            return at_swivel(robot, T, swivel, near)
-        if fixed is not None or samples is not None or not robot._ik_direct:
-            return redundant(robot, T, fixed, samples, near, least_squares, workers)
-        found = solve_many(robot, T, workers) if T.ndim > 2 else solve_one(robot, T, near)
+    if goal is not None:
+        return answer_poses(robot, goal, wish)
+    if not is_plain_position(robot, given):
+        return answer_partial(robot, partial_goal(given, tool_axis), wish)
+    if wish.holds or swivel is not None:
+        raise InputTypeError("fixed=, swivel= and samples= do not go with the position of so short an arm")
+    return answer_points(robot, position, wish)
+
+
+def answer_poses(robot: Any, goal: Any, wish: Wish) -> Answer:
+    prepare(robot)
+    T = goal_array(goal)
+    if wish.swivel is not None:
+        return at_swivel(robot, T, wish)
+    if wish.holds or not robot._ik_direct:
+        return redundant(robot, T, wish)
+    found = solve_many(robot, T, wish.threads) if T.ndim > 2 else solve_one(robot, T, wish.near)
+    return chosen(robot, found, wish)
+
+
+def answer_points(robot: Any, position: Any, wish: Wish) -> Answer:
+    prepare(robot)
+    p = points_in_base(robot, position)
+    found = _core._ik_position(robot, p) if p.ndim == 1 else solve_positions(robot, p, wish.threads)
+    return chosen(robot, found, wish)
+
+
+def answer_partial(robot: Any, goal: PartialGoal, wish: Wish) -> Answer:
+    if wish.swivel is not None:
+        raise InputTypeError("swivel= goes with a full pose; hold joints with fixed=")
+    if wish.holds and goal.T.ndim > 2:
+        raise InputTypeError("fixed= and samples= go with one goal where parts of a pose are asked for")
+
+    def ask(whole: Any, T: Array) -> Answer:
+        prepare(whole)
+        if wish.holds or not whole._ik_direct:
+            return redundant(whole, T, of_whole(robot, goal, whole, wish))
+        return solve_many(whole, T, wish.threads) if T.ndim > 2 else solve_one(whole, T, None)
+
+    check_chain(robot)
+    return chosen(robot, solve_partial(robot, goal, ask), wish)
+
+
+def chosen(robot: Any, found: Answer, wish: Wish) -> Answer:
+    """Of all solutions those that are wished for."""
     if isinstance(found, SolutionsBatch):
-        if near is not None or least_squares:
+        if wish.near is not None or wish.least_squares:
             raise InputTypeError("near= and least_squares= are for one goal; a batch has .nearest(q)")
         return found
-    if least_squares and not found:
-        return least_squares_answer(robot, found)
-    return found if near is None else found.nearest(near)
+    if wish.least_squares and not found:
+        return closest(robot, found, wish)
+    return found if wish.near is None else found.nearest(wish.near)
 
 
-def at_swivel(robot: Any, T: Array, swivel: Any, near: Any) -> Solutions | SolutionsBatch:
+def at_swivel(robot: Any, T: Array, wish: Wish) -> Answer:
     from cspace.ik.swivel import solve_swivel
 
-    return solve_swivel(robot, checked_poses(T), swivel, near)
+    if wish.holds or wish.least_squares:
+        raise InputTypeError("swivel= goes with near= alone: it holds what is to spare")
+    return solve_swivel(robot, checked_poses(T), wish.swivel, wish.near)
 
 
-def checked_poses(T: Array) -> Array:
-    """Poses that may have come unchecked, none of them too far away."""
-    T = as_pose(T, "goal")
-    if len(beyond := np.argwhere(is_far(T[..., :3, 3]))):
-        index = tuple(map(int, beyond[0]))
-        raise too_far(f"goal {index}" if index else "goal", T[index][:3, 3])
-    return T
-
-
-def redundant(
-    robot: Any, T: Array, fixed: Any, samples: Any, near: Any, least_squares: bool, workers: int
-) -> Solutions | SolutionsBatch:
+def redundant(robot: Any, T: Array, wish: Wish) -> Answer:
     from cspace.ik.redundant import redundant_answer
 
-    found = redundant_answer(
-        robot, checked_poses(T), fixed=fixed, samples=samples, near=near, threads=workers
-    )
+    options = {"fixed": wish.fixed, "samples": wish.samples, "near": wish.near, "threads": wish.threads}
+    found = redundant_answer(robot, checked_poses(T), **options)
     if isinstance(found, SolutionsBatch):
-        if least_squares:
+        if wish.least_squares:
             raise InputTypeError("least_squares= is for one goal")
         return found
-    if least_squares and not found:
-        if fixed:
-            raise InputTypeError("least_squares= does not go with fixed=: it moves every joint")
-        return least_squares_answer(robot, found)
-    return found
+    return closest(robot, found, wish) if wish.least_squares and not found else found
+
+
+def closest(robot: Any, found: Solutions, wish: Wish) -> Solutions:
+    if wish.fixed:
+        raise InputTypeError("least_squares= does not go with fixed=: it moves every joint")
+    return least_squares_answer(robot, found)
 
 
 def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
@@ -162,84 +209,25 @@ def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
     return short and list(given) == ["position"] and not is_open(given["position"])
 
 
-def ask_partial(robot: Any, goal: PartialGoal, workers: int = 1, near: Any = None) -> Any:
-    def ask(whole: Any, T: Array) -> Solutions | SolutionsBatch:
-        prepare(whole)
-        if not whole._ik_direct:
-            seed = None if near is None else near_of_whole(robot, goal, whole, near)
-            return redundant(whole, T, None, None, seed, False, workers)
-        return solve_many(whole, T, workers) if T.ndim > 2 else solve_one(whole, T, None)
-
-    check_chain(robot)
-    return solve_partial(robot, goal, ask)
-
-
-def near_of_whole(robot: Any, goal: PartialGoal, whole: Any, near: Any) -> Array:
-    """A configuration of the arm with zeros for the joints that stand for what the goal leaves open."""
-    seed = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
-    out = np.zeros((*seed.shape[:-1], whole.dof))
-    out[..., own_columns(robot, goal)] = seed
-    return out
-
-
-def points_in_base(robot: Any, position: Any) -> Array:
-    """Points in the base (..., 3); points of the plane (..., 2) are lifted to the height that a planar arm
-    keeps.
+def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
+    """The wish in terms of the arm with the joints that stand for what the goal leaves open: these begin at
+    zero, and joints are held by name, for their numbers are others.
     """
-    if len(robot.chain.joint_types) > MAX_POSITION_JOINTS:
-        raise NoClosedFormError(
-            f"position goals are for arms of up to {MAX_POSITION_JOINTS} joints; {robot.name} has "
-            f"{len(robot.chain.joint_types)}, which leaves freedom: give a full pose"
-        )
-    p = as_floats(position, "position")
-    if p.ndim > 0 and p.shape[-1] == 2:
-        p = lifted(robot, p)
-    if p.ndim == 0 or p.shape[-1] != 3:
-        raise InputError(
-            f"position has shape {p.shape}, expected (..., 3), or (..., 2) for an arm in the plane"
-        )
-    if p.ndim == 1 and is_far(p):
-        raise too_far("position", p)
-    return np.ascontiguousarray(p)
+    from cspace.ik.redundant import to_spare
 
-
-def planar_poses(robot: Any, goal: Any, position: Any, angle: Any) -> Array:
-    """Poses of an arm in the plane from points (..., 2) and angles (...) of the tip's x axis."""
-    if goal is not None or position is None:
-        raise InputTypeError("angle= goes with position=(x, y), the place of the tip of an arm in the plane")
-    p = as_floats(position, "position", last=(2,), largest=FARTHEST)
-    T_zero = robot.chain.T_zero
-    turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
-    p = lifted(robot, p)
-    T = np.zeros((*leading_axes(position=p.shape[:-1], angle=turn.shape), 4, 4))
-    T[..., 0, 0] = T[..., 1, 1] = np.cos(turn)
-    T[..., 1, 0] = np.sin(turn)
-    T[..., 0, 1] = -T[..., 1, 0]
-    T[..., 2, 2] = T[..., 3, 3] = 1.0
-    T[..., :3, :3] = T[..., :3, :3] @ T_zero[:3, :3]
-    T[..., :3, 3] = p
-    return T
-
-
-def lifted(robot: Any, p: Array) -> Array:
-    """Points (..., 2) of the plane z = constant in which an arm keeps its tip, as points (..., 3)."""
-    chain = robot.chain
-    turns = np.array([kind == "R" for kind in chain.joint_types])
-    in_plane = np.where(turns, np.abs(chain.axes[:, 2]) > 1 - 1e-12, np.abs(chain.axes[:, 2]) < 1e-6)
-    if not in_plane.all():
-        raise InputError(
-            f"position has shape {p.shape}, but {robot.name} does not move in a plane z = constant"
-        )
-    return np.concatenate([p, np.full((*p.shape[:-1], 1), chain.T_zero[2, 3])], axis=-1)
-
-
-def goal_array(goal: Any) -> Array:
-    """The goals as contiguous float64; a plain batch goes on unchecked, for the core checks every goal
-    itself.
-    """
-    if type(goal) is np.ndarray and goal.dtype == np.float64 and goal.ndim > 2 and goal.shape[-2:] == (4, 4):
-        return np.require(goal, requirements=["C", "A"])
-    return np.require(as_pose(goal, "goal"), requirements=["C", "A"])
+    fixed, near = wish.fixed, None
+    if isinstance(fixed, Mapping):
+        names = robot.joint_names
+        fixed = {
+            key if isinstance(key, str) else names[joint_number(robot, key, "fixed")]: value
+            for key, value in fixed.items()
+        }
+    leaves_freedom = fixed is None or to_spare(whole, fixed_values(whole, fixed)) > 0
+    if wish.near is not None and leaves_freedom:  # else all are listed, and the nearest is picked among them
+        seed = as_floats(wish.near, "near", last=(robot.dof,), largest=FARTHEST)
+        near = np.zeros((*seed.shape[:-1], whole.dof))
+        near[..., own_columns(robot, goal)] = seed
+    return replace(wish, fixed=fixed, near=near, least_squares=False)
 
 
 def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
@@ -248,33 +236,10 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
         if found is None:
             raise too_far("goal", T[:3, 3])
         return cast(Solutions, found)
-    seed = as_floats(near, "near", last=(robot.dof,), largest=FARTHEST)
-    if seed.ndim != 1:
-        raise InputError(f"near has shape {seed.shape}, expected ({robot.dof},): one configuration")
+    seed = one_configuration(robot, near, "near")
     if is_far(T[:3, 3]):
         raise too_far("goal", T[:3, 3])
-    return cast(Solutions, _core._ik_careful(robot, T, np.ascontiguousarray(seed)))
-
-
-def is_far(p: Array) -> Any:
-    """Whether points (..., 3) lie too far away, (...); sums that no float64 holds are not formed."""
-    return np.minimum(np.abs(p), 2 * FARTHEST).sum(axis=-1) > FARTHEST
-
-
-def too_far(subject: str, p: Array) -> InputError:
-    return InputError(f"{subject} lies at {p.tolist()} m; goals up to {FARTHEST:g} m away make sense")
-
-
-def count_of_threads(threads: int | None) -> int:
-    if threads is None:
-        return os.cpu_count() or 1
-    if isinstance(threads, bool) or not isinstance(threads, (int, np.integer)):
-        raise InputTypeError(
-            f"threads is a {type(threads).__name__}, expected a number or None for all cores"
-        )
-    if not 1 <= threads <= MOST_THREADS:
-        raise InputError(f"threads is {threads}, expected 1 to {MOST_THREADS}, or None for all cores")
-    return int(threads)
+    return cast(Solutions, _core._ik_careful(robot, T, seed))
 
 
 def solve_many(robot: Any, T: Array, workers: int) -> SolutionsBatch:
@@ -311,32 +276,3 @@ def shaped(
     q, count, verdict = answers
     q = q.reshape(*leading, robot._ik_room, robot.dof)
     return SolutionsBatch(robot, goal, q, count.reshape(leading), verdict.reshape(leading))
-
-
-def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
-    goal = found.goal
-    if found._partial is not None:
-        return least_squares_partial(robot, found)
-    if goal.shape == (3,):
-        q, missing = _core._ik_position_miss(robot, goal)
-        goal, text = position_goal(goal), f"{missing:.4g} m"
-    else:
-        q, away, turned = _core._ik_miss(robot, goal, 1.0)
-        text = f"{away:.4g} m and {np.degrees(turned):.4g}°"
-    q = wrap(q, robot.joint_types)
-    note = f"nothing reaches the goal; the nearest configuration misses it by {text}"
-    return cast(Solutions, _core._ik_make(robot, goal, NEAREST, q[None, :], (-1,), (False,), note))
-
-
-def least_squares_partial(robot: Any, found: Solutions) -> Solutions:
-    """The nearest configuration of the longer arm, without the goal's joints."""
-    about, goal = found._about, found._partial
-    q, away, turned = _core._ik_miss(about.whole, found.goal, 1.0)
-    q = wrap(q, about.whole.joint_types)[None]
-    note = (
-        f"nothing reaches {goal.text}; the nearest configuration misses it by {away:.4g} m and "
-        f"{np.degrees(turned):.4g}°"
-    )
-    own = np.ascontiguousarray(q[:, own_columns(robot, goal)])
-    about = About(goal, about.whole, q, about.freedom)
-    return cast(Solutions, _core._ik_make(robot, found.goal, NEAREST, own, (-1,), (False,), note, about))

@@ -15,6 +15,7 @@ from cspace.ik.partial import PartialGoal
 from cspace.ik.prepare import prepare
 from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.windings import short_way
 from cspace.model import from_screws
 
 __all__ = ["own_columns", "solve_partial", "whole_arm"]
@@ -23,6 +24,8 @@ SAME = 1e-8
 """Configurations of the arm itself closer than this [rad, m] are one: a goal's other joints may reach it in
 several ways.
 """
+MOST_KEPT = 32
+"""Longer arms kept per robot."""
 STILL = 1e-9
 """Part of a family's direction below which a joint of the arm stands still in it."""
 
@@ -64,11 +67,14 @@ def own_columns(robot: Any, goal: PartialGoal) -> slice:
 
 
 def whole_arm(robot: Any, goal: PartialGoal) -> Any:
-    """The arm with the goal's joints behind its tip and before its base, built once per kind of goal."""
+    """The arm with the goal's joints behind its tip and before its base; the last few kinds are kept."""
     built = robot.__dict__.setdefault("_ik_wholes", {})
-    if goal.key not in built:
-        built[goal.key] = make_whole(robot, goal)
-    return built[goal.key]
+    found = built.get(goal.key)
+    if found is None:
+        if len(built) >= MOST_KEPT:  # angles and tool axes of a loop, each its own arm
+            built.pop(next(iter(built)), None)
+        found = built[goal.key] = make_whole(robot, goal)
+    return found
 
 
 def make_whole(robot: Any, goal: PartialGoal) -> Any:
@@ -147,9 +153,7 @@ def meets(goal: PartialGoal, robot: Any, q: Array) -> bool:
 
 
 def is_same(robot: Any, a: Array, b: Array) -> bool:
-    turns = np.array([kind == "R" for kind in robot.joint_types])
-    gap = np.where(turns, (a - b + np.pi) % (2 * np.pi) - np.pi, a - b)
-    return bool(np.abs(gap).max() < SAME)
+    return bool(np.abs(short_way(a - b, robot.joint_types)).max() < SAME)
 
 
 def batch_of_own(robot: Any, goal: PartialGoal, whole: Any, found: SolutionsBatch) -> SolutionsBatch:

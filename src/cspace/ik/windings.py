@@ -17,10 +17,20 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.tolerances import MOST_WINDINGS
 
-__all__ = ["all_windings", "into_limits", "nearest_winding", "violations", "wrap"]
+__all__ = ["all_windings", "into_limits", "nearest_winding", "short_way", "turning", "violations", "wrap"]
 
 Flags = npt.NDArray[np.bool_]
 TURN = 2 * np.pi
+
+
+def turning(kinds: Sequence[str]) -> Flags:
+    """Which joints turn, (dof,)."""
+    return np.array([kind == "R" for kind in kinds], dtype=bool)
+
+
+def short_way(gap: Array, kinds: Sequence[str]) -> Array:
+    """Differences (..., dof) of configurations, those of turning joints the short way round."""
+    return np.where(turning(kinds), np.pi - np.mod(np.pi - gap, TURN), gap)
 
 
 def turns_of(kinds: Sequence[str]) -> Array:

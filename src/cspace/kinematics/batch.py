@@ -16,7 +16,9 @@ from cspace.model import Chain, Limits
 from cspace.spare import spare_array
 from cspace.spatial import as_pose
 
-__all__ = ["Batch", "Machine", "frame_number", "output", "rows_of"]
+__all__ = ["Batch", "Machine", "frame_number", "output", "rows_of", "thread_count", "whole_number"]
+
+MOST_THREADS = 1024
 
 
 class Machine(Protocol):
@@ -103,7 +105,7 @@ def rows_of(
     return Batch(
         q_rows,
         shape,
-        _thread_count(threads, shape),
+        thread_count(threads, shape),
         rows("T_world_base", shared=True),
         rows("point", shared=True),
         rows("qd", shared=False),
@@ -185,11 +187,11 @@ def _row_vectors(
     return array
 
 
-def _thread_count(threads: int | None, shape: tuple[int, ...]) -> int:
-    """1 for one configuration; 0, which means every processor, for a batch without a wish."""
+def thread_count(threads: Any, shape: tuple[int, ...]) -> int:
+    """1 for a single call; 0, which means every processor, for a batch without a wish."""
     if threads is None:
         return 0 if shape else 1
-    return whole_number(threads, "threads", 0, 1024, "0 or None for every processor")
+    return whole_number(threads, "threads", 0, MOST_THREADS, "0 or None for every processor")
 
 
 def whole_number(value: Any, subject: str, least: int, most: int, note: str = "") -> int:
@@ -200,7 +202,9 @@ def whole_number(value: Any, subject: str, least: int, most: int, note: str = ""
     try:
         count = operator.index(value)
     except TypeError:
-        raise InputTypeError(f"{subject} must be a whole number, got {type(value).__name__}") from None
+        count = None
+    if count is None or isinstance(value, (bool, np.bool_)):
+        raise InputTypeError(f"{subject} must be a whole number, got {type(value).__name__}")
     if not least <= count <= most:
         also = f"; {note}" if note else ""
         raise InputError(f"{subject} is {count}; it must be {least} to {most}{also}")

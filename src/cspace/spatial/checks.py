@@ -10,7 +10,7 @@ from cspace import tolerances
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 
-__all__ = ["PoseLike", "RotationLike", "as_pose", "as_pose_2d", "as_rotation", "as_rotation_2d"]
+__all__ = ["PoseLike", "RotationLike", "as_pose", "as_pose_2d", "as_rotation", "as_rotation_2d", "one_pose"]
 
 PoseLike: TypeAlias = Any
 """(..., 4, 4) numbers, or an object that holds such a matrix: `__array__`, `as_matrix()` or `.A`."""
@@ -39,6 +39,14 @@ def as_pose(value: PoseLike, subject: str = "pose") -> Array:
     _check_homogeneous(T, subject)
     _check_rotation(T[..., :3, :3], f"the rotation part of {subject}")
     return T
+
+
+def one_pose(value: PoseLike, subject: str = "pose") -> Array:
+    """One pose as a checked contiguous array (4, 4); InputError for several, and as as_pose."""
+    T = as_pose(value, subject)
+    if T.ndim != 2:
+        raise InputError(f"{subject} has shape {T.shape}, expected one pose (4, 4)")
+    return np.ascontiguousarray(T)
 
 
 def as_rotation(value: RotationLike, subject: str = "rotation") -> Array:

@@ -240,6 +240,7 @@ def test_bad_tasks_are_refused():
         lambda: cs.DirectionTask(None, [0, 0, 0], [0, 0, 1]),
         lambda: cs.DirectionTask(None, [0, 0, 1], [0, 0, 1], weight=0),
         lambda: cs.PostureTask(np.zeros((2, 6))),
+        lambda: cs.PostureTask([]),
         lambda: robot.task_velocity(np.zeros(6), [], 0.1),
         lambda: robot.task_velocity(np.zeros(6), cs.PostureTask(np.zeros(5)), 0.1),
         lambda: robot.task_velocity(np.zeros(5), cs.PoseTask(None, T), 0.1),

@@ -79,6 +79,15 @@ def test_no_joint_moves_further_than_max_step(name):
     assert ended
 
 
+def test_a_path_of_one_pose_is_followed_by_every_solution():
+    robot = cs.load_robot("ur5e")
+    T = robot.fk([0.3, -1.2, 1.4, -0.8, 0.7, 0.1])
+    track = robot.track(T[None])
+    assert len(track.branches) == len(robot.ik(T))
+    assert "follow the one pose" in track.reason
+    assert {branch.reason for branch in track.branches} == {"follows the one pose"}
+
+
 def test_a_limit_is_met_where_the_joint_arrives():
     robot = cs.load_robot("ur5e")
     q0 = np.array([0.3, -1.2, 1.5, -0.8, 1.1, 0.4])

@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats, as_generator
 from cspace.errors import InputError
 from cspace.ik.numeric.question import ask, further_starts, middle
 from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
-from cspace.kinematics.batch import choice, whole_number
+from cspace.kinematics.batch import choice, thread_count, whole_number
 from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE
 
 __all__ = ["METHODS", "ik_many_starts", "ik_numeric"]
@@ -78,7 +78,7 @@ def ik_numeric(
     else:
         first = _starts(robot, start, lead)
     goals = np.ascontiguousarray(question.goals.reshape(-1, 4, 4))
-    workers = whole_number(threads, "threads", 1, 1024) if threads is not None else 0 if lead else 1
+    workers = thread_count(threads, lead)
     q, info = np.empty((len(goals), n)), np.empty((len(goals), 5))
     settings = (posture, question.weights, question.limits, question.tolerance, steps, newton, workers)
 
@@ -132,7 +132,7 @@ def ik_many_starts(
     goal_pose = np.ascontiguousarray(question.goals)
     q, residual = np.empty((len(begin), n)), np.empty(len(begin))
     hits = np.empty(len(begin), dtype=np.int64)
-    workers = whole_number(threads, "threads", 1, 1024) if threads is not None else 1
+    workers = thread_count(threads, ())
     count = _core._ik_sample(
         robot,
         question.frame,

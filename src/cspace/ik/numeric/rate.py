@@ -10,7 +10,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.kinematics.batch import whole_number
+from cspace.kinematics.batch import thread_count
 from cspace.kinematics.jacobian import jacobian
 from cspace.tolerances import FARTHEST, WEAK_DIRECTION
 
@@ -71,7 +71,7 @@ def resolved_rate(
             return np.ascontiguousarray(array.reshape(number, *last))
         return np.ascontiguousarray(np.broadcast_to(array, lead + last).reshape(number, *last))
 
-    workers = (0 if lead else 1) if threads is None else whole_number(threads, "threads", 0, 1024)
+    workers = thread_count(threads, lead)
     qd = np.empty((number, dof))
     _core._resolved_rate(
         rows(J, 2),

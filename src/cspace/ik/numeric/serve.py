@@ -13,7 +13,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.numeric.question import bounds_of, further_starts, middle, positive
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
 from cspace.kinematics.batch import check_robot, frame_number, whole_number
-from cspace.spatial import as_pose
+from cspace.spatial.checks import one_pose
 from cspace.tolerances import FARTHEST, SERVED, SETTLED
 
 __all__ = ["TaskSolution", "ik_tasks", "task_velocity"]
@@ -202,12 +202,7 @@ def _configuration(robot: Any, value: Any, subject: str) -> Array:
 
 
 def _base(T_world_base: Any) -> Array:
-    if T_world_base is None:
-        return np.eye(4)
-    T = as_pose(T_world_base, "T_world_base")
-    if T.ndim != 2:
-        raise InputError(f"T_world_base has shape {T.shape}, expected one pose (4, 4)")
-    return np.ascontiguousarray(T)
+    return np.eye(4) if T_world_base is None else one_pose(T_world_base, "T_world_base")
 
 
 def _speeds(robot: Any, velocity: Any, n: int) -> Array:

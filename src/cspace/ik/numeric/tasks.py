@@ -10,8 +10,8 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.numeric.question import positive
-from cspace.spatial import as_pose
-from cspace.spatial.checks import PoseLike
+from cspace.spatial.checks import PoseLike, one_pose
+from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
 __all__ = [
@@ -48,10 +48,7 @@ class PoseTask:
     _row: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        T = as_pose(self.T, "T")
-        if T.ndim != 2:
-            raise InputError(f"T has shape {T.shape}, expected one pose (4, 4)")
-        _pack(self, POSE, T, _weights(self.weight, 6))
+        _pack(self, POSE, one_pose(self.T, "T"), _weights(self.weight, 6))
 
 
 @dataclass(frozen=True, eq=False)
@@ -130,8 +127,8 @@ class PostureTask:
 
     def __post_init__(self) -> None:
         q = as_floats(self.q, "q", last=(None,), largest=FARTHEST)
-        if q.ndim != 1:
-            raise InputError(f"q has shape {q.shape}, expected one configuration (n,)")
+        if q.ndim != 1 or not q.size:
+            raise InputError(f"q has shape {q.shape}, expected (n,): one value for each joint")
         row = np.concatenate([q, _weights(self.weight, q.size), [_gain(self.gain)]])
         object.__setattr__(self, "_row", row)
 
@@ -176,11 +173,10 @@ def _vector(value: Any, subject: str) -> Array:
 
 
 def _unit(value: Any, subject: str) -> Array:
-    vector = _vector(value, subject)
-    length = float(np.linalg.norm(vector))
+    length, direction = length_and_direction(_vector(value, subject))
     if not length > 0:
         raise InputError(f"{subject} is zero; it needs a direction")
-    return vector / length
+    return direction
 
 
 def _at(value: Any, subject: str) -> Array:

@@ -54,7 +54,7 @@ class Branch:
     def reason(self) -> str:
         """Where it ends and why, in a sentence."""
         if self:
-            return f"follows all {len(self.poses)} poses"
+            return f"follows {all_of(len(self.poses))}"
         return f"ends {where(self.end, len(self.q))}: {self._cause()}"
 
     def _cause(self) -> str:
@@ -134,15 +134,20 @@ class Track:
         of = "the branch" if b == 1 else f"{through or 'none'} of {b} branches"
         verb = "follow" if through > 1 else "follows"
         if through:
-            return f"{of} {verb} all {n} poses; the cost is {self.cost:.4g}" + self._note
+            return f"{of} {verb} {all_of(n)}; the cost is {self.cost:.4g}" + self._note
         if b == 1:
             return f"the branch {self.best.reason}" + self._note
-        return f"{of} follows all {n} poses; the best {self.best.reason}" + self._note
+        return f"{of} follows {all_of(n)}; the best {self.best.reason}" + self._note
 
     def __repr__(self) -> str:
         lines = [f"<Track of {self.robot.name}: {self.reason}"]
         lines += [f"  {branch.name or 'branch'}: {branch.reason}" for branch in self.branches]
         return "\n".join(lines) + ">"
+
+
+def all_of(n: int) -> str:
+    """How many poses there are, all of them."""
+    return "the one pose" if n == 1 else f"all {n} poses"
 
 
 def where(end: float, reached: int) -> str:

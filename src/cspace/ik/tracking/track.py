@@ -17,6 +17,7 @@ from cspace.ik.numeric.question import Question, ask, middle
 from cspace.ik.solutions import pose_errors
 from cspace.ik.solve import inverse_kinematics
 from cspace.ik.tracking.result import Branch, Track
+from cspace.ik.windings import turning
 from cspace.kinematics.batch import choice
 from cspace.spatial import interpolate_decoupled
 from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
@@ -116,7 +117,7 @@ def strides(robot: Any, max_step: Any) -> Array:
     steps = as_floats(max_step, "max_step", finite=False)
     n = len(robot.joint_names)
     if steps.ndim == 0:
-        steps = np.where([kind == "R" for kind in robot.joint_types], steps, np.inf)
+        steps = np.where(turning(robot.joint_types), steps, np.inf)
     if steps.shape != (n,) or not (steps > 0).all():
         raise InputError(
             f"max_step is {max_step!r}; expected one positive angle, or {n} steps, one per joint"

@@ -1,0 +1,15 @@
+// Arrays of NumPy as the bindings take them: contiguous, in memory, of a stated type and shape.
+#pragma once
+
+#include <nanobind/ndarray.h>
+
+template <class T, class... Traits>
+using Array = nanobind::ndarray<T, nanobind::c_contig, nanobind::device::cpu, Traits...>;
+
+using Row = Array<const double, nanobind::ndim<1>>;
+using Matrix = Array<const double, nanobind::ndim<2>>;
+using Vectors = Array<const double, nanobind::shape<-1, 3>>;
+using Goal = Array<const double, nanobind::shape<4, 4>>;
+using Goals = Array<const double, nanobind::shape<-1, 4, 4>>;
+
+using RowOut = Array<double, nanobind::ndim<1>>;
