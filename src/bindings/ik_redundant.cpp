@@ -2,7 +2,6 @@
 // joints that somebody held, the plan of those that move.
 #include "ik_redundant.hpp"
 
-#include <nanobind/ndarray.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -14,6 +13,7 @@
 #include <tuple>
 #include <vector>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "cspace/ik/goal.hpp"
 #include "cspace/math/threads.hpp"
@@ -27,13 +27,6 @@ using namespace nb::literals;
 using namespace cspace;
 
 namespace {
-
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
-using Row = Array<const double, nb::ndim<1>>;
-using Rows = Array<const double, nb::ndim<2>>;
-using Goal = Array<const double, nb::shape<4, 4>>;
-using Goals = Array<const double, nb::shape<-1, 4, 4>>;
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 
@@ -77,7 +70,7 @@ class RedundantSolver {
 
 Posed pose_of(const double* m) { return read_goal(m).T; }
 
-ik::Chain chain_of(const Rows& axes, const Rows& points, const Array<const bool, nb::ndim<1>>& prismatic,
+ik::Chain chain_of(const Matrix& axes, const Matrix& points, const Array<const bool, nb::ndim<1>>& prismatic,
                    const Goal& T_zero) {
     ik::Chain chain;
     chain.n = int(axes.shape(0));
@@ -95,7 +88,7 @@ ik::Chain chain_of(const Rows& axes, const Rows& points, const Array<const bool,
     return chain;
 }
 
-void make_solver(RedundantSolver* at, Rows axes, Rows points, Array<const bool, nb::ndim<1>> prismatic,
+void make_solver(RedundantSolver* at, Matrix axes, Matrix points, Array<const bool, nb::ndim<1>> prismatic,
                  Goal T_zero, Row lower, Row upper, Row weight) {
     const ik::Chain chain = chain_of(axes, points, prismatic, T_zero);
     for (const Row& row : {lower, upper, weight})
@@ -148,7 +141,7 @@ struct EndRows {
 };
 
 // Fills q (N, room, n) with NaN behind the solutions; the solutions themselves stand for what they show.
-void solve_rows(RedundantSolver& solver, const std::vector<int>& held, Rows at, Goals goals, Row idle,
+void solve_rows(RedundantSolver& solver, const std::vector<int>& held, Matrix at, Goals goals, Row idle,
                 Array<double, nb::ndim<3>> q, Array<std::int8_t, nb::ndim<2>> branch,
                 Array<bool, nb::ndim<2>> family, Array<std::int64_t, nb::ndim<1>> count,
                 Array<std::uint8_t, nb::ndim<1>> status, int threads) {
@@ -195,7 +188,7 @@ void solve_rows(RedundantSolver& solver, const std::vector<int>& held, Rows at, 
     });
 }
 
-void nearest_rows(RedundantSolver& solver, Goals goals, Rows seeds, Array<double, nb::ndim<2>> q,
+void nearest_rows(RedundantSolver& solver, Goals goals, Matrix seeds, Array<double, nb::ndim<2>> q,
                   Array<bool, nb::ndim<1>> found, int threads) {
     const std::size_t n = std::size_t(solver.arm.chain.n), N = goals.shape(0);
     if (seeds.shape(1) != n || (seeds.shape(0) != N && seeds.shape(0) != 1) || q.shape(0) != N ||

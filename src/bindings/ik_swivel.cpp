@@ -1,8 +1,7 @@
 // Arms with two spherical joints by the swivel of their elbow: plain checked arrays in, filled arrays out.
 #include "ik_swivel.hpp"
 
-#include <nanobind/ndarray.h>
-
+#include "arrays.hpp"
 #include "bindings.hpp"
 #include "cspace/ik/goal.hpp"
 
@@ -12,11 +11,9 @@ using namespace cspace;
 
 namespace {
 
-template <class T, class... Traits>
-using Array = nb::ndarray<T, nb::c_contig, nb::device::cpu, Traits...>;
 using Seven = Array<const double, nb::shape<7, 3>>;
 
-void make_solver(ik::SwivelArm* at, Seven axes, Seven points, Array<const double, nb::shape<4, 4>> T_zero) {
+void make_solver(ik::SwivelArm* at, Seven axes, Seven points, Goal T_zero) {
     ik::Chain chain;
     chain.n = 7;
     for (int i = 0; i < 7; ++i) {
@@ -29,8 +26,7 @@ void make_solver(ik::SwivelArm* at, Seven axes, Seven points, Array<const double
 }
 
 // Goal i at swivel i, or one goal at all of them: q (n, 8, 7), NaN in rows without a solution.
-void solve_rows(const ik::SwivelArm& arm, Array<const double, nb::shape<-1, 4, 4>> goals,
-                Array<const double, nb::ndim<1>> swivels, Array<double, nb::shape<-1, 8, 7>> q) {
+void solve_rows(const ik::SwivelArm& arm, Goals goals, Row swivels, Array<double, nb::shape<-1, 8, 7>> q) {
     const std::size_t n = swivels.shape(0), N = goals.shape(0);
     if (!arm.serves) throw nb::value_error("the arm has no swivel");
     if ((N != 1 && N != n) || q.shape(0) != n) throw nb::value_error("arrays of matching sizes are needed");

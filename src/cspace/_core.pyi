@@ -205,6 +205,11 @@ class RedundantSolver:
         Answers near= of this robot from now on, for one goal without other keywords.
         """
 
+    def serve_held(self, robot: object, held: Sequence[int], about: object) -> None:
+        """
+        Answers fixed= with these joints from now on, for one goal without other keywords.
+        """
+
     def room(self, held: Sequence[int]) -> int:
         """Rows that the solutions of a goal may need."""
 
