@@ -100,9 +100,8 @@ inline void close_roots(const Function& f, const ik::Arc& arc, const Variations&
     }
 }
 
-// The pieces with one root each, four at a time.
-inline void find_simple_roots(const ik::Pieces& simple, ik::HiddenAngles& out) {
-    constexpr double last_step = 1e-5;  // the error behind it is its square
+// The pieces with one root each, four at a time, until a step is no longer than the last.
+inline void find_simple_roots(const ik::Pieces& simple, double last_step, ik::HiddenAngles& out) {
     using V = Pack<4>;
     for (int first = 0; first < simple.count; first += 4) {
         const int lanes = simple.count - first < 4 ? simple.count - first : 4;
@@ -156,9 +155,10 @@ inline void divide(const ik::SamplerTables& t, const ik::Arc& arc, ik::Pieces& p
     }
 }
 
-// f(c, s) on packs of four: a trigonometric polynomial of degree 8.
+// f(c, s) on packs of four: a trigonometric polynomial of degree 8. The roots are as exact as Newton's method
+// is behind its last step [arc].
 template <class Function>
-inline void isolate(const Function& f, ik::HiddenAngles& out) {
+inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) {
     using V = Pack<4>;
     const ik::SamplerTables& tables = sampler_tables();
     double sampled[2 * ik::samples];
@@ -224,7 +224,7 @@ inline void isolate(const Function& f, ik::HiddenAngles& out) {
             dips.piece[dips.count++] = piece;
         divide(tables, arc, stack);
     }
-    find_simple_roots(simple, out);
+    find_simple_roots(simple, last_step, out);
     note_near_misses(dips, out);
 }
 

@@ -27,7 +27,8 @@ struct Certificate {
 namespace cspace::inline CSPACE_ISA {
 
 inline constexpr double clear_equation =
-    1e-8;  // its rounding moves no pair of roots that the signs would miss
+    1e-8;                                   // its rounding moves no pair of roots that the signs would miss
+inline constexpr double rough_root = 1e-5;  // solutions are polished on the arm
 inline constexpr double equation_error = 3e-14;  // of their entries, with a margin
 inline constexpr double near_roots = 3e-3;       // [rad] hidden angles this close share a null plane
 
@@ -175,7 +176,7 @@ inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const 
     ik::Certificate seen;
     seen.slip = slip;
     ik::HiddenAngles& hidden = seen.hidden;
-    isolate(f, hidden);
+    isolate(f, rough_root, hidden);
     seen.joint = loop.joint[0];
     seen.sign = loop.sign;
     seen.work = hidden.evaluations;

@@ -102,7 +102,7 @@ inline double settled_root(const Function& f, double value) {
 template <class Function>
 inline void add_roots(const ik::Redundant& arm, const Sweep& sweep, const Function& f, FoldValues& out) {
     ik::HiddenAngles hidden;
-    isolate(f, hidden);
+    isolate(f, 1e-8, hidden);
     out.exact = out.exact && !hidden.overflow;
     for (int k = 0; k < hidden.count; ++k) {
         hidden.root[k].angle = settled_root(f, hidden.root[k].angle);
