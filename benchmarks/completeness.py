@@ -34,7 +34,7 @@ ROUNDING = 1e-13
 """Rounding of a pose [m, unitless]; over the smallest singular value of the Jacobian it is how far the
 configuration is known."""
 
-GRID = 37
+GRID = 36
 """Places on a circle where the sign of det J is looked at: ten degrees apart."""
 
 

@@ -98,6 +98,26 @@ def test_a_likeness_has_the_same_certificate(name, word):
     assert certified >= 0.97 * asked
 
 
+@pytest.mark.parametrize("word", ["RPRRPR", "PRRPRR"])
+def test_a_certified_list_lacks_nothing_that_the_arm_read_from_its_tip_finds(word):
+    """Slides parallel but for a calibration: solutions may lie a thousand lengths away, and they count."""
+    compared = 0
+    for seed in range(60):
+        rng = np.random.default_rng([9, seed])
+        robot = arm_of(word, *MAKERS["calibrated"](word, rng))
+        likeness = LIKENESSES["reversed"](robot, rng)
+        for q in random_configurations(robot, rng, 3):
+            T = robot.fk(q)
+            found, other = robot.ik(T), likeness.robot.ik(likeness.to_goal(T))
+            if not (robot._ik_direct and likeness.robot._ik_direct):
+                break
+            assert gap(robot, found.q, q).min(initial=np.inf) < 1e-4 or not found.complete
+            for row in other.q[:, ::-1] if found.complete else ():
+                compared += 1
+                assert gap(robot, found.q, row).min(initial=np.inf) < 1e-4 * (1 + np.abs(row).max())
+    assert compared > 100
+
+
 @pytest.mark.parametrize("half", ["RRR", "PRR", "RPR", "RRP"])
 def test_a_symmetric_arm_read_from_its_tip_is_itself(half):
     """Axes laid symmetrically about a half turn: the arm and its reverse are one, and so are their answers to

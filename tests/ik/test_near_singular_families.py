@@ -77,3 +77,31 @@ def test_what_made_the_pose_is_found_near_every_singular_set(name):
             assert not (away & batch.complete).any(), q[away & batch.complete].tolist()
             lost, asked = lost + away.sum(), asked + len(q)
         assert lost <= (1 - share) * asked
+
+
+@pytest.mark.parametrize("name", ["crx10ia", "crx3ia"])
+def test_a_self_motion_of_a_general_arm_is_found_from_every_pose_of_it(name):
+    """With the elbow of these two at a right angle all six joints move and the tip does not."""
+    robot, rng = load(name), np.random.default_rng(3)
+    for q in random_configurations(robot, rng, 25):
+        q[2] = -np.pi / 2
+        assert np.linalg.svd(robot.jacobian(q), compute_uv=False)[-1] < 1e-12
+        found = robot.ik(robot.fk(q))
+        assert found.status == "singular"
+        assert len(found.families) >= 1
+
+
+def test_pairs_that_share_a_hidden_angle_are_told_apart():
+    """Two elbows turn joint 1 alike, and beside a wrist in line each of them has its pair."""
+    robot = load("m1013")
+    q = [
+        -2.3147617650012298,
+        -0.698540835764716,
+        0.7188404731626012,
+        2.9920728318058414,
+        -5.771863182465889e-06,
+        0.7325498962034991,
+    ]
+    away, batch = missed(robot, np.array([q]))
+    assert not away.any()
+    assert batch.count[0] == 10

@@ -6,6 +6,7 @@ from scipy.optimize import least_squares as scipy_least_squares
 
 from cspace.model import from_screws
 from cspace.robot import Robot
+from cspace.spatial import exp_so3
 from ik.arms import load
 from ik.geometries import CLASSES, angle_gap, random_arm, random_direction, random_pose, random_q
 from oracles.ik_many_starts import all_solutions, levenberg_marquardt
@@ -91,6 +92,17 @@ def random_turn(T, seed):
     out = T.copy()
     out[:3, :3] = random_pose(np.random.default_rng(seed))[:3, :3]
     return out
+
+
+@pytest.mark.parametrize("angle", [1e-7, 1e-5, 1e-3])
+@pytest.mark.parametrize("name", ["al5d", "cobra600"])
+def test_an_orientation_a_hair_off_is_named_as_such(name, angle):
+    robot = load(name)
+    T = robot.fk(np.full(robot.dof, 0.4))
+    T[:3, :3] = exp_so3([angle, angle, 0.0]) @ T[:3, :3]
+    found = robot.ik(T)
+    assert not found
+    assert "cannot take this orientation" in found.reason
 
 
 def test_an_arm_of_four_joints_says_that_the_orientation_is_the_trouble():

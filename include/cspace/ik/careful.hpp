@@ -18,12 +18,13 @@ inline void judge(ik::Solutions& out) {
         if (out.family[k]) out.status = ik::Status::singular;
 }
 
-// The largest difference of a joint between two configurations, angles the short way round.
+// The largest difference of a joint between two configurations, angles the short way round; slides that are
+// far out are known only relative to how far.
 inline double distance(const ik::Chain& chain, const double* a, const double* b) {
     double worst = 0;
     for (int i = 0; i < chain.n; ++i) {
         const double d = a[i] - b[i];
-        worst = max(worst, std::fabs(chain.prismatic[i] ? d : short_way(d)));
+        worst = max(worst, std::fabs(chain.prismatic[i] ? d / max(1.0, std::fabs(a[i])) : short_way(d)));
     }
     return worst;
 }
@@ -34,20 +35,34 @@ inline double miss_of(const ik::Chain& chain, const Posed& goal, double length, 
     return size_of_error(error);
 }
 
-inline double miss_halfway(const ik::Chain& chain, const Posed& goal, double length, const double* a,
+// The miss between two configurations: halfway, on the floor of the valley that leads from one to the other.
+// Where solutions are about to merge it rises between them; of one solution that stands there twice it does
+// not.
+inline double miss_between(const ik::Chain& chain, const Posed& goal, double length, const double* a,
                            const double* b) {
-    double q[ik::max_joints];
+    double q[ik::max_joints], dq[ik::max_joints];
     for (int i = 0; i < chain.n; ++i) {
         const double step = b[i] - a[i];
         q[i] = a[i] + 0.5 * (chain.prismatic[i] ? step : std::remainder(step, 2 * pi));
     }
-    return miss_of(chain, goal, length, q);
+    PoseError error;
+    measure(chain, goal, length, q, error);
+    double least = size_of_error(error);
+    for (int step = 0; step < 2; ++step) {
+        decompose(error.jacobian);
+        step_to_floor(error, weakest(error.jacobian), dq);
+        least = min(least, take_step(chain, goal, length, q, dq, q, error));
+    }
+    return least;
 }
 
-// Whether two configurations stand for one solution: what lies between them reaches the goal as they do.
+// Whether two configurations a gap apart, the worse of which misses the goal by `left`, stand for one
+// solution. Those within what rounding leaves of them, `near`, are given the benefit of the doubt.
 inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, const double* a,
-                    const double* b) {
-    return miss_halfway(chain, goal, length, a, b) <= tolerance::halfway;
+                    const double* b, double gap, double near, double left) {
+    constexpr double wide = 1e-2, rounding = 1e-15;
+    if (!(gap < max(near, wide))) return false;
+    return miss_between(chain, goal, length, a, b) <= max(left, gap < near ? tolerance::halfway : rounding);
 }
 
 // Adds q to the solutions unless it is no solution or already there.
@@ -62,7 +77,7 @@ inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal,
     for (int k = 0; k < out.count; ++k) {
         const double gap = distance(chain, out.q[k], q);
         if (gap < tolerance::same_solution) return;
-        if (gap < near && are_one(chain, goal, length, out.q[k], q)) return;
+        if (are_one(chain, goal, length, out.q[k], q, gap, near, size)) return;
     }
     const int n = out.count++;
     for (int i = 0; i < chain.n; ++i)

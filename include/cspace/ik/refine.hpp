@@ -126,6 +126,17 @@ inline bool newton(const ik::Chain& chain, const Posed& goal, double length, dou
     return true;
 }
 
+// Newton's step but for its part along the weakest direction: down to the floor of the valley, not along it.
+inline void step_to_floor(const PoseError& error, int weak, double* dq) {
+    const PoseSvd& J = error.jacobian;
+    for (int i = 0; i < J.columns; ++i) dq[i] = 0;
+    for (int j = 0; j < J.columns; ++j) {
+        if (j == weak || J.sigma[j] <= tolerance::free_joint) continue;
+        const double part = dot_n(J.us[j], error.e, 6) / (J.sigma[j] * J.sigma[j]);
+        for (int i = 0; i < J.columns; ++i) dq[i] += part * J.v[j][i];
+    }
+}
+
 // On the floor of a valley that hardly rises Newton's steps leave it sideways by more than the floor has to
 // say: here they alternate, down to the floor and along it. For six joints; true if it arrived, q is then a
 // solution, else untouched.
@@ -145,12 +156,9 @@ inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double leng
         if (!(J.sigma[weak] < narrow) || J.sigma[weak] <= tolerance::free_joint) break;
         const double along = dot_n(J.us[weak], error.e, 6) / J.sigma[weak];
         const bool on_floor = size * size < 1.01 * along * along;
-        double dq[ik::max_joints] = {};
-        for (int j = 0; j < chain.n; ++j) {
-            if (j == weak && !on_floor) continue;
-            const double part = dot_n(J.us[j], error.e, 6) / (J.sigma[j] * J.sigma[j]);
-            for (int i = 0; i < chain.n; ++i) dq[i] += part * J.v[j][i];
-        }
+        double dq[ik::max_joints];
+        step_to_floor(error, weak, dq);
+        for (int i = 0; i < chain.n && on_floor; ++i) dq[i] += along / J.sigma[weak] * J.v[weak][i];
         take_step(chain, goal, length, at, dq, at, error);
     }
     if (!(size < arrived)) return false;

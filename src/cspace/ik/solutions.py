@@ -34,7 +34,7 @@ METRICS: Final = ("euclidean", "max")
 ORIENTATION_FIRST: Final = 1e4
 """Weight of a radian, in lengths of the arm, in the search for the way that is missing: it stays put."""
 ORIENTATION_KEPT: Final = 1e-3
-"""Largest angle [rad] left by that search at which the orientation counts as kept."""
+"""Largest angle [rad] left by that search at which the orientation counts as kept, if the way [m] is more."""
 
 
 POSE_ASKS: Final = 6
@@ -305,7 +305,7 @@ def unreachable_reason(found: Solutions) -> str:
     if found.goal.shape == (3,):
         return f"out of reach: the goal would have to move {found.missing:.4g} m for {name} to reach it"
     _, missing, turned = _core._ik_miss(found.robot, found.goal, ORIENTATION_FIRST)
-    if turned > ORIENTATION_KEPT:
+    if turned > min(ORIENTATION_KEPT, missing):
         return (
             f"{name} ({found.robot.dof} joints) cannot take this orientation: the nearest configuration "
             f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"

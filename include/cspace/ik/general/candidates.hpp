@@ -75,17 +75,18 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
                            const double* q) {
     const ik::Chain& chain = plan.chain;
     if (!is_sane(chain, goal, q)) return;
+    constexpr double wide = 1e-2, near = 1e-3;
     double here = -1;
     for (int k = 0; k < out.count;) {
         const double gap = distance(chain, out.q[k], q);
         if (gap < tolerance::same_solution) return;
-        if (!(gap < 1e-3)) {
+        if (!(gap < wide)) {
             ++k;
             continue;
         }
         if (here < 0) here = miss_of(chain, goal, 1.0, q);
         const double there = miss_of(chain, goal, 1.0, out.q[k]), left = max(here, there);
-        if (!(miss_halfway(chain, goal, 1.0, out.q[k], q) <= max(tolerance::halfway, left))) {
+        if (!are_one(chain, goal, 1.0, out.q[k], q, gap, near, left)) {
             ++k;
             continue;
         }
@@ -100,14 +101,16 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
 }
 
 // Beside a fold a solution has a twin: along the weakest direction v the error is σ t u + ½ κ t² u + …, which
-// vanishes again at t = −2 σ/κ. False where there is no fold; a family does not bend.
-inline bool find_twin(const ik::GeneralPlan& plan, const Posed& goal, const double* q, double* twin) {
+// vanishes again at t = −2 σ/κ. False where there is no fold (σ is more than `most`, κ less than `least`): a
+// family does not bend.
+inline bool find_twin(const ik::GeneralPlan& plan, const Posed& goal, const double* q, double* twin,
+                      double most = 0.1, double least = 1e-4) {
     PoseError error;
     const double length = 1.0;
     measure(plan.chain, goal, length, q, error);
     const WeakDirection weak = weak_direction(&error.jacobian.us[0]);
-    if (weak.sigma > 0.1) return false;
-    constexpr double h = 1e-3, straight = 1e-4;
+    if (weak.sigma > most) return false;
+    constexpr double h = 1e-3;
     double bend = 2 * dot_n(weak.u, error.e, 6);
     for (const double way : {h, -h}) {
         PoseError moved;
@@ -118,13 +121,14 @@ inline bool find_twin(const ik::GeneralPlan& plan, const Posed& goal, const doub
     bend /= h * h;
     const double t = -2 * weak.sigma / bend;
     for (int i = 0; i < 6; ++i) twin[i] = q[i] + t * weak.v[i];
-    return std::fabs(t) < 0.5 && std::fabs(bend) > straight;
+    return std::fabs(t) < 0.5 && std::fabs(bend) > least;
 }
 // Whether a solution is its own twin, as far as rounding can tell: two in one.
 inline bool is_double(const ik::GeneralPlan& plan, const Posed& goal, const double* q) {
     double twin[6];
     if (!find_twin(plan, goal, q, twin)) return false;
-    return distance(plan.chain, q, twin) < 1e-3 && are_one(plan.chain, goal, 1.0, q, twin);
+    return distance(plan.chain, q, twin) < 1e-3 &&
+           miss_between(plan.chain, goal, 1.0, q, twin) <= tolerance::halfway;
 }
 
 // Polishes the candidates from number `first` on.

@@ -8,8 +8,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-inline constexpr double disturbance = 3e-4;    // [rad], and over the arm's length
-inline constexpr double about_to_merge = 0.2;  // smallest singular value near which it may cost a pair
+inline constexpr double disturbance = 3e-4;  // [rad], and over the arm's length
 
 // A vector of entries up to one, without a pattern.
 inline Vec3d pattern(int k) {
@@ -37,10 +36,10 @@ inline void make_neighbours(ik::GeneralArm& arm) {
     arm.has_neighbours = arm.neighbour[0].regular > 0;
 }
 
-inline bool is_about_to_merge(const ik::Chain& chain, const Posed& goal, const double* q) {
-    PoseError error;
-    measure(chain, goal, 1, q, error);
-    return weak_direction(&error.jacobian.us[0]).sigma < about_to_merge;
+// Whether the disturbance may have cost an arm the pair that q belongs to: its twin stands close by.
+inline bool is_about_to_merge(const ik::GeneralPlan& plan, const Posed& goal, const double* q) {
+    double twin[6];
+    return find_twin(plan, goal, q, twin);
 }
 
 // Complete if both neighbours are and both lead to every solution, pairs about to merge excepted.
@@ -62,12 +61,11 @@ inline void solve_beside(const ik::GeneralArm& arm, const Posed& goal, ik::Solut
             for (int m = 0; m < out.count; ++m)
                 if (distance(chain, out.q[m], start.q[j]) < tolerance::same_solution)
                     led[k][m] = arrived = true;
-            if (!arrived && !is_about_to_merge(arm.neighbour[k].chain, goal, beside.q[j]))
-                out.complete = false;
+            if (!arrived && !is_about_to_merge(arm.neighbour[k], goal, beside.q[j])) out.complete = false;
         }
     }
     for (int m = 0; m < out.count && out.complete; ++m)
-        out.complete = (led[0][m] && led[1][m]) || is_about_to_merge(chain, goal, out.q[m]);
+        out.complete = (led[0][m] && led[1][m]) || is_about_to_merge(arm.plan, goal, out.q[m]);
     out.complete = out.complete && out.count % 2 == 0;
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
 }

@@ -25,6 +25,26 @@ inline bool is_beyond_reach(const ik::LoopFrames& frames, const Posed& goal) {
     return norm(closing_link(frames, goal).t) > (1 + 1e-9) * others;
 }
 
+// Solutions come in pairs, those on folds counted twice: where one is left over its partner is missing.
+inline bool come_in_pairs(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& found) {
+    int count = found.count;
+    for (int k = 0; k < found.count && found.count % 2; ++k) count += is_double(plan, goal, found.q[k]);
+    return count % 2 == 0;
+}
+
+// Looks across the folds that are very near: pairs there may hide behind one hidden angle. True if it found a
+// twin that had been missed.
+inline bool admit_hidden_twins(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& found) {
+    constexpr double very_near = 1e-4, hardly_bent = 1e-7;
+    ik::Candidates start;
+    double twin[6];
+    for (int k = 0; k < found.count; ++k)
+        if (find_twin(plan, goal, found.q[k], twin, very_near, hardly_bent)) put(start, twin, false);
+    const int before = found.count;
+    admit_candidates(plan, goal, 0, start, found);
+    return found.count > before;
+}
+
 // One formulation after the other until one of them certifies that nothing is missing; where none does, what
 // all of them found together may be what one of them announced. Returns the work.
 inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
@@ -39,9 +59,10 @@ inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Sol
     }
     for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete; ++k, ++asked) {
         seen[k] = solve_formulation(plan, goal, plan.order[k], out);
-        out.complete = seen[k].complete;
         out.crowded = out.crowded || seen[k].clusters > 0;
         work += seen[k].work;
+        out.complete = seen[k].complete && !(seen[k].clusters > 0 && admit_hidden_twins(plan, goal, out));
+        seen[k].trusted = seen[k].trusted && (out.complete || !seen[k].complete);
     }
     if (asked > 0 && !out.complete) {
         bool twice[ik::max_solutions];
@@ -49,6 +70,7 @@ inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Sol
         for (int k = 0; k < asked; ++k)
             out.complete = out.complete || (seen[k].trusted && all_matched(seen[k], out, twice));
     }
+    out.complete = out.complete && come_in_pairs(plan, goal, out);
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
     return work;
 }

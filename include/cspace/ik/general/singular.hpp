@@ -100,7 +100,9 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
             }
         };
         if (search_beside(chain, goal, 1, propose, out)) out.complete = false;
-        if (out.count == 0) search_by_descent(chain, goal, 1, all ? 16 : 48, out);
+        // Families attract whatever comes down near them.
+        const int starts = out.count || all ? 16 : 48;
+        if (out.count == 0 || !all) search_by_descent(chain, goal, 1, starts, out);
         // Nothing here and something close by: the goal may lie just on the border.
         if (out.count == 0 && there > 0) out.complete = false;
     }
