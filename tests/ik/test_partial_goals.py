@@ -347,3 +347,17 @@ def test_a_turn_from_one_direction_to_another():
     assert np.abs(R @ a - d).max() < 1e-14
     assert np.abs(R @ R.transpose(0, 2, 1) - np.eye(3)).max() < 1e-14
     assert (np.linalg.det(R) > 0).all()
+
+
+@pytest.mark.parametrize("goal", GOALS)
+@pytest.mark.parametrize("name", ["ur5e", "jaco2", "panda"])
+def test_near_keeps_a_seed_that_meets_the_goal_and_goes_no_farther_than_one_that_does(name, goal):
+    robot, rng = cs.load_robot(name), np.random.default_rng([4, *map(ord, name + goal)])
+    for q in robot.random_configuration(6, rng=rng):
+        asked = GOALS[goal][1](robot.fk(q))
+        kept = robot.ik(**asked, near=q)
+        assert gaps(robot, kept.q, q).max() < 1e-6
+        seed = q + rng.uniform(-0.1, 0.1, robot.dof)
+        near = robot.ik(**asked, near=seed)
+        way = np.linalg.norm((near.q[0] - seed + np.pi) % (2 * np.pi) - np.pi)
+        assert way <= np.linalg.norm(q - seed) + 1e-6

@@ -16,7 +16,7 @@ from cspace.ik.goals import one_configuration
 from cspace.ik.held import Held, fixed_values, hold, joint_number
 from cspace.ik.prepare import prepare
 from cspace.ik.redundancy import MOST_SAMPLES, Interval, Redundancy
-from cspace.ik.solutions import EXACT, INCOMPLETE, UNREACHABLE, Solutions, how_many
+from cspace.ik.solutions import EXACT, INCOMPLETE, POSE_ASKS, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.spare import spare_array
 from cspace.spatial.checks import one_pose
@@ -57,7 +57,7 @@ def redundant_answer(
         )
     held = hold(robot, {joint: float(value) for joint, value in values.items()})
     if T.ndim == 2 and _core._ik_is_beyond(robot, np.ascontiguousarray(T)):
-        return unreachable(held, T)
+        return unreachable(held, T, proven=True)
     if near is not None:
         if not values:
             held.solver.serve_near(robot, About(freedom=held.freedom))
@@ -212,25 +212,30 @@ def nearest(held: Held, T: Array, near: Any, threads: int) -> Solutions | Soluti
     whole = held.whole(q)
     if shape:
         status = np.where(found, EXACT, UNREACHABLE).astype(np.uint8)
+        for k in np.flatnonzero(~found):
+            if not _core._ik_is_beyond(robot, np.ascontiguousarray(goals[k])):
+                status[k] += INCOMPLETE
         count = found.astype(np.int64).reshape(shape)
         batch = SolutionsBatch(
             robot, T, whole.reshape(*shape, 1, robot.dof), count, status.reshape(shape), None, held.freedom
         )
         return batch
     if not found[0]:
-        return unreachable(held, T)
+        return unreachable(held, T, proven=False)
     made = make(robot, T, EXACT, whole, np.full(1, -1), np.zeros(1, dtype=bool), None, held.freedom)
     return made.nearest(seeds)
 
 
-def unreachable(held: Held, T: Array) -> Solutions:
+def unreachable(held: Held, T: Array, *, proven: bool) -> Solutions:
+    """Nothing found; a search among infinitely many configurations does not prove that there is nothing."""
     nothing = np.empty((0, held.robot.dof))
     note = None
     if held.fixed:
         at = ", ".join(f"{held.robot.joint_names[j]} = {v:.6g}" for j, v in held.fixed.items())
         note = f"nothing reaches the goal with {at}"
     empty = np.empty(0, dtype=np.int8)
-    return make(held.robot, T, UNREACHABLE, nothing, empty, empty.astype(bool), note, held.freedom)
+    verdict = UNREACHABLE + (0 if proven else INCOMPLETE)
+    return make(held.robot, T, verdict, nothing, empty, empty.astype(bool), note, held.freedom)
 
 
 def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
@@ -245,7 +250,10 @@ def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
         where = "the values that reach it, none of them within limits"
     values = found.spread(count)
     if not len(values):
-        return cast(Solutions, nearest(held, T, middle_of(robot), threads))
+        found_beside = cast(Solutions, nearest(held, T, middle_of(robot), threads))
+        # Where joints share their work but for a little, single values may reach what no interval does.
+        proven = found.complete and len(held.free) > POSE_ASKS
+        return found_beside if found_beside else unreachable(held, T, proven=proven)
     q, branch, counts, complete = sweep(held, T, joint, values)
     real = np.arange(q.shape[1]) < counts[:, None]
     rows = held.whole(q[real])

@@ -28,7 +28,7 @@ from cspace.ik.partial import KEYWORDS, PartialGoal, check_tool_axis, is_open, p
 from cspace.ik.prepare import check_chain, prepare
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.ik.solve_partial import own_columns, solve_partial
+from cspace.ik.solve_partial import met_by_open_joints, own_columns, solve_partial
 from cspace.kinematics.batch import check_robot, thread_count
 from cspace.spare import spare_array
 from cspace.spatial import as_pose
@@ -210,8 +210,8 @@ def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
 
 
 def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
-    """The wish in terms of the arm with the joints that stand for what the goal leaves open: these begin at
-    zero, and joints are held by name, for their numbers are others.
+    """The wish in terms of the arm with the joints that stand for what the goal leaves open: these begin
+    where they bring the seed closest to the goal, and joints are held by name, for their numbers are others.
     """
     from cspace.ik.redundant import to_spare
 
@@ -225,8 +225,7 @@ def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
     leaves_freedom = fixed is None or to_spare(whole, fixed_values(whole, fixed)) > 0
     if wish.near is not None and leaves_freedom:  # else all are listed, and the nearest is picked among them
         seed = as_floats(wish.near, "near", last=(robot.dof,), largest=FARTHEST)
-        near = np.zeros((*seed.shape[:-1], whole.dof))
-        near[..., own_columns(robot, goal)] = seed
+        near = met_by_open_joints(whole, own_columns(robot, goal), seed, goal.T)
     return replace(wish, fixed=fixed, near=near, least_squares=False)
 
 

@@ -17,8 +17,9 @@ from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABL
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.windings import short_way
 from cspace.model import from_screws
+from cspace.spatial import log_so3
 
-__all__ = ["own_columns", "solve_partial", "whole_arm"]
+__all__ = ["met_by_open_joints", "own_columns", "solve_partial", "whole_arm"]
 
 SAME = 1e-8
 """Configurations of the arm itself closer than this [rad, m] are one: a goal's other joints may reach it in
@@ -64,6 +65,29 @@ class Many:
 def own_columns(robot: Any, goal: PartialGoal) -> slice:
     """The columns of the longer arm's configurations that are the arm's own."""
     return slice(len(goal.before), len(goal.before) + robot.dof)
+
+
+def met_by_open_joints(whole: Any, own: slice, seed: Array, T: Array) -> Array:
+    """A configuration of the longer arm: the arm's own joints at the seed (dof,), the goal's where they bring
+    it closest to the goal, by Gauss–Newton steps.
+    """
+    most_steps, settled, stride, damping = 40, 1e-12, 0.5, 1e-9
+    q = np.zeros((*seed.shape[:-1], whole.dof))
+    q[..., own] = seed
+    is_open = np.ones(whole.dof, dtype=bool)
+    is_open[own] = False
+    for _ in range(most_steps):
+        pose = whole.fk(q)
+        turn = log_so3(T[..., :3, :3] @ np.swapaxes(pose[..., :3, :3], -1, -2))
+        twist = np.concatenate([T[..., :3, 3] - pose[..., :3, 3], turn], axis=-1)
+        J = whole.jacobian(q)[..., is_open]
+        Jt = np.swapaxes(J, -1, -2)
+        step = np.linalg.solve(Jt @ J + damping * np.eye(J.shape[-1]), Jt @ twist[..., None])[..., 0]
+        reach = np.abs(step).max(axis=-1, initial=0.0, keepdims=True)
+        q[..., is_open] += step * np.minimum(1.0, stride / np.maximum(reach, stride))
+        if reach.max(initial=0.0) < settled:
+            break
+    return q
 
 
 def whole_arm(robot: Any, goal: PartialGoal) -> Any:

@@ -136,3 +136,19 @@ def test_seeds_in_awkward_places(name):
             assert distances(far.q, seed)[0] == pytest.approx(distances(near.q, seed)[0], abs=1e-7)
             inside = (far.q[0] >= robot.limits.lower) & (far.q[0] <= robot.limits.upper)
             assert (inside | (np.abs(far.q[0] - turned) < np.pi + 1e-9)).all()
+
+
+def test_an_empty_answer_is_certified_only_where_it_is_proven():
+    """Axes that meet but for a micrometre: five joints share the work of three, yet not quite."""
+    rng = np.random.default_rng(5)
+    axes = rng.normal(size=(5, 3))
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = [0.3, -0.5, 0.6]
+    robot = cs.Robot.from_screws(axes, 1e-6 * rng.normal(size=(5, 3)), T_zero)
+    for q in robot.random_configuration(20, rng=rng):
+        found = robot.ik(robot.fk(q))
+        assert found or not found.complete
+    far = robot.fk(np.zeros(5))
+    far[:3, 3] *= 3
+    assert not robot.ik(far)
+    assert robot.ik(far).complete
