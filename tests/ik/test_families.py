@@ -245,3 +245,10 @@ def test_more_configurations_than_make_sense_are_refused():
     family = robot.ik(robot.fk(CASES["puma560, wrist straight"][1])).families[0]
     with pytest.raises(InputError, match="1 to 100000"):
         family.sample(10**9)
+
+
+def test_a_copy_of_a_family_can_be_sampled():
+    robot = load("puma560")
+    family = robot.ik(robot.fk([0.1, 0.2, 0.3, 0.4, 0, 0.5])).families[0]
+    assert np.isfinite(family.bounds).any()
+    assert np.allclose(copy.deepcopy(family).sample(3), family.sample(3))

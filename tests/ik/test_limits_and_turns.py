@@ -7,6 +7,7 @@ import pytest
 
 from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.model import Limits
+from cspace.robot import Robot
 from ik.arms import load
 from ik.geometries import random_q
 
@@ -244,3 +245,11 @@ def test_what_makes_no_sense_is_refused():
         found.within("all")
     with pytest.raises(InputError, match="ur5e"):
         found.within(load("al5d").limits)
+
+
+def test_limits_of_a_million_turns_are_refused_before_anything_is_listed():
+    chain = load("ur5e").chain
+    for size in (1e7, 1e300):
+        robot = Robot.from_screws(chain.axes, chain.points, chain.T_zero, lower=[-size] * 6, upper=[size] * 6)
+        with pytest.raises(InputError, match="whole-turn copies"):
+            robot.ik(robot.fk(np.full(6, 0.3))).within(robot.limits, windings=True)

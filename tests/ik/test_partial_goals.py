@@ -361,3 +361,11 @@ def test_near_keeps_a_seed_that_meets_the_goal_and_goes_no_farther_than_one_that
         near = robot.ik(**asked, near=seed)
         way = np.linalg.norm((near.q[0] - seed + np.pi) % (2 * np.pi) - np.pi)
         assert way <= np.linalg.norm(q - seed) + 1e-6
+
+
+def test_a_joint_is_held_once_and_at_one_value():
+    robot = cs.load_robot("ur5e")
+    with pytest.raises(InputError, match="'shoulder_pan_joint' twice"):
+        robot.ik(position=[0.4, 0.1, 0.3], fixed={0: 0.1, "shoulder_pan_joint": 0.2})
+    with pytest.raises(InputTypeError, match="one number"):
+        robot.ik(position=[0.4, 0.1, 0.3], direction=[0, 0, -1], fixed={0: [0.1, 0.2]})

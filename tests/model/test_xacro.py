@@ -256,6 +256,7 @@ def test_modules_of_the_working_folder_are_not_run(tmp_path, monkeypatch):
     for name in ("json.py", "xacro.py", "cspace.py"):
         (tmp_path / name).write_text("raise SystemExit('taken from the working folder')")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend("")  # as in a session typed at the prompt
     (tmp_path / "a.xacro").write_text(HEAD + '<link name="a"/></robot>')
     assert load_description("a.xacro").root == "a"
 

@@ -228,5 +228,6 @@ def outward(curve: Curve, way: int) -> npt.NDArray[np.float64]:
 
 def onto(robot: Any, q: Array, near: Array, along: Array, whole_pose: bool) -> tuple[Array, Array]:
     """Rows of joints brought onto the curve through q, and the tangents there."""
-    rows = [np.ascontiguousarray(value) for value in (near, along)]
-    return _core._ik_onto(robot, q, *rows, whole_pose)
+    prepare(robot)  # a copy of the family's robot has no solver yet
+    rows = [np.ascontiguousarray(value) for value in (q, near, along)]
+    return _core._ik_onto(robot, *rows, whole_pose)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -18,6 +19,7 @@ from cspace.ik.prepare import prepare
 from cspace.ik.redundancy import MOST_SAMPLES, Interval, Redundancy
 from cspace.ik.solutions import EXACT, INCOMPLETE, POSE_ASKS, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.windings import into_limits
 from cspace.spare import spare_array
 from cspace.spatial.checks import one_pose
 from cspace.tolerances import FARTHEST
@@ -109,7 +111,15 @@ def redundancy(
     found = intervals_of(held, T, joint)
     if not found and joint != held.solver.held[0]:
         check_moves(held, found.goal, joint)
-    return found
+    return found if is_bounded(held, joint) else replace(found, complete=False)
+
+
+def is_bounded(held: Held, joint: int) -> bool:
+    """Whether the parameter runs between limits or round a circle: along a slide without limits the search
+    looks as far as the arm is long.
+    """
+    limits, k = held.robot.limits, held.free[joint]
+    return held.robot.joint_types[k] == "R" or bool(np.isfinite([limits.lower[k], limits.upper[k]]).all())
 
 
 def check_moves(held: Held, T: Array, joint: int) -> None:
@@ -151,8 +161,17 @@ def intervals_of(held: Held, T: Array, joint: int) -> Redundancy:
             return "fold"
         return "nothing" if what == END_NOTHING else f"{names[what]} at {'upper' if side else 'lower'} limit"
 
+    robot = held.robot
+    bounds = robot.joint_types, robot.limits.lower, robot.limits.upper
     made = [
-        Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), held.whole(np.array(q)), slides)
+        Interval(
+            low,
+            high,
+            branch + 1,
+            (end(a, sa), end(b, sb)),
+            into_limits(held.whole(np.array(q)), *bounds)[0],
+            slides,
+        )
         for low, high, branch, a, sa, b, sb, q in rows
     ]
     made.sort(key=lambda interval: (interval.branch, interval.lower))

@@ -173,6 +173,8 @@ class Solutions(_core.SolutionsBase):
         """
         bounds = bounds_of(self.robot, limits)
         kinds = self.robot.joint_types
+        if not isinstance(windings, (bool, np.bool_)):
+            raise InputTypeError(f"windings must be True or False, got {type(windings).__name__}")
         if windings:
             rows, q = all_windings(self.q, kinds, bounds.lower, bounds.upper)
         else:

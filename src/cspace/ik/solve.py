@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputTypeError
+from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals import (
     checked_poses,
     goal_array,
@@ -217,16 +217,27 @@ def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
 
     fixed, near = wish.fixed, None
     if isinstance(fixed, Mapping):
-        names = robot.joint_names
-        fixed = {
-            key if isinstance(key, str) else names[joint_number(robot, key, "fixed")]: value
-            for key, value in fixed.items()
-        }
+        fixed = by_name(robot, fixed)
     leaves_freedom = fixed is None or to_spare(whole, fixed_values(whole, fixed)) > 0
     if wish.near is not None and leaves_freedom:  # else all are listed, and the nearest is picked among them
         seed = as_floats(wish.near, "near", last=(robot.dof,), largest=FARTHEST)
         near = met_by_open_joints(whole, own_columns(robot, goal), seed, goal.T)
     return replace(wish, fixed=fixed, near=near, least_squares=False)
+
+
+def by_name(robot: Any, fixed: Mapping[Any, Any]) -> dict[str, Any]:
+    """Values of held joints by the joints' names."""
+    out: dict[str, Any] = {}
+    for key, value in fixed.items():
+        name = key if isinstance(key, str) else robot.joint_names[joint_number(robot, key, "fixed")]
+        if name in out:
+            raise InputError(f"fixed names {name!r} twice, by name and by number; give each joint one value")
+        if isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim):
+            raise InputTypeError(
+                f"fixed[{key!r}] is a {type(value).__name__}, expected one number with parts of a pose"
+            )
+        out[name] = value
+    return out
 
 
 def solve_one(robot: Any, T: Array, near: Any) -> Solutions:

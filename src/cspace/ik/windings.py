@@ -94,27 +94,29 @@ def all_windings(
     rows: list[int] = []
     out: list[Array] = []
     for row, configuration in enumerate(q):
-        choices = [
+        turns = [
             joint_windings(angle, kind, lo, hi)
             for angle, kind, lo, hi in zip(configuration, kinds, lower, upper, strict=True)
         ]
-        if math.prod(map(len, choices)) + len(out) > MOST_WINDINGS:
+        if math.prod(count for _, count in turns) + len(out) > MOST_WINDINGS:
             raise InputError(
                 f"the limits leave room for more than {MOST_WINDINGS} whole-turn copies of the solutions; "
                 "narrow them, or leave out windings=True"
             )
+        choices = [[first + TURN * k for k in range(count)] for first, count in turns]
         for combination in itertools.product(*choices):
             rows.append(row)
             out.append(np.array(combination))
     return np.array(rows, dtype=np.intp), np.array(out).reshape(len(out), q.shape[1])
 
 
-def joint_windings(angle: float, kind: str, lower: float, upper: float) -> list[float]:
+def joint_windings(angle: float, kind: str, lower: float, upper: float) -> tuple[float, int]:
+    """The lowest copy of an angle inside its limits, and how many follow a turn apart."""
     if kind == "P":
-        return [angle] if lower <= angle <= upper else []
+        return angle, int(lower <= angle <= upper)
     least, most = np.ceil((lower - angle) / TURN), np.floor((upper - angle) / TURN)
     if least > most:
-        return []
+        return angle, 0
     if not np.isfinite(most - least):
-        return [angle + TURN * float(np.clip(0.0, least, most))]
-    return [angle + TURN * k for k in range(int(least), int(most) + 1)]
+        return angle + TURN * float(np.clip(0.0, least, most)), 1
+    return angle + TURN * float(least), int(most - least) + 1

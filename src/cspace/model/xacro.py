@@ -101,7 +101,8 @@ def expanded(path: str, arguments: Mapping[str, str], package_paths: Sequence[st
         raise MissingExtraError("xacro", f"reading {path!r}, a xacro file,")
     if not sys.executable:
         raise InputError(f"{path!r} is xacro, which is expanded by another Python; sys.executable names none")
-    request = {"path": sys.path, "file": path, "arguments": arguments, "package_paths": package_paths}
+    places = [place for place in sys.path if place not in ("", os.curdir)]  # not the working folder
+    request = {"path": places, "file": path, "arguments": arguments, "package_paths": package_paths}
     command = [sys.executable, "-c", CHILD]
     try:
         done = subprocess.run(

@@ -152,3 +152,13 @@ def test_an_empty_answer_is_certified_only_where_it_is_proven():
     far[:3, 3] *= 3
     assert not robot.ik(far)
     assert robot.ik(far).complete
+
+
+def test_what_an_interval_shows_stands_within_limits_and_endless_slides_are_not_certified():
+    robot, rng = cs.load_robot("panda"), np.random.default_rng(0)
+    for q in robot.random_configuration(30, rng=rng):
+        for interval in robot.redundancy(robot.fk(q)):
+            assert (interval.q >= robot.limits.lower - 1e-9).all()
+            assert (interval.q <= robot.limits.upper + 1e-9).all()
+    slides = cs.Robot.from_screws([[1, 0, 0]] * 2, np.zeros((2, 3)), np.eye(4), joint_types="PP")
+    assert not slides.redundancy(slides.fk([5, -4.2]), 0).complete

@@ -130,10 +130,12 @@ inline bool renumber_general_arm(const ik::GeneralArm& typical, const ik::Chain&
     arm.plan.length = length;
     arm.plan.chain = six;
     arm.plan.frames = loop_frames(six);
+    forget_ghosts(arm.plan);
     arm.position_first = position_first(six);
     for (int k = 0; k < 2 && arm.has_neighbours; ++k) {
         arm.neighbour[k].chain = disturbed(six, k ? -disturbance : disturbance);
         arm.neighbour[k].frames = loop_frames(arm.neighbour[k].chain);
+        forget_ghosts(arm.neighbour[k]);
     }
     return !has_joint_to_spare(six);
 }

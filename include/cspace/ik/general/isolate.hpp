@@ -15,8 +15,8 @@ struct HiddenAngle {
     double depth = 0;  // by how much a pair is missed, of the largest value
 };
 // Noise hides how many there are; or there are none, but so nearly two that a slip of the equations, which
-// the signs do not show, may have hidden them.
-inline constexpr int unknown = 0, nearly_two = -1;
+// the signs do not show, may have hidden them; or they are there for every goal and lead nowhere.
+inline constexpr int unknown = 0, nearly_two = -1, ghost = -2;
 
 struct HiddenAngles {
     int count = 0;

@@ -41,6 +41,10 @@ struct GeneralPlan {
     int regular = 0;  // how many of them do not vanish identically; 1 where no angle is hidden
     // By how much each enlarges relative errors of its equations, by its number.
     double sensitivity[formulations] = {};
+    // Hidden angles where each has roots whatever the goal, and the arm nothing: how many, and which.
+    static constexpr int most_ghosts = 4;
+    int ghosts[formulations] = {};
+    double ghost[formulations * most_ghosts] = {};
 };
 
 // The plan of an arm, and where it cannot serve alone those of two neighbours (neighbours.hpp).

@@ -27,12 +27,18 @@ inline ik::Chain disturbed(const ik::Chain& chain, double size) {
     return out;
 }
 
+// Those of another arm.
+inline void forget_ghosts(ik::GeneralPlan& plan) {
+    for (int& count : plan.ghosts) count = 0;
+}
+
 // What serves the one serves the other.
 inline void make_neighbours(ik::GeneralArm& arm) {
     make_general_plan(disturbed(arm.plan.chain, disturbance), arm.neighbour[0]);
     arm.neighbour[1] = arm.neighbour[0];
     arm.neighbour[1].chain = disturbed(arm.plan.chain, -disturbance);
     arm.neighbour[1].frames = loop_frames(arm.neighbour[1].chain);
+    forget_ghosts(arm.neighbour[1]);
     arm.has_neighbours = arm.neighbour[0].regular > 0;
 }
 

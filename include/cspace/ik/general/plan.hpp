@@ -175,6 +175,30 @@ inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations],
     }
 }
 
+// The hidden angles of a formulation at which it has roots for each of three goals: factors that come of axes
+// almost parallel or almost meeting, where no solution need be.
+inline void find_ghosts(const Posed* goal, int number, ik::GeneralPlan& plan) {
+    constexpr double fine = 1e-8, same = 1e-7;
+    if (plan.slides == 2) return;
+    ik::HiddenAngles hidden[3];
+    for (int k = 0; k < 3; ++k) {
+        const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal[k], formulation(number));
+        const Elimination e = eliminate(loop);
+        isolate([&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); }, fine, hidden[k]);
+    }
+    const auto has = [&](const ik::HiddenAngles& h, double angle) {
+        for (int j = 0; j < h.count; ++j)
+            if (std::fabs(short_way(h.root[j].angle - angle)) < same) return true;
+        return false;
+    };
+    int& ghosts = plan.ghosts[number];
+    for (int j = 0; j < hidden[0].count && ghosts < ik::GeneralPlan::most_ghosts; ++j) {
+        const double angle = hidden[0].root[j].angle;
+        if (has(hidden[1], angle) && has(hidden[2], angle))
+            plan.ghost[number * ik::GeneralPlan::most_ghosts + ghosts++] = angle;
+    }
+}
+
 // For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
 // them at great cost. All regular ones are ordered after a few poses, the best of them once more after many.
 inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
@@ -194,6 +218,7 @@ inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
     for (int k = 0; k < best && k < plan.regular; ++k)
         try_formulation(plan, goal, FormulationTrial::most_poses, plan.order[k], trial[plan.order[k]]);
     rank_formulations(trial, plan);
+    for (int k = 0; k < plan.regular; ++k) find_ghosts(goal, plan.order[k], plan);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -65,6 +65,37 @@ inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed&
     return out;
 }
 
+// What a second look may still find where the solver did not certify its list, or where slides, wrists and
+// virtual joints may hide a singular pose: from goals beside this one, and by descent. Lengths are over the
+// arm's.
+inline void look_beside(const ik::GeneralArm& arm, const ik::Chain& chain, const Posed& goal, bool certain,
+                        ik::Solutions& out) {
+    constexpr double hardly_off = 0.2;
+    int there = 0;
+    const auto propose = [&](const Posed& beside, const auto& offer) {
+        ik::Solutions six;
+        arm.solve(arm, beside, six);
+        for (int k = 0; k < six.count; ++k) {
+            double off = 0, q[ik::max_joints], turned[ik::max_joints];
+            for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(six.q[k][i]));
+            there += off < hardly_off;
+            for (int i = 0; i < chain.n; ++i) {
+                q[i] = six.q[k][i];
+                turned[i] = chain.prismatic[i] ? 0 : q[i];
+            }
+            offer(q);
+            // Slides that have become parallel run far away beside the goal.
+            if (arm.plan.slides > 0) offer(turned);
+        }
+    };
+    if (search_beside(chain, goal, 1, propose, out)) out.complete = false;
+    // Families attract whatever comes down near them.
+    const int starts = out.count || certain ? 16 : 48;
+    if (out.count == 0 || !certain) search_by_descent(chain, goal, 1, starts, out);
+    // Nothing here and something close by: the goal may lie just on the border.
+    if (out.count == 0 && there > 0) out.complete = false;
+}
+
 // goal and `idle`, the values that leading joints of families take (null: zero): in metres, as is the answer.
 inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Posed& goal_in_metres,
                                              const double* idle = nullptr) {
@@ -74,39 +105,13 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     chain.n = arm.chain.n;
     ik::Solutions out;
     arm.solve(arm, goal, out);
-    const bool all = out.complete && !out.crowded;
-    if (chain.n < 6) out = without_virtual_joints(chain, goal, out);
-    const bool completed = chain.n < 6;
-    // Of six turning joints a certified empty list is believed; slides and wrists may hide a singular pose.
+    const bool certain = out.complete && !out.crowded, completed = chain.n < 6;
+    if (completed) out = without_virtual_joints(chain, goal, out);
+    // Of six turning joints a certified empty list is believed.
     const bool may_hide = completed || arm.plan.slides > 0;
     const bool empty = out.count == 0 && (may_hide || arm.has_neighbours);
-    if (!out.complete || empty || (!all && may_hide)) {
-        int there = 0;
-        const auto propose = [&](const Posed& beside, const auto& offer) {
-            ik::Solutions six;
-            arm.solve(arm, beside, six);
-            for (int k = 0; k < six.count; ++k) {
-                double off = 0;
-                for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(six.q[k][i]));
-                there += off < 0.2;
-                double q[ik::max_joints], turned[ik::max_joints];
-                for (int i = 0; i < chain.n; ++i) {
-                    q[i] = six.q[k][i];
-                    turned[i] = chain.prismatic[i] ? 0 : q[i];
-                }
-                offer(q);
-                // Slides that have become parallel run far away beside the goal.
-                if (arm.plan.slides > 0) offer(turned);
-            }
-        };
-        if (search_beside(chain, goal, 1, propose, out)) out.complete = false;
-        // Families attract whatever comes down near them.
-        const int starts = out.count || all ? 16 : 48;
-        if (out.count == 0 || !all) search_by_descent(chain, goal, 1, starts, out);
-        // Nothing here and something close by: the goal may lie just on the border.
-        if (out.count == 0 && there > 0) out.complete = false;
-    }
-    if (!all && !completed) mark_families(arm.plan, goal, out);
+    if (!out.complete || empty || (!certain && may_hide)) look_beside(arm, chain, goal, certain, out);
+    if (!certain && !completed) mark_families(arm.plan, goal, out);
     judge(out);
     if (out.status == ik::Status::singular) {
         double rest[ik::max_joints];

@@ -167,10 +167,20 @@ inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
     return count;
 }
 
-// All solutions by the roots of f, a function of the hidden angle; `follow` makes candidates of them, and
-// more where its first did not bring as many solutions as there must be.
+// Of roots that are there for every goal no solutions are expected.
+inline void expect_no_ghosts(const ik::GeneralPlan& plan, int number, ik::HiddenAngles& hidden) {
+    constexpr double as_isolated = 2 * rough_root;
+    const double* const ghost = plan.ghost + number * ik::GeneralPlan::most_ghosts;
+    for (int k = 0; k < hidden.count; ++k)
+        for (int j = 0; j < plan.ghosts[number]; ++j)
+            if (std::fabs(short_way(hidden.root[k].angle - ghost[j])) < as_isolated)
+                hidden.root[k].expected = ik::ghost;
+}
+
+// All solutions by the roots of f, a function of the hidden angle of formulation `number`; `follow` makes
+// candidates of them, and more where its first did not bring as many solutions as there must be.
 template <class Function, class Follow>
-inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const Posed& goal,
+inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const Posed& goal, int number,
                                              const ik::Loop& loop, double slip, const Function& f,
                                              const Follow& follow, ik::Solutions& out) {
     ik::Certificate seen;
@@ -181,6 +191,7 @@ inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const 
     seen.sign = loop.sign;
     seen.work = hidden.evaluations;
     if (hidden.alias > regular_alias) return seen;
+    expect_no_ghosts(plan, number, hidden);
     bool close[ik::max_roots], folds = false;
     seen.clusters = mark_close(hidden, close);
     for (int k = 0; k < hidden.count; ++k) folds |= hidden.root[k].width > 0;
@@ -226,7 +237,7 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
                                 ik::Candidates& found) {
             return !again && follow_sheets(sheets, hidden, close, found);
         };
-        return solve_by_hidden_angle(plan, goal, loop, 0, f, follow, out);
+        return solve_by_hidden_angle(plan, goal, number, loop, 0, f, follow, out);
     }
     const Elimination e = eliminate(loop);
     const auto f = [&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); };
@@ -235,7 +246,7 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
         return follow_angles(loop, e, hidden, close, again, found);
     };
     const double slip = plan.sensitivity[number] * equation_error / min(e.faintest, 1.0);
-    ik::Certificate seen = solve_by_hidden_angle(plan, goal, loop, slip, f, follow, out);
+    ik::Certificate seen = solve_by_hidden_angle(plan, goal, number, loop, slip, f, follow, out);
     seen.trusted = seen.trusted && e.faintest > clear_equation;
     seen.complete = seen.complete && seen.trusted;
     return seen;
