@@ -268,3 +268,5 @@ def test_damaged_files_end_in_an_error_of_ours_or_in_a_robot(arm):
     for _ in range(12):
         arm.write_bytes(mutant(rng, [ARM.encode()]))
         exercise_file(lambda path: from_xacro(path, package_paths=package_paths), arm)
+    arm.write_text(ARM)
+    assert exercise_file(lambda path: from_xacro(path, package_paths=package_paths), arm)
