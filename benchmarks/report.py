@@ -308,8 +308,8 @@ def plot(results: dict[str, Any], path: Path) -> None:
             axes.barh(place, row["read"]["median"], color=colours[row["contender"]])
             axes.text(row["read"]["median"], place, text, va="center", fontsize=8)
             name = NAMES[row["contender"]].strip("*")
-            axes.text(0.11, place, name, va="center", ha="left", fontsize=8, color="white", weight="bold")
-        axes.set(title=title, xscale="log", yticks=[], xlim=(0.1, 3e4), xlabel="µs per pose, answers read")
+            axes.text(0.033, place, name, va="center", ha="left", fontsize=8, color="white", weight="bold")
+        axes.set(title=title, xscale="log", yticks=[], xlim=(0.03, 3e4), xlabel="µs per pose, answers read")
         axes.spines[["top", "right", "left"]].set_visible(False)
     figure.suptitle(
         "All solutions of a pose: time, and share found at 1e-6 rad from a singularity", fontsize=11
