@@ -52,6 +52,7 @@ BAD_LINES = [
     ("ik ur5e --direction 0 0 1 --tool-axis 1 0", "a name or three numbers, got 2"),
     ("ik ur5e --direction 0 0 1 --tool-axis 1 0 w", "'w' is not a number"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --tool-axis x", "--tool-axis goes with --direction"),
+    ("ik ur5e --angle-to z 1", "--angle-to says how the tool axis leans at a place: give --xyz with it"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to x w", "--angle-to takes an axis and an angle: 'w'"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to x 4", "expected 0 to π rad"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 1 --swivel 1", "--swivel goes with a full pose"),
@@ -88,6 +89,15 @@ BAD_LINES = [
     ("dh ur5e --latex --markdown", "not allowed with"),
     ("dh ur5e --time-limit 0", "'0' is no time to wait"),
     ("dh ur5e --time-limit 1e30", "no time to wait"),
+    *(
+        (f"{line}=--", "-- is no value")
+        for line in (
+            "ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --plot",
+            "fk ur5e 0 0 0 0 0 0 --xacro-arg",
+            "fk ur5e 0 0 0 0 0 0 --time-limit",
+            "export ur5e -o",
+        )
+    ),
     ("jacobian ur5e 0 0 0 0 0 0 --expressed-in world", "invalid choice"),
 ]
 

@@ -208,3 +208,47 @@ def test_numbers_may_stand_with_commas_between_them(verb):
         cspace(f"{verb} ur5e 0.1,-1.2,pi/2,-pi/4,0,3").out
         == cspace(f"{verb} ur5e 0.1 -1.2 pi/2 -pi/4 0 3").out
     )
+
+
+@pytest.mark.parametrize(
+    ("with_pi", "in_degrees"),
+    [
+        ("fk ur5e pi/2 -30 pi/4 -pi 0 0", "fk ur5e 90 -30 45 -180 0 0"),
+        ("ik ur5e --xyz 0.4 0.1 0.4 --rpy pi 3 -pi/2", "ik ur5e --xyz 0.4 0.1 0.4 --rpy 180 3 -90"),
+        ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to z pi/2", "ik ur5e --xyz 0.4 0.1 0.3 --angle-to z 90"),
+        ("ik planar_3r --xy 1.5 0.8 --angle pi/6", "ik planar_3r --xy 1.5 0.8 --angle 30"),
+        (
+            "ik iiwa14 --xyz 0.5 0.1 0.4 --rpy pi 0 0 --swivel pi/6",
+            "ik iiwa14 --xyz 0.5 0.1 0.4 --rpy 180 0 0 --swivel 30",
+        ),
+        (
+            "ik panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --fixed q7=pi/4",
+            "ik panda --xyz 0.4 0.1 0.4 --rpy 180 0 0 --fixed q7=45",
+        ),
+        (
+            "ik puma560 --xyz 0.5 0 0.3 --rpy 0 pi 0 --near 0 0 pi/2 0 0 0",
+            "ik puma560 --xyz 0.5 0 0.3 --rpy 0 180 0 --near 0 0 90 0 0 0",
+        ),
+    ],
+)
+def test_pi_is_half_a_turn_where_degrees_are_typed(with_pi, in_degrees):
+    found, wanted = cspace(f"{with_pi} --deg --json"), cspace(f"{in_degrees} --deg --json")
+    assert found.code == wanted.code == 0, found.err
+    assert numbers_of(found.json) == pytest.approx(numbers_of(wanted.json), abs=1e-9)
+
+
+def numbers_of(document):
+    """Every number of a JSON document, in order."""
+    if isinstance(document, dict):
+        return [x for value in document.values() for x in numbers_of(value)]
+    if isinstance(document, list):
+        return [x for value in document for x in numbers_of(value)]
+    return [document] if isinstance(document, (int, float)) else []
+
+
+def test_a_reason_is_in_the_unit_that_was_asked_for():
+    line = "ik kr6_r900 --xyz -0.6 0 0.3 --rpy pi 0 0 --limits drop"
+    in_radians, in_degrees = cspace(line), cspace(f"{line} --deg")
+    beyond = float(in_radians.out.split(" out by ")[1].removesuffix(" rad\n"))
+    assert in_degrees.out.endswith(f" out by {np.degrees(beyond):.4g} deg\n")
+    assert cspace(f"{line} --deg --json").json["reason"].endswith(" rad")  # radians whatever --deg says

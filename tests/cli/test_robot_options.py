@@ -15,6 +15,10 @@ XACRO = """<robot name="arm" xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arg 
 <joint name="j" type="continuous">
 <parent link="a"/><child link="b"/><origin xyz="0 0 $(arg z)"/></joint></robot>"""
 
+GRIPPER = """<robot name="arm"><link name="base"/><link name="palm"/><link name="moving_jaw"/>
+<joint name="turn" type="continuous"><parent link="base"/><child link="palm"/></joint>
+<joint name="thumb" type="continuous"><parent link="palm"/><child link="moving_jaw"/></joint></robot>"""
+
 CALLS = [
     "info {}",
     "fk {} 0 0 0 0 0 0",
@@ -49,8 +53,22 @@ def test_a_bad_calibration_is_a_bad_file(tmp_path, calibration):
     assert result.code == 3
     assert "none.yaml: no such file" in result.err
     result = cspace("info ur10e", "--calibration", calibration)
-    assert result.code == 2
-    assert "the calibration of another arm" in result.err
+    assert result.code == 3
+    assert f"{calibration}: this is the calibration of another arm" in result.err
+
+
+def test_a_gripper_taken_for_the_last_joint_is_pointed_out(tmp_path):
+    path = tmp_path / "arm.urdf"
+    path.write_text(GRIPPER)
+    found = cspace(f"info {path}").out
+    assert "tip       moving_jaw (thumb seems to be a gripper's; --tip palm ends the arm before it)" in found
+    assert "seems" not in cspace(f"info {path} --tip moving_jaw").out
+    assert "seems" not in cspace(f"info {path} --tip palm").out
+
+
+def test_no_arm_of_the_catalogue_ends_in_a_gripper():
+    for row in cs.robots.search(""):
+        assert "seems" not in cspace(f"info {row.name}").out, row.name
 
 
 def test_mjcf_is_a_file_like_any_other(tmp_path):

@@ -6,6 +6,7 @@ import pytest
 from cspace.ik import geometry
 from cspace.model import from_screws
 from cspace.robot import Robot
+from cspace.robots import load_robot
 from ik.arms import PARALLEL, SPHERICAL, load
 from ik.geometries import angle_gap, random_q
 
@@ -171,3 +172,10 @@ def test_what_the_first_three_axes_share_is_said_of_short_arms():
     meeting = arm([Z, X, Y], [O, O, [0, 1, 0.2]], [0, 1, 1], "RRR", "meeting")
     assert "axes 1 and 2 meet" in str(geometry(meeting))
     assert "up to three joints" in str(geometry(load("rpr")))
+
+
+def test_branches_of_an_arm_in_general_position_are_numbered_as_all_branches_without_words_are():
+    robot = load_robot("jaco2")
+    labels = robot.ik(robot.fk(np.linspace(0.4, 0.9, 6))).branch
+    assert labels
+    assert all(label.startswith("branch ") for label in labels), labels

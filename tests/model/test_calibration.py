@@ -144,7 +144,8 @@ def test_a_file_with_the_frames_of_ur_description_keeps_all_else(write, tmp_path
 def test_the_calibration_of_another_model_is_refused(name, other, write):
     numbers = (CB_SERIES | E_SERIES)[other]
     with pytest.raises(
-        InputError, match=rf"calibration of another arm than '{name}': the axis of '.*_joint'"
+        DescriptionError,
+        match=rf"^.*\.yaml: this is the calibration of another arm than '{name}': the axis of '.*_joint'",
     ):
         load_robot(name, calibration=write(frames(*numbers)))
 

@@ -23,6 +23,7 @@ __all__ = [
     "named_number",
     "named_value",
     "number",
+    "radians",
     "seconds",
     "separate_values",
 ]
@@ -31,6 +32,8 @@ OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?
 """Multiples of π: pi, -pi/2, 3pi/4, 0.5*pi."""
 
 NEGATIVE_AXES: Final = frozenset({"-x", "-y", "-z"})
+NO_VALUE: Final = re.compile(r"(--[\w-]+=|-[a-z]=?)--")
+"""An option with -- for its value, of which argparse makes none."""
 OPEN: Final = "any"
 """What is typed for a coordinate that does not matter."""
 
@@ -62,6 +65,15 @@ class Parser(argparse.ArgumentParser):
         raise UsageError(f"{unguarded}; see {self.prog} --help")
 
 
+class OfPi(float):
+    """A number typed as a multiple of π: of an angle its radians, also where angles are typed in degrees."""
+
+
+def radians(value: float, *, degrees: bool) -> float:
+    """A typed angle [rad]; `degrees`: it was typed in degrees, unless with pi."""
+    return math.radians(value) if degrees and not isinstance(value, OfPi) else float(value)
+
+
 def number(text: str) -> float:
     """A finite number, or a multiple of π: 0.5, -1e-3, pi, -pi/2, 3pi/4."""
     word = text.strip()
@@ -69,7 +81,7 @@ def number(text: str) -> float:
     if match:
         sign, factor, divisor = match.groups()
         value = math.pi * float(factor or 1) / float(divisor or 1) if float(divisor or 1) else math.inf
-        value = -value if sign == "-" else value
+        value = OfPi(-value if sign == "-" else value)
     else:
         try:
             value = float(word)
@@ -112,10 +124,12 @@ def coordinate(text: str) -> float | None:
 
 def separate_values(words: Sequence[str]) -> list[str]:
     """Words as argparse takes them: 1,-2,3 as three, and a blank before -1e-3, -pi/2 or -z, which are values
-    and no options.
+    and no options. Raises UsageError for -- as the value of an option.
     """
     out: list[str] = []
     for word in words:
+        if NO_VALUE.fullmatch(word):
+            raise UsageError(f"{word}: -- is no value; it stands alone, before words that are no options")
         option, sign, value = word.partition("=")
         if sign and option.startswith("--") and is_list(value):
             out.append(option)
@@ -179,12 +193,12 @@ def add_chain(parser: argparse.ArgumentParser) -> None:
 def add_joints(parser: argparse.ArgumentParser) -> None:
     """One value per joint."""
     parser.add_argument(
-        "q", metavar="Q", nargs="*", type=number, help="one value per joint [rad, m]; pi/2 can be typed so"
+        "q", metavar="Q", nargs="*", type=number, help="one value per joint [rad, m]; pi/2 may be typed"
     )
 
 
 def add_degrees(parser: argparse.ArgumentParser) -> None:
     """Degrees instead of radians, typed and read; --json stays in radians."""
     group = parser.add_mutually_exclusive_group()
-    group.add_argument("--deg", action="store_true", help="type and read angles in degrees")
+    group.add_argument("--deg", action="store_true", help="type and read angles in degrees; pi/2 typed is 90")
     group.add_argument("--rad", action="store_false", dest="deg", help="angles in radians (the default)")

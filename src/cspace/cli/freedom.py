@@ -5,9 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
-from cspace.cli.arguments import named_number, number
+from cspace.cli.arguments import named_number, number, radians
 from cspace.cli.exits import UsageError
 from cspace.cli.robot import joint_called
 
@@ -61,7 +59,7 @@ def options_of(args: argparse.Namespace, robot: Robot) -> dict[str, Any]:
     if args.fixed is not None:
         options["fixed"] = held_joints(args, robot)
     if args.swivel is not None:
-        options["swivel"] = np.radians(args.swivel) if args.deg else args.swivel
+        options["swivel"] = radians(args.swivel, degrees=args.deg)
     for name in ("samples", "least_squares"):
         if getattr(args, name) is not None:
             options[name] = getattr(args, name)
@@ -77,5 +75,5 @@ def held_joints(args: argparse.Namespace, robot: Robot) -> dict[str, float]:
         if name in held:
             raise UsageError(f"--fixed holds {name} twice; give each joint one value")
         turns = "turn" in name if of_goal else robot.joint_types[robot.joint_names.index(name)] == "R"
-        held[name] = float(np.radians(value)) if args.deg and turns else value
+        held[name] = radians(value, degrees=args.deg) if turns else value
     return held

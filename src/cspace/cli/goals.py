@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.cli.arguments import OPEN, coordinate, number
+from cspace.cli.arguments import OPEN, coordinate, number, radians
 from cspace.cli.exits import UsageError
 
 __all__ = ["GOAL_WORDS", "Goal", "add_goal", "axis_of", "goal_of"]
@@ -105,10 +105,12 @@ def goal_of(args: argparse.Namespace) -> Goal:
     place, R = place_of(args), rotation_of(args)
     parts = {"position": place, "rotation": R, **pointing_of(args)}
     parts = {name: value for name, value in parts.items() if value is not None}
+    if set(parts) == {"angle_to"}:
+        raise UsageError("--angle-to says how the tool axis leans at a place: give --xyz with it")
     if set(parts) == {"position", "rotation"} and None not in parts["position"]:
         return Goal(as_pose(pose_at(place, R), "goal"), tool_axis=axis_of(args))
     if args.angle is not None:
-        parts["angle"] = np.radians(args.angle) if args.deg else args.angle
+        parts["angle"] = radians(args.angle, degrees=args.deg)
     return Goal(None, parts, axis_of(args))
 
 
@@ -135,12 +137,12 @@ def rotation_of(args: argparse.Namespace) -> Array | None:
         raise UsageError(f"one orientation only; {' and '.join('--' + name for name in forms)} were given")
     if not forms:
         return None
-    values = np.array(getattr(args, forms[0]))
+    values = getattr(args, forms[0])
     if forms[0] == "rotation":
-        return np.asarray(as_rotation(values.reshape(3, 3), "--rotation"))
-    if forms[0] == "rpy" and args.deg:
-        values = np.radians(values)
-    arguments: dict[str, Any] = {forms[0]: values}
+        return np.asarray(as_rotation(np.reshape(values, (3, 3)), "--rotation"))
+    if forms[0] == "rpy":
+        values = [radians(value, degrees=args.deg) for value in values]
+    arguments: dict[str, Any] = {forms[0]: np.array(values)}
     return np.asarray(pose(np.zeros(3), **arguments)[:3, :3])
 
 
@@ -155,7 +157,7 @@ def pointing_of(args: argparse.Namespace) -> dict[str, Any]:
             value = number(angle)
         except argparse.ArgumentTypeError as error:
             raise UsageError(f"--angle-to takes an axis and an angle: {error}") from None
-        parts["angle_to"] = (axis.strip(), np.radians(value) if args.deg else value)
+        parts["angle_to"] = (axis.strip(), radians(value, degrees=args.deg))
     return parts
 
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.cli.arguments import radians
 from cspace.cli.exits import UsageError
 from cspace.errors import suggest
 
@@ -18,12 +20,17 @@ if TYPE_CHECKING:
 __all__ = [
     "angle_unit",
     "configuration",
+    "gripper_note",
     "headings",
     "joint_called",
     "joint_texts",
     "load",
     "need_chain",
 ]
+
+
+GRIPPER: Final = re.compile("grip|jaw|finger|claw", re.IGNORECASE)
+"""What joints and links of grippers are called."""
 
 
 def load(args: argparse.Namespace) -> Robot:
@@ -55,9 +62,19 @@ def configuration(values: Sequence[float], robot: Robot, subject: str, *, degree
     if len(values) != n:
         names = ", ".join(robot.joint_names)
         raise UsageError(f"{robot.name} has {n} joints, {subject} has {len(values)} values; joints: {names}")
-    q = np.array(values, dtype=np.float64)
-    turns = [kind == "R" for kind in robot.joint_types]
-    return np.where(turns, np.radians(q), q) if degrees else q
+    typed = zip(values, robot.joint_types, strict=True)
+    return np.array([radians(value, degrees=degrees and kind == "R") for value, kind in typed])
+
+
+def gripper_note(args: argparse.Namespace, robot: Robot) -> str:
+    """What to type where the last joint of a file is named like a gripper's and nobody chose the tip."""
+    if args.tip is not None or robot.tip is None or not robot.joint_names:
+        return ""
+    last = robot.joint_names[-1]
+    joint = next(joint for joint in robot.description.joints if joint.name == last)
+    if not GRIPPER.search(f"{joint.name} {joint.child}"):
+        return ""
+    return f"{joint.name} seems to be a gripper's; --tip {joint.parent} ends the arm before it"
 
 
 def angle_unit(degrees: bool) -> str:

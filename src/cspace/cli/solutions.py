@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+import re
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -15,6 +16,10 @@ if TYPE_CHECKING:
     from cspace.robot import Robot
 
 __all__ = ["Rows", "document", "show"]
+
+
+RADIANS: Final = re.compile(r"(\d[\d.e+-]*) rad\b")
+"""An angle in a sentence of the library."""
 
 
 class Rows:
@@ -85,7 +90,8 @@ def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[st
 
 def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -> None:
     """The answer for people: a table, or why there is none."""
-    out.line(f"{robot.name}: {answer.reason}", style="bold" if answer else "yellow")
+    reason = in_degrees(answer.reason) if degrees else answer.reason
+    out.line(f"{robot.name}: {reason}", style="bold" if answer else "yellow")
     if not len(rows):
         return
     out.table(table_of(robot, rows, degrees=degrees))
@@ -98,6 +104,11 @@ def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -
     )
     if headings(robot) != list(robot.joint_names):
         out.hint(names)
+
+
+def in_degrees(sentence: str) -> str:
+    """A sentence of the library with its angles in degrees."""
+    return RADIANS.sub(lambda angle: f"{np.degrees(float(angle[1])):.4g} deg", sentence)
 
 
 def table_of(robot: Robot, rows: Rows, *, degrees: bool) -> Table:

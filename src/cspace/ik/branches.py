@@ -44,9 +44,7 @@ def branch_labels(robot: Any, q: Array, numbers: tuple[int, ...]) -> tuple[str, 
     seen = _core._ik_geometry(robot)
     if seen is None or any(n < 0 for n in numbers):
         return ("",) * len(numbers)
-    if seen["general"]:
-        return tuple(f"solution {n + 1}" for n in numbers)
-    words = words_of(robot.chain, seen)
+    words = None if seen["general"] else words_of(robot.chain, seen)
     if words is None:
         return tuple(f"branch {n + 1}" for n in numbers)
     chain = robot.chain

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import InputError
+from cspace.errors import DescriptionError, InputError
 from cspace.model.calibration_file import PARTS, Calibration, read_calibration
 from cspace.model.chain import chain, default_tip
 from cspace.model.description import Description, Source
@@ -43,9 +43,9 @@ def calibrated(description: Description, path: str | os.PathLike[str]) -> Descri
     ur_description. Its frames stand as in ur_description: each joint turns about its own z; base_link_inertia
     is base_link turned by π about z; tool0 is the frame of wrist_3. A description with such frames keeps all
     else; one of the catalogue gets these links, and keeps its base, tip, limits and name.
-    Raises DescriptionError with file and line for a bad file; InputError for a robot that is no UR arm, one
-    with other link frames, and a calibration that is further off than tolerances.CALIBRATION_DISTANCE or
-    CALIBRATION_ANGLE, which is that of another arm.
+    Raises DescriptionError with file and line for a bad file, and for a calibration that is further off than
+    tolerances.CALIBRATION_DISTANCE or CALIBRATION_ANGLE, which is that of another arm; InputError for a robot
+    that is no UR arm, and for one with other link frames.
     """
     calibration = read_calibration(path)
     joints = joints_of(description)
@@ -131,8 +131,9 @@ def check(
         angle = math.acos(min(1.0, float(abs(first.axes[i] @ second.axes[i]))))
         away = float(np.linalg.norm(np.cross(first.points[i] - second.points[i], second.axes[i])))
         if angle > CALIBRATION_ANGLE or away > CALIBRATION_DISTANCE:
-            raise InputError(
-                f"{calibration.path} is the calibration of another arm than {nominal.name!r}: the axis of"
+            raise DescriptionError(
+                f"this is the calibration of another arm than {nominal.name!r}: the axis of"
                 f" {joint.name!r} is {away:.3g} m and {angle:.3g} rad off (allowed:"
-                f" {CALIBRATION_DISTANCE:g} m, {CALIBRATION_ANGLE:g} rad)"
+                f" {CALIBRATION_DISTANCE:g} m, {CALIBRATION_ANGLE:g} rad)",
+                path=calibration.path,
             )

@@ -16,7 +16,7 @@ from cspace.cli.freedom import add_freedom, options_of
 from cspace.cli.goals import Goal, add_goal, goal_of
 from cspace.cli.output import Output
 from cspace.cli.pictures import check_format
-from cspace.cli.robot import configuration, load, need_chain
+from cspace.cli.robot import configuration, gripper_note, load, need_chain
 from cspace.cli.solutions import Rows, document, show
 from cspace.errors import InputError, InputTypeError
 
@@ -90,6 +90,8 @@ def answer(args: argparse.Namespace, robot: Robot, out: Output) -> int:
         out.document(document(robot, found, rows, goal, options))
     else:
         show(out, robot, found, rows, degrees=args.deg)
+        if note := gripper_note(args, robot):
+            out.hint(note)
     if found and args.plot is not None:
         draw(args.plot, robot, rows, goal.mark, title=title_of(robot, rows))
         out.hint(f"picture written to {args.plot}")

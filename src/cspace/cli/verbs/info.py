@@ -10,7 +10,7 @@ import numpy as np
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Output, Table
-from cspace.cli.robot import load
+from cspace.cli.robot import gripper_note, load
 from cspace.cli.tasks import TASKS, default_task, motion_rank
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     if out.as_json:
         out.document(facts)
     else:
-        show(out, robot, facts, degrees=args.deg)
+        show(out, robot, facts, gripper_note(args, robot), degrees=args.deg)
     return Exit.DONE
 
 
@@ -121,7 +121,7 @@ def geometry_document(robot: Robot) -> dict[str, Any] | None:
     return {"family": found.family, "text": str(found), "closed_form": bool(found), "conditions": conditions}
 
 
-def show(out: Output, robot: Robot, facts: dict[str, Any], *, degrees: bool) -> None:
+def show(out: Output, robot: Robot, facts: dict[str, Any], note: str, *, degrees: bool) -> None:
     """The data sheet for people."""
     out.heading(f"{robot.name}" + (f" — {facts['title']}" if facts["title"] else ""))
     freedoms, tip = facts["freedoms"], facts["tip"]
@@ -133,7 +133,7 @@ def show(out: Output, robot: Robot, facts: dict[str, Any], *, degrees: bool) -> 
     lines |= {f"{', '.join(names)} from": text for text, names in groups.items()}
     lines["not published"] = ", ".join(facts["missing"])
     lines["base"] = facts["base"]
-    lines["tip"] = tip or f"not chosen; one of {', '.join(facts['leaves'])}"
+    lines["tip"] = (tip or f"not chosen; one of {', '.join(facts['leaves'])}") + (note and f" ({note})")
     lines["frames"] = ", ".join(facts["frames"])
     lines["poses"] = ", ".join(facts["poses"])
     lines["geometry"] = facts["geometry"]["text"] if facts["geometry"] else ""
