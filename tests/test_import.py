@@ -27,6 +27,10 @@ def test_completion_offers_the_public_names_and_nothing_else():
     assert all(hasattr(cspace, name) for name in offered)
 
 
+def test_what_functions_take_beside_arrays_is_at_the_top():
+    assert cspace.Limits is cspace.model.Limits
+
+
 def test_an_unknown_name_carries_what_python_needs_to_suggest_another():
     with pytest.raises(AttributeError) as caught:
         _ = cspace.load_robt

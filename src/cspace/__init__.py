@@ -18,14 +18,25 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
+    from cspace.model import Limits
     from cspace.robot import Robot
     from cspace.robots import load_robot
     from cspace.spatial import *  # noqa: F403
 
 logging.getLogger("cspace").addHandler(logging.NullHandler())
 
-__all__ = ["CspaceError", "Robot", "__version__", "export", "ik", "kinematics", "load_robot", "model", "plot"]
-__all__ += ["robots", "spatial", "subproblems"]
+__all__ = [
+    "CspaceError",
+    "Limits",
+    "Robot",
+    "__version__",
+    "export",
+    "ik",
+    "kinematics",
+    "load_robot",
+    "model",
+]
+__all__ += ["plot", "robots", "spatial", "subproblems"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
 if TYPE_CHECKING:
     __all__ += spatial.__all__
@@ -37,6 +48,7 @@ _OWN: list[str] = globals().pop("__all__")
 _LATER = {
     "CenterOfMassTask": "cspace.ik",
     "DirectionTask": "cspace.ik",
+    "Limits": "cspace.model",
     "PoseTask": "cspace.ik",
     "PositionTask": "cspace.ik",
     "PostureTask": "cspace.ik",

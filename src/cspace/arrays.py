@@ -36,14 +36,11 @@ def as_floats(
         wanted = "(..., " + ", ".join("k" if n is None else str(n) for n in last) + ")"
         raise InputError(f"{subject} has shape {array.shape}, expected {wanted}")
     if finite and not _all_finite(array):
-        bad = np.argwhere(~np.isfinite(array))[0]
-        raise InputError(
-            f"{subject} holds {array[tuple(bad)]} at index {tuple(map(int, bad))}; all must be finite"
-        )
+        bad = tuple(map(int, np.argwhere(~np.isfinite(array))[0]))
+        raise InputError(f"{subject} {_entry(array, bad)}; all must be finite")
     if largest is not None and len(beyond := np.argwhere(np.abs(array) > largest)):
-        index = tuple(map(int, beyond[0]))
         raise InputError(
-            f"{subject} holds {array[index]:g} at index {index}; at most ±{largest:g} makes sense"
+            f"{subject} {_entry(array, tuple(map(int, beyond[0])))}; at most ±{largest:g} makes sense"
         )
     return array
 
@@ -63,13 +60,21 @@ def _converted(value: Any, subject: str) -> Array:
     """The numbers of anything as float64; text, complex numbers and dates are refused."""
     try:
         array = np.asarray(value)
-        if array.dtype.kind in "biufO":
+        truth = array.ndim == 0 and array.dtype == bool
+        if array.dtype.kind in "biufO" and not truth:
             return array.astype(np.float64, copy=False)
     except OverflowError:
         raise InputError(f"{subject} holds an integer that no float64 can hold; all must be finite") from None
     except (TypeError, ValueError) as error:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
+    if truth:
+        raise InputTypeError(f"{subject} must be a number, got the truth value {value}")
     raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")
+
+
+def _entry(array: Array, index: tuple[int, ...]) -> str:
+    """An entry of an array in words; of a single number there is no index."""
+    return f"holds {array[index]:g}" + (f" at index {index}" if index else "")
 
 
 def _fits(shape: tuple[int, ...], last: tuple[int | None, ...]) -> bool:

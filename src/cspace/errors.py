@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Final
 
 __all__ = [
     "CspaceError",
@@ -11,8 +12,12 @@ __all__ = [
     "InputTypeError",
     "MissingExtraError",
     "UnknownNameError",
+    "shown",
     "suggest",
 ]
+
+SHOWN: Final = (str, int, float)
+"""What reads well in a message, whatever it is."""
 
 
 class CspaceError(Exception):
@@ -64,7 +69,8 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
 
     names, asked = sorted(known), _short(str(name))
     near = [repr(n) for n in difflib.get_close_matches(asked, names, n=3, cutoff=0.5)]
-    text = f"no {subject} {asked!r}" + (f" in {owner}" if owner else "")
+    said = repr(asked) if isinstance(name, SHOWN) else f"of type {type(name).__name__}"
+    text = f"no {subject} {said}" + (f" in {owner}" if owner else "")
     if near:
         text += "; did you mean " + " or ".join(filter(None, [", ".join(near[:-1]), near[-1]])) + "?"
     if not names:
@@ -76,6 +82,11 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     else:
         text += f"; {len(names)} {_plural(subject)} are known"
     return UnknownNameError(text)
+
+
+def shown(value: object) -> str:
+    """A value as messages show it: texts and numbers themselves, of anything else the type."""
+    return _short(repr(value)) if isinstance(value, SHOWN) else f"an object of type {type(value).__name__}"
 
 
 def _plural(noun: str) -> str:

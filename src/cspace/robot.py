@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -283,8 +283,8 @@ class Robot(RobotBase):
     def ik_tasks(self, tasks: Any, start: Any = None, **options: Any) -> TaskSolution:
         """The configuration that serves several tasks best, by steps from start (n,).
 
-        options: limits, max_iterations, tolerance, T_world_base, as in ik.ik_tasks, which also names the
-        errors.
+        options: limits, starts, max_iterations, tolerance, rng, T_world_base, as in ik.ik_tasks, which also
+        names the errors.
         """
         from cspace.ik import ik_tasks
 
@@ -299,15 +299,25 @@ class Robot(RobotBase):
 
         return task_velocity(self, q, tasks, dt, **options)
 
-    def track(self, poses: Any, start: Any = None, **options: Any) -> Track:
+    def track(
+        self,
+        poses: Any,
+        start: Any = None,
+        *,
+        limits: Any = True,
+        cost: str | Callable[[Array], Any] = "length",
+        max_step: Any = np.pi / 2,
+    ) -> Track:
         """The branches of configurations that follow a path of poses (n, 4, 4), and where the others end.
 
-        start (dof,): follow the branch nearest to it alone. options: limits, cost, max_step, as in ik.track,
-        which also names the errors.
+        start (dof,): follow the branch nearest to it alone. limits: True for the robot's, False for none, or
+        Limits. cost: of the best branch, "length", "step", "time" or a function of q (n, dof). max_step: how
+        far a joint may turn from one pose to the next [rad], or (dof,). See ik.track, which also names the
+        errors.
         """
         from cspace.ik import track
 
-        return track(self, poses, start, **options)
+        return track(self, poses, start, limits=limits, cost=cost, max_step=max_step)
 
     def resolved_rate(self, q: Any, twist: Any, **options: Any) -> Array:
         """The least joint velocities (..., dof) that give the tip a twist (..., 6) at q (..., n).

@@ -22,6 +22,7 @@ ARM = cs.load_robot("ur5e")
 GOAL = ARM.fk(np.full(6, 0.5))
 FOUND = ARM.ik(GOAL)
 MANY = ARM.ik(np.stack([GOAL, GOAL]))
+REST = cs.PostureTask(np.zeros(6))
 THREE = Limits(np.zeros(3), np.ones(3))
 HUGE = [[10**400] * 4] * 4
 
@@ -64,6 +65,59 @@ CALLS = [
         lambda: cs.load_robot("planar_2r").ik(position=(1e300, 1e300)),
         InputError,
         "position lies at .* make sense",
+    ),
+    (lambda: ARM.ik_many_starts(GOAL, starts=[[1, 2], [1, 2, 3]]), InputTypeError, "starts must be numbers"),
+    (lambda: ARM.ik_many_starts(GOAL, starts="many"), InputTypeError, "starts must be a whole number"),
+    (
+        lambda: ARM.ik_many_starts(GOAL, tolerance=True),
+        InputTypeError,
+        "tolerance must be a number, got the t",
+    ),
+    (lambda: ARM.ik_numeric(GOAL, tolerance=1e300), InputError, r"^tolerance holds 1e\+300; at most"),
+    (lambda: ARM.ik_numeric(GOAL, tolerance=None), InputError, "^tolerance holds nan; all must be finite"),
+    (lambda: ARM.ik_tasks([]), InputError, "there are no tasks; give one, or several in a list: PoseTask"),
+    (lambda: ARM.ik_tasks(REST, tolerance=np.True_), InputTypeError, "tolerance must be a number"),
+    (
+        lambda: ARM.task_velocity(np.zeros(6), REST, True),
+        InputTypeError,
+        "^dt must be a number, got the truth",
+    ),
+    (
+        lambda: ARM.task_velocity(np.zeros(6), REST, 1, damping=True),
+        InputTypeError,
+        "^damping must be a number",
+    ),
+    (
+        lambda: ARM.resolved_rate(np.zeros(6), np.ones(6), damping=True),
+        InputTypeError,
+        "^damping must be a nu",
+    ),
+    (
+        lambda: ARM.track([GOAL], max_step=True),
+        InputTypeError,
+        "^max_step must be a number, got the truth va",
+    ),
+    (
+        lambda: ARM.track([GOAL], cost=lambda q: q / "2"),
+        InputError,
+        r"cost= raised .*Error for q of shape \(1, 6\)",
+    ),
+    (
+        lambda: ARM.track([GOAL], cost=lambda q: q),
+        InputError,
+        r"cost= has shape \(1, 6\), expected one number",
+    ),
+    (
+        lambda: ARM.track([GOAL], cost=object()),
+        UnknownNameError,
+        "^no cost choice of type object; cost choices",
+    ),
+    (lambda: ARM.manipulability(np.zeros(6), rows=[GOAL]), UnknownNameError, "^no row of type ndarray in"),
+    (lambda: ARM.export(name=object()), InputError, "^name is an object of type object, expected letters"),
+    (
+        lambda: cs.random_pose(object(), rng=1),
+        InputTypeError,
+        "^size is an object of type object; it must be",
     ),
     (lambda: cs.robots.find(5), InputTypeError, "given by a text, got int"),
     (lambda: cs.robots.search(None), InputTypeError, "given by a text, got NoneType"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
 import re
 
 import numpy as np
@@ -173,3 +175,12 @@ def test_an_ending_that_names_no_language_is_refused():
         cs.load_robot("ur5e").export(path="arm.foo")
     with pytest.raises(InputTypeError, match="a file is given by its path"):
         cs.load_robot("ur5e").export("cpp", 5)
+
+
+@pytest.mark.parametrize("again", [copy.deepcopy, lambda made: pickle.loads(pickle.dumps(made))])
+def test_an_export_survives_pickling_and_copying(again):
+    made = cs.load_robot("panda").export("c")
+    other = again(made)
+    assert other == made
+    with pytest.raises(TypeError):
+        other.files["more"] = ""

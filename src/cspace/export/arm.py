@@ -10,7 +10,7 @@ from typing import Any
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, shown
 from cspace.export.plain import in_ascii
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.held import between_others, hold, joint_number, without_held
@@ -165,7 +165,7 @@ def described(
 def checked(name: str) -> str:
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or is_taken(name):
         raise InputError(
-            f"name is {name!r}, expected letters, digits and single _, a letter first, and no keyword"
+            f"name is {shown(name)}, expected letters, digits and single _, a letter first, and no keyword"
         )
     return name
 

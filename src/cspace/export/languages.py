@@ -45,6 +45,14 @@ class Export:
     example: str
     held: tuple[str, ...] = ()
 
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "files", MappingProxyType(dict(self.files)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What pickle makes it from again: a view that refuses changes cannot be pickled itself."""
+        values = (self.language, self.name, self.method, dict(self.files), self.example, self.held)
+        return type(self), values
+
     @property
     def text(self) -> str:
         """The file that users include or import."""
@@ -140,7 +148,7 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     words["module"] = PurePath(main).stem
     example = filled(f"example{ending}.in", words)
     held = tuple(arm.joint_names[k] for k in arm.held)
-    return Export(language, arm.identifier, method(arm, language), MappingProxyType(files), example, held)
+    return Export(language, arm.identifier, method(arm, language), files, example, held)
 
 
 def method(arm: ExportedArm, language: str) -> str:

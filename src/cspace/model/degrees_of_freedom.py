@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from numbers import Real
 from typing import Any, Final
 
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, shown, suggest
 from cspace.model.description import Description
 from cspace.model.joint import FREEDOMS
 
@@ -93,7 +93,7 @@ def _checked_description(description: object) -> Description:
 
 def _checked_dimension(dimension: int) -> int:
     if not isinstance(dimension, Real) or dimension not in BODY:
-        raise InputError(f"dimension is {dimension!r}; expected 2 (the plane) or 3 (space)")
+        raise InputError(f"dimension is {shown(dimension)}; expected 2 (the plane) or 3 (space)")
     return dimension
 
 

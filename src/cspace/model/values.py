@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, shown
 from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER, ROTATION_ERROR
 
 __all__ = [
@@ -55,7 +55,7 @@ def number(value: Any, subject: str) -> float:
     try:
         result = float(value)
     except (TypeError, ValueError, OverflowError):
-        raise InputTypeError(f"{subject} must be a number, got {value!r}") from None
+        raise InputTypeError(f"{subject} must be a number, got {shown(value)}") from None
     if math.isnan(result):
         raise InputError(f"{subject} is NaN; it must be a number")
     return result

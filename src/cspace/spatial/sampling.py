@@ -6,7 +6,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats, as_generator
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, shown
 from cspace.spatial.planar import matrix_of_angle
 from cspace.spatial.poses import assemble
 from cspace.spatial.quaternions import matrix_of_wxyz
@@ -98,7 +98,7 @@ def _shape(size: Size) -> tuple[int, ...]:
     dimensions = size if isinstance(size, (tuple, list)) else (size,)
     for n in dimensions:
         if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
-            raise InputTypeError(f"size is {size!r}; it must be an int or a tuple of ints")
+            raise InputTypeError(f"size is {shown(size)}; it must be an int or a tuple of ints")
         if n < 0:
             raise InputError(f"size is {size!r}; it must not be negative")
     return tuple(int(n) for n in dimensions)

@@ -1,5 +1,7 @@
 """Tracking: every branch stays on the path, none changes unseen, and each ends where its reason says."""
 
+from inspect import signature
+
 import numpy as np
 import pytest
 
@@ -330,3 +332,9 @@ def test_costs_that_are_no_number_are_refused(answer, error):
     T = robot.fk(np.full(6, 0.3))
     with pytest.raises(error, match="answer of cost="):
         robot.track([T, T], cost=lambda q: answer)
+
+
+def test_the_method_shows_the_keywords_of_the_function():
+    own = [p.replace(annotation=p.empty) for p in signature(cs.Robot.track).parameters.values()]
+    wanted = [p.replace(annotation=p.empty) for p in signature(cs.ik.track).parameters.values()]
+    assert own[1:] == wanted[1:]

@@ -46,7 +46,7 @@ def goal_asked(asked: Any, tool_axis: Any) -> PartialGoal:
     names = list(asked)
     for name in names:
         if not isinstance(name, str) or name not in KEYWORDS:
-            raise suggest("part", str(name), KEYWORDS, owner="a pose")
+            raise suggest("part", name, KEYWORDS, owner="a pose")
     if not names:
         raise InputTypeError(f"asked is empty, expected some of {', '.join(KEYWORDS)}")
     values = asked if isinstance(asked, Mapping) else {name: TYPICAL[name] for name in names}

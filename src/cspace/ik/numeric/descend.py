@@ -124,11 +124,11 @@ def ik_many_starts(
         raise InputError(f"goal has shape {question.goals.shape}; a search from many starts takes one goal")
     steps = whole_number(max_iterations, "max_iterations", 0, MOST_ITERATIONS)
     n = len(robot.joint_names)
-    if np.ndim(starts) == 0:
+    if isinstance(starts, (list, tuple)) or np.ndim(starts) > 0:
+        begin = np.ascontiguousarray(as_floats(starts, "starts", last=(n,), largest=FARTHEST).reshape(-1, n))
+    else:
         number = whole_number(starts, "starts", 1, MOST_STARTS)
         begin = further_starts(robot, question.limits, question.goals, number, rng)
-    else:
-        begin = np.ascontiguousarray(as_floats(starts, "starts", last=(n,), largest=FARTHEST).reshape(-1, n))
     goal_pose = np.ascontiguousarray(question.goals)
     q, residual = np.empty((len(begin), n)), np.empty(len(begin))
     hits = np.empty(len(begin), dtype=np.int64)

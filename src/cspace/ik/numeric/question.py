@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, cast
@@ -99,11 +98,12 @@ def _weights(value: Any) -> Array:
 def positive(value: Any, subject: str) -> float:
     """The value as a positive number.
 
-    Raises InputTypeError for what is no number, InputError for zero, a negative number, NaN or inf.
+    Raises InputTypeError for what is no number, InputError for zero, a negative number, NaN, or one beyond
+    FARTHEST.
     """
-    if type(value) is float and 0.0 < value < math.inf:
+    if type(value) is float and 0.0 < value <= FARTHEST:
         return value
-    number = as_floats(value, subject)
+    number = as_floats(value, subject, largest=FARTHEST)
     if number.ndim or not number > 0:
         raise InputError(f"{subject} is {value!r}; it must be one positive number")
     return float(number)

@@ -185,7 +185,7 @@ def _packed(robot: Any, tasks: Task | Iterable[Task]) -> tuple[Array, Array, tup
             row[1] = frame_number(robot, task.frame)
         rows.append(row)
     if not listed:
-        raise InputError("there are no tasks")
+        raise InputError("there are no tasks; give one, or several in a list: PoseTask, PostureTask …")
     return (
         np.array(rows).reshape(len(rows), TASK_WIDTH),
         np.array(postures).reshape(len(postures), 2 * n + 1),

@@ -183,18 +183,30 @@ def is_out_of_reach(robot: Any, question: Question, T: Array, end: float) -> boo
     return not found
 
 
+def answer_of(cost: Callable[[Array], Any], q: Array) -> Any:
+    """What a caller's function of the configurations answers; InputError where it fails."""
+    try:
+        return cost(q)
+    except Exception as error:
+        raise InputError(
+            f"cost= raised {type(error).__name__} for q of shape {q.shape}: {error}; it takes q (n, dof)"
+            " and answers one number"
+        ) from error
+
+
 def price_of(value: Any) -> float:
     """What a caller's function of the configurations answers, as one number; inf rules a branch out."""
     number = as_floats(value, "the answer of cost=", finite=False)
     if number.ndim or np.isnan(number):
-        raise InputError(f"the answer of cost= is {value!r}, expected one number for q (n, dof)")
+        said = f"has shape {number.shape}" if number.ndim else f"is {value!r}"
+        raise InputError(f"the answer of cost= {said}, expected one number for q (n, dof)")
     return float(number)
 
 
 def cost_of(robot: Any, cost: Cost) -> Callable[[Array], float]:
     """The price of a branch q (m, dof)."""
     if callable(cost):
-        return lambda q: price_of(cost(q))
+        return lambda q: price_of(answer_of(cost, q))
     word = choice(cost, "cost", COSTS)
     if word == "length":
         return lambda q: float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())
