@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-CPP_FOLDERS = ["include", "src", "tests/cpp", "benchmarks"]
+CPP_FOLDERS = ["include", "src", "tests/cpp", "benchmarks", "examples"]
 
 
 def cpp_files() -> list[str]:

@@ -1,4 +1,4 @@
-"""Writes the generated parts of docs/: the index of rooms and the index of the lectures.
+"""Writes the generated parts of docs/: the index of rooms, the index of the lectures, the example in C++.
 
 Usage: python tools/pages.py [--check]
 """
@@ -9,7 +9,8 @@ import re
 import sys
 from pathlib import Path
 
-DOCS = Path(__file__).resolve().parent.parent / "docs"
+ROOT = Path(__file__).resolve().parent.parent
+DOCS = ROOT / "docs"
 NOT_ROOMS = {"index", "conventions", "status", "lectures", "benchmarks"}
 
 
@@ -46,16 +47,31 @@ def lectures() -> str:
     return "\n".join(lines)
 
 
-def filled(page: Path, marker: str, text: str) -> str:
-    """The page with the part between its marker and the next end marker replaced."""
-    pattern = rf"(<!-- {marker} -->\n).*?(<!-- end -->)"
-    return re.sub(pattern, lambda m: f"{m[1]}{text}\n{m[2]}", page.read_text(encoding="utf-8"), flags=re.S)
+def source(path: str, language: str) -> str:
+    """A file of the repository as a block of code that the page does not run."""
+    return f"```{language} no-run\n{(ROOT / path).read_text(encoding='utf-8')}```"
+
+
+def filled(page: Path, parts: dict[str, str]) -> str:
+    """The page with the part between each marker and the next end marker replaced."""
+    text = page.read_text(encoding="utf-8")
+    for marker, part in parts.items():
+        pattern = rf"(<!-- {re.escape(marker)} -->\n).*?(<!-- end -->)"
+        text = re.sub(pattern, lambda m, part=part: f"{m[1]}{part}\n{m[2]}", text, flags=re.S)
+    return text
 
 
 def generated() -> dict[Path, str]:
     """Each page with generated parts and the text it should have."""
-    index, examples = DOCS / "index.md", DOCS / "lectures.md"
-    return {index: filled(index, "rooms", rooms()), examples: filled(examples, "lectures", lectures())}
+    parts = {
+        DOCS / "index.md": {"rooms": rooms()},
+        DOCS / "lectures.md": {"lectures": lectures()},
+        DOCS / "export.md": {
+            "examples/cpp/CMakeLists.txt": source("examples/cpp/CMakeLists.txt", "cmake"),
+            "examples/cpp/main.cpp": source("examples/cpp/main.cpp", "cpp"),
+        },
+    }
+    return {page: filled(page, of_page) for page, of_page in parts.items()}
 
 
 def main() -> int:

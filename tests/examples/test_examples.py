@@ -9,6 +9,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import cspace
@@ -64,3 +65,18 @@ def test_it_runs_and_makes_its_pictures(path, tmp_path):
     assert {entry.name for entry in tmp_path.iterdir()} == wanted
     for name in wanted:
         assert (tmp_path / name).stat().st_size > 500
+
+
+def test_the_arm_of_the_example_in_cpp_is_that_of_the_catalogue():
+    text = (ROOT / "examples/cpp/main.cpp").read_text(encoding="utf-8")
+    axes, points, tip = (
+        [float(x) for x in re.findall(r"-?\d+(?:\.\d+)?", re.search(pattern, text, re.S)[1])]
+        for pattern in (r"axes\[\] = (.*?);", r"points\[\] = (.*?);", r"chain\.tip = (.*?);")
+    )
+    chain = cspace.load_robot("ur5e").chain
+    np.testing.assert_allclose(axes, chain.axes.ravel(), atol=1e-9)
+    T = np.eye(4)
+    T[:3, :3], T[:3, 3] = np.reshape(tip[:9], (3, 3)), tip[9:]
+    np.testing.assert_allclose(T, chain.T_zero, atol=1e-9)
+    along = np.cross(np.reshape(points, (6, 3)) - chain.points, chain.axes)
+    np.testing.assert_allclose(along, 0, atol=1e-9)
