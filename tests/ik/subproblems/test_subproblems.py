@@ -265,5 +265,5 @@ def test_numbers_whose_products_overflow_are_refused_by_name(number):
         if isinstance(kind, str):  # axes may have any length
             assert np.isfinite(solve(*arguments).residual)
             continue
-        with pytest.raises(InputError, match=r"^(p|h|d)\d? holds .*e\+(199|200) at index .*1e\+100"):
+        with pytest.raises(InputError, match=r"^(p|h|d)\d? holds .*e\+(199|200)( at index .*)?; .*1e\+100"):
             solve(*arguments)
