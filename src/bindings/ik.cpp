@@ -304,6 +304,7 @@ PyMethodDef functions[] = {
     {"_ik_position_miss", position_miss, METH_VARARGS, "The configuration that comes nearest to a position."},
     {"_ik_positions", ik_positions, METH_VARARGS, "Solves many position goals."},
     {"_ik_make", ik_make, METH_VARARGS, "A result from its parts."},
+    {"_ik_serve_near", ik_serve_near, METH_VARARGS, "Answers near= of a robot from now on."},
     {"_ik_single", single, METH_VARARGS, "Solves one goal."},
     {"_ik_many", ik_many, METH_VARARGS, "Solves many goals."},
     {"_ik_results", ik_results, METH_O, "Sets the class that results are made of."},

@@ -1,9 +1,12 @@
-// robot.ik(T, near=q) of an arm with joints to spare: the compiled entry for one goal and one seed. The first
-// call goes through cspace.ik.redundant, which leaves the solver here.
+// robot.ik(T, near=q): the compiled entry for one goal and one seed. The first call goes through cspace.ik,
+// which leaves here what it takes: the solver of joints to spare, or the limits.
+#include <algorithm>
 #include <cmath>
-#include <cstring>
+#include <limits>
+#include <memory>
 
 #include "cspace/ik/goal.hpp"
+#include "ik.hpp"
 #include "ik_redundant.hpp"
 #include "ik_shared.hpp"
 
@@ -12,13 +15,14 @@ using namespace cspace;
 namespace {
 
 struct NearEntry {
-    const ik::Redundant* arm;
-    PyObject* solver;  // keeps the arm
-    PyObject* about;   // which freedom is left
+    const ik::Redundant* arm = nullptr;  // of joints to spare; null where a goal settles the joints
+    PyObject* solver = nullptr;          // keeps the arm; null likewise
+    PyObject* about = nullptr;           // which freedom is left; null likewise
+    double lower[ik::max_joints], upper[ik::max_joints];
 
     ~NearEntry() {
-        Py_DECREF(solver);
-        Py_DECREF(about);
+        Py_XDECREF(solver);
+        Py_XDECREF(about);
     }
 };
 
@@ -32,35 +36,119 @@ bool is_seed(PyObject* value, int n) {
 }
 
 // By the turn that comes closest to the seed, inside the limits if one is.
-double by_closest_turn(const ik::Redundant& arm, int i, double q, double seed) {
+double by_closest_turn(const NearEntry& entry, const ik::Chain& chain, int i, double q, double seed) {
     constexpr double turn = 6.283185307179586;
-    if (arm.chain.prismatic[i]) return q;
-    const double least = std::ceil((arm.lower[i] - q) / turn), most = std::floor((arm.upper[i] - q) / turn);
+    if (chain.prismatic[i]) return q;
+    const double least = std::ceil((entry.lower[i] - q) / turn);
+    const double most = std::floor((entry.upper[i] - q) / turn);
     const double wanted = std::nearbyint((seed - q) / turn);
     const double turns = least <= most ? std::fmin(std::fmax(wanted, least), most) : wanted;
     return q + turn * turns;
 }
 
+PyObject* one_row(PyObject* robot, const double* goal, const double* q, int n, int branch, PyObject* about) {
+    SolutionsObject* made = new_solutions(robot, goal, 1, n, ik::Status::exact);
+    if (!made) return nullptr;
+    std::copy(q, q + n, made->q);
+    branches_of(made)[0] = std::int8_t(branch);
+    families_of(made)[0] = 0;
+    made->about = Py_XNewRef(about);
+    return reinterpret_cast<PyObject*>(made);
+}
+
+// Among joints to spare.
+PyObject* nearest_of_manifold(PyObject* robot, const NearEntry& entry, const double* goal,
+                              const double* seed) {
+    const ik::Redundant& arm = *entry.arm;
+    const ReadGoal<double> read = read_goal(goal);
+    double q[ik::max_joints];
+    if (!read.is_pose || !kernels::redundant_nearest(arm, read.T, seed, q)) return nullptr;
+    for (int i = 0; i < arm.chain.n; ++i) q[i] = by_closest_turn(entry, arm.chain, i, q[i], seed[i]);
+    return one_row(robot, goal, q, arm.chain.n, -1, entry.about);
+}
+
+// Of rows q, each followed by the next, brought beside the seed by whole turns; null where there are none.
+PyObject* nearest_row(PyObject* robot, const NearEntry& entry, const ik::Chain& chain, const double* goal,
+                      const double* seed, const double* q, int stride, const std::int8_t* branch, int count) {
+    double best[ik::max_joints], least = std::numeric_limits<double>::infinity();
+    int row = -1;
+    for (int k = 0; k < count; ++k) {
+        double turned[ik::max_joints], sum = 0;
+        for (int i = 0; i < chain.n; ++i) {
+            turned[i] = by_closest_turn(entry, chain, i, q[k * stride + i], seed[i]);
+            sum += (turned[i] - seed[i]) * (turned[i] - seed[i]);
+        }
+        if (!(sum < least)) continue;
+        least = sum;
+        row = k;
+        std::copy(turned, turned + chain.n, best);
+    }
+    return row < 0 ? nullptr : one_row(robot, goal, best, chain.n, branch[row], nullptr);
+}
+
+// Among solutions that are listed and stand alone.
+PyObject* nearest_of_list(PyObject* robot, const NearEntry& entry, const double* goal, const double* seed) {
+    const ik::Arm* arm = arm_of(robot);
+    if (!arm || !can_solve(*arm)) return nullptr;
+    const ik::Chain& chain = arm->plan.chain;
+    if (arm->has_plan) {
+        double q[max_branches * 6];
+        std::int8_t branch[max_branches];
+        int count;
+        if (kernels::ik_one(arm->plan, goal, q, branch, &count) == ik::Quick::settled)
+            return nearest_row(robot, entry, chain, goal, seed, q, 6, branch, count);
+    }
+    const ReadGoal<double> read = read_goal(goal);
+    if (!read.is_pose) return nullptr;
+    const ik::Solutions found = solve_pose(*arm, read.T, seed);
+    if (found.status != ik::Status::exact || !found.complete) return nullptr;
+    return nearest_row(robot, entry, chain, goal, seed, found.q[0], ik::max_arm, found.branch, found.count);
+}
+
+NearEntry* new_entry(PyObject* robot) {
+    auto& slot = reinterpret_cast<RobotObject*>(robot)->near;
+    if (slot) return nullptr;
+    auto made = std::make_shared<NearEntry>();
+    NearEntry* entry = made.get();
+    slot = std::move(made);
+    return entry;
+}
+
 }  // namespace
 
 void ik_set_near(PyObject* robot, const ik::Redundant* arm, PyObject* solver, PyObject* about) {
-    auto& slot = reinterpret_cast<RobotObject*>(robot)->near;
-    if (!slot) slot = std::shared_ptr<NearEntry>(new NearEntry{arm, Py_NewRef(solver), Py_NewRef(about)});
+    NearEntry* entry = new_entry(robot);
+    if (!entry) return;
+    entry->arm = arm;
+    entry->solver = Py_NewRef(solver);
+    entry->about = Py_NewRef(about);
+    std::copy(arm->lower, arm->lower + arm->chain.n, entry->lower);
+    std::copy(arm->upper, arm->upper + arm->chain.n, entry->upper);
+}
+
+// _ik_serve_near(robot, lower (n,), upper (n,)): near= of this robot is answered here from now on.
+PyObject* ik_serve_near(PyObject*, PyObject* args) {
+    PyObject *robot, *lower, *upper;
+    if (!PyArg_ParseTuple(args, "OOO", &robot, &lower, &upper)) return nullptr;
+    const ik::Arm* arm = arm_of(robot);
+    const int n = arm ? arm->plan.chain.n : 0;
+    if (!arm || !can_solve(*arm) || !is_doubles(lower, n) || !is_doubles(upper, n)) {
+        PyErr_SetString(PyExc_TypeError, "_ik_serve_near takes a robot with a solver and its limits");
+        return nullptr;
+    }
+    if (NearEntry* entry = new_entry(robot)) {
+        std::copy(data_of(lower), data_of(lower) + n, entry->lower);
+        std::copy(data_of(upper), data_of(upper) + n, entry->upper);
+    }
+    Py_RETURN_NONE;
 }
 
 // Null without an error for what is not answered here.
 PyObject* ik_near(PyObject* robot, const double* goal, PyObject* seed) {
     const auto* entry = static_cast<const NearEntry*>(reinterpret_cast<RobotObject*>(robot)->near.get());
-    if (!entry || !is_seed(seed, entry->arm->chain.n)) return nullptr;
-    const ik::Redundant& arm = *entry->arm;
-    const ReadGoal<double> read = read_goal(goal);
-    double q[ik::max_joints];
-    if (!read.is_pose || !kernels::redundant_nearest(arm, read.T, data_of(seed), q)) return nullptr;
-    SolutionsObject* made = new_solutions(robot, goal, 1, arm.chain.n, ik::Status::exact);
-    if (!made) return nullptr;
-    for (int i = 0; i < arm.chain.n; ++i) made->q[i] = by_closest_turn(arm, i, q[i], data_of(seed)[i]);
-    branches_of(made)[0] = -1;
-    families_of(made)[0] = 0;
-    made->about = Py_NewRef(entry->about);
-    return reinterpret_cast<PyObject*>(made);
+    if (!entry) return nullptr;
+    const int n = entry->arm ? entry->arm->chain.n : arm_of(robot)->plan.chain.n;
+    if (!is_seed(seed, n)) return nullptr;
+    const auto answer = entry->arm ? nearest_of_manifold : nearest_of_list;
+    return answer(robot, *entry, goal, data_of(seed));
 }

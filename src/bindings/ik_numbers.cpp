@@ -110,7 +110,7 @@ nb::object numbers(const ik::LoopFrames& f) {
 nb::object numbers(const ik::GeneralPlan& p) {
     return Fields()("chain", p.chain)("length", p.length)("slides", p.slides)("frames", p.frames)(
         "order", list_of(p.order, p.regular))("regular", p.regular)("sensitivity", p.sensitivity)(
-        "ghosts", p.ghosts)("ghost", p.ghost);
+        "paired", p.paired)("ghosts", p.ghosts)("ghost", p.ghost);
 }
 nb::object numbers(const ThreeTurns& t) {
     return Fields()("h", t.h)("a", t.a)("b", t.b)("constant", t.constant);

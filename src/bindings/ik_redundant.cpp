@@ -6,6 +6,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <memory>
@@ -33,9 +34,28 @@ constexpr double none = std::numeric_limits<double>::quiet_NaN();
 class RedundantSolver {
   public:
     RedundantSolver(const ik::Chain& chain, const double* lower, const double* upper, const double* weight)
-        : arm(make_redundant(chain, lower, upper, weight, kernels::plan_general)) {}
+        : arm(make_redundant(chain, lower, upper, weight, kernels::plan_general)), unit(unit_of(arm)) {}
 
     const ik::Redundant arm;
+    const double unit;  // [m] in which curves along slides are followed
+
+    // The same arm with lengths in its unit, built when first asked for.
+    RedundantSolver& in_its_unit() {
+        const std::lock_guard<std::mutex> guard(mutex_);
+        if (!scaled_) {
+            ik::Chain chain = arm.chain;
+            double lower[ik::max_joints], upper[ik::max_joints];
+            for (int i = 0; i < chain.n; ++i) {
+                const double size = chain.prismatic[i] ? unit : 1;
+                chain.point[i] = (1 / unit) * chain.point[i];
+                lower[i] = arm.lower[i] / size;
+                upper[i] = arm.upper[i] / size;
+            }
+            chain.tip.t = (1 / unit) * chain.tip.t;
+            scaled_ = std::make_unique<RedundantSolver>(chain, lower, upper, arm.weight);
+        }
+        return *scaled_;
+    }
 
     // The plan with these joints held, built when first asked for.
     const ik::LockedArm& holding(const std::vector<int>& held) {
@@ -63,7 +83,16 @@ class RedundantSolver {
     }
 
   private:
+    // A power of two, which rounds nothing; 1 for arms about that long and for those that only turn.
+    static double unit_of(const ik::Redundant& arm) {
+        bool slides = false;
+        for (int i = 0; i < arm.chain.n; ++i) slides |= arm.chain.prismatic[i];
+        const bool usual = arm.length > 0.25 && arm.length < 4;
+        return slides && !usual ? std::exp2(std::round(std::log2(arm.length))) : 1.0;
+    }
+
     std::mutex mutex_;
+    std::unique_ptr<RedundantSolver> scaled_;
     std::map<std::vector<int>, std::unique_ptr<ik::LockedArm>> plans_;
     std::unique_ptr<ik::LimitArms> limits_;
 };
@@ -210,23 +239,29 @@ void nearest_rows(RedundantSolver& solver, Goals goals, Matrix seeds, Array<doub
 // Per interval: (lower, upper, branch, what ends it below, at which side, what ends it above, at which side),
 // and a configuration inside; and whether none is missing.
 using IntervalRow = std::tuple<double, double, int, int, int, int, int, std::vector<double>>;
-std::tuple<std::vector<IntervalRow>, bool> intervals_of(RedundantSolver& solver, int parameter, Goal goal) {
-    if (solver.arm.spare != 1 || parameter < 0 || parameter >= solver.arm.chain.n)
+std::tuple<std::vector<IntervalRow>, bool> intervals_of(RedundantSolver& given, int parameter, Goal goal) {
+    const ik::Chain& chain = given.arm.chain;
+    if (given.arm.spare != 1 || parameter < 0 || parameter >= chain.n)
         throw nb::value_error("intervals are those of a joint of an arm with one joint to spare");
+    RedundantSolver& solver = given.unit == 1 ? given : given.in_its_unit();
+    Posed T = pose_of(goal.data());
+    T.t = (1 / given.unit) * T.t;
     const ik::LockedArm& locked = plan_of(solver, {parameter});
     const ik::LimitArms& limits = solver.limits();
     const auto trail = std::make_unique<Trail>();
     const auto found = std::make_unique<ik::Intervals>();
     {
         const nb::gil_scoped_release release;
-        kernels::redundant_intervals(solver.arm, locked, parameter, limits, pose_of(goal.data()), *trail,
-                                     *found);
+        kernels::redundant_intervals(solver.arm, locked, parameter, limits, T, *trail, *found);
     }
+    const auto in_metres = [&](int joint, double q) { return chain.prismatic[joint] ? given.unit * q : q; };
     std::vector<IntervalRow> rows;
     for (int k = 0; k < found->count; ++k) {
         const ik::Interval& i = found->interval[k];
-        rows.emplace_back(i.lower, i.upper, i.branch, i.end[0], i.side[0], i.end[1], i.side[1],
-                          std::vector<double>(i.q, i.q + solver.arm.chain.n));
+        std::vector<double> q(i.q, i.q + chain.n);
+        for (int j = 0; j < chain.n; ++j) q[std::size_t(j)] = in_metres(j, i.q[j]);
+        rows.emplace_back(in_metres(parameter, i.lower), in_metres(parameter, i.upper), i.branch, i.end[0],
+                          i.side[0], i.end[1], i.side[1], std::move(q));
     }
     return {std::move(rows), found->complete};
 }

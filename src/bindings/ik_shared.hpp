@@ -54,12 +54,13 @@ inline bool is_writable(PyObject* array) {
     return PyArray_ISWRITEABLE(reinterpret_cast<PyArrayObject*>(array));
 }
 
-// --- near= of arms with joints to spare (ik_near.cpp), fixed= of any arm (ik_held.cpp) -------------------
+// --- near= and fixed= (ik_near.cpp, ik_held.cpp) -------------------------------------------------------
 namespace cspace::ik {
 struct Redundant;
 struct LockedArm;
 }  // namespace cspace::ik
 void ik_set_near(PyObject* robot, const cspace::ik::Redundant* arm, PyObject* solver, PyObject* about);
+PyObject* ik_serve_near(PyObject*, PyObject* args);
 PyObject* ik_near(PyObject* robot, const double* goal, PyObject* seed);
 void ik_add_held(PyObject* robot, PyObject* solver, PyObject* names, PyObject* about,
                  const std::vector<int>& held, const cspace::ik::LockedArm* locked);

@@ -18,7 +18,7 @@ struct RobotObject {
     bool floating;
     std::shared_ptr<void>
         ik;  // the solver, built by the first call of ik; never replaced: threads may be in it
-    std::shared_ptr<void> near;  // what near= of an arm with joints to spare needs (ik_near.cpp); likewise
+    std::shared_ptr<void> near;  // what near= needs (ik_near.cpp); likewise
     std::shared_ptr<void> held;  // the plans of joints held by fixed= (ik_held.cpp); grows under the GIL
 };
 

@@ -253,12 +253,20 @@ class Robot(RobotBase):
         return kinematics.random_configurations(self.limits, self.joint_types, n, rng=rng, reach=reach)
 
     def redundancy(
-        self, goal: PoseLike, parameter: str | int | None = None, *, fixed: Mapping[Any, float] | None = None
+        self,
+        goal: PoseLike | None = None,
+        parameter: str | int | None = None,
+        *,
+        fixed: Mapping[Any, float] | None = None,
+        **parts: Any,
     ) -> Redundancy:
-        """Where a joint to spare may be while all keep their limits and reach a goal; see ik.redundancy."""
+        """Where a joint to spare may be while all keep their limits and reach a goal; see ik.redundancy.
+
+        goal: a pose (4, 4), or parts of one by name, as `ik` takes them (position=, direction=, tool_axis=).
+        """
         from cspace.ik import redundancy
 
-        return redundancy(self, goal, parameter, fixed=fixed)
+        return redundancy(self, goal, parameter, fixed=fixed, **parts)
 
     def ik_numeric(self, goal: Any = None, start: Any = None, **options: Any) -> NumericSolution:
         """One configuration that reaches a goal (..., 4, 4), by descent from start (dof,) and further starts.

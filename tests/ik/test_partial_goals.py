@@ -282,7 +282,7 @@ def test_filters_keep_what_was_asked():
         ({"direction": [0, 0, 0]}, InputError, "direction is zero"),
         ({"direction": [0, 0, 1], "look_at": [1, 0, 0]}, InputTypeError, "make no goal"),
         ({"position": (None, None, None)}, InputError, "asks for nothing"),
-        ({"position": (0.1, None)}, InputError, "2 coordinates"),
+        ({"position": (0.1, None)}, InputError, "does not move in a plane"),
         ({"position": (0.1, None, 0), "rotation": np.eye(3)}, InputTypeError, "none left open"),
         ({"position": (0.1, None, 0), "direction": [0, 0, 1]}, InputTypeError, "none left open"),
         ({"position": [0.1, np.nan, 0.2], "direction": [0, 0, 1]}, InputError, "finite"),
@@ -369,3 +369,62 @@ def test_a_joint_is_held_once_and_at_one_value():
         robot.ik(position=[0.4, 0.1, 0.3], fixed={0: 0.1, "shoulder_pan_joint": 0.2})
     with pytest.raises(InputTypeError, match="one number"):
         robot.ik(position=[0.4, 0.1, 0.3], direction=[0, 0, -1], fixed={0: [0.1, 0.2]})
+
+
+def test_a_point_of_the_plane_may_leave_one_coordinate_open():
+    robot = cs.load_robot("planar_3r")
+    p = robot.fk([0.3, 0.5, -0.4])[:3, 3]
+    for position in [(p[0], None), (None, p[1])]:
+        found = robot.ik(position=position)
+        asked = 0 if position[1] is None else 1
+        assert found
+        np.testing.assert_allclose(robot.fk(found.q)[:, asked, 3], p[asked], atol=1e-9)
+    with pytest.raises(InputError, match="all three"):
+        robot.ik(position=(None, None))
+
+
+@pytest.mark.parametrize("name", ["ur5e", "jaco2", "panda"])
+@pytest.mark.parametrize("far", [3.0, 30.0, 1000.0])
+def test_a_point_to_look_at_and_a_ray_may_be_far_away(name, far):
+    robot, rng = cs.load_robot(name), np.random.default_rng(8)
+    for _ in range(5):
+        target = far * rng.normal(size=3)
+        target *= far / np.linalg.norm(target)
+        for options in ({}, {"near": rng.uniform(-1, 1, robot.dof)}):
+            found = robot.ik(look_at=target, **options)
+            T = robot.fk(found.q[0])
+            away = target - T[:3, 3]
+            np.testing.assert_allclose(T[:3, 2], away / np.linalg.norm(away), atol=1e-9)
+        T = robot.fk(rng.uniform(-1, 1, robot.dof))
+        assert robot.ik(ray=(T[:3, 3] + far * T[:3, 2], T[:3, 2]))
+
+
+def test_the_reason_of_a_ray_out_of_reach_says_how_far_away_it_is():
+    robot = cs.load_robot("ur5e")
+    for along in (0.0, 7.0):
+        found = robot.ik(ray=([5, 0, along], [0, 0, 1]))
+        best = robot.ik(ray=([5, 0, along], [0, 0, 1]), least_squares=True)
+        assert not found
+        np.testing.assert_allclose([found.missing, best.residual[0]], 4.0735, atol=1e-3)
+        assert "misses it by 4.073 m" in found.reason
+        assert "misses it by 4.073 m" in best.reason
+
+
+@pytest.mark.parametrize("name", ["ur5e", "jaco2", "puma560"])
+def test_the_freedom_of_a_partial_goal_has_feasible_intervals(name):
+    robot, rng = cs.load_robot(name), np.random.default_rng(2)
+    q = rng.uniform(-1, 1, robot.dof)
+    T = robot.fk(q)
+    goal = {"position": T[:3, 3], "direction": T[:3, 2]}
+    for parameter in (None, robot.dof - 1, robot.joint_names[-1]):
+        found = robot.redundancy(**goal, parameter=parameter)
+        assert found
+        for interval in found:
+            at = robot.fk(interval.q)
+            np.testing.assert_allclose(at[:3, 3], T[:3, 3], atol=1e-8)
+            np.testing.assert_allclose(at[:3, 2], T[:3, 2], atol=1e-8)
+    assert robot.redundancy(**goal, parameter=robot.dof - 1).feasible(q[-1])
+    with pytest.raises(InputTypeError, match="one goal"):
+        robot.redundancy()
+    with pytest.raises(InputTypeError, match="no keyword 'postion'"):
+        robot.redundancy(postion=T[:3, 3])

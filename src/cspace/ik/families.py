@@ -12,7 +12,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.family_curve import Arc, arc_through
+from cspace.ik.family_curve import Arc, arc_through, nearest_member
 from cspace.ik.redundancy import MOST_SAMPLES
 from cspace.ik.windings import wrap
 
@@ -83,6 +83,10 @@ class Family:
             raise InputError(f"the family has no end, {name} moves on for ever: give the robot limits")
         q = self._arc.sample(int(n))
         return wrap(q, self._robot.joint_types) if self._arc.is_loop else q
+
+    def nearest(self, q: Array) -> Array:
+        """The configuration of the family that is nearest to q (dof,), limits aside, (dof,) [rad, m]."""
+        return nearest_member(self._robot, self.q, self.direction, self._whole_pose, q)
 
 
 def family_at(robot: Any, row: int, q: Array, whole_pose: bool) -> Family:

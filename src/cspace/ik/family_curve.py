@@ -18,9 +18,9 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.prepare import prepare
-from cspace.ik.windings import into_limits, turning
+from cspace.ik.windings import into_limits, short_way, turning
 
-__all__ = ["Arc", "arc_through"]
+__all__ = ["Arc", "arc_through", "nearest_member"]
 
 CLOSED, FAR = 0, 1
 TURN = 2 * np.pi
@@ -128,6 +128,27 @@ def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc
     if curve.shift is not None and np.isinf([first, last]).all():
         return Arc(curve, 0.0, curve.length, True)
     return Arc(curve, first, last, False)
+
+
+def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, seed: Array) -> Array:
+    """The configuration (dof,) of the family through q that is nearest to a seed, limits aside."""
+    prepare(robot)
+    rounds, parts = 9, 33
+    curve, _ = trace(robot, np.ascontiguousarray(q), direction, whole_pose)
+    s, points = curve.s, curve.points
+    if curve.shift is not None:  # a closed curve goes on where it began
+        s = np.concatenate([[s[-2] - s[-1]], s])
+        points = curve.at(s)
+    for _ in range(rounds):  # each narrows the best piece sixteenfold
+        k = int(np.argmin(distances(robot, points, seed)))
+        s = np.linspace(s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)], parts)
+        points = curve.at(s)
+    return np.asarray(points[int(np.argmin(distances(robot, points, seed)))])
+
+
+def distances(robot: Any, points: Array, seed: Array) -> Array:
+    """How far configurations (k, dof) are from a seed, turning joints the short way round, (k,)."""
+    return np.asarray(np.linalg.norm(short_way(points - seed, robot.joint_types), axis=1))
 
 
 def trace(robot: Any, q: Array, direction: Array, whole_pose: bool) -> tuple[Curve, tuple[int, int]]:

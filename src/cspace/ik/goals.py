@@ -8,6 +8,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
+from cspace.ik.partial import is_open
 from cspace.ik.windings import turning
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
@@ -17,6 +18,7 @@ __all__ = [
     "goal_array",
     "is_far",
     "one_configuration",
+    "open_in_space",
     "planar_poses",
     "points_in_base",
     "too_far",
@@ -55,6 +57,15 @@ def points_in_base(robot: Any, position: Any) -> Array:
     if p.ndim == 1 and is_far(p):
         raise too_far("position", p)
     return np.ascontiguousarray(p)
+
+
+def open_in_space(robot: Any, position: Any) -> Any:
+    """A point of the plane with one coordinate open (None), in space; every other position as it is."""
+    if not is_open(position) or len(position) != 2:
+        return position
+    if all(v is None for v in position):
+        return (None, None, None)
+    return (*position, float(lifted(robot, np.zeros(2))[2]))
 
 
 def planar_poses(robot: Any, goal: Any, position: Any, angle: Any) -> Array:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
@@ -17,9 +18,11 @@ from cspace.tolerances import FARTHEST
 __all__ = [
     "Held",
     "between_others",
+    "by_name",
     "fixed_values",
     "hold",
     "joint_number",
+    "leads_ahead",
     "with_joints_held",
     "without_held",
 ]
@@ -84,6 +87,28 @@ def fixed_values(robot: Any, fixed: Any) -> dict[int, Any]:
     if len(out) >= len(robot.joint_names):
         raise InputError(f"fixed holds every joint of {robot.name}: none is left to move")
     return dict(sorted(out.items()))
+
+
+def by_name(robot: Any, fixed: Mapping[Any, Any]) -> dict[str, Any]:
+    """Values of held joints by the joints' names."""
+    out: dict[str, Any] = {}
+    for key, value in fixed.items():
+        name = key if isinstance(key, str) else robot.joint_names[joint_number(robot, key, "fixed")]
+        if name in out:
+            raise InputError(f"fixed names {name!r} twice, by name and by number; give each joint one value")
+        if isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim):
+            raise InputTypeError(
+                f"fixed[{key!r}] is a {type(value).__name__}, expected one number with parts of a pose"
+            )
+        out[name] = value
+    return out
+
+
+def leads_ahead(robot: Any) -> npt.NDArray[np.bool_]:
+    """Which joints are slides that a goal adds and that only lead ahead, as a look does."""
+    out = np.zeros(robot.dof, dtype=bool)
+    out[list(robot._ik_uncounted)] = robot.limits.lower[list(robot._ik_uncounted)] == 0.0
+    return out
 
 
 def make_solver(

@@ -8,7 +8,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.ik.about import About
-from cspace.ik.solutions import NEAREST, Solutions, position_goal
+from cspace.ik.solutions import NEAREST, Solutions, nearest_miss, position_goal
 from cspace.ik.solve_partial import own_columns
 from cspace.ik.windings import wrap
 
@@ -33,12 +33,9 @@ def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
 def least_squares_partial(robot: Any, found: Solutions) -> Solutions:
     """The nearest configuration of the longer arm, without the goal's joints."""
     about, goal = found._about, found._partial
-    q, away, turned = _core._ik_miss(about.whole, found.goal, 1.0)
+    q, _, miss = nearest_miss(found)
     q = wrap(q, about.whole.joint_types)[None]
-    note = (
-        f"nothing reaches {goal.text}; the nearest configuration misses it by {away:.4g} m and "
-        f"{np.degrees(turned):.4g}°"
-    )
+    note = f"nothing reaches {goal.text}; the nearest configuration misses it by {miss}"
     own = np.ascontiguousarray(q[:, own_columns(robot, goal)])
     about = About(goal, about.whole, q, about.freedom)
     return cast(Solutions, _core._ik_make(robot, found.goal, NEAREST, own, (-1,), (False,), note, about))

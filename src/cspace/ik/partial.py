@@ -87,40 +87,45 @@ class PartialGoal:
         """How far poses (k, 4, 4) are from the goal (or from k goals), (k,): the largest of its distances
         [m] and angles [rad].
         """
+        distances, angles = self.misses(T)
+        return np.asarray(np.max(distances + angles, axis=0))
+
+    def misses(self, T: Array) -> tuple[list[Array], list[Array]]:
+        """How far poses (k, 4, 4) are from what the goal asks for: distances [m] and angles [rad], (k,)."""
         p, a = T[..., :3, 3], T[..., :3, :3] @ self.axis
-        goal = self.T
-        errors = []
+        goal, d = self.T[..., :3, 3], self.T[..., :3, :3] @ self.axis
+        distances, angles = [], []
         for name in self.kind.split("+"):
             if name == "position":
                 asked = np.array([kind != "P" for kind in self._open_coordinates])
-                errors.append(np.linalg.norm((p - goal[..., :3, 3]) * asked, axis=-1))
+                distances.append(np.linalg.norm((p - goal) * asked, axis=-1))
             elif name == "rotation":
-                gap = np.linalg.norm(T[..., :3, :3] - goal[..., :3, :3], axis=(-2, -1))
-                errors.append(2 * np.arcsin(np.minimum(gap / np.sqrt(8), 1.0)))
+                gap = np.linalg.norm(T[..., :3, :3] - self.T[..., :3, :3], axis=(-2, -1))
+                angles.append(2 * np.arcsin(np.minimum(gap / np.sqrt(8), 1.0)))
             elif name == "angle_to":
-                errors.append(np.abs(angle(a, np.broadcast_to(self.base_axis, a.shape)) - self.tilt))
-            else:
-                errors += self._line_errors(name, p, a)
-        return np.asarray(np.max(errors, axis=0))
+                angles.append(np.abs(angle(a, np.broadcast_to(self.base_axis, a.shape)) - self.tilt))
+            elif name == "direction":
+                angles.append(angle(a, d))
+            elif name == "ray":
+                distances.append(from_line(p - goal, d))
+                angles.append(angle(a, d))
+            else:  # look_at
+                away = goal - p
+                is_behind = np.sum(away * a, axis=-1) < 0
+                distances.append(np.where(is_behind, np.linalg.norm(away, axis=-1), from_line(away, a)))
+        return distances, angles
+
+    def miss_in_words(self, T: Array) -> str:
+        """By how much a pose (4, 4) misses the goal."""
+        distances, angles = self.misses(T)
+        words = [f"{max(distances):.4g} m"] if distances else []
+        return " and ".join(words + ([f"{np.degrees(max(angles)):.4g}°"] if angles else []))
 
     @property
     def _open_coordinates(self) -> tuple[str, str, str]:
         slides = [axis for kind, axis in self.before if kind == "P"]
         marks = tuple("P" if any(axis[i] for axis in slides) else "R" for i in range(3))
         return marks  # type: ignore[return-value]
-
-    def _line_errors(self, name: str, p: Array, a: Array) -> list[Array]:
-        goal, d = self.T[..., :3, 3], self.T[..., :3, :3] @ self.axis
-        if name == "direction":
-            return [angle(a, d)]
-        if name == "ray":
-            away = p - goal
-            along = np.sum(away * d, axis=-1, keepdims=True)
-            return [np.linalg.norm(away - along * d, axis=-1), angle(a, d)]
-        away = goal - p  # look_at
-        along = np.sum(away * a, axis=-1, keepdims=True)
-        behind = np.where(along[..., 0] < 0, np.linalg.norm(away, axis=-1), 0.0)
-        return [np.linalg.norm(away - along * a, axis=-1), behind]
 
 
 WORDS = {
@@ -138,6 +143,12 @@ BARE = {"position": 1, "rotation": 2, "direction": 1, "look_at": 1}
 def angle(a: Array, b: Array) -> Array:
     """The angle between unit vectors (..., 3) [rad], with all its digits."""
     return np.asarray(2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
+
+
+def from_line(away: Array, d: Array) -> Array:
+    """The distances of points (..., 3) from lines through the origin along unit vectors."""
+    along = np.sum(away * d, axis=-1, keepdims=True)
+    return np.asarray(np.linalg.norm(away - along * d, axis=-1))
 
 
 def check_tool_axis(tool_axis: Any, names: Iterable[str]) -> None:
@@ -224,7 +235,8 @@ def ray(given: dict[str, Any], axis: Array) -> PartialGoal:
     p, d = point(value[0], "ray[0]"), unit(value[1], "ray[1]")
     leading_axes(**{"ray[0]": p.shape[:-1], "ray[1]": d.shape[:-1]})
     behind = (("P", axis), ("R", axis))
-    return PartialGoal("ray", pose(p, turn_to(axis, d)), behind, {"ray": (p, d)}, axis)
+    foot = p - np.sum(p * d, axis=-1, keepdims=True) * d  # the same line, by its point nearest to the base
+    return PartialGoal("ray", pose(foot, turn_to(axis, d)), behind, {"ray": (p, d)}, axis)
 
 
 def position_and_angle(given: dict[str, Any], axis: Array) -> PartialGoal:

@@ -14,11 +14,13 @@ from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
 from cspace.ik.goals import one_configuration
-from cspace.ik.held import Held, fixed_values, hold, joint_number
+from cspace.ik.held import Held, by_name, fixed_values, hold, joint_number, leads_ahead
+from cspace.ik.partial import KEYWORDS, PartialGoal, check_tool_axis, partial_goal
 from cspace.ik.prepare import prepare
 from cspace.ik.redundancy import MOST_SAMPLES, Interval, Redundancy
 from cspace.ik.solutions import EXACT, INCOMPLETE, POSE_ASKS, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.solve_partial import own_columns, whole_arm
 from cspace.ik.windings import into_limits
 from cspace.spare import spare_array
 from cspace.spatial.checks import one_pose
@@ -65,7 +67,7 @@ def redundant_answer(
             held.solver.serve_near(robot, About(freedom=held.freedom))
         return nearest(held, T, near, threads)
     if held.solver.spare != 1:
-        return nearest(held, T, middle_of(robot), threads)
+        return nearest(held, T, start_of_search(robot, T), threads)
     count = sample_count(samples)
     if T.ndim == 2:
         return sampled(held, T, count, threads)
@@ -73,20 +75,36 @@ def redundant_answer(
 
 
 def redundancy(
-    robot: Any, goal: Any, parameter: str | int | None = None, *, fixed: Mapping[Any, float] | None = None
+    robot: Any,
+    goal: Any = None,
+    parameter: str | int | None = None,
+    *,
+    fixed: Mapping[Any, float] | None = None,
+    tool_axis: Any = "z",
+    **parts: Any,
 ) -> Redundancy:
     """For which values of a joint to spare a goal can be reached within all limits, branch by branch.
 
     The ends are where another joint reaches a limit (it is locked there, and the others are solved) and where
-    branches fold: the determinant of the others' Jacobian vanishes. goal (4, 4): T_base_tip. parameter: the
-    joint, by name or number, or "swivel" of an arm with two spherical joints; the solver's own choice unless
-    given (`ik(goal).freedom` names it). fixed:
-    values of other joints [rad, m], so that one is left to spare.
+    branches fold: the determinant of the others' Jacobian vanishes. goal (4, 4): T_base_tip; or parts of it
+    by keyword, one goal, as `robot.ik` takes them: position, rotation, direction, look_at, ray, angle_to,
+    tool_axis. parameter: the joint, by name or number, one of those that a partial goal adds, or "swivel" of
+    an arm with two spherical joints; the solver's own choice unless given (`ik(goal).freedom` names it).
+    fixed: values of other joints [rad, m], so that one is left to spare.
 
     Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a joint to spare
     or with more than one, and for a joint that the goal settles.
     For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
     """
+    given = {name: value for name, value in parts.items() if value is not None}
+    unknown = sorted(given.keys() - set(KEYWORDS))
+    if unknown:
+        raise InputTypeError(f"redundancy has no keyword {unknown[0]!r}; of a goal it takes {list(KEYWORDS)}")
+    check_tool_axis(tool_axis, given)
+    if (goal is None) == (not given):
+        raise InputTypeError("redundancy needs one goal: a pose, or parts of it by name, such as position=p")
+    if given:
+        return redundancy_of_parts(robot, partial_goal(given, tool_axis), parameter, fixed)
     prepare(robot)
     T = one_pose(goal, "goal")
     if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in robot.joint_names:
@@ -95,6 +113,24 @@ def redundancy(
         if fixed is not None:
             raise InputTypeError("the swivel is what seven joints leave free: fixed= does not go with it")
         return swivel_intervals(robot, T)
+    return redundancy_of_pose(robot, T, parameter, fixed)
+
+
+def redundancy_of_parts(robot: Any, goal: PartialGoal, parameter: Any, fixed: Any) -> Redundancy:
+    """That of the arm with the joints which stand for what the goal leaves open."""
+    if goal.T.ndim != 2:
+        raise InputError(f"the goal has shape {goal.T.shape[:-2]}, expected one goal: ask in a loop")
+    whole, own = whole_arm(robot, goal), own_columns(robot, goal)
+    prepare(whole)
+    named = parameter is None or isinstance(parameter, str)
+    joint = parameter if named else robot.joint_names[joint_number(robot, parameter, "parameter")]
+    values = by_name(robot, fixed) if isinstance(fixed, Mapping) else fixed
+    found = redundancy_of_pose(whole, goal.T, joint, values)
+    rows = tuple(replace(interval, q=interval.q[own]) for interval in found)
+    return replace(found, robot=robot, intervals=rows)
+
+
+def redundancy_of_pose(robot: Any, T: Array, parameter: Any, fixed: Any) -> Redundancy:
     values = fixed_values(robot, {} if fixed is None else fixed)
     if any(np.ndim(value) for value in values.values()):
         raise InputTypeError("fixed= takes one value per joint here")
@@ -269,7 +305,7 @@ def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
         where = "the values that reach it, none of them within limits"
     values = found.spread(count)
     if not len(values):
-        found_beside = cast(Solutions, nearest(held, T, middle_of(robot), threads))
+        found_beside = cast(Solutions, nearest(held, T, start_of_search(robot, T), threads))
         # Where joints share their work but for a little, single values may reach what no interval does.
         proven = found.complete and len(held.free) > POSE_ASKS
         return found_beside if found_beside else unreachable(held, T, proven=proven)
@@ -339,11 +375,17 @@ def make(
     return cast(Solutions, made)
 
 
-def middle_of(robot: Any) -> Array:
-    """The middle of the limits; 0 for joints that have none."""
+def start_of_search(robot: Any, T: Array) -> Array:
+    """The middle of the limits, 0 for joints that have none; for poses (..., 4, 4) one configuration each
+    where a goal's slide that only leads ahead begins as far out as the goal is.
+    """
     lower, upper = robot.limits.lower, robot.limits.upper
     bounded = np.isfinite(lower) & np.isfinite(upper)
-    return np.where(bounded, 0.5 * (np.where(bounded, lower, 0) + np.where(bounded, upper, 0)), 0.0)
+    middle = np.where(bounded, 0.5 * (np.where(bounded, lower, 0) + np.where(bounded, upper, 0)), 0.0)
+    ahead = leads_ahead(robot)
+    if not ahead.any():
+        return middle
+    return np.where(ahead, np.linalg.norm(T[..., :3, 3], axis=-1)[..., None], middle)
 
 
 def sample_count(samples: Any) -> int:

@@ -40,7 +40,8 @@ ORIENTATION_KEPT: Final = 1e-3
 POSE_ASKS: Final = 6
 
 UNCERTIFIED: Final = (
-    "that these are all could not be certified, for some lie closer together than the arithmetic resolves"
+    "that these are all could not be certified: some nearly coincide, or share the angles by which the "
+    "solver tells them apart"
 )
 
 
@@ -127,8 +128,9 @@ class Solutions(_core.SolutionsBase):
             return 0.0
         if self.goal.shape == (3,):
             return float(_core._ik_position_miss(self.robot, self.goal)[1])
-        asked = self.robot if self._partial is None else self._about.whole
-        return float(_core._ik_miss(asked, self.goal, ORIENTATION_FIRST)[1])
+        if self._partial is not None:
+            return nearest_miss(self, (ORIENTATION_FIRST,))[1]
+        return float(_core._ik_miss(self.robot, self.goal, ORIENTATION_FIRST)[1])
 
     @property
     def reason(self) -> str:
@@ -188,15 +190,20 @@ class Solutions(_core.SolutionsBase):
     def nearest(self, q: Any, metric: str = "euclidean") -> Solutions:
         """The one solution nearest to q (dof,), each revolute joint taken by the turn that brings it closest.
 
-        metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Turns that
-        would leave the robot's limits are not taken where another one stays inside.
+        metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Families
+        are taken by their members nearest to q. Turns that would leave the robot's limits are not taken where
+        another one stays inside.
         """
         seed = one_configuration(self.robot, q, "q")
         choice(metric, "metric", METRICS)
         if not self:
             return self
-        limits = self.robot.limits
-        moved = nearest_winding(self.q, seed, self.robot.joint_types, limits.lower, limits.upper)
+        limits, rows = self.robot.limits, self.q
+        if any(self._is_family) and self._partial is None:
+            rows = self.q.copy()
+            for family in self.families:
+                rows[family.row] = family.nearest(seed)
+        moved = nearest_winding(rows, seed, self.robot.joint_types, limits.lower, limits.upper)
         gap = np.abs(moved - seed)
         distance = gap.max(axis=1) if metric == "max" else np.linalg.norm(gap, axis=1)
         row = int(np.argmin(distance))
@@ -299,11 +306,8 @@ def position_goal(p: Array) -> Array:
 def unreachable_reason(found: Solutions) -> str:
     name = found.robot.name
     if found._partial is not None:
-        _, missing, turned = _core._ik_miss(found._about.whole, found.goal, 1.0)
-        return (
-            f"{name} cannot reach {found._partial.text}: the nearest configuration misses the goal by "
-            f"{missing:.4g} m and {np.degrees(turned):.4g}°"
-        )
+        miss = nearest_miss(found)[2]
+        return f"{name} cannot reach {found._partial.text}: the nearest configuration misses it by {miss}"
     if found.goal.shape == (3,):
         return f"out of reach: the goal would have to move {found.missing:.4g} m for {name} to reach it"
     _, missing, turned = _core._ik_miss(found.robot, found.goal, ORIENTATION_FIRST)
@@ -317,6 +321,20 @@ def unreachable_reason(found: Solutions) -> str:
         f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
         f"for {name}{short} to reach it"
     )
+
+
+def nearest_miss(
+    found: Solutions, weights: tuple[float, ...] = (1.0, ORIENTATION_FIRST)
+) -> tuple[Array, float, str]:
+    """Of a partial goal out of reach: the configuration of the longer arm that misses it least for one of the
+    weights of a radian; by how far [m], and by how much in words.
+    """
+    whole, goal = found._about.whole, found._partial
+    own = slice(len(goal.before), len(goal.before) + found.robot.dof)
+    tried = [_core._ik_miss(whole, found.goal, weight)[0] for weight in weights]
+    q = min(tried, key=lambda q: float(goal.residual(found.robot.fk(q[own]))))
+    T = found.robot.fk(q[own])
+    return q, float(max(goal.misses(T)[0], default=0.0)), goal.miss_in_words(T)
 
 
 def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:

@@ -12,17 +12,18 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputTypeError
 from cspace.ik.goals import (
     checked_poses,
     goal_array,
     is_far,
     one_configuration,
+    open_in_space,
     planar_poses,
     points_in_base,
     too_far,
 )
-from cspace.ik.held import fixed_values, joint_number
+from cspace.ik.held import by_name, fixed_values
 from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.partial import KEYWORDS, PartialGoal, check_tool_axis, is_open, partial_goal
 from cspace.ik.prepare import check_chain, prepare
@@ -115,6 +116,7 @@ def inverse_kinematics(
     wish = Wish(near, fixed, swivel, samples, bool(least_squares), workers)
     if angle is not None:
         goal, position = planar_poses(robot, goal, position, angle), None
+    position = open_in_space(robot, position)
     named = (position, rotation, direction, look_at, ray, angle_to)
     given = {name: value for name, value in zip(KEYWORDS, named, strict=True) if value is not None}
     check_tool_axis(tool_axis, given)
@@ -225,21 +227,6 @@ def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
     return replace(wish, fixed=fixed, near=near, least_squares=False)
 
 
-def by_name(robot: Any, fixed: Mapping[Any, Any]) -> dict[str, Any]:
-    """Values of held joints by the joints' names."""
-    out: dict[str, Any] = {}
-    for key, value in fixed.items():
-        name = key if isinstance(key, str) else robot.joint_names[joint_number(robot, key, "fixed")]
-        if name in out:
-            raise InputError(f"fixed names {name!r} twice, by name and by number; give each joint one value")
-        if isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim):
-            raise InputTypeError(
-                f"fixed[{key!r}] is a {type(value).__name__}, expected one number with parts of a pose"
-            )
-        out[name] = value
-    return out
-
-
 def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
     if near is None:
         found = _core._ik_single(robot, T)
@@ -249,6 +236,8 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
     seed = one_configuration(robot, near, "near")
     if is_far(T[:3, 3]):
         raise too_far("goal", T[:3, 3])
+    bounds = (np.ascontiguousarray(side) for side in (robot.limits.lower, robot.limits.upper))
+    _core._ik_serve_near(robot, *bounds)
     return cast(Solutions, _core._ik_careful(robot, T, seed))
 
 

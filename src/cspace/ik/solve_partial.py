@@ -11,6 +11,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.about import About
+from cspace.ik.held import leads_ahead
 from cspace.ik.partial import PartialGoal
 from cspace.ik.prepare import prepare
 from cspace.ik.solutions import EXACT, INCOMPLETE, NEAREST, SINGULAR, UNREACHABLE, Solutions, how_many
@@ -76,6 +77,12 @@ def met_by_open_joints(whole: Any, own: slice, seed: Array, T: Array) -> Array:
     q[..., own] = seed
     is_open = np.ones(whole.dof, dtype=bool)
     is_open[own] = False
+    ahead = leads_ahead(whole)
+    if ahead.any():  # a look is as long as the goal is far, wherever it points
+        away = T[..., :3, 3] - whole.fk(q)[..., :3, 3]
+        q = np.where(ahead, np.linalg.norm(away, axis=-1)[..., None], q)
+        is_open &= ~ahead
+    turns = np.array([kind == "R" for kind in whole.joint_types])[is_open]
     for _ in range(most_steps):
         pose = whole.fk(q)
         turn = log_so3(T[..., :3, :3] @ np.swapaxes(pose[..., :3, :3], -1, -2))
@@ -83,9 +90,9 @@ def met_by_open_joints(whole: Any, own: slice, seed: Array, T: Array) -> Array:
         J = whole.jacobian(q)[..., is_open]
         Jt = np.swapaxes(J, -1, -2)
         step = np.linalg.solve(Jt @ J + damping * np.eye(J.shape[-1]), Jt @ twist[..., None])[..., 0]
-        reach = np.abs(step).max(axis=-1, initial=0.0, keepdims=True)
+        reach = np.abs(step[..., turns]).max(axis=-1, initial=0.0, keepdims=True)
         q[..., is_open] += step * np.minimum(1.0, stride / np.maximum(reach, stride))
-        if reach.max(initial=0.0) < settled:
+        if np.abs(step).max(initial=0.0) < settled:
             break
     return q
 

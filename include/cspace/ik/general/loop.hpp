@@ -41,6 +41,8 @@ struct GeneralPlan {
     int regular = 0;  // how many of them do not vanish identically; 1 where no angle is hidden
     // By how much each enlarges relative errors of its equations, by its number.
     double sensitivity[formulations] = {};
+    // Whether by the arm's nature solutions share the hidden angle.
+    bool paired[formulations] = {};
     // Hidden angles where each has roots whatever the goal, and the arm nothing: how many, and which.
     static constexpr int most_ghosts = 4;
     int ghosts[formulations] = {};

@@ -4,6 +4,7 @@
 // arm are about to merge one of them may have lost the pair, and then the other keeps it apart.
 #pragma once
 
+#include "cspace/ik/beside.hpp"
 #include "cspace/ik/general/plan.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -48,32 +49,105 @@ inline bool is_about_to_merge(const ik::GeneralPlan& plan, const Posed& goal, co
     return find_twin(plan, goal, q, twin);
 }
 
+// Which solutions of a neighbour, brought to the goal, became which of `out`, to which they are added.
+struct Led {
+    int count = 0;                      // of the neighbour's solutions
+    bool complete = false;              // as the neighbour says
+    bool lost[ik::max_solutions] = {};  // those that became none
+    int from[ik::max_solutions] = {};   // how many became each of `out`
+};
+inline Led lead_to_goal(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& beside,
+                        ik::Solutions& out) {
+    Led led;
+    led.count = beside.count;
+    led.complete = beside.complete;
+    ik::Candidates start;
+    for (int j = 0; j < beside.count; ++j) put(start, beside.q[j], false);
+    admit_candidates(plan, goal, 0, start, out);
+    refine_unsettled(plan, goal, start, out);
+    for (int j = 0; j < beside.count; ++j) {
+        led.lost[j] = true;
+        for (int m = 0; m < out.count; ++m)
+            if (distance(plan.chain, out.q[m], start.q[j]) < tolerance::same_solution) {
+                ++led.from[m];
+                led.lost[j] = false;
+            }
+    }
+    return led;
+}
+
 // Complete if both neighbours are and both lead to every solution, pairs about to merge excepted.
 inline void solve_beside(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
-    const ik::Chain& chain = arm.plan.chain;
-    bool led[2][ik::max_solutions] = {};
-    out.complete = true;
-    out.crowded = true;
+    const ik::GeneralPlan& plan = arm.plan;
+    Led led[2];
+    out.complete = out.crowded = true;
     for (int k = 0; k < 2; ++k) {
         ik::Solutions beside;
         solve_by_plan(arm.neighbour[k], goal, beside);
-        out.complete = out.complete && beside.complete;
-        ik::Candidates start;
-        for (int j = 0; j < beside.count; ++j) put(start, beside.q[j], false);
-        admit_candidates(arm.plan, goal, 0, start, out);
-        refine_unsettled(arm.plan, goal, start, out);
-        for (int j = 0; j < beside.count; ++j) {
-            bool arrived = false;
-            for (int m = 0; m < out.count; ++m)
-                if (distance(chain, out.q[m], start.q[j]) < tolerance::same_solution)
-                    led[k][m] = arrived = true;
-            if (!arrived && !is_about_to_merge(arm.neighbour[k], goal, beside.q[j])) out.complete = false;
-        }
+        led[k] = lead_to_goal(plan, goal, beside, out);
+        out.complete = out.complete && led[k].complete;
+        for (int j = 0; j < beside.count && out.complete; ++j)
+            out.complete = !led[k].lost[j] || is_about_to_merge(arm.neighbour[k], goal, beside.q[j]);
     }
     for (int m = 0; m < out.count && out.complete; ++m)
-        out.complete = (led[0][m] && led[1][m]) || is_about_to_merge(arm.plan, goal, out.q[m]);
+        out.complete = (led[0].from[m] && led[1].from[m]) || is_about_to_merge(plan, goal, out.q[m]);
     out.complete = out.complete && out.count % 2 == 0;
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+}
+
+// Goals that are special to an arm, say a tool held along its first axis, have solutions that share every
+// hidden angle: goals tilted to either side have not, if by enough. True if both certify their solutions, and
+// these become those of `out`, one each.
+inline bool certify_by_tilting(const ik::GeneralPlan& plan, const Posed& goal, double size,
+                               ik::Solutions& out) {
+    const Vec3d turn = pattern(1), away = pattern(2);
+    const Vec3d axis = (1 / norm(turn)) * turn;
+    Led led[2];
+    for (int k = 0; k < 2; ++k) {
+        const double by = k ? -size : size;
+        const Posed tilted = {rotation_about(axis, std::cos(by), std::sin(by)) * goal.R, goal.t + by * away};
+        ik::Solutions beside;
+        solve_by_plan(plan, tilted, beside);
+        if (!beside.complete) return false;
+        led[k] = lead_to_goal(plan, goal, beside, out);
+    }
+    bool one_each = out.count % 2 == 0 && led[0].count == out.count && led[1].count == out.count;
+    for (int m = 0; m < out.count; ++m) one_each = one_each && led[0].from[m] == 1 && led[1].from[m] == 1;
+    return one_each;
+}
+
+// Whether descents from all over the joints come to solutions that `out` lacks: families attract them.
+inline bool lacks_by_descent(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& out) {
+    constexpr int starts = 16, most_steps = 60;
+    ik::Solutions more = out;
+    for (int k = 0; k < starts && more.count == out.count; ++k) {
+        double q[ik::max_joints];
+        spread_configuration(k, 6, q);
+        descend_to_solution(plan.chain, goal, 1, q, most_steps, more);
+    }
+    return more.count > out.count;
+}
+
+// At goals that are special to the formulations: complete if tilting says so, and a formulation announces no
+// more at the goal itself or descents find no more.
+inline void solve_tilted(const ik::GeneralPlan& plan, const Posed& goal, const Asked& asked,
+                         ik::Solutions& out) {
+    bool shared = false, drowned = plan.regular > 0;
+    for (int k = 0; k < asked.count; ++k) {
+        shared = shared || asked.seen[k].shared;
+        drowned = drowned && asked.seen[k].hidden.alias > regular_alias;
+    }
+    if (!shared && !drowned) return;
+    for (const double size : {3e-3, 2e-2}) {  // [rad], and over the arm's length
+        ik::Solutions tried = out;
+        if (!certify_by_tilting(plan, goal, size, tried)) continue;
+        if (!is_announced_by_one(plan, goal, asked, true, tried) && lacks_by_descent(plan, goal, tried))
+            return;
+        out = tried;
+        out.complete = out.crowded = true;
+        out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+        return;
+    }
 }
 
 // Whether the arm's own plan does well on its poses.
@@ -104,7 +178,10 @@ inline void solve_with_wrist(const ik::GeneralArm& arm, const Posed& goal, ik::S
 inline void solve_general(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
     if (arm.position_first.serves) return solve_with_wrist(arm, goal, out);
     if (arm.has_neighbours) solve_beside(arm, goal, out);
-    if (!arm.has_neighbours || !out.complete) solve_by_plan(arm.plan, goal, out);
+    if (arm.has_neighbours && out.complete) return;
+    Asked asked;
+    ask_formulations(arm.plan, goal, out, asked);
+    if (!arm.has_neighbours && !out.complete) solve_tilted(arm.plan, goal, asked, out);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

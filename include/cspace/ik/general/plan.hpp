@@ -9,7 +9,7 @@ namespace cspace {
 // How a formulation did on the poses of an arm.
 struct FormulationTrial {
     static constexpr int most_poses = 24;
-    int poses = 0, drowned = 0, work = 0;
+    int poses = 0, drowned = 0, work = 0, shared = 0;
     double sensitivity = 0;
     int found[most_poses];
 };
@@ -45,34 +45,57 @@ inline bool admit_hidden_twins(const ik::GeneralPlan& plan, const Posed& goal, i
     return found.count > before;
 }
 
-// One formulation after the other until one of them certifies that nothing is missing; where none does, what
-// all of them found together may be what one of them announced. Returns the work.
-inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
-    out.crowded = false;
-    int work = 0, asked = 0;
+// The formulations that a goal was put to.
+struct Asked {
+    int count = 0, work = 0;
     ik::Certificate seen[ik::formulations];
+};
+
+// Whether what one of them announced is there; `sharing`: those count as well whose solutions share a hidden
+// angle.
+inline bool is_announced_by_one(const ik::GeneralPlan& plan, const Posed& goal, const Asked& asked,
+                                bool sharing, const ik::Solutions& found) {
+    bool twice[ik::max_solutions];
+    mark_doubles(plan, goal, found, twice);
+    for (int k = 0; k < asked.count; ++k) {
+        const ik::Certificate& seen = asked.seen[k];
+        if (seen.trusted && (sharing || !seen.shared) && all_matched(seen, found, twice)) return true;
+    }
+    return false;
+}
+
+// One formulation after the other until one of them certifies that nothing is missing; where none does, what
+// all of them found together may be what one of them announced.
+inline void ask_formulations(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out,
+                             Asked& asked) {
+    constexpr int most_shared = 2;  // a goal special to two of them is special to most
+    out.crowded = false;
+    int shared = 0;
     if (plan.slides == 3) {
         out.complete = plan.regular > 0 && solve_orientation_first(plan, goal, out);
         out.crowded = !out.complete;
     } else {
         out.complete = plan.slides == 0 && is_beyond_reach(plan.frames, goal);
     }
-    for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete; ++k, ++asked) {
-        seen[k] = solve_formulation(plan, goal, plan.order[k], out);
-        out.crowded = out.crowded || seen[k].clusters > 0;
-        work += seen[k].work;
-        out.complete = seen[k].complete && !(seen[k].clusters > 0 && admit_hidden_twins(plan, goal, out));
-        seen[k].trusted = seen[k].trusted && (out.complete || !seen[k].complete);
+    while (asked.count < plan.regular && plan.slides < 3 && !out.complete && shared < most_shared) {
+        ik::Certificate& seen = asked.seen[asked.count];
+        seen = solve_formulation(plan, goal, plan.order[asked.count++], out);
+        out.crowded = out.crowded || seen.clusters > 0;
+        asked.work += seen.work;
+        shared += seen.shared;
+        out.complete = seen.complete && !(seen.clusters > 0 && admit_hidden_twins(plan, goal, out));
+        seen.trusted = seen.trusted && (out.complete || !seen.complete);
     }
-    if (asked > 0 && !out.complete) {
-        bool twice[ik::max_solutions];
-        mark_doubles(plan, goal, out, twice);
-        for (int k = 0; k < asked; ++k)
-            out.complete = out.complete || (seen[k].trusted && all_matched(seen[k], out, twice));
-    }
+    if (asked.count > 0 && !out.complete) out.complete = is_announced_by_one(plan, goal, asked, false, out);
     out.complete = out.complete && come_in_pairs(plan, goal, out);
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
-    return work;
+}
+
+// Returns the work.
+inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+    Asked asked;
+    ask_formulations(plan, goal, out, asked);
+    return asked.work;
 }
 
 inline constexpr double usual_sensitivity = 1e5, useless_sensitivity = 1e8;
@@ -121,6 +144,7 @@ inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int 
         const ik::Certificate seen = solve_formulation(plan, goal[k], number, out);
         trial.drowned += seen.hidden.alias > regular_alias;
         trial.work += seen.work;
+        trial.shared += seen.shared;
         trial.found[trial.poses++] = out.count;
     }
 }
@@ -164,6 +188,7 @@ inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations],
     for (int number = 0; number < ik::formulations; ++number) {
         const FormulationTrial& t = trial[number];
         plan.sensitivity[number] = t.sensitivity;
+        plan.paired[number] = plan.paired[number] || 2 * t.shared > t.poses;
         if (t.drowned == t.poses || !(t.sensitivity < useless_sensitivity)) continue;
         int missed = 0;
         for (int k = 0; k < t.poses; ++k) missed += most[k] - t.found[k];

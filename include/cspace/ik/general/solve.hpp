@@ -19,7 +19,8 @@ struct Certificate {
     int joint = 0;
     double sign = 1;
     int clusters = 0;
-    int work = 0;  // about in units of one evaluation of the determinant
+    bool shared = false;  // a hidden angle by several solutions, perhaps more than it shows
+    int work = 0;         // about in units of one evaluation of the determinant
 };
 
 }  // namespace cspace::ik
@@ -29,6 +30,7 @@ namespace cspace::inline CSPACE_ISA {
 inline constexpr double clear_equation =
     1e-8;                                   // its rounding moves no pair of roots that the signs would miss
 inline constexpr double rough_root = 1e-5;  // solutions are polished on the arm
+inline constexpr double as_isolated = 2 * rough_root;
 inline constexpr double equation_error = 3e-14;  // of their entries, with a margin
 inline constexpr double near_roots = 3e-3;       // [rad] hidden angles this close share a null plane
 
@@ -80,30 +82,68 @@ inline void split_planes(const ik::Loop& loop, const Elimination& e, const doubl
     }
 }
 
+// How many solutions the roots around a hidden angle announce, and how many there are; one may count twice.
+// Where noise hides whether there is a pair of roots, it counts as one.
+struct Around {
+    int expected = 0, there = 0;
+};
+inline Around count_around(const ik::Certificate& seen, const ik::Solutions& found, const bool* twice,
+                           double angle) {
+    const auto is_near = [&](double a) { return std::fabs(short_way(a - angle)) < near_roots; };
+    Around out;
+    for (int j = 0; j < seen.hidden.count; ++j) {
+        const ik::HiddenAngle& root = seen.hidden.root[j];
+        if (!is_near(root.angle)) continue;
+        const bool hidden_pair =
+            root.expected == ik::unknown || (root.expected == ik::nearly_two && root.depth < seen.slip);
+        out.expected += hidden_pair ? 2 : max(root.expected, 0);
+    }
+    for (int j = 0; j < found.count; ++j)
+        if (is_near(seen.sign * found.q[j][seen.joint])) out.there += twice[j] ? 2 : 1;
+    return out;
+}
+
 // Whether every announced root has brought its solutions: around each hidden angle there are at least as many
-// solutions as roots, and an even number in all; a solution may count twice. Where noise hides whether there
-// is a pair of roots, two solutions say so.
+// solutions as roots, and an even number in all.
 inline bool all_matched(const ik::Certificate& seen, const ik::Solutions& found, const bool* twice) {
-    const auto is_near = [](double a, double b) { return std::fabs(short_way(a - b)) < near_roots; };
-    const ik::HiddenAngles& hidden = seen.hidden;
     int count = 0;
     for (int j = 0; j < found.count; ++j) count += twice[j] ? 2 : 1;
     if (count % 2 != 0) return false;
-    for (int k = 0; k < hidden.count; ++k) {
-        if (hidden.root[k].expected == ik::nearly_two && !(hidden.root[k].depth < seen.slip)) continue;
-        int expected = 0, there = 0;
-        for (int j = 0; j < hidden.count; ++j) {
-            if (!is_near(hidden.root[j].angle, hidden.root[k].angle)) continue;
-            const int announced = hidden.root[j].expected;
-            const bool hidden_pair =
-                announced == ik::unknown || (announced == ik::nearly_two && hidden.root[j].depth < seen.slip);
-            expected += hidden_pair ? 2 : max(announced, 0);
-        }
-        for (int j = 0; j < found.count; ++j)
-            if (is_near(seen.sign * found.q[j][seen.joint], hidden.root[k].angle)) there += twice[j] ? 2 : 1;
-        if (there < expected) return false;
+    for (int k = 0; k < seen.hidden.count; ++k) {
+        const ik::HiddenAngle& root = seen.hidden.root[k];
+        if (root.expected == ik::nearly_two && !(root.depth < seen.slip)) continue;
+        const Around here = count_around(seen, found, twice, root.angle);
+        if (here.there < here.expected) return false;
     }
     return true;
+}
+
+// Whether solutions far from each other share a hidden angle and its roots may not show how many they are:
+// there are more of them already, or they stand where roots are not told apart and not by the arm's nature
+// (`paired`).
+inline bool share_angles(const ik::Certificate& seen, const ik::Chain& chain, const ik::Solutions& found,
+                         const bool* twice, const bool* close, bool paired) {
+    constexpr double far = 0.1, unresolved = 2e-4, exactly = 1e-6;
+    for (int k = 0; k < seen.hidden.count; ++k) {
+        if (!close[k]) continue;
+        const double angle = seen.hidden.root[k].angle;
+        const Around here = count_around(seen, found, twice, angle);
+        const double within = here.there > here.expected      ? unresolved
+                              : paired                        ? 0
+                              : seen.hidden.root[k].width > 0 ? as_isolated
+                                                              : exactly;
+        for (int i = 0; i < found.count; ++i) {
+            const double own = seen.sign * found.q[i][seen.joint];
+            if (!(std::fabs(short_way(own - angle)) < unresolved)) continue;
+            for (int j = 0; j < i; ++j) {
+                const double other = seen.sign * found.q[j][seen.joint];
+                if (std::fabs(short_way(own - other)) < within &&
+                    distance(chain, found.q[i], found.q[j]) > far)
+                    return true;
+            }
+        }
+    }
+    return false;
 }
 
 inline void mark_doubles(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& found,
@@ -169,7 +209,6 @@ inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
 
 // Of roots that are there for every goal no solutions are expected.
 inline void expect_no_ghosts(const ik::GeneralPlan& plan, int number, ik::HiddenAngles& hidden) {
-    constexpr double as_isolated = 2 * rough_root;
     const double* const ghost = plan.ghost + number * ik::GeneralPlan::most_ghosts;
     for (int k = 0; k < hidden.count; ++k)
         for (int j = 0; j < plan.ghosts[number]; ++j)
@@ -212,7 +251,8 @@ inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const 
         all = all_matched(seen, out, twice);
     }
     seen.trusted = hidden.alias < 1e-9 && !hidden.overflow;
-    seen.complete = all && seen.trusted;
+    seen.shared = seen.clusters > 0 && share_angles(seen, plan.chain, out, twice, close, plan.paired[number]);
+    seen.complete = all && seen.trusted && !seen.shared;
     return seen;
 }
 

@@ -59,30 +59,35 @@ inline void trace_loop(Tracer& tracer, const double* q) {
     }
     if (end != ArcEnd::closed && end != ArcEnd::open) tracer.out->complete = false;
 }
-// They are met by the solutions at some values of the parameter; and of the other joints that have limits,
-// for a loop that hardly moves one joint moves others.
+// The solutions at some values of a joint.
+inline void trace_loops_at(Tracer& tracer, const ik::LockedArm& locked, int joint, int looks) {
+    const Domain domain = domain_of(*tracer.arm, joint, tracer.goal);
+    double at[ik::max_joints], q[ik::max_joints];
+    for (int look = 0; look < looks; ++look) {
+        at[joint] = domain.lower + (look + 0.5) / looks * (domain.upper - domain.lower);
+        const ik::Solutions found = solve_locked(locked, tracer.goal, at, nullptr);
+        for (int j = 0; j < found.count; ++j) {
+            whole_row(locked, at, found.q[j], q);
+            trace_loop(tracer, q);
+        }
+    }
+}
+// They are met by the solutions at some values of the parameter; and of other joints, for a loop that hardly
+// moves one joint moves others.
 inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms& arms) {
     constexpr int looks = 24, other_looks = 8;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
-    double values[looks], at[ik::max_joints], q[ik::max_joints];
+    double values[looks];
     for (int k = 0; k < looks; ++k)
         values[k] = domain.lower + (k + 0.5) / looks * (domain.upper - domain.lower);
     sweep_values(sweep, values, looks, [&](int, const SweptRows& rows) {
         for (int j = 0; j < rows.count; ++j) trace_loop(tracer, rows.q[j]);
     });
-    for (int k = 0; k < arms.count; ++k) {
-        const int joint = arms.joint[k];
-        if (joint == tracer.parameter) continue;
-        const Domain other = domain_of(*tracer.arm, joint, tracer.goal);
-        for (int look = 0; look < other_looks; ++look) {
-            at[joint] = other.lower + (look + 0.5) / other_looks * (other.upper - other.lower);
-            const ik::Solutions found = solve_locked(arms.locked[k], tracer.goal, at, nullptr);
-            for (int j = 0; j < found.count; ++j) {
-                whole_row(arms.locked[k], at, found.q[j], q);
-                trace_loop(tracer, q);
-            }
-        }
-    }
+    for (int k = 0; k < arms.count; ++k)
+        if (arms.joint[k] != tracer.parameter)
+            trace_loops_at(tracer, arms.locked[k], arms.joint[k], other_looks);
+    if (arms.freest >= 0 && arms.freest != tracer.parameter)
+        trace_loops_at(tracer, arms.by_freest, arms.freest, looks);
 }
 
 // The intervals of joint `parameter`, held by `locked`; trail: working memory.

@@ -13,6 +13,8 @@ struct LimitArms {
     int joint[max_joints];
     LockedArm locked[max_joints];
     Arm at_limit[max_joints][2];  // where the joint stands between others: its arm at lower and upper limit
+    int freest = -1;              // of the joints that nothing stops the one that self-motions move most
+    LockedArm by_freest;          // with that one held
 };
 
 // A configuration with one joint at a limit and the others within theirs.
@@ -35,11 +37,32 @@ inline double limit_of(const ik::Redundant& arm, int joint, int side) {
     return side ? arm.upper[joint] : arm.lower[joint];
 }
 
+// Of the joints that nothing stops the one that self-motions move most; −1 where each can be stopped.
+inline int freest_joint(const ik::Redundant& arm) {
+    constexpr int looks = 8;
+    double moves[ik::max_joints] = {};
+    for (int look = 0; look < looks; ++look) {
+        double q[ik::max_joints];
+        spread_configuration(look, arm.chain.n, q);
+        PoseError at;
+        measure(arm.chain, arm.chain.tip, arm.length, q, at);
+        decompose(at.jacobian);
+        const double* const along = at.jacobian.v[weakest(at.jacobian)];
+        for (int i = 0; i < arm.chain.n; ++i) moves[i] += std::fabs(along[i]);
+    }
+    int best = -1;
+    for (int i = 0; i < arm.chain.n; ++i)
+        if (!ik::is_stopped(arm, i) && (best < 0 || moves[i] > moves[best])) best = i;
+    return best;
+}
+
 // out: as ik::LimitArms{}; it is large and lives where the caller puts it.
 inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out,
                             bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
     double at[ik::max_joints];
     typical_values(arm, at);
+    out.freest = freest_joint(arm);
+    if (out.freest >= 0) out.by_freest = lock_joints(arm.chain, &out.freest, 1, at, plan_general);
     for (int i = 0; i < arm.chain.n; ++i) {
         if (!ik::is_stopped(arm, i)) continue;
         const int k = out.count++;

@@ -1,0 +1,65 @@
+"""near=: of everything that reaches a goal the one configuration nearest to a seed."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.model import from_screws
+from ik.arms import load
+from ik.likenesses import gap, random_configurations
+
+X, Y, Z = np.eye(3)
+
+
+@pytest.mark.parametrize("name", ["ur5e", "jaco2", "puma560", "scara", "z1"])
+def test_asking_again_answers_as_the_first_time_and_as_the_list(name):
+    robot, rng = cs.load_robot(name), np.random.default_rng(3)
+    for q, seed in zip(
+        random_configurations(robot, rng, 40), rng.uniform(-4, 4, (40, robot.dof)), strict=True
+    ):
+        goal = robot.fk(q)
+        listed = robot.ik(goal).nearest(seed)
+        for _ in range(2):
+            found = robot.ik(goal, near=seed)
+            np.testing.assert_allclose(found.q, listed.q, atol=1e-9)
+            assert (found.status, found.complete, found.branch) == (
+                listed.status,
+                listed.complete,
+                listed.branch,
+            )
+
+
+def two_joints(kinds, axes, points=None):
+    tip = cs.pose([0.3, 0.2, 0.1])
+    return cs.Robot(from_screws(axes, points or [[0, 0, 0]] * len(axes), tip, joint_types=kinds, name=kinds))
+
+
+@pytest.mark.parametrize(
+    "robot",
+    [
+        two_joints("PP", [X, X]),
+        two_joints("RR", [Z, Z]),
+        two_joints("RRR", [Z, Z, Z], [[0, 0, 0], [0.4, 0, 0], [0.7, 0, 0]]),
+        two_joints("RPP", [Z, X, X]),
+    ],
+    ids=lambda robot: robot.name,
+)
+def test_short_arms_with_freedom_come_as_near_as_they_can(robot):
+    rng = np.random.default_rng(5)
+    for q in rng.uniform(-1, 1, (8, robot.dof)):
+        p = robot.fk(q)[:3, 3]
+        np.testing.assert_allclose(robot.ik(position=p, near=q).q[0], q, atol=1e-6)
+        seed = q + rng.normal(scale=0.5, size=robot.dof)
+        found = robot.ik(position=p, near=seed)
+        np.testing.assert_allclose(robot.fk(found.q[0])[:3, 3], p, atol=1e-9)
+        here = gap(robot, found.q[0], seed)
+        assert np.linalg.norm(found.q[0] - seed) <= np.linalg.norm(q - seed) + 1e-6, here
+
+
+def test_a_singular_pose_is_answered_by_the_member_of_its_family_nearest_to_the_seed():
+    robot = load("puma560")
+    q = np.array([0.3, -0.5, 0.9, 0.4, 0.0, 0.2])
+    found = robot.ik(robot.fk(q)).nearest(q)
+    np.testing.assert_allclose(found.q[0], q, atol=1e-6)
