@@ -58,8 +58,20 @@ def test_short_arms_with_freedom_come_as_near_as_they_can(robot):
         assert np.linalg.norm(found.q[0] - seed) <= np.linalg.norm(q - seed) + 1e-6, here
 
 
-def test_a_singular_pose_is_answered_by_the_member_of_its_family_nearest_to_the_seed():
-    robot = load("puma560")
-    q = np.array([0.3, -0.5, 0.9, 0.4, 0.0, 0.2])
-    found = robot.ik(robot.fk(q)).nearest(q)
-    np.testing.assert_allclose(found.q[0], q, atol=1e-6)
+@pytest.mark.parametrize(
+    ("name", "q"),
+    [("puma560", [0.3, -0.5, 0.9, 0.4, 0.0, 0.2]), ("crx10ia", [0.3, -0.5, -np.pi / 2, 0.4, 0.7, 0.2])],
+)
+def test_a_family_has_a_member_nearest_to_each_seed(name, q):
+    robot, rng = load(name), np.random.default_rng(7)
+    T = robot.fk(np.array(q))
+    families = robot.ik(T).families
+    assert min(gap(robot, family.nearest(np.array(q)), q) for family in families) < 1e-6
+    for family in families:
+        for seed in rng.uniform(-1, 1, (5, robot.dof)):
+            best = family.nearest(seed)
+            np.testing.assert_allclose(robot.fk(best), T, atol=1e-9)
+            others = family.sample(200)
+            d = np.linalg.norm((others - seed + np.pi) % (2 * np.pi) - np.pi, axis=1)
+            here = np.linalg.norm((best - seed + np.pi) % (2 * np.pi) - np.pi)
+            assert here <= d.min(initial=np.inf) + 1e-6

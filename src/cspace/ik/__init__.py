@@ -4,6 +4,7 @@ from cspace.ik import subproblems
 from cspace.ik.conditions import Condition, NoClosedFormError
 from cspace.ik.explain import IkPlan, Relation, Step, StillDirection, StillPoint, ik_plan
 from cspace.ik.families import Family
+from cspace.ik.feasible import redundancy
 from cspace.ik.geometry import Geometry, geometry
 from cspace.ik.numeric import (
     CenterOfMassTask,
@@ -21,7 +22,6 @@ from cspace.ik.numeric import (
     task_velocity,
 )
 from cspace.ik.redundancy import Interval, Redundancy
-from cspace.ik.redundant import redundancy
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve import inverse_kinematics

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any, cast
 
 import numpy as np
@@ -14,24 +13,17 @@ from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
 from cspace.ik.goals import one_configuration
-from cspace.ik.held import Held, by_name, fixed_values, hold, joint_number, leads_ahead
-from cspace.ik.partial import KEYWORDS, PartialGoal, check_tool_axis, partial_goal
-from cspace.ik.prepare import prepare
-from cspace.ik.redundancy import MOST_SAMPLES, Interval, Redundancy
+from cspace.ik.held import Held, fixed_values, hold, leads_ahead
+from cspace.ik.intervals import intervals_of
+from cspace.ik.redundancy import MOST_SAMPLES
 from cspace.ik.solutions import EXACT, INCOMPLETE, POSE_ASKS, UNREACHABLE, Solutions, how_many
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.ik.solve_partial import own_columns, whole_arm
-from cspace.ik.windings import into_limits
 from cspace.spare import spare_array
-from cspace.spatial.checks import one_pose
 from cspace.tolerances import FARTHEST
 
-__all__ = ["redundancy", "redundant_answer"]
+__all__ = ["redundant_answer"]
 
 SAMPLES = 16
-END_NOTHING, END_FOLD = -1, -2
-STILL = 1e-6
-"""Part of the self-motion's direction below which a joint stands still in it: files round axes."""
 
 
 def redundant_answer(
@@ -74,144 +66,9 @@ def redundant_answer(
     return sampled_batch(held, T, count, threads)
 
 
-def redundancy(
-    robot: Any,
-    goal: Any = None,
-    parameter: str | int | None = None,
-    *,
-    fixed: Mapping[Any, float] | None = None,
-    tool_axis: Any = "z",
-    **parts: Any,
-) -> Redundancy:
-    """For which values of a joint to spare a goal can be reached within all limits, branch by branch.
-
-    The ends are where another joint reaches a limit (it is locked there, and the others are solved) and where
-    branches fold: the determinant of the others' Jacobian vanishes. goal (4, 4): T_base_tip; or parts of it
-    by keyword, one goal, as `robot.ik` takes them: position, rotation, direction, look_at, ray, angle_to,
-    tool_axis. parameter: the joint, by name or number, one of those that a partial goal adds, or "swivel" of
-    an arm with two spherical joints; the solver's own choice unless given (`ik(goal).freedom` names it).
-    fixed: values of other joints [rad, m], so that one is left to spare.
-
-    Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a joint to spare
-    or with more than one, and for a joint that the goal settles.
-    For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
-    """
-    given = {name: value for name, value in parts.items() if value is not None}
-    unknown = sorted(given.keys() - set(KEYWORDS))
-    if unknown:
-        raise InputTypeError(f"redundancy has no keyword {unknown[0]!r}; of a goal it takes {list(KEYWORDS)}")
-    check_tool_axis(tool_axis, given)
-    if (goal is None) == (not given):
-        raise InputTypeError("redundancy needs one goal: a pose, or parts of it by name, such as position=p")
-    if given:
-        return redundancy_of_parts(robot, partial_goal(given, tool_axis), parameter, fixed)
-    prepare(robot)
-    T = one_pose(goal, "goal")
-    if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in robot.joint_names:
-        from cspace.ik.swivel_intervals import swivel_intervals
-
-        if fixed is not None:
-            raise InputTypeError("the swivel is what seven joints leave free: fixed= does not go with it")
-        return swivel_intervals(robot, T)
-    return redundancy_of_pose(robot, T, parameter, fixed)
-
-
-def redundancy_of_parts(robot: Any, goal: PartialGoal, parameter: Any, fixed: Any) -> Redundancy:
-    """That of the arm with the joints which stand for what the goal leaves open."""
-    if goal.T.ndim != 2:
-        raise InputError(f"the goal has shape {goal.T.shape[:-2]}, expected one goal: ask in a loop")
-    whole, own = whole_arm(robot, goal), own_columns(robot, goal)
-    prepare(whole)
-    named = parameter is None or isinstance(parameter, str)
-    joint = parameter if named else robot.joint_names[joint_number(robot, parameter, "parameter")]
-    values = by_name(robot, fixed) if isinstance(fixed, Mapping) else fixed
-    found = redundancy_of_pose(whole, goal.T, joint, values)
-    rows = tuple(replace(interval, q=interval.q[own]) for interval in found)
-    return replace(found, robot=robot, intervals=rows)
-
-
-def redundancy_of_pose(robot: Any, T: Array, parameter: Any, fixed: Any) -> Redundancy:
-    values = fixed_values(robot, {} if fixed is None else fixed)
-    if any(np.ndim(value) for value in values.values()):
-        raise InputTypeError("fixed= takes one value per joint here")
-    held = hold(robot, {joint: float(value) for joint, value in values.items()})
-    spare = held.solver.spare
-    if spare != 1:
-        raise InputError(
-            f"{robot.name} has {spare} joints to spare here, expected one: "
-            + ("hold the others with fixed=" if spare > 1 else "the goal settles all of them")
-        )
-    joint = (
-        held.solver.held[0] if parameter is None else held.free.index(free_joint(robot, parameter, values))
-    )
-    found = intervals_of(held, T, joint)
-    if not found and joint != held.solver.held[0]:
-        check_moves(held, found.goal, joint)
-    return found if is_bounded(held, joint) else replace(found, complete=False)
-
-
-def is_bounded(held: Held, joint: int) -> bool:
-    """Whether the parameter runs between limits or round a circle: along a slide without limits the search
-    looks as far as the arm is long.
-    """
-    limits, k = held.robot.limits, held.free[joint]
-    return held.robot.joint_types[k] == "R" or bool(np.isfinite([limits.lower[k], limits.upper[k]]).all())
-
-
-def check_moves(held: Held, T: Array, joint: int) -> None:
-    """Raise InputError for a joint that stands still while the tip does: the goal settles it."""
-    own = held.solver.held[0]
-    seen = intervals_of(held, T, own)
-    if not seen:
-        return
-    J = held.robot.jacobian(np.array([interval.q for interval in seen]))[..., list(held.free)]
-    if np.abs(np.linalg.svd(J)[2][:, -1, joint]).max() > STILL:
-        return
-    names = [held.robot.joint_names[k] for k in held.free]
-    at = ", ".join(sorted({f"{interval.q[held.free[joint]]:.6g}" for interval in seen}))
-    raise InputError(
-        f"parameter {names[joint]!r} is settled by the goal, at {at}, and does not move with what is free; "
-        f"take another joint, such as {names[own]!r}"
-    )
-
-
 def to_spare(robot: Any, fixed: Mapping[int, Any]) -> int:
     """How many dimensions a pose leaves free with some joints held, at values without a pattern."""
     return hold(robot, {}).solver.spare_with(list(fixed))
-
-
-def free_joint(robot: Any, parameter: Any, fixed: Mapping[int, Any]) -> int:
-    joint = joint_number(robot, parameter, "parameter")
-    if joint in fixed:
-        raise InputError(f"parameter {robot.joint_names[joint]!r} is held by fixed=: it is not free")
-    return joint
-
-
-def intervals_of(held: Held, T: Array, joint: int) -> Redundancy:
-    rows, complete = held.solver.intervals(joint, T)
-    names = [held.robot.joint_names[k] for k in held.free]
-    slides = held.robot.joint_types[held.free[joint]] == "P"
-
-    def end(what: int, side: int) -> str:
-        if what == END_FOLD:
-            return "fold"
-        return "nothing" if what == END_NOTHING else f"{names[what]} at {'upper' if side else 'lower'} limit"
-
-    robot = held.robot
-    bounds = robot.joint_types, robot.limits.lower, robot.limits.upper
-    made = [
-        Interval(
-            low,
-            high,
-            branch + 1,
-            (end(a, sa), end(b, sb)),
-            into_limits(held.whole(np.array(q)), *bounds)[0],
-            slides,
-        )
-        for low, high, branch, a, sa, b, sb, q in rows
-    ]
-    made.sort(key=lambda interval: (interval.branch, interval.lower))
-    return Redundancy(held.robot, T, names[joint], tuple(made), complete, slides)
 
 
 # --- answers ----------------------------------------------------------------------------------------------

@@ -190,24 +190,27 @@ class Solutions(_core.SolutionsBase):
     def nearest(self, q: Any, metric: str = "euclidean") -> Solutions:
         """The one solution nearest to q (dof,), each revolute joint taken by the turn that brings it closest.
 
-        metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Families
-        are taken by their members nearest to q. Turns that would leave the robot's limits are not taken where
-        another one stays inside.
+        metric: "euclidean" (root of the sum of squares) or "max" (largest joint difference). Turns that
+        would leave the robot's limits are not taken where another one stays inside. Of a family the
+        representative counts; its `nearest` says which member comes nearest.
         """
         seed = one_configuration(self.robot, q, "q")
         choice(metric, "metric", METRICS)
         if not self:
             return self
-        limits, rows = self.robot.limits, self.q
-        if any(self._is_family) and self._partial is None:
-            rows = self.q.copy()
-            for family in self.families:
-                rows[family.row] = family.nearest(seed)
-        moved = nearest_winding(rows, seed, self.robot.joint_types, limits.lower, limits.upper)
+        limits = self.robot.limits
+        moved = nearest_winding(self.q, seed, self.robot.joint_types, limits.lower, limits.upper)
         gap = np.abs(moved - seed)
         distance = gap.max(axis=1) if metric == "max" else np.linalg.norm(gap, axis=1)
         row = int(np.argmin(distance))
         return self._take(np.array([row]), moved[[row]], None)
+
+    def _along_families(self, seed: Array) -> Solutions:
+        """The same solutions, families by their members nearest to a seed (dof,)."""
+        q = self.q.copy()
+        for family in self.families:
+            q[family.row] = family.nearest(seed)
+        return self._take(np.arange(len(self)), q, self._note)
 
     def wrapped(self) -> Solutions:
         """The same solutions with revolute joints in (−π, π]."""

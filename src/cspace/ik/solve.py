@@ -90,10 +90,11 @@ def inverse_kinematics(
     ray=(p, d): the line through p along d on which the tool axis lies. tool_axis: "x", "y", "z", "-z" or a
     direction in the tip.
 
-    near: (dof,), a configuration; the answer is the one solution nearest to it, and joints that the pose
-    leaves free take its values. fixed: joints held at given values, by name or number, {"joint7": 0.3};
-    arrays of values are solved together with the goals. swivel: of an arm with two spherical joints, the
-    angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or an array.
+    near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
+    singular pose leaves free take its values. fixed: joints held at given values, by name or number,
+    {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with two spherical
+    joints, the angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or an
+    array.
     samples: of an arm with one joint to spare, at how many values of it the branches are listed (16 unless
     given). least_squares: where nothing reaches the goal, answer with the configuration that misses it least
     (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
@@ -148,7 +149,11 @@ def answer_poses(robot: Any, goal: Any, wish: Wish) -> Answer:
 def answer_points(robot: Any, position: Any, wish: Wish) -> Answer:
     prepare(robot)
     p = points_in_base(robot, position)
-    found = _core._ik_position(robot, p) if p.ndim == 1 else solve_positions(robot, p, wish.threads)
+    if p.ndim > 1:
+        return chosen(robot, solve_positions(robot, p, wish.threads), wish)
+    found = cast(Solutions, _core._ik_position(robot, p))
+    if wish.near is not None and found.families:
+        found = found._along_families(one_configuration(robot, wish.near, "near"))
     return chosen(robot, found, wish)
 
 
