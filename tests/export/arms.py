@@ -32,7 +32,7 @@ def arm(name: str) -> Robot:
     if set(name) <= set("RP"):
         axes, points, T_zero = random_screws("X" * (len(name) - 1), rng)
         return Robot(from_screws(axes, points, T_zero, joint_types=name, name=f"Arm {name}"))
-    made = {"calibrated": calibrated, "neighbours": parallel_and_square}
+    made = {"calibrated": calibrated, "neighbours": parallel_and_square, "coaxial": coaxial}
     return made[name]() if name in made else cs.load_robot(name)
 
 
@@ -52,3 +52,12 @@ def parallel_and_square() -> Robot:
     T_zero = np.eye(4)
     T_zero[:3, 3] = 0.2, 0.6, 0.5
     return Robot(from_screws([z, x, x, y, z, y], points, T_zero, joint_types="RRRRPR", name="odd"))
+
+
+def coaxial() -> Robot:
+    """Four joints, the first two of which turn about one line."""
+    _, y, z = np.eye(3)
+    points = [[0, 0, 0], [0, 0, 0.2], [0, 0, 0.4], [0.5, 0, 0.4]]
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = 1, 0, 0.4
+    return Robot(from_screws([z, z, y, y], points, T_zero, name="coaxial"))

@@ -16,7 +16,12 @@ from export.test_python import module_of
 
 COMPILED = [("panda", None, "cpp"), ("p8", None, "c")]
 SLOW = [
-    *(("gen3", None, "cpp"), ("iiwa14_r820", None, "cpp"), ("panda", ["panda_joint4"], "cpp")),
+    *(
+        ("coaxial", None, "cpp"),
+        ("gen3", None, "cpp"),
+        ("iiwa14_r820", None, "cpp"),
+        ("panda", ["panda_joint4"], "cpp"),
+    ),
     *(("ur5e", ["elbow_joint"], "c"), ("ur5e", [0], "cpp"), ("scara", ["joint_3"], "cpp")),
 ]
 """A joint between others takes the whole library along: such files compile for a minute."""
@@ -60,10 +65,13 @@ def test_an_export_answers_as_the_library_with_these_joints_held(name, fixed, la
 
 @pytest.mark.parametrize(
     ("name", "fixed"),
-    [("panda", None), ("iiwa14_r820", None), ("p8", None), ("ur5e", 0), ("gen3", None), ("scara", "joint_4")],
+    [
+        *(("panda", None), ("iiwa14_r820", None), ("p8", None), ("ur5e", 0), ("gen3", None)),
+        *(("scara", "joint_4"), ("coaxial", None)),
+    ],
 )
 def test_a_python_file_finds_what_the_library_finds(name, fixed):
-    robot = cs.load_robot(name)
+    robot = arms.arm(name)
     made = robot.export("python", fixed=fixed)
     module = module_of(made.text)
     held = [robot.joint_names.index(joint) for joint in made.held]

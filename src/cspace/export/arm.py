@@ -116,7 +116,7 @@ def held_joints(robot: Any, fixed: Any) -> tuple[int, ...]:
     """The joints to hold, by number, ascending: those named, else the solver's own choice."""
     joints = len(robot.joint_names)
     if fixed is None:
-        return tuple(hold(robot, {}).solver.held) if joints > MAX_SETTLED else ()
+        return () if robot._ik_direct else tuple(hold(robot, {}).solver.held)
     if isinstance(fixed, (str, int)):
         fixed = [fixed]
     if isinstance(fixed, Mapping) or not isinstance(fixed, Iterable):
