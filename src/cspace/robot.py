@@ -77,6 +77,7 @@ class Robot(RobotBase):
 
     _ik_room = 0  # rows that the solutions of a goal may need; 0 before a solver is built
     _ik_direct = False  # whether a goal settles the joints, known once a solver is built
+    _ik_reach = float("inf")  # how far from the base a goal's point may be [m], where the goal adds a slide
     _ik_uncounted: tuple[int, ...] = ()  # joints that stand for a goal and count in no distance
 
     @classmethod

@@ -384,13 +384,13 @@ def test_a_point_of_the_plane_may_leave_one_coordinate_open():
 
 
 @pytest.mark.parametrize("name", ["ur5e", "jaco2", "panda"])
-@pytest.mark.parametrize("far", [3.0, 30.0, 1000.0])
+@pytest.mark.parametrize("far", [3.0, 30.0, 1000.0, 1e5])
 def test_a_point_to_look_at_and_a_ray_may_be_far_away(name, far):
     robot, rng = cs.load_robot(name), np.random.default_rng(8)
     for _ in range(5):
         target = far * rng.normal(size=3)
         target *= far / np.linalg.norm(target)
-        for options in ({}, {"near": rng.uniform(-1, 1, robot.dof)}):
+        for options in ({}, {"near": rng.uniform(-1, 1, robot.dof)})[: 1 if far > 1e3 else 2]:
             found = robot.ik(look_at=target, **options)
             T = robot.fk(found.q[0])
             away = target - T[:3, 3]

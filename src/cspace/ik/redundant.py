@@ -52,14 +52,14 @@ def redundant_answer(
             "fixed= takes one value per joint while dimensions stay free; hold all of them, or ask in a loop"
         )
     held = hold(robot, {joint: float(value) for joint, value in values.items()})
-    if T.ndim == 2 and _core._ik_is_beyond(robot, np.ascontiguousarray(T)):
+    if T.ndim == 2 and is_beyond(robot, T):
         return unreachable(held, T, proven=True)
     if near is not None:
         if not values:
             held.solver.serve_near(robot, About(freedom=held.freedom))
         return nearest(held, T, near, threads)
     if held.solver.spare != 1:
-        return nearest(held, T, start_of_search(robot, T), threads)
+        return nearest(held, T, start_of_search(held, T, threads), threads)
     count = sample_count(samples)
     if T.ndim == 2:
         return sampled(held, T, count, threads)
@@ -125,7 +125,7 @@ def nearest(held: Held, T: Array, near: Any, threads: int) -> Solutions | Soluti
     if shape:
         status = np.where(found, EXACT, UNREACHABLE).astype(np.uint8)
         for k in np.flatnonzero(~found):
-            if not _core._ik_is_beyond(robot, np.ascontiguousarray(goals[k])):
+            if not is_beyond(robot, goals[k]):
                 status[k] += INCOMPLETE
         count = found.astype(np.int64).reshape(shape)
         batch = SolutionsBatch(
@@ -136,6 +136,12 @@ def nearest(held: Held, T: Array, near: Any, threads: int) -> Solutions | Soluti
         return unreachable(held, T, proven=False)
     made = make(robot, T, EXACT, whole, np.full(1, -1), np.zeros(1, dtype=bool), None, held.freedom)
     return made.nearest(seeds)
+
+
+def is_beyond(robot: Any, T: Array) -> bool:
+    """Whether the lengths and axes of an arm alone rule a pose out."""
+    far = float(np.linalg.norm(T[:3, 3])) > robot._ik_reach
+    return far or bool(_core._ik_is_beyond(robot, np.ascontiguousarray(T)))
 
 
 def unreachable(held: Held, T: Array, *, proven: bool) -> Solutions:
@@ -162,7 +168,7 @@ def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
         where = "the values that reach it, none of them within limits"
     values = found.spread(count)
     if not len(values):
-        found_beside = cast(Solutions, nearest(held, T, start_of_search(robot, T), threads))
+        found_beside = cast(Solutions, nearest(held, T, start_of_search(held, T, threads), threads))
         # Where joints share their work but for a little, single values may reach what no interval does.
         proven = found.complete and len(held.free) > POSE_ASKS
         return found_beside if found_beside else unreachable(held, T, proven=proven)
@@ -180,7 +186,12 @@ def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
 
 def sampled_batch(held: Held, T: Array, count: int, threads: int) -> SolutionsBatch:
     shape = T.shape[:-2]
-    answers = [sampled(held, goal, count, threads) for goal in T.reshape(-1, 4, 4)]
+    answers = [
+        unreachable(held, goal, proven=True)
+        if is_beyond(held.robot, goal)
+        else sampled(held, goal, count, threads)
+        for goal in T.reshape(-1, 4, 4)
+    ]
     room = max((len(answer) for answer in answers), default=1) or 1
     q = np.full((len(answers), room, held.robot.dof), np.nan)
     for row, answer in zip(q, answers, strict=True):
@@ -232,17 +243,25 @@ def make(
     return cast(Solutions, made)
 
 
-def start_of_search(robot: Any, T: Array) -> Array:
+def start_of_search(held: Held, T: Array, threads: int) -> Array:
     """The middle of the limits, 0 for joints that have none; for poses (..., 4, 4) one configuration each
-    where a goal's slide that only leads ahead begins as far out as the goal is.
+    where a goal's slide only leads ahead. It begins as far out as the goal is, and the others where they look
+    at a point in the same direction that is not so far.
     """
+    robot, steps, near_by = held.robot, 100.0, 300.0
     lower, upper = robot.limits.lower, robot.limits.upper
     bounded = np.isfinite(lower) & np.isfinite(upper)
     middle = np.where(bounded, 0.5 * (np.where(bounded, lower, 0) + np.where(bounded, upper, 0)), 0.0)
     ahead = leads_ahead(robot)
     if not ahead.any():
         return middle
-    return np.where(ahead, np.linalg.norm(T[..., :3, 3], axis=-1)[..., None], middle)
+    away = np.linalg.norm(T[..., :3, 3], axis=-1)
+    if T.ndim == 2 and away > near_by:
+        closer = T.copy()
+        closer[:3, 3] /= min(steps, away / near_by * 2)
+        found = nearest(held, closer, start_of_search(held, closer, threads), threads)
+        middle = found.q[0] if found else middle
+    return np.where(ahead, away[..., None], middle)
 
 
 def sample_count(samples: Any) -> int:

@@ -129,7 +129,7 @@ class Solutions(_core.SolutionsBase):
         if self.goal.shape == (3,):
             return float(_core._ik_position_miss(self.robot, self.goal)[1])
         if self._partial is not None:
-            return nearest_miss(self, (ORIENTATION_FIRST,))[1]
+            return nearest_miss(self, ORIENTATION_FIRST)[1]
         return float(_core._ik_miss(self.robot, self.goal, ORIENTATION_FIRST)[1])
 
     @property
@@ -326,16 +326,18 @@ def unreachable_reason(found: Solutions) -> str:
     )
 
 
-def nearest_miss(
-    found: Solutions, weights: tuple[float, ...] = (1.0, ORIENTATION_FIRST)
-) -> tuple[Array, float, str]:
-    """Of a partial goal out of reach: the configuration of the longer arm that misses it least for one of the
-    weights of a radian; by how far [m], and by how much in words.
+def nearest_miss(found: Solutions, radian: float = 1.0) -> tuple[Array, float, str]:
+    """Of a partial goal out of reach: the configuration of the longer arm that misses it least; by how far
+    [m], and by how much in words. radian: how many metres one weighs where what is missed is compared.
     """
     whole, goal = found._about.whole, found._partial
     own = slice(len(goal.before), len(goal.before) + found.robot.dof)
-    tried = [_core._ik_miss(whole, found.goal, weight)[0] for weight in weights]
-    q = min(tried, key=lambda q: float(goal.residual(found.robot.fk(q[own]))))
+
+    def size(q: Array) -> float:
+        distances, angles = goal.misses(found.robot.fk(q[own]))
+        return float(max(distances, default=0.0) + radian * max(angles, default=0.0))
+
+    q = min((_core._ik_miss(whole, found.goal, weight)[0] for weight in (1.0, ORIENTATION_FIRST)), key=size)
     T = found.robot.fk(q[own])
     return q, float(max(goal.misses(T)[0], default=0.0)), goal.miss_in_words(T)
 

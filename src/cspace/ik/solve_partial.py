@@ -138,7 +138,18 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
     )
     whole = type(robot)(description)
     whole._ik_uncounted = (*range(first), *range(first + robot.dof, whole.dof))
+    if "ray" in goal.kind:  # whose point is the one nearest to the base
+        whole._ik_reach = reach_of(robot)
     return whole
+
+
+def reach_of(robot: Any) -> float:
+    """No point of the tip is farther from the base [m]: all links in one line."""
+    chain = robot.chain
+    corners = np.vstack([np.zeros(3), chain.points, chain.T_zero[:3, 3]])
+    slides = np.array([kind == "P" for kind in chain.joint_types])
+    farthest = np.maximum(np.abs(robot.limits.lower), np.abs(robot.limits.upper))[slides]
+    return float(np.linalg.norm(np.diff(corners, axis=0), axis=1).sum() + farthest.sum()) * (1 + 1e-9)
 
 
 def tilted(axis: Array, angle: float) -> Array:

@@ -59,7 +59,8 @@ inline bool is_announced_by_one(const ik::GeneralPlan& plan, const Posed& goal, 
     mark_doubles(plan, goal, found, twice);
     for (int k = 0; k < asked.count; ++k) {
         const ik::Certificate& seen = asked.seen[k];
-        if (seen.trusted && (sharing || !seen.shared) && all_matched(seen, found, twice)) return true;
+        if (!seen.trusted || !all_matched(seen, found, twice)) continue;
+        if (sharing || !share_angles(seen, plan.chain, found, twice, plan.paired[plan.order[k]])) return true;
     }
     return false;
 }

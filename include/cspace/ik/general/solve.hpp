@@ -118,12 +118,27 @@ inline bool all_matched(const ik::Certificate& seen, const ik::Solutions& found,
     return true;
 }
 
+// Hidden angles that stand beside others, or are themselves more than one.
+inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
+    int count = 0;
+    for (int k = 0; k < hidden.count; ++k) {
+        close[k] = hidden.root[k].width > 0;
+        for (int j = 0; j < hidden.count && !close[k]; ++j)
+            close[k] =
+                j != k && std::fabs(short_way(hidden.root[j].angle - hidden.root[k].angle)) < near_roots;
+        count += close[k];
+    }
+    return count;
+}
+
 // Whether solutions far from each other share a hidden angle and its roots may not show how many they are:
 // there are more of them already, or they stand where roots are not told apart and not by the arm's nature
 // (`paired`).
 inline bool share_angles(const ik::Certificate& seen, const ik::Chain& chain, const ik::Solutions& found,
-                         const bool* twice, const bool* close, bool paired) {
-    constexpr double far = 0.1, unresolved = 2e-4, exactly = 1e-6;
+                         const bool* twice, bool paired) {
+    constexpr double far = 0.01, unresolved = 2e-4, exactly = 1e-6;
+    bool close[ik::max_roots];
+    mark_close(seen.hidden, close);
     for (int k = 0; k < seen.hidden.count; ++k) {
         if (!close[k]) continue;
         const double angle = seen.hidden.root[k].angle;
@@ -194,19 +209,6 @@ inline bool follow_angles(const ik::Loop& loop, const Elimination& e, const ik::
     return !(e.a4_rank > 1e-6);
 }
 
-// Hidden angles that stand beside others, or are themselves more than one.
-inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
-    int count = 0;
-    for (int k = 0; k < hidden.count; ++k) {
-        close[k] = hidden.root[k].width > 0;
-        for (int j = 0; j < hidden.count && !close[k]; ++j)
-            close[k] =
-                j != k && std::fabs(short_way(hidden.root[j].angle - hidden.root[k].angle)) < near_roots;
-        count += close[k];
-    }
-    return count;
-}
-
 // Of roots that are there for every goal no solutions are expected.
 inline void expect_no_ghosts(const ik::GeneralPlan& plan, int number, ik::HiddenAngles& hidden) {
     const double* const ghost = plan.ghost + number * ik::GeneralPlan::most_ghosts;
@@ -251,7 +253,7 @@ inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const 
         all = all_matched(seen, out, twice);
     }
     seen.trusted = hidden.alias < 1e-9 && !hidden.overflow;
-    seen.shared = seen.clusters > 0 && share_angles(seen, plan.chain, out, twice, close, plan.paired[number]);
+    seen.shared = seen.clusters > 0 && share_angles(seen, plan.chain, out, twice, plan.paired[number]);
     seen.complete = all && seen.trusted && !seen.shared;
     return seen;
 }
