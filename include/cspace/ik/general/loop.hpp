@@ -91,6 +91,7 @@ inline ik::Chain in_units_of(double length, ik::Chain chain) {
 }
 
 inline ik::Formulation formulation(int number) { return {number % 6, number >= 6}; }
+inline int hidden_joint(ik::Formulation form) { return form.backwards ? 5 - form.shift : form.shift; }
 
 // From axis 6 by the goal back to axis 1.
 inline Posed closing_link(const ik::LoopFrames& frames, const Posed& goal) {
@@ -107,7 +108,7 @@ inline ik::Loop make_loop(const ik::LoopFrames& frames, const bool* prismatic, c
     for (int j = 0; j < 6; ++j) {
         const int k = (form.shift + j) % 6;
         loop.M[j] = !form.backwards ? link[k] : inverse(link[k == 5 ? 5 : 4 - k]);
-        loop.joint[j] = form.backwards ? 5 - k : k;
+        loop.joint[j] = form.backwards ? 5 - k : k;  // the first is the hidden joint
         loop.slides[j] = prismatic[loop.joint[j]];
     }
     return loop;

@@ -48,6 +48,7 @@ inline bool admit_hidden_twins(const ik::GeneralPlan& plan, const Posed& goal, i
 // The formulations that a goal was put to.
 struct Asked {
     int count = 0, work = 0;
+    int number[ik::formulations];
     ik::Certificate seen[ik::formulations];
 };
 
@@ -60,32 +61,44 @@ inline bool is_announced_by_one(const ik::GeneralPlan& plan, const Posed& goal, 
     for (int k = 0; k < asked.count; ++k) {
         const ik::Certificate& seen = asked.seen[k];
         if (!seen.trusted || !all_matched(seen, found, twice)) continue;
-        if (sharing || !share_angles(seen, plan.chain, found, twice, plan.paired[plan.order[k]])) return true;
+        if (sharing || !share_angles(seen, plan.chain, found, twice, plan.paired[asked.number[k]]))
+            return true;
     }
     return false;
 }
 
+inline void ask_formulation(const ik::GeneralPlan& plan, const Posed& goal, int number, ik::Solutions& out,
+                            Asked& asked) {
+    ik::Certificate& seen = asked.seen[asked.count];
+    asked.number[asked.count++] = number;
+    seen = solve_formulation(plan, goal, number, out);
+    asked.work += seen.work;
+    out.crowded = out.crowded || seen.clusters > 0;
+    out.complete = seen.complete && !(seen.clusters > 0 && admit_hidden_twins(plan, goal, out));
+    seen.trusted = seen.trusted && (out.complete || !seen.complete);
+}
+
 // One formulation after the other until one of them certifies that nothing is missing; where none does, what
-// all of them found together may be what one of them announced.
+// all of them found together may be what one of them announced. Where solutions share an angle others that
+// hide it are of no use.
 inline void ask_formulations(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out,
                              Asked& asked) {
-    constexpr int most_shared = 2;  // a goal special to two of them is special to most
+    constexpr int most_shared = 3;  // a goal special to so many joints is special to most
     out.crowded = false;
-    int shared = 0;
     if (plan.slides == 3) {
         out.complete = plan.regular > 0 && solve_orientation_first(plan, goal, out);
         out.crowded = !out.complete;
     } else {
         out.complete = plan.slides == 0 && is_beyond_reach(plan.frames, goal);
     }
-    while (asked.count < plan.regular && plan.slides < 3 && !out.complete && shared < most_shared) {
-        ik::Certificate& seen = asked.seen[asked.count];
-        seen = solve_formulation(plan, goal, plan.order[asked.count++], out);
-        out.crowded = out.crowded || seen.clusters > 0;
-        asked.work += seen.work;
-        shared += seen.shared;
-        out.complete = seen.complete && !(seen.clusters > 0 && admit_hidden_twins(plan, goal, out));
-        seen.trusted = seen.trusted && (out.complete || !seen.complete);
+    int shared = 0;
+    bool shares[6] = {};
+    for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete && shared < most_shared; ++k) {
+        const int joint = hidden_joint(formulation(plan.order[k]));
+        if (shares[joint]) continue;
+        ask_formulation(plan, goal, plan.order[k], out, asked);
+        shares[joint] = asked.seen[asked.count - 1].shared;
+        shared += shares[joint];
     }
     if (asked.count > 0 && !out.complete) out.complete = is_announced_by_one(plan, goal, asked, false, out);
     out.complete = out.complete && come_in_pairs(plan, goal, out);
