@@ -209,7 +209,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Critical start) {
     const int n = arm.chain.n, p = tracer.parameter;
     const CurvePoint origin = at;
     const int first_piece = tracer.out->count;
-    double stride = 0.02, middle[ik::max_joints], home = 0;
+    double stride = 0.02, middle[ik::max_joints], home = 0, travel = 0;
     for (int i = 0; i < n; ++i) middle[i] = at.q[i];
     remember(tracer, at.q, true);
     for (int k = 0; k < most_steps; ++k) {
@@ -251,6 +251,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Critical start) {
             add_piece(tracer, start, {next.q[p], ik::end_none, 0}, middle);
             return ArcEnd::open;
         }
+        travel += next.q[p] - at.q[p];
         // Back at the origin, from where the arc may have started in the middle of a piece.
         const double before = home;
         home = 0;
@@ -268,6 +269,8 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Critical start) {
             dot_n(origin.tangent, next.tangent, n) > 0.5) {
             const double value = next.q[p] + home * next.tangent[p];
             if (tracer.out->count == first_piece) {
+                if (std::fabs(travel) < pi)
+                    return ArcEnd::closed;  // it rests, at the one value that it can have
                 add_piece(tracer, {-pi, ik::end_none, 0}, {pi, ik::end_none, 0}, middle);
                 return ArcEnd::closed;
             }
