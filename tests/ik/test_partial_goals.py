@@ -428,3 +428,15 @@ def test_the_freedom_of_a_partial_goal_has_feasible_intervals(name):
         robot.redundancy()
     with pytest.raises(InputTypeError, match="no keyword 'postion'"):
         robot.redundancy(postion=T[:3, 3])
+
+
+def test_a_ray_beyond_the_limits_of_a_slide_is_answered_as_other_goals_are():
+    axes, points = [[0, 0, 1], [0, 1, 0], [1, 0, 0], [0, 0, 1], [0, 1, 0]], np.zeros((5, 3))
+    tip = cs.pose([0.2, 0.1, 0.3])
+    lower, upper = [-3, -3, -0.5, -3, -3], [3, 3, 0.5, 3, 3]
+    robot = Robot(
+        from_screws(axes, points, tip, joint_types="RRPRR", lower=lower, upper=upper, name="reacher")
+    )
+    T = robot.fk([0.3, -0.4, 6.0, 0.5, 0.7])
+    found = robot.ik(ray=(T[:3, 3], T[:3, 2]))
+    assert found or not found.complete

@@ -93,8 +93,7 @@ def inverse_kinematics(
     near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
     singular pose leaves free take its values. fixed: joints held at given values, by name or number,
     {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with two spherical
-    joints, the angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or an
-    array.
+    joints, the angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or many.
     samples: of an arm with one joint to spare, at how many values of it the branches are listed (16 unless
     given). least_squares: where nothing reaches the goal, answer with the configuration that misses it least
     (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the

@@ -144,12 +144,14 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
 
 
 def reach_of(robot: Any) -> float:
-    """No point of the tip is farther from the base [m]: all links in one line."""
+    """No point of the tip is farther from the base [m]: all links in one line; without end for slides, whose
+    limits a solution may break.
+    """
     chain = robot.chain
+    if "P" in chain.joint_types:
+        return float("inf")
     corners = np.vstack([np.zeros(3), chain.points, chain.T_zero[:3, 3]])
-    slides = np.array([kind == "P" for kind in chain.joint_types])
-    farthest = np.maximum(np.abs(robot.limits.lower), np.abs(robot.limits.upper))[slides]
-    return float(np.linalg.norm(np.diff(corners, axis=0), axis=1).sum() + farthest.sum()) * (1 + 1e-9)
+    return float(np.linalg.norm(np.diff(corners, axis=0), axis=1).sum()) * (1 + 1e-9)
 
 
 def tilted(axis: Array, angle: float) -> Array:
