@@ -9,6 +9,8 @@ import pytest
 
 from cspace.errors import InputError
 from cspace.ik import short_arms
+from cspace.model import from_screws
+from cspace.robot import Robot
 from cspace.spatial import pose
 from oracles import many_starts
 
@@ -108,3 +110,47 @@ def test_misuse_is_named():
         short_arms.position_solutions(z, o, "RR", np.eye(4), [0, 0, 0])
     with pytest.raises(InputError, match="p holds nan"):
         short_arms.position_solutions(z, o, "R", np.eye(4), [0, 0, np.nan])
+
+
+def arm_in_a_plane(rng, word):
+    """An arm that keeps its tip in a plane: turns about z, slides across it. One joint is to spare."""
+    a = rng.uniform(0, np.pi, 3)
+    across = np.stack([np.cos(a), np.sin(a), np.zeros(3)], axis=1)
+    axes = np.where([[kind == "R"] for kind in word], [0, 0, 1.0], across)
+    points = np.append(rng.uniform(-1, 1, (3, 2)), np.zeros((3, 1)), axis=1)
+    T_zero = pose((*rng.uniform(-1, 1, 2), 0.3))
+    return Robot(from_screws(axes, points, T_zero, joint_types=word))
+
+
+def arm_on_a_sphere(rng, word):
+    """Three turns about lines that meet: the tip stays on a sphere, one joint is to spare."""
+    axes = rng.normal(size=(3, 3))
+    axes /= np.linalg.norm(axes, axis=1, keepdims=True)
+    T_zero = pose(rng.uniform(-1, 1, 3))
+    return Robot(from_screws(axes, np.zeros((3, 3)), T_zero, joint_types=word))
+
+
+@pytest.mark.parametrize("word", ["".join(w) for w in itertools.product("RP", repeat=3)] + ["sphere"])
+def test_each_curve_of_a_family_is_listed_once(word):
+    rng = np.random.default_rng(len(word) + WORDS.index(word) if word in WORDS else 0)
+    numbers = set()
+    for _ in range(40):
+        robot = arm_on_a_sphere(rng, "RRR") if word == "sphere" else arm_in_a_plane(rng, word)
+        q = rng.uniform(-2, 2, 3)
+        p = robot.fk(q)[:3, 3]
+        found = robot.ik(position=p)
+        assert np.abs(robot.fk(found.q)[:, :3, 3] - p).max() < 1e-9
+        families = found.families
+        assert len(families) == len(found)
+        gap = [distance(robot, family.nearest(q), q) for family in families]
+        assert min(gap) < 1e-6
+        assert distance(robot, robot.ik(position=p, near=q).q[0], q) < 1e-6
+        for a, b in itertools.permutations(families, 2):
+            assert distance(robot, a.nearest(b.q), b.q) > 1e-6
+        numbers.add(len(found))
+    assert numbers == ({2} if word == "PRP" else {1} if word.count("P") > 1 else {1, 2})
+
+
+def distance(robot, a, b):
+    turns = np.array([kind == "R" for kind in robot.joint_types])
+    return np.abs(many_starts.wrapped((a - b)[None], turns)).max()

@@ -68,7 +68,7 @@ class Family:
         """n configurations along the family, (n, dof) [rad, m], evenly spread, each keeping the tip.
 
         From one end of the part within limits to the other, both included; of a closed curve without limits
-        from q once around, angles in (−π, π]. No rows where q breaks the limits (see bounds). Raises
+        from q once around, joints that go all the way round in (−π, π]. No rows where q breaks the limits (see bounds). Raises
         InputError where the family has no end, naming the joint, and for n below 1.
         """
         if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
@@ -82,7 +82,8 @@ class Family:
             name = self._robot.joint_names[int(endless[0])]
             raise InputError(f"the family has no end, {name} moves on for ever: give the robot limits")
         q = self._arc.sample(int(n))
-        return wrap(q, self._robot.joint_types) if self._arc.is_loop else q
+        goes_round = self._arc.is_loop & (np.ptp(self.bounds, axis=1) >= 2 * np.pi)
+        return np.where(goes_round, wrap(q, self._robot.joint_types), q)
 
     def nearest(self, q: Array) -> Array:
         """The configuration of the family that is nearest to q (dof,), limits aside, (dof,) [rad, m]."""

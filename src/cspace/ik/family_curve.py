@@ -49,6 +49,15 @@ class Curve:
     def length(self) -> float:
         return float(self.s[-1])
 
+    def beside(self, k: int) -> tuple[float, float]:
+        """The arc lengths of the points before and after point k; a closed curve goes on where it began."""
+        before, last = k - 1, len(self.s) - 1
+        if self.shift is None:
+            return float(self.s[max(before, 0)]), float(self.s[min(k + 1, last)])
+        low = self.s[before] if k > 0 else self.s[last - 1] - self.length
+        high = self.s[k + 1] if k < last else self.s[1] + self.length
+        return float(low), float(high)
+
     def at(self, s: Array) -> Array:
         """Configurations at these arc lengths (k,), (k, dof)."""
         around = np.floor(s / self.length) if self.shift is not None else np.zeros_like(s)
@@ -135,15 +144,13 @@ def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, see
     prepare(robot)
     rounds, parts = 9, 33
     curve, _ = trace(robot, np.ascontiguousarray(q), direction, whole_pose)
-    s, points = curve.s, curve.points
-    if curve.shift is not None:  # a closed curve goes on where it began
-        s = np.concatenate([[s[-2] - s[-1]], s])
+    low, high = curve.beside(int(np.argmin(distances(robot, curve.points, seed))))
+    for _ in range(rounds):  # each narrows the piece between two points sixteenfold
+        s = np.linspace(low, high, parts)
         points = curve.at(s)
-    for _ in range(rounds):  # each narrows the best piece sixteenfold
         k = int(np.argmin(distances(robot, points, seed)))
-        s = np.linspace(s[max(k - 1, 0)], s[min(k + 1, len(s) - 1)], parts)
-        points = curve.at(s)
-    return np.asarray(points[int(np.argmin(distances(robot, points, seed)))])
+        low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
+    return np.asarray(points[k])
 
 
 def distances(robot: Any, points: Array, seed: Array) -> Array:

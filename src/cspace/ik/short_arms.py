@@ -32,8 +32,9 @@ class ShortArmSolutions:
 
     q: (..., 8, n) joints [rad or m], NaN beyond count.
     count: (...) how many of them.
-    free: (..., 8) whether a configuration stands for a family of infinitely many; the rule: joint 1 at 0
-        where the others can follow, else the last joint at 0, else the middle of what they can follow.
+    free: (..., 8) whether a configuration stands for a family of infinitely many, one for each curve of
+        them. The rule: of the first and the last joint one that can take any value is at 0; where neither
+        can, the first is at 0 if the others can follow, else the last, else the first is where they end.
     direction: (..., 8, n) unit direction in which the joints of a family start to move; NaN elsewhere.
     missing: (...) by how much the goal is out of reach [m], 0 where it is reached; NaN for poses, where it is
         not computed.

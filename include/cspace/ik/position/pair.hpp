@@ -2,63 +2,17 @@
 //
 // Two circles: two_turns.hpp, a quartic. A circle and a line: eliminating the line's coordinate leaves a
 // trigonometric polynomial of degree two in the angle (one, if both conditions are linear). Two lines: a line
-// and a conic, or two lines. The answers are candidates, to be refined on the arm itself; where the
-// conditions are dependent, further candidates represent the family: the first joint at zero where the last
-// can follow, else the last at zero, else either where it comes nearest to the middle joint.
+// and a conic, or two lines. Conditions that are one: one_condition.hpp. The answers are candidates, to be
+// refined on the arm itself; where none is a solution, further candidates represent a family: the first joint
+// at zero where the last can follow, else the last at zero, else either where it comes nearest to the middle
+// joint.
 #pragma once
 
-#include "cspace/ik/position/curve.hpp"
-#include "cspace/ik/subproblems/two_turns.hpp"
-
-namespace cspace {
-
-struct PairCandidates {
-    int count = 0;
-    double first[48], last[48];
-    int stage[48];  // 0: from the conditions; later ones represent families
-    int now = 0;
-};
-
-}  // namespace cspace
+#include "cspace/ik/position/one_condition.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
-inline void add(PairCandidates& found, double first, double last) {
-    if (found.count == 48 || !std::isfinite(first) || !std::isfinite(last)) return;
-    found.first[found.count] = first;
-    found.stage[found.count] = found.now;
-    found.last[found.count++] = last;
-}
-
 namespace pair {
-
-// The q with f(q) = target on a line: at most two; the vertex stands in where a parabola falls short.
-inline int values_on_line(const OnCurve& f, double target, double* q) {
-    const double k = f.k - target;
-    if (std::fabs(f.square) <= tolerance::rounding) {
-        if (std::fabs(f.a) <= tolerance::rounding) return 0;
-        q[0] = -k / f.a;
-        return 1;
-    }
-    const QuadraticRoots<double> r = quadratic_roots(f.square, f.a, k, 1.0);
-    q[0] = r.x[0], q[1] = r.x[1];
-    return r.two ? 2 : 1;
-}
-inline int values_on_circle(const OnCurve& f, double target, double* q) {
-    const CosSinRoots<double> r = cos_sin_roots(f.a, f.b, target - f.k, 1.0);
-    q[0] = angle_of(r.theta[0]), q[1] = angle_of(r.theta[1]);
-    return r.two ? 2 : 1;
-}
-inline int values(const OnCurve& f, double target, double* q) {
-    return f.line ? values_on_line(f, target, q) : values_on_circle(f, target, q);
-}
-inline double value(const OnCurve& f, double q) {
-    if (f.line) return f.k + q * (f.a + q * f.square);
-    double s, c;
-    sincos(q, s, c);
-    return f.k + c * f.a + s * f.b;
-}
-inline double weight(const OnCurve& f) { return std::fabs(f.a) + std::fabs(f.b) + std::fabs(f.square); }
 
 // For a given value of one joint, the other from each condition that depends on it.
 inline void follow_last(const OnCurve f[2], const OnCurve g[2], double first, PairCandidates& found) {
@@ -129,16 +83,16 @@ inline void two_lines(const OnCurve f[2], const OnCurve g[2], PairCandidates& fo
     for (int i = 0; i < n; ++i) add(found, foot1 + t[i] * c, foot3 + t[i] * a);
 }
 
-// The lowest point of a parabola, or zero.
-inline double vertex(const OnCurve& f) { return f.line && f.square > 0 ? -f.a / (2 * f.square) : 0; }
-
 }  // namespace pair
 
 // Candidates (q1, q3) for f_i(q1) = g_i(q3); f_0 and g_0 have no square.
 inline PairCandidates solve_pair(const OnCurve f[2], const OnCurve g[2]) {
     using namespace pair;
     PairCandidates found;
-    if (!f[0].line && !g[0].line) {
+    int k;
+    if (is_one_condition(f, g, k)) {
+        on_every_curve(f[k], g[k], found);
+    } else if (!f[0].line && !g[0].line) {
         two_circles(f, g, found);
     } else if (!f[0].line) {
         circle_and_line(f, g, found);

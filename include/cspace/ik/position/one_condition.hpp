@@ -1,0 +1,81 @@
+// Where the two conditions on q1 and q3 are one, f(q1) = g(q3): one pair (q1, q3) on each of its curves.
+//
+// Both sides rise and fall once, over a circle between two extremes, along a line above one or without end.
+// If the values of one side lie within those of the other, its joint is free to take any value and the other
+// follows on either slope: two curves (or one, where there is a single slope). If they only overlap, both
+// joints turn back where a side ends, and the curve is one: that of a four-bar whose links satisfy Grashof's
+// condition in the first case and do not in the second (Grashof 1883).
+#pragma once
+
+#include "cspace/ik/position/values.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+namespace pair {
+
+struct Range {
+    double least, most;
+};
+inline Range range(const OnCurve& f) {
+    constexpr double without_end = std::numeric_limits<double>::infinity();
+    if (!f.line) {
+        const double reach = std::hypot(f.a, f.b);
+        return {f.k - reach, f.k + reach};
+    }
+    if (f.square <= tolerance::rounding) return {-without_end, without_end};
+    return {f.k - f.a * f.a / (4 * f.square), without_end};
+}
+inline bool is_within(const Range& inner, const Range& outer) {
+    return inner.least >= outer.least - tolerance::rounding && inner.most <= outer.most + tolerance::rounding;
+}
+inline bool holds(const Range& r, double value) {
+    return value >= r.least - tolerance::rounding && value <= r.most + tolerance::rounding;
+}
+
+// The values of a joint from where the side of its condition rises: its greatest value, or its least.
+inline double at_most(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(f.b, f.a); }
+inline double at_least(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(-f.b, -f.a); }
+
+// Whether conditions f_i = g_i are one; `k` is then the number of the one that says something.
+inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
+    double v[2][7], size[2] = {0, 0}, both = 0;
+    for (int i = 0; i < 2; ++i) {
+        const double terms[7] = {f[i].k - g[i].k, f[i].a, f[i].b, f[i].square, g[i].a, g[i].b, g[i].square};
+        for (int j = 0; j < 7; ++j) v[i][j] = terms[j], size[i] += terms[j] * terms[j];
+    }
+    k = size[1] > size[0];
+    if (size[k] <= tolerance::rounding * tolerance::rounding) return false;
+    for (int j = 0; j < 7; ++j) both += v[0][j] * v[1][j];
+    double apart = 0;
+    for (int j = 0; j < 7; ++j) {
+        const double d = v[1 - k][j] - both / size[k] * v[k][j];
+        apart += d * d;
+    }
+    return apart <= tolerance::rounding * tolerance::rounding &&
+           weight(f[k]) + weight(g[k]) > tolerance::rounding;
+}
+
+// One pair per curve of f(q1) = g(q3): the joint that is free at 0; else the first at 0, or the last at 0,
+// or the first where its side ends.
+inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& found) {
+    const Range of_f = range(f), of_g = range(g);
+    double q[2];
+    if (is_within(of_f, of_g)) {
+        const int n = values(g, value(f, 0), q);
+        for (int i = 0; i < n; ++i) add(found, 0, q[i]);
+    } else if (is_within(of_g, of_f)) {
+        const int n = values(f, value(g, 0), q);
+        for (int i = 0; i < n; ++i) add(found, q[i], 0);
+    } else if (holds(of_g, value(f, 0))) {
+        if (values(g, value(f, 0), q) > 0) add(found, 0, q[0]);
+    } else if (holds(of_f, value(g, 0))) {
+        if (values(f, value(g, 0), q) > 0) add(found, q[0], 0);
+    } else {
+        const double first = holds(of_g, of_f.most) ? at_most(f) : at_least(f);
+        if (values(g, value(f, first), q) > 0) add(found, first, q[0]);
+    }
+}
+
+}  // namespace pair
+
+}  // namespace cspace::inline CSPACE_ISA
