@@ -68,8 +68,8 @@ class Family:
         """n configurations along the family, (n, dof) [rad, m], evenly spread, each keeping the tip.
 
         From one end of the part within limits to the other, both included; of a closed curve without limits
-        from q once around, joints that go all the way round in (−π, π]. No rows where q breaks the limits (see bounds). Raises
-        InputError where the family has no end, naming the joint, and for n below 1.
+        from q once around, joints that go all the way round in (−π, π]. No rows where q breaks the limits
+        (see bounds). Raises InputError where the family has no end, naming the joint, and for n below 1.
         """
         if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
             raise InputTypeError(f"n is a {type(n).__name__}, expected a number of configurations")
