@@ -2,7 +2,7 @@
 // a stride along it decides.
 #pragma once
 
-#include "cspace/ik/refine.hpp"
+#include "cspace/ik/family_curve.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
@@ -10,22 +10,39 @@ namespace cspace::inline CSPACE_ISA {
 // on top of a family) the error halves in each.
 inline constexpr int steps_back = 30;
 
+// A stride from q and back to the goal: of the way, the part that was kept; 0 if the goal is then missed by
+// more than `most`. `floor`: by steps that leave directions alone which move next to nothing, as rounded axes
+// leave them.
+inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                             const double* direction, double stride, bool floor, double most) {
+    double moved[ik::max_joints] = {}, along = 0;
+    for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * direction[i];
+    PoseError error;
+    const double left = floor ? (onto_curve(chain, {goal, true, length}, moved, error), size_of_error(error))
+                              : refine(chain, goal, length, moved, error, steps_back);
+    for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
+    return left <= most ? along / stride : 0;
+}
+
 // Whether the arm can move along `direction` with its tip at rest: it goes a stride that way and comes back
 // to the goal. In a family it has moved by about the stride, whatever the stride; at a fold it slides back,
 // or over to a neighbouring solution, whose distance is one and the same.
 inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                          const double* direction) {
+    constexpr double exactly = 1e-12,
+                     nearly = 1e-11;  // missed along a family of the axes as they are; rounded
+    PoseError at;
+    measure(chain, goal, length, q, at);
+    const double on_floor = max(nearly, 2 * size_of_error(at));
     for (const double stride : {0.02, 0.05}) {
         bool moved_on = false;
-        for (const double way : {stride, -stride}) {
-            if (moved_on) break;
-            double moved[ik::max_joints], along = 0;
-            for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + way * direction[i];
-            PoseError error;
-            if (refine(chain, goal, length, moved, error, steps_back) > 1e-12) continue;
-            for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
-            moved_on = 0.8 < along / way && along / way < 1.25;
-        }
+        for (const bool floor : {false, true})
+            for (const double way : {stride, -stride}) {
+                if (moved_on) break;
+                const double kept =
+                    kept_of_stride(chain, goal, length, q, direction, way, floor, floor ? on_floor : exactly);
+                moved_on = 0.8 < kept && kept < 1.25;
+            }
         if (!moved_on) return false;
     }
     return true;

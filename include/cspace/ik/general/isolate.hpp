@@ -46,6 +46,7 @@ namespace cspace::inline CSPACE_ISA {
 
 inline constexpr double cluster_width = 2e-5;  // [rad], a piece this small is not divided further
 inline constexpr double near_miss = 0.02;      // [rad], a pair announced on such a piece is followed up
+inline constexpr double order_seen = 4e-4;     // [rad], roots this close show together in how f grows
 inline constexpr int most_samplings = 48, most_divisions = 400;  // of pieces, per goal
 inline constexpr double regular_alias = 1e-6;  // above, a formulation vanishes identically or drowns in noise
 
@@ -70,6 +71,20 @@ inline void put(ik::HiddenAngles& out, const ik::HiddenAngle& root) {
         out.root[out.count++] = root;
 }
 
+// How many roots are about an angle: f grows with that power of the distance from them.
+template <class Function>
+inline int order_of_zero(const Function& f, double angle) {
+    constexpr double near = order_seen, ratio = 3;
+    using V = Pack<4>;
+    V at, s, c;
+    for (int k = 0; k < 4; ++k) set_lane(at, k, angle + (k < 2 ? -near : near) * (k % 3 ? 1 : ratio));
+    sincos(at, s, c);
+    const V value = abs(f(c, s));
+    const double outside = lane(value, 0) + lane(value, 3), inside = lane(value, 1) + lane(value, 2);
+    const double order = std::round(std::log(outside / inside) / std::log(ratio));
+    return order > 0 && order <= ik::degree ? int(order) : 0;
+}
+
 // A small piece where the signs leave a pair of roots open: the parabola through its middle tells whether
 // they are real and apart, together, or missing by more than noise.
 template <class Function>
@@ -92,7 +107,13 @@ inline void close_roots(const Function& f, const ik::Arc& arc, const Variations&
     for (int k = 0; k < out.count; ++k)
         if (out.root[k].width > 0 && std::fabs(out.root[k].angle - vertex) < 1e-2 * h) return;
     const double apart = depth < 0 ? std::sqrt(-depth) : 0;
-    if (apart > 1e-2 * h && apart < 3 * h) {
+    const int order = signs.most > 2 ? order_of_zero(f, vertex) : 0;
+    out.evaluations += signs.most > 2;
+    if (order > 2) {
+        for (int k = 0; k < out.count; ++k)  // counted there
+            if (out.root[k].expected > 2 && std::fabs(out.root[k].angle - vertex) < order_seen) return;
+        put(out, {vertex, h, order});
+    } else if (apart > 1e-2 * h && apart < 3 * h) {
         put(out, {vertex - apart, h, 1});
         put(out, {vertex + apart, h, 1});
     } else {
@@ -152,6 +173,18 @@ inline void divide(const ik::SamplerTables& t, const ik::Arc& arc, ik::Pieces& p
         half.noise = arc.noise;
         half.resampled = arc.resampled;
         keep_if_crossed(pieces);
+    }
+}
+
+// Several roots seen as one are fewer by those beside them that were isolated.
+inline void count_once(ik::HiddenAngles& out) {
+    for (int k = 0; k < out.count; ++k) {
+        ik::HiddenAngle& root = out.root[k];
+        if (!(root.expected > 2)) continue;
+        for (int j = 0; j < out.count; ++j)
+            if (out.root[j].expected == 1 && std::fabs(out.root[j].angle - root.angle) < order_seen)
+                --root.expected;
+        if (root.expected < 2) root.expected = ik::unknown;
     }
 }
 
@@ -225,6 +258,7 @@ inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) 
         divide(tables, arc, stack);
     }
     find_simple_roots(simple, last_step, out);
+    count_once(out);
     note_near_misses(dips, out);
 }
 

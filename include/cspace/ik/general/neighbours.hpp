@@ -98,9 +98,9 @@ inline void solve_beside(const ik::GeneralArm& arm, const Posed& goal, ik::Solut
 // Goals that are special to an arm, say a tool held along its first axis, have solutions that share every
 // hidden angle: goals tilted to either side have not, if by enough. True if both certify their solutions, and
 // these become those of `out`, one each.
-inline bool certify_by_tilting(const ik::GeneralPlan& plan, const Posed& goal, double size,
+inline bool certify_by_tilting(const ik::GeneralPlan& plan, const Posed& goal, double size, int way,
                                ik::Solutions& out) {
-    const Vec3d turn = pattern(1), away = pattern(2);
+    const Vec3d turn = pattern(2 * way + 1), away = pattern(2 * way + 2);
     const Vec3d axis = (1 / norm(turn)) * turn;
     Led led[2];
     for (int k = 0; k < 2; ++k) {
@@ -138,9 +138,10 @@ inline void solve_tilted(const ik::GeneralPlan& plan, const Posed& goal, const A
         drowned = drowned && asked.seen[k].hidden.alias > regular_alias;
     }
     if (!shared && !drowned) return;
-    for (const double size : {3e-3, 2e-2}) {  // [rad], and over the arm's length
+    constexpr double sizes[] = {3e-3, 2e-2};  // [rad], and over the arm's length
+    for (int trial = 0; trial < 6; ++trial) {
         ik::Solutions tried = out;
-        if (!certify_by_tilting(plan, goal, size, tried)) continue;
+        if (!certify_by_tilting(plan, goal, sizes[trial % 2], trial / 2, tried)) continue;
         if (!is_announced_by_one(plan, goal, asked, true, tried) && lacks_by_descent(plan, goal, tried))
             return;
         out = tried;

@@ -13,6 +13,9 @@
 namespace cspace::ik {
 
 inline constexpr int harmonics = 8, degree = 2 * harmonics, samples = 20, arcs = 10;
+// [rad] No arc, nor a half of one, ends at an angle that has a name: solutions like to merge there, and a
+// double root on a border shows no sign.
+inline constexpr double askew = 0.1;
 inline constexpr int padded = 20;  // degree + 1 coefficients or nodes, up to whole packs of four
 
 // Ten arcs of 36° share one matrix: two samples stand on each, and the next arc sees them two further on.
@@ -127,12 +130,13 @@ inline void fill_halves(ik::SamplerTables& t) {
 inline ik::SamplerTables make_sampler_tables() {
     ik::SamplerTables t{};
     for (int j = 0; j < ik::samples; ++j) {
-        t.angle[j] = 2 * pi * (j + 0.5) / ik::samples;
+        const double on_grid = 2 * pi * (j + 0.5) / ik::samples;
+        t.angle[j] = on_grid + ik::askew;
         t.cosine[j] = std::cos(t.angle[j]);
         t.sine[j] = std::sin(t.angle[j]);
-        t.alias[0][j] = 2.0 / ik::samples * std::cos(9 * t.angle[j]);
-        t.alias[1][j] = 2.0 / ik::samples * std::sin(9 * t.angle[j]);
-        t.alias[2][j] = 1.0 / ik::samples * std::sin(10 * t.angle[j]);
+        t.alias[0][j] = 2.0 / ik::samples * std::cos(9 * on_grid);
+        t.alias[1][j] = 2.0 / ik::samples * std::sin(9 * on_grid);
+        t.alias[2][j] = 1.0 / ik::samples * std::sin(10 * on_grid);
     }
     fill_arc_matrix(t);
     fill_node_matrices(t);
