@@ -74,7 +74,18 @@ inline bool lies_beside(const ik::Chain& chain, const double* q, const double* t
     return size2 < reach * reach && size2 - along * along < narrow * narrow * size2 + 1e-12;
 }
 
-// `idle`: the values that leading joints take, zero if null. Lengths are over the arm's.
+// Whether families cross at q: there it has more directions than one.
+inline bool is_crossing(const ik::Chain& chain, const ik::Held& held, const double* q) {
+    constexpr double close = 1e-6;
+    PoseError at;
+    measure_held(chain, held, q, at);
+    int free = 0;
+    for (int i = 0; i < chain.n; ++i) free += at.jacobian.sigma[i] < close;
+    return free > 1;
+}
+
+// `idle`: the values that leading joints take, zero if null; but where families cross none is taken to the
+// crossing, which would not tell which of them is meant. Lengths are over the arm's.
 inline void keep_one_per_family(const ik::Chain& chain, const Posed& goal, const double* idle,
                                 ik::Solutions& out) {
     const ik::Held held = {goal, true, 1};
@@ -103,6 +114,7 @@ inline void keep_one_per_family(const ik::Chain& chain, const Posed& goal, const
             const int most_steps = min(steps_left, 1000);
             if (follow_curve(chain, held, start, way, visit, most_steps) == ik::CurveEnd::closed) break;
         }
+        if (is_crossing(chain, held, r.q) && !is_crossing(chain, held, start)) continue;
         for (int i = 0; i < chain.n; ++i) {
             out.q[k][i] = chain.prismatic[i] ? r.q[i] : wrap_once(short_way(r.q[i]));
             out.direction[k][i] = r.direction[i];
