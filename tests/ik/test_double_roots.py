@@ -140,3 +140,25 @@ def test_a_shallow_fold_is_listed_once_or_as_a_pair(q):
     gaps = gap(robot, found.q, q)
     assert gaps.min() < 1e-5
     assert np.count_nonzero(gaps < 1e-4) <= 2
+
+
+@pytest.mark.parametrize("name", ["gen3_lite", "jaco2", "irb140", "m1013", "crx10ia", "crx3ia"])
+def test_where_joints_stand_at_angles_with_a_name(name):
+    """Solutions merge most at multiples of 30 and 45 degrees, where arcs of the hidden angle would end."""
+    robot, rng = load(name), np.random.default_rng([4, *map(ord, name)])
+    merged = certified = 0
+    for _ in range(120):
+        step = rng.choice([np.pi / 6, np.pi / 4, np.pi / 2])
+        q = np.where(
+            rng.random(6) < rng.choice([0, 0.3]), rng.uniform(-3, 3, 6), rng.integers(-6, 7, 6) * step
+        )
+        found = robot.ik(robot.fk(q))
+        sigma = weakest(robot, q)
+        if found.status == "singular" or not found.complete:
+            continue
+        certified += 1
+        merged += sigma < 1e-6
+        # Where several folds meet, rounding of 1e-16 moves a solution by its fourth root.
+        assert min(gap(robot, q, row) for row in found.q) < (1e-5 if sigma > 1e-6 else 1e-3), q.tolist()
+    assert certified > 60
+    assert merged > 0
