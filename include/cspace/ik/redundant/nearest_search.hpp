@@ -220,6 +220,7 @@ inline void nearest_of_surface(const ik::Redundant& arm, const Posed& goal, cons
 inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, const double* seed,
                                Nearest& best) {
     constexpr int most = 32;
+    constexpr double on_floor = 1e-5;
     Starts starts;
     double q[ik::max_joints];
     for (int k = 0; k < most; ++k) {
@@ -227,8 +228,11 @@ inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, cons
         for (int i = 0; i < arm.chain.n; ++i)
             q[i] = seed[i] + (arm.chain.prismatic[i] ? arm.length / pi : k / (most - 1.0)) * q[i];
         PoseError error;
-        if (refine(arm.chain, goal, arm.length, q, error) <= tolerance::reached)
-            keep_start(arm, starts, q, distance_from_seed(arm, seed, q));
+        double left = refine(arm.chain, goal, arm.length, q, error);
+        // On the floor of a valley that rounded axes have made: from there Newton's method goes along it.
+        if (left > tolerance::reached && left < on_floor)
+            left = refine(arm.chain, goal, arm.length, q, error);
+        if (left <= tolerance::reached) keep_start(arm, starts, q, distance_from_seed(arm, seed, q));
     }
     settle_starts(arm, goal, seed, starts, nullptr, best);
     for (int k = 0; k < starts.count; ++k) {  // at least a solution, where Newton's method did not settle
