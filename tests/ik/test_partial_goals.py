@@ -443,8 +443,8 @@ def test_a_ray_beyond_the_limits_of_a_slide_is_answered_as_other_goals_are():
 
 
 def test_rays_of_an_arm_whose_axes_are_parallel_to_six_digits():
-    """The ray must lie in the plane of the links; rounding leaves a valley, of which the floor alone reaches."""
-    robot = load("so101")
+    """The ray must lie in the plane of the links; rounding leaves a valley, whose floor alone reaches it."""
+    robot = cs.load_robot("so101")
     for T in robot.fk(robot.random_configuration(12, rng=3)):
         found = robot.ik(ray=(T[:3, 3] + 0.05 * T[:3, 2], T[:3, 2]))
         assert found
