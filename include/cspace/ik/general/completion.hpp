@@ -109,7 +109,7 @@ inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
         make_general_plan(six, arm.plan);
     arm.plan.length = length;
     if (arm.position_first.serves) return true;
-    if (!alone && !serves_alone(arm.plan)) make_neighbours(arm);
+    if (!alone && !serves_in_some_order(arm.plan)) make_neighbours(arm);
     return arm.plan.regular > 0 || arm.has_neighbours;
 }
 

@@ -13,6 +13,7 @@ struct HiddenAngle {
     double width;      // of the piece that holds it; 0 where it is isolated
     int expected;      // how many solutions the signs announce: 1, or 2 for a pair; see below
     double depth = 0;  // by how much a pair is missed, of the largest value
+    int order = 0;     // how many roots are about, where the signs leave more than a pair open
 };
 // Noise hides how many there are; or there are none, but so nearly two that a slip of the equations, which
 // the signs do not show, may have hidden them; or they are there for every goal and lead nowhere.
@@ -109,15 +110,11 @@ inline void close_roots(const Function& f, const ik::Arc& arc, const Variations&
     const double apart = depth < 0 ? std::sqrt(-depth) : 0;
     const int order = signs.most > 2 ? order_of_zero(f, vertex) : 0;
     out.evaluations += signs.most > 2;
-    if (order > 2) {
-        for (int k = 0; k < out.count; ++k)  // counted there
-            if (out.root[k].expected > 2 && std::fabs(out.root[k].angle - vertex) < order_seen) return;
-        put(out, {vertex, h, order});
-    } else if (apart > 1e-2 * h && apart < 3 * h) {
-        put(out, {vertex - apart, h, 1});
-        put(out, {vertex + apart, h, 1});
+    if (apart > 1e-2 * h && apart < 3 * h) {
+        put(out, {vertex - apart, h, 1, 0, order});
+        put(out, {vertex + apart, h, 1, 0, order});
     } else {
-        put(out, {vertex, h, signs.count >= 2 ? 2 : ik::unknown});
+        put(out, {vertex, h, signs.count >= 2 ? 2 : ik::unknown, 0, order});
     }
 }
 
@@ -173,18 +170,6 @@ inline void divide(const ik::SamplerTables& t, const ik::Arc& arc, ik::Pieces& p
         half.noise = arc.noise;
         half.resampled = arc.resampled;
         keep_if_crossed(pieces);
-    }
-}
-
-// Several roots seen as one are fewer by those beside them that were isolated.
-inline void count_once(ik::HiddenAngles& out) {
-    for (int k = 0; k < out.count; ++k) {
-        ik::HiddenAngle& root = out.root[k];
-        if (!(root.expected > 2)) continue;
-        for (int j = 0; j < out.count; ++j)
-            if (out.root[j].expected == 1 && std::fabs(out.root[j].angle - root.angle) < order_seen)
-                --root.expected;
-        if (root.expected < 2) root.expected = ik::unknown;
     }
 }
 
@@ -258,7 +243,6 @@ inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) 
         divide(tables, arc, stack);
     }
     find_simple_roots(simple, last_step, out);
-    count_once(out);
     note_near_misses(dips, out);
 }
 

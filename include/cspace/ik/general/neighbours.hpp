@@ -4,6 +4,8 @@
 // arm are about to merge one of them may have lost the pair, and then the other keeps it apart.
 #pragma once
 
+#include <utility>
+
 #include "cspace/ik/beside.hpp"
 #include "cspace/ik/general/plan.hpp"
 
@@ -153,7 +155,7 @@ inline void solve_tilted(const ik::GeneralPlan& plan, const Posed& goal, const A
 
 // Whether the arm's own plan does well on its poses.
 inline bool serves_alone(const ik::GeneralPlan& plan) {
-    constexpr int poses = 24, light = 60;
+    constexpr int poses = 24, light = 70;
     int doubtful = 0, work = 0;
     for (int k = 0; k < poses && doubtful < 2 && work <= light * poses; ++k) {
         ik::Solutions out;
@@ -161,6 +163,17 @@ inline bool serves_alone(const ik::GeneralPlan& plan) {
         doubtful += !out.complete;
     }
     return doubtful < 2 && work <= light * poses;
+}
+
+// Whether it does with one of the best formulations asked first: their prices come of few poses.
+inline bool serves_in_some_order(ik::GeneralPlan& plan) {
+    constexpr int best = 3;
+    for (int k = 0; k < best && (k == 0 || k < plan.regular); ++k) {
+        std::swap(plan.order[0], plan.order[k]);
+        if (serves_alone(plan)) return true;
+        std::swap(plan.order[0], plan.order[k]);
+    }
+    return false;
 }
 
 // By the wrist that the arm has. Where solutions merge or joints are free its list may be short.

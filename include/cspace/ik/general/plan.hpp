@@ -225,16 +225,17 @@ inline void find_ghosts(const Posed* goal, int number, ik::GeneralPlan& plan) {
         const Elimination e = eliminate(loop);
         isolate([&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); }, fine, hidden[k]);
     }
-    const auto has = [&](const ik::HiddenAngles& h, double angle) {
+    const auto has = [&](const ik::HiddenAngles& h, const ik::HiddenAngle& root) {
+        const double spread = root.order > 2 ? order_seen : same;  // several on one place are known less well
         for (int j = 0; j < h.count; ++j)
-            if (std::fabs(short_way(h.root[j].angle - angle)) < same) return true;
+            if (std::fabs(short_way(h.root[j].angle - root.angle)) < spread) return true;
         return false;
     };
     int& ghosts = plan.ghosts[number];
     for (int j = 0; j < hidden[0].count && ghosts < ik::GeneralPlan::most_ghosts; ++j) {
-        const double angle = hidden[0].root[j].angle;
-        if (has(hidden[1], angle) && has(hidden[2], angle))
-            plan.ghost[number * ik::GeneralPlan::most_ghosts + ghosts++] = angle;
+        const ik::HiddenAngle& root = hidden[0].root[j];
+        if (has(hidden[1], root) && has(hidden[2], root))
+            plan.ghost[number * ik::GeneralPlan::most_ghosts + ghosts++] = root.angle;
     }
 }
 

@@ -82,8 +82,27 @@ inline void split_planes(const ik::Loop& loop, const Elimination& e, const doubl
     }
 }
 
+// How many solutions a root announces. Where noise hides whether there is a pair of roots, it counts as one.
+inline int announced(const ik::HiddenAngle& root, double slip) {
+    const bool hidden_pair =
+        root.expected == ik::unknown || (root.expected == ik::nearly_two && root.depth < slip);
+    return hidden_pair ? 2 : max(root.expected, 0);
+}
+
+// How many more there are about a root than it and those beside it announce: pairs that the signs do not
+// show. None of roots that are there for every goal.
+inline int hidden_beside(const ik::Certificate& seen, const ik::HiddenAngle& root) {
+    int shown = 0;
+    for (int j = 0; j < seen.hidden.count; ++j) {
+        const ik::HiddenAngle& other = seen.hidden.root[j];
+        if (!(std::fabs(short_way(other.angle - root.angle)) < order_seen)) continue;
+        if (other.expected == ik::ghost) return 0;
+        shown += announced(other, seen.slip);
+    }
+    return max(root.order - shown, 0) / 2 * 2;
+}
+
 // How many solutions the roots around a hidden angle announce, and how many there are; one may count twice.
-// Where noise hides whether there is a pair of roots, it counts as one.
 struct Around {
     int expected = 0, there = 0;
 };
@@ -91,13 +110,14 @@ inline Around count_around(const ik::Certificate& seen, const ik::Solutions& fou
                            double angle) {
     const auto is_near = [&](double a) { return std::fabs(short_way(a - angle)) < near_roots; };
     Around out;
+    int hidden = 0;
     for (int j = 0; j < seen.hidden.count; ++j) {
         const ik::HiddenAngle& root = seen.hidden.root[j];
         if (!is_near(root.angle)) continue;
-        const bool hidden_pair =
-            root.expected == ik::unknown || (root.expected == ik::nearly_two && root.depth < seen.slip);
-        out.expected += hidden_pair ? 2 : max(root.expected, 0);
+        out.expected += announced(root, seen.slip);
+        if (root.order > 2) hidden = max(hidden, hidden_beside(seen, root));
     }
+    out.expected += hidden;
     for (int j = 0; j < found.count; ++j)
         if (is_near(seen.sign * found.q[j][seen.joint])) out.there += twice[j] ? 2 : 1;
     return out;
@@ -212,10 +232,12 @@ inline bool follow_angles(const ik::Loop& loop, const Elimination& e, const ik::
 // Of roots that are there for every goal no solutions are expected.
 inline void expect_no_ghosts(const ik::GeneralPlan& plan, int number, ik::HiddenAngles& hidden) {
     const double* const ghost = plan.ghost + number * ik::GeneralPlan::most_ghosts;
-    for (int k = 0; k < hidden.count; ++k)
+    for (int k = 0; k < hidden.count; ++k) {
+        ik::HiddenAngle& root = hidden.root[k];
+        const double spread = root.order > 2 ? order_seen : as_isolated;  // of several on one place
         for (int j = 0; j < plan.ghosts[number]; ++j)
-            if (std::fabs(short_way(hidden.root[k].angle - ghost[j])) < as_isolated)
-                hidden.root[k].expected = ik::ghost;
+            if (std::fabs(short_way(root.angle - ghost[j])) < spread) root.expected = ik::ghost;
+    }
 }
 
 // All solutions by the roots of f, a function of the hidden angle of formulation `number`; `follow` makes
