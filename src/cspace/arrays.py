@@ -60,15 +60,17 @@ def _converted(value: Any, subject: str) -> Array:
     """The numbers of anything as float64; text, complex numbers and dates are refused."""
     try:
         array = np.asarray(value)
-        truth = array.ndim == 0 and array.dtype == bool
-        if array.dtype.kind in "biufO" and not truth:
+        truth = array.dtype == bool
+        if array.dtype.kind in "iufO":
             return array.astype(np.float64, copy=False)
     except OverflowError:
         raise InputError(f"{subject} holds an integer that no float64 can hold; all must be finite") from None
     except (TypeError, ValueError) as error:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
-    if truth:
+    if truth and array.ndim == 0:
         raise InputTypeError(f"{subject} must be a number, got the truth value {value}")
+    if truth:
+        raise InputTypeError(f"{subject} must be numbers, got truth values")
     raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")
 
 

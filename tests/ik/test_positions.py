@@ -153,3 +153,16 @@ def test_complaints_about_arguments_name_the_method():
     with pytest.raises(TypeError, match=r"^jacobian\(\) got an unexpected keyword argument 'frme'"):
         robot.jacobian(np.zeros(2), frme="tip")
     assert "position" in type(robot).ik.__doc__
+
+
+@pytest.mark.parametrize("joint", [0, 1, 2])
+def test_a_joint_of_a_short_arm_is_held(joint):
+    robot, q = load("planar_3r"), np.array([0.3, 0.5, 0.7])
+    p = robot.fk(q)[:3, 3]
+    for point in (p, p[:2]):
+        found = robot.ik(position=point, fixed={f"joint_{joint + 1}": q[joint]})
+        assert found.complete
+        assert len(found) == 2
+        assert np.abs(found.q[:, joint] - q[joint]).max() < 1e-12
+        assert np.abs(robot.fk(found.q)[:, :3, 3] - p).max() < 1e-9
+        assert angle_gap(found.q, q).min() < 1e-9

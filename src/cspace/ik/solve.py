@@ -91,7 +91,9 @@ def inverse_kinematics(
     direction in the tip.
 
     near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
-    singular pose leaves free take its values. fixed: joints held at given values, by name or number,
+    singular pose leaves free take its values. Limits choose among whole turns, not among solutions: of a
+    joint's turns one inside them goes before a nearer one outside; with joints to spare they count for
+    nothing. fixed: joints held at given values, by name or number,
     {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with two spherical
     joints, the angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or many.
     samples: of an arm with one joint to spare, at how many values of it the branches are listed (16 unless
@@ -127,11 +129,11 @@ def inverse_kinematics(
         )
     if goal is not None:
         return answer_poses(robot, goal, wish)
-    if not is_plain_position(robot, given):
-        return answer_partial(robot, partial_goal(given, tool_axis), wish)
-    if wish.holds or swivel is not None:
-        raise InputTypeError("fixed=, swivel= and samples= do not go with the position of so short an arm")
-    return answer_points(robot, position, wish)
+    if is_plain_position(robot, given):
+        given["position"] = points_in_base(robot, position)
+        if not wish.holds and swivel is None:
+            return answer_points(robot, given["position"], wish)
+    return answer_partial(robot, partial_goal(given, tool_axis), wish)
 
 
 def answer_poses(robot: Any, goal: Any, wish: Wish) -> Answer:
@@ -145,9 +147,8 @@ def answer_poses(robot: Any, goal: Any, wish: Wish) -> Answer:
     return chosen(robot, found, wish)
 
 
-def answer_points(robot: Any, position: Any, wish: Wish) -> Answer:
+def answer_points(robot: Any, p: Array, wish: Wish) -> Answer:
     prepare(robot)
-    p = points_in_base(robot, position)
     if p.ndim > 1:
         return chosen(robot, solve_positions(robot, p, wish.threads), wish)
     found = cast(Solutions, _core._ik_position(robot, p))

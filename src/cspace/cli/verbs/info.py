@@ -55,7 +55,7 @@ def task_of(word: str | None, robot: Robot) -> tuple[str, int]:
         word = default_task(robot)
     if word in TASKS:
         return word, TASKS[word]
-    if word.isdigit() and 1 <= int(word) <= 6:
+    if word in set("123456"):
         return f"{word} numbers", int(word)
     raise UsageError(f"no task {word!r}; give a number from 1 to 6 or one of {', '.join(TASKS)}")
 
