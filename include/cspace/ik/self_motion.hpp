@@ -18,10 +18,12 @@ inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double l
     double moved[ik::max_joints] = {}, along = 0;
     for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * direction[i];
     PoseError error;
-    const double left = floor ? (onto_curve(chain, {goal, true, length}, moved, error), size_of_error(error))
-                              : refine(chain, goal, length, moved, error, steps_back);
+    if (floor)
+        onto_curve(chain, {goal, true, length}, moved, error);
+    else
+        refine(chain, goal, length, moved, error, steps_back);
     for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
-    return left <= most ? along / stride : 0;
+    return size_of_error(error) <= most ? along / stride : 0;
 }
 
 // Whether the arm can move along `direction` with its tip at rest: it goes a stride that way and comes back
@@ -29,8 +31,8 @@ inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double l
 // or over to a neighbouring solution, whose distance is one and the same.
 inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                          const double* direction) {
-    constexpr double exactly = 1e-12,
-                     nearly = 1e-11;  // missed along a family of the axes as they are; rounded
+    // What may be missed along a family, and where rounded axes leave a valley instead of one.
+    constexpr double exactly = 1e-12, nearly = 1e-11;
     PoseError at;
     measure(chain, goal, length, q, at);
     const double on_floor = max(nearly, 2 * size_of_error(at));

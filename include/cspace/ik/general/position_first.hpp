@@ -75,7 +75,7 @@ inline PlacedAndTurned solve(const ik::PositionFirst& plan, const Posed& goal_of
         Mat3d G = goal.R * transpose(plan.arm.tip.R);
         for (int i = 0; i < 3; ++i) G = transpose(joint_motion(plan.first, i, placed.q[k][i]).R) * G;
         const TurnedTwice turned = solve(plan.wrist, G);
-        const bool close = placed.free[k] || turned.inside < merging;
+        const bool close = placed.close[k] || turned.inside < merging;
         out.doubt = out.doubt || close;
         for (int j = 0; j < turned.count; ++j, ++out.count) {
             out.close[out.count] = close;

@@ -58,10 +58,12 @@ bool surely_regular(const double (*a)[n], double largest) {
            largest > tolerance::sure_candidate;
 }
 
-// Whether the solution q is one of a family; its direction, of length one, is written to `along`.
+// Whether the solution q is one of a family; its direction, of length one, is written to `along`. close:
+// whether some motion there moves nothing but for rounding.
 template <class System>
-bool is_free(const System& g, const double* q, double* along) {
+bool is_free(const System& g, const double* q, double* along, bool& close) {
     constexpr int n = System::angles;
+    constexpr double merged = 1e-7;  // rounding parts a double root by its square root
     Linearised<System> at;
     linearise(g, q, at);
     double normal[n][n], down[n], v[n][n], largest = 0;
@@ -69,6 +71,7 @@ bool is_free(const System& g, const double* q, double* along) {
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < i; ++j) normal[j][i] = normal[i][j];
     for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
+    close = false;
     if (surely_regular<n>(normal, largest)) return false;
     eigenvectors<n>(normal, v);
     largest = 0;
@@ -76,6 +79,7 @@ bool is_free(const System& g, const double* q, double* along) {
     const double floor = std::fmax(tolerance::degenerate_pair * std::sqrt(largest), tolerance::rounding);
     for (int i = 0; i < n; ++i) {
         if (normal[i][i] > floor * floor) continue;
+        close = close || normal[i][i] <= merged * merged * largest;
         for (int j = 0; j < n; ++j) along[j] = v[j][i];
         if (continues_along(g, q, along, g.reached)) return true;
     }
@@ -92,8 +96,8 @@ void keep(const System& g, double* q, Solutions& found) {
     for (int i = 0; i < found.count; ++i)
         if (same_joints(g, q, found.q[i])) return;
     for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
-    found.free[found.count] = is_free(g, q, found.direction[found.count]);
-    ++found.count;
+    const int k = found.count++;
+    found.free[k] = is_free(g, q, found.direction[k], found.close[k]);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -13,8 +13,9 @@ struct PositionSolutions {
     double q[max_position_solutions][max_position_joints] = {};
     double residual[max_position_solutions] = {};  // ‖tip − goal‖ [m]
     // Whether solution i belongs to a family, and the unit direction in which its joints move without the
-    // tip.
+    // tip; close: whether it does, or merges with another, but for what rounding leaves.
     bool free[max_position_solutions] = {};
+    bool close[max_position_solutions] = {};
     double direction[max_position_solutions][max_position_joints] = {};
     // Without a solution: the distance that is missing [m], and the joints that come nearest.
     double missing = 0;
@@ -28,6 +29,7 @@ struct ShortPoseSolutions {
     double position_error[max_position_solutions] = {};  // [m]
     double rotation_error[max_position_solutions] = {};  // [rad]
     bool free[max_position_solutions] = {};
+    bool close[max_position_solutions] = {};
     double direction[max_position_solutions][max_position_joints] = {};
 };
 
