@@ -56,7 +56,7 @@ BAD_LINES = [
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to x w", "--angle-to takes an axis and an angle: 'w'"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to x 4", "expected 0 to π rad"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 1 --swivel 1", "--swivel goes with a full pose"),
-    ("ik planar_2r --xy 0.4 0.1 --fixed joint_1=1", "--fixed, --swivel and --samples do not go with"),
+    ("ik planar_2r --xy 0.4 0.1 --swivel 1", "--swivel goes with a full pose"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 1 --fixed goal_turn=1", "goal_tool_turn_z"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --fixed elbow=1", "did you mean 'elbow_joint'?"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --fixed elbow_joint", "not of the form NAME=VALUE"),
