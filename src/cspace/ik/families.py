@@ -86,7 +86,10 @@ class Family:
         return np.where(goes_round, wrap(q, self._robot.joint_types), q)
 
     def nearest(self, q: Array) -> Array:
-        """The configuration of the family that is nearest to q (dof,), limits aside, (dof,) [rad, m]."""
+        """The configuration of the family that is nearest to q (dof,), (dof,) [rad, m].
+
+        Limits aside; each turning joint by the turn that brings it closest.
+        """
         return nearest_member(self._robot, self.q, self.direction, self._whole_pose, q)
 
 

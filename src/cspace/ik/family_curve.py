@@ -140,7 +140,9 @@ def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc
 
 
 def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, seed: Array) -> Array:
-    """The configuration (dof,) of the family through q that is nearest to a seed, limits aside."""
+    """The configuration (dof,) of the family through q that is nearest to a seed, limits aside, each turning
+    joint by the turn that brings it closest.
+    """
     prepare(robot)
     rounds, parts = 9, 33
     curve, _ = trace(robot, np.ascontiguousarray(q), direction, whole_pose)
@@ -150,7 +152,8 @@ def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, see
         points = curve.at(s)
         k = int(np.argmin(distances(robot, points, seed)))
         low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
-    return np.asarray(points[k])
+    turns = np.where(turning(robot.joint_types), np.round((points[k] - seed) / TURN), 0.0)
+    return np.asarray(points[k] - TURN * turns)
 
 
 def distances(robot: Any, points: Array, seed: Array) -> Array:
