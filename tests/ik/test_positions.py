@@ -6,6 +6,8 @@ import numpy as np
 import pytest
 
 from cspace.errors import InputError, InputTypeError
+from cspace.model import from_screws
+from cspace.robot import Robot
 from ik.arms import load
 from ik.geometries import angle_gap
 
@@ -166,3 +168,16 @@ def test_a_joint_of_a_short_arm_is_held(joint):
         assert np.abs(found.q[:, joint] - q[joint]).max() < 1e-12
         assert np.abs(robot.fk(found.q)[:, :3, 3] - p).max() < 1e-9
         assert angle_gap(found.q, q).min() < 1e-9
+
+
+@pytest.mark.parametrize("joint", ["joint_2", "joint_3"])
+def test_a_held_joint_that_leaves_the_others_free_is_no_error(joint):
+    """Two links folded on each other, held so: they turn about the middle of the one before."""
+    T_zero = np.eye(4)
+    T_zero[0, 3] = 3.0
+    points = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+    robot = Robot(from_screws([[0, 0, 1.0]] * 3, points, T_zero, joint_types="RRR"))
+    found = robot.ik(position=(0, 1, 0), fixed={joint: np.pi})
+    assert len(found) > 1
+    assert not found.complete
+    assert np.abs(robot.fk(found.q)[:, :3, 3] - [0, 1, 0]).max() < 1e-9

@@ -167,7 +167,7 @@ def of_own(robot: Any, goal: PartialGoal, whole: Any, found: Solutions) -> Solut
     rows, families = [], []
     kept: list[Array] = []
     for row, q in enumerate(found.q):
-        moves = found._is_family[row] and moves_itself(whole, q, own)
+        moves = found._is_family[row] and (not whole._ik_direct or moves_itself(whole, q, own))
         if not meets(goal, robot, q[own]) or any(is_same(robot, q[own], other) for other in kept):
             continue
         kept.append(q[own])
@@ -176,7 +176,12 @@ def of_own(robot: Any, goal: PartialGoal, whole: Any, found: Solutions) -> Solut
     status = found._status
     if status in (EXACT, SINGULAR):
         status = SINGULAR if any(families) else EXACT if rows else UNREACHABLE
-    verdict = status + (INCOMPLETE if not found.complete and status != NEAREST else 0)
+    certain = found.complete
+    if (
+        any(families) and not whole._ik_direct
+    ):  # members of families that nobody describes where joints are held
+        certain, status, families = False, EXACT, [False] * len(rows)
+    verdict = status + (INCOMPLETE if not certain and status != NEAREST else 0)
     about = About(goal, whole, found.q[rows], () if found._about is None else found._about.freedom)
     q = np.ascontiguousarray(found.q[rows][:, own])
     branches, note = tuple(range(len(rows))), found._note
