@@ -58,6 +58,14 @@ def test_the_library_never_prints():
             assert not re.search(r"\bprintf\s*\(|std::c(out|err)\b", text), f"{name} prints"
 
 
+def test_every_function_can_be_read_at_a_glance():
+    for path in tree.python_files():
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+                lines = (node.end_lineno or node.lineno) - node.lineno + 1
+                assert lines <= 70, f"{path.relative_to(tree.ROOT)}: {node.name} has {lines} lines"
+
+
 def test_no_file_holds_a_path_of_one_machine():
     for name, text in tree.tracked_texts():
         found = re.search(r"(?<![\w.])/(work|farm|root|tmp)/[a-z]\S*", text)

@@ -87,25 +87,22 @@ def inverse_kinematics(
     or (..., 2) for an arm in the plane; rotation (3, 3); direction (3,): where the tool axis points.
     position goes with rotation, direction, angle_to=(axis of the base, angle to it of the tool axis [rad]),
     and in the plane with angle: of the tip [rad]. look_at (3,): a point on the tool axis, ahead of the tip.
-    ray=(p, d): the line through p along d on which the tool axis lies. tool_axis: "x", "y", "z", "-z" or a
-    direction in the tip.
+    ray=(p, d): the line through p along d, of the tool axis. tool_axis: "x", "y", "z", "-z" or (3,), in the tip.
 
     near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
-    singular pose leaves free take its values. Limits choose among whole turns, not among solutions: of a
-    joint's turns one inside them goes before a nearer one outside; with joints to spare they count for
-    nothing. fixed: joints held at given values, by name or number,
+    singular pose leaves free take its values. Limits choose among a joint's whole turns, not among solutions,
+    and with joints to spare count for nothing. fixed: joints held at given values, by name or number,
     {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with two spherical
     joints, the angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or many.
-    samples: of an arm with one joint to spare, at how many values of it the branches are listed (16 unless
-    given). least_squares: where nothing reaches the goal, answer with the configuration that misses it least
+    samples: of an arm with one joint to spare, at how many of its values branches are listed (16 unless
+    given). least_squares: where nothing reaches the goal, the answer is the configuration that misses least
     (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
     answer does not depend on it.
 
-    An arm with more than six joints, or some of which do the work of others, leaves freedom, which
-    `freedom` of the answer names. With fixed= for all of the joints to spare every solution of the others is
-    listed; with near= the nearest of all configurations, limits aside; else, with one joint to spare, all
-    branches at values of it spread over its feasible intervals, and with more the configuration nearest to
-    the middle of the limits.
+    An arm with more than six joints, or some of which do the work of others, leaves freedom, which `freedom`
+    of the answer names. With fixed= for all joints to spare every solution of the others is listed; with
+    near= the nearest of all; else, with one joint to spare, all branches at values of it spread over its
+    feasible intervals, and with more the configuration nearest to the middle of the limits.
 
     Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
     with the reason); a goal that is no pose raises InputError; joints that mimic others, a floating base or
