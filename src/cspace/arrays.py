@@ -57,21 +57,30 @@ def leading_axes(**shapes: tuple[int, ...]) -> tuple[int, ...]:
 
 
 def _converted(value: Any, subject: str) -> Array:
-    """The numbers of anything as float64; text, complex numbers and dates are refused."""
+    """The numbers of anything as float64; text, complex numbers, dates and truth values are refused."""
     try:
         array = np.asarray(value)
-        truth = array.dtype == bool
-        if array.dtype.kind in "iufO":
-            return array.astype(np.float64, copy=False)
+        numbers = array.astype(np.float64, copy=False) if array.dtype.kind in "iufO" else None
     except OverflowError:
         raise InputError(f"{subject} holds an integer that no float64 can hold; all must be finite") from None
     except (TypeError, ValueError) as error:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
-    if truth and array.ndim == 0:
-        raise InputTypeError(f"{subject} must be a number, got the truth value {value}")
-    if truth:
-        raise InputTypeError(f"{subject} must be numbers, got truth values")
-    raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")
+    if _holds_truth(array) or _holds_truth(value):
+        what = f"a number, got the truth value {value}" if array.ndim == 0 else "numbers, got truth values"
+        raise InputTypeError(f"{subject} must be {what}")
+    if numbers is None:
+        raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__} of {array.dtype}")
+    return numbers
+
+
+def _holds_truth(value: Any) -> bool:
+    """Whether a truth value is among the entries; beside numbers numpy reads it as 0 or 1."""
+    if isinstance(value, np.ndarray):
+        return value.dtype == bool or (value.dtype == object and _holds_truth(value.ravel().tolist()))
+    if not isinstance(value, (list, tuple)):
+        return isinstance(value, (bool, np.bool_))
+    kinds = set(map(type, value))
+    return not kinds <= {float, int} and any(map(_holds_truth, value))
 
 
 def _entry(array: Array, index: tuple[int, ...]) -> str:
