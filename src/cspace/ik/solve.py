@@ -87,7 +87,7 @@ def inverse_kinematics(
     or (..., 2) for an arm in the plane; rotation (3, 3); direction (3,): where the tool axis points.
     position goes with rotation, direction, angle_to=(axis of the base, angle to it of the tool axis [rad]),
     and in the plane with angle: of the tip [rad]. look_at (3,): a point on the tool axis, ahead of the tip.
-    ray=(p, d): the line through p along d, of the tool axis. tool_axis: "x", "y", "z", "-z" or (3,), in the tip.
+    ray=(p, d): the line of the tool axis, through p along d. tool_axis: in the tip, "x", "-z" or any (3,).
 
     near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
     singular pose leaves free take its values. Limits choose among a joint's whole turns, not among solutions,
