@@ -134,7 +134,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
                 "branch": TEXT,
                 "within_limits": (bool, type(None)),
                 "out_of_limits": dict,
-                "singularity": NUMBER,
+                "singularity": NUMBER_OR_NULL,
                 "residual": NUMBER,
                 "distance": NUMBER_OR_NULL,
             }

@@ -31,6 +31,41 @@ def test_a_planar_arm_reaches_a_point(line, count):
         np.testing.assert_allclose(reached[:, :2, 3], np.tile(point, (count, 1)), atol=1e-9)
 
 
+@pytest.mark.parametrize(
+    ("line", "rows"),
+    [
+        ("planar_2r --xy 0.3 0.4", ("vx", "vy")),
+        ("planar_3r --xy 0.3 0.4", ("vx", "vy")),
+        ("planar_3r --xyz 0.3 0.4 0", ("vx", "vy")),
+        ("planar_3r --xyz 0.3 any any", ("vx",)),
+        ("planar_3r --xy 0.3 0.4 --angle 1", ("vx", "vy", "wz")),
+        ("simplified_puma --xyz 0.3 0.4 0.5", "linear"),
+        ("ur5e --xyz 0.3 any 0.5", ("vx", "vz")),
+    ],
+)
+def test_the_freedoms_of_the_goal_count_for_singularity(line, rows):
+    robot = cs.load_robot(line.split()[0])
+    found = cspace(f"ik {line} --json").json["solutions"]
+    assert found
+    for row in found:
+        expected = robot.distance_to_singularity(row["q"], rows=rows)
+        assert row["singularity"] == pytest.approx(expected, rel=1e-9)
+        assert row["singularity"] > 1e-3
+
+
+def test_singularity_is_not_shown_where_no_joint_moves_what_is_asked(tmp_path):
+    slides = cs.Robot.from_screws(np.eye(3), np.zeros((3, 3)), np.eye(4), joint_types="PPP")
+    file = tmp_path / "slides.urdf"
+    file.write_text(slides.to_urdf())
+    rotation = "--rotation 1 0 0 0 1 0 0 0 1"
+    result = cspace(f"ik {file} {rotation} --json")
+    schema.check(result.json, "cspace.ik/1")
+    assert [row["singularity"] for row in result.json["solutions"]] == [None]
+    assert "singularity" not in cspace(f"ik {file} {rotation}").out
+    plane = cspace("ik planar_3r --xyz any any 0 --json").json
+    assert [row["singularity"] for row in plane["solutions"]] == [None] * len(plane["solutions"])
+
+
 def test_at_the_base_a_planar_arm_of_equal_links_turns_freely():
     found = cspace("ik planar_2r --xy 0 0 --json").json
     assert found["status"] == "singular"

@@ -16,6 +16,8 @@ __all__ = ["GOAL_WORDS", "Goal", "add_goal", "axis_of", "goal_of"]
 
 ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
 """The forms of an orientation."""
+LINEAR: Final = ("vx", "vy", "vz")
+"""The rows of the Jacobian that move a place, coordinate by coordinate."""
 POINTED: Final = ("direction", "look_at", "ray", "angle_to")
 """What asks something of the tool axis."""
 GOAL_WORDS: Final = ("xyz", "xy", "angle", *ORIENTATIONS, "matrix", *POINTED)
@@ -39,10 +41,15 @@ class Goal:
         return robot.ik(self.T, **self.parts, tool_axis=self.tool_axis, **options)
 
     @property
-    def rows(self) -> str:
+    def rows(self) -> str | tuple[str, ...]:
         """The rows of the Jacobian that count where joints are judged by this goal."""
-        one = next(iter(self.parts)) if len(self.parts) == 1 else ""
-        return {"position": "linear", "rotation": "angular"}.get(one, "all")
+        if set(self.parts) == {"rotation"}:
+            return "angular"
+        if set(self.parts) != {"position"}:
+            return "all"
+        place = self.parts["position"]
+        asked = [row for row, value in zip(LINEAR, place, strict=False) if value is not None]
+        return tuple(asked) if len(place) == 3 else "linear"
 
     @property
     def mark(self) -> Array | None:

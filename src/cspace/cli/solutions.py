@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -11,6 +12,7 @@ from cspace.arrays import Array
 from cspace.cli.goals import Goal
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.robot import angle_unit, headings, joint_texts
+from cspace.cli.tasks import singularity_of_rows
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -26,13 +28,15 @@ class Rows:
     """The solutions in the order of the table: as found, or the nearest to `near` first.
 
     q: (k, dof), each joint moved into its limits by whole turns where they are checked. branch: k labels.
-    residual, singularity: (k,). out: per row the joints out of limits and by how much. distance: (k,) from
-    `near`, or None.
+    residual: (k,). out: per row the joints out of limits and by how much. singularity: (k,), of the rows of
+    the Jacobian that are `counting`, or None where the arm moves in none of them. distance: (k,) from `near`,
+    or None.
     """
 
-    def __init__(self, robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str) -> None:
+    def __init__(
+        self, robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str | Iterable[str]
+    ) -> None:
         from cspace.ik.windings import into_limits, short_way
-        from cspace.kinematics import distance_to_singularity
 
         q = np.asarray(answer.q, dtype=np.float64)
         if check:  # each joint where its limits are, if a whole turn brings it there
@@ -50,7 +54,7 @@ class Rows:
         out = answer.violations() if check else [{}] * len(q)
         self.out: list[dict[str, float]] = [out[k] for k in order]
         self.checked = check
-        self.singularity = distance_to_singularity(robot, self.q, rows=counting)
+        self.singularity = singularity_of_rows(robot, self.q, counting)
 
     def __len__(self) -> int:
         return len(self.q)
@@ -64,7 +68,7 @@ def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[st
             "branch": rows.branch[k],
             "within_limits": not rows.out[k] if rows.checked else None,
             "out_of_limits": rows.out[k],
-            "singularity": float(rows.singularity[k]),
+            "singularity": None if rows.singularity is None else float(rows.singularity[k]),
             "residual": float(rows.residual[k]),
             "distance": None if rows.distance is None else float(rows.distance[k]),
         }
@@ -99,9 +103,9 @@ def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -
         f"{short} {name}" for short, name in zip(headings(robot), robot.joint_names, strict=True)
     )
     units = f"angles in {angle_unit(degrees)}" + (", slides in m" if "P" in robot.joint_types else "")
-    out.hint(
-        f"{units}; singularity: distance to the nearest singular configuration; residual: of the true pose"
-    )
+    if rows.singularity is not None:
+        units += "; singularity: distance to the nearest singular configuration"
+    out.hint(f"{units}; residual: of the true pose")
     if headings(robot) != list(robot.joint_names):
         out.hint(names)
 
@@ -115,14 +119,16 @@ def table_of(robot: Robot, rows: Rows, *, degrees: bool) -> Table:
     """One row per solution; columns in which nothing would stand are left out."""
     limits = ["limits"] if rows.checked else []
     branch = ["branch"] if any(rows.branch) else []
+    singularity = [] if rows.singularity is None else ["singularity"]
     near = [] if rows.distance is None else ["distance"]
-    columns = ["", *headings(robot), *limits, "singularity", *branch, "residual", *near]
+    columns = ["", *headings(robot), *limits, *singularity, *branch, "residual", *near]
     table = Table(columns, left=frozenset(columns.index(name) for name in (*limits, *branch)))
     for k in range(len(rows)):
         cells: list[Cell | str] = [f"{k + 1}", *joint_texts(rows.q[k], robot, degrees=degrees)]
         if limits:
             cells.append(limits_cell(rows.out[k], robot, degrees=degrees))
-        cells.append(f"{rows.singularity[k]:.4f}")
+        if rows.singularity is not None:
+            cells.append(f"{rows.singularity[k]:.4f}")
         if branch:
             cells.append(rows.branch[k])
         cells.append(f"{rows.residual[k]:.1e}")

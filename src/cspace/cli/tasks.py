@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
+from cspace.arrays import Array
+
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["TASKS", "default_task", "motion_rank", "rows_of_task"]
+__all__ = ["TASKS", "default_task", "motion_rank", "rows_of_task", "singularity_of_rows"]
 
 TASKS: Final[Mapping[str, int]] = MappingProxyType(
     {"pose": 6, "position": 3, "direction": 2, "planar": 3, "planar-position": 2}
@@ -24,13 +26,25 @@ RANK: Final = 1e-9
 """Share of the largest singular value below which a direction counts as impossible."""
 
 
-def motion_rank(robot: Robot) -> int:
-    """In how many of the six dimensions the tip moves, at configurations in general position."""
+def motion_rank(robot: Robot, rows: str | Iterable[str] = "all") -> int:
+    """In how many dimensions, of the six or of some rows, the tip moves in general."""
+    from cspace.kinematics import singular_values
+
     if not len(robot.joint_names):
         return 0
     q = np.random.default_rng(1).uniform(-1.3, 1.3, size=(SAMPLES, len(robot.joint_names)))
-    s = np.linalg.svd(robot.jacobian(q), compute_uv=False)
-    return int((s > RANK * s[:, :1]).sum(axis=1).max())
+    largest = singular_values(robot, q)[:, :1]
+    return int((singular_values(robot, q, rows=rows) > RANK * largest).sum(axis=1).max())
+
+
+def singularity_of_rows(robot: Robot, q: Array, rows: str | Iterable[str]) -> Array | None:
+    """The smallest singular value of these rows of the Jacobian, per configuration of q (k, n), among as many
+    as the arm has freedoms in them: an arm in the plane loses none by not leaving it. None where it has none.
+    """
+    from cspace.kinematics import singular_values
+
+    rank = motion_rank(robot, rows)
+    return singular_values(robot, q, rows=rows)[:, rank - 1] if rank else None
 
 
 def default_task(robot: Robot) -> str:
