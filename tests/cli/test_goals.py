@@ -252,3 +252,11 @@ def test_a_reason_is_in_the_unit_that_was_asked_for():
     beyond = float(in_radians.out.split(" out by ")[1].removesuffix(" rad\n"))
     assert in_degrees.out.endswith(f" out by {np.degrees(beyond):.4g} deg\n")
     assert cspace(f"{line} --deg --json").json["reason"].endswith(" rad")  # radians whatever --deg says
+
+
+def test_values_of_held_joints_are_in_the_unit_that_was_asked_for():
+    line = "ik planar_3r --xy 2.45 0 --fixed joint_1=pi/2"
+    assert cspace(line).out.endswith("nothing reaches the goal with joint_1 = 1.5708 rad\n")
+    assert cspace(f"{line} --deg").out.endswith("nothing reaches the goal with joint_1 = 90 deg\n")
+    line = "ik scara --xyz 0.3 0.3 9 --rpy pi 0 0 --fixed joint_3=0.1 joint_4=-pi/6 --deg"
+    assert cspace(line).out.endswith("with joint_3 = 0.1 m, joint_4 = -30 deg\n")

@@ -20,9 +20,11 @@ __all__ = [
     "between_others",
     "by_name",
     "fixed_values",
+    "held_in_words",
     "hold",
     "joint_number",
     "leads_ahead",
+    "value_in_words",
     "with_joints_held",
     "without_held",
 ]
@@ -102,6 +104,17 @@ def by_name(robot: Any, fixed: Mapping[Any, Any]) -> dict[str, Any]:
             )
         out[name] = value
     return out
+
+
+def held_in_words(robot: Any, held: Mapping[int, Any]) -> str:
+    """Joints with the values at which they are held: lift = 0.2 m, wrist = 1.5 rad."""
+    values = ((robot.joint_names[k], value_in_words(robot, k, value)) for k, value in held.items())
+    return ", ".join(f"{name} = {value}" for name, value in values)
+
+
+def value_in_words(robot: Any, joint: int, value: Any) -> str:
+    """A joint's value with its unit."""
+    return f"{float(value):.6g} {'rad' if robot.joint_types[joint] == 'R' else 'm'}"
 
 
 def leads_ahead(robot: Any) -> npt.NDArray[np.bool_]:

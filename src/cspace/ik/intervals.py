@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.held import Held, fixed_values, hold, joint_number
+from cspace.ik.held import Held, fixed_values, hold, joint_number, value_in_words
 from cspace.ik.redundancy import Interval, Redundancy
 from cspace.ik.windings import into_limits
 
@@ -59,7 +59,8 @@ def check_moves(held: Held, T: Array, joint: int) -> None:
     if np.abs(np.linalg.svd(J)[2][:, -1, joint]).max() > STILL:
         return
     names = [held.robot.joint_names[k] for k in held.free]
-    at = ", ".join(sorted({f"{interval.q[held.free[joint]]:.6g}" for interval in seen}))
+    k = held.free[joint]
+    at = ", ".join(sorted({value_in_words(held.robot, k, interval.q[k]) for interval in seen}))
     raise InputError(
         f"parameter {names[joint]!r} is settled by the goal, at {at}, and does not move with what is free; "
         f"take another joint, such as {names[own]!r}"

@@ -13,7 +13,7 @@ from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.about import About
 from cspace.ik.goals import one_configuration
-from cspace.ik.held import Held, fixed_values, hold, leads_ahead
+from cspace.ik.held import Held, fixed_values, held_in_words, hold, leads_ahead
 from cspace.ik.intervals import intervals_of
 from cspace.ik.redundancy import MOST_SAMPLES
 from cspace.ik.solutions import EXACT, INCOMPLETE, POSE_ASKS, UNREACHABLE, Solutions, how_many
@@ -100,10 +100,7 @@ def solve_held(
     if near is None:
         solver.serve_held(robot, joints, About())
     k = int(count[0])
-    note = None
-    if k == 0:
-        held = ", ".join(f"{robot.joint_names[j]} = {float(v):.6g}" for j, v in values.items())
-        note = f"nothing reaches the goal with {held}"
+    note = None if k else f"nothing reaches the goal with {held_in_words(robot, values)}"
     made = make(robot, goals, int(status[0]), q[0, :k], branch[0, :k], family[0, :k], note, ())
     return made if near is None else made.nearest(near)
 
@@ -147,10 +144,8 @@ def is_beyond(robot: Any, T: Array) -> bool:
 def unreachable(held: Held, T: Array, *, proven: bool) -> Solutions:
     """Nothing found; a search among infinitely many configurations does not prove that there is nothing."""
     nothing = np.empty((0, held.robot.dof))
-    note = None
-    if held.fixed:
-        at = ", ".join(f"{held.robot.joint_names[j]} = {v:.6g}" for j, v in held.fixed.items())
-        note = f"nothing reaches the goal with {at}"
+    at = held_in_words(held.robot, held.fixed)
+    note = f"nothing reaches the goal with {at}" if at else None
     empty = np.empty(0, dtype=np.int8)
     verdict = UNREACHABLE + (0 if proven else INCOMPLETE)
     return make(held.robot, T, verdict, nothing, empty, empty.astype(bool), note, held.freedom)

@@ -151,7 +151,7 @@ def test_arms_with_none_or_more_to_spare_are_told_so():
 def test_a_joint_that_the_goal_settles_is_no_parameter():
     iiwa = cs.load_robot("iiwa14")
     T = iiwa.fk([0.3, 0.7, -0.2, -1.2, 0.3, 0.9, 0.6])
-    with pytest.raises(InputError, match=r"settled by the goal, at -1\.2, 1\.2"):
+    with pytest.raises(InputError, match=r"settled by the goal, at -1\.2 rad, 1\.2 rad"):
         iiwa.redundancy(T, parameter="iiwa_joint_4")
     assert iiwa.redundancy(T, parameter="iiwa_joint_1")
 

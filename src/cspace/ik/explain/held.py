@@ -17,7 +17,7 @@ from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Rows
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.swivel import swivel_steps, swivel_values
-from cspace.ik.held import between_others, hold, without_held
+from cspace.ik.held import between_others, hold, value_in_words, without_held
 from cspace.ik.prepare import MAX_SETTLED
 from cspace.ik.swivel import swivel_solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
@@ -178,7 +178,8 @@ def reasons(split: Split, default: tuple[int, ...]) -> list[str]:
             f"{names_of(split, default)}: {why}."
         )
     if split.between:
-        at = ", ".join(f"$q_{k + 1}$ = {split.at[k]:.6g}" for k in split.between)
+        values = {k: value_in_words(split.robot, k, split.at[k]) for k in split.between}
+        at = ", ".join(f"$q_{k + 1}$ = {value}" for k, value in values.items())
         out.append(
             f"A joint held between others changes a link: the numbers below are for {at}. Other values give "
             "other numbers, and the others are classified anew, which takes microseconds."
