@@ -34,6 +34,7 @@ __all__ = [
     "SETTLED",
     "SINGULAR_ROUNDING",
     "SINGULAR_VALUE",
+    "SLIGHT_MISS",
     "TANGENT_PLACE",
     "TOML_BYTES",
     "TRACK_BEYOND",
@@ -135,6 +136,10 @@ SINGULAR_ROUNDING: Final = 1e-14
 LARGEST_NUMBER: Final = 1e12
 """Largest length, mass, inertia or ratio of a robot (SI units): products of a few stay far from overflow, and
 the longest link of a Denavit–Hartenberg table of nearly parallel axes fits."""
+
+SLIGHT_MISS: Final = 1e-4
+"""Miss of a goal (m, rad) up to which the rounded numbers of a robot's file may be all that is wrong: files
+print lengths and angles with four digits or more."""
 
 PLANAR_AXES: Final = 1e-9
 """Sine of the angle between axes, and length of a link relative to all, up to which an arm counts as planar

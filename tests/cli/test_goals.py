@@ -254,6 +254,12 @@ def test_a_reason_is_in_the_unit_that_was_asked_for():
     assert cspace(f"{line} --deg --json").json["reason"].endswith(" rad")  # radians whatever --deg says
 
 
+def test_a_reason_names_the_option_that_answers():
+    line = "ik so101 --xyz 0.2 0.05 0.1 --direction 0 0 -1"
+    assert cspace(line).out.endswith("; --least-squares answers with the nearest\n")
+    assert cspace(f"{line} --least-squares").code == 0
+
+
 def test_values_of_held_joints_are_in_the_unit_that_was_asked_for():
     line = "ik planar_3r --xy 2.45 0 --fixed joint_1=pi/2"
     assert cspace(line).out.endswith("nothing reaches the goal with joint_1 = 1.5708 rad\n")

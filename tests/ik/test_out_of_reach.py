@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from cspace.spatial import pose
 from ik.arms import load
 from ik.geometries import random_direction
 from ik.likenesses import MAKERS, arm_of, random_configurations, scaled, size_of, weakest
@@ -120,3 +121,21 @@ def test_goals_that_nobody_made_are_met_or_not(word):
     for i in met[:20]:
         if weakest(robot, batch[i].q).min() > 1e-2:
             assert len(robot.ik(moved(goals[i], 1e-7 * random_direction(rng)))) == len(batch[i])
+
+
+def test_a_miss_that_rounded_numbers_may_cause_says_what_to_ask():
+    """The tool axis of the arm is its last joint's, which leaves the plane of the others by 6e-6 rad."""
+    robot = load("so101")
+    goal = {"position": [0.2, 0.05, 0.1], "direction": [0, 0, -1]}
+    found = robot.ik(**goal)
+    expect_empty(robot, found)
+    assert "rounded numbers" in found.reason
+    assert found.reason.endswith("least_squares=True answers with the nearest")
+    nearest = robot.ik(**goal, least_squares=True)
+    assert len(nearest) == 1
+    assert nearest.residual[0] < 1e-5
+    T = robot.fk([0.3, -0.4, 0.5, 0.6, 0.7])
+    for turn in np.eye(3):
+        found = robot.ik(T @ pose([0, 0, 0], rpy=1e-6 * turn))
+        assert found or "rounded numbers" in found.reason
+    assert "rounded numbers" not in robot.ik(position=[0.6, 0.05, 0.1], direction=[0, 0, -1]).reason

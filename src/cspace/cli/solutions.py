@@ -94,7 +94,8 @@ def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[st
 
 def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -> None:
     """The answer for people: a table, or why there is none."""
-    reason = in_degrees(answer.reason) if degrees else answer.reason
+    reason = answer.reason.replace("least_squares=True", "--least-squares")
+    reason = in_degrees(reason) if degrees else reason
     out.line(f"{robot.name}: {reason}", style="bold" if answer else "yellow")
     if not len(rows):
         return

@@ -17,6 +17,7 @@ from cspace.ik.goals import one_configuration
 from cspace.ik.prepare import prepare
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
+from cspace.tolerances import SLIGHT_MISS
 
 if TYPE_CHECKING:
     from cspace.model import Limits
@@ -309,8 +310,12 @@ def position_goal(p: Array) -> Array:
 def unreachable_reason(found: Solutions) -> str:
     name = found.robot.name
     if found._partial is not None:
-        miss = nearest_miss(found)[2]
-        return f"{name} cannot reach {found._partial.text}: the nearest configuration misses it by {miss}"
+        q, _, miss = nearest_miss(found)
+        left = float(found._partial.residual(found.robot.fk(own_part(found, q))))
+        return (
+            f"{name} cannot reach {found._partial.text}: the nearest configuration misses it by {miss}"
+            + what_a_slight_miss_needs(left)
+        )
     if found.goal.shape == (3,):
         return f"out of reach: the goal would have to move {found.missing:.4g} m for {name} to reach it"
     _, missing, turned = _core._ik_miss(found.robot, found.goal, ORIENTATION_FIRST)
@@ -318,12 +323,26 @@ def unreachable_reason(found: Solutions) -> str:
         return (
             f"{name} ({found.robot.dof} joints) cannot take this orientation: the nearest configuration "
             f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"
+            + what_a_slight_miss_needs(max(turned, missing))
         )
     short = "" if found.robot.dof >= POSE_ASKS else f" ({found.robot.dof} joints, where poses ask for 6)"
     return (
         f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
-        f"for {name}{short} to reach it"
+        f"for {name}{short} to reach it" + (what_a_slight_miss_needs(missing) if short else "")
     )
+
+
+def what_a_slight_miss_needs(miss: float) -> str:
+    """What to ask where a goal that an arm of few joints was made for is missed by its rounding [m, rad]."""
+    if miss > SLIGHT_MISS:
+        return ""
+    return ", which the rounded numbers of a robot may cause; least_squares=True answers with the nearest"
+
+
+def own_part(found: Solutions, q: Array) -> Array:
+    """A configuration of the longer arm of a partial goal, without the goal's joints."""
+    first = len(found._partial.before)
+    return q[first : first + found.robot.dof]
 
 
 def nearest_miss(found: Solutions, radian: float = 1.0) -> tuple[Array, float, str]:
@@ -331,14 +350,13 @@ def nearest_miss(found: Solutions, radian: float = 1.0) -> tuple[Array, float, s
     [m], and by how much in words. radian: how many metres one weighs where what is missed is compared.
     """
     whole, goal = found._about.whole, found._partial
-    own = slice(len(goal.before), len(goal.before) + found.robot.dof)
 
     def size(q: Array) -> float:
-        distances, angles = goal.misses(found.robot.fk(q[own]))
+        distances, angles = goal.misses(found.robot.fk(own_part(found, q)))
         return float(max(distances, default=0.0) + radian * max(angles, default=0.0))
 
     q = min((_core._ik_miss(whole, found.goal, weight)[0] for weight in (1.0, ORIENTATION_FIRST)), key=size)
-    T = found.robot.fk(q[own])
+    T = found.robot.fk(own_part(found, q))
     return q, float(max(goal.misses(T)[0], default=0.0)), goal.miss_in_words(T)
 
 
