@@ -37,13 +37,13 @@ int main() {
         const int head[3] = {found.count, static_cast<int>(found.status), found.complete};
         put(head, 3);
         for (int j = 0; j < found.count; ++j) {
-            double T[16], J[6 * arm::dof];
+            double T[4][4], J[6 * arm::dof];
             arm::fk(found.q[j], T);
             arm::jacobian(found.q[j], J);
             const int family = found.family[j];
             put(found.q[j], arm::dof);
             put(&family, 1);
-            put(T, 16);
+            put(&T[0][0], 16);
             put(J, 6 * arm::dof);
         }
     }
