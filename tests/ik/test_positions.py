@@ -8,6 +8,7 @@ import pytest
 from cspace.errors import InputError, InputTypeError
 from cspace.model import from_screws
 from cspace.robot import Robot
+from cspace.spatial import pose
 from ik.arms import load
 from ik.geometries import angle_gap
 
@@ -181,3 +182,18 @@ def test_a_held_joint_that_leaves_the_others_free_is_no_error(joint):
     assert len(found) > 1
     assert not found.complete
     assert np.abs(robot.fk(found.q)[:, :3, 3] - [0, 1, 0]).max() < 1e-9
+
+
+@pytest.mark.parametrize("bounds", [{}, {"lower": [0.0] * 3, "upper": [0.5] * 3}], ids=["free", "limited"])
+def test_one_of_two_parallel_slides_is_held(bounds):
+    """The other slide goes along the coordinate that is left open, and what is free keeps to a plane."""
+    T_zero = pose([0, -0.1, -0.2], rpy=[-0.6, 0.2, 3.1])
+    points = [[-0.2, -0.1, 0], [0, 0.1, 0], [-0.1, 0.1, -0.3]]
+    axes = [[0, 0, 1], [0.6, 0.8, 0], [0, 0, -1]]
+    robot = Robot(from_screws(axes, points, T_zero, joint_types="PRP", **bounds))
+    for q in np.random.default_rng(0).uniform(-1, 1, (20, 3)):
+        x, y, _ = robot.fk(q)[:3, 3]
+        found = robot.ik(position=(x, y, None), fixed={"joint_1": q[0]})
+        assert found
+        assert np.abs(found.q[:, 0] - q[0]).max() < 1e-12
+        assert np.abs(robot.fk(found.q)[:, :2, 3] - [x, y]).max() < 1e-9

@@ -162,12 +162,12 @@ def sampled(held: Held, T: Array, count: int, threads: int) -> Solutions:
         found = intervals_of(free, T, joint)
         where = "the values that reach it, none of them within limits"
     values = found.spread(count)
-    if not len(values):
+    q, branch, counts, complete = sweep(held, T, joint, values)
+    if not counts.any():
         found_beside = cast(Solutions, nearest(held, T, start_of_search(held, T, threads), threads))
         # Where joints share their work but for a little, single values may reach what no interval does.
-        proven = found.complete and len(held.free) > POSE_ASKS
+        proven = not found and found.complete and len(held.free) > POSE_ASKS
         return found_beside if found_beside else unreachable(held, T, proven=proven)
-    q, branch, counts, complete = sweep(held, T, joint, values)
     real = np.arange(q.shape[1]) < counts[:, None]
     rows = held.whole(q[real])
     note = (
