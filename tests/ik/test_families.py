@@ -180,6 +180,59 @@ def test_a_planar_arm_on_a_point_is_a_four_bar_linkage(case):
             assert np.allclose([low, high], [-np.pi, np.pi])
 
 
+def members_of_a_linkage(links, point, rng, n=150):
+    """Configurations of a planar arm on a point: the first joint given, the others by the law of cosines; then
+    the second given, which makes one link of the first two.
+    """
+    l1, l2, l3 = links
+
+    def two_links(a, b, towards):
+        c = (towards @ towards - a * a - b * b) / (2 * a * b)
+        if abs(c) > 1:
+            return
+        for bend in (np.arccos(c), -np.arccos(c)):
+            yield (
+                np.arctan2(towards[1], towards[0]) - np.arctan2(b * np.sin(bend), a + b * np.cos(bend)),
+                bend,
+            )
+
+    for given in rng.uniform(-np.pi, np.pi, n):
+        elbow = l1 * np.array([np.cos(given), np.sin(given)])
+        for second, bend in two_links(l2, l3, point - elbow):
+            yield given, second - given, bend
+        joined = l1 + l2 * np.exp(1j * given)
+        for turn, bend in two_links(abs(joined), l3, point):
+            first = turn - np.angle(joined)
+            yield first, given, turn + bend - first - given
+
+
+LINKAGES = {
+    "four equal sides: three curves": ([1, 1, 1], 1.0),
+    "a kite with two sides folded": ([1, 1, 0.5], 0.5),
+    "a kite, the other way": ([0.5, 1, 1], 0.5),
+    "a parallelogram": ([1, 2, 1], 2.0),
+    "one curve that crosses itself, stretched": ([0.5, 1, 1], 1.5),
+    "one curve that crosses itself, folded": ([1, 0.7, 0.4], 0.7),
+    "the base, which all sides reach folded": ([1, 1, 1], 0.0),
+}
+
+
+@pytest.mark.parametrize("towards", [0.0, 0.8, np.pi / 2])
+@pytest.mark.parametrize("off", [0.0, 1e-6, -1e-6])
+@pytest.mark.parametrize("case", LINKAGES)
+def test_every_member_of_a_linkage_is_on_a_curve_that_is_listed(case, off, towards):
+    """Where curves cross, or nearly do, none of them may be missing (Grashof 1883)."""
+    links, r = LINKAGES[case]
+    point = (r + off) * np.array([np.cos(towards), np.sin(towards)])
+    robot = Robot.from_dh([[0, a, 0, 0] for a in links], convention="standard")
+    found = robot.ik(position=[*point, 0])
+    members = np.array(list(members_of_a_linkage(links, point, np.random.default_rng(3))))
+    assert np.abs(robot.fk(members)[:, :2, 3] - point).max() < 1e-6
+    listed = np.concatenate([family.sample(600) for family in found.families])
+    gaps = np.abs(np.angle(np.exp(1j * (members[:, None] - listed)))).max(axis=2).min(axis=1)
+    assert gaps.max() < 0.05
+
+
 def test_the_extremes_of_a_linkage_are_where_its_joints_turn_back():
     """UR, axis 6 parallel: four parallel axes hold a point; at an extreme one joint stands still."""
     robot, _, families = families_of(*CASES["ur5e, axis 6 parallel to axis 2"])

@@ -142,8 +142,8 @@ inline void step_to_floor(const PoseError& error, int weak, double* dq) {
 // solution, else untouched.
 inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double length, double* q,
                           PoseError& error) {
-    constexpr int most_steps = 48;
-    constexpr double narrow = 1e-4, settled = 1e-15, arrived = 1e-12;
+    constexpr int most_steps = 96;
+    constexpr double narrow = 1e-2, settled = 1e-15, arrived = 1e-12;
     double at[ik::max_joints], size = 1;
     for (int i = 0; i < chain.n; ++i) at[i] = q[i];
     measure(chain, goal, length, at, error);

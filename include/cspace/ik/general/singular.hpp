@@ -107,9 +107,9 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     arm.solve(arm, goal, out);
     const bool certain = out.complete && !out.crowded, completed = chain.n < 6;
     if (completed) out = without_virtual_joints(chain, goal, out);
-    // Of six turning joints a certified empty list is believed.
+    // Of six turning joints a certified empty list is believed, unless goals beside this one had to say so.
     const bool may_hide = completed || arm.plan.slides > 0;
-    const bool empty = out.count == 0 && (may_hide || arm.has_neighbours);
+    const bool empty = out.count == 0 && (may_hide || arm.has_neighbours || out.crowded);
     if (!out.complete || empty || (!certain && may_hide)) look_beside(arm, chain, goal, certain, out);
     if (!certain && !completed) mark_families(arm.plan, goal, out);
     judge(out);

@@ -25,8 +25,11 @@ inline Range range(const OnCurve& f) {
     if (f.square <= tolerance::rounding) return {-without_end, without_end};
     return {f.k - f.a * f.a / (4 * f.square), without_end};
 }
+// Where ends nearly touch, curves nearly cross, and who follows one of them may change to another: they are
+// told apart as if they did.
 inline bool is_within(const Range& inner, const Range& outer) {
-    return inner.least >= outer.least - tolerance::rounding && inner.most <= outer.most + tolerance::rounding;
+    constexpr double nearly = 1e-8;
+    return inner.least >= outer.least - nearly && inner.most <= outer.most + nearly;
 }
 inline bool holds(const Range& r, double value) {
     return value >= r.least - tolerance::rounding && value <= r.most + tolerance::rounding;
@@ -55,25 +58,54 @@ inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
            weight(f[k]) + weight(g[k]) > tolerance::rounding;
 }
 
-// One pair per curve of f(q1) = g(q3): the joint that is free at 0; else the first at 0, or the last at 0,
-// or the first where its side ends.
+// Where an end of f is an end of g, two curves cross there, or one crosses itself: both joints move, either
+// slope of one with either slope of the other.
+struct Touching {
+    bool most, least;
+};
+inline Touching touching(const Range& f, const Range& g) {
+    const auto same = [](double a, double b) { return std::fabs(a - b) <= tolerance::rounding; };
+    return {same(f.most, g.most), same(f.least, g.least)};
+}
+
+// Whether a joint stands near an end of its side, where curves may cross or nearly do.
+inline bool is_near_end(const OnCurve& f, double q) {
+    constexpr double near = 0.3;
+    const double way = q - at_most(f);
+    return std::fabs(f.line ? way : std::sin(way)) < near;
+}
+inline double away_from_ends(const OnCurve& f) { return is_near_end(f, 0) ? at_most(f) + 0.5 * pi : 0; }
+
+// One pair per curve of f(q1) = g(q3), no crossing of two: a joint that is free at 0, or a quarter of a turn
+// from an end; else the first at 0, or the last at 0, or both sides halfway between the ends of their curve.
 inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& found) {
     const Range of_f = range(f), of_g = range(g);
+    const Touching ends = touching(of_f, of_g);
+    // The two slopes of a side are one curve that passes from one to the other where it crosses itself.
+    const bool once = (!f.line || !g.line) && ends.most != ends.least;
     double q[2];
     if (is_within(of_f, of_g)) {
-        const int n = values(g, value(f, 0), q);
-        for (int i = 0; i < n; ++i) add(found, 0, q[i]);
+        const double first = away_from_ends(f);
+        const int n = values(g, value(f, first), q);
+        for (int i = 0; i < (once ? 1 : n); ++i) add(found, first, q[i]);
     } else if (is_within(of_g, of_f)) {
-        const int n = values(f, value(g, 0), q);
-        for (int i = 0; i < n; ++i) add(found, q[i], 0);
-    } else if (holds(of_g, value(f, 0))) {
+        const double last = away_from_ends(g);
+        const int n = values(f, value(g, last), q);
+        for (int i = 0; i < (once ? 1 : n); ++i) add(found, q[i], last);
+    } else if (!is_near_end(f, 0) && holds(of_g, value(f, 0))) {
         if (values(g, value(f, 0), q) > 0) add(found, 0, q[0]);
-    } else if (holds(of_f, value(g, 0))) {
+    } else if (!is_near_end(g, 0) && holds(of_f, value(g, 0))) {
         if (values(f, value(g, 0), q) > 0) add(found, q[0], 0);
     } else {
-        const double first = holds(of_g, of_f.most) ? at_most(f) : at_least(f);
-        if (values(g, value(f, first), q) > 0) add(found, first, q[0]);
+        const double least = std::fmax(of_f.least, of_g.least), most = std::fmin(of_f.most, of_g.most);
+        const double halfway = 0.5 * (least + most);
+        double first[2], last[2];
+        if (values(f, halfway, first) > 0 && values(g, halfway, last) > 0) add(found, first[0], last[0]);
     }
+    // Where both sides are least, both points may lie on the axis between, whose joint is then free.
+    if (!ends.least) return;
+    found.on_axis = found.count;
+    add(found, at_least(f), at_least(g));
 }
 
 }  // namespace pair

@@ -59,6 +59,25 @@ inline void candidates(const TipGap<2>& g, ik::PositionSolutions& found) {
     }
     if (idle) complete(0);
 }
+// Joints 0 and 2 bring both points to the axis of joint 1, which is then free: it is turned away from where
+// the other two can move as well. False where they do not.
+inline bool free_the_middle(const TipGap<3>& g, const Vec3d& behind, const Vec3d& before, double* q) {
+    const auto is_on_axis = [&](const Vec3d& x) {
+        return norm(cross(g.axis[1], x - g.point[1])) <= tolerance::same_turns;
+    };
+    if (g.prismatic[1] || !is_on_axis(behind) || !is_on_axis(before)) return false;
+    double best = -1;
+    const double first = q[0], last = q[2];
+    for (const double middle : {0.0, 0.5 * pi}) {
+        const double there[3] = {first, middle, last};
+        Linearised<TipGap<3>> at;
+        linearise(g, there, at);
+        const auto column = [&](int j) { return Vec3d{at.slope[0][j], at.slope[1][j], at.slope[2][j]}; };
+        const double apart = norm(cross(column(0), column(2)));
+        if (apart > best) best = apart, q[1] = middle;
+    }
+    return true;
+}
 inline void candidates(const TipGap<3>& g, ik::PositionSolutions& found) {
     const Curve behind = tip_curve(g, 2, g.tip, 1), before = tip_curve(g, 0, g.goal, -1);
     OnCurve f[2], h[2];
@@ -72,7 +91,9 @@ inline void candidates(const TipGap<3>& g, ik::PositionSolutions& found) {
         for (int i = 0; i < pairs.count; ++i) {
             if (pairs.stage[i] != (stage < 2 ? 0 : stage - 1)) continue;
             const double first = pairs.first[i], last = pairs.last[i];
-            double q[3] = {first, joint_between(g, 1, at(behind, last), at(before, first)), last};
+            const Vec3d from = at(behind, last), to = at(before, first);
+            double q[3] = {first, joint_between(g, 1, from, to), last};
+            if (i == pairs.on_axis && !free_the_middle(g, from, to, q)) continue;
             Linearised<TipGap<3>> start;
             const bool sure = linearise(g, q, start) < tolerance::sure_candidate;
             if (stage >= 2 || sure == (stage == 0)) propose(g, q, found);

@@ -11,6 +11,7 @@ struct PairCandidates {
     double first[48], last[48];
     int stage[48];  // 0: from the conditions; later ones represent families
     int now = 0;
+    int on_axis = -1;  // the one where both points may lie on the axis between
 };
 
 }  // namespace cspace
