@@ -35,15 +35,18 @@ bool is_seed(PyObject* value, int n) {
     return true;
 }
 
-// By the turn that comes closest to the seed, inside the limits if one is.
+// By the turn that comes closest to the seed, inside the limits if one is; on a limit that rounding takes it
+// past.
 double by_closest_turn(const NearEntry& entry, const ik::Chain& chain, int i, double q, double seed) {
-    constexpr double turn = 6.283185307179586;
+    constexpr double turn = 6.283185307179586, on_limit = 1e-9;
     if (chain.prismatic[i]) return q;
-    const double least = std::ceil((entry.lower[i] - q) / turn);
-    const double most = std::floor((entry.upper[i] - q) / turn);
+    const double lower = entry.lower[i], upper = entry.upper[i];
+    const double least = std::ceil((lower - on_limit - q) / turn);
+    const double most = std::floor((upper + on_limit - q) / turn);
     const double wanted = std::nearbyint((seed - q) / turn);
     const double turns = least <= most ? std::fmin(std::fmax(wanted, least), most) : wanted;
-    return q + turn * turns;
+    const double moved = q + turn * turns, inside = std::fmin(std::fmax(moved, lower), upper);
+    return std::fabs(moved - inside) <= on_limit ? inside : moved;
 }
 
 PyObject* one_row(PyObject* robot, const double* goal, const double* q, int n, int branch, PyObject* about) {

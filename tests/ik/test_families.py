@@ -180,6 +180,30 @@ def test_a_planar_arm_on_a_point_is_a_four_bar_linkage(case):
             assert np.allclose([low, high], [-np.pi, np.pi])
 
 
+CROSSED = {
+    "a wrist straightens while the waist turns": ("viperx300s", [1, -1, 1, 2, 0, 2]),
+    "the same behind the other shoulder": ("widowx250s", [1, -1, 1, 2, 0, 2]),
+    "a closed family next to a stretched arm": ("ur3", [0, 1, 0, -1.0075, 0, 1]),
+}
+
+
+@pytest.mark.parametrize("case", CROSSED)
+def test_families_that_cross_or_are_small_are_listed(case):
+    name, quarters = CROSSED[case]
+    robot, q = load(name), np.pi / 2 * np.array(quarters)
+    found = robot.ik(robot.fk(q))
+    assert found.complete
+    assert min(angle_gap(family.nearest(q)[None], q).max() for family in found.families) < 1e-6
+
+
+def test_more_freedom_than_one_is_not_certified():
+    """Three axes in line: a curve does not say all."""
+    robot = load("puma_style")
+    found = robot.ik(robot.fk(np.pi / 2 * np.array([-1, -1, 0, 1, 0, 2])))
+    assert found.status == "singular"
+    assert not found.complete
+
+
 def members_of_a_linkage(links, point, rng, n=150):
     """Configurations of a planar arm on a point: the first joint given, the others by the law of cosines; then
     the second given, which makes one link of the first two.

@@ -31,6 +31,17 @@ def test_asking_again_answers_as_the_first_time_and_as_the_list(name):
             )
 
 
+@pytest.mark.parametrize("name", ["ur5e", "ur5_dh", "ur10e", "puma560", "viperx300s"])
+@pytest.mark.parametrize("q5", [0.0, np.pi, -np.pi])
+def test_a_seed_that_is_a_solution_is_the_answer(name, q5):
+    """Also as a member of a family, and with a joint on its limit at half a turn."""
+    robot, rng = cs.load_robot(name), np.random.default_rng(11)
+    for q in rng.uniform(-3, 3, (12, 6)):
+        q[4] = q5
+        found = robot.ik(robot.fk(q), near=q)
+        assert gap(robot, found.q, q).min() < 1e-6
+
+
 def two_joints(kinds, axes, points=None):
     tip = cs.pose([0.3, 0.2, 0.1])
     return cs.Robot(from_screws(axes, points or [[0, 0, 0]] * len(axes), tip, joint_types=kinds, name=kinds))

@@ -4,6 +4,7 @@
 #include "cspace/ik/beyond.hpp"
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/complete.hpp"
+#include "cspace/ik/crossing_families.hpp"
 #include "cspace/ik/general/singular.hpp"
 #include "cspace/ik/miss.hpp"
 #include "cspace/ik/position/pose.hpp"
@@ -119,7 +120,7 @@ inline bool is_limited(const ik::Arm& arm) {
     return arm.plan.chain.n < 6 || (arm.is_general && arm.general.plan.slides > 0);
 }
 
-inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
+inline ik::Solutions solutions_and_families(const ik::Arm& arm, const Posed& goal, const double* idle) {
     constexpr int starts = 12;
     const ik::Chain& chain = arm.plan.chain;
     const double length = arm.plan.form.length;
@@ -129,8 +130,9 @@ inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const dou
                             : solve_general_carefully(arm.general, goal, idle);
     if (arm.has_plan) {
         ik::Solutions out = solve_carefully(arm.plan, goal, idle);
-        // Where the completed arm is singular the arm itself need not be.
-        if (arm.plan.virtual_joints == 0 ||
+        // Where the completed arm is singular the arm itself need not be, and where a wrist is almost free
+        // rounding may put a goal on the border out of reach.
+        if ((arm.plan.virtual_joints == 0 && out.count > 0) ||
             !closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
             return out;
         if (search_beside_form(arm.plan, goal, out)) out.complete = false;
@@ -141,6 +143,17 @@ inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const dou
     ik::Solutions out = from_short(chain, solve_short_pose(chain, goal));
     if (out.count == 0) search_by_descent(chain, goal, length, starts, out);
     refine_short(chain, goal, length, out);
+    return out;
+}
+
+inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
+    const ik::Chain& chain = arm.plan.chain;
+    const double length = arm.plan.form.length;
+    ik::Solutions out = solutions_and_families(arm, goal, idle);
+    if (chain.n <= ik::max_position_joints) return out;
+    if (out.status == ik::Status::singular) add_crossing_families(chain, goal, length, room_for(arm), out);
+    for (int k = 0; k < out.count && out.complete; ++k)
+        out.complete = out.family[k] || !lies_in_valley(chain, goal, length, out.q[k]);
     return out;
 }
 

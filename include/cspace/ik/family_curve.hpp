@@ -61,15 +61,29 @@ inline bool tangent_at(const ik::Chain& chain, const PoseSvd& J, const double* a
     return true;
 }
 
-// How far away another curve may be: the least of the other singular values vanishes where two curves cross,
-// about in proportion to the distance. A longer step could change from one to the other.
-inline double room_at(const PoseSvd& J) {
-    constexpr double least = 1e-5;
+// The least of the other singular values: it vanishes where two curves cross.
+inline double hold_on_curve(const PoseSvd& J) {
     double weakest_hold = 1;
     for (int j = 0; j < J.columns; ++j)
         if (J.sigma[j] > still) weakest_hold = min(weakest_hold, J.sigma[j]);
-    return max(0.5 * weakest_hold, least);
+    return weakest_hold;
 }
+
+// How long a step may be: a longer one could change to another curve. Towards a crossing the hold falls about
+// in proportion to the distance; beside a curve that stays close a step strays by its square.
+struct Room {
+    double slope = 1;  // of the hold, the steepest of late
+
+    double after(double hold, double last_hold, double step) {
+        constexpr double forget = 0.8;
+        slope = max(forget * slope, std::fabs(hold - last_hold) / step);
+        return here(hold);
+    }
+    double here(double hold) const {
+        constexpr double least = 1e-5;
+        return max(0.5 * min(std::sqrt(hold), hold / slope), least);
+    }
+};
 
 // The shortest change of the joints, in their units, that undoes the error; none along the curve.
 inline void shortest_step(const PoseError& at, double* dq) {
@@ -104,7 +118,7 @@ inline bool onto_curve(const ik::Chain& chain, const ik::Held& held, double* q, 
 
 // One step of length h from q along its tangent. False if the curve bends too much for it.
 inline bool step_along(const ik::Chain& chain, const ik::Held& held, const double* q, const double* tangent,
-                       double h, double* next, double* next_tangent, double* room) {
+                       double h, double* next, double* next_tangent, double* hold) {
     constexpr double least_cosine = 0.995, largest_return = 0.1;
     PoseError at;
     for (int i = 0; i < chain.n; ++i) next[i] = q[i] + h * unit_of(chain, i, held.length) * tangent[i];
@@ -115,7 +129,7 @@ inline bool step_along(const ik::Chain& chain, const ik::Held& held, const doubl
         const double moved = (next[i] - q[i]) / unit_of(chain, i, held.length) - h * tangent[i];
         back2 += moved * moved;
     }
-    *room = room_at(at.jacobian);
+    *hold = hold_on_curve(at.jacobian);
     return back2 <= largest_return * largest_return * h * h &&
            dot_n(tangent, next_tangent, chain.n) >= least_cosine;
 }
@@ -137,7 +151,7 @@ inline bool start_is_next(const ik::Chain& chain, const ik::Held& held, const do
            dot_n(tangent, start_tangent, chain.n) > 0.9;
 }
 
-inline double first_step(const PoseSvd& J) { return min(1e-3, 0.2 * room_at(J)); }
+inline double first_step(const PoseSvd& J) { return min(1e-3, 0.2 * Room{}.here(hold_on_curve(J))); }
 
 // The tangent at a configuration, from a guess. Where curves cross, the null space holds more directions than
 // theirs: a short step along each of many is brought back, and the way it then has gone that is nearest to
@@ -149,9 +163,9 @@ inline bool start_direction(const ik::Chain& chain, const ik::Held& held, const 
     PoseError at;
     measure_held(chain, held, q, at);
     const double h = first_step(at.jacobian);
-    double next[ik::max_joints], beyond[ik::max_joints], room, best = -1;
+    double next[ik::max_joints], beyond[ik::max_joints], hold, best = -1;
     if (tangent_at(chain, at.jacobian, guess, tangent) &&
-        step_along(chain, held, q, tangent, h, next, beyond, &room))
+        step_along(chain, held, q, tangent, h, next, beyond, &hold))
         return true;
     for (int a = 0; a < n; ++a)
         for (int b = a + 1; b < n; ++b)
@@ -166,7 +180,7 @@ inline bool start_direction(const ik::Chain& chain, const ik::Held& held, const 
                 if (!onto_curve(chain, held, next, there)) continue;
                 for (int i = 0; i < n; ++i) way[i] = (next[i] - q[i]) / (h * unit_of(chain, i, held.length));
                 if (!(dot_n(way, way, n) > 0.25) || !tangent_at(chain, at.jacobian, way, trial) ||
-                    !step_along(chain, held, q, trial, h, next, beyond, &room))
+                    !step_along(chain, held, q, trial, h, next, beyond, &hold))
                     continue;
                 const double agrees = dot_n(trial, guess, n);
                 if (agrees <= best) continue;
@@ -190,14 +204,16 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const do
     for (int i = 0; i < n; ++i) q[i] = start[i], t[i] = leaves ? first[i] : direction[i];
     visit(q, t);
     if (!leaves) return ik::CurveEnd::lost;
-    double h = first_step(at.jacobian), room = longest;
+    double h = first_step(at.jacobian), hold = hold_on_curve(at.jacobian);
+    Room room;
     for (int step = 0; step < most_steps; ++step) {
         double next[ik::max_joints] = {}, next_t[ik::max_joints] = {};
         if (step > 2 && start_is_next(chain, held, q, t, start, first, 1.5 * h, next)) {
             visit(next, first);
             return ik::CurveEnd::closed;
         }
-        while (!step_along(chain, held, q, t, h, next, next_t, &room))
+        const double last_hold = hold;
+        while (!step_along(chain, held, q, t, h, next, next_t, &hold))
             if ((h *= 0.5) < shortest) return ik::CurveEnd::lost;
         double turning = 0, away = 0;
         for (int i = 0; i < n; ++i) {
@@ -209,9 +225,28 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const do
         }
         visit(q, t);
         if (away > ik::far_away) return ik::CurveEnd::far;
-        h = turning > 1e-9 ? min(1.5 * h, min(room, longest)) : 2 * h;  // slides alone run along a line
+        const double longest_here = min(room.after(hold, last_hold, h), longest);
+        h = turning > 1e-9 ? min(1.5 * h, longest_here) : 2 * h;  // slides alone run along a line
     }
     return ik::CurveEnd::lost;
+}
+
+// The whole of a family: both ways from q, or once around where it closes. Tells `visit` which way (0 or 1),
+// every configuration and the tangent there; each takes one of the steps that are left.
+template <class Visit>
+void follow_family(const ik::Chain& chain, const ik::Held& held, const double* q, const double* direction,
+                   int& steps_left, Visit&& visit) {
+    constexpr int most_steps = 1000;
+    for (int way = 0; way < 2; ++way) {
+        double along[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) along[i] = (way ? -1 : 1) * direction[i];
+        const auto count = [&](const double* at, const double* tangent) {
+            --steps_left;
+            visit(way, at, tangent);
+        };
+        const int most = min(max(steps_left, 0), most_steps);
+        if (follow_curve(chain, held, q, along, count, most) == ik::CurveEnd::closed) return;
+    }
 }
 
 }  // namespace cspace::inline CSPACE_ISA

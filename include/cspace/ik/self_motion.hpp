@@ -50,6 +50,37 @@ inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double lengt
     return true;
 }
 
+// Whether a family too small for such strides runs through q: it comes round to where it began.
+inline bool runs_round(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                       const double* direction) {
+    constexpr double least = 1e-3;
+    constexpr int most_steps = 400;
+    double farthest = 0;
+    const auto visit = [&](const double* at, const double*) {
+        for (int i = 0; i < chain.n; ++i) farthest = max(farthest, std::fabs(at[i] - q[i]));
+    };
+    const ik::Held held = {goal, true, length};
+    return follow_curve(chain, held, q, direction, visit, most_steps) == ik::CurveEnd::closed &&
+           farthest > least;
+}
+
+// Whether q lies in a valley along which the goal counts as reached all the way, although no family runs
+// there: rounded axes leave such valleys, and any of their configurations may be the one that was meant.
+inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
+    constexpr double hardly = 1e-7, stride = 0.02;
+    PoseError at;
+    measure(chain, goal, length, q, at);
+    decompose(at.jacobian);
+    const int weak = weakest(at.jacobian);
+    if (at.jacobian.sigma[weak] > hardly) return false;
+    for (const double way : {stride, -stride}) {
+        const double* const v = at.jacobian.v[weak];
+        const double kept = kept_of_stride(chain, goal, length, q, v, way, true, tolerance::reached);
+        if (0.8 < kept && kept < 1.25) return true;
+    }
+    return false;
+}
+
 // The part of v in the span of the orthonormal vectors basis[0 … k), made unit.
 inline bool project(const double* const* basis, int k, int n, double* v) {
     double out[ik::max_joints] = {};
@@ -119,7 +150,7 @@ inline bool find_self_motion(const ik::Chain& chain, const Posed& goal, double l
         if (J.sigma[j] < lost) basis[k++] = J.v[j];
     if (k == 0) return false;
     const auto accept = [&](const double* d) {
-        if (!moves_freely(chain, goal, length, q, d)) return false;
+        if (!moves_freely(chain, goal, length, q, d) && !runs_round(chain, goal, length, q, d)) return false;
         for (int i = 0; i < chain.n; ++i) direction[i] = d[i];
         return true;
     };

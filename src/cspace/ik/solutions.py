@@ -32,6 +32,8 @@ INCOMPLETE: Final = 8
 """Added to a verdict where solutions may be missing."""
 VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
 METRICS: Final = ("euclidean", "max")
+SAME_MEMBER: Final = 1e-6
+"""Distance [rad, m] from a seed within which the member of a family is the seed."""
 ORIENTATION_FIRST: Final = 1e4
 """Weight of a radian, in lengths of the arm, in the search for the way that is missing: it stays put."""
 ORIENTATION_KEPT: Final = 1e-3
@@ -211,6 +213,15 @@ class Solutions(_core.SolutionsBase):
         q = self.q.copy()
         for family in self.families:
             q[family.row] = family.nearest(seed)
+        return self._take(np.arange(len(self)), q, self._note)
+
+    def _with_member(self, seed: Array) -> Solutions:
+        """The same solutions, the family that a seed (dof,) is a member of by that member."""
+        q = self.q.copy()
+        for family in self.families:
+            member = family.nearest(seed)
+            if np.abs(member - seed).max() < SAME_MEMBER:
+                q[family.row] = member
         return self._take(np.arange(len(self)), q, self._note)
 
     def wrapped(self) -> Solutions:

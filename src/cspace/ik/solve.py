@@ -240,7 +240,8 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
         raise too_far("goal", T[:3, 3])
     bounds = (np.ascontiguousarray(side) for side in (robot.limits.lower, robot.limits.upper))
     _core._ik_serve_near(robot, *bounds)
-    return cast(Solutions, _core._ik_careful(robot, T, seed))
+    found = cast(Solutions, _core._ik_careful(robot, T, seed))
+    return found._with_member(seed) if found.families else found
 
 
 def solve_many(robot: Any, T: Array, workers: int) -> SolutionsBatch:

@@ -21,6 +21,8 @@ __all__ = ["all_windings", "into_limits", "nearest_winding", "short_way", "turni
 
 Flags = npt.NDArray[np.bool_]
 TURN = 2 * np.pi
+ON_LIMIT = 1e-9
+"""By how much [rad] a whole turn may take a joint past its limit: rounding."""
 
 
 def turning(kinds: Sequence[str]) -> Flags:
@@ -79,8 +81,14 @@ def violations(q: Array, kinds: Sequence[str], lower: Array, upper: Array) -> Ar
 
 
 def nearest_winding(q: Array, seed: Array, kinds: Sequence[str], lower: Array, upper: Array) -> Array:
-    """Each revolute joint by the turn that brings it closest to the seed, inside its limits if one is."""
-    return q + TURN * fewest_turns(q, kinds, lower, upper, np.round((seed - q) / TURN))
+    """Each revolute joint by the turn that brings it closest to the seed, inside its limits if one is; on a
+    limit that rounding takes it past.
+    """
+    wanted = np.round((seed - q) / TURN)
+    moved = q + TURN * fewest_turns(q, kinds, lower - ON_LIMIT, upper + ON_LIMIT, wanted)
+    inside = np.clip(moved, lower, upper)
+    on_limit = turning(kinds) & (np.abs(moved - inside) <= ON_LIMIT)
+    return np.asarray(np.where(on_limit, inside, moved))
 
 
 def all_windings(

@@ -13,6 +13,8 @@ struct Representative {
     double value = 0;
     double gap = 1e300;
     double q[max_joints], direction[max_joints];
+    double before[max_joints];  // the member visited before, on the way `way`
+    int way = -1;
 };
 
 }  // namespace cspace::ik
@@ -64,6 +66,15 @@ inline void offer_between(const ik::Chain& chain, const ik::Held& held, ik::Repr
     }
 }
 
+// The next member on a way along the family.
+inline void offer_next(const ik::Chain& chain, const ik::Held& held, ik::Representative& r, int way,
+                       const double* q, const double* t) {
+    offer_member(chain, r, q, t);
+    if (way == r.way) offer_between(chain, held, r, r.before, q, t);
+    r.way = way;
+    for (int i = 0; i < chain.n; ++i) r.before[i] = q[i];
+}
+
 // Whether a solution lies on the piece of the curve around q, of about a step's length.
 inline bool lies_beside(const ik::Chain& chain, const double* q, const double* t, const double* other) {
     constexpr double reach = 0.06, narrow = 0.05;
@@ -98,22 +109,11 @@ inline void keep_one_per_family(const ik::Chain& chain, const Posed& goal, const
         r.value = idle ? idle[r.joint] : 0;
         double start[ik::max_joints], along[ik::max_joints];
         for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
-        for (const double sign : {1.0, -1.0}) {
-            double way[ik::max_joints], before[ik::max_joints];
-            bool first = true;
-            for (int i = 0; i < chain.n; ++i) way[i] = sign * along[i];
-            const auto visit = [&](const double* q, const double* t) {
-                offer_member(chain, r, q, t);
-                if (!first) offer_between(chain, held, r, before, q, t);
-                first = false;
-                --steps_left;
-                for (int i = 0; i < chain.n; ++i) before[i] = q[i];
-                for (int m = k + 1; m < out.count; ++m)
-                    dropped[m] = dropped[m] || (out.family[m] && lies_beside(chain, q, t, out.q[m]));
-            };
-            const int most_steps = min(steps_left, 1000);
-            if (follow_curve(chain, held, start, way, visit, most_steps) == ik::CurveEnd::closed) break;
-        }
+        follow_family(chain, held, start, along, steps_left, [&](int way, const double* q, const double* t) {
+            offer_next(chain, held, r, way, q, t);
+            for (int m = k + 1; m < out.count; ++m)
+                dropped[m] = dropped[m] || (out.family[m] && lies_beside(chain, q, t, out.q[m]));
+        });
         if (is_crossing(chain, held, r.q) && !is_crossing(chain, held, start)) continue;
         for (int i = 0; i < chain.n; ++i) {
             out.q[k][i] = chain.prismatic[i] ? r.q[i] : wrap_once(short_way(r.q[i]));

@@ -1,0 +1,183 @@
+// Families that cross those already found: along a curve of configurations that keep the tip, the arm may
+// come to one from which it can leave another way (a wrist that straightens while the shoulder turns).
+#pragma once
+
+#include "cspace/ik/careful.hpp"
+#include "cspace/ik/family_curve.hpp"
+#include "cspace/ik/general/one_per_family.hpp"
+
+namespace cspace::ik {
+
+// What was seen of the hold on all directions but the family's own while one curve was followed.
+struct CurveHold {
+    static constexpr int most = 6;
+    int crossings = 0;
+    double crossing[most][max_joints], along[most][max_joints];
+    bool wide = false;  // more than one freedom all along
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+// The least singular value but for the family's own.
+inline double hold_at(const ik::Chain& chain, const ik::Held& held, const double* q) {
+    PoseError at;
+    measure_held(chain, held, q, at);
+    double least = 1e300, second = 1e300;
+    for (int i = 0; i < chain.n; ++i) {
+        const double s = at.jacobian.sigma[i];
+        if (s < least)
+            second = least, least = s;
+        else if (s < second)
+            second = s;
+    }
+    return second;
+}
+
+// Whether the family only rolls a spherical wrist or shoulder that the other three joints hold by its centre:
+// then nothing crosses it.
+inline bool only_rolls(const ik::Chain& chain, const ik::Held& held, const double* q,
+                       const double* direction) {
+    constexpr double moving = 1e-9, firm = 1e-3, together = 1e-9;
+    if (chain.n != 6) return false;
+    int first = 6, last = -1;
+    for (int i = 0; i < 6; ++i)
+        if (std::fabs(direction[i]) > moving) first = min(first, i), last = max(last, i);
+    if (last - first != 2 || std::fabs(direction[first + 1]) > moving || (first != 0 && first != 3))
+        return false;
+    Vec3d axis[6], point[6];
+    Posed T = identity_pose();
+    for (int i = 0; i < 6; ++i) {
+        if (chain.prismatic[i]) return false;
+        axis[i] = T.R * chain.axis[i];
+        point[i] = T * chain.point[i];
+        T = T * joint_motion(chain, i, q[i]);
+    }
+    const Vec3d &a = axis[first], &b = axis[first + 1];
+    const CommonNormal normal = common_normal(a, point[first], b, point[first + 1], false, point[first]);
+    const Vec3d centre = normal.from;
+    for (int i = first; i <= last; ++i)
+        if (norm(cross(axis[i], centre - point[i])) > together * held.length) return false;
+    const int other = 3 - first;
+    const auto lever = [&](int i) { return cross(axis[i], centre - point[i]); };
+    const double volume = dot(lever(other), cross(lever(other + 1), lever(other + 2)));
+    return norm(cross(a, b)) > firm && std::fabs(volume) > firm * held.length * held.length * held.length;
+}
+
+// Follows the family through q and notes where other curves cross it.
+inline ik::CurveHold follow_hold(const ik::Chain& chain, const ik::Held& held, const double* q,
+                                 const double* direction, int& steps_left) {
+    constexpr double crossed = 1e-3, free = 1e-6, far_enough = 0.3;
+    ik::CurveHold out;
+    double before[ik::max_joints], along[ik::max_joints], hold[2] = {0, 0};
+    double loose = 0;  // how far it ran with more than one freedom
+    int seen = 0, last_way = 0;
+    const auto visit = [&](int way, const double* at, const double* t) {
+        const double here = hold_at(chain, held, at);
+        if (way != last_way) seen = 0;
+        const bool least = seen > 1 && hold[1] < crossed && hold[1] <= hold[0] && hold[1] < here;
+        if (least && out.crossings < ik::CurveHold::most) {
+            for (int i = 0; i < chain.n; ++i) {
+                out.crossing[out.crossings][i] = before[i];
+                out.along[out.crossings][i] = along[i];
+            }
+            ++out.crossings;
+        }
+        if (seen > 0 && here < free && hold[1] < free) loose += distance(chain, at, before);
+        for (int i = 0; i < chain.n; ++i) before[i] = at[i], along[i] = t[i];
+        hold[0] = hold[1], hold[1] = here;
+        last_way = way;
+        ++seen;
+    };
+    follow_family(chain, held, q, direction, steps_left, visit);
+    out.wide = loose > far_enough;
+    return out;
+}
+
+// Adds the family through q unless it passes one that is listed, by the member whose leading joint is zero.
+// Without a row to spare the list is not complete.
+inline void add_family(const ik::Chain& chain, const ik::Held& held, const double* q, const double* direction,
+                       int room, int& steps_left, ik::Solutions& out) {
+    bool met = false;
+    ik::Representative r;
+    r.joint = leading_joint(direction, chain.n);
+    follow_family(chain, held, q, direction, steps_left, [&](int way, const double* at, const double* t) {
+        offer_next(chain, held, r, way, at, t);
+        for (int m = 0; m < out.count; ++m)
+            met = met || (out.family[m] && lies_beside(chain, at, t, out.q[m]));
+    });
+    out.complete = out.complete && (met || out.count < room);
+    if (met || out.count == room) return;
+    const bool crosses = is_crossing(chain, held, r.q);
+    const int n = out.count++;
+    for (int i = 0; i < chain.n; ++i) {
+        const double value = crosses ? q[i] : r.q[i];
+        out.q[n][i] = chain.prismatic[i] ? value : wrap_once(short_way(value));
+        out.direction[n][i] = crosses ? direction[i] : r.direction[i];
+    }
+    out.branch[n] = static_cast<signed char>(max_branches + n);
+    out.family[n] = true;
+}
+
+// The direction in which a crossing is free, square to `along`; false if there is none.
+inline bool direction_across(const ik::Chain& chain, const PoseSvd& J, const double* along, double* across) {
+    constexpr double hardly_held = 2e-3;
+    for (int i = 0; i < chain.n; ++i) across[i] = 0;
+    for (int j = 0; j < J.columns; ++j) {
+        const double part = dot_n(J.v[j], along, chain.n);
+        if (J.sigma[j] > hardly_held || std::fabs(part) > 0.75) continue;
+        for (int i = 0; i < chain.n; ++i) across[i] += J.v[j][i] - part * along[i];
+    }
+    const double size = std::sqrt(dot_n(across, across, chain.n));
+    for (int i = 0; i < chain.n; ++i) across[i] /= size;
+    return size > 1e-3;
+}
+
+// Adds the curves that leave a crossing another way than `along`, seen a stride from it.
+inline void leave_crossing(const ik::Chain& chain, const ik::Held& held, const double* crossing,
+                           const double* along, int room, int& steps_left, ik::Solutions& out) {
+    constexpr double stride = 0.1, same_line = 0.95;
+    constexpr int around = 24, most_ways = 4;
+    PoseError at;
+    measure_held(chain, held, crossing, at);
+    double across[ik::max_joints], gone[most_ways][ik::max_joints];
+    if (!direction_across(chain, at.jacobian, along, across)) return;
+    int ways = 1;
+    for (int i = 0; i < chain.n; ++i) gone[0][i] = along[i];
+    for (int m = 1; m < around && ways < most_ways; ++m) {
+        const double c = std::cos(pi * m / around), s = std::sin(pi * m / around);
+        double q[ik::max_joints], t[ik::max_joints], *const way = gone[ways];
+        for (int i = 0; i < chain.n; ++i)
+            q[i] = crossing[i] + stride * unit_of(chain, i, held.length) * (c * along[i] + s * across[i]);
+        PoseError there;
+        if (!onto_curve(chain, held, q, there)) continue;
+        for (int i = 0; i < chain.n; ++i) way[i] = (q[i] - crossing[i]) / unit_of(chain, i, held.length);
+        const double went = std::sqrt(dot_n(way, way, chain.n));
+        bool known = went < 0.5 * stride;
+        for (int i = 0; i < chain.n; ++i) way[i] /= went;
+        for (int k = 0; k < ways; ++k) known = known || std::fabs(dot_n(way, gone[k], chain.n)) > same_line;
+        if (known || !tangent_at(chain, there.jacobian, way, t)) continue;
+        ++ways;
+        add_family(chain, held, q, t, room, steps_left, out);
+    }
+}
+
+// Adds the families that cross those listed, as far as there is room for rows. Where there is more than one
+// freedom all along a family a curve does not say all: such a list is not certified.
+inline void add_crossing_families(const ik::Chain& chain, const Posed& goal, double length, int room,
+                                  ik::Solutions& out) {
+    const ik::Held held = {goal, true, length};
+    int steps_left = 8000;  // of all curves together
+    for (int k = 0; k < out.count; ++k) {
+        if (!out.family[k] || only_rolls(chain, held, out.q[k], out.direction[k])) continue;
+        double q[ik::max_joints], direction[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i], direction[i] = out.direction[k][i];
+        const ik::CurveHold seen = follow_hold(chain, held, q, direction, steps_left);
+        out.complete = out.complete && !seen.wide && steps_left > 0;
+        for (int c = 0; c < seen.crossings && !seen.wide; ++c)
+            leave_crossing(chain, held, seen.crossing[c], seen.along[c], room, steps_left, out);
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA
