@@ -205,7 +205,7 @@ def test_more_freedom_than_one_is_not_certified():
 
 
 def members_of_a_linkage(links, point, rng, n=150):
-    """Configurations of a planar arm on a point: the first joint given, the others by the law of cosines; then
+    """Configurations of a planar arm on a point: the first joint given, the others by the law of cosines, and
     the second given, which makes one link of the first two.
     """
     l1, l2, l3 = links
