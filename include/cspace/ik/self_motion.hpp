@@ -67,7 +67,7 @@ inline bool runs_round(const ik::Chain& chain, const Posed& goal, double length,
 // Whether q lies in a valley along which the goal counts as reached all the way, although no family runs
 // there: rounded axes leave such valleys, and any of their configurations may be the one that was meant.
 inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
-    constexpr double hardly = 1e-7, stride = 0.02;
+    constexpr double hardly = 1e-7, stride = 0.02, next_to_nothing = 1e-10;
     PoseError at;
     measure(chain, goal, length, q, at);
     decompose(at.jacobian);
@@ -75,7 +75,7 @@ inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double len
     if (at.jacobian.sigma[weak] > hardly) return false;
     for (const double way : {stride, -stride}) {
         const double* const v = at.jacobian.v[weak];
-        const double kept = kept_of_stride(chain, goal, length, q, v, way, true, tolerance::reached);
+        const double kept = kept_of_stride(chain, goal, length, q, v, way, true, next_to_nothing);
         if (0.8 < kept && kept < 1.25) return true;
     }
     return false;
