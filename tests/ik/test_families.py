@@ -230,14 +230,14 @@ def members_of_a_linkage(links, point, rng, n=150):
             yield first, given, turn + bend - first - given
 
 
-LINKAGES = {
-    "four equal sides: three curves": ([1, 1, 1], 1.0),
-    "a kite with two sides folded": ([1, 1, 0.5], 0.5),
-    "a kite, the other way": ([0.5, 1, 1], 0.5),
-    "a parallelogram": ([1, 2, 1], 2.0),
-    "one curve that crosses itself, stretched": ([0.5, 1, 1], 1.5),
-    "one curve that crosses itself, folded": ([1, 0.7, 0.4], 0.7),
-    "the base, which all sides reach folded": ([1, 1, 1], 0.0),
+LINKAGES = {  # links, radius, and how many curves there are at it
+    "four equal sides": ([1, 1, 1], 1.0, 3),
+    "a kite with two sides folded": ([1, 1, 0.5], 0.5, 2),
+    "a kite, the other way": ([0.5, 1, 1], 0.5, 2),
+    "a parallelogram": ([1, 2, 1], 2.0, 2),
+    "one that crosses itself, stretched": ([0.5, 1, 1], 1.5, 1),
+    "one that crosses itself, folded": ([1, 0.7, 0.4], 0.7, 1),
+    "a triangle that turns about the base": ([1, 1, 1], 0.0, 2),
 }
 
 
@@ -246,10 +246,11 @@ LINKAGES = {
 @pytest.mark.parametrize("case", LINKAGES)
 def test_every_member_of_a_linkage_is_on_a_curve_that_is_listed(case, off, towards):
     """Where curves cross, or nearly do, none of them may be missing (Grashof 1883)."""
-    links, r = LINKAGES[case]
+    links, r, curves = LINKAGES[case]
     point = (r + off) * np.array([np.cos(towards), np.sin(towards)])
     robot = Robot.from_dh([[0, a, 0, 0] for a in links], convention="standard")
     found = robot.ik(position=[*point, 0])
+    assert off or len(found.families) == len(found) == curves
     members = np.array(list(members_of_a_linkage(links, point, np.random.default_rng(3))))
     assert np.abs(robot.fk(members)[:, :2, 3] - point).max() < 1e-6
     listed = np.concatenate([family.sample(600) for family in found.families])

@@ -34,12 +34,24 @@ def test_asking_again_answers_as_the_first_time_and_as_the_list(name):
 @pytest.mark.parametrize("name", ["ur5e", "ur5_dh", "ur10e", "puma560", "viperx300s"])
 @pytest.mark.parametrize("q5", [0.0, np.pi, -np.pi])
 def test_a_seed_that_is_a_solution_is_the_answer(name, q5):
-    """Also as a member of a family, and with a joint on its limit at half a turn."""
+    """Also as a member of a family."""
     robot, rng = cs.load_robot(name), np.random.default_rng(11)
     for q in rng.uniform(-3, 3, (12, 6)):
         q[4] = q5
         found = robot.ik(robot.fk(q), near=q)
         assert gap(robot, found.q, q).min() < 1e-6
+
+
+@pytest.mark.parametrize("end", [np.pi, -np.pi])
+def test_a_whole_turn_may_end_on_a_limit(end):
+    """Not a whole turn away from the seed because rounding takes the joint past its limit of half a turn."""
+    robot, rng = cs.load_robot("ur5_dh"), np.random.default_rng(12)
+    assert (robot.limits.lower[4], robot.limits.upper[4]) == (-np.pi, np.pi)
+    for q in rng.uniform(-3, 3, (20, 6)):
+        q[4] = end
+        found = robot.ik(robot.fk(q), near=q)
+        np.testing.assert_allclose(found.q[0], q, atol=1e-6)
+        assert -np.pi <= found.q[0, 4] <= np.pi
 
 
 def two_joints(kinds, axes, points=None):

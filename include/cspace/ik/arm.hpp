@@ -148,12 +148,9 @@ inline ik::Solutions solutions_and_families(const ik::Arm& arm, const Posed& goa
 
 inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
     const ik::Chain& chain = arm.plan.chain;
-    const double length = arm.plan.form.length;
     ik::Solutions out = solutions_and_families(arm, goal, idle);
-    if (chain.n <= ik::max_position_joints) return out;
-    if (out.status == ik::Status::singular) add_crossing_families(chain, goal, length, room_for(arm), out);
-    for (int k = 0; k < out.count && out.complete; ++k)
-        out.complete = out.family[k] || !lies_in_valley(chain, goal, length, out.q[k]);
+    if (chain.n > ik::max_position_joints)
+        look_along(chain, goal, arm.plan.form.length, idle, room_for(arm), out);
     return out;
 }
 

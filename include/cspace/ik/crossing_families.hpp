@@ -5,6 +5,7 @@
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/family_curve.hpp"
 #include "cspace/ik/general/one_per_family.hpp"
+#include "cspace/ik/self_motion.hpp"
 
 namespace cspace::ik {
 
@@ -12,8 +13,9 @@ namespace cspace::ik {
 struct CurveHold {
     static constexpr int most = 6;
     int crossings = 0;
-    double crossing[most][max_joints], along[most][max_joints];
-    bool wide = false;  // more than one freedom all along
+    double crossing[most][max_joints] = {}, along[most][max_joints] = {};
+    bool wide = false;   // more than one freedom all along
+    bool whole = false;  // followed to its ends, with room for all crossings
 };
 
 }  // namespace cspace::ik
@@ -70,14 +72,16 @@ inline ik::CurveHold follow_hold(const ik::Chain& chain, const ik::Held& held, c
                                  const double* direction, int& steps_left) {
     constexpr double crossed = 1e-3, free = 1e-6, far_enough = 0.3;
     ik::CurveHold out;
-    double before[ik::max_joints], along[ik::max_joints], hold[2] = {0, 0};
+    double before[ik::max_joints] = {}, along[ik::max_joints] = {}, hold[2] = {0, 0};
     double loose = 0;  // how far it ran with more than one freedom
     int seen = 0, last_way = 0;
+    bool fits = true;
     const auto visit = [&](int way, const double* at, const double* t) {
         const double here = hold_at(chain, held, at);
         if (way != last_way) seen = 0;
         const bool least = seen > 1 && hold[1] < crossed && hold[1] <= hold[0] && hold[1] < here;
-        if (least && out.crossings < ik::CurveHold::most) {
+        fits = fits && !(least && out.crossings == ik::CurveHold::most);
+        if (least && fits) {
             for (int i = 0; i < chain.n; ++i) {
                 out.crossing[out.crossings][i] = before[i];
                 out.along[out.crossings][i] = along[i];
@@ -90,54 +94,73 @@ inline ik::CurveHold follow_hold(const ik::Chain& chain, const ik::Held& held, c
         last_way = way;
         ++seen;
     };
-    follow_family(chain, held, q, direction, steps_left, visit);
+    out.whole = follow_family(chain, held, q, direction, steps_left, visit) && fits;
     out.wide = loose > far_enough;
     return out;
 }
 
-// Adds the family through q unless it passes one that is listed, by the member whose leading joint is zero.
-// Without a row to spare the list is not complete.
+// Directions of joints per unit of the curve's own coordinates, slides over the arm's length, and back.
+inline void in_lengths(const ik::Chain& chain, double length, const double* direction, double* out) {
+    double size2 = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        out[i] = direction[i] / unit_of(chain, i, length);
+        size2 += out[i] * out[i];
+    }
+    for (int i = 0; i < chain.n; ++i) out[i] /= std::sqrt(size2);
+}
+
+// Adds the family through q unless it passes one that is listed, by the member whose leading joint stands at
+// its value in `idle` (null: zero). A curve that was not followed to its ends, or finds no row to spare,
+// leaves the list without a certificate.
 inline void add_family(const ik::Chain& chain, const ik::Held& held, const double* q, const double* direction,
-                       int room, int& steps_left, ik::Solutions& out) {
+                       const double* idle, int room, int& steps_left, ik::Solutions& out) {
     bool met = false;
     ik::Representative r;
     r.joint = leading_joint(direction, chain.n);
-    follow_family(chain, held, q, direction, steps_left, [&](int way, const double* at, const double* t) {
+    r.value = idle ? idle[r.joint] : 0;
+    const auto visit = [&](int way, const double* at, const double* t) {
         offer_next(chain, held, r, way, at, t);
         for (int m = 0; m < out.count; ++m)
-            met = met || (out.family[m] && lies_beside(chain, at, t, out.q[m]));
-    });
-    out.complete = out.complete && (met || out.count < room);
-    if (met || out.count == room) return;
+            met = met || (out.family[m] && lies_beside(chain, held.length, at, t, out.q[m]));
+    };
+    const bool whole = follow_family(chain, held, q, direction, steps_left, visit);
+    out.complete = out.complete && (met || (whole && out.count < room));
+    if (met || out.count >= room) return;
     const bool crosses = is_crossing(chain, held, r.q);
+    const double* const member = crosses ? q : r.q;
     const int n = out.count++;
-    for (int i = 0; i < chain.n; ++i) {
-        const double value = crosses ? q[i] : r.q[i];
-        out.q[n][i] = chain.prismatic[i] ? value : wrap_once(short_way(value));
-        out.direction[n][i] = crosses ? direction[i] : r.direction[i];
-    }
+    for (int i = 0; i < chain.n; ++i)
+        out.q[n][i] = chain.prismatic[i] ? member[i] : wrap_once(short_way(member[i]));
+    in_lengths(chain, 1 / held.length, crosses ? direction : r.direction, out.direction[n]);
     out.branch[n] = static_cast<signed char>(max_branches + n);
     out.family[n] = true;
 }
 
-// The direction in which a crossing is free, square to `along`; false if there is none.
+// The direction in which a crossing is free, square to `along`; false if there is none. Of more than one,
+// that which the null vector farthest from `along` has.
 inline bool direction_across(const ik::Chain& chain, const PoseSvd& J, const double* along, double* across) {
-    constexpr double hardly_held = 2e-3;
-    for (int i = 0; i < chain.n; ++i) across[i] = 0;
+    constexpr double hardly_held = 2e-3, clear = 1e-3;
+    double farthest = clear;
     for (int j = 0; j < J.columns; ++j) {
+        if (J.sigma[j] > hardly_held) continue;
         const double part = dot_n(J.v[j], along, chain.n);
-        if (J.sigma[j] > hardly_held || std::fabs(part) > 0.75) continue;
-        for (int i = 0; i < chain.n; ++i) across[i] += J.v[j][i] - part * along[i];
+        double rest[ik::max_joints], size2 = 0;
+        for (int i = 0; i < chain.n; ++i) {
+            rest[i] = J.v[j][i] - part * along[i];
+            size2 += rest[i] * rest[i];
+        }
+        if (!(std::sqrt(size2) > farthest)) continue;
+        farthest = std::sqrt(size2);
+        for (int i = 0; i < chain.n; ++i) across[i] = rest[i] / farthest;
     }
-    const double size = std::sqrt(dot_n(across, across, chain.n));
-    for (int i = 0; i < chain.n; ++i) across[i] /= size;
-    return size > 1e-3;
+    return farthest > clear;
 }
 
 // Adds the curves that leave a crossing another way than `along`, seen a stride from it.
 inline void leave_crossing(const ik::Chain& chain, const ik::Held& held, const double* crossing,
-                           const double* along, int room, int& steps_left, ik::Solutions& out) {
-    constexpr double stride = 0.1, same_line = 0.95;
+                           const double* along, const double* idle, int room, int& steps_left,
+                           ik::Solutions& out) {
+    constexpr double stride = 0.1, same_line = 0.95, led_back = 0.5 * stride;
     constexpr int around = 24, most_ways = 4;
     PoseError at;
     measure_held(chain, held, crossing, at);
@@ -154,30 +177,44 @@ inline void leave_crossing(const ik::Chain& chain, const ik::Held& held, const d
         if (!onto_curve(chain, held, q, there)) continue;
         for (int i = 0; i < chain.n; ++i) way[i] = (q[i] - crossing[i]) / unit_of(chain, i, held.length);
         const double went = std::sqrt(dot_n(way, way, chain.n));
-        bool known = went < 0.5 * stride;
+        if (!(went > led_back)) continue;
+        bool known = false;
         for (int i = 0; i < chain.n; ++i) way[i] /= went;
         for (int k = 0; k < ways; ++k) known = known || std::fabs(dot_n(way, gone[k], chain.n)) > same_line;
         if (known || !tangent_at(chain, there.jacobian, way, t)) continue;
         ++ways;
-        add_family(chain, held, q, t, room, steps_left, out);
+        add_family(chain, held, q, t, idle, room, steps_left, out);
     }
 }
 
 // Adds the families that cross those listed, as far as there is room for rows. Where there is more than one
 // freedom all along a family a curve does not say all: such a list is not certified.
-inline void add_crossing_families(const ik::Chain& chain, const Posed& goal, double length, int room,
-                                  ik::Solutions& out) {
+inline void add_crossing_families(const ik::Chain& chain, const Posed& goal, double length,
+                                  const double* idle, int room, ik::Solutions& out) {
     const ik::Held held = {goal, true, length};
-    int steps_left = 8000;  // of all curves together
+    int steps_left = 8000;  // of all curves together: some 50 ms
     for (int k = 0; k < out.count; ++k) {
         if (!out.family[k] || only_rolls(chain, held, out.q[k], out.direction[k])) continue;
         double q[ik::max_joints], direction[ik::max_joints];
-        for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i], direction[i] = out.direction[k][i];
+        for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i];
+        in_lengths(chain, length, out.direction[k], direction);
         const ik::CurveHold seen = follow_hold(chain, held, q, direction, steps_left);
-        out.complete = out.complete && !seen.wide && steps_left > 0;
-        for (int c = 0; c < seen.crossings && !seen.wide; ++c)
-            leave_crossing(chain, held, seen.crossing[c], seen.along[c], room, steps_left, out);
+        out.complete = out.complete && seen.whole && !seen.wide;
+        if (seen.wide) continue;
+        if (is_crossing(chain, held, q))
+            leave_crossing(chain, held, q, direction, idle, room, steps_left, out);
+        for (int c = 0; c < seen.crossings; ++c)
+            leave_crossing(chain, held, seen.crossing[c], seen.along[c], idle, room, steps_left, out);
     }
+}
+
+// What is left to say of the solutions of a goal once they are found: the families that cross, and valleys
+// that rounding leaves.
+inline void look_along(const ik::Chain& chain, const Posed& goal, double length, const double* idle, int room,
+                       ik::Solutions& out) {
+    if (out.status == ik::Status::singular) add_crossing_families(chain, goal, length, idle, room, out);
+    for (int k = 0; k < out.count && out.complete; ++k)
+        out.complete = out.family[k] || !lies_in_valley(chain, goal, length, out.q[k]);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -232,11 +232,13 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::Held& held, const do
 }
 
 // The whole of a family: both ways from q, or once around where it closes. Tells `visit` which way (0 or 1),
-// every configuration and the tangent there; each takes one of the steps that are left.
+// every configuration and the tangent there; each takes one of the steps that are left. False if the curve
+// was lost, or the steps used up, before its end.
 template <class Visit>
-void follow_family(const ik::Chain& chain, const ik::Held& held, const double* q, const double* direction,
+bool follow_family(const ik::Chain& chain, const ik::Held& held, const double* q, const double* direction,
                    int& steps_left, Visit&& visit) {
     constexpr int most_steps = 1000;
+    bool whole = true;
     for (int way = 0; way < 2; ++way) {
         double along[ik::max_joints];
         for (int i = 0; i < chain.n; ++i) along[i] = (way ? -1 : 1) * direction[i];
@@ -245,8 +247,11 @@ void follow_family(const ik::Chain& chain, const ik::Held& held, const double* q
             visit(way, at, tangent);
         };
         const int most = min(max(steps_left, 0), most_steps);
-        if (follow_curve(chain, held, q, along, count, most) == ik::CurveEnd::closed) return;
+        const ik::CurveEnd end = follow_curve(chain, held, q, along, count, most);
+        if (end == ik::CurveEnd::closed) return true;
+        whole = whole && end == ik::CurveEnd::far;
     }
+    return whole;
 }
 
 }  // namespace cspace::inline CSPACE_ISA

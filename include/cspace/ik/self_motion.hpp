@@ -150,7 +150,8 @@ inline bool find_self_motion(const ik::Chain& chain, const Posed& goal, double l
         if (J.sigma[j] < lost) basis[k++] = J.v[j];
     if (k == 0) return false;
     const auto accept = [&](const double* d) {
-        if (!moves_freely(chain, goal, length, q, d) && !runs_round(chain, goal, length, q, d)) return false;
+        if (!moves_freely(chain, goal, length, q, d) && !(k == 1 && runs_round(chain, goal, length, q, d)))
+            return false;
         for (int i = 0; i < chain.n; ++i) direction[i] = d[i];
         return true;
     };

@@ -128,11 +128,11 @@ def solver(arm: ExportedArm) -> tuple[list[str], str, dict[str, str]]:
         headers += ["cspace/ik/position/pose.hpp"]
         parts.remove("given")
     elif arm.kind == "general":
-        headers += ["cspace/ik/general/singular.hpp"]
+        headers += ["cspace/ik/general/singular.hpp", "cspace/ik/crossing_families.hpp"]
         replaced = general_method(arm.plan)
     elif arm.kind == "closed":
         quick = arm.plan["on_lanes"] and not arm.plan["virtual_joints"]
-        headers += ["cspace/ik/careful.hpp", *["cspace/ik/quick.hpp"] * quick]
+        headers += ["cspace/ik/crossing_families.hpp", *["cspace/ik/quick.hpp"] * quick]
         parts.append("solve_closed_quick" if quick else "solve_closed_slow")
         replaced = only_this_family(arm.plan)
     elif arm.kind == "locked":

@@ -12,8 +12,8 @@ struct Representative {
     int joint = -1;
     double value = 0;
     double gap = 1e300;
-    double q[max_joints], direction[max_joints];
-    double before[max_joints];  // the member visited before, on the way `way`
+    double q[max_joints] = {}, direction[max_joints] = {};
+    double before[max_joints] = {};  // the member visited before, on the way `way`
     int way = -1;
 };
 
@@ -76,11 +76,12 @@ inline void offer_next(const ik::Chain& chain, const ik::Held& held, ik::Represe
 }
 
 // Whether a solution lies on the piece of the curve around q, of about a step's length.
-inline bool lies_beside(const ik::Chain& chain, const double* q, const double* t, const double* other) {
+inline bool lies_beside(const ik::Chain& chain, double length, const double* q, const double* t,
+                        const double* other) {
     constexpr double reach = 0.06, narrow = 0.05;
     double gap[ik::max_joints];
     for (int i = 0; i < chain.n; ++i)
-        gap[i] = chain.prismatic[i] ? other[i] - q[i] : short_way(other[i] - q[i]);
+        gap[i] = chain.prismatic[i] ? (other[i] - q[i]) / length : short_way(other[i] - q[i]);
     const double along = dot_n(gap, t, chain.n), size2 = dot_n(gap, gap, chain.n);
     return size2 < reach * reach && size2 - along * along < narrow * narrow * size2 + 1e-12;
 }
@@ -112,7 +113,7 @@ inline void keep_one_per_family(const ik::Chain& chain, const Posed& goal, const
         follow_family(chain, held, start, along, steps_left, [&](int way, const double* q, const double* t) {
             offer_next(chain, held, r, way, q, t);
             for (int m = k + 1; m < out.count; ++m)
-                dropped[m] = dropped[m] || (out.family[m] && lies_beside(chain, q, t, out.q[m]));
+                dropped[m] = dropped[m] || (out.family[m] && lies_beside(chain, held.length, q, t, out.q[m]));
         });
         if (is_crossing(chain, held, r.q) && !is_crossing(chain, held, start)) continue;
         for (int i = 0; i < chain.n; ++i) {

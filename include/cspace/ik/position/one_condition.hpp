@@ -16,13 +16,15 @@ namespace pair {
 struct Range {
     double least, most;
 };
+// Whether a side has an end: a circle has two, a parabola one, a straight line none.
+inline bool has_end(const OnCurve& f) { return !f.line || f.square > tolerance::rounding; }
 inline Range range(const OnCurve& f) {
     constexpr double without_end = std::numeric_limits<double>::infinity();
     if (!f.line) {
         const double reach = std::hypot(f.a, f.b);
         return {f.k - reach, f.k + reach};
     }
-    if (f.square <= tolerance::rounding) return {-without_end, without_end};
+    if (!has_end(f)) return {-without_end, without_end};
     return {f.k - f.a * f.a / (4 * f.square), without_end};
 }
 // Where ends nearly touch, curves nearly cross, and who follows one of them may change to another: they are
@@ -72,9 +74,13 @@ inline Touching touching(const Range& f, const Range& g) {
 inline bool is_near_end(const OnCurve& f, double q) {
     constexpr double near = 0.3;
     const double way = q - at_most(f);
-    return std::fabs(f.line ? way : std::sin(way)) < near;
+    return has_end(f) && std::fabs(f.line ? way : std::sin(way)) < near;
 }
-inline double away_from_ends(const OnCurve& f) { return is_near_end(f, 0) ? at_most(f) + 0.5 * pi : 0; }
+inline double away_from_ends(const OnCurve& f) {
+    constexpr double line_away = 1;  // of the arm's size
+    if (!is_near_end(f, 0)) return 0;
+    return at_most(f) + (f.line ? line_away : 0.5 * pi);
+}
 
 // One pair per curve of f(q1) = g(q3), no crossing of two: a joint that is free at 0, or a quarter of a turn
 // from an end; else the first at 0, or the last at 0, or both sides halfway between the ends of their curve.
@@ -104,8 +110,9 @@ inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& f
     }
     // Where both sides are least, both points may lie on the axis between, whose joint is then free.
     if (!ends.least) return;
-    found.on_axis = found.count;
+    const int next = found.count;
     add(found, at_least(f), at_least(g));
+    if (found.count > next) found.on_axis = next;
 }
 
 }  // namespace pair
