@@ -16,8 +16,10 @@ namespace pair {
 struct Range {
     double least, most;
 };
-// Whether a side has an end: a circle has two, a parabola one, a straight line none.
-inline bool has_end(const OnCurve& f) { return !f.line || f.square > tolerance::rounding; }
+// Whether a side has an end: over a circle it has two, over a line one or none; a side that rests has none.
+inline bool has_end(const OnCurve& f) {
+    return (f.line ? f.square : std::hypot(f.a, f.b)) > tolerance::rounding;
+}
 inline Range range(const OnCurve& f) {
     constexpr double without_end = std::numeric_limits<double>::infinity();
     if (!f.line) {
