@@ -234,6 +234,7 @@ inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const doubl
     if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
     if (plan.family == ik::Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
     judge(out);
+    out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
     // Merging pairs of the true arm may lie where the form has none.
     if (plan.form.deviation > tolerance::visible_deviation &&
         closed_form(plan, goal_form, care_of(plan)).doubt)

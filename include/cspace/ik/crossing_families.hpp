@@ -213,7 +213,7 @@ inline void add_crossing_families(const ik::Chain& chain, const Posed& goal, dou
 inline void look_along(const ik::Chain& chain, const Posed& goal, double length, const double* idle, int room,
                        ik::Solutions& out) {
     if (out.status == ik::Status::singular) add_crossing_families(chain, goal, length, idle, room, out);
-    for (int k = 0; k < out.count && out.complete; ++k)
+    for (int k = 0; k < out.count && out.crowded && out.complete; ++k)
         out.complete = out.family[k] || !lies_in_valley(chain, goal, length, out.q[k]);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cspace/ik/family_curve.hpp"
+#include "cspace/ik/general/weak_direction.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
@@ -70,6 +71,7 @@ inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double len
     constexpr double hardly = 1e-7, stride = 0.02, next_to_nothing = 1e-10;
     PoseError at;
     measure(chain, goal, length, q, at);
+    if (chain.n == 6 && weak_direction(&at.jacobian.us[0]).sigma > hardly) return false;
     decompose(at.jacobian);
     const int weak = weakest(at.jacobian);
     if (at.jacobian.sigma[weak] > hardly) return false;

@@ -56,6 +56,7 @@ inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed&
     constexpr double stray = 1e-3;  // rounding beside singularities of the completed arm
     ik::Solutions out;
     out.complete = six.complete;
+    out.crowded = six.crowded;
     for (int k = 0; k < six.count; ++k) {
         double q[ik::max_joints], off = 0;
         for (int i = 0; i < 6; ++i) q[i] = six.q[k][i];
