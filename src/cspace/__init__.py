@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from cspace.errors import CspaceError
 
 if TYPE_CHECKING:
-    from cspace import export, ik, kinematics, model, plot, robots, spatial
+    from cspace import export, ik, kinematics, maps, model, navigation, plot, robots, spatial
     from cspace._core import __version__
     from cspace.ik import (
         CenterOfMassTask,
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
         subproblems,
     )
     from cspace.model import Limits
+    from cspace.navigation import navigate
     from cspace.robot import Robot
     from cspace.robots import load_robot
     from cspace.spatial import *  # noqa: F403
@@ -34,7 +35,10 @@ __all__ = [
     "ik",
     "kinematics",
     "load_robot",
+    "maps",
     "model",
+    "navigate",
+    "navigation",
 ]
 __all__ += ["plot", "robots", "spatial", "subproblems"]
 __all__ += ["CenterOfMassTask", "DirectionTask", "PoseTask", "PositionTask", "PostureTask"]
@@ -58,7 +62,10 @@ _LATER = {
     "ik": "",
     "kinematics": "",
     "load_robot": "cspace.robots",
+    "maps": "",
     "model": "",
+    "navigate": "cspace.navigation",
+    "navigation": "",
     "plot": "",
     "robots": "",
     "spatial": "",

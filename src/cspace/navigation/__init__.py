@@ -1,0 +1,8 @@
+"""Navigation in the plane: from start to goal through a world, by classical planners and new ones."""
+
+from cspace.navigation.planners import PLANNERS, Planner
+from cspace.navigation.query import World, navigate
+from cspace.navigation.route import STATUSES, Price, Route
+from cspace.navigation.trace import Trace
+
+__all__ = ["PLANNERS", "STATUSES", "Planner", "Price", "Route", "Trace", "World", "navigate"]

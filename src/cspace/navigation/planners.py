@@ -1,0 +1,76 @@
+"""The planners by name: one row each, one file each, imported when first asked."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cache
+from importlib import import_module
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Final, Protocol, cast
+
+from cspace.errors import InputTypeError, suggest
+
+if TYPE_CHECKING:
+    from cspace.navigation.route import Route
+    from cspace.navigation.trace import Trace
+
+__all__ = ["PLANNERS", "Planner", "check_options", "module_of", "planner_named"]
+
+
+@dataclass(frozen=True)
+class Planner:
+    """One planner: its name, a line on what it does, the world it works in, and what it is shown of it."""
+
+    name: str
+    line: str
+    world: str
+    """Its own kind of world, "polygons" or "grid": one of the other kind is converted."""
+    sees: str
+    """What it is shown: "map", or where it needs none, "contact" or "range"."""
+    file: str = ""
+    """Its file in this folder, where that is not its name."""
+
+
+_ROWS: Final[tuple[Planner, ...]] = ()
+
+PLANNERS: Final = MappingProxyType({row.name: row for row in _ROWS})
+"""Every planner of `cs.navigate`, by name."""
+
+
+class PlannerModule(Protocol):
+    """What a planner's file offers."""
+
+    plan: Callable[..., Route]
+    """plan(world, start, goal, **options): start and goal (2,) lie in free space."""
+
+    def reason(self, route: Route) -> str:
+        """The verdict in a sentence."""
+
+    def trace(self, route: Route) -> Trace:
+        """The events of the search, by running it again with a record kept."""
+
+
+def planner_named(name: object) -> Planner:
+    """The row of a planner; UnknownNameError suggests the nearest name."""
+    row = PLANNERS.get(name) if isinstance(name, str) else None
+    if row is None:
+        raise suggest("planner", name, PLANNERS)
+    return row
+
+
+@cache
+def module_of(name: str) -> PlannerModule:
+    """The file of a planner, imported."""
+    row = PLANNERS[name]
+    return cast(PlannerModule, import_module(f"cspace.navigation.{row.file or row.name}"))
+
+
+def check_options(row: Planner, options: dict[str, Any]) -> None:
+    """InputTypeError for an option that the planner does not have."""
+    parameters = inspect.signature(module_of(row.name).plan).parameters.values()
+    known = [p.name for p in parameters if p.kind is p.KEYWORD_ONLY]
+    for name in options:
+        if name not in known:
+            raise InputTypeError(str(suggest("option", name, known, owner=f"planner {row.name!r}")))

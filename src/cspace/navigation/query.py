@@ -1,0 +1,78 @@
+"""From start to goal through a world, by any planner."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+from numpy.typing import ArrayLike
+
+from cspace.arrays import as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.navigation.planners import check_options, module_of, planner_named
+
+if TYPE_CHECKING:
+    from cspace.navigation.route import Route
+
+__all__ = ["World", "navigate"]
+
+
+class World(Protocol):
+    """What every kind of world offers to `navigate`."""
+
+    kind: str
+    """ "polygons" or "grid"."""
+
+    def inflate(self, radius: float) -> World:
+        """The world of a robot's centre: its obstacles grown by the radius [m]."""
+
+    def to_polygons(self) -> World:
+        """The same obstacles as polygons."""
+
+    def to_grid(self, resolution: float | None = None) -> World:
+        """The same obstacles as cells of a side [m]."""
+
+
+def navigate(
+    world: World,
+    start: ArrayLike,
+    goal: ArrayLike,
+    planner: str = "any_angle",
+    *,
+    radius: float = 0.0,
+    resolution: float | None = None,
+    **options: Any,
+) -> Route:
+    """The way of a robot from start to goal, as a planner finds it.
+
+    world: a PolygonWorld or an OccupancyGrid; a planner of the other kind gets it converted, where that is a
+    grid to cells of the side `resolution` [m]. start, goal: (2,) [m]. planner: a name of
+    `cs.navigation.PLANNERS`. radius [m] of the robot: 0 for a point, else obstacles are grown by it first.
+    options: those of the planner. The Route is truthy if a path was found, and says why where not.
+    Raises UnknownNameError on an unknown planner, InputTypeError on an unknown option or no world, InputError
+    on points that are not finite, outside the bounds or inside an obstacle.
+    """
+    row = planner_named(planner)
+    plan = module_of(planner).plan
+    kind = getattr(world, "kind", None)
+    if kind != row.world or radius or resolution:
+        world = _prepared(world, kind, row.world, radius, resolution)
+    if options:
+        check_options(row, options)
+    return plan(world, start, goal, **options)
+
+
+def _prepared(world: World, kind: str | None, wanted: str, radius: float, resolution: float | None) -> World:
+    """The world grown by the robot's radius and of the kind that the planner works in."""
+    if kind not in {"polygons", "grid"}:
+        raise InputTypeError(
+            f"world must be a PolygonWorld or an OccupancyGrid, got an object of type {type(world).__name__}"
+        )
+    if (grown := float(as_floats(radius, "radius"))) < 0:
+        raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
+    if grown:
+        world = world.inflate(grown)
+    if kind == "grid" and resolution is not None:
+        raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
+    if kind == wanted:
+        return world
+    return world.to_polygons() if wanted == "polygons" else world.to_grid(resolution)

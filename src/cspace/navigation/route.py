@@ -1,0 +1,97 @@
+"""What a planner answers: a path, or why there is none, and what finding it cost."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.navigation import planners
+
+if TYPE_CHECKING:
+    from cspace.navigation.trace import Trace
+
+__all__ = ["STATUSES", "Price", "Route", "new_route"]
+
+STATUSES: Final = ("found", "unreachable", "undetermined", "local_minimum")
+"""The verdicts, in the order of the compiled core."""
+
+
+class Price(NamedTuple):
+    """What a search cost."""
+
+    nodes: int
+    """States expanded, or steps taken."""
+    edges: int
+    """Edges looked at."""
+    seconds: float
+    """Wall time of the compiled search."""
+
+
+class Route(_core.RouteBase):
+    """The answer of one planner to one question; truthy if a path was found.
+
+    path: (m, 2) [m] from start to goal, of which a robot that came to rest elsewhere has gone a part.
+    length [m], inf where there is no path. start, goal: (2,) [m]. world, planner: what was asked. `status` is
+    "found", "unreachable" (proven), "undetermined" (the search ended without a proof) or "local_minimum";
+    `reason` says it in a sentence.
+    """
+
+    @property
+    def status(self) -> str:
+        """The verdict: "found", "unreachable", "undetermined" or "local_minimum"."""
+        return STATUSES[self._verdict]
+
+    @property
+    def reason(self) -> str:
+        """The verdict in a sentence, with what backs it."""
+        said: str = planners.module_of(self.planner).reason(self)
+        return said
+
+    @property
+    def price(self) -> Price:
+        """Nodes, edges and seconds that the search took."""
+        return Price(*self._numbers)
+
+    @property
+    def evidence(self) -> Any:
+        """What backs the verdict: each planner's page says what it is; None where path and status say all."""
+        return self._evidence
+
+    @property
+    def trace(self) -> Trace:
+        """What the planner did, event after event; made by asking it once more with a record kept."""
+        if (made := self.__dict__.get("trace")) is None:
+            made = self.__dict__["trace"] = planners.module_of(self.planner).trace(self)
+        return made
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """The options that the planner was given."""
+        return dict(self._options or {})
+
+    def __repr__(self) -> str:
+        if self:
+            return f"<Route {self.planner}: found, {self.length:.6g} m, {len(self.path)} points>"
+        return f"<Route {self.planner}: {self.status}>"
+
+
+_core._route_class(Route)
+
+
+def new_route(
+    world: Any,
+    planner: str,
+    options: dict[str, Any] | None,
+    ends: tuple[Array, Array],
+    status: str,
+    path: Array,
+    length: float,
+    price: Price,
+    evidence: Any = None,
+) -> Route:
+    """A route from what a planner found. path: (m, 2) [m]; ends: start and goal, (2,) each."""
+    made: Route = _core._route_make(
+        world, planner, options, *ends, STATUSES.index(status), path, length, *price, evidence
+    )
+    return made

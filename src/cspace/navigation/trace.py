@@ -1,0 +1,44 @@
+"""What a planner did, one event after the other: enough to draw its search again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array
+
+__all__ = ["Trace"]
+
+
+@dataclass(frozen=True, eq=False)
+class Trace:
+    """The events of a search in the order in which they happened.
+
+    words: what can happen, in the planner's own words ("expand", "hit", "follow", …). kind: (k,) which of
+    the words each event is. start, end: (k, 2) [m] where it happened: from one point to another, or twice the
+    same.
+    value: (k,) what the planner weighed (a cost, a clearance, an arc length; its page says which).
+    """
+
+    words: tuple[str, ...]
+    kind: npt.NDArray[np.int8]
+    start: Array
+    end: Array
+    value: Array
+
+    def __len__(self) -> int:
+        """How many events there are."""
+        return len(self.kind)
+
+    def __iter__(self) -> Iterator[tuple[str, Array, Array, float]]:
+        """(word, start (2,), end (2,), value) of each event."""
+        for kind, start, end, value in zip(self.kind, self.start, self.end, self.value, strict=True):
+            yield self.words[kind], start, end, float(value)
+
+    def only(self, word: str) -> Trace:
+        """The events of one word: a Trace with the same arrays (k, 2), fewer rows."""
+        kept = self.kind == (self.words.index(word) if word in self.words else -1)
+        return Trace(self.words, self.kind[kept], self.start[kept], self.end[kept], self.value[kept])
