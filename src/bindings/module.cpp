@@ -10,6 +10,7 @@ NB_MODULE(_core, m) {
     m.attr("__version__") = CSPACE_VERSION;
     m.attr("isa") = cspace::kernels::isa_name();
     bind_math(m);
+    bind_curves(m);
     bind_robot(m);
     bind_rotations(m);
     bind_short_arms(m);

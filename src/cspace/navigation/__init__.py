@@ -1,8 +1,17 @@
 """Navigation in the plane: from start to goal through a world, by classical planners and new ones."""
 
+from cspace.navigation.curves import (
+    Curve,
+    Segment,
+    dubins,
+    dubins_distance,
+    reeds_shepp,
+    reeds_shepp_distance,
+)
 from cspace.navigation.planners import PLANNERS, Planner
 from cspace.navigation.query import World, navigate
 from cspace.navigation.route import STATUSES, Price, Route
 from cspace.navigation.trace import Trace
 
 __all__ = ["PLANNERS", "STATUSES", "Planner", "Price", "Route", "Trace", "World", "navigate"]
+__all__ += ["Curve", "Segment", "dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]

@@ -1,0 +1,6 @@
+"""Curves for cars: the shortest ways between poses that a smallest turning radius allows."""
+
+from cspace.navigation.curves.curve import Curve, Segment
+from cspace.navigation.curves.shortest import dubins, dubins_distance, reeds_shepp, reeds_shepp_distance
+
+__all__ = ["Curve", "Segment", "dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]

@@ -1,0 +1,104 @@
+"""A curve for a car as an object: its segments, and the pose anywhere along it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+
+__all__ = ["Curve", "Segment"]
+
+KINDS: Final = {1: "left", 0: "straight", -1: "right"}
+Pieces = tuple[tuple[int, float], ...]
+"""Turn (+1 left, 0 straight, −1 right) and length [m] of each segment; driven backwards below zero."""
+
+
+@dataclass(frozen=True)
+class Segment:
+    """One piece of a curve: kind "left", "straight" or "right" as seen when driving forwards, length [m],
+    curvature [1/m] (above zero to the left) and direction: 1 driven forwards, −1 backwards."""
+
+    kind: str
+    length: float
+    curvature: float
+    direction: int
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Curve:
+    """A way of a car from pose to pose, made of arcs of one radius and straight segments.
+
+    start, goal (3,): x, y [m] of the middle of the rear axle and heading theta [rad]. radius [m]: that of
+    the arcs.
+    """
+
+    start: Array
+    goal: Array
+    radius: float
+    _pieces: Pieces
+
+    @cached_property
+    def segments(self) -> tuple[Segment, ...]:
+        """The segments in driving order; none where start and goal are one pose."""
+        return tuple(
+            Segment(KINDS[turn], abs(length), turn / self.radius, 1 if length > 0 else -1)
+            for turn, length in self._pieces
+        )
+
+    @property
+    def length(self) -> float:
+        """How far is driven [m], forwards and backwards together."""
+        return sum(abs(length) for _, length in self._pieces)
+
+    @property
+    def word(self) -> str:
+        """The letters of the segments, L, S and R, each with + if driven forwards and − if backwards."""
+        return "".join("SLR"[turn] + ("+" if length > 0 else "−") for turn, length in self._pieces)
+
+    @property
+    def cusps(self) -> Array:
+        """How far along the curve the car changes its direction of driving, (k,) [m]."""
+        signs = np.sign([length for _, length in self._pieces])
+        return np.asarray(self._ends[:-1][signs[1:] != signs[:-1]])
+
+    @cached_property
+    def _ends(self) -> Array:
+        """How far along the curve each segment ends, (k,) [m]."""
+        return np.cumsum([abs(length) for _, length in self._pieces])
+
+    def at(self, s: Any) -> Array:
+        """The poses at lengths s (...,) [m] along the curve, (..., 3).
+
+        Headings go on smoothly from that of the start, so that the last differs from that of the goal by
+        whole turns. Raises InputError for a length outside the curve.
+        """
+        lengths = as_floats(s, "s")
+        beyond = lengths[(lengths < 0) | (lengths > self.length)]
+        if beyond.size:
+            raise InputError(f"s holds {beyond[0]:g}; the curve has lengths of 0 to {self.length:g} m")
+        poses = np.empty((lengths.size, 3))
+        pieces = np.array(self._pieces).reshape(-1, 2)
+        _core._car_poses(self.start, pieces, self.radius, np.ascontiguousarray(lengths.ravel()), poses)
+        return poses.reshape(*lengths.shape, 3)
+
+    def sample(self, spacing: float) -> Array:
+        """Poses along the curve at most `spacing` [m] apart, (n, 3), both ends and those of every segment
+        among them."""
+        step = as_floats(spacing, "spacing")
+        if step.ndim or step <= 0:
+            raise InputError(f"spacing is {spacing!r}; give a length above zero, in metres")
+        parts, begin = [np.zeros(1)], 0.0
+        for end in self._ends.tolist():
+            count = max(1, int(np.ceil((end - begin) / step)))
+            parts.append(np.linspace(begin, end, count + 1)[1:])
+            begin = end
+        return self.at(np.minimum(np.concatenate(parts), self.length))
+
+    def __repr__(self) -> str:
+        return f"<Curve {self.word or 'of no length'}: {self.length:.6g} m, radius {self.radius:g} m>"

@@ -1,0 +1,107 @@
+"""The shortest curves of a car: forwards alone (Dubins), and forwards and backwards (Reeds and Shepp)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats, leading_axes
+from cspace.errors import InputError
+from cspace.navigation.curves.curve import Curve
+from cspace.tolerances import LARGEST_NUMBER
+
+__all__ = ["dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]
+
+
+def dubins(start: Any, goal: Any, radius: float) -> Curve:
+    """The shortest curve of a car that drives forwards and turns no tighter than a radius.
+
+    It is an arc, then a straight segment or an arc the other way of more than half a turn, then an arc; any
+    of them may be missing. start, goal (3,): x, y [m], theta [rad]. radius [m] above zero.
+
+    The length jumps where an arc becomes a whole turn. An arc that misses a whole turn by no more than the
+    rounding of the coordinates counts as none. Raises InputError for what is no pose, and for a radius that
+    is not above zero.
+
+    Dubins 1957; Shkel and Lumelsky 2001.
+    """
+    return shortest(False, start, goal, radius)
+
+
+def reeds_shepp(start: Any, goal: Any, radius: float) -> Curve:
+    """The shortest curve of a car that drives forwards and backwards and turns no tighter than a radius.
+
+    It has up to five segments and two changes of direction: a word of the 48 of Reeds and Shepp. start,
+    goal (3,): x, y [m], theta [rad]. radius [m] above zero. Raises InputError as dubins does.
+
+    Reeds and Shepp 1990; Sussmann and Tang 1991.
+    """
+    return shortest(True, start, goal, radius)
+
+
+def dubins_distance(start: Any, goal: Any, radius: float) -> Any:
+    """The lengths [m] of the curves of dubins, (...): a float for two poses.
+
+    start, goal (..., 3): x, y [m], theta [rad]; leading axes broadcast. Raises InputError as dubins does.
+    """
+    return distances(False, start, goal, radius)
+
+
+def reeds_shepp_distance(start: Any, goal: Any, radius: float) -> Any:
+    """The lengths [m] of the curves of reeds_shepp, (...): a float for two poses. It is a metric.
+
+    start, goal (..., 3): x, y [m], theta [rad]; leading axes broadcast. Raises InputError as dubins does.
+    """
+    return distances(True, start, goal, radius)
+
+
+def shortest(reverses: bool, start: Any, goal: Any, radius: float) -> Curve:
+    """The curve of one start and one goal."""
+    r = turning_radius(radius)
+    a, b = car_poses(start, "start", r), car_poses(goal, "goal", r)
+    for pose, name in ((a, "start"), (b, "goal")):
+        if pose.ndim != 1:
+            raise InputError(f"{name} has shape {pose.shape}, expected (3,): x, y, theta")
+    return Curve(a, b, r, tuple(_core._car_curve(reverses, a, b, r)))
+
+
+def distances(reverses: bool, start: Any, goal: Any, radius: float) -> Any:
+    """The lengths of the curves of broadcast starts and goals."""
+    r = turning_radius(radius)
+    a, b = car_poses(start, "start", r), car_poses(goal, "goal", r)
+    batch = leading_axes(start=a.shape[:-1], goal=b.shape[:-1])
+    rows = [np.ascontiguousarray(np.broadcast_to(p, (*batch, 3)).reshape(-1, 3)) for p in (a, b)]
+    out = np.empty(len(rows[0]))
+    _core._car_distances(reverses, *rows, r, out)
+    return out.reshape(batch) if batch else float(out[0])
+
+
+def turning_radius(radius: Any) -> float:
+    """A turning radius [m]; InputError unless it is one number above zero."""
+    if type(radius) is float and 0 < radius <= LARGEST_NUMBER:
+        return radius
+    r = as_floats(radius, "radius", largest=LARGEST_NUMBER)
+    if r.ndim or not r > 0:
+        raise InputError(
+            f"radius is {radius!r}; a turning radius is one length above zero, in metres"
+            " (a robot that turns on the spot needs no such curve)"
+        )
+    return float(r)
+
+
+def car_poses(poses: Any, name: str, radius: float) -> Array:
+    """Poses (..., 3) of x, y, theta, none so far away that rounding would decide the curve."""
+    array = as_floats(poses, name, last=(3,))
+    if array.ndim == 1:
+        x, y, theta = array.tolist()
+        far, most = max(abs(x), abs(y)), abs(theta)
+    else:
+        far, most = np.abs(array[..., :2]).max(initial=0), np.abs(array[..., 2]).max(initial=0)
+    if far > LARGEST_NUMBER * min(radius, 1.0) or most > LARGEST_NUMBER:
+        raise InputError(
+            f"{name} holds {max(far, most):g}; headings and coordinates up to {LARGEST_NUMBER:g} make sense,"
+            " in turning radii too: beyond them rounding decides the curve"
+        )
+    return np.ascontiguousarray(array)
