@@ -1,0 +1,111 @@
+// Best-first search: of all nodes that wait, the one of least priority is settled next, and what can be
+// reached from it waits in turn (Pearl, "Heuristics", 1984; Hart, Nilsson & Raphael 1968 for A*). A planner
+// is a queue and a space:
+//
+//   space.settle(node)         takes it for good; false where it has nothing new to say
+//   space.is_goal(node)
+//   space.expand(node, queue)  pushes what it leads to
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace cspace::navigation {
+
+inline constexpr std::uint32_t no_node = 0xffffffff;
+
+// A node that waits; of equal priorities the smaller tie goes first.
+struct Waiting {
+    double priority;
+    float tie;
+    std::uint32_t node;
+    friend bool operator<(const Waiting& x, const Waiting& y) {
+        return x.priority < y.priority || (x.priority == y.priority && x.tie < y.tie);
+    }
+};
+
+// A heap of four branches: half as deep as one of two, and four children share a cache line.
+template <class Entry>
+class Heap {
+  public:
+    bool empty() const { return entries_.empty(); }
+    std::size_t size() const { return entries_.size(); }
+    void clear() { entries_.clear(); }
+    const Entry& top() const { return entries_.front(); }
+    void push(const Entry& entry) {
+        std::size_t at = entries_.size();
+        entries_.push_back(entry);
+        for (; at > 0; at = (at - 1) / 4) {
+            const std::size_t above = (at - 1) / 4;
+            if (!(entry < entries_[above])) break;
+            entries_[at] = entries_[above];
+        }
+        entries_[at] = entry;
+    }
+    Entry pop() {
+        const Entry least = entries_.front(), last = entries_.back();
+        entries_.pop_back();
+        if (!entries_.empty()) sink(last);
+        return least;
+    }
+    std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
+    void release() { std::vector<Entry>().swap(entries_); }
+
+  private:
+    void sink(const Entry& entry) {
+        const std::size_t n = entries_.size();
+        std::size_t at = 0;
+        for (std::size_t child = 1; child < n; child = 4 * at + 1) {
+            std::size_t least = child;
+            const std::size_t end = child + 4 < n ? child + 4 : n;
+            for (std::size_t k = child + 1; k < end; ++k)
+                if (entries_[k] < entries_[least]) least = k;
+            if (!(entries_[least] < entry)) break;
+            entries_[at] = entries_[least];
+            at = least;
+        }
+        entries_[at] = entry;
+    }
+
+    std::vector<Entry> entries_;
+};
+
+using PriorityQueue = Heap<Waiting>;
+
+// First come, first served: the waves of a breadth-first search.
+class Waves {
+  public:
+    bool empty() const { return next_ == nodes_.size(); }
+    void clear() { nodes_.clear(), next_ = 0; }
+    void push(const Waiting& entry) { nodes_.push_back(entry.node); }
+    Waiting pop() { return {0, 0, nodes_[next_++]}; }
+    std::size_t bytes() const { return nodes_.capacity() * sizeof(std::uint32_t); }
+    void release() { std::vector<std::uint32_t>().swap(nodes_), next_ = 0; }
+
+  private:
+    std::vector<std::uint32_t> nodes_;
+    std::size_t next_ = 0;
+};
+
+// What a search has cost, and, where somebody looks, the nodes in the order in which they were settled.
+struct Effort {
+    std::uint64_t settled = 0, pushed = 0;
+    std::vector<std::uint32_t>* order = nullptr;
+};
+
+// The goal that was reached; no_node where no node waits any more.
+template <class Space, class Queue>
+std::uint32_t best_first(Space& space, Queue& queue, Effort& effort) {
+    while (!queue.empty()) {
+        const std::uint32_t node = queue.pop().node;
+        if (!space.settle(node)) continue;
+        ++effort.settled;
+        if (effort.order) effort.order->push_back(node);
+        if (space.is_goal(node)) return node;
+        space.expand(node, queue);
+    }
+    return no_node;
+}
+
+}  // namespace cspace::navigation

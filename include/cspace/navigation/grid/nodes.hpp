@@ -1,0 +1,121 @@
+// What a search remembers of the cells it has reached. Both kinds are kept from one query to the next and
+// touch in a query only what the query touches.
+#pragma once
+
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cspace/navigation/grid/steps.hpp"
+
+namespace cspace::navigation {
+
+// For searches that reach most cells of a region: pages of 4096 cells, made when they are first reached. The
+// stamp of a cell tells whether this query has reached it.
+template <class G>
+class PagedNodes {
+  public:
+    struct Node {
+        G g;
+        std::uint32_t parent;
+        std::uint32_t stamp;  // 2 · query, plus 1 once it is settled
+    };
+    // Forgets everything; numbers of cells are below `count` from now on.
+    void begin(std::size_t count) {
+        if (pages_.size() < (count >> page_bits) + 1) pages_.resize((count >> page_bits) + 1);
+        stamp_ += 2;
+        if (stamp_ == 0) {
+            for (auto& page : pages_) page.reset();
+            stamp_ = 2;
+        }
+    }
+    Node& at(std::uint32_t cell) {
+        auto& page = pages_[cell >> page_bits];
+        if (!page) page = std::make_unique<Node[]>(std::size_t(1) << page_bits);
+        return page[cell & ((1u << page_bits) - 1)];
+    }
+    bool is_reached(const Node& node) const { return node.stamp >= stamp_; }
+    bool is_settled(const Node& node) const { return node.stamp > stamp_; }
+    void reach(Node& node, G g, std::uint32_t parent) { node = {g, parent, stamp_}; }
+    void settle(Node& node) { node.stamp = stamp_ + 1; }
+    std::size_t bytes() const {
+        std::size_t made = 0;
+        for (const auto& page : pages_) made += page != nullptr;
+        return made * (sizeof(Node) << page_bits);
+    }
+    void release() { pages_.clear(); }
+
+  private:
+    static constexpr int page_bits = 12;
+    std::vector<std::unique_ptr<Node[]>> pages_;
+    std::uint32_t stamp_ = 0;
+};
+
+// For searches that reach few cells, far from each other: a list of them, and a hash table that finds a
+// cell's place in it.
+class SparseNodes {
+  public:
+    struct Node {
+        std::uint32_t cell, parent;  // parent: its place in the list
+        Steps g;
+        std::uint8_t pending, done;  // directions of arrival: to be expanded, and expanded
+    };
+    void begin() {
+        nodes_.clear();
+        if (table_.empty()) table_.resize(1024);
+        if (++stamp_ == 0) {
+            table_.assign(table_.size(), {});
+            stamp_ = 1;
+        }
+    }
+    Node& operator[](std::uint32_t place) { return nodes_[place]; }
+    const Node& operator[](std::uint32_t place) const { return nodes_[place]; }
+    // The place of a cell; one that is new gets no g, and `is_new` says so.
+    std::uint32_t find(std::uint32_t cell, bool& is_new) {
+        const std::size_t mask = table_.size() - 1;
+        std::size_t at = slot_of(cell);
+        for (; table_[at].stamp == stamp_; at = (at + 1) & mask)
+            if (table_[at].cell == cell) {
+                is_new = false;
+                return table_[at].place;
+            }
+        is_new = true;
+        const std::uint32_t place = std::uint32_t(nodes_.size());
+        nodes_.push_back({cell, 0, {}, 0, 0});
+        table_[at] = {cell, place, stamp_};
+        if (2 * nodes_.size() > table_.size()) grow();
+        return place;
+    }
+    std::size_t size() const { return nodes_.size(); }
+    std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + table_.capacity() * sizeof(Slot); }
+    void release() {
+        std::vector<Node>().swap(nodes_);
+        std::vector<Slot>().swap(table_);
+        stamp_ = 0;
+    }
+
+  private:
+    struct Slot {
+        std::uint32_t cell = 0, place = 0, stamp = 0;
+    };
+    // The upper bits of a product with 2³² over the golden ratio (Knuth, volume 3, section 6.4).
+    std::size_t slot_of(std::uint32_t cell) const {
+        return std::size_t((cell * 0x9e3779b9u) >> (32 - std::countr_zero(table_.size())));
+    }
+    void grow() {
+        table_.assign(2 * table_.size(), {});
+        for (std::uint32_t place = 0; place < nodes_.size(); ++place) {
+            std::size_t at = slot_of(nodes_[place].cell);
+            while (table_[at].stamp == stamp_) at = (at + 1) & (table_.size() - 1);
+            table_[at] = {nodes_[place].cell, place, stamp_};
+        }
+    }
+
+    std::vector<Node> nodes_;
+    std::vector<Slot> table_;
+    std::uint32_t stamp_ = 0;
+};
+
+}  // namespace cspace::navigation

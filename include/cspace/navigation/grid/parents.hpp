@@ -1,0 +1,111 @@
+// Where a cell comes from: the parent rule of a search over a grid.
+#pragma once
+
+#include <bit>
+#include <limits>
+
+#include "cspace/maps/bit_grid.hpp"
+#include "cspace/navigation/grid/line_of_sight.hpp"
+#include "cspace/navigation/grid/moves.hpp"
+#include "cspace/navigation/grid/nodes.hpp"
+#include "cspace/navigation/grid/order.hpp"
+
+namespace cspace::navigation {
+
+// What a step costs: its length, exact.
+struct StepLength {
+    using G = Steps;
+    G step(maps::Cell, maps::Cell, int direction) const {
+        return is_diagonal(direction) ? Steps{0, 1} : Steps{1, 0};
+    }
+};
+// Every step counts alike: the number of a wave.
+struct StepCount {
+    using G = Steps;
+    G step(maps::Cell, maps::Cell, int) const { return {1, 0}; }
+};
+// The integral of the cost of the cells along the step: half of it lies in either cell. [cells · cost]
+struct StepCost {
+    using G = double;
+    const double* costs;  // by rows
+    int columns;
+    double cost(maps::Cell c) const {
+        return costs[std::size_t(c.row) * std::size_t(columns) + std::size_t(c.column)];
+    }
+    G step(maps::Cell from, maps::Cell to, int direction) const {
+        return 0.5 * (cost(from) + cost(to)) * (is_diagonal(direction) ? sqrt_two : 1.0);
+    }
+};
+
+template <class G>
+struct Way {
+    G g;
+    std::uint32_t parent;
+};
+
+// The cell it is reached from.
+template <class Length>
+struct StepParents {
+    using G = typename Length::G;
+    Length length;
+    template <class Search>
+    Way<G> way(Search&, std::uint32_t number, const G& g, std::uint32_t, maps::Cell from, maps::Cell to,
+               int direction) const {
+        return {g + length.step(from, to, direction), number};
+    }
+    template <class Search>
+    void settle(Search&, std::uint32_t) const {}
+};
+
+// The parent of the cell it is reached from, if they see each other: Theta* (Nash, Daniel, Koenig & Felner
+// 2007).
+struct SightParents {
+    using G = double;
+    Corners corners;
+    template <class Search>
+    Way<G> way(Search& search, std::uint32_t number, double g, std::uint32_t parent, maps::Cell,
+               maps::Cell to, int direction) const {
+        const maps::Cell before = search.cell(parent);
+        if (sees(search.grid(), corners, before, to))
+            return {search.node(parent).g + straight_distance(to.row - before.row, to.column - before.column),
+                    parent};
+        return {g + (is_diagonal(direction) ? sqrt_two : 1.0), number};
+    }
+    template <class Search>
+    void settle(Search&, std::uint32_t) const {}
+};
+
+// The same, with the sight line looked at when a cell is settled, not each time it is reached: Lazy Theta*
+// (Nash, Koenig & Tovey 2010).
+struct LazySightParents {
+    using G = double;
+    Corners corners;
+    template <class Search>
+    Way<G> way(Search& search, std::uint32_t, double, std::uint32_t parent, maps::Cell, maps::Cell to,
+               int) const {
+        const maps::Cell before = search.cell(parent);
+        return {search.node(parent).g + straight_distance(to.row - before.row, to.column - before.column),
+                parent};
+    }
+    // Where the parent is out of sight, the best of the settled neighbours.
+    template <class Search>
+    void settle(Search& search, std::uint32_t number) const {
+        auto& node = search.node(number);
+        const maps::Cell at = search.cell(number);
+        if (node.parent == number || sees(search.grid(), corners, search.cell(node.parent), at)) return;
+        node.g = std::numeric_limits<double>::infinity();
+        const auto& allowed = allowed_moves[std::size_t(corners)];
+        for (unsigned open = allowed[search.grid().around(at.row, at.column)]; open; open &= open - 1) {
+            const int d = std::countr_zero(open);
+            const std::uint32_t beside =
+                search.grid().number({at.row + row_step[d], at.column + column_step[d]});
+            const auto& neighbour = search.node(beside);
+            const double g = neighbour.g + (is_diagonal(d) ? sqrt_two : 1.0);
+            if (beside == number || !search.nodes().is_settled(neighbour) || !(g < node.g)) continue;
+            node.g = g;
+            node.parent = beside;
+        }
+    }
+};
+
+}  // namespace cspace::navigation

@@ -1,0 +1,184 @@
+// The planners of the grid family: one best-first loop, with each planner's queue, order, moves and parents.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "cspace/maps/bit_grid.hpp"
+#include "cspace/navigation/best_first.hpp"
+#include "cspace/navigation/focal_queue.hpp"
+#include "cspace/navigation/grid/grid_search.hpp"
+#include "cspace/navigation/grid/jump_points.hpp"
+#include "cspace/navigation/grid/nodes.hpp"
+#include "cspace/navigation/grid/order.hpp"
+#include "cspace/navigation/grid/parents.hpp"
+
+namespace cspace::navigation {
+
+enum class GridPlanner : std::uint8_t {
+    best_first,  // Dijkstra, A*, weighted A*, greedy: by the weights of the order
+    focal,
+    jump_points,
+    theta_star,
+    lazy_theta_star,
+    waves,
+};
+
+struct GridQuery {
+    GridPlanner planner = GridPlanner::best_first;
+    Corners corners = Corners::never;
+    Metric metric = Metric::octile;
+    double g_weight = 1, h_weight = 1;
+    double bound = 1;               // of focal search: at most so many times the shortest
+    const double* costs = nullptr;  // of the cells, by rows; null: 1 each
+    double least_cost = 1;          // the least of them
+};
+
+struct GridAnswer {
+    bool found = false;
+    std::vector<maps::Cell> cells;  // from start to goal; between two that follow each other the way is a
+                                    // row, a column or a diagonal, or, of any angle, a straight line
+    double least = 0;  // no way is shorter [cells], where the planner proves that of its answer
+    Effort effort;
+};
+
+// What searches remember from one query to the next, so that they need not ask for memory. Not for two
+// threads at a time.
+struct GridScratch {
+    PagedNodes<Steps> steps;
+    PagedNodes<double> lengths;
+    SparseNodes sparse;
+    PriorityQueue queue;
+    Waves waves;
+    std::vector<std::uint32_t> chain;
+
+    std::size_t bytes() const {
+        return steps.bytes() + lengths.bytes() + sparse.bytes() + queue.bytes() + waves.bytes();
+    }
+    void release() { steps.release(), lengths.release(), sparse.release(), queue.release(), waves.release(); }
+};
+
+namespace search {
+
+// The cells from the start to a node, where parent_of(node) is itself for the start.
+template <class ParentOf, class CellOf>
+void follow_back(std::uint32_t node, const ParentOf& parent_of, const CellOf& cell_of,
+                 std::vector<maps::Cell>& cells) {
+    cells.clear();
+    for (std::uint32_t before = parent_of(node);; node = before, before = parent_of(node)) {
+        cells.push_back(cell_of(node));
+        if (before == node) break;
+    }
+    std::reverse(cells.begin(), cells.end());
+}
+
+template <class Parents, class Queue>
+void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& order, maps::Cell start,
+              const Parents& parents, PagedNodes<typename Parents::G>& nodes, Queue& queue, bool reopen,
+              GridAnswer& answer) {
+    GridSearch<Parents> space(grid, query.corners, order, parents, nodes, reopen);
+    space.start(start, queue, answer.effort);
+    const std::uint32_t reached = best_first(space, queue, answer.effort);
+    answer.found = reached != no_node;
+    if (!answer.found) return;
+    answer.least = value_of(nodes.at(reached).g);
+    follow_back(
+        reached, [&](std::uint32_t k) { return nodes.at(k).parent; },
+        [&](std::uint32_t k) { return grid.cell(k); }, answer.cells);
+}
+
+template <Corners rule>
+void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, GridScratch& scratch,
+              GridAnswer& answer) {
+    SparseNodes& nodes = scratch.sparse;
+    JumpPoints<rule> space(grid, order, nodes);
+    scratch.queue.clear();
+    space.start(start, scratch.queue, answer.effort);
+    const std::uint32_t reached = best_first(space, scratch.queue, answer.effort);
+    if (answer.effort.order)
+        for (std::uint32_t& place : *answer.effort.order) place = nodes[place].cell;
+    answer.found = reached != no_node;
+    if (!answer.found) return;
+    answer.least = nodes[reached].g.value();
+    std::vector<maps::Cell>& cells = answer.cells;
+    cells.clear();
+    for (std::uint32_t place = reached;; place = nodes[place].parent) {
+        const maps::Cell to = grid.cell(nodes[place].cell);
+        cells.push_back(to);
+        if (nodes[place].parent == place) break;
+        // From its parent it is reached along a diagonal first, or a column, and then straight on.
+        const maps::Cell from = grid.cell(nodes[nodes[place].parent].cell);
+        const int down = to.row - from.row, along = to.column - from.column;
+        const int lead = std::min(std::abs(down), std::abs(along));
+        const maps::Cell turn = rule == Corners::four ? maps::Cell{to.row, from.column}
+                                                      : maps::Cell{from.row + (down > 0 ? lead : -lead),
+                                                                   from.column + (along > 0 ? lead : -lead)};
+        if (!(turn == to) && !(turn == from)) cells.push_back(turn);
+    }
+    std::reverse(cells.begin(), cells.end());
+}
+
+}  // namespace search
+
+// The way from start to goal, both free cells of the grid.
+inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goal, const GridQuery& query,
+                     GridScratch& scratch, GridAnswer& answer) {
+    const bool backward = query.planner == GridPlanner::waves;
+    const Order order = {backward ? start : goal, query.metric, query.g_weight, query.h_weight,
+                         query.least_cost};
+    answer.found = false;
+    answer.cells.clear();
+    const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
+        search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen, answer);
+    };
+    scratch.queue.clear();
+    switch (query.planner) {
+        case GridPlanner::best_first:
+            if (query.costs)
+                run(StepParents<StepCost>{{query.costs, grid.columns()}}, scratch.lengths, scratch.queue,
+                    false);
+            else
+                run(StepParents<StepLength>{}, scratch.steps, scratch.queue, false);
+            break;
+        case GridPlanner::focal: {
+            FocalQueue queue(query.bound);
+            if (query.costs)
+                run(StepParents<StepCost>{{query.costs, grid.columns()}}, scratch.lengths, queue, true);
+            else
+                run(StepParents<StepLength>{}, scratch.steps, queue, true);
+            answer.least = queue.least();
+            break;
+        }
+        case GridPlanner::jump_points:
+            switch (query.corners) {
+                case Corners::never:
+                    search::by_jumps<Corners::never>(grid, order, start, scratch, answer);
+                    break;
+                case Corners::one:
+                    search::by_jumps<Corners::one>(grid, order, start, scratch, answer);
+                    break;
+                case Corners::always:
+                    search::by_jumps<Corners::always>(grid, order, start, scratch, answer);
+                    break;
+                case Corners::four:
+                    search::by_jumps<Corners::four>(grid, order, start, scratch, answer);
+                    break;
+            }
+            break;
+        case GridPlanner::theta_star:
+            run(SightParents{query.corners}, scratch.lengths, scratch.queue, false);
+            break;
+        case GridPlanner::lazy_theta_star:
+            run(LazySightParents{query.corners}, scratch.lengths, scratch.queue, false);
+            break;
+        case GridPlanner::waves:
+            scratch.waves.clear();
+            run(StepParents<StepCount>{}, scratch.steps, scratch.waves, false);
+            std::reverse(answer.cells.begin(), answer.cells.end());
+            break;
+    }
+}
+
+}  // namespace cspace::navigation

@@ -1,0 +1,29 @@
+// The length of a way over a grid, exact: how many steps along rows and columns, and how many diagonal ones.
+#pragma once
+
+#include <cstdint>
+
+namespace cspace::navigation {
+
+inline constexpr double sqrt_two = 1.4142135623730951;
+
+struct Steps {
+    std::int32_t straight = 0, diagonal = 0;
+    // In cells. Ways of less than 2²⁴ steps of each kind get different numbers unless they are equally long.
+    double value() const { return straight + sqrt_two * diagonal; }
+    friend Steps operator+(Steps x, Steps y) { return {x.straight + y.straight, x.diagonal + y.diagonal}; }
+    friend bool operator==(Steps, Steps) = default;
+    // Whether a + b √2 < 0 for the differences a, b, decided by a² and 2 b².
+    friend bool operator<(Steps x, Steps y) {
+        const std::int64_t a = std::int64_t(x.straight) - y.straight,
+                           b = std::int64_t(x.diagonal) - y.diagonal;
+        if (a <= 0 && b <= 0) return a < 0 || b < 0;
+        if (a >= 0 && b >= 0) return false;
+        return a < 0 ? a * a > 2 * b * b : a * a < 2 * b * b;
+    }
+};
+
+inline double value_of(Steps g) { return g.value(); }
+inline double value_of(double g) { return g; }
+
+}  // namespace cspace::navigation
