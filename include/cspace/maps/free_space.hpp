@@ -1,0 +1,205 @@
+// Free space as a triangulation: which triangles lie in it, which edges are walls, what is connected.
+#pragma once
+
+#include <numeric>
+#include <span>
+
+#include "cspace/maps/boundary.hpp"
+#include "cspace/maps/triangulator.hpp"
+
+namespace cspace::maps {
+
+// The outlines of obstacles: closed rings of points, each owned by an obstacle. A point belongs to an
+// obstacle if an odd number of its rings surround it, so a ring inside a ring is a hole.
+struct Outlines {
+    std::span<const Point> points;
+    std::span<const Index> ends;    // ring r is points[ends[r − 1]] … points[ends[r] − 1]
+    std::span<const Index> owners;  // the obstacle of each ring, from 0
+    Index obstacles = 0;
+    Point low, high;  // the bounds: what lies outside them is no free space
+};
+
+struct FreeSpace {
+    Triangulation mesh;
+    std::vector<Index> component;  // of each triangle; none where an obstacle is, or outside the bounds
+    std::vector<Index> obstacle;   // of each triangle: one that covers it, or none
+    Index components = 0;
+    std::vector<Triangulator::Crossing> crossings;  // where outlines cross
+    std::vector<Triangulator::Owner> owners;        // the lists that edges and crossings name
+    bool complete = false;                          // false: the outlines cross too often
+
+    bool is_free(Index t) const { return t != none && component[std::size_t(t)] != none; }
+    bool is_wall(Index t, int edge) const { return mesh[t].owners[std::size_t(edge)] != none; }
+
+    // The free triangles whose closure holds a point: one, two at an edge, several at a corner; none inside
+    // obstacles.
+    void triangles_at(Point p, Index near, std::vector<Index>& out) const {
+        out.clear();
+        const Place place = mesh.locate(p, near);
+        if (place.triangle == none) return;
+        const auto add = [&](Index t) {
+            if (is_free(t)) out.push_back(t);
+        };
+        const Triangle& tri = mesh[place.triangle];
+        if (place.kind == Place::at_corner) {
+            mesh.around(tri.corner[std::size_t(place.index)], [&](Index t, int) { return add(t), true; });
+        } else {
+            add(place.triangle);
+            if (place.kind == Place::on_edge) add(tri.across[std::size_t(place.index)]);
+        }
+    }
+};
+
+namespace detail {
+
+// Walks over all triangles and counts, crossing edges, how often each obstacle's outline was crossed.
+inline void find_obstacles(FreeSpace& space, Index obstacles) {
+    struct Step {
+        Index triangle, crossed;
+        int edge;
+    };
+    const Triangulation& mesh = space.mesh;
+    std::vector<std::uint8_t> odd(std::size_t(obstacles) + 1, 0), seen(mesh.triangles.size(), 0);
+    std::vector<Index> covering;  // the obstacles crossed an odd number of times
+    const auto toggle = [&](Index list) {
+        for (Index o = list; o != none; o = space.owners[std::size_t(o)].next) {
+            const Index id = space.owners[std::size_t(o)].id;
+            odd[std::size_t(id)] ^= 1;
+            if (id == obstacles) continue;  // the bounds
+            if (odd[std::size_t(id)])
+                covering.push_back(id);
+            else
+                covering.erase(std::find(covering.begin(), covering.end(), id));
+        }
+    };
+    const Index outside = mesh.triangle_at[0];
+    std::vector<Step> stack{{outside, none, 0}};
+    seen[std::size_t(outside)] = 1;
+    while (!stack.empty()) {
+        Step& step = stack.back();
+        if (step.edge == 3) {
+            toggle(step.crossed);
+            stack.pop_back();
+            continue;
+        }
+        const int e = step.edge++;
+        const Index t = mesh[step.triangle].across[std::size_t(e)];
+        if (t == none || seen[std::size_t(t)]) continue;
+        const Index crossed = mesh[step.triangle].owners[std::size_t(e)];
+        toggle(crossed);
+        seen[std::size_t(t)] = 1;
+        const bool is_free = covering.empty() && odd[std::size_t(obstacles)];
+        space.component[std::size_t(t)] = is_free ? 0 : none;
+        space.obstacle[std::size_t(t)] = covering.empty() ? none : covering.front();
+        stack.push_back({t, crossed, 0});
+    }
+}
+
+// Numbers the components of free space: walls divide them.
+inline void find_components(FreeSpace& space) {
+    std::vector<Index> stack;
+    std::vector<std::uint8_t> seen(space.mesh.triangles.size(), 0);
+    for (Index seed = 0; seed < Index(seen.size()); ++seed) {
+        if (!space.is_free(seed) || seen[std::size_t(seed)]) continue;
+        stack.push_back(seed);
+        seen[std::size_t(seed)] = 1;
+        while (!stack.empty()) {
+            const Index t = stack.back();
+            stack.pop_back();
+            space.component[std::size_t(t)] = space.components;
+            for (int e = 0; e < 3; ++e) {
+                const Index u = space.mesh[t].across[std::size_t(e)];
+                if (u == none || space.is_wall(t, e) || seen[std::size_t(u)]) continue;
+                seen[std::size_t(u)] = 1;
+                stack.push_back(u);
+            }
+        }
+        ++space.components;
+    }
+}
+
+}  // namespace detail
+
+inline FreeSpace make_free_space(const Outlines& world) {
+    FreeSpace space;
+    Point low = world.low, high = world.high;
+    for (const Point p : world.points) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+    const std::size_t n = world.points.size();
+    std::vector<std::pair<std::uint32_t, Index>> order(n);
+    const double side = std::max(high.x - low.x, high.y - low.y);
+    for (std::size_t i = 0; i < n; ++i) order[i] = {along_hilbert(world.points[i], low, side), Index(i)};
+    std::sort(order.begin(), order.end());
+
+    Triangulator make(low, high);
+    make.mesh.points.reserve(n + 16);
+    make.mesh.triangles.reserve(2 * n + 32);
+    std::vector<Index> vertex(n);
+    for (const auto& [place, i] : order) vertex[std::size_t(i)] = make.insert(world.points[std::size_t(i)]);
+    Index corner[4];
+    const Point corners[4] = {
+        world.low, {world.high.x, world.low.y}, world.high, {world.low.x, world.high.y}};
+    for (int i = 0; i < 4; ++i) corner[i] = make.insert(corners[i]);
+
+    space.complete = true;
+    for (int i = 0; i < 4 && space.complete; ++i)
+        space.complete = make.insert_segment(corner[i], corner[(i + 1) % 4], world.obstacles);
+    Index begin = 0;
+    for (std::size_t r = 0; r < world.ends.size() && space.complete; ++r) {
+        const Index end = world.ends[r];
+        for (Index i = begin; i < end && space.complete; ++i)
+            space.complete = make.insert_segment(
+                vertex[std::size_t(i)], vertex[std::size_t(i + 1 < end ? i + 1 : begin)], world.owners[r]);
+        begin = end;
+    }
+    space.mesh = std::move(make.mesh);
+    space.owners = std::move(make.owners);
+    space.crossings = std::move(make.crossings);
+    space.component.assign(space.mesh.triangles.size(), none);
+    space.obstacle.assign(space.mesh.triangles.size(), none);
+    if (!space.complete) return space;
+    detail::find_obstacles(space, world.obstacles);
+    detail::find_components(space);
+    return space;
+}
+
+// The walls of free space as rings, each edge with the free triangle on its left.
+inline Boundary boundary_of(const FreeSpace& space) {
+    const Triangulation& mesh = space.mesh;
+    const std::size_t count = mesh.triangles.size();
+    std::vector<Index> number(3 * count, none);
+    Boundary boundary;
+    for (std::size_t t = 0; t < count; ++t)
+        for (int e = 0; e < 3; ++e)
+            if (space.is_free(Index(t)) && space.is_wall(Index(t), e)) {
+                number[3 * t + std::size_t(e)] = Index(boundary.points.size());
+                boundary.points.push_back(mesh.point(mesh.triangles[t].begin(e)));
+            }
+    boundary.next.assign(boundary.points.size(), none);
+    boundary.ring.assign(boundary.points.size(), none);
+    const auto next_wall = [&](Index t, int e) {
+        for (e = after(e); !space.is_wall(t, e);) {
+            const Index u = mesh[t].across[std::size_t(e)];
+            e = after(mesh[u].edge_to(t));
+            t = u;
+        }
+        return 3 * t + e;
+    };
+    for (std::size_t half = 0; half < number.size(); ++half) {
+        if (number[half] == none || boundary.ring[std::size_t(number[half])] != none) continue;
+        const Index ring = Index(boundary.component.size());
+        boundary.component.push_back(space.component[half / 3]);
+        for (Index h = Index(half);;) {
+            const Index edge = number[std::size_t(h)];
+            if (boundary.ring[std::size_t(edge)] != none) break;
+            boundary.ring[std::size_t(edge)] = ring;
+            h = next_wall(h / 3, h % 3);
+            boundary.next[std::size_t(edge)] = number[std::size_t(h)];
+        }
+    }
+    return boundary;
+}
+
+}  // namespace cspace::maps
