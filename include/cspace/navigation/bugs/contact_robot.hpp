@@ -1,0 +1,126 @@
+// A point robot among walls and what it feels: the contact sensor of a polygon world.
+//
+// Where it stands is known as a place, not as a rounded point, so it passes where a line only touches a wall,
+// and never through a point where two obstacles meet.
+#pragma once
+
+#include "cspace/navigation/bugs/contact_sensor.hpp"
+#include "cspace/navigation/bugs/flight.hpp"
+
+namespace cspace::navigation {
+
+// A point on a wall as far as rounding lets it be: the corner next to it, or moved so that it does not lie
+// behind.
+inline Point settled(const Wall& wall, Point p) {
+    if (orientation(wall.begin, wall.end, p) == 0) return p;
+    if (is_next_to(p, wall.begin)) return wall.begin;
+    if (is_next_to(p, wall.end)) return wall.end;
+    const Point d = wall.end - wall.begin;
+    double step = std::numeric_limits<double>::epsilon() * std::max(std::abs(p.x), std::abs(p.y));
+    for (int k = 0; k < 8 && orientation(wall.begin, wall.end, p) < 0; ++k, step *= 2) {
+        if (std::abs(d.x) > std::abs(d.y))
+            p.y += d.x > 0 ? step : -step;
+        else
+            p.x += d.y > 0 ? -step : step;
+    }
+    return p;
+}
+
+class ContactRobot {
+  public:
+    ContactRobot(const Walls& walls, Point start) : walls_(&walls), start_(start) {
+        walls.at(start, [&](int name) {
+            const Wall wall = walls.wall(name);
+            if (wall.begin == start)
+                places_.push_back(corner_before(name));
+            else if (wall.end != start && orientation(wall.begin, wall.end, start) == 0 &&
+                     is_between(wall.begin, start, wall.end))
+                places_.push_back({name, name});
+        });
+        std::sort(places_.begin(), places_.end());
+        places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
+        if (places_.empty()) places_.push_back({});
+        stand(0);
+    }
+
+    std::size_t sides() const { return places_.size(); }
+    void stand(std::size_t side) {
+        at_ = start_;
+        place_ = places_[side];
+    }
+    Point position() const { return at_; }
+    Touch touch() const {
+        if (place_.is_open()) return {at_, {}, {}};
+        return {at_, walls_->wall(place_.in), walls_->wall(place_.out)};
+    }
+
+    bool advance(Line line, std::vector<Point>& touched) {
+        ++advances_;
+        while (at_ != line.to) {
+            if (place_.is_corner()) line.from = at_;
+            const Way way = way_ahead(line.to);
+            if (way == Way::blocked) return false;
+            if (way == Way::free)
+                fly(line, touched);
+            else
+                slide(way == Way::along_out ? Hand::right : Hand::left, line.to);
+            if (place_.is_corner()) touched.push_back(at_);
+        }
+        return true;
+    }
+
+    void walk(Hand hand) {
+        ++pieces_;
+        place_ = hand == Hand::right ? Place{place_.out, walls_->next(place_.out)} : corner_before(place_.in);
+        at_ = walls_->begin(place_.out);
+    }
+
+    void stop(Hand hand, Point at) {
+        ++pieces_;
+        const Wall piece = walls_->wall(hand == Hand::right ? place_.out : place_.in);
+        place_ = {piece.name, piece.name};
+        at_ = settled(piece, at);
+    }
+
+    std::size_t advances() const { return advances_; }  // how often it followed a line
+    std::size_t pieces() const { return pieces_; }      // how many pieces of wall it followed
+
+  private:
+    const Walls* walls_;
+    std::vector<Place> places_;  // those of the start
+    Point start_, at_;
+    Place place_;
+    std::size_t advances_ = 0, pieces_ = 0;
+
+    Place corner_before(int wall) const { return {walls_->previous(wall), wall}; }
+
+    Way way_ahead(Point target) const {
+        if (place_.is_open()) return Way::free;
+        const Wall in = walls_->wall(place_.in);
+        if (place_.is_corner()) return way_towards(in.begin, at_, walls_->end(place_.out), target);
+        const int side = orientation(in.begin, in.end, target);
+        if (side != 0) return side > 0 ? Way::free : Way::blocked;
+        const Point d = in.end - in.begin, ahead = target - at_;
+        const bool same =
+            std::abs(d.x) >= std::abs(d.y) ? (d.x > 0) == (ahead.x > 0) : (d.y > 0) == (ahead.y > 0);
+        return same ? Way::along_out : Way::along_in;
+    }
+
+    void slide(Hand hand, Point target) {
+        const Wall piece = walls_->wall(hand == Hand::right ? place_.out : place_.in);
+        if (target != far_end(piece, hand) && is_between(piece.begin, target, piece.end))
+            stop(hand, target);
+        else
+            walk(hand);
+    }
+
+    void fly(const Line& line, std::vector<Point>& touched) {
+        const Flight flight(*walls_, line, at_, place_.is_corner() ? -1 : place_.in);
+        flight.write_grazed(touched);
+        place_ = flight.met;
+        const bool on_wall = !place_.is_open() && !place_.is_corner();
+        at_ = on_wall ? settled(flight.wall(), flight.at) : flight.at;
+    }
+};
+
+}  // namespace cspace::navigation
