@@ -68,20 +68,19 @@ bool is_clear(const Case& c, const std::vector<Point>& path) {
 
 const char* fault_of(const Case& c, const Trip& trip, bool is_bug_1) {
     const bool expected = c.world.connected(c.start, c.goal);
-    if (trip.verdict == Verdict::undetermined) return "undetermined";
-    if ((trip.verdict == Verdict::found) != expected) return expected ? "missed" : "wrongly found";
-    if (trip.path.front() != c.start) return "start";
-    if (expected && trip.path.back() != c.goal) return "goal";
-    if (!is_clear(c, trip.path)) return "path through a wall";
-    double bound = distance(c.start, c.goal), walked = 0;
+    if (trip.route.status == Status::undetermined) return "undetermined";
+    if ((trip.route.status == Status::found) != expected) return expected ? "missed" : "wrongly found";
+    if (trip.route.path.front() != c.start) return "start";
+    if (expected && trip.route.path.back() != c.goal) return "goal";
+    if (!is_clear(c, trip.route.path)) return "path through a wall";
+    double bound = distance(c.start, c.goal);
     std::vector<int> met(c.perimeter.size(), 0);
     for (const Follow& f : trip.follows) {
         const std::size_t ring = std::size_t(c.walls.ring(f.hit.in.name));
         ++met[ring];
         bound += (is_bug_1 ? 1.5 : 1.0) * c.perimeter[ring];
-        walked += f.walked;
     }
-    if (length_of(trip.path) > bound * (1 + 1e-12)) return "longer than the bound";
+    if (length_of(trip.route.path) > bound * (1 + 1e-12)) return "longer than the bound";
     const std::vector<int> n = entries(c);
     for (std::size_t ring = 0; ring < met.size(); ++ring) {
         if (is_bug_1 && met[ring] > 1) return "a ring met twice";

@@ -22,21 +22,21 @@ class Bug1 {
             Round round(goal_, hand_, robot.touch());
             if (walk_around(walker, round)) {
                 walker.end_follow();
-                return walker.finish(Verdict::found);
+                return walker.finish(Status::found);
             }
             walker.trip.follows.back().whole = true;
             const bool shut = round.shuts_off_goal();
             const Nearest& leave = shut ? round.blocked : round.free;
-            if (!(leave.squared_distance < nearest)) return walker.finish(Verdict::undetermined);
+            if (!(leave.squared_distance < nearest)) return walker.finish(Status::undetermined);
             nearest = leave.squared_distance;
             const bool onwards = leave.along <= round.length() - leave.along;
             go_to(walker, leave.touch, onwards ? hand_ : other(hand_));
             walker.end_follow();
             if (!shut) continue;
             walker.trip.witness = robot.touch();
-            return walker.finish(Verdict::unreachable);
+            return walker.finish(Status::unreachable);
         }
-        return walker.finish(Verdict::found);
+        return walker.finish(Status::found);
     }
 
   private:

@@ -22,16 +22,16 @@ class Bug2 {
         while (!walker.advance(m_)) {
             const Touch hit = robot.touch();
             for (const Follow& earlier : walker.trip.follows)
-                if (hit.is_place_of(earlier.hit)) return walker.finish(Verdict::undetermined);
+                if (hit.is_place_of(earlier.hit)) return walker.finish(Status::undetermined);
             walker.begin_follow();
             const bool whole = follow(walker, hit);
             walker.end_follow();
             if (!whole) continue;
             walker.trip.follows.back().whole = true;
             walker.trip.witness = hit;
-            return walker.finish(Verdict::unreachable);
+            return walker.finish(Status::unreachable);
         }
-        return walker.finish(Verdict::found);
+        return walker.finish(Status::found);
     }
 
   private:

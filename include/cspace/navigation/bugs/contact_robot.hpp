@@ -55,7 +55,6 @@ class ContactRobot {
     }
 
     bool advance(Line line, std::vector<Point>& touched) {
-        ++advances_;
         while (at_ != line.to) {
             if (place_.is_corner()) line.from = at_;
             const Way way = way_ahead(line.to);
@@ -70,27 +69,21 @@ class ContactRobot {
     }
 
     void walk(Hand hand) {
-        ++pieces_;
         place_ = hand == Hand::right ? Place{place_.out, walls_->next(place_.out)} : corner_before(place_.in);
         at_ = walls_->begin(place_.out);
     }
 
     void stop(Hand hand, Point at) {
-        ++pieces_;
         const Wall piece = walls_->wall(hand == Hand::right ? place_.out : place_.in);
         place_ = {piece.name, piece.name};
         at_ = settled(piece, at);
     }
-
-    std::size_t advances() const { return advances_; }  // how often it followed a line
-    std::size_t pieces() const { return pieces_; }      // how many pieces of wall it followed
 
   private:
     const Walls* walls_;
     std::vector<Place> places_;  // those of the start
     Point start_, at_;
     Place place_;
-    std::size_t advances_ = 0, pieces_ = 0;
 
     Place corner_before(int wall) const { return {walls_->previous(wall), wall}; }
 

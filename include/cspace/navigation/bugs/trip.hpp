@@ -2,13 +2,13 @@
 // verdict.
 #pragma once
 
+#include <utility>
 #include <vector>
 
 #include "cspace/navigation/bugs/contact_sensor.hpp"
+#include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {
-
-enum class Verdict { found, unreachable, undetermined };
 
 // One stretch along the boundary: path[first] is the hit point, path[last] the leave point.
 struct Follow {
@@ -18,18 +18,13 @@ struct Follow {
     std::size_t first = 0, last = 0;
 };
 
+// The path of the route is what the robot walked, whether or not it found the goal. Of its price, nodes are
+// the pieces of wall that it followed and edges the lines.
 struct Trip {
-    Verdict verdict = Verdict::undetermined;
-    std::vector<Point> path;
+    Route route;
     std::vector<Follow> follows;
     Touch witness;  // unreachable: where the line to the goal enters a wall that shuts the goal off
 };
-
-inline double length_of(const std::vector<Point>& path) {
-    double sum = 0;
-    for (std::size_t i = 1; i < path.size(); ++i) sum += distance(path[i - 1], path[i]);
-    return sum;
-}
 
 // Writes the path while the robot moves.
 template <ContactSensor Robot>
@@ -38,38 +33,44 @@ class Walker {
     Robot& robot;
     Trip trip;
 
-    explicit Walker(Robot& r) : robot(r) { trip.path.push_back(r.position()); }
+    explicit Walker(Robot& r) : robot(r) { trip.route.path.push_back(r.position()); }
 
     bool advance(const Line& line) {
-        const bool arrived = robot.advance(line, trip.path);
+        ++trip.route.price.edges;
+        const bool arrived = robot.advance(line, trip.route.path);
         note();
         return arrived;
     }
-    void begin_follow() { trip.follows.push_back({robot.touch(), {}, 0, false, trip.path.size() - 1, 0}); }
+    void begin_follow() {
+        trip.follows.push_back({robot.touch(), {}, 0, false, trip.route.path.size() - 1, 0});
+    }
     void walk(Hand hand) {
-        const Point before = robot.position();
-        robot.walk(hand);
-        trip.follows.back().walked += distance(before, robot.position());
-        note();
+        follow([&] { robot.walk(hand); });
     }
     void stop(Hand hand, Point at) {
-        const Point before = robot.position();
-        robot.stop(hand, at);
-        trip.follows.back().walked += distance(before, robot.position());
-        note();
+        follow([&] { robot.stop(hand, at); });
     }
     void end_follow() {
         trip.follows.back().leave = robot.touch();
-        trip.follows.back().last = trip.path.size() - 1;
+        trip.follows.back().last = trip.route.path.size() - 1;
     }
-    Trip finish(Verdict verdict) {
-        trip.verdict = verdict;
+    Trip finish(Status status) {
+        trip.route.status = status;
+        trip.route.length = length_of(trip.route.path);
         return std::move(trip);
     }
 
   private:
+    template <class Move>
+    void follow(Move move) {
+        const Point before = robot.position();
+        move();
+        ++trip.route.price.nodes;
+        trip.follows.back().walked += distance(before, robot.position());
+        note();
+    }
     void note() {
-        if (trip.path.back() != robot.position()) trip.path.push_back(robot.position());
+        if (trip.route.path.back() != robot.position()) trip.route.path.push_back(robot.position());
     }
 };
 
@@ -77,14 +78,18 @@ class Walker {
 template <ContactSensor Robot, class Plan>
 Trip from_every_side(Robot& robot, Plan plan) {
     Trip trip;
+    Price price;
     bool sure = true;
     for (std::size_t side = 0; side < robot.sides(); ++side) {
         robot.stand(side);
         trip = plan(robot);
-        if (trip.verdict == Verdict::found) return trip;
-        sure = sure && trip.verdict == Verdict::unreachable;
+        price.nodes += trip.route.price.nodes;
+        price.edges += trip.route.price.edges;
+        sure = sure && trip.route.status == Status::unreachable;
+        if (trip.route.status == Status::found) break;
     }
-    if (!sure) trip.verdict = Verdict::undetermined;
+    if (!sure && trip.route.status != Status::found) trip.route.status = Status::undetermined;
+    trip.route.price = price;
     return trip;
 }
 

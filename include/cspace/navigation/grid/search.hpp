@@ -40,7 +40,7 @@ struct GridAnswer {
     bool found = false;
     std::vector<maps::Cell> cells;  // from start to goal; between two that follow each other the way is a
                                     // row, a column or a diagonal, or, of any angle, a straight line
-    double least = 0;  // no way is shorter [cells], where the planner proves that of its answer
+    double least = 0;               // no way is shorter [cells], where the planner proves that of its answer
     Effort effort;
 };
 
