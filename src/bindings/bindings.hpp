@@ -2,6 +2,7 @@
 #include <nanobind/nanobind.h>
 
 void bind_curves(nanobind::module_& m);
+void bind_following(nanobind::module_& m);
 void bind_math(nanobind::module_& m);
 void bind_robot(nanobind::module_& m);
 void bind_rotations(nanobind::module_& m);

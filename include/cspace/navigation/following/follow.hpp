@@ -1,0 +1,90 @@
+// The simulator's loop: a vehicle follows the runs of a track, one after the other, until it arrives or
+// cannot.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cspace/navigation/following/controllers.hpp"
+
+namespace cspace::navigation {
+
+enum class Outcome : std::int8_t { arrived, stuck, collision, timeout, missed };
+
+struct FollowSettings {
+    double time_step;   // [s]
+    double time_limit;  // [s]
+    double speed;       // [m/s], the fastest on the way
+    double window;      // how far ahead of the last place the nearest one is looked for [m]
+    double tolerance;   // distance from the end that counts as there [m]
+    double patience;    // how long the vehicle may stay without getting ahead [s]
+};
+
+struct FollowRecord {
+    std::vector<Motion> motion;
+    std::vector<double> offset;    // from the run, above zero to its left
+    std::vector<double> progress;  // along all runs
+    Outcome outcome = Outcome::timeout;
+};
+
+// The vehicle at one place and on its way there: what is recorded.
+struct Follower {
+    const Track& track;
+    Motion now;
+    std::size_t run = 0;
+    double before = 0;  // the length of the runs behind
+    Run::Place own{}, guided{};
+
+    template <class Controller>
+    void look(const Vehicle& vehicle, const Controller& controller, double from, double to) {
+        own = track[run].nearest(place(now.pose), from, to);
+        guided = track[run].nearest(controller.guided(vehicle, now), own.s, std::max(to, own.s));
+    }
+    bool on_last_run() const { return run + 1 == track.size(); }
+    double left() const { return track[run].length() - own.s; }
+    double progress() const { return before + own.s; }
+};
+
+// contact(from, speed, turn rate, time) says whether the vehicle touches something on that arc; controller as
+// in controllers.hpp.
+template <class Controller, class Contact>
+FollowRecord follow(const Vehicle& vehicle, const Motion& start, const Track& track, Controller& controller,
+                    const FollowSettings& settings, const Contact& contact) {
+    constexpr double rest = 1e-3;  // [m/s], as good as standing
+    const double dt = settings.time_step;
+    FollowRecord record;
+    Follower at{track, start};
+    at.look(vehicle, controller, 0, track[0].length());
+    double farthest = -1, farthest_time = 0;
+    bool touched = contact(start.pose, 0.0, 0.0, 0.0);
+    const auto finish = [&](Outcome outcome) {
+        record.outcome = outcome;
+        return record;
+    };
+    for (std::int64_t step = 0;; ++step) {
+        const double time = double(step) * dt;
+        record.motion.push_back(at.now);
+        record.offset.push_back(at.guided.offset);
+        record.progress.push_back(at.progress());
+        if (touched) return finish(Outcome::collision);
+        if (at.left() <= settings.tolerance && std::fabs(at.now.speed) <= rest) {
+            if (at.on_last_run()) {
+                const double missing = distance(place(at.now.pose), track[at.run].end());
+                return finish(missing <= settings.tolerance ? Outcome::arrived : Outcome::missed);
+            }
+            at.before += track[at.run++].length();
+            at.look(vehicle, controller, 0, settings.window);
+        }
+        if (at.progress() > farthest + 1e-4) farthest = at.progress(), farthest_time = time;
+        if (time - farthest_time >= settings.patience) return finish(Outcome::stuck);
+        if (time >= settings.time_limit) return finish(Outcome::timeout);
+        const double fast = std::min(settings.speed, speed_to_stop(at.left(), vehicle.acceleration, dt));
+        const Command command = controller(vehicle, at.now, track[at.run], at.guided, fast, dt);
+        const Motion next = after(vehicle, at.now, command, dt);
+        touched = contact(at.now.pose, next.speed, turn_rate(vehicle, next.speed, next.turn), dt);
+        at.now = next;
+        at.look(vehicle, controller, at.own.s, at.own.s + settings.window);
+    }
+}
+
+}  // namespace cspace::navigation

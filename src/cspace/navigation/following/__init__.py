@@ -1,0 +1,7 @@
+"""Following a path: vehicles with limits in a small simulator, and the controllers that steer them."""
+
+from cspace.navigation.following.follow import CONTROLLERS, follow
+from cspace.navigation.following.run import OUTCOMES, Run
+from cspace.navigation.following.vehicles import Car, Unicycle
+
+__all__ = ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "follow"]

@@ -1,0 +1,147 @@
+"""A vehicle follows a path: the words around the simulator."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.navigation.curves import Curve
+from cspace.navigation.following.run import OUTCOMES, Run
+from cspace.navigation.following.vehicles import Car, Unicycle
+from cspace.tolerances import LARGEST_NUMBER
+
+__all__ = ["CONTROLLERS", "follow"]
+
+CONTROLLERS: Final = ("pure_pursuit", "stanley")
+"""The controllers, in the order of the compiled core."""
+
+SAMPLES_PER_RADIUS: Final = 50.0
+Runs = list[tuple[int, int]]
+"""The row at which each run begins, and whether it is driven forwards (1) or backwards (−1)."""
+
+
+def follow(
+    path: Any,
+    controller: str = "pure_pursuit",
+    *,
+    vehicle: Unicycle | Car | None = None,
+    start: Any = None,
+    speed: float | None = None,
+    lookahead: float | None = None,
+    gain: float = 1.0,
+    softening: float = 0.5,
+    tolerance: float = 0.05,
+    patience: float = 10.0,
+    time_step: float = 0.05,
+    time_limit: float | None = None,
+) -> Run:
+    """Lets a vehicle follow a path in a simulator, within the vehicle's limits, and stops it at the end.
+
+    path: points (m, 2) [m], driven forwards; poses (m, 3) with headings [rad], driven backwards where the
+    next point lies behind; a Curve, or a Route that was found. controller: "pure_pursuit" steers along the
+    arc that meets the path `lookahead` [m] away (unless given a second of way, at least 1.5 wheelbases and
+    0.3); "stanley" steers the front wheels of a Car by the error of heading and atan(gain · error /
+    (softening + v)), gain [1/s], softening [m/s], forwards alone; in bends the rear axle cuts the corner.
+    vehicle: a Unicycle() unless given. start (3,): x, y [m], theta [rad], or (5,) with speed [m/s] and turn
+    as in Run.controls; the beginning of the path unless given. speed [m/s]: the fastest, that of the vehicle
+    unless given; it brakes in time for the end. tolerance [m]: what counts as the end. patience [s]: how long
+    it may come no farther. time_step [s] of the simulator, within which speed and turn are constant.
+    time_limit [s].
+
+    Returns a Run, truthy if it arrived. Raises InputError for a path of fewer than two points or with none
+    to follow, or what is no number above zero; UnknownNameError for an unknown controller; InputTypeError for
+    a controller that cannot steer the vehicle.
+
+    Coulter 1992; Hoffmann, Tomlin, Montemerlo and Thrun 2007.
+    """
+    body = Unicycle() if vehicle is None else vehicle
+    if not isinstance(body, Unicycle | Car):
+        raise InputTypeError(f"vehicle is a {type(body).__name__}; give a Unicycle or a Car")
+    rows, runs = track_of(path)
+    check_controller(controller, body, runs)
+    fast = body.max_speed if speed is None else min(positive(speed, "speed"), body.max_speed)
+    wheelbase = body.wheelbase if isinstance(body, Car) else 0.0
+    far = max(fast, 1.5 * wheelbase, 0.3) if lookahead is None else positive(lookahead, "lookahead")
+    step = positive(time_step, "time_step")
+    length = float(np.hypot(*np.diff(rows[:, :2], axis=0).T).sum())
+    limit = 10 * length / fast + 60 if time_limit is None else positive(time_limit, "time_limit")
+    window = 2 * far + wheelbase + 4 * fast * step
+    near, wait = positive(tolerance, "tolerance"), positive(patience, "patience")
+    settings = np.array([step, limit, fast, window, near, wait])
+    steering = np.array([positive(gain, "gain"), positive(softening, "softening")])
+    if controller == "pure_pursuit":
+        steering[0] = far
+    points = np.ascontiguousarray(rows[:, :2])
+    outcome, table = _core._follow(
+        *(points, runs, np.array(body._limits), start_of(start, rows, runs)),
+        *(settings, CONTROLLERS.index(controller), steering),
+    )
+    parts = (table[:, :3], table[:, 3:5], table[:, 5], table[:, 6])
+    times: Array = step * np.arange(len(table), dtype=np.float64)
+    return Run(body, controller, times, *parts, OUTCOMES[outcome], points[-1])
+
+
+def positive(value: Any, name: str) -> float:
+    """A number above zero, or InputError."""
+    number = as_floats(value, name)
+    if number.ndim or number <= 0:
+        raise InputError(f"{name} is {value!r}; give one number above zero")
+    return float(number)
+
+
+def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> None:
+    """Whether a controller of that name exists and can drive the vehicle along the runs."""
+    if controller not in CONTROLLERS:
+        raise suggest("controller", controller, CONTROLLERS)
+    if controller == "stanley" and not isinstance(vehicle, Car):
+        raise InputTypeError(
+            "stanley steers front wheels, a Unicycle has none; give vehicle=Car() or pure_pursuit"
+        )
+    backwards = any(direction < 0 for _, direction in runs)
+    if controller == "stanley" and backwards:
+        raise InputError("stanley drives forwards and part of the path is driven backwards; use pure_pursuit")
+    if backwards and vehicle.max_reverse == 0:
+        raise InputError("part of the path is driven backwards, and max_reverse of the vehicle is 0")
+
+
+def track_of(path: Any) -> tuple[Array, Runs]:
+    """The points (m, 2) or poses (m, 3) of a path without repeated ones, and its runs."""
+    if isinstance(path, Curve):
+        path = path.sample(path.radius / SAMPLES_PER_RADIUS)
+    elif hasattr(path, "path"):
+        if not path:
+            raise InputError(f"the path to follow was not found: {path.reason}")
+        path = path.path
+    rows = as_floats(path, "path", largest=LARGEST_NUMBER)
+    if rows.ndim != 2 or rows.shape[1] not in (2, 3):
+        raise InputError(f"path has shape {rows.shape}, expected points (m, 2) or poses (m, 3)")
+    moves = np.hypot(*np.diff(rows[:, :2], axis=0).T)
+    rows = rows[np.concatenate([np.ones(min(len(rows), 1), bool), moves > 0])]
+    if len(rows) < 2:
+        raise InputError("path has no length; give two different points or more")
+    if rows.shape[1] == 2:
+        return rows, [(0, 1)]
+    steps = np.diff(rows[:, :2], axis=0)
+    middle = rows[:-1, 2] + 0.5 * np.remainder(np.diff(rows[:, 2]) + np.pi, 2 * np.pi) - 0.5 * np.pi
+    ahead = steps[:, 0] * np.cos(middle) + steps[:, 1] * np.sin(middle)
+    signs = np.where(ahead < 0, -1, 1)
+    begins = [0, *(np.flatnonzero(np.diff(signs)) + 1).tolist()]
+    return rows, [(k, int(signs[k])) for k in begins]
+
+
+def start_of(start: Any, rows: Array, runs: Runs) -> Array:
+    """Pose, speed and turn (5,) at which a run begins."""
+    if start is None:
+        dx, dy = runs[0][1] * (rows[1, :2] - rows[0, :2])
+        theta = rows[0, 2] if rows.shape[1] == 3 else np.arctan2(dy, dx)
+        return np.array([*rows[0, :2], theta, 0.0, 0.0])
+    begin = as_floats(start, "start", largest=LARGEST_NUMBER)
+    if begin.shape not in ((3,), (5,)):
+        raise InputError(
+            f"start has shape {begin.shape}, expected (3,): x, y, theta, or (5,) with speed and turn"
+        )
+    return np.concatenate([begin, np.zeros(5 - len(begin))])
