@@ -9,20 +9,10 @@ using namespace cspace::maps;
 
 namespace {
 
-struct World {
-    std::vector<Point> points;
-    std::vector<Index> ends, owners;
-    Point low{0, 0}, high{100, 100};
-
-    void add(const std::vector<Point>& ring, Index owner) {
-        points.insert(points.end(), ring.begin(), ring.end());
-        ends.push_back(Index(points.size()));
-        owners.push_back(owner);
-    }
-    FreeSpace space() const {
-        const Index most = owners.empty() ? 0 : 1 + *std::max_element(owners.begin(), owners.end());
-        return make_free_space({points, ends, owners, most, low, high});
-    }
+struct World : Outlines {
+    World() { high = {100, 100}; }
+    void add(const std::vector<Point>& ring, Index owner) { add_ring(ring, owner); }
+    FreeSpace space() const { return make_free_space(*this); }
 };
 
 double doubled_area(const Triangulation& mesh, const Triangle& t) {
@@ -67,15 +57,10 @@ std::vector<Point> box(double x, double y, double w, double h) {
 // Whether a point lies in the obstacles, by counting crossings of a ray.
 bool is_covered(const World& world, Point p) {
     std::vector<int> odd(1000, 0);
-    Index begin = 0;
-    for (std::size_t r = 0; r < world.ends.size(); ++r) {
-        for (Index i = begin; i < world.ends[r]; ++i) {
-            const Point a = world.points[std::size_t(i)];
-            const Point b = world.points[std::size_t(i + 1 < world.ends[r] ? i + 1 : begin)];
-            if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y))
-                odd[std::size_t(world.owners[r])] ^= 1;
-        }
-        begin = world.ends[r];
+    for (const auto& [from, to, owner] : world.edges) {
+        const Point a = world.points[std::size_t(from)], b = world.points[std::size_t(to)];
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (b.x - a.x) * (p.y - a.y) / (b.y - a.y))
+            odd[std::size_t(owner)] ^= 1;
     }
     return std::find(odd.begin(), odd.end(), 1) != odd.end();
 }

@@ -9,14 +9,24 @@
 
 namespace cspace::maps {
 
-// The outlines of obstacles: closed rings of points, each owned by an obstacle. A point belongs to an
-// obstacle if an odd number of its rings surround it, so a ring inside a ring is a hole.
+// The outlines of obstacles as directed or undirected edges between points, each owned by an obstacle. A
+// place belongs to an obstacle if a line from far away to it crosses the obstacle's outline an odd number of
+// times: an outline inside an outline is a hole.
 struct Outlines {
-    std::span<const Point> points;
-    std::span<const Index> ends;    // ring r is points[ends[r − 1]] … points[ends[r] − 1]
-    std::span<const Index> owners;  // the obstacle of each ring, from 0
-    Index obstacles = 0;
-    Point low, high;  // the bounds: what lies outside them is no free space
+    struct Edge {
+        Index from, to, owner;
+    };
+    std::vector<Point> points;
+    std::vector<Edge> edges;
+    Index obstacles = 0;  // owners are numbered from 0 to obstacles − 1
+    Point low, high;      // the bounds: what lies outside them is no free space
+
+    void add_ring(std::span<const Point> ring, Index owner) {
+        const Index first = Index(points.size()), count = Index(ring.size());
+        points.insert(points.end(), ring.begin(), ring.end());
+        for (Index i = 0; i < count; ++i) edges.push_back({first + i, first + (i + 1) % count, owner});
+        obstacles = std::max(obstacles, owner + 1);
+    }
 };
 
 struct FreeSpace {
@@ -146,13 +156,9 @@ inline FreeSpace make_free_space(const Outlines& world) {
     space.complete = true;
     for (int i = 0; i < 4 && space.complete; ++i)
         space.complete = make.insert_segment(corner[i], corner[(i + 1) % 4], world.obstacles);
-    Index begin = 0;
-    for (std::size_t r = 0; r < world.ends.size() && space.complete; ++r) {
-        const Index end = world.ends[r];
-        for (Index i = begin; i < end && space.complete; ++i)
-            space.complete = make.insert_segment(
-                vertex[std::size_t(i)], vertex[std::size_t(i + 1 < end ? i + 1 : begin)], world.owners[r]);
-        begin = end;
+    for (std::size_t i = 0; i < world.edges.size() && space.complete; ++i) {
+        const auto& [from, to, owner] = world.edges[i];
+        space.complete = make.insert_segment(vertex[std::size_t(from)], vertex[std::size_t(to)], owner);
     }
     space.mesh = std::move(make.mesh);
     space.owners = std::move(make.owners);
