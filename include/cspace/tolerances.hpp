@@ -94,4 +94,9 @@ inline constexpr double least_square = 1e-280, largest_square = 1e280;
 // more than a full turn.
 inline constexpr double one_turn = 6.3;
 
+// A point this near to the border of a cell [cells] is on it, and the square of a radius [half cells] this
+// near to a whole number, relative to it, is that number: sums and quotients of decimal fractions are that
+// much off.
+inline constexpr double cell_border = 1e-9;
+
 }  // namespace cspace::tolerance

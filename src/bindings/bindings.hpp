@@ -17,3 +17,4 @@ void bind_ik_tasks(nanobind::module_& m);
 void bind_ik_numbers(nanobind::module_& m);
 void bind_ik_tracking(nanobind::module_& m);
 void bind_route(nanobind::module_& m);
+void bind_grid(nanobind::module_& m);

@@ -25,4 +25,5 @@ NB_MODULE(_core, m) {
     bind_ik_plan(m);
     bind_ik_numbers(m);
     bind_route(m);
+    bind_grid(m);
 }

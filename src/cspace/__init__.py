@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
+    from cspace.maps import OccupancyGrid
     from cspace.model import Limits
     from cspace.navigation import navigate
     from cspace.robot import Robot
@@ -29,6 +30,7 @@ logging.getLogger("cspace").addHandler(logging.NullHandler())
 __all__ = [
     "CspaceError",
     "Limits",
+    "OccupancyGrid",
     "Robot",
     "__version__",
     "export",
@@ -53,6 +55,7 @@ _LATER = {
     "CenterOfMassTask": "cspace.ik",
     "DirectionTask": "cspace.ik",
     "Limits": "cspace.model",
+    "OccupancyGrid": "cspace.maps",
     "PoseTask": "cspace.ik",
     "PositionTask": "cspace.ik",
     "PostureTask": "cspace.ik",

@@ -10,6 +10,7 @@ __all__ = [
     "DescriptionError",
     "InputError",
     "InputTypeError",
+    "MapError",
     "MissingExtraError",
     "UnknownNameError",
     "shown",
@@ -42,6 +43,16 @@ class UnknownNameError(CspaceError, KeyError):
 
 class DescriptionError(CspaceError, ValueError):
     """A robot description that cannot be read; carries where: the file and, if known, the line."""
+
+    def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
+        where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
+        super().__init__(where + message)
+        self.path = path
+        self.line = line
+
+
+class MapError(CspaceError, ValueError):
+    """A map file that cannot be read; carries where: the file and, if known, the line."""
 
     def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
         where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "

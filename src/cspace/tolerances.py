@@ -14,12 +14,15 @@ __all__ = [
     "DH_COINCIDENT",
     "DH_PARALLEL",
     "FARTHEST",
+    "FARTHEST_CELL",
     "FRAME_SNAP",
     "GIMBAL_LOCK",
     "HALF_TURN",
     "INERTIA_SYMMETRY",
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
+    "MAP_BYTES",
+    "MAP_CELLS",
     "MEAN_UNIQUENESS",
     "MJCF_DEPTH",
     "MJCF_SAME_AXIS",
@@ -191,3 +194,12 @@ are half a turn apart: the axis of such a turn carries the rounding of the poses
 TRACK_BEYOND: Final = 1e-3
 """Share of the way between two poses, beyond the place where a branch ends, at which it is asked whether
 anything reaches the path there: before it the certificate of a solver may be missing, near a fold."""
+
+MAP_CELLS: Final = 1 << 30
+"""Most cells of an occupancy grid: their numbers, border and all, fit into 32 bits."""
+
+MAP_BYTES: Final = 1 << 31
+"""Most bytes of a map file: two for each cell of the largest grid."""
+
+FARTHEST_CELL: Final = 1e12
+"""Farthest cell from zero, in cells: there float64 still tells a ten thousandth of a cell."""

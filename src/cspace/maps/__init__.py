@@ -1,3 +1,6 @@
 """Worlds of the plane: polygons and occupancy grids."""
 
-__all__: list[str] = []
+from cspace.maps.movingai import Scenarios, read_scenarios
+from cspace.maps.occupancy_grid import OccupancyGrid
+
+__all__ = ["OccupancyGrid", "Scenarios", "read_scenarios"]

@@ -33,7 +33,16 @@ class Planner:
     """Its file in this folder, where that is not its name."""
 
 
-_ROWS: Final[tuple[Planner, ...]] = ()
+_ROWS: Final[tuple[Planner, ...]] = (
+    Planner("a_star", "the shortest way over cells, or with costs the cheapest", "grid", "map"),
+    Planner("dijkstra", "the same, found without a guess of what is left", "grid", "map"),
+    Planner("focal_search", "a way at most so many times the shortest, and a bound for it", "grid", "map"),
+    Planner("greedy_best_first", "a way over cells that is soon found", "grid", "map"),
+    Planner("jump_point_search", "the shortest way over cells, from turn to turn", "grid", "map"),
+    Planner("theta_star", "a short way of any angle over cells that see each other", "grid", "map"),
+    Planner("wavefront", "a way of the fewest steps over cells, down the waves from the goal", "grid", "map"),
+    Planner("weighted_a_star", "a way at most so many times the shortest", "grid", "map"),
+)
 
 PLANNERS: Final = MappingProxyType({row.name: row for row in _ROWS})
 """Every planner of `cs.navigate`, by name."""

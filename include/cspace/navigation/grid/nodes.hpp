@@ -33,7 +33,10 @@ class PagedNodes {
     }
     Node& at(std::uint32_t cell) {
         auto& page = pages_[cell >> page_bits];
-        if (!page) page = std::make_unique<Node[]>(std::size_t(1) << page_bits);
+        if (!page) {
+            page = std::make_unique<Node[]>(std::size_t(1) << page_bits);
+            ++made_;
+        }
         return page[cell & ((1u << page_bits) - 1)];
     }
     bool is_reached(const Node& node) const { return node.stamp >= stamp_; }
@@ -41,15 +44,14 @@ class PagedNodes {
     void reach(Node& node, G g, std::uint32_t parent) { node = {g, parent, stamp_}; }
     void settle(Node& node) { node.stamp = stamp_ + 1; }
     std::size_t bytes() const {
-        std::size_t made = 0;
-        for (const auto& page : pages_) made += page != nullptr;
-        return made * (sizeof(Node) << page_bits);
+        return made_ * (sizeof(Node) << page_bits) + pages_.capacity() * sizeof(pages_[0]);
     }
-    void release() { pages_.clear(); }
+    void release() { std::vector<std::unique_ptr<Node[]>>().swap(pages_), made_ = 0; }
 
   private:
     static constexpr int page_bits = 12;
     std::vector<std::unique_ptr<Node[]>> pages_;
+    std::size_t made_ = 0;
     std::uint32_t stamp_ = 0;
 };
 

@@ -36,12 +36,21 @@ struct GridQuery {
     double least_cost = 1;          // the least of them
 };
 
+// A cell that was settled: how far it is, and from which cell.
+struct Settled {
+    maps::Cell cell, parent;
+    double g;
+};
+
 struct GridAnswer {
     bool found = false;
     std::vector<maps::Cell> cells;  // from start to goal; between two that follow each other the way is a
                                     // row, a column or a diagonal, or, of any angle, a straight line
-    double least = 0;               // no way is shorter [cells], where the planner proves that of its answer
+    double cost = 0;                // of the way, as the planner counts [cells, or cells · cost]
+    double least = 0;               // no way costs less, where the planner proves that of its answer
     Effort effort;
+    std::vector<Settled>* settled = nullptr;  // takes the cells in the order in which they were settled
+    std::vector<std::uint32_t> order;         // the same as the search numbers them
 };
 
 // What searches remember from one query to the next, so that they need not ask for memory. Not for two
@@ -52,7 +61,6 @@ struct GridScratch {
     SparseNodes sparse;
     PriorityQueue queue;
     Waves waves;
-    std::vector<std::uint32_t> chain;
 
     std::size_t bytes() const {
         return steps.bytes() + lengths.bytes() + sparse.bytes() + queue.bytes() + waves.bytes();
@@ -61,6 +69,12 @@ struct GridScratch {
 };
 
 namespace search {
+
+template <class Look>
+void note_settled(GridAnswer& answer, const Look& look) {
+    if (!answer.settled) return;
+    for (const std::uint32_t node : answer.order) answer.settled->push_back(look(node));
+}
 
 // The cells from the start to a node, where parent_of(node) is itself for the start.
 template <class ParentOf, class CellOf>
@@ -82,8 +96,12 @@ void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& or
     space.start(start, queue, answer.effort);
     const std::uint32_t reached = best_first(space, queue, answer.effort);
     answer.found = reached != no_node;
+    note_settled(answer, [&](std::uint32_t k) {
+        const auto& node = nodes.at(k);
+        return Settled{grid.cell(k), grid.cell(node.parent), value_of(node.g)};
+    });
     if (!answer.found) return;
-    answer.least = value_of(nodes.at(reached).g);
+    answer.cost = answer.least = value_of(nodes.at(reached).g);
     follow_back(
         reached, [&](std::uint32_t k) { return nodes.at(k).parent; },
         [&](std::uint32_t k) { return grid.cell(k); }, answer.cells);
@@ -97,11 +115,13 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
     scratch.queue.clear();
     space.start(start, scratch.queue, answer.effort);
     const std::uint32_t reached = best_first(space, scratch.queue, answer.effort);
-    if (answer.effort.order)
-        for (std::uint32_t& place : *answer.effort.order) place = nodes[place].cell;
     answer.found = reached != no_node;
+    note_settled(answer, [&](std::uint32_t place) {
+        const auto& node = nodes[place];
+        return Settled{grid.cell(node.cell), grid.cell(nodes[node.parent].cell), node.g.value()};
+    });
     if (!answer.found) return;
-    answer.least = nodes[reached].g.value();
+    answer.cost = answer.least = nodes[reached].g.value();
     std::vector<maps::Cell>& cells = answer.cells;
     cells.clear();
     for (std::uint32_t place = reached;; place = nodes[place].parent) {
@@ -130,6 +150,8 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
                          query.least_cost};
     answer.found = false;
     answer.cells.clear();
+    answer.order.clear();
+    answer.effort = {0, 0, answer.settled ? &answer.order : nullptr};
     const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
         search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen, answer);
     };

@@ -1,0 +1,66 @@
+// A way over a grid as a path in the plane, and the search as events.
+#pragma once
+
+#include <cmath>
+
+#include "cspace/maps/grid_frame.hpp"
+#include "cspace/navigation/grid/search.hpp"
+#include "cspace/navigation/route.hpp"
+
+namespace cspace::navigation {
+
+// Start, the centres of the cells where the way turns, goal; no point twice in a row.
+inline void draw_path(const maps::GridFrame& frame, Point start, Point goal, const GridAnswer& answer,
+                      Route& route) {
+    const auto& cells = answer.cells;
+    route.path.assign(1, start);
+    const auto add = [&](Point p) {
+        if (!(p == route.path.back())) route.path.push_back(p);
+    };
+    if (cells.size() > 1) {
+        add(frame.center(cells.front()));
+        for (std::size_t k = 1; k + 1 < cells.size(); ++k) {
+            const int r0 = cells[k].row - cells[k - 1].row, c0 = cells[k].column - cells[k - 1].column;
+            const int r1 = cells[k + 1].row - cells[k].row, c1 = cells[k + 1].column - cells[k].column;
+            const bool is_straight = std::int64_t(r0) * c1 == std::int64_t(r1) * c0;
+            if (!is_straight) add(frame.center(cells[k]));
+        }
+        add(frame.center(cells.back()));
+    }
+    add(goal);
+}
+
+// The length of a way whose pieces are rows, columns and diagonals, exact to a rounding; of one of any angle
+// the sum of its pieces. [cells]
+inline double length_of(const std::vector<maps::Cell>& cells) {
+    Steps steps;
+    double slanted = 0;
+    for (std::size_t k = 1; k < cells.size(); ++k) {
+        const int down = std::abs(cells[k].row - cells[k - 1].row);
+        const int along = std::abs(cells[k].column - cells[k - 1].column);
+        if (down == along || down == 0 || along == 0)
+            steps = steps + octile_steps(down, along);
+        else
+            slanted += straight_distance(down, along);
+    }
+    return steps.value() + slanted;
+}
+
+// Asks for the way between two points in free cells.
+inline void find_route(const maps::BitGrid& grid, const maps::GridFrame& frame, Point start, maps::Cell from,
+                       Point goal, maps::Cell to, const GridQuery& query, GridScratch& scratch,
+                       GridAnswer& answer, Route& route) {
+    find_way(grid, from, to, query, scratch, answer);
+    route.price = {std::int64_t(answer.effort.settled), std::int64_t(answer.effort.pushed)};
+    route.status = answer.found ? Status::found : Status::unreachable;
+    route.path.clear();
+    route.length = std::numeric_limits<double>::infinity();
+    if (!answer.found) return;
+    draw_path(frame, start, goal, answer, route);
+    route.length = from == to
+                       ? distance(start, goal)
+                       : distance(start, frame.center(from)) + frame.resolution * length_of(answer.cells) +
+                             distance(frame.center(to), goal);
+}
+
+}  // namespace cspace::navigation

@@ -1,0 +1,107 @@
+"""Maps and scenarios of the MovingAI benchmarks (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding",
+2012)."""
+
+from __future__ import annotations
+
+import math
+import os
+from typing import Final, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array
+from cspace.errors import MapError
+from cspace.maps.files import map_bytes, map_path
+from cspace.tolerances import MAP_CELLS
+
+__all__ = ["Scenarios", "read_movingai", "read_scenarios"]
+
+FREE: Final = b".GS"
+"""Ground and swamp."""
+
+BLOCKED: Final = b"@OTW"
+"""Out of bounds, trees, and water, which nobody enters who is not in it."""
+
+
+class Scenarios(NamedTuple):
+    """The questions of a scenario file, a row each."""
+
+    start: npt.NDArray[np.int64]
+    """(k, 2): x and y of the start, which are the column and the row of its cell."""
+    goal: npt.NDArray[np.int64]
+    """(k, 2): those of the goal."""
+    length: Array
+    """(k,): the length of the shortest way by eight moves without cutting corners [cells], as printed."""
+
+
+def read_movingai(path: str | os.PathLike[str]) -> npt.NDArray[np.bool_]:
+    """Which cells of a `.map` file are blocked, (rows, columns); the first line of the file is row 0."""
+    name = map_path(path)
+    lines = map_bytes(path).split(b"\n")
+    if lines[0].split() != [b"type", b"octile"]:
+        raise MapError("a MovingAI map begins with the line 'type octile'", path=name, line=1)
+    sizes: dict[bytes, int] = {}
+    at = 1
+    while at < len(lines) and lines[at].strip() != b"map":
+        words = lines[at].split()
+        if len(words) != 2 or words[0] not in (b"height", b"width") or not words[1].isdigit():
+            raise MapError("expected 'height', 'width' and a whole number, or 'map'", path=name, line=at + 1)
+        if len(words[1]) > 9 or not 0 < int(words[1]) <= MAP_CELLS:
+            raise MapError(f"a side has 1 … {MAP_CELLS} cells", path=name, line=at + 1)
+        sizes[words[0]] = int(words[1])
+        at += 1
+    if len(sizes) < 2 or at >= len(lines):
+        raise MapError("the lines 'height …', 'width …' and 'map' come before the cells", path=name, line=at)
+    return _cells(lines[at + 1 :], sizes[b"height"], sizes[b"width"], name, at + 2)
+
+
+def _cells(lines: list[bytes], rows: int, columns: int, name: str, first: int) -> npt.NDArray[np.bool_]:
+    """The cells of the lines; first: the number of the first line in the file."""
+    rest = [line.rstrip(b"\r") for line in lines]
+    while rest and not rest[-1].strip():
+        rest.pop()
+    for number, line in enumerate(rest[:rows]):
+        if len(line) != columns:
+            message = f"this row has {len(line)} cells; the width is {columns}"
+            raise MapError(message, path=name, line=first + number)
+    if len(rest) != rows:
+        message = f"{len(rest)} rows of cells; the height is {rows}"
+        raise MapError(message, path=name, line=first + min(len(rest), rows))
+    cells = np.frombuffer(b"".join(rest), np.uint8).reshape(rows, columns)
+    kinds = np.full(256, 2, np.uint8)
+    kinds[list(FREE)], kinds[list(BLOCKED)] = 0, 1
+    blocked = kinds[cells]
+    if (blocked == 2).any():
+        row, column = map(int, np.argwhere(blocked == 2)[0])
+        said = ascii(chr(cells[row, column]))
+        message = f"cell {column} is {said}; cells are . G S (free) or @ O T W (blocked)"
+        raise MapError(message, path=name, line=first + row)
+    return blocked.view(np.bool_)
+
+
+def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
+    """The questions of a `.scen` file: start (k, 2), goal (k, 2), length (k,); MapError names the line at
+    fault."""
+    name = map_path(path)
+    lines = map_bytes(path).decode("utf-8", "replace").split("\n")
+    if lines[0].split()[:1] != ["version"]:
+        raise MapError("a scenario file begins with the line 'version 1'", path=name, line=1)
+    rows: list[tuple[int, int, int, int]] = []
+    lengths: list[float] = []
+    for number, line in enumerate(lines[1:], 2):
+        if not (words := line.rsplit(maxsplit=7)):
+            continue
+        try:
+            ends, length = words[-5:-1], float(words[-1])
+            x0, y0, x1, y1 = (int(word) for word in ends)
+        except ValueError:
+            x0 = y0 = x1 = y1 = -1
+            length = math.nan
+        if len(words) != 8 or min(x0, y0, x1, y1) < 0 or max(x0, y0, x1, y1) > MAP_CELLS or not length >= 0:
+            message = "expected bucket, map, width, height, the columns and rows of start and goal, length"
+            raise MapError(message, path=name, line=number)
+        rows.append((x0, y0, x1, y1))
+        lengths.append(length)
+    ends_of = np.array(rows, np.int64).reshape(-1, 4)
+    return Scenarios(ends_of[:, :2].copy(), ends_of[:, 2:].copy(), np.array(lengths))

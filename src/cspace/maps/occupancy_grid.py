@@ -1,0 +1,224 @@
+"""A plane of square cells, each free or blocked."""
+
+from __future__ import annotations
+
+import os
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.tolerances import FARTHEST_CELL, MAP_CELLS
+
+__all__ = ["OccupancyGrid"]
+
+RULES: Final = ("cells", "centers")
+"""What must keep away from obstacles when a grid is inflated."""
+
+
+class OccupancyGrid(_core.GridBase):
+    """Square cells, each free or blocked; nothing outside of the grid is free.
+
+    blocked: (rows, columns), truth values, or numbers 0 and 1. resolution [m]: the side of a cell. origin
+    (2,) [m]: the corner of cell (0, 0) of least x and y. Row i spans y in origin_y + resolution · [i, i + 1],
+    column j spans x likewise, so the first row of the array is the lowest. The cells are copied, one bit each
+    by rows and one by columns.
+
+    Raises InputTypeError on other things than cells, InputError on a wrong shape, an empty grid, more than
+    tolerances.MAP_CELLS cells, a resolution that is not positive, an origin that is not finite.
+    """
+
+    kind: Final = "grid"
+
+    def __init__(self, blocked: Any, resolution: float = 1.0, origin: ArrayLike = (0.0, 0.0)) -> None:
+        side = float(as_floats(resolution, "resolution").reshape(()) if np.size(resolution) == 1 else np.nan)
+        if not 0 < side < np.inf:
+            raise InputError(f"resolution is {resolution!r}; it must be one positive number [m]")
+        corner = as_floats(origin, "origin", last=(2,))
+        if corner.ndim != 1:
+            raise InputError(f"origin has shape {corner.shape}, expected (2,)")
+        cells = _cells(blocked)
+        reach = max(cells.shape) * side + float(np.abs(corner).max())
+        if reach > FARTHEST_CELL * side:
+            message = (
+                f"origin {tuple(map(float, corner))} is {reach / side:.3g} cells from the farthest cell; "
+            )
+            raise InputError(message + f"float64 tells cells apart up to {FARTHEST_CELL:g} of them")
+        super().__init__(cells, side, float(corner[0]), float(corner[1]))
+
+    @classmethod
+    def from_movingai(
+        cls, path: str | os.PathLike[str], resolution: float = 1.0, origin: ArrayLike = (0.0, 0.0)
+    ) -> OccupancyGrid:
+        """A map of the MovingAI benchmarks: . G S are free, @ O T W blocked.
+
+        The first line of the file is row 0, the lowest in the plane. So x and y of its scenarios are the
+        column and the row of a cell; the point is its centre, origin + resolution · (x + ½, y + ½), origin
+        (2,) [m].
+        """
+        from cspace.maps.movingai import read_movingai
+
+        return cls(read_movingai(path), resolution, origin)
+
+    @classmethod
+    def from_ros(cls, path: str | os.PathLike[str], *, unknown: str = "blocked") -> OccupancyGrid:
+        """A map of ROS: a YAML file with a PGM or PNG image, mode "trinary"; its lowest pixels are row 0.
+
+        unknown: what cells are of which nothing is known, "blocked" or "free".
+        """
+        from cspace.maps.ros_map import read_ros
+
+        if unknown not in ("blocked", "free"):
+            raise suggest("choice of unknown=", unknown, ("blocked", "free"))
+        read = read_ros(path)
+        return cls(read.cells != 0 if unknown == "blocked" else read.cells == 1, read.resolution, read.origin)
+
+    @classmethod
+    def from_image(
+        cls,
+        path: str | os.PathLike[str],
+        resolution: float = 1.0,
+        origin: ArrayLike = (0.0, 0.0),
+        *,
+        blocked_below: float = 0.5,
+    ) -> OccupancyGrid:
+        """A PGM or PNG image, a pixel per cell, its lowest pixels row 0; origin (2,) [m].
+
+        Blocked is what is darker than blocked_below (0 black, 1 white) and what is transparent.
+        """
+        from cspace.maps.images import read_image
+
+        least = float(as_floats(blocked_below, "blocked_below"))
+        return cls(~(read_image(path)[::-1] >= least), resolution, origin)
+
+    @property
+    def origin(self) -> Array:
+        """The corner of cell (0, 0) of least x and y, (2,) [m]."""
+        return np.array([self._x, self._y])
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns."""
+        return self.rows, self.columns
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """xmin, ymin, xmax, ymax [m]."""
+        side = self.resolution
+        return self._x, self._y, self._x + side * self.columns, self._y + side * self.rows
+
+    @property
+    def blocked(self) -> npt.NDArray[np.bool_]:
+        """Which cells are blocked, (rows, columns); a copy."""
+        cells = np.empty(self.shape, np.uint8)
+        self._unpack(cells)
+        return cells.view(np.bool_)
+
+    def cell_of(self, point: ArrayLike) -> tuple[int, int]:
+        """Row and column of the cell that holds a point (2,) [m].
+
+        A point on a border is in the free one of the cells beside it; if several are, in the one of higher
+        coordinates. InputError for a point outside of the grid.
+        """
+        x, y = _point(point)
+        place, row, column = self._locate(x, y)
+        if place == OUTSIDE:
+            raise outside(self, "point", x, y)
+        return row, column
+
+    def center_of(self, cell: ArrayLike) -> Array:
+        """The centre of cells (..., 2), given as row and column: points (..., 2) [m]."""
+        index = as_floats(cell, "cell", last=(2,))
+        return self.origin + self.resolution * (index[..., ::-1] + 0.5)
+
+    def is_free(self, point: ArrayLike) -> bool:
+        """Whether a point (2,) [m] lies in a free cell or on its border; nothing outside of the grid is
+        free."""
+        return bool(self._locate(*_point(point))[0] == FREE)
+
+    def inflate(self, radius: float, *, clear: str = "cells") -> OccupancyGrid:
+        """The grid for the centre of a round robot of a radius [m]: obstacles, and the outside, have grown by
+        it.
+
+        clear="cells": a cell is blocked if any point of it lies nearer than the radius to a blocked cell, so
+        the robot may be anywhere in what is left, and a corridor of one cell is closed to any robot.
+        "centers": if its centre does, so the robot may be at the centres of what is left. Squares of
+        distances are compared in half cells as integers; where the square of the radius in half cells is a
+        whole number but for rounding, it is taken as that.
+        """
+        grown = float(as_floats(radius, "radius"))
+        if grown < 0:
+            raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
+        if clear not in RULES:
+            raise suggest("choice of clear=", clear, RULES)
+        made = OccupancyGrid.__new__(OccupancyGrid)
+        _core.GridBase.__init__(made, self, grown, clear == "centers")
+        return made
+
+    def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
+        """The grid itself: it has its own resolution."""
+        if resolution is not None and resolution != self.resolution:
+            raise InputTypeError(f"the grid has cells of {self.resolution:g} m; they cannot be resampled")
+        return self
+
+    def save_ros(self, path: str | os.PathLike[str]) -> None:
+        """Writes a map of ROS: a YAML file at the path, which ends in .yaml, and a PGM image beside it."""
+        from cspace.maps.ros_map import write_ros
+
+        write_ros(path, self.blocked, self.resolution, self._x, self._y)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Cells, resolution and origin: what pickle makes it from again."""
+        return type(self), (self.blocked, self.resolution, (self._x, self._y))
+
+    def __repr__(self) -> str:
+        share = self.blocked_cells / (self.rows * self.columns)
+        return (
+            f"<OccupancyGrid {self.rows} × {self.columns} cells of {self.resolution:g} m, "
+            f"{share:.1%} blocked, origin ({self._x:g}, {self._y:g})>"
+        )
+
+
+FREE: Final = 0
+OUTSIDE: Final = 2
+"""Where a point can be: in a free cell, in a blocked one (1), or outside of the grid."""
+
+
+def outside(grid: OccupancyGrid, subject: str, x: float, y: float) -> InputError:
+    """The error for a point outside of a grid."""
+    x0, y0, x1, y1 = grid.bounds
+    spans = f"x {x0:g} … {x1:g}, y {y0:g} … {y1:g} [m]"
+    return InputError(f"{subject} ({x:g}, {y:g}) is outside of the grid, which spans {spans}")
+
+
+def _point(point: ArrayLike) -> tuple[float, float]:
+    array = as_floats(point, "point", last=(2,))
+    if array.ndim != 1:
+        raise InputError(f"point has shape {array.shape}, expected (2,)")
+    return float(array[0]), float(array[1])
+
+
+def _cells(blocked: Any) -> npt.NDArray[np.uint8]:
+    """The cells as bytes 0 and 1, (rows, columns)."""
+    cells = np.asarray(blocked)
+    if cells.dtype != np.bool_:
+        if cells.dtype.kind not in "iuf":
+            raise InputTypeError(
+                f"blocked must be truth values, got {type(blocked).__name__} of {cells.dtype}"
+            )
+        whole = cells.astype(np.bool_)
+        if not np.array_equal(whole, cells):
+            bad = cells[whole != cells].flat[0]
+            raise InputError(
+                f"blocked holds {bad}; cells are 0 (free) or 1 (blocked): compare with a threshold"
+            )
+        cells = whole
+    if cells.ndim != 2 or 0 in cells.shape:
+        raise InputError(f"blocked has shape {cells.shape}, expected (rows, columns), at least one of each")
+    if cells.size > MAP_CELLS:
+        raise InputError(f"blocked has {cells.size} cells; at most {MAP_CELLS} are taken")
+    return np.ascontiguousarray(cells).view(np.uint8)

@@ -1,0 +1,183 @@
+"""Maps of ROS: a YAML file beside an image, as map_server reads them."""
+
+from __future__ import annotations
+
+import math
+import os
+import re
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array
+from cspace.errors import InputError, MapError
+from cspace.maps.files import map_bytes, map_path
+from cspace.maps.images import pgm_of, read_image
+
+__all__ = ["RosMap", "read_ros", "write_ros"]
+
+NEEDED: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
+UNKNOWN_GREY: Final = 205
+"""Grey of cells of which nothing is known, as map_saver writes them."""
+
+
+@dataclass(frozen=True)
+class RosMap:
+    """What a map of ROS says: cells (rows, columns) 0 free, 1 occupied, 2 unknown, the lowest row first."""
+
+    cells: npt.NDArray[np.uint8]
+    resolution: float
+    origin: tuple[float, float]
+
+
+def read_ros(path: str | os.PathLike[str]) -> RosMap:
+    """The map of a YAML file; MapError names the line or byte at fault.
+
+    A cell is occupied where its darkness exceeds occupied_thresh, free where it is below free_thresh, unknown
+    between and where the image is transparent. Fields beyond those of map_server are left alone.
+    """
+    name = map_path(path)
+    fields = _fields(map_bytes(path), name)
+    for field in NEEDED:
+        if field not in fields and not (field == "negate" and "occupied_thresh" in fields):
+            raise MapError(f"the field '{field}:' is missing", path=name)
+    mode = str(fields.get("mode", ("trinary", 0))[0])
+    if mode != "trinary":
+        raise MapError(f"mode {mode!r} has cells that are half free; only 'trinary' is read", path=name)
+    resolution = _number(fields, "resolution", name)
+    if not 0 < resolution < math.inf:
+        raise MapError("resolution must be positive [m]", path=name, line=fields["resolution"][1])
+    occupied, free = _number(fields, "occupied_thresh", name), _number(fields, "free_thresh", name)
+    if not 0 <= free <= occupied <= 1:
+        message = f"free_thresh {free:g} and occupied_thresh {occupied:g} must be 0 <= free <= occupied <= 1"
+        raise MapError(message, path=name, line=fields["occupied_thresh"][1])
+    image = fields["image"][0]
+    if not isinstance(image, str) or not image:
+        raise MapError("image must be the path of a PGM or PNG file", path=name, line=fields["image"][1])
+    grey = read_image(os.path.join(os.path.dirname(name), image))
+    return RosMap(_kinds(grey, _negate(fields, name), occupied, free), resolution, _origin(fields, name))
+
+
+def _kinds(grey: Array, negate: bool, occupied: float, free: float) -> npt.NDArray[np.uint8]:
+    """The kinds of cells by their darkness, the lowest row of the image first."""
+    darkness = (grey if negate else 1 - grey)[::-1]
+    kinds = np.full(grey.shape, 2, np.uint8)
+    kinds[darkness < free] = 0
+    kinds[darkness > occupied] = 1
+    return kinds
+
+
+def write_ros(
+    path: str | os.PathLike[str], blocked: npt.NDArray[np.bool_], resolution: float, x: float, y: float
+) -> None:
+    """Writes a map of cells (rows, columns): a YAML file at the path, and a PGM image beside it."""
+    from cspace.model.files import whole_file
+
+    name = map_path(path)
+    stem, ending = os.path.splitext(name)
+    if ending not in {".yaml", ".yml"}:
+        raise InputError(f"path is {name!r}; a map of ROS ends in .yaml, its image is written beside it")
+    image = stem + ".pgm"
+    with whole_file(image) as draft:
+        draft.write_bytes(pgm_of(np.where(blocked[::-1], np.uint8(0), np.uint8(254))))
+    text = f"image: {_quoted(os.path.basename(image))}\nmode: trinary\nresolution: {resolution!r}\n"
+    text += f"origin: [{x!r}, {y!r}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+    with whole_file(name) as draft:
+        draft.write_text(text, encoding="utf-8")
+
+
+def _quoted(text: str) -> str:
+    """A file name as a YAML scalar."""
+    return text if re.fullmatch(r"[\w.-]+", text, re.ASCII) else "'" + text.replace("'", "''") + "'"
+
+
+# A value, and the line it stands in.
+_Fields = dict[str, tuple[Any, int]]
+
+
+def _fields(data: bytes, name: str) -> _Fields:
+    """The fields of the one level of YAML that map files have: numbers, texts and lists of them."""
+    try:
+        lines = data.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise MapError(f"byte {error.start}: a map file is UTF-8 text", path=name) from None
+    fields: _Fields = {}
+    open_list: list[Any] | None = None
+    for number, line in enumerate(lines, 1):
+        text = _without_comment(line)
+        if not text.strip() or text.strip() in {"---", "..."} or text.startswith("%"):
+            continue
+        if (item := re.fullmatch(r"\s*-\s+(.*\S)\s*", text)) and open_list is not None:
+            open_list.append(_scalar(item.group(1)))
+            continue
+        pair = re.fullmatch(r"(\s*)([A-Za-z_][\w.-]*)\s*:(?:\s+(.*?))?\s*", text)
+        if pair is None:
+            raise MapError("expected 'field: value'", path=name, line=number)
+        if pair.group(1):
+            continue  # within a field that map files do not have
+        field, value = pair.group(2), pair.group(3) or ""
+        if field in fields:
+            raise MapError(f"the field '{field}:' stands here for the second time", path=name, line=number)
+        open_list = None
+        if not value:
+            open_list = []
+            fields[field] = (open_list, number)
+        elif value.startswith("["):
+            if not value.endswith("]"):
+                raise MapError("a list in brackets ends in its line", path=name, line=number)
+            fields[field] = ([_scalar(part) for part in value[1:-1].split(",") if part.strip()], number)
+        else:
+            fields[field] = (_scalar(value), number)
+    return fields
+
+
+def _without_comment(line: str) -> str:
+    """The line up to a # that stands after a blank and outside quotes."""
+    quote = ""
+    for at, letter in enumerate(line):
+        if quote:
+            quote = "" if letter == quote else quote
+        elif letter in "'\"" and (at == 0 or line[at - 1] in " \t[,"):
+            quote = letter
+        elif letter == "#" and (at == 0 or line[at - 1] in " \t"):
+            return line[:at]
+    return line
+
+
+def _scalar(text: str) -> str | float:
+    text = text.strip()
+    if len(text) >= 2 and text[0] == text[-1] == "'":
+        return text[1:-1].replace("''", "'")
+    if len(text) >= 2 and text[0] == text[-1] == '"':
+        return text[1:-1]
+    if re.fullmatch(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?", text, re.ASCII):
+        return float(text)
+    return text
+
+
+def _number(fields: _Fields, field: str, name: str) -> float:
+    value, line = fields[field]
+    if not isinstance(value, float) or not math.isfinite(value):
+        raise MapError(f"{field} must be a finite number", path=name, line=line)
+    return value
+
+
+def _negate(fields: _Fields, name: str) -> bool:
+    value, line = fields.get("negate", (0.0, 0))
+    if value in (0.0, 1.0, "true", "false", "True", "False"):
+        return value in (1.0, "true", "True")
+    raise MapError("negate must be 0 or 1", path=name, line=line)
+
+
+def _origin(fields: _Fields, name: str) -> tuple[float, float]:
+    value, line = fields["origin"]
+    if not isinstance(value, list) or len(value) not in (2, 3):
+        raise MapError("origin must be a list [x, y, yaw]", path=name, line=line)
+    if not all(isinstance(part, float) and math.isfinite(part) for part in value):
+        raise MapError("origin must hold finite numbers", path=name, line=line)
+    if len(value) == 3 and value[2] != 0:
+        message = f"the map is turned by {value[2]:g} rad; turn the image and give it a yaw of 0"
+        raise MapError(message, path=name, line=line)
+    return value[0], value[1]

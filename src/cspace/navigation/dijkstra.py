@@ -1,0 +1,49 @@
+"""Dijkstra's search: of all ways that wait the shortest goes on (Dijkstra 1959)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from cspace.navigation.grid_search import (
+    BEST_FIRST,
+    Settings,
+    metric_of,
+    positive_costs,
+    reason,
+    search,
+    traced,
+)
+from cspace.navigation.route import Route
+from cspace.navigation.trace import Trace
+
+__all__ = ["plan", "reason", "trace"]
+
+
+def plan(
+    world: Any,
+    start: Any,
+    goal: Any,
+    *,
+    metric: str = "octile",
+    corners: str = "never",
+    costs: ArrayLike | None = None,
+) -> Route:
+    """The shortest way over the cells of a grid, found without a guess of what is left.
+
+    start, goal: (2,) [m] in free cells. metric, corners, costs (rows, columns): as for A*.
+    """
+    options = {"metric": metric, "corners": corners, "costs": costs}
+    return search(world, start, goal, "dijkstra", options, _settings(world, metric, corners, costs))
+
+
+def trace(route: Route) -> Trace:
+    """The cells in the order in which they were settled."""
+    return traced(route, _settings(route.world, **route.options))
+
+
+def _settings(world: Any, metric: str, corners: str, costs: ArrayLike | None) -> Settings:
+    array, least = positive_costs(world, costs)
+    moves = metric_of(metric, corners)
+    return Settings(BEST_FIRST, *moves, h_weight=0.0, costs=array, least_cost=least)

@@ -1,0 +1,57 @@
+"""Focal search: among the ways that are surely good enough, the one that seems nearest to the goal goes on
+(A*ε, Pearl & Kim 1982)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from cspace.arrays import as_floats
+from cspace.errors import InputError
+from cspace.navigation.grid_search import (
+    FOCAL,
+    Settings,
+    metric_of,
+    positive_costs,
+    reason,
+    search,
+    traced,
+)
+from cspace.navigation.route import Route
+from cspace.navigation.trace import Trace
+
+__all__ = ["plan", "reason", "trace"]
+
+
+def plan(
+    world: Any,
+    start: Any,
+    goal: Any,
+    *,
+    bound: float = 1.5,
+    metric: str = "octile",
+    corners: str = "never",
+    costs: ArrayLike | None = None,
+) -> Route:
+    """A way over the cells of a grid at most `bound` times as long, or costly, as the best.
+
+    start, goal: (2,) [m] in free cells. bound: 1 or more. metric, corners, costs (rows, columns): as for A*.
+    route.evidence holds the cost of the way between their cells, and "at_least", below which no way costs:
+    the factor that is proven of this very answer is their quotient. InputError for a bound below 1.
+    """
+    options: dict[str, Any] = {"bound": bound, "metric": metric, "corners": corners, "costs": costs}
+    return search(world, start, goal, "focal_search", options, _settings(world, **options))
+
+
+def trace(route: Route) -> Trace:
+    """The cells in the order in which they were settled."""
+    return traced(route, _settings(route.world, **route.options))
+
+
+def _settings(world: Any, bound: float, metric: str, corners: str, costs: ArrayLike | None) -> Settings:
+    if (factor := float(as_floats(bound, "bound"))) < 1:
+        raise InputError(f"bound is {factor:g}; it must be 1 or more")
+    array, least = positive_costs(world, costs)
+    moves = metric_of(metric, corners)
+    return Settings(FOCAL, *moves, bound=factor, costs=array, least_cost=least)

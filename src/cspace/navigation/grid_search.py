@@ -1,0 +1,133 @@
+"""What the planners of the grid family share: moves, metrics, costs, errors, traces.
+
+They are one best-first search in the compiled core; a planner is an order, a rule for moves and one for
+parents.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError, suggest
+from cspace.maps import OccupancyGrid
+from cspace.maps.occupancy_grid import outside
+from cspace.navigation.route import Route
+from cspace.navigation.trace import Trace
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+__all__ = ["CORNERS", "METRICS", "Settings", "metric_of", "positive_costs", "reason", "search", "traced"]
+
+CORNERS: Final = {"never": 0, "one": 1, "always": 2}
+"""When a diagonal step is allowed: both cells beside it are free, one is, always."""
+
+METRICS: Final = {"octile": 0, "manhattan": 1, "euclidean": 2}
+"""What a planner counts on: eight moves, four, or eight with the straight line to the goal as what is
+left."""
+
+FOUR_MOVES: Final = 3
+WORDS: Final = ("settle",)
+
+
+class Settings(NamedTuple):
+    """What the compiled search is told, in its order."""
+
+    kind: int
+    corners: int = 0
+    metric: int = 0
+    g_weight: float = 1.0
+    h_weight: float = 1.0
+    bound: float = 1.0
+    costs: Array | None = None
+    """(rows, columns)."""
+    least_cost: float = 1.0
+
+
+BEST_FIRST: Final = 0
+FOCAL: Final = 1
+JUMP_POINTS: Final = 2
+THETA_STAR: Final = 3
+LAZY_THETA_STAR: Final = 4
+WAVES: Final = 5
+
+
+def metric_of(metric: str, corners: str) -> tuple[int, int]:
+    """The numbers of the corner rule and the metric; UnknownNameError suggests the nearest name."""
+    try:
+        number = METRICS[metric]
+        return (FOUR_MOVES if number == 1 else CORNERS[corners]), number
+    except (KeyError, TypeError):
+        if metric not in METRICS:
+            raise suggest("metric", metric, METRICS) from None
+        raise suggest("rule corners=", corners, CORNERS) from None
+
+
+def positive_costs(world: Any, costs: ArrayLike | None) -> tuple[Array | None, float]:
+    """Costs of the cells, (rows, columns), and the least; InputError on a wrong shape or one that is not
+    positive."""
+    if costs is None:
+        return None, 1.0
+    array = np.ascontiguousarray(as_floats(costs, "costs"))
+    if array.shape != world.shape:
+        raise InputError(f"costs has shape {array.shape}; the grid has {world.shape} cells")
+    least = float(array.min())
+    if least <= 0:
+        row, column = map(int, np.argwhere(array == least)[0])
+        rule = "a cell costs more than nothing; blocked cells belong into the grid"
+        raise InputError(f"costs[{row}, {column}] is {least:g}; {rule}")
+    return array, least
+
+
+def search(
+    world: Any, start: Any, goal: Any, name: str, options: dict[str, Any], settings: Settings
+) -> Route:
+    """Asks the compiled search; start, goal (2,) [m]."""
+    made: Route | None = _core._grid_route(world, start, goal, name, options, *settings)
+    if made is None:
+        ends = checked_ends(world, start, goal)
+        made = _core._grid_route(world, *ends, name, options, *settings)
+        assert made is not None
+    return made
+
+
+def checked_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
+    """Start and goal as points (2,) [m] in free cells; InputError names the one that is not."""
+    if not isinstance(world, OccupancyGrid):
+        raise InputTypeError(f"world must be an OccupancyGrid, got an object of type {type(world).__name__}")
+    ends = []
+    for subject, point in (("start", start), ("goal", goal)):
+        array = as_floats(point, subject, last=(2,))
+        if array.ndim != 1:
+            raise InputError(f"{subject} has shape {array.shape}, expected (2,)")
+        x, y = map(float, array)
+        place, row, column = world._locate(x, y)
+        if place == 2:
+            raise outside(world, subject, x, y)
+        if place == 1:
+            raise InputError(f"{subject} ({x:g}, {y:g}) lies in cell ({row}, {column}), which is blocked")
+        ends.append(np.array([x, y]))
+    return ends[0], ends[1]
+
+
+def reason(route: Route) -> str:
+    """The verdict of a planner of this family, in a sentence."""
+    cells = route.price.nodes
+    if route:
+        return f"found a way of {route.length:.6g} m after settling {cells} cells"
+    return f"no way leads to the goal: the search has settled all {cells} cells that can be reached"
+
+
+def traced(route: Route, settings: Settings) -> Trace:
+    """The cells in the order in which they were settled, each from its parent: start, end (k, 2) [m]; value
+    [m], or [m · cost], is the way so far."""
+    world = route.world
+    found = _core._grid_order(world, route.start, route.goal, route.planner, None, *settings)
+    cells: npt.NDArray[np.int32] = found[0]
+    at, parent = world.center_of(cells[:, :2]), world.center_of(cells[:, 2:])
+    return Trace(WORDS, np.zeros(len(cells), np.int8), parent, at, found[1])

@@ -1,0 +1,55 @@
+"""Weighted A*: what is left counts more than it should, so the search hurries to the goal (Pohl 1970)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from numpy.typing import ArrayLike
+
+from cspace.arrays import as_floats
+from cspace.errors import InputError
+from cspace.navigation.grid_search import (
+    BEST_FIRST,
+    Settings,
+    metric_of,
+    positive_costs,
+    reason,
+    search,
+    traced,
+)
+from cspace.navigation.route import Route
+from cspace.navigation.trace import Trace
+
+__all__ = ["plan", "reason", "trace"]
+
+
+def plan(
+    world: Any,
+    start: Any,
+    goal: Any,
+    *,
+    weight: float = 1.5,
+    metric: str = "octile",
+    corners: str = "never",
+    costs: ArrayLike | None = None,
+) -> Route:
+    """A way over the cells of a grid at most `weight` times as long, or costly, as the best.
+
+    start, goal: (2,) [m] in free cells. weight: 1 or more; 1 is A*. metric, corners, costs (rows, columns):
+    as for A*. InputError for a weight below 1.
+    """
+    options: dict[str, Any] = {"weight": weight, "metric": metric, "corners": corners, "costs": costs}
+    return search(world, start, goal, "weighted_a_star", options, _settings(world, **options))
+
+
+def trace(route: Route) -> Trace:
+    """The cells in the order in which they were settled."""
+    return traced(route, _settings(route.world, **route.options))
+
+
+def _settings(world: Any, weight: float, metric: str, corners: str, costs: ArrayLike | None) -> Settings:
+    if (factor := float(as_floats(weight, "weight"))) < 1:
+        raise InputError(f"weight is {factor:g}; it must be 1 or more")
+    array, least = positive_costs(world, costs)
+    moves = metric_of(metric, corners)
+    return Settings(BEST_FIRST, *moves, h_weight=factor, costs=array, least_cost=least)
