@@ -1,6 +1,8 @@
 #pragma once
 #include <nanobind/nanobind.h>
 
+void bind_cars(nanobind::module_& m);
+void bind_coverage(nanobind::module_& m);
 void bind_curves(nanobind::module_& m);
 void bind_following(nanobind::module_& m);
 void bind_math(nanobind::module_& m);

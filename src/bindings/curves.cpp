@@ -41,15 +41,15 @@ void distances(bool reverses, Poses starts, Poses goals, double radius, RowOut o
 }
 
 void poses_along(PoseRow start, Pieces pieces, double radius, Row s, PosesOut out) {
-    if (s.size() != out.shape(0) || pieces.shape(0) > Curve::most)
-        throw nb::value_error("a pose for every length, and five pieces at most");
-    Curve curve;
-    for (std::size_t i = 0; i < pieces.shape(0); ++i)
-        curve.piece[curve.count++] = {int(pieces.data()[2 * i]), pieces.data()[2 * i + 1] / radius};
+    if (s.size() != out.shape(0)) throw nb::value_error("a pose for every length");
+    std::vector<Piece> parts(pieces.shape(0));
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        parts[i] = {int(pieces.data()[2 * i]), pieces.data()[2 * i + 1] / radius};
     const CarPose from = pose_of(start.data());
     nb::gil_scoped_release free;
+    const LaidCurve curve(from, std::move(parts), radius);
     for (std::size_t k = 0; k < s.size(); ++k) {
-        const CarPose at = pose_at(from, curve, s.data()[k] / radius, radius);
+        const CarPose at = curve.at(s.data()[k] / radius);
         out.data()[3 * k] = at.x, out.data()[3 * k + 1] = at.y, out.data()[3 * k + 2] = at.theta;
     }
 }

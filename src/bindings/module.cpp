@@ -26,4 +26,6 @@ NB_MODULE(_core, m) {
     bind_ik_numbers(m);
     bind_route(m);
     bind_grid(m);
+    bind_coverage(m);
+    bind_cars(m);
 }

@@ -1,5 +1,7 @@
 """Navigation in the plane: from start to goal through a world, by classical planners and new ones."""
 
+from cspace.navigation.boustrophedon import Coverage, coverage
+from cspace.navigation.cars import CarRoute, hybrid_a_star
 from cspace.navigation.curves import (
     Curve,
     Segment,
@@ -17,3 +19,4 @@ from cspace.navigation.trace import Trace
 __all__ = ["PLANNERS", "STATUSES", "Planner", "Price", "Route", "Trace", "World", "navigate"]
 __all__ += ["Curve", "Segment", "dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]
 __all__ += ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "follow"]
+__all__ += ["CarRoute", "Coverage", "coverage", "hybrid_a_star"]

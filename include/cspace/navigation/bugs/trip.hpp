@@ -50,14 +50,6 @@ class Walker {
     void stop(Hand hand, Point at) {
         follow([&] { robot.stop(hand, at); });
     }
-    // Along the wall to a place on its ring.
-    void go_to(const Touch& target, Hand hand) {
-        while (!robot.touch().is_place_of(target) || !target.is_corner()) {
-            if (!target.is_corner() && ahead(robot.touch(), hand).name == target.in.name)
-                return stop(hand, target.at);
-            walk(hand);
-        }
-    }
     void end_follow() {
         trip.follows.back().leave = robot.touch();
         trip.follows.back().last = trip.route.path.size() - 1;

@@ -42,7 +42,7 @@ def follow(
     """Lets a vehicle follow a path in a simulator, within the vehicle's limits, and stops it at the end.
 
     path: points (m, 2) [m], driven forwards; poses (m, 3) with headings [rad], driven backwards where the
-    next point lies behind; a Curve, or a Route that was found. controller: "pure_pursuit" steers along the
+    next point lies behind; a Curve, a Route or a CarRoute. controller: "pure_pursuit" steers along the
     arc that meets the path `lookahead` [m] away (unless given a second of way, at least 1.5 wheelbases and
     0.3); "stanley" steers the front wheels of a Car by the error of heading and atan(gain · error /
     (softening + v)), gain [1/s], softening [m/s], forwards alone; in bends the rear axle cuts the corner.
@@ -110,12 +110,12 @@ def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> No
 
 def track_of(path: Any) -> tuple[Array, Runs]:
     """The points (m, 2) or poses (m, 3) of a path without repeated ones, and its runs."""
-    if isinstance(path, Curve):
-        path = path.sample(path.radius / SAMPLES_PER_RADIUS)
-    elif hasattr(path, "path"):
+    if hasattr(path, "path"):
         if not path:
             raise InputError(f"the path to follow was not found: {path.reason}")
-        path = path.path
+        path = getattr(path, "curve", path.path)
+    if isinstance(path, Curve):
+        path = path.sample(path.radius / SAMPLES_PER_RADIUS)
     rows = as_floats(path, "path", largest=LARGEST_NUMBER)
     if rows.ndim != 2 or rows.shape[1] not in (2, 3):
         raise InputError(f"path has shape {rows.shape}, expected points (m, 2) or poses (m, 3)")

@@ -1,0 +1,135 @@
+"""Coverage to and fro: a way that sweeps every free cell of a grid."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import floor
+from typing import Any, Final
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError, suggest
+
+__all__ = ["Coverage", "coverage"]
+
+ALONG: Final = ("x", "y")
+ROUNDING: Final = 1e-9
+"""Share of a cell by which a width may miss whole cells: 3 × 0.1 is less than 0.3."""
+
+Labels = npt.NDArray[np.int32]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Coverage:
+    """A way that sweeps a grid; truthy if no free cell is left.
+
+    path (m, 2) [m]: its corners, the start first. regions (rows, cols): the region of each cell, −1 where the
+    robot cannot come. order (k,): the regions as they are entered. passes (rows, cols): how often the bar
+    came over each cell. along: "x" or "y", the axis of the lines. width [m]: of the bar, in whole cells.
+    reached, free: how many cells are swept, and free. lanes: how many lines are driven; leftover: how many
+    cells took a way of their own.
+    """
+
+    grid: Any
+    path: Array
+    regions: Labels
+    order: Labels
+    passes: npt.NDArray[np.uint32]
+    along: str
+    width: float
+    reached: int
+    free: int
+    lanes: int
+    leftover: int
+
+    def __bool__(self) -> bool:
+        return self.reached == self.free
+
+    @property
+    def length(self) -> float:
+        """Length of the path [m]."""
+        return float(np.abs(np.diff(self.path, axis=0)).sum())
+
+    @property
+    def overlap(self) -> float:
+        """How often a swept cell is passed beyond the first time, on average: 0 where each is swept once."""
+        return float(self.passes.sum(dtype=np.int64)) / self.reached - 1.0
+
+    @property
+    def reason(self) -> str:
+        """The verdict in a sentence."""
+        k = len(self.order)
+        how = f"{k} region{'' if k == 1 else 's'}, {self.length:.6g} m, overlap {self.overlap:.2g}"
+        if self:
+            return f"every one of {self.free} free cells is swept: {how}"
+        return f"{self.free - self.reached} of {self.free} free cells cannot be reached from the start: {how}"
+
+    def __repr__(self) -> str:
+        return f"<Coverage: {self.reason}>"
+
+
+def coverage(grid: Any, start: Any, width: float | None = None, *, along: str | None = None) -> Coverage:
+    """A way to and fro that sweeps every free cell that can be reached (boustrophedon).
+
+    Free space is cut into regions wherever the free part of a line splits, joins, appears or ends; they are
+    taken nearest first, by the way that the robot drives, each line by line, a bar's width apart. The robot
+    carries a bar across its lines that ends at walls; what lies behind them is swept last. Moves are along
+    and across the lines, so that the robot comes between no two cells that touch in a corner.
+
+    grid: an OccupancyGrid of the places of the robot's centre (inflate it for a robot with a size). start
+    (2,) [m]: in a free cell, whose middle the path begins at. width [m] of the bar: a cell unless given, else
+    an odd number of whole cells that fit. along: "x" or "y", the axis of the lines; the one with the shorter
+    way unless given. Returns Coverage, truthy if no free cell is left.
+
+    Raises InputTypeError for what is no OccupancyGrid, InputError for a start that is not in a free cell or a
+    width of less than a cell, UnknownNameError for another axis. Choset and Pignon 1997.
+    """
+    if not isinstance(grid, _core.GridBase):
+        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    if along is not None and along not in ALONG:
+        raise suggest("axis", along, ALONG)
+    row, column = free_cell(grid, start)
+    half = half_width(grid, width)
+    found = [
+        (axis, _core._cover(grid, row, column, half, axis == "x")) for axis in ([along] if along else ALONG)
+    ]
+    axis, told = min(found, key=lambda one: len(one[1][0]))
+    cells, regions, order, passes, reached, free, lanes, leftover = told
+    side = float(grid.resolution)
+    points = corners(cells)[:, ::-1] * side + 0.5 * side + [grid._x, grid._y]
+    bar = (2 * half + 1) * side
+    return Coverage(grid, points, regions, order[0], passes, axis, bar, reached, free, lanes, leftover)
+
+
+def free_cell(grid: Any, point: Any) -> tuple[int, int]:
+    """Row and column of a point in a free cell."""
+    p = as_floats(point, "start", last=(2,))
+    if p.ndim != 1:
+        raise InputError(f"start has shape {p.shape}, expected (2,): x, y")
+    place, row, column = grid._locate(*p.tolist())
+    if place:
+        where = "in a blocked cell" if place == 1 else "outside the grid"
+        raise InputError(f"start ({p[0]:g}, {p[1]:g}) lies {where}; give a point of a free one")
+    return row, column
+
+
+def half_width(grid: Any, width: float | None) -> int:
+    """How many cells a bar reaches to either side of the robot's."""
+    if width is None:
+        return 0
+    bar = as_floats(width, "width")
+    cells = float(bar) / grid.resolution if bar.ndim == 0 else 0.0
+    if cells < 1 - ROUNDING:
+        raise InputError(f"width is {width!r}; a bar is at least a cell wide, {grid.resolution:g} m")
+    return int(min(floor((cells - 1) / 2 + ROUNDING), max(grid.rows, grid.columns)))
+
+
+def corners(cells: npt.NDArray[np.int32]) -> Array:
+    """The cells (n, 2) at which a way turns, both ends among them."""
+    moves = np.diff(cells, axis=0)
+    turns = np.flatnonzero((moves[1:] != moves[:-1]).any(axis=1)) + 1
+    kept = np.unique([0, *turns.tolist(), len(cells) - 1])
+    return np.asarray(cells[kept], dtype=np.float64)

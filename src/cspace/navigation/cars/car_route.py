@@ -1,0 +1,75 @@
+"""What hybrid A* answers: a way of a car, or why there is none."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.navigation.curves import Curve
+from cspace.navigation.route import Price
+
+__all__ = ["CarRoute"]
+
+SAMPLES_PER_RADIUS: Final = 20.0
+
+REASONS: Final = (
+    "found",
+    "unreachable: not even a disc within the vehicle passes from start to goal",
+    "no way on this lattice: every pose that it reaches is settled; a smaller box may find one",
+    "gave up: more poses than max_nodes; raise it, or take a larger box",
+)
+"""Why a search ended, in the order of the compiled core."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CarRoute:
+    """The answer of hybrid A*; truthy if a way was found.
+
+    curve: the way as segments, None without one. start, goal (3,): x, y [m] and theta [rad]. status: "found",
+    "unreachable" (proven) or "undetermined". price: poses settled, pieces tried, seconds.
+    """
+
+    grid: Any
+    vehicle: Any
+    start: Array
+    goal: Array
+    curve: Curve | None
+    status: str
+    price: Price
+    _why: int
+
+    def __bool__(self) -> bool:
+        return self.curve is not None
+
+    @property
+    def length(self) -> float:
+        """Length of the way [m], forwards and backwards together; inf without one."""
+        return np.inf if self.curve is None else self.curve.length
+
+    @cached_property
+    def poses(self) -> Array:
+        """Poses along the way, (m, 3), a twentieth of the turning radius apart; (0, 3) without one."""
+        if self.curve is None:
+            return np.empty((0, 3))
+        return self.curve.sample(self.curve.radius / SAMPLES_PER_RADIUS)
+
+    @property
+    def path(self) -> Array:
+        """Places along the way, (m, 2) [m], of poses."""
+        return self.poses[:, :2]
+
+    @property
+    def reason(self) -> str:
+        """The verdict in a sentence."""
+        if self.curve is None:
+            return REASONS[self._why]
+        k = len(self.curve.cusps)
+        gears = f"{k} change{'' if k == 1 else 's'} of direction" if k else "one direction"
+        return f"found, {self.length:.6g} m in {gears}"
+
+    def __repr__(self) -> str:
+        return f"<CarRoute: {self.reason}>"

@@ -1,0 +1,92 @@
+"""Hybrid A*: the words around the search for a way of a car."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.navigation.cars.car_route import CarRoute
+from cspace.navigation.curves import Curve
+from cspace.navigation.following.vehicles import Car
+from cspace.navigation.route import STATUSES, Price
+from cspace.tolerances import LARGEST_NUMBER
+
+__all__ = ["hybrid_a_star"]
+
+
+def hybrid_a_star(
+    grid: Any,
+    start: Any,
+    goal: Any,
+    *,
+    vehicle: Car | None = None,
+    radius: float | None = None,
+    reverse: bool = True,
+    box: float | None = None,
+    headings: int = 72,
+    reverse_cost: float = 1.2,
+    gear_cost: float | None = None,
+    max_nodes: int = 1_000_000,
+) -> CarRoute:
+    """A way of a car on an occupancy grid: arcs of its turning circle and straight segments, without contact.
+
+    Best-first search over poses that the car can drive to, one kept for each box of a lattice of places and
+    headings. What is left is at least the curve of reeds_shepp (or dubins) without obstacles, and the way of
+    a disc around them. From time to time such a curve is tried; at the end, such curves cut corners. The
+    rectangle of the car never covers a part of a blocked cell, between the poses either; it may touch one.
+
+    grid: an OccupancyGrid; outside it the car is not free. start, goal (3,): x, y [m] of the middle of the
+    rear axle, theta [rad]. vehicle: a Car() unless given. radius [m]: of the arcs, the car's smallest unless
+    given. reverse: whether it may drive backwards. box [m]: side of the boxes, an eighth of the radius unless
+    given, at least a cell; headings: how many there are. reverse_cost: of a metre backwards beside one
+    forwards; gear_cost [m]: of a change of direction, half a radius unless given. max_nodes: how many poses
+    are settled at most.
+
+    Returns CarRoute: "found"; "unreachable" where not even a disc within the car can pass, which proves it;
+    or else "undetermined". The way is no shortest one. Raises InputTypeError for what is no OccupancyGrid or
+    Car, InputError for a start or goal where the car touches something, or what is no number above zero.
+
+    Dolgov, Thrun, Montemerlo and Diebel 2010.
+    """
+    if not isinstance(grid, _core.GridBase):
+        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    car = Car() if vehicle is None else vehicle
+    if not isinstance(car, Car):
+        raise InputTypeError(f"vehicle is a {type(car).__name__}; give a Car")
+    turning = car.turning_radius if radius is None else number(radius, "radius", car.turning_radius)
+    side = max(turning / 8, grid.resolution) if box is None else number(box, "box", grid.resolution / 16)
+    gear = turning / 2 if gear_cost is None else number(gear_cost, "gear_cost", 0.0)
+    lattice = [side, number(headings, "headings", 4.0), number(reverse_cost, "reverse_cost", 1.0), gear]
+    settings = np.array([turning, *lattice, number(max_nodes, "max_nodes", 1.0)])
+    body = np.array(car._footprint)
+    a, b = (clear_pose(grid, body, pose, name) for pose, name in ((start, "start"), (goal, "goal")))
+    status, why, pieces, *price = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)
+    curve = Curve(a, b, turning, tuple(pieces)) if status == 0 else None
+    return CarRoute(grid, car, a, b, curve, STATUSES[status], Price(*price), why)
+
+
+def number(value: Any, name: str, least: float) -> float:
+    """A number that is not below the least that makes sense, or InputError."""
+    given = as_floats(value, name, largest=LARGEST_NUMBER)
+    if given.ndim or given < least:
+        raise InputError(f"{name} is {value!r}; give one number, at least {least:g}")
+    return float(given)
+
+
+def clear_pose(grid: Any, body: Array, pose: Any, name: str) -> Array:
+    """A pose (3,) at which the vehicle touches nothing."""
+    p = np.ascontiguousarray(as_floats(pose, name, last=(3,), largest=LARGEST_NUMBER))
+    if p.ndim != 1:
+        raise InputError(f"{name} has shape {p.shape}, expected (3,): x, y, theta")
+    clear = np.empty(1, dtype=np.bool_)
+    _core._car_clear(grid, body, p[None], clear)
+    if not clear[0]:
+        raise InputError(
+            f"at {name} ({p[0]:g}, {p[1]:g}, {p[2]:g}) the vehicle covers a blocked cell or leaves the grid;"
+            " give a pose at which it is free"
+        )
+    return p
