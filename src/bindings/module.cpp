@@ -28,4 +28,6 @@ NB_MODULE(_core, m) {
     bind_grid(m);
     bind_coverage(m);
     bind_cars(m);
+    bind_any_angle(m);
+    bind_polygon_world(m);
 }

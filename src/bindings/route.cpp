@@ -7,6 +7,7 @@
 #include "bindings.hpp"
 
 using namespace cspace::navigation;
+using cspace::Point;
 
 namespace {
 
@@ -201,6 +202,28 @@ PyObject* make_route(PyObject* world, PyObject* planner, PyObject* options, cons
     made->seconds = seconds;
     made->price = route.price;
     return reinterpret_cast<PyObject*>(made);
+}
+
+PyObject* trace_arrays(const Trace& trace) {
+    npy_intp rows[2] = {npy_intp(trace.size()), 2};
+    PyObject* kinds = PyArray_SimpleNew(1, rows, NPY_INT8);
+    PyObject* from = PyArray_SimpleNew(2, rows, NPY_DOUBLE);
+    PyObject* to = PyArray_SimpleNew(2, rows, NPY_DOUBLE);
+    PyObject* values = PyArray_SimpleNew(1, rows, NPY_DOUBLE);
+    if (kinds && from && to && values) {
+        const auto data = [](PyObject* array) {
+            return PyArray_DATA(reinterpret_cast<PyArrayObject*>(array));
+        };
+        for (std::size_t i = 0; i < trace.size(); ++i) {
+            static_cast<std::int8_t*>(data(kinds))[i] = trace[i].kind;
+            static_cast<Point*>(data(from))[i] = trace[i].from;
+            static_cast<Point*>(data(to))[i] = trace[i].to;
+            static_cast<double*>(data(values))[i] = trace[i].value;
+        }
+        return Py_BuildValue("NNNN", kinds, from, to, values);
+    }
+    for (PyObject* array : {kinds, from, to, values}) Py_XDECREF(array);
+    return nullptr;
 }
 
 void bind_route(nanobind::module_& m) {

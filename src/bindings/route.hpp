@@ -30,3 +30,6 @@ PyObject* make_route(PyObject* world, PyObject* planner, PyObject* options, cons
 // Two numbers read from a tuple, a list or an array of two finite numbers; false (without error) for others,
 // which the caller hands to the checks in Python.
 bool read_point(PyObject* value, double* point);
+
+// The arrays of a Trace: kinds (k,), from (k, 2), to (k, 2), values (k,).
+PyObject* trace_arrays(const cspace::navigation::Trace& trace);

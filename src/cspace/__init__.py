@@ -18,7 +18,7 @@ if TYPE_CHECKING:
         PostureTask,
         subproblems,
     )
-    from cspace.maps import OccupancyGrid
+    from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.model import Limits
     from cspace.navigation import navigate
     from cspace.robot import Robot
@@ -31,6 +31,7 @@ __all__ = [
     "CspaceError",
     "Limits",
     "OccupancyGrid",
+    "PolygonWorld",
     "Robot",
     "__version__",
     "export",
@@ -57,6 +58,7 @@ _LATER = {
     "Limits": "cspace.model",
     "OccupancyGrid": "cspace.maps",
     "PoseTask": "cspace.ik",
+    "PolygonWorld": "cspace.maps",
     "PositionTask": "cspace.ik",
     "PostureTask": "cspace.ik",
     "Robot": "cspace.robot",

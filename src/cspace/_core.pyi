@@ -304,6 +304,50 @@ class GridBase:
     def _unpack(self, into: NDArray[numpy.uint8]) -> None: ...
     def _locate(self, x: float, y: float) -> tuple[int, int, int]: ...
 
+class PolygonCore:
+    """The compiled half of cspace.maps.PolygonWorld."""
+
+    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], ends: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], owners: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], bounds: Annotated[NDArray[numpy.float64], dict(shape=(2, 2), order='C', device='cpu', writable=False)], tolerance: float) -> None:
+        """
+        Closed rings (n, 2), the end of each, the obstacle of each; the low and high corner of the bounds.
+        """
+
+    @staticmethod
+    def from_cells(blocked: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu', writable=False)], side: float, x: float, y: float, tolerance: float) -> PolygonCore:
+        """The blocked cells (rows, columns) of a grid as polygons."""
+
+    def rasterize(self, side: float, blocked: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+        """Marks in blocked (rows, columns) the cells that obstacles reach into."""
+
+    @property
+    def complete(self) -> bool:
+        """False where the outlines cross too often."""
+
+    @property
+    def components(self) -> int:
+        """How many components free space has."""
+
+    def crossings(self) -> tuple[NDArray[numpy.float64], list[tuple[int, int]]]:
+        """Where outlines cross (k, 2), and the two obstacles of each."""
+
+    def walls(self) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.int32]]:
+        """Points (k, 2), next (k,), ring (k,), component of each ring."""
+
+    def triangles(self) -> list[NDArray[numpy.float64]]:
+        """The free triangles, (3, 2) each."""
+
+    def convex_polygons(self) -> list[NDArray[numpy.float64]]:
+        """Free space as convex polygons, (n, 2) each."""
+
+    def components_at(self, x: float, y: float) -> list[int]:
+        """The components whose closures hold a point."""
+
+    def obstacle_at(self, x: float, y: float) -> int:
+        """An obstacle that covers a point, or -1."""
+
+    def nearest_wall(self, x: float, y: float) -> tuple[float, float, float]:
+        """Distance to the nearest wall, and its point."""
+
 def _png_unfilter(*arguments: Any) -> int: ...
 def _car_clear(*arguments: Any) -> None: ...
 def _car_curve(*arguments: Any) -> list[tuple[int, float]]: ...
@@ -314,6 +358,8 @@ def _follow(*arguments: Any) -> tuple[int, NDArray[numpy.float64]]: ...
 def _hybrid_a_star(*arguments: Any) -> Any: ...
 def _grid_route(*arguments: Any) -> Any: ...
 def _grid_order(*arguments: Any) -> Any: ...
+def _any_angle(*arguments: Any) -> Any: ...
+def _any_angle_trace(*arguments: Any) -> Any: ...
 def _route_class(cls: type) -> None: ...
 def _route_make(*arguments: Any) -> Any: ...
 def _ik_build(*arguments: Any) -> bool: ...

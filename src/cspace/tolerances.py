@@ -15,6 +15,7 @@ __all__ = [
     "DH_PARALLEL",
     "FARTHEST",
     "FARTHEST_CELL",
+    "FARTHEST_POINT",
     "FRAME_SNAP",
     "GIMBAL_LOCK",
     "HALF_TURN",
@@ -28,6 +29,7 @@ __all__ = [
     "MJCF_SAME_AXIS",
     "MOST_WINDINGS",
     "NUMERIC_TOLERANCE",
+    "ON_WALL",
     "PLANAR_AXES",
     "PURE_TRANSLATION_ANGLE",
     "ROTATION_ERROR",
@@ -203,3 +205,10 @@ MAP_BYTES: Final = 1 << 31
 
 FARTHEST_CELL: Final = 1e12
 """Farthest cell from zero, in cells: there float64 still tells a ten thousandth of a cell."""
+ON_WALL: Final = 1e-12
+"""How deep inside an obstacle a start or a goal may lie, in sides of the world, and still count as on its
+wall: the point of a slanted wall that someone computes is off by a few roundings."""
+
+FARTHEST_POINT: Final = 1e15
+"""Largest coordinate [m] of a world: beyond it products of three coordinates and their rests leave the
+range in which exact decisions are exact, and neighbouring numbers are decimetres apart."""

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, cast
 
 from numpy.typing import ArrayLike
 
 from cspace.arrays import as_floats
 from cspace.errors import InputError, InputTypeError
+from cspace.maps import OccupancyGrid, PolygonWorld
 from cspace.navigation.planners import check_options, module_of, planner_named
 
 if TYPE_CHECKING:
@@ -24,9 +25,6 @@ class World(Protocol):
 
     def inflate(self, radius: float) -> World:
         """The world of a robot's centre: its obstacles grown by the radius [m]."""
-
-    def to_polygons(self) -> World:
-        """The same obstacles as polygons."""
 
     def to_grid(self, resolution: float | None = None) -> World:
         """The same obstacles as cells of a side [m]."""
@@ -75,4 +73,9 @@ def _prepared(world: World, kind: str | None, wanted: str, radius: float, resolu
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
     if kind == wanted:
         return world
-    return world.to_polygons() if wanted == "polygons" else world.to_grid(resolution)
+    if wanted == "grid":
+        return world.to_grid(resolution)
+    kept = vars(world)
+    if "_as_polygons" not in kept:
+        kept["_as_polygons"] = PolygonWorld.from_grid(cast(OccupancyGrid, world))
+    return cast(World, kept["_as_polygons"])

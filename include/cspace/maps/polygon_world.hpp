@@ -1,0 +1,80 @@
+// A world of polygons, prepared once: triangulated, its free space divided into convex polygons, its walls as
+// rings.
+#pragma once
+
+#include <memory>
+#include <mutex>
+
+#include "cspace/maps/convex_mesh.hpp"
+#include "cspace/maps/locator.hpp"
+
+namespace cspace::maps {
+
+// A point of a query and the free triangles that hold it. A point that rounding has put into an obstacle, no
+// farther from a wall than `tolerance`, is taken to the free side of it.
+struct Settled {
+    Point at;
+    std::vector<Index> triangles;  // none: the point lies in an obstacle or outside the bounds
+
+    bool is_free() const { return !triangles.empty(); }
+};
+
+class PolygonWorld {
+  public:
+    explicit PolygonWorld(Outlines world)
+        : outlines(std::move(world)),
+          space(make_free_space(outlines)),
+          locator(space.complete ? Locator(space.mesh, outlines.low, outlines.high) : Locator()),
+          walls(space.complete ? boundary_of(space) : Boundary{}) {}
+
+    const Outlines outlines;
+    const FreeSpace space;
+    const Locator locator;
+    const Boundary walls;
+
+    const ConvexMesh& mesh() const {
+        std::call_once(meshed_, [&] { mesh_ = std::make_unique<ConvexMesh>(make_convex_mesh(space)); });
+        return *mesh_;
+    }
+    bool is_inside_bounds(Point p) const {
+        return p.x >= outlines.low.x && p.x <= outlines.high.x && p.y >= outlines.low.y &&
+               p.y <= outlines.high.y;
+    }
+
+    Settled settle(Point p, double tolerance) const {
+        Settled settled{p, {}};
+        if (!is_inside_bounds(p)) return settled;
+        space.triangles_at(p, locator.near(p), settled.triangles);
+        if (settled.is_free()) return settled;
+        double nearest = tolerance;
+        for (Index e = 0; e < Index(walls.size()); ++e) {
+            const Point a = walls.begin(e), along = walls.end(e) - a;
+            const double t = std::clamp(dot(p - a, along) / squared_norm(along), 0.0, 1.0);
+            const Point foot = a + t * along;
+            if (!(distance(p, foot) < nearest)) continue;
+            const double step = tolerance / norm(along);
+            const Point inside = foot + step * Point{-along.y, along.x};
+            std::vector<Index> triangles;
+            space.triangles_at(inside, locator.near(inside), triangles);
+            if (triangles.empty()) continue;
+            nearest = distance(p, foot);
+            settled = {inside, std::move(triangles)};
+        }
+        return settled;
+    }
+
+    // The component of free space that two settled points share, or none.
+    Index shared_component(const Settled& a, const Settled& b) const {
+        for (const Index t : a.triangles)
+            for (const Index u : b.triangles)
+                if (space.component[std::size_t(t)] == space.component[std::size_t(u)])
+                    return space.component[std::size_t(t)];
+        return none;
+    }
+
+  private:
+    mutable std::once_flag meshed_;
+    mutable std::unique_ptr<ConvexMesh> mesh_;
+};
+
+}  // namespace cspace::maps

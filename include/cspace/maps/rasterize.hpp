@@ -1,0 +1,74 @@
+// Which cells of a raster obstacles reach into.
+#pragma once
+
+#include "cspace/maps/free_space.hpp"
+
+namespace cspace::maps {
+
+namespace detail {
+
+// Whether the open square of a side at `low` meets the convex polygon: no line along a side of either divides
+// them.
+inline bool reaches_into(const Point* corner, int count, Point low, double side) {
+    double x[2] = {corner[0].x, corner[0].x}, y[2] = {corner[0].y, corner[0].y};
+    for (int i = 1; i < count; ++i) {
+        x[0] = std::min(x[0], corner[i].x), x[1] = std::max(x[1], corner[i].x);
+        y[0] = std::min(y[0], corner[i].y), y[1] = std::max(y[1], corner[i].y);
+    }
+    if (x[1] <= low.x || x[0] >= low.x + side || y[1] <= low.y || y[0] >= low.y + side) return false;
+    for (int i = 0; i < count; ++i) {
+        const Point a = corner[i], b = corner[(i + 1) % count];
+        int right = 0, left = 0;
+        for (const Point c : {low, low + Point{side, 0}, low + Point{side, side}, low + Point{0, side}}) {
+            const int turn = orientation(a, b, c);
+            right += turn <= 0, left += turn >= 0;
+        }
+        if (right == 4 || (count == 2 && left == 4)) return false;
+    }
+    return true;
+}
+
+}  // namespace detail
+
+// Marks in blocked (rows × columns, row by row from the lower left corner of the bounds, cells of a side)
+// those that an obstacle or a wall reaches into.
+inline void rasterize(const FreeSpace& space, Point origin, double side, int rows, int columns,
+                      std::uint8_t* blocked) {
+    const Triangulation& mesh = space.mesh;
+    const auto mark = [&](const Point* corner, int count) {
+        double low[2] = {corner[0].x, corner[0].y}, high[2] = {corner[0].x, corner[0].y};
+        for (int i = 1; i < count; ++i) {
+            low[0] = std::min(low[0], corner[i].x), high[0] = std::max(high[0], corner[i].x);
+            low[1] = std::min(low[1], corner[i].y), high[1] = std::max(high[1], corner[i].y);
+        }
+        const auto cell = [&](double offset, int count_of) {
+            return int(std::clamp(std::floor(offset / side), -1.0, double(count_of)));
+        };
+        const int row_end = std::min(rows - 1, cell(high[1] - origin.y, rows) + 1);
+        const int column_end = std::min(columns - 1, cell(high[0] - origin.x, columns) + 1);
+        for (int row = std::max(0, cell(low[1] - origin.y, rows) - 1); row <= row_end; ++row)
+            for (int column = std::max(0, cell(low[0] - origin.x, columns) - 1); column <= column_end;
+                 ++column) {
+                std::uint8_t& cell_of =
+                    blocked[std::size_t(row) * std::size_t(columns) + std::size_t(column)];
+                if (cell_of) continue;
+                const Point at = origin + Point{column * side, row * side};
+                cell_of = detail::reaches_into(corner, count, at, side);
+            }
+    };
+    for (Index t = 0; t < Index(mesh.triangles.size()); ++t) {
+        const Triangle& tri = mesh[t];
+        const Point corner[3] = {mesh.point(tri.corner[0]), mesh.point(tri.corner[1]),
+                                 mesh.point(tri.corner[2])};
+        if (!space.is_free(t)) {
+            mark(corner, 3);
+            continue;
+        }
+        for (int e = 0; e < 3; ++e) {
+            const Point wall[2] = {corner[after(e)], corner[before(e)]};
+            if (space.is_wall(t, e) && space.is_free(tri.across[std::size_t(e)])) mark(wall, 2);
+        }
+    }
+}
+
+}  // namespace cspace::maps

@@ -1,0 +1,21 @@
+// The compiled half of cspace.maps.PolygonWorld, and how planners' bindings reach it.
+#pragma once
+
+#include <memory>
+
+#include "bindings.hpp"
+#include "cspace/maps/polygon_world.hpp"
+#include "cspace/navigation/any_angle/polyanya.hpp"
+
+struct PolygonCore {
+    explicit PolygonCore(cspace::maps::Outlines outlines) : world(std::move(outlines)) {}
+
+    cspace::maps::PolygonWorld world;
+    double tolerance = 0;  // how deep in an obstacle rounding may have put a point that lies on a wall [m]
+    std::unique_ptr<cspace::navigation::Polyanya> shortest;  // made when first asked; used with the GIL held
+};
+
+// The core behind a Python object; null for other objects.
+inline PolygonCore* polygon_core_of(PyObject* value) {
+    return nanobind::isinstance<PolygonCore>(value) ? nanobind::inst_ptr<PolygonCore>(value) : nullptr;
+}

@@ -1,0 +1,79 @@
+"""Polygons from GeoJSON (RFC 7946: Butler et al. 2016), read as coordinates of the plane."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from cspace.errors import DescriptionError
+
+__all__ = ["read_geojson"]
+
+_SKIPPED = {"Point", "MultiPoint", "LineString", "MultiLineString"}
+
+
+def read_geojson(source: str | os.PathLike[str] | dict[str, Any]) -> tuple[list[Any], list[float] | None]:
+    """The obstacles, each a list of rings, and the bounds where the object has a "bbox" of four numbers."""
+    if isinstance(source, dict):
+        path, found = None, source
+    else:
+        path = os.fspath(source)
+        found = _parsed(path)
+    obstacles = list(_polygons(found, path, "the object"))
+    box = found.get("bbox")
+    return obstacles, box if isinstance(box, list) and len(box) == 4 else None
+
+
+def _parsed(path: str) -> dict[str, Any]:
+    try:
+        found = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise DescriptionError(f"cannot be read: {error.strerror or error}", path=path) from None
+    except (UnicodeDecodeError, RecursionError):
+        raise DescriptionError("is no GeoJSON: not text, or nested without end", path=path) from None
+    except json.JSONDecodeError as error:
+        raise DescriptionError(f"is no JSON: {error.msg}", path=path, line=error.lineno) from None
+    if not isinstance(found, dict):
+        raise DescriptionError(f"is no GeoJSON object but a {type(found).__name__}", path=path)
+    return found
+
+
+def _polygons(thing: Any, path: str | None, where: str) -> Iterator[list[Any]]:
+    """The rings of each polygon in a GeoJSON object; geometries without area are passed over."""
+    kind = thing.get("type") if isinstance(thing, dict) else None
+    if kind == "FeatureCollection":
+        for i, feature in enumerate(_list(thing, "features", path, where)):
+            yield from _polygons(feature, path, f"feature {i}")
+    elif kind == "GeometryCollection":
+        for i, geometry in enumerate(_list(thing, "geometries", path, where)):
+            yield from _polygons(geometry, path, f"{where}, geometry {i}")
+    elif kind == "Feature":
+        if thing.get("geometry") is not None:
+            yield from _polygons(thing["geometry"], path, where)
+    elif kind == "Polygon":
+        yield _plane(_list(thing, "coordinates", path, where), path, where)
+    elif kind == "MultiPolygon":
+        for i, rings in enumerate(_list(thing, "coordinates", path, where)):
+            yield _plane(rings, path, f"{where}, polygon {i}")
+    elif kind not in _SKIPPED:
+        raise DescriptionError(f"{where} has the type {kind!r}, which GeoJSON does not know", path=path)
+
+
+def _list(thing: dict[str, Any], name: str, path: str | None, where: str) -> list[Any]:
+    if not isinstance(found := thing.get(name), list):
+        raise DescriptionError(f"{where} has no list of {name!r}", path=path)
+    return found
+
+
+def _plane(rings: Any, path: str | None, where: str) -> list[Any]:
+    """The rings without heights."""
+    try:
+        made = [[[point[0], point[1]] for point in ring] for ring in rings]
+    except (TypeError, IndexError, KeyError):
+        raise DescriptionError(f"{where}: coordinates must be rings of [x, y] points", path=path) from None
+    if not made:
+        raise DescriptionError(f"{where}: a polygon without rings", path=path)
+    return made

@@ -1,0 +1,77 @@
+"""What users give as obstacles becomes rings of points here, or a clear error."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.tolerances import FARTHEST_POINT
+
+__all__ = ["Outline", "bounds_of", "check_bounds", "read_outlines"]
+
+Outline = list[Array]
+"""One obstacle: its outline (n, 2) [m], then holes."""
+
+
+def read_outlines(obstacles: Iterable[Any]) -> list[Outline]:
+    """The rings of each obstacle: of an (n, 2) array itself, of a list of such arrays all of them."""
+    if isinstance(obstacles, (str, bytes, dict)) or not isinstance(obstacles, Iterable):
+        raise InputTypeError(
+            f"obstacles must be a list of (n, 2) arrays, got an object of type {type(obstacles).__name__}"
+        )
+    return [_rings(obstacle, f"obstacle {k}") for k, obstacle in enumerate(obstacles)]
+
+
+def _rings(obstacle: Any, subject: str) -> Outline:
+    if not isinstance(obstacle, np.ndarray) and _is_list_of_rings(obstacle):
+        return [_ring(ring, f"{subject}, ring {i}") for i, ring in enumerate(obstacle)]
+    return [_ring(obstacle, subject)]
+
+
+def _is_list_of_rings(obstacle: Any) -> bool:
+    """Whether the entries are themselves lists of points."""
+    try:
+        return len(obstacle) > 0 and np.ndim(obstacle[0]) == 2
+    except (TypeError, ValueError, KeyError, IndexError):
+        return False
+
+
+def _ring(points: Any, subject: str) -> Array:
+    ring = as_floats(points, subject, last=(2,), largest=FARTHEST_POINT)
+    if ring.ndim != 2:
+        raise InputError(f"{subject} has shape {ring.shape}, expected (n, 2): a row of x and y per corner")
+    if len(ring) > 1 and np.array_equal(ring[0], ring[-1]):
+        ring = ring[:-1]
+    kept = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)] if len(ring) > 1 else ring
+    if len(kept) < 2:
+        count = "no corners" if not len(ring) else "one corner only"
+        raise InputError(f"{subject} has {count}; a polygon needs three or more")
+    return np.ascontiguousarray(kept, dtype=np.float64)
+
+
+def check_bounds(bounds: Any) -> Array:
+    """(xmin, ymin, xmax, ymax) as an array (4,); InputError if they enclose nothing."""
+    given = as_floats(bounds, "bounds", last=(4,), largest=FARTHEST_POINT)
+    if given.shape != (4,):
+        raise InputError(f"bounds has shape {given.shape}, expected (4,): xmin, ymin, xmax, ymax")
+    xmin, ymin, xmax, ymax = map(float, given)
+    if not (xmin < xmax and ymin < ymax):
+        raise InputError(
+            f"bounds ({xmin:g}, {ymin:g}, {xmax:g}, {ymax:g}) enclose nothing; expected xmin, ymin, xmax, "
+            "ymax with xmin < xmax and ymin < ymax"
+        )
+    return np.array(given)
+
+
+def bounds_of(outlines: list[Outline]) -> Array:
+    """The box of all points with a quarter of its longer side around it (4,); of nothing, the unit square."""
+    if not outlines:
+        return np.array([0.0, 0.0, 1.0, 1.0])
+    points = np.vstack([ring for rings in outlines for ring in rings])
+    low, high = points.min(axis=0), points.max(axis=0)
+    margin = float(np.max(high - low)) / 4
+    return np.array([*(low - margin), *(high + margin)])

@@ -1,0 +1,201 @@
+"""A world of polygons: obstacles inside a rectangle, prepared once for every planner."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.maps.geojson import read_geojson
+from cspace.maps.grow import grown
+from cspace.maps.occupancy_grid import OccupancyGrid
+from cspace.maps.outlines import Outline, bounds_of, check_bounds, read_outlines
+from cspace.maps.rasterize import rasterized
+from cspace.maps.repair import GeometryError, check_area, describe_crossings
+from cspace.maps.text import read_text
+from cspace.tolerances import ON_WALL
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+__all__ = ["PolygonWorld"]
+
+
+class PolygonWorld:
+    """Obstacles in the plane, and the free space between them.
+
+    obstacles: a list of polygons, each an array (n, 2) [m] of its corners in order, in either direction, or
+    a list of such rings, the first the outline and the others holes in it. bounds: (xmin, ymin, xmax, ymax)
+    [m], a wall around everything; by default the obstacles with a quarter of their extent on each side.
+    Obstacles may touch, overlap and lie in the holes of others: what counts is their union, which is
+    closed, so a path may touch it but not pass a point where two obstacles meet. With repair=True a polygon
+    that crosses itself is read by the even-odd rule and one without area stays as a wall without thickness;
+    `repairs` says what was done.
+    Raises GeometryError on a polygon that crosses itself or has no area, InputError on numbers that are none.
+    """
+
+    kind: ClassVar[str] = "polygons"
+
+    def __init__(
+        self, obstacles: Iterable[Any], bounds: ArrayLike | None = None, *, repair: bool = False
+    ) -> None:
+        self._outlines = read_outlines(obstacles)
+        self._bounds = check_bounds(bounds) if bounds is not None else bounds_of(self._outlines)
+        said = check_area(self._outlines, repair)
+        self._core = _build(self._outlines, self._bounds)
+        self._repairs = (*said, *describe_crossings(self._core, repair))
+
+    @classmethod
+    def from_geojson(cls, source: str | PathLike[str] | dict[str, Any], **keywords: Any) -> PolygonWorld:
+        """The polygons of a GeoJSON file or object (RFC 7946), read as plane coordinates [m].
+
+        source: a path, or the object itself. Polygons, MultiPolygons, collections and features of them are
+        obstacles; a "bbox" of the outermost object is the bounds. keywords: those of PolygonWorld.
+        Raises DescriptionError where the file cannot be read.
+        """
+        obstacles, bounds = read_geojson(source)
+        return cls(obstacles, **{"bounds": bounds, **keywords})
+
+    @classmethod
+    def from_text(cls, path: str | PathLike[str], **keywords: Any) -> PolygonWorld:
+        """The polygons of a text file: a point "x y" [m] per line, an empty line between rings.
+
+        A line "hole" before a ring makes it a hole of the polygon before it, a line "bounds xmin ymin xmax
+        ymax" gives the bounds, "#" begins a comment. keywords: those of PolygonWorld.
+        Raises DescriptionError with the line that cannot be read.
+        """
+        obstacles, bounds = read_text(path)
+        return cls(obstacles, **{"bounds": bounds, **keywords})
+
+    @classmethod
+    def from_grid(cls, grid: OccupancyGrid) -> PolygonWorld:
+        """The blocked cells of a grid as one obstacle, its outline along their sides; the bounds are the
+        grid's."""
+        made = cls.__new__(cls)
+        side, (x, y) = grid.resolution, map(float, grid.origin)
+        rows, columns = grid.shape
+        made._bounds = np.array([x, y, x + side * columns, y + side * rows])
+        cells = np.ascontiguousarray(grid.blocked).view(np.uint8)
+        made._core = _core.PolygonCore.from_cells(cells, side, x, y, ON_WALL * side * max(rows, columns))
+        made._repairs = ()
+        return made
+
+    @cached_property
+    def _outlines(self) -> list[Outline]:
+        """Of a grid: everything but free space, in a box that is larger than the bounds."""
+        xmin, ymin, xmax, ymax = self.bounds
+        wide = max(xmax - xmin, ymax - ymin)
+        low, high = (xmin - wide, ymin - wide), (xmax + wide, ymax + wide)
+        return [[np.array([low, (high[0], low[1]), high, (low[0], high[1])]), *self.walls]]
+
+    @property
+    def bounds(self) -> tuple[float, float, float, float]:
+        """(xmin, ymin, xmax, ymax) [m]."""
+        xmin, ymin, xmax, ymax = map(float, self._bounds)
+        return xmin, ymin, xmax, ymax
+
+    @property
+    def obstacles(self) -> list[list[Array]]:
+        """Each obstacle as its rings, (n, 2) [m] each: the outline, then holes."""
+        return [[ring.copy() for ring in rings] for rings in self._outlines]
+
+    @property
+    def repairs(self) -> tuple[str, ...]:
+        """What repair=True did, a sentence for each polygon that was wrong."""
+        return self._repairs
+
+    @property
+    def components(self) -> int:
+        """How many parts free space has that no path connects."""
+        return self._core.components
+
+    @cached_property
+    def walls(self) -> list[Array]:
+        """The boundary of free space as closed rings (n, 2) [m], the free space on their left."""
+        points, following, ring, _ = self._core.walls()
+        return [points[_in_order(following, first)] for first in np.unique(ring, return_index=True)[1]]
+
+    def is_free(self, points: ArrayLike) -> Any:
+        """Whether points (..., 2) [m] lie in free space or on its walls: (...) of bool."""
+        given = as_floats(points, "points", last=(2,))
+        free = [bool(self._core.components_at(x, y)) for x, y in given.reshape(-1, 2)]
+        return np.array(free).reshape(given.shape[:-1]) if given.ndim > 1 else free[0]
+
+    def clearance(self, points: ArrayLike) -> Any:
+        """The distance [m] from points (..., 2) [m] to the nearest wall: (...); zero inside obstacles."""
+        given = as_floats(points, "points", last=(2,))
+        found = [
+            self._core.nearest_wall(x, y)[0] if self._core.components_at(x, y) else 0.0
+            for x, y in given.reshape(-1, 2)
+        ]
+        return np.array(found).reshape(given.shape[:-1]) if given.ndim > 1 else found[0]
+
+    def inflate(self, radius: float, *, sides: int = 32) -> PolygonWorld:
+        """The world of the centre of a disc of a radius [m]: obstacles grown by it, bounds shrunk.
+
+        Each obstacle becomes its Minkowski sum with a regular polygon around the disc, so a path keeps the
+        radius everywhere, and gives away at most radius · (1 / cos(π / sides) − 1).
+        """
+        if not as_floats(radius, "radius"):
+            return self
+        obstacles, bounds = grown(self._outlines, self._bounds, radius, sides)
+        return PolygonWorld(obstacles, bounds, repair=True)
+
+    def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
+        """Cells of a side [m]; by default 1/200 of the longer side of the bounds.
+
+        A cell is blocked if an obstacle reaches into it, or if it sticks out of the bounds.
+        """
+        blocked, side = rasterized(self._core, self._bounds, resolution)
+        return OccupancyGrid(blocked, side, self._bounds[:2])
+
+    def check_free(self, point: ArrayLike, subject: str) -> Array:
+        """The point (2,) [m]; InputError if it is not finite, outside the bounds or inside an obstacle."""
+        x, y = given = as_floats(point, subject, last=(2,))
+        if given.shape != (2,):
+            raise InputError(f"{subject} has shape {given.shape}, expected (2,)")
+        if self._core.components_at(x, y):
+            return np.array([x, y])
+        where = f"{subject} ({x:g}, {y:g})"
+        xmin, ymin, xmax, ymax = self.bounds
+        if not (xmin <= x <= xmax and ymin <= y <= ymax):
+            rule = f"the bounds are x from {xmin:g} to {xmax:g}, y from {ymin:g} to {ymax:g}"
+            raise InputError(f"{where} lies outside the world; {rule}")
+        deep, wall_x, wall_y = self._core.nearest_wall(x, y)
+        if not np.isfinite(deep):
+            raise InputError(f"{where} lies inside an obstacle; there is no free space at all")
+        raise InputError(
+            f"{where} lies inside obstacle {self._core.obstacle_at(x, y)}, {deep:.3g} m deep; "
+            f"the nearest free point is ({wall_x:.9g}, {wall_y:.9g})"
+        )
+
+    def __repr__(self) -> str:
+        corners = sum(len(ring) for rings in self._outlines for ring in rings)
+        return f"PolygonWorld({len(self._outlines)} obstacles, {corners} corners, bounds={self.bounds})"
+
+
+def _build(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore:
+    rings = [(ring, owner) for owner, rings in enumerate(outlines) for ring in rings]
+    points = np.vstack([np.empty((0, 2)), *(ring for ring, _ in rings)])
+    ends = np.cumsum([len(ring) for ring, _ in rings], dtype=np.int32)
+    owners = np.array([owner for _, owner in rings], dtype=np.int32)
+    tolerance = ON_WALL * float(np.max(bounds[2:] - bounds[:2]))
+    core = _core.PolygonCore(points, ends, owners, bounds.reshape(2, 2), tolerance)
+    if not core.complete:
+        raise GeometryError("the obstacles cross each other more than five million times; simplify them")
+    return core
+
+
+def _in_order(following: Any, first: int) -> list[int]:
+    """The edges of a ring from one of them on."""
+    found, at = [first], int(following[first])
+    while at != first:
+        found.append(at)
+        at = int(following[at])
+    return found

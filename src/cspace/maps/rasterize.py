@@ -1,0 +1,35 @@
+"""Polygons as cells: a cell is blocked if an obstacle reaches into it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.tolerances import MAP_CELLS
+
+__all__ = ["rasterized"]
+
+
+def rasterized(
+    core: _core.PolygonCore, bounds: Array, resolution: float | None
+) -> tuple[npt.NDArray[np.bool_], float]:
+    """Which cells (rows, columns) are blocked, and their side [m]; cell (0, 0) is lower left in the
+    bounds."""
+    xmin, ymin, xmax, ymax = map(float, bounds)
+    wide = max(xmax - xmin, ymax - ymin)
+    side = wide / 200 if resolution is None else float(as_floats(resolution, "resolution"))
+    if not side > 0:
+        raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
+    rows, columns = (math.ceil((high - low) / side - 1e-9) for low, high in ((ymin, ymax), (xmin, xmax)))
+    if rows * columns > MAP_CELLS:
+        raise InputError(
+            f"resolution {side:g} makes {rows} × {columns} cells; at most {MAP_CELLS:g} make sense"
+        )
+    blocked = np.zeros((rows, columns), dtype=np.uint8)
+    core.rasterize(side, blocked)
+    return blocked.view(np.bool_), side
