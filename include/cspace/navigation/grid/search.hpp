@@ -88,6 +88,17 @@ void follow_back(std::uint32_t node, const ParentOf& parent_of, const CellOf& ce
     std::reverse(cells.begin(), cells.end());
 }
 
+// What a way from cell to neighbouring cell costs.
+template <class Length>
+double summed(const std::vector<maps::Cell>& cells, const Length& length) {
+    typename Length::G sum{};
+    for (std::size_t k = 1; k < cells.size(); ++k) {
+        const int down = cells[k].row - cells[k - 1].row, along = cells[k].column - cells[k - 1].column;
+        sum = sum + length.step(cells[k - 1], cells[k], direction_of[down + 1][along + 1]);
+    }
+    return value_of(sum);
+}
+
 template <class Parents, class Queue>
 void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& order, maps::Cell start,
               const Parents& parents, PagedNodes<typename Parents::G>& nodes, Queue& queue, bool reopen,
@@ -105,6 +116,9 @@ void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& or
     follow_back(
         reached, [&](std::uint32_t k) { return nodes.at(k).parent; },
         [&](std::uint32_t k) { return grid.cell(k); }, answer.cells);
+    // Cells that were reached again on a shorter way have children that do not know it.
+    if constexpr (requires { parents.length; })
+        if (reopen) answer.cost = summed(answer.cells, parents.length);
 }
 
 template <Corners rule>
