@@ -116,8 +116,8 @@ int read_ask(PyObject* const* args, Py_ssize_t count, Ask& ask) {
 }
 
 void run(const Ask& ask, GridAnswer& answer, Route& route) {
-    find_route(ask.world->bits, ask.world->frame, ask.start, ask.from, ask.goal, ask.to, ask.query, scratch(),
-               answer, route);
+    find_way(ask.world->bits, ask.from, ask.to, ask.query, scratch(), answer);
+    draw_route(ask.world->frame, ask.start, ask.goal, answer, route);
 }
 void run_freely(const Ask& ask, GridAnswer& answer, Route& route) {
     if (ask.world->bits.numbers() <= small_grid) return run(ask, answer, route);

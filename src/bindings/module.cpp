@@ -30,4 +30,5 @@ NB_MODULE(_core, m) {
     bind_cars(m);
     bind_any_angle(m);
     bind_polygon_world(m);
+    bind_grid_replanning(m);
 }

@@ -86,6 +86,10 @@ cspace._core.RouteBase$:
         def _evidence(self) -> Any: ...
         def __bool__(self) -> bool: ...
 
+cspace._core.GridReplanner.replan:
+    def replan(self) -> tuple[int, NDArray[numpy.float64], float, int, int, NDArray[numpy.int32]]:
+        \doc
+
 cspace._core.GridBase.__suffix__:
     @property
     def _x(self) -> float: ...

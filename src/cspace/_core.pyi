@@ -347,6 +347,24 @@ class PolygonCore:
 
     def nearest_wall(self, x: float, y: float) -> tuple[float, float, float]:
         """Distance to the nearest wall, and its point."""
+class GridReplanner:
+    """The compiled half of cspace.navigation.DStarLite."""
+
+    def __init__(self, world: GridBase, corners: int, x0: float, y0: float, x1: float, y1: float) -> None: ...
+
+    def set(self, cells: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], blocked: bool) -> None:
+        """Cells (k, 2) become blocked or free."""
+
+    def move(self, x: float, y: float) -> None:
+        """The robot has moved."""
+
+    def replan(self) -> tuple[int, NDArray[numpy.float64], float, int, int, NDArray[numpy.int32]]:
+        """
+        Status, path, length, nodes, edges, and the cells settled, in their order.
+        """
+
+    def unpack(self, into: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+        """Writes a byte per cell."""
 
 def _png_unfilter(*arguments: Any) -> int: ...
 def _car_clear(*arguments: Any) -> None: ...

@@ -22,7 +22,8 @@ from cspace.navigation.trace import Trace
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-__all__ = ["CORNERS", "METRICS", "Settings", "metric_of", "positive_costs", "reason", "search", "traced"]
+__all__ = ["CORNERS", "METRICS", "WORDS", "Settings", "checked_ends", "metric_of", "positive_costs"]
+__all__ += ["reason", "search", "traced"]
 
 CORNERS: Final = {"never": 0, "one": 1, "always": 2}
 """When a diagonal step is allowed: both cells beside it are free, one is, always."""

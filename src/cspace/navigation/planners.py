@@ -35,6 +35,7 @@ class Planner:
 
 _ROWS: Final[tuple[Planner, ...]] = (
     Planner("a_star", "the shortest way over cells, or with costs the cheapest", "grid", "map"),
+    Planner("d_star_lite", "the shortest way over cells, mended when they change", "grid", "map"),
     Planner("dijkstra", "the same, found without a guess of what is left", "grid", "map"),
     Planner("focal_search", "a way at most so many times the shortest, and a bound for it", "grid", "map"),
     Planner("greedy_best_first", "a way over cells that is soon found", "grid", "map"),

@@ -46,21 +46,20 @@ inline double length_of(const std::vector<maps::Cell>& cells) {
     return steps.value() + slanted;
 }
 
-// Asks for the way between two points in free cells.
-inline void find_route(const maps::BitGrid& grid, const maps::GridFrame& frame, Point start, maps::Cell from,
-                       Point goal, maps::Cell to, const GridQuery& query, GridScratch& scratch,
-                       GridAnswer& answer, Route& route) {
-    find_way(grid, from, to, query, scratch, answer);
+// The route between two points in free cells, from what a search has found between the cells.
+inline void draw_route(const maps::GridFrame& frame, Point start, Point goal, const GridAnswer& answer,
+                       Route& route) {
     route.price = {std::int64_t(answer.effort.settled), std::int64_t(answer.effort.pushed)};
     route.status = answer.found ? Status::found : Status::unreachable;
     route.path.clear();
     route.length = std::numeric_limits<double>::infinity();
     if (!answer.found) return;
     draw_path(frame, start, goal, answer, route);
-    route.length = from == to
+    const auto& cells = answer.cells;
+    route.length = cells.size() < 2
                        ? distance(start, goal)
-                       : distance(start, frame.center(from)) + frame.resolution * length_of(answer.cells) +
-                             distance(frame.center(to), goal);
+                       : distance(start, frame.center(cells.front())) + frame.resolution * length_of(cells) +
+                             distance(frame.center(cells.back()), goal);
 }
 
 }  // namespace cspace::navigation

@@ -1,0 +1,134 @@
+"""D* Lite: a shortest way that is mended when cells become blocked or free (Koenig & Likhachev 2002)."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.maps import OccupancyGrid
+from cspace.maps.occupancy_grid import outside
+from cspace.navigation.grid_search import METRICS, WORDS, checked_ends, metric_of
+from cspace.navigation.route import STATUSES, Price, Route, new_route
+from cspace.navigation.trace import Trace
+
+__all__ = ["DStarLite", "plan", "reason", "trace"]
+
+
+class DStarLite:
+    """A robot on its way over a grid of which it learns more.
+
+    grid: what is known at first; it stays as it is. start, goal: (2,) [m] in free cells. metric: "octile"
+    (eight moves) or "manhattan" (four). corners: as for A*. Tell what changes by `set_blocked` and where the
+    robot is by `move`; `route` is the shortest way from there, of the same length as that of a fresh search.
+    """
+
+    def __init__(
+        self,
+        grid: OccupancyGrid,
+        start: ArrayLike,
+        goal: ArrayLike,
+        *,
+        metric: str = "octile",
+        corners: str = "never",
+    ) -> None:
+        self._options = {"metric": metric, "corners": corners}
+        rule, kind = metric_of(metric, corners)
+        if kind == METRICS["euclidean"]:
+            raise InputError("metric is 'euclidean'; D* Lite counts steps: 'octile' or 'manhattan'")
+        self._ends = checked_ends(grid, start, goal)
+        self._grid = grid
+        self._core = _core.GridReplanner(grid, rule, *self._ends[0], *self._ends[1])
+        self._route: Route | None = None
+        self._settled = np.empty((0, 2), np.int32)
+
+    @property
+    def grid(self) -> OccupancyGrid:
+        """The grid as it is known now."""
+        cells = np.empty(self._grid.shape, np.uint8)
+        self._core.unpack(cells)
+        return OccupancyGrid(cells.view(np.bool_), self._grid.resolution, self._grid.origin)
+
+    def set_blocked(self, cells: ArrayLike, blocked: bool = True) -> None:
+        """Cells (row, column), (k, 2) or (2,), have become blocked, or free; InputError for one outside."""
+        if not isinstance(blocked, (bool, np.bool_)):
+            raise InputTypeError(f"blocked must be True or False, got {blocked!r}")
+        index = np.atleast_2d(as_floats(cells, "cells", last=(2,)))
+        if index.ndim != 2:
+            raise InputError(f"cells has shape {index.shape}, expected (k, 2)")
+        wrong = (index != np.floor(index)) | (index < 0) | (index >= self._grid.shape)
+        if wrong.any():
+            row, column = index[wrong.any(axis=1)][0]
+            rows, columns = self._grid.shape
+            message = f"cells holds ({row:g}, {column:g}); the grid has rows 0 … {rows - 1}, "
+            raise InputError(message + f"columns 0 … {columns - 1}")
+        self._core.set(index.astype(np.int32), bool(blocked))
+        self._route = None
+
+    def move(self, point: ArrayLike) -> None:
+        """The robot is at a point (2,) [m] now; InputError outside of the grid."""
+        array = as_floats(point, "point", last=(2,))
+        if array.ndim != 1:
+            raise InputError(f"point has shape {array.shape}, expected (2,)")
+        x, y = map(float, array)
+        if self._grid._locate(x, y)[0] == 2:
+            raise outside(self._grid, "point", x, y)
+        self._core.move(x, y)
+        self._ends = (np.array([x, y]), self._ends[1])
+        self._route = None
+
+    @property
+    def route(self) -> Route:
+        """The shortest way from where the robot is; unreachable also while its cell or the goal's is blocked.
+
+        route.price says what mending took, not what the whole search has. route.world is the grid given
+        first.
+        """
+        if self._route is None:
+            began = time.perf_counter()
+            status, path, length, nodes, edges, self._settled = self._core.replan()
+            price = Price(nodes, edges, time.perf_counter() - began)
+            self._route = new_route(
+                self._grid,
+                "d_star_lite",
+                self._options,
+                self._ends,
+                STATUSES[status],
+                path,
+                length,
+                price,
+            )
+        return self._route
+
+    def __repr__(self) -> str:
+        (x0, y0), (x1, y1) = self._ends
+        return f"<DStarLite from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) over {self._grid!r}>"
+
+
+def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: str = "never") -> Route:
+    """The shortest way over the cells of a grid, searched from the goal: D* Lite before anything has changed.
+
+    start, goal: (2,) [m] in free cells. metric: "octile" or "manhattan". corners: as for A*.
+    """
+    return DStarLite(world, start, goal, metric=metric, corners=corners).route
+
+
+def reason(route: Route) -> str:
+    """The verdict in a sentence."""
+    cells = route.price.nodes
+    if route:
+        return f"found a way of {route.length:.6g} m after settling {cells} cells"
+    return f"no way leads to the goal, as is known after settling {cells} cells more"
+
+
+def trace(route: Route) -> Trace:
+    """The cells in the order in which a fresh search settles them."""
+    planner = DStarLite(route.world, route.start, route.goal, **route.options)
+    assert planner.route is not None
+    at = route.world.center_of(planner._settled)
+    return Trace(WORDS, np.zeros(len(at), np.int8), at, at, np.zeros(len(at)))
