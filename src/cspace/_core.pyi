@@ -347,6 +347,7 @@ class PolygonCore:
 
     def nearest_wall(self, x: float, y: float) -> tuple[float, float, float]:
         """Distance to the nearest wall, and its point."""
+
 class GridReplanner:
     """The compiled half of cspace.navigation.DStarLite."""
 
