@@ -29,6 +29,7 @@ NB_MODULE(_core, m) {
     bind_coverage(m);
     bind_cars(m);
     bind_any_angle(m);
+    bind_bugs(m);
     bind_polygon_world(m);
     bind_grid_replanning(m);
 }

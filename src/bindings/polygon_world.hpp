@@ -6,12 +6,14 @@
 #include "bindings.hpp"
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/any_angle/polyanya.hpp"
+#include "cspace/navigation/bugs/walls.hpp"
 
 struct PolygonCore {
     explicit PolygonCore(cspace::maps::Outlines outlines) : world(std::move(outlines)) {}
 
     cspace::maps::PolygonWorld world;
     double tolerance = 0;  // how deep in an obstacle rounding may have put a point that lies on a wall [m]
+    std::unique_ptr<cspace::navigation::Walls> felt;  // what robots touch; made when first asked, as the next
     std::unique_ptr<cspace::navigation::Polyanya> shortest;  // made when first asked; used with the GIL held
 };
 

@@ -1,4 +1,4 @@
-// Bug 1 and Bug 2 in worlds whose answer is known: verdicts, bounds and paths.
+// Bug 1, Bug 2 and Tangent Bug in worlds whose answer is known: verdicts, bounds and paths.
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
@@ -7,6 +7,8 @@
 #include "cspace/navigation/bugs/bug_1.hpp"
 #include "cspace/navigation/bugs/bug_2.hpp"
 #include "cspace/navigation/bugs/contact_robot.hpp"
+#include "cspace/navigation/bugs/range_robot.hpp"
+#include "cspace/navigation/bugs/tangent_bug.hpp"
 #include "plane_worlds.hpp"
 
 using namespace cspace;
@@ -90,27 +92,32 @@ const char* fault_of(const Case& c, const Trip& trip, bool is_bug_1) {
 }
 
 int total = 0, reachable = 0;
-std::vector<double> times[2];
+std::vector<double> times[5];
+double lengths[5];  // of the ways found, each as a part of the shorter of Bug 1 and Bug 2
+
+double shortest = 0;  // of Bug 1 and Bug 2 on the case being judged
 
 void judge(const Case& c, const char* name, int number) {
     const bool expected = c.world.connected(c.start, c.goal);
     ++total;
     reachable += expected;
-    for (int bug = 1; bug <= 2; ++bug)
-        for (Hand hand : {Hand::left, Hand::right}) {
+    double length[2] = {};
+    for (int bug = 0; bug < 2; ++bug)
+        for (Hand hand : {Hand::right, Hand::left}) {
             const auto begin = std::chrono::steady_clock::now();
             ContactRobot robot(c.walls, c.start);
-            const Trip trip = bug == 1 ? bug_1(robot, c.goal, hand) : bug_2(robot, c.goal, hand);
+            const Trip trip = bug == 0 ? bug_1(robot, c.goal, hand) : bug_2(robot, c.goal, hand);
             const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
-            times[bug - 1].push_back(time.count());
-            const char* fault = fault_of(c, trip, bug == 1);
+            times[bug].push_back(time.count());
+            length[bug] = trip.route.length;
+            const char* fault = fault_of(c, trip, bug == 0);
             if (!fault) continue;
-            std::printf("bug %d, %s hand, %s %d: %s (%zu walls, %zu follows) S %.17g %.17g T %.17g %.17g\n",
-                        bug, hand == Hand::left ? "left" : "right", name, number, fault,
-                        std::size_t(c.walls.size()), trip.follows.size(), c.start.x, c.start.y, c.goal.x,
-                        c.goal.y);
+            std::printf("bug %d, %s hand, %s %d: %s\n", bug + 1, hand == Hand::left ? "left" : "right", name,
+                        number, fault);
             ++check::failures;
         }
+    shortest = std::min(length[0], length[1]);
+    for (int bug = 0; expected && shortest > 0 && bug < 2; ++bug) lengths[bug] += length[bug] / shortest;
 }
 
 const char* names[] = {"scattered", "thin walls", "mixed", "maze",    "spiral",
@@ -119,6 +126,32 @@ const char* names[] = {"scattered", "thin walls", "mixed", "maze",    "spiral",
 int stress(int most) {
     const char* more = std::getenv("CSPACE_STRESS");
     return more ? most * std::atoi(more) : most;
+}
+
+// Tangent Bug with no range, short sight and long sight.
+void judge_tangent_bug(const Case& c, const char* name, int number) {
+    const bool expected = c.world.connected(c.start, c.goal);
+    const double reach[] = {0, 0.1 * c.walls.extent(), std::numeric_limits<double>::infinity()};
+    for (int k = 0; k < 3; ++k) {
+        const auto begin = std::chrono::steady_clock::now();
+        RangeRobot robot(c.walls, c.start, reach[k]);
+        const Trip trip = tangent_bug(robot, c.goal);
+        const std::chrono::duration<double, std::micro> time = std::chrono::steady_clock::now() - begin;
+        times[2 + k].push_back(time.count());
+        const char* fault = nullptr;
+        if (trip.route.status == Status::undetermined)
+            fault = "undetermined";
+        else if ((trip.route.status == Status::found) != expected)
+            fault = expected ? "missed" : "wrongly found";
+        else if (trip.route.path.front() != c.start || (expected && trip.route.path.back() != c.goal))
+            fault = "ends";
+        else if (!is_clear(c, trip.route.path))
+            fault = "path through a wall";
+        if (expected && shortest > 0) lengths[2 + k] += trip.route.length / shortest;
+        if (!fault) continue;
+        std::printf("tangent bug, range %g, %s %d: %s\n", reach[k], name, number, fault);
+        ++check::failures;
+    }
 }
 
 void run_family(Family family, int count, int largest) {
@@ -130,7 +163,9 @@ void run_family(Family family, int count, int largest) {
             start = check::random_point(world, random);
         if (world.parts_at(start).empty()) continue;
         if (world.parts_at(goal).empty() && random.below(3)) goal = check::random_point(world, random);
-        judge(Case(std::move(world), random.below(2), start, goal), names[int(family)], number);
+        const Case c(std::move(world), random.below(2), start, goal);
+        judge(c, names[int(family)], number);
+        judge_tangent_bug(c, names[int(family)], number);
     }
 }
 
@@ -142,11 +177,172 @@ TEST(verdicts_and_bounds_in_small_degenerate_worlds) {
 
 TEST(verdicts_and_bounds_in_larger_worlds) {
     for (int family = 0; family < int(Family::count); ++family) run_family(Family(family), stress(60), 16);
-    for (int bug = 0; bug < 2; ++bug) {
+    const char* who[] = {"bug 1", "bug 2", "tangent bug, touch", "tangent bug, near", "tangent bug, far"};
+    for (int bug = 0; bug < 5; ++bug) {
         std::vector<double>& t = times[bug];
         std::sort(t.begin(), t.end());
-        std::printf("     bug %d: median %.1f µs, p95 %.1f µs, largest %.0f µs\n", bug + 1, t[t.size() / 2],
+        std::printf("     %s: median %.1f µs, p95 %.1f µs, largest %.0f µs\n", who[bug], t[t.size() / 2],
                     t[t.size() * 95 / 100], t.back());
     }
+    std::printf("     mean length per shorter of bug 1 and 2:");
+    for (double sum : lengths) std::printf(" %.3f", sum / reachable);
+    std::printf("\n");
+    CHECK(lengths[4] < lengths[3] && lengths[3] < lengths[2]);  // the further it sees, the shorter its ways
+    CHECK(lengths[4] < lengths[0] && lengths[4] < lengths[1]);
     std::printf("     %d problems, %d of them with a way\n", total, reachable);
+}
+
+namespace {
+
+// Convex polygons apart from each other in a square of side 100.
+Walls convex_field(Random& random, int count) {
+    maps::Boundary all;
+    const auto add = [&](const std::vector<Point>& ring) {
+        const int first = int(all.points.size()), n = int(ring.size());
+        for (int i = 0; i < n; ++i) {
+            all.points.push_back(ring[std::size_t(i)]);
+            all.next.push_back(first + (i + 1) % n);
+            all.ring.push_back(int(all.component.size()));
+        }
+        all.component.push_back(0);
+    };
+    add({{0, 0}, {100, 0}, {100, 100}, {0, 100}});
+    const int side = int(std::ceil(std::sqrt(count)));
+    const double cell = 100.0 / side;
+    for (int k = 0; k < count; ++k) {
+        const Point middle{cell * (k % side + 0.5), cell * (k / side + 0.5)};
+        const int n = 3 + random.below(6);
+        const double turn = random.uniform(0, 6), radius = random.uniform(0.2, 0.48) * cell;
+        std::vector<Point> ring;  // clockwise: the free space lies outside
+        for (int i = 0; i < n; ++i) {
+            const double angle = turn - 6.283185307179586 * i / n;
+            ring.push_back(middle + radius * Point{std::cos(angle), std::sin(angle)});
+        }
+        add(ring);
+    }
+    return Walls(std::move(all));
+}
+
+// A wall that winds around its inner end: a passage of width 1, so many turns deep.
+Walls spiral(int turns) {
+    std::vector<Point> way{{0, 0}};
+    const Point direction[] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    for (int leg = 0; leg < 4 * turns; ++leg)
+        way.push_back(way.back() + (2.0 + 2 * (leg / 2)) * direction[leg % 4]);
+    maps::Boundary all;
+    const int n = int(way.size());
+    for (int i = 0; i < 2 * (n - 1); ++i) {  // there on one side, back on the other
+        all.points.push_back(way[std::size_t(i < n ? i : 2 * (n - 1) - i)]);
+        all.next.push_back((i + 1) % (2 * (n - 1)));
+        all.ring.push_back(0);
+    }
+    all.component.push_back(0);
+    return Walls(std::move(all));
+}
+
+double length_of(const Walls& walls, int bug, Point start, Point goal, Hand hand) {
+    ContactRobot robot(walls, start);
+    const Trip trip = bug == 1 ? bug_1(robot, goal, hand) : bug_2(robot, goal, hand);
+    CHECK(trip.route.status == Status::found);
+    return trip.route.length;
+}
+
+}  // namespace
+
+namespace {
+
+// A sensor with no world behind it: it answers as a robot would that meets one crate, the square (1, −1) to
+// (3, 1), on its way along the x axis, and counts what it is asked.
+class ScriptedRobot {
+  public:
+    int advances = 0, walks = 0, stops = 0;
+
+    std::size_t sides() const { return 1; }
+    void stand(std::size_t) { at_ = {0, 0}; }
+    Point position() const { return at_; }
+    Touch touch() const { return {at_, piece(in_), piece(out_)}; }
+    bool advance(const Line& line, std::vector<Point>&) {
+        ++advances;
+        if (at_.x < 1) {
+            at_ = {1, 0};
+            in_ = out_ = 0;
+            return false;
+        }
+        CHECK(at_.x == 3 && at_.y == 0 && in_ == 2 &&
+              out_ == 2);  // the only place from which the way is free
+        at_ = line.to;
+        return true;
+    }
+    void walk(Hand hand) {
+        ++walks;
+        if (hand == Hand::right) {
+            in_ = out_;
+            out_ = (out_ + 1) % 4;
+        } else {
+            out_ = in_;
+            in_ = (in_ + 3) % 4;
+        }
+        at_ = piece(out_).begin;
+    }
+    void stop(Hand hand, Point at) {
+        ++stops;
+        in_ = out_ = hand == Hand::right ? out_ : in_;
+        at_ = at;
+    }
+
+  private:
+    Point at_;
+    int in_ = -1, out_ = -1;
+
+    static Wall piece(int k) {  // clockwise from the side that faces the start
+        const Point corner[] = {{1, -1}, {1, 1}, {3, 1}, {3, -1}};
+        return {corner[k], corner[(k + 1) % 4], k};
+    }
+};
+static_assert(ContactSensor<ScriptedRobot> && !RangeSensor<ScriptedRobot>);
+static_assert(ContactSensor<ContactRobot> && RangeSensor<RangeRobot>);
+
+}  // namespace
+
+TEST(planners_work_on_the_sensor_alone) {
+    for (Hand hand : {Hand::left, Hand::right}) {
+        ScriptedRobot one, two;
+        const Trip first = bug_1(one, {5, 0}, hand), second = bug_2(two, {5, 0}, hand);
+        CHECK(first.route.status == Status::found && second.route.status == Status::found);
+        CHECK_NEAR(first.route.length, 5 - 2 + 8 + 4, 1e-12);  // around, then half way around
+        CHECK_NEAR(second.route.length, 5 - 2 + 4, 1e-12);
+        CHECK(one.advances == 2 && one.walks == 6 && one.stops == 2);
+        CHECK(two.advances == 2 && two.walks == 2 && two.stops == 1);
+    }
+}
+
+TEST(bug_2_wins_among_convex_obstacles) {
+    Random random{11};
+    int wins = 0, trials = 200;
+    std::vector<double> time;
+    for (int k = 0; k < trials; ++k) {
+        const Walls walls = convex_field(random, 100);
+        const Point start{0.5, random.uniform(0.5, 99.5)}, goal{99.5, random.uniform(0.5, 99.5)};
+        const auto begin = std::chrono::steady_clock::now();
+        const double two = length_of(walls, 2, start, goal, Hand::left);
+        const std::chrono::duration<double, std::micro> passed = std::chrono::steady_clock::now() - begin;
+        time.push_back(passed.count());
+        wins += two <= length_of(walls, 1, start, goal, Hand::left);
+    }
+    std::sort(time.begin(), time.end());
+    std::printf("     bug 2 among 100 convex obstacles: median %.1f µs\n", time[time.size() / 2]);
+    CHECK(wins == trials);
+}
+
+TEST(bug_1_wins_in_a_spiral) {
+    double before = 1;
+    for (int turns : {4, 8, 16}) {
+        const Walls walls = spiral(turns);
+        const Point inside{1, 1}, outside{1, 5.0 * turns};
+        const double one = length_of(walls, 1, inside, outside, Hand::left);
+        const double two = length_of(walls, 2, inside, outside, Hand::left);
+        std::printf("     out of a spiral of %d turns: bug 1 %.0f, bug 2 %.0f\n", turns, one, two);
+        CHECK(two / one > before);  // deeper spirals are worse
+        before = two / one;
+    }
 }

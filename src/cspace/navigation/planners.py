@@ -36,14 +36,29 @@ class Planner:
 _ROWS: Final[tuple[Planner, ...]] = (
     Planner("a_star", "the shortest way over cells, or with costs the cheapest", "grid", "map"),
     Planner("d_star_lite", "the shortest way over cells, mended when they change", "grid", "map"),
+    Planner("any_angle", "the shortest path, through convex polygons (Polyanya)", "polygons", "map"),
+    Planner(
+        "bug_1",
+        "a robot that feels walls: around each, then on from its point nearest the goal",
+        "polygons",
+        "contact",
+    ),
+    Planner(
+        "bug_2",
+        "a robot that feels walls: along them, back to the line from start to goal",
+        "polygons",
+        "contact",
+    ),
     Planner("dijkstra", "the same, found without a guess of what is left", "grid", "map"),
     Planner("focal_search", "a way at most so many times the shortest, and a bound for it", "grid", "map"),
     Planner("greedy_best_first", "a way over cells that is soon found", "grid", "map"),
     Planner("jump_point_search", "the shortest way over cells, from turn to turn", "grid", "map"),
+    Planner(
+        "tangent_bug", "a robot that sees walls up to a distance: around what is in view", "polygons", "range"
+    ),
     Planner("theta_star", "a short way of any angle over cells that see each other", "grid", "map"),
     Planner("wavefront", "a way of the fewest steps over cells, down the waves from the goal", "grid", "map"),
     Planner("weighted_a_star", "a way at most so many times the shortest", "grid", "map"),
-    Planner("any_angle", "the shortest path, through convex polygons (Polyanya)", "polygons", "map"),
 )
 
 PLANNERS: Final = MappingProxyType({row.name: row for row in _ROWS})

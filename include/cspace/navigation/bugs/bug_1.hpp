@@ -30,7 +30,7 @@ class Bug1 {
             if (!(leave.squared_distance < nearest)) return walker.finish(Status::undetermined);
             nearest = leave.squared_distance;
             const bool onwards = leave.along <= round.length() - leave.along;
-            go_to(walker, leave.touch, onwards ? hand_ : other(hand_));
+            walker.go_to(leave.touch, onwards ? hand_ : other(hand_));
             walker.end_follow();
             if (!shut) continue;
             walker.trip.witness = robot.touch();
@@ -63,15 +63,6 @@ class Bug1 {
             if (last) return false;
             round.add(walker.robot.touch());
             if (walker.robot.touch().is_place_of(hit)) return false;
-        }
-    }
-
-    template <ContactSensor Robot>
-    void go_to(Walker<Robot>& walker, const Touch& target, Hand hand) const {
-        while (!walker.robot.touch().is_place_of(target) || !target.is_corner()) {
-            if (!target.is_corner() && ahead(walker.robot.touch(), hand).name == target.in.name)
-                return walker.stop(hand, target.at);
-            walker.walk(hand);
         }
     }
 };

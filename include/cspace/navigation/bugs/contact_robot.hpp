@@ -54,18 +54,11 @@ class ContactRobot {
         return {at_, walls_->wall(place_.in), walls_->wall(place_.out)};
     }
 
-    bool advance(Line line, std::vector<Point>& touched) {
-        while (at_ != line.to) {
-            if (place_.is_corner()) line.from = at_;
-            const Way way = way_ahead(line.to);
-            if (way == Way::blocked) return false;
-            if (way == Way::free)
-                fly(line, touched);
-            else
-                slide(way == Way::along_out ? Hand::right : Hand::left, line.to);
-            if (place_.is_corner()) touched.push_back(at_);
-        }
-        return true;
+    bool advance(const Line& line, std::vector<Point>& touched) {
+        const Position end = moved(line, at_, place_, touched);
+        at_ = end.at;
+        place_ = end.place;
+        return at_ == line.to;
     }
 
     void walk(Hand hand) {
@@ -79,40 +72,74 @@ class ContactRobot {
         at_ = settled(piece, at);
     }
 
-  private:
+  protected:
+    struct Position {
+        Point at;
+        Place place;
+    };
     const Walls* walls_;
-    std::vector<Place> places_;  // those of the start
-    Point start_, at_;
+    Point at_;
     Place place_;
+
+    // Where a robot comes to that follows a line from a position on it.
+    Position moved(Line line, Point at, Place place, std::vector<Point>& touched) const {
+        if (line.from == at) place = exactly(at, place);
+        while (at != line.to) {
+            if (place.is_corner()) line.from = at;
+            const Way way = way_ahead(at, place, line.to);
+            if (way == Way::blocked) break;
+            const Position next =
+                way == Way::free ? flown(line, at, place, touched)
+                                 : slid(place, way == Way::along_out ? Hand::right : Hand::left, line.to);
+            at = next.at;
+            place = next.place;
+            if (place.is_corner()) touched.push_back(at);
+        }
+        return {at, place};
+    }
+
+  private:
+    std::vector<Place> places_;  // those of the start
+    Point start_;
 
     Place corner_before(int wall) const { return {walls_->previous(wall), wall}; }
 
-    Way way_ahead(Point target) const {
-        if (place_.is_open()) return Way::free;
-        const Wall in = walls_->wall(place_.in);
-        if (place_.is_corner()) return way_towards(in.begin, at_, walls_->end(place_.out), target);
+    // Where a robot inside a piece of wall stands if its position is taken as it is: on an end of the piece,
+    // in the open in front of it, or on it. So it is taken where a line of its own begins there.
+    Place exactly(Point at, const Place& place) const {
+        if (place.is_open() || place.is_corner()) return place;
+        const Wall wall = walls_->wall(place.in);
+        if (at == wall.begin) return corner_before(place.in);
+        if (at == wall.end) return {place.in, walls_->next(place.in)};
+        return orientation(wall.begin, wall.end, at) > 0 ? Place{} : place;
+    }
+
+    Way way_ahead(Point at, const Place& place, Point target) const {
+        if (place.is_open()) return Way::free;
+        const Wall in = walls_->wall(place.in);
+        if (place.is_corner()) return way_towards(in.begin, at, walls_->end(place.out), target);
         const int side = orientation(in.begin, in.end, target);
         if (side != 0) return side > 0 ? Way::free : Way::blocked;
-        const Point d = in.end - in.begin, ahead = target - at_;
+        const Point d = in.end - in.begin, ahead = target - at;
         const bool same =
             std::abs(d.x) >= std::abs(d.y) ? (d.x > 0) == (ahead.x > 0) : (d.y > 0) == (ahead.y > 0);
         return same ? Way::along_out : Way::along_in;
     }
 
-    void slide(Hand hand, Point target) {
-        const Wall piece = walls_->wall(hand == Hand::right ? place_.out : place_.in);
-        if (target != far_end(piece, hand) && is_between(piece.begin, target, piece.end))
-            stop(hand, target);
-        else
-            walk(hand);
+    Position slid(const Place& place, Hand hand, Point target) const {
+        const Wall piece = walls_->wall(hand == Hand::right ? place.out : place.in);
+        const Point end = far_end(piece, hand);
+        if (target != end && is_between(piece.begin, target, piece.end))
+            return {target, {piece.name, piece.name}};
+        return {end, hand == Hand::right ? Place{piece.name, walls_->next(piece.name)}
+                                         : corner_before(piece.name)};
     }
 
-    void fly(const Line& line, std::vector<Point>& touched) {
-        const Flight flight(*walls_, line, at_, place_.is_corner() ? -1 : place_.in);
+    Position flown(const Line& line, Point at, const Place& place, std::vector<Point>& touched) const {
+        const Flight flight(*walls_, line, at, place.is_corner() ? -1 : place.in);
         flight.write_grazed(touched);
-        place_ = flight.met;
-        const bool on_wall = !place_.is_open() && !place_.is_corner();
-        at_ = on_wall ? settled(flight.wall(), flight.at) : flight.at;
+        const bool on_wall = !flight.met.is_open() && !flight.met.is_corner();
+        return {on_wall ? settled(flight.wall(), flight.at) : flight.at, flight.met};
     }
 };
 

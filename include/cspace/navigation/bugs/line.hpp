@@ -79,10 +79,24 @@ inline int crossing(const Line& line, const Wall& wall) {
     return a < 0 && b > 0 ? 1 : a > 0 && b < 0 ? -1 : 0;
 }
 
+inline Point nearest_on(Point a, Point b, Point p) {
+    const Point d = b - a;
+    const double squared = squared_norm(d), t = squared > 0 ? dot(p - a, d) / squared : 0;
+    return t <= 0 ? a : t >= 1 ? b : a + t * d;
+}
+
+// Where a line from → to crosses a wall. Where rounding hides that (they lie almost on each other), the point
+// of the wall nearest to the end that the crossing must not lie beyond.
 inline Point crossing_point(const Line& line, const Wall& wall) {
-    const double a = cross(line.to - line.from, wall.begin - line.from);
-    const double b = cross(line.to - line.from, wall.end - line.from);
-    return a == b ? wall.begin : wall.begin + (a / (a - b)) * (wall.end - wall.begin);
+    const Point d = line.to - line.from;
+    const double a = cross(d, wall.begin - line.from), b = cross(d, wall.end - line.from);
+    const double size =
+        std::max({std::abs(line.to.x), std::abs(line.to.y), std::abs(wall.end.x), std::abs(wall.end.y)});
+    if (std::max(std::abs(a), std::abs(b)) <= rounding_of(size) * (std::abs(d.x) + std::abs(d.y)))
+        return nearest_on(wall.begin, wall.end, line.to);
+    const Point p = wall.begin + std::clamp(a / (a - b), 0.0, 1.0) * (wall.end - wall.begin);
+    if (dot(d, line.to - p) < 0) return nearest_on(wall.begin, wall.end, line.to);
+    return dot(d, p - line.from) < 0 ? nearest_on(wall.begin, wall.end, line.from) : p;
 }
 
 // Of a point on the line and a wall that it crosses: −1 if the point comes first, 1 if the wall does.

@@ -41,6 +41,12 @@ class Walker {
         note();
         return arrived;
     }
+    bool approach(Point target) {
+        ++trip.route.price.edges;
+        const bool arrived = robot.approach(target, trip.route.path);
+        note();
+        return arrived;
+    }
     void begin_follow() {
         trip.follows.push_back({robot.touch(), {}, 0, false, trip.route.path.size() - 1, 0});
     }
@@ -49,6 +55,14 @@ class Walker {
     }
     void stop(Hand hand, Point at) {
         follow([&] { robot.stop(hand, at); });
+    }
+    // Along the wall to a place on its ring.
+    void go_to(const Touch& target, Hand hand) {
+        while (!robot.touch().is_place_of(target) || !target.is_corner()) {
+            if (!target.is_corner() && ahead(robot.touch(), hand).name == target.in.name)
+                return stop(hand, target.at);
+            walk(hand);
+        }
     }
     void end_follow() {
         trip.follows.back().leave = robot.touch();

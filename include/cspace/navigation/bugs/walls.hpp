@@ -31,6 +31,7 @@ class Walls {
     Wall wall(int name) const { return {begin(name), end(name), name}; }
     const maps::Boundary& boundary() const { return boundary_; }
     double largest() const { return largest_; }  // of the coordinates
+    double extent() const { return extent_; }    // the longer side of the box around all walls
 
     // Calls visit(wall) for walls near the segment, those near its beginning first, at least for all that it
     // touches. Asks done(covered) on the way, where covered(p) says that all walls up to the point p of the
@@ -58,7 +59,7 @@ class Walls {
     maps::Boundary boundary_;
     std::vector<std::int32_t> previous_;
     Point low_;
-    double largest_ = 0, size_ = 1, per_ = 1,
+    double largest_ = 0, extent_ = 0, size_ = 1, per_ = 1,
            margin_ = 0;  // a cell's side, its inverse, by how much cells overlap
     int cells_ = 1, columns_ = 1, rows_ = 1;
     std::vector<std::int32_t> starts_, members_;
@@ -74,7 +75,7 @@ class Walls {
         }
         const Point extent = high - low_;
         largest_ = std::max({std::abs(low_.x), std::abs(low_.y), std::abs(high.x), std::abs(high.y)});
-        const double longest = std::max(extent.x, extent.y);
+        const double longest = extent_ = std::max(extent.x, extent.y);
         margin_ = 1e-9 * longest + 64 * std::numeric_limits<double>::epsilon() * largest_;
         if (size() <= few || !(longest > 1e6 * std::numeric_limits<double>::epsilon() * largest_)) return;
         const double area = std::max(extent.x * extent.y, longest * longest / size());
