@@ -154,7 +154,7 @@ def test_only_what_no_disc_passes_is_unreachable(seed):
         cells = np.argwhere(np.pad(blocked, 1, constant_values=True))[:, ::-1] * 0.5 - 0.25
         gap = np.maximum(np.abs(places[:, None] - cells[None]) - 0.25, 0)
         clear = (np.hypot(gap[..., 0], gap[..., 1]).min(1) >= 0.7).reshape(24 * fine, -1)
-        middles = [p[:2] + [np.cos(p[2]), np.sin(p[2])] for p in (start, goal)]
+        middles = [p[:2] + np.array([np.cos(p[2]), np.sin(p[2])]) for p in (start, goal)]
         ends = [tuple((m[::-1] / 0.5 * fine).astype(int)) for m in middles]
         if clear[ends[0]] and clear[ends[1]] and connected(clear, *ends):
             assert route.status != "unreachable"
