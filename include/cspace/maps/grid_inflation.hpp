@@ -64,6 +64,8 @@ inline BitGrid inflated(const BitGrid& grid, double radius, bool from_centers) {
     if (widths.empty()) return grown;
     const std::size_t words = grid.row_words();
     std::vector<std::uint64_t> line(words), spare(words);
+    const std::uint64_t within =
+        ~std::uint64_t(0) >> (63 - unsigned(grid.columns() + 1) % 64);  // of the last word
     for (int row = -1; row <= grid.rows(); ++row) {
         std::copy_n(grid.row(row), words, line.begin());
         int width = 0;
@@ -74,6 +76,7 @@ inline BitGrid inflated(const BitGrid& grid, double radius, bool from_centers) {
                 if (target < 0 || target >= grid.rows()) continue;
                 std::uint64_t* into = grown.writable_row(target);
                 for (std::size_t k = 0; k < words; ++k) into[k] |= line[k];
+                into[words - 1] &= within;
             }
         }
     }

@@ -52,7 +52,11 @@ def read_movingai(path: str | os.PathLike[str]) -> npt.NDArray[np.bool_]:
         sizes[words[0]] = int(words[1])
         at += 1
     if len(sizes) < 2 or at >= len(lines):
-        raise MapError("the lines 'height …', 'width …' and 'map' come before the cells", path=name, line=at)
+        raise MapError(
+            "the lines 'height …', 'width …' and 'map' come before the cells",
+            path=name,
+            line=min(at + 1, len(lines)),
+        )
     return _cells(lines[at + 1 :], sizes[b"height"], sizes[b"width"], name, at + 2)
 
 

@@ -19,8 +19,8 @@ from cspace.maps.images import pgm_of, read_image
 __all__ = ["RosMap", "read_ros", "write_ros"]
 
 NEEDED: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
-UNKNOWN_GREY: Final = 205
-"""Grey of cells of which nothing is known, as map_saver writes them."""
+TEXT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
+"""What stands in a line before its comment."""
 
 
 @dataclass(frozen=True)
@@ -135,15 +135,8 @@ def _fields(data: bytes, name: str) -> _Fields:
 
 def _without_comment(line: str) -> str:
     """The line up to a # that stands after a blank and outside quotes."""
-    quote = ""
-    for at, letter in enumerate(line):
-        if quote:
-            quote = "" if letter == quote else quote
-        elif letter in "'\"" and (at == 0 or line[at - 1] in " \t[,"):
-            quote = letter
-        elif letter == "#" and (at == 0 or line[at - 1] in " \t"):
-            return line[:at]
-    return line
+    found = TEXT.match(line)
+    return found.group() if found else ""
 
 
 def _scalar(text: str) -> str | float:
