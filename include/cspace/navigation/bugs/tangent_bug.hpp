@@ -46,6 +46,7 @@ class TangentBug {
             walker_.end_follow();
             if (end == Stage::arrived) return walker_.finish(Status::found);
             if (end == Stage::shut) return walker_.finish(Status::unreachable);
+            if (seen_nearer_) go(*seen_nearer_);
         }
     }
 
@@ -58,7 +59,8 @@ class TangentBug {
     std::optional<Hand> hand_;
     double slack_;  // what rounding does to a distance from the goal
     std::vector<Seen> seen_;
-    std::vector<int> left_;  // corners that it left straight towards the goal
+    std::optional<Point> seen_nearer_;  // what made it leave the wall that it followed
+    std::vector<int> left_;             // corners that it left straight towards the goal
     int stops_ = 0;
 
     double to_goal(Point p) const { return distance(p, goal_); }
@@ -112,6 +114,7 @@ class TangentBug {
     Stage follow(Hand hand) {
         const Touch hit = robot_.touch();
         double nearest = to_goal(hit.at);
+        seen_nearer_.reset();
         Round round(goal_, hand, hit);
         for (bool first = true;; first = false) {
             const Wall piece = ahead(robot_.touch(), hand);
@@ -164,10 +167,8 @@ class TangentBug {
             return true;
         }
         if (robot_.range() == 0) return false;
-        const std::optional<Point> nearer_point = nearest_in_view(nearest);
-        if (!nearer_point) return false;
-        go(*nearer_point);
-        return true;
+        seen_nearer_ = nearest_in_view(nearest);
+        return seen_nearer_.has_value();
     }
 
     // The point in view nearest to the goal, if it is nearer than a limit.
