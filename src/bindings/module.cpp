@@ -11,7 +11,6 @@ NB_MODULE(_core, m) {
     m.attr("isa") = cspace::kernels::isa_name();
     bind_math(m);
     bind_curves(m);
-    bind_following(m);
     bind_robot(m);
     bind_rotations(m);
     bind_short_arms(m);
@@ -28,6 +27,7 @@ NB_MODULE(_core, m) {
     bind_grid(m);
     bind_coverage(m);
     bind_cars(m);
+    bind_following(m);
     bind_any_angle(m);
     bind_bugs(m);
     bind_polygon_world(m);

@@ -11,7 +11,7 @@ from cspace.navigation.curves import (
     reeds_shepp_distance,
 )
 from cspace.navigation.d_star_lite import DStarLite
-from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, follow
+from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, cast_rays, follow
 from cspace.navigation.planners import PLANNERS, Planner
 from cspace.navigation.query import World, navigate
 from cspace.navigation.route import STATUSES, Price, Route
@@ -20,5 +20,5 @@ from cspace.navigation.trace import Trace
 __all__ = ["PLANNERS", "STATUSES", "Planner", "Price", "Route", "Trace", "World", "navigate"]
 __all__ += ["Curve", "Segment", "dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]
 __all__ += ["DStarLite"]
-__all__ += ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "follow"]
+__all__ += ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "cast_rays", "follow"]
 __all__ += ["CarRoute", "Coverage", "coverage", "hybrid_a_star"]

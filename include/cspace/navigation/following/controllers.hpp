@@ -18,6 +18,7 @@ inline double speed_to_stop(double distance, double acceleration, double time) {
 // Steers along the arc that meets the run a lookahead away (Coulter 1992): its curvature is 2 y / d² for a
 // point at distance d, y to the left. A point behind is turned to as tightly as the vehicle can.
 struct PurePursuit {
+    static constexpr bool leaves_path = false;
     double lookahead;  // [m]
 
     Point guided(const Vehicle&, const Motion& now) const { return place(now.pose); }
@@ -46,6 +47,7 @@ struct PurePursuit {
 // Steers the front wheels of a car along the run and towards it (Hoffmann, Tomlin, Montemerlo & Thrun 2007):
 // the angle to the run's heading, and the arc tangent of gain · offset / speed.
 struct Stanley {
+    static constexpr bool leaves_path = false;
     double gain;     // [1/s]
     double softest;  // [m/s] added to the speed
 

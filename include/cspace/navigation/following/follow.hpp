@@ -41,7 +41,11 @@ struct Follower {
         guided = track[run].nearest(controller.guided(vehicle, now), own.s, std::max(to, own.s));
     }
     bool on_last_run() const { return run + 1 == track.size(); }
-    double left() const { return track[run].length() - own.s; }
+    // How far the end of the run is along it, or also across, for who does not keep to the path.
+    double left(bool across) const {
+        const double along = std::max(track[run].length() - own.s, 0.0);
+        return across ? std::hypot(along, own.offset) : along;
+    }
     double progress() const { return before + own.s; }
 };
 
@@ -67,18 +71,20 @@ FollowRecord follow(const Vehicle& vehicle, const Motion& start, const Track& tr
         record.offset.push_back(at.guided.offset);
         record.progress.push_back(at.progress());
         if (touched) return finish(Outcome::collision);
-        if (at.left() <= settings.tolerance && std::fabs(at.now.speed) <= rest) {
+        double left = at.left(Controller::leaves_path);
+        if (left <= settings.tolerance && std::fabs(at.now.speed) <= rest) {
             if (at.on_last_run()) {
                 const double missing = distance(place(at.now.pose), track[at.run].end());
                 return finish(missing <= settings.tolerance ? Outcome::arrived : Outcome::missed);
             }
             at.before += track[at.run++].length();
             at.look(vehicle, controller, 0, settings.window);
+            left = at.left(Controller::leaves_path);
         }
         if (at.progress() > farthest + 1e-4) farthest = at.progress(), farthest_time = time;
         if (time - farthest_time >= settings.patience) return finish(Outcome::stuck);
         if (time >= settings.time_limit) return finish(Outcome::timeout);
-        const double fast = std::min(settings.speed, speed_to_stop(at.left(), vehicle.acceleration, dt));
+        const double fast = std::min(settings.speed, speed_to_stop(left, vehicle.acceleration, dt));
         const Command command = controller(vehicle, at.now, track[at.run], at.guided, fast, dt);
         const Motion next = after(vehicle, at.now, command, dt);
         touched = contact(at.now.pose, next.speed, turn_rate(vehicle, next.speed, next.turn), dt);

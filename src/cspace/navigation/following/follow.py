@@ -16,7 +16,17 @@ from cspace.tolerances import LARGEST_NUMBER
 
 __all__ = ["CONTROLLERS", "follow"]
 
-CONTROLLERS: Final = ("pure_pursuit", "stanley")
+OPTIONS: Final[dict[str, dict[str, Any]]] = {
+    "pure_pursuit": {"lookahead": None},
+    "stanley": {"gain": 1.0, "softening": 0.5},
+    "dynamic_window": {
+        **{"lookahead": None, "margin": 0.05, "sensor_range": 4.0, "rays": 360.0},
+        "weights": (0.3, 0.7, 0.1),
+    },
+}
+"""The options of each controller and their values unless given, in the order of the compiled core."""
+
+CONTROLLERS: Final = tuple(OPTIONS)
 """The controllers, in the order of the compiled core."""
 
 SAMPLES_PER_RADIUS: Final = 50.0
@@ -29,60 +39,90 @@ def follow(
     controller: str = "pure_pursuit",
     *,
     vehicle: Unicycle | Car | None = None,
+    world: Any = None,
     start: Any = None,
     speed: float | None = None,
-    lookahead: float | None = None,
-    gain: float = 1.0,
-    softening: float = 0.5,
     tolerance: float = 0.05,
     patience: float = 10.0,
     time_step: float = 0.05,
     time_limit: float | None = None,
+    **options: Any,
 ) -> Run:
     """Lets a vehicle follow a path in a simulator, within the vehicle's limits, and stops it at the end.
 
     path: points (m, 2) [m], driven forwards; poses (m, 3) with headings [rad], driven backwards where the
-    next point lies behind; a Curve, a Route or a CarRoute. controller: "pure_pursuit" steers along the
-    arc that meets the path `lookahead` [m] away (unless given a second of way, at least 1.5 wheelbases and
-    0.3); "stanley" steers the front wheels of a Car by the error of heading and atan(gain · error /
-    (softening + v)), gain [1/s], softening [m/s], forwards alone; in bends the rear axle cuts the corner.
-    vehicle: a Unicycle() unless given. start (3,): x, y [m], theta [rad], or (5,) with speed [m/s] and turn
-    as in Run.controls; the beginning of the path unless given. speed [m/s]: the fastest, that of the vehicle
-    unless given; it brakes in time for the end. tolerance [m]: what counts as the end. patience [s]: how long
-    it may come no farther. time_step [s] of the simulator, within which speed and turn are constant.
-    time_limit [s].
+    next point lies behind; a Curve, a Route or a CarRoute. vehicle: a Unicycle() unless given. world: an
+    OccupancyGrid, whose blocked cells end the run where the vehicle covers a part of one. start (3,): x, y
+    [m], theta [rad], or (5,) with speed [m/s] and turn as in Run.controls; the beginning of the path unless
+    given. speed [m/s]: the fastest, that of the vehicle unless given; it brakes in time for the end.
+    tolerance [m]: what counts as the end. patience [s]: how long it may come no farther. time_step [s] of the
+    simulator, within which speed and turn are constant. time_limit [s].
 
-    Returns a Run, truthy if it arrived. Raises InputError for a path of fewer than two points or with none
-    to follow, or what is no number above zero; UnknownNameError for an unknown controller; InputTypeError for
-    a controller that cannot steer the vehicle.
+    Controllers and their options:
+      "pure_pursuit" steers along the arc that meets the path `lookahead` [m] away: unless given, a second of
+        way, at least 1.5 wheelbases and 0.3 m (Coulter 1992).
+      "stanley" steers the front wheels of a Car, forwards alone, by the error of heading and atan(gain ·
+        error / (softening + v)); gain [1/s], softening [m/s]. In bends the rear axle cuts the corner
+        (Hoffmann, Tomlin, Montemerlo and Thrun 2007).
+      "dynamic_window" heads a Unicycle for the point of the path `lookahead` [m] away, around what a sensor
+        of `rays` rays sees within `sensor_range` [m], `margin` [m] beside it: of the speeds that a step can
+        reach and that can be braked in time, the best by `weights` of heading, free way and speed (Fox,
+        Burgard and Thrun 1997).
 
-    Coulter 1992; Hoffmann, Tomlin, Montemerlo and Thrun 2007.
+    Returns a Run, truthy if it arrived. Raises InputError for a path of fewer than two points or with none to
+    follow, or a number that makes no sense; UnknownNameError for an unknown controller; InputTypeError for an
+    option that it does not have, or a vehicle that it cannot drive.
     """
     body = Unicycle() if vehicle is None else vehicle
-    if not isinstance(body, Unicycle | Car):
-        raise InputTypeError(f"vehicle is a {type(body).__name__}; give a Unicycle or a Car")
     rows, runs = track_of(path)
     check_controller(controller, body, runs)
     fast = body.max_speed if speed is None else min(positive(speed, "speed"), body.max_speed)
-    wheelbase = body.wheelbase if isinstance(body, Car) else 0.0
-    far = max(fast, 1.5 * wheelbase, 0.3) if lookahead is None else positive(lookahead, "lookahead")
+    steering, far = tuning(controller, body, fast, options)
     step = positive(time_step, "time_step")
     length = float(np.hypot(*np.diff(rows[:, :2], axis=0).T).sum())
     limit = 10 * length / fast + 60 if time_limit is None else positive(time_limit, "time_limit")
-    window = 2 * far + wheelbase + 4 * fast * step
-    near, wait = positive(tolerance, "tolerance"), positive(patience, "patience")
-    settings = np.array([step, limit, fast, window, near, wait])
-    steering = np.array([positive(gain, "gain"), positive(softening, "softening")])
-    if controller == "pure_pursuit":
-        steering[0] = far
+    window = 2 * far + 4 * fast * step
+    settings = [step, limit, fast, window, positive(tolerance, "tolerance"), positive(patience, "patience")]
     points = np.ascontiguousarray(rows[:, :2])
     outcome, table = _core._follow(
-        *(points, runs, np.array(body._limits), start_of(start, rows, runs)),
-        *(settings, CONTROLLERS.index(controller), steering),
+        *(points, runs, np.array(body._limits), start_of(start, rows, runs), np.array(settings)),
+        *(CONTROLLERS.index(controller), steering, grid_of(world), np.array(body._footprint)),
     )
-    parts = (table[:, :3], table[:, 3:5], table[:, 5], table[:, 6])
     times: Array = step * np.arange(len(table), dtype=np.float64)
+    parts = (table[:, :3], table[:, 3:5], table[:, 5], table[:, 6])
     return Run(body, controller, times, *parts, OUTCOMES[outcome], points[-1])
+
+
+def tuning(
+    controller: str, vehicle: Unicycle | Car, speed: float, options: dict[str, Any]
+) -> tuple[Array, float]:
+    """The numbers (7,) of a controller, and how far ahead of the vehicle it looks [m]."""
+    known = OPTIONS[controller]
+    for name in options:
+        if name not in known:
+            raise InputTypeError(str(suggest("option", name, known, owner=f"controller {controller!r}")))
+    given = {**known, **options}
+    wheelbase = vehicle.wheelbase if isinstance(vehicle, Car) else 0.0
+    if "lookahead" in given and given["lookahead"] is None:
+        seconds = 1.5 if controller == "dynamic_window" else 1.0
+        given["lookahead"] = max(seconds * speed, 1.5 * wheelbase, 0.3)
+    weights = as_floats(given.pop("weights", (1.0, 1.0, 1.0)), "weights")
+    if weights.shape != (3,) or not (weights >= 0).all() or not weights.any():
+        raise InputError(f"weights is {options['weights']!r}; give three numbers of zero or more")
+    numbers = {name: positive(value, name) for name, value in given.items()}
+    if controller == "dynamic_window":
+        keeps = vehicle._footprint[3] + numbers["margin"]
+        order = [keeps, numbers["lookahead"], numbers["sensor_range"], numbers["rays"], *weights.tolist()]
+        return np.array(order), numbers["lookahead"]
+    order = list(numbers.values())
+    return np.array(order + [0.0] * (7 - len(order))), numbers.get("lookahead", 2 * wheelbase)
+
+
+def grid_of(world: Any) -> Any:
+    """The grid of a world, None without one; InputTypeError for anything else."""
+    if world is None or isinstance(world, _core.GridBase):
+        return world
+    raise InputTypeError(f"world is a {type(world).__name__}; give an OccupancyGrid (or world.to_grid())")
 
 
 def positive(value: Any, name: str) -> float:
@@ -95,15 +135,21 @@ def positive(value: Any, name: str) -> float:
 
 def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> None:
     """Whether a controller of that name exists and can drive the vehicle along the runs."""
+    if not isinstance(vehicle, Unicycle | Car):
+        raise InputTypeError(f"vehicle is a {type(vehicle).__name__}; give a Unicycle or a Car")
     if controller not in CONTROLLERS:
         raise suggest("controller", controller, CONTROLLERS)
+    if controller == "dynamic_window" and not isinstance(vehicle, Unicycle):
+        raise InputTypeError("dynamic_window drives a disc that turns on the spot; give a Unicycle")
     if controller == "stanley" and not isinstance(vehicle, Car):
         raise InputTypeError(
             "stanley steers front wheels, a Unicycle has none; give vehicle=Car() or pure_pursuit"
         )
     backwards = any(direction < 0 for _, direction in runs)
-    if controller == "stanley" and backwards:
-        raise InputError("stanley drives forwards and part of the path is driven backwards; use pure_pursuit")
+    if controller != "pure_pursuit" and backwards:
+        raise InputError(
+            f"{controller} drives forwards, part of the path is driven backwards; use pure_pursuit"
+        )
     if backwards and vehicle.max_reverse == 0:
         raise InputError("part of the path is driven backwards, and max_reverse of the vehicle is 0")
 

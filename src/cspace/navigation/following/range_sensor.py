@@ -1,0 +1,40 @@
+"""A range sensor: how far rays go on a grid."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import as_floats, leading_axes
+from cspace.errors import InputError, InputTypeError
+from cspace.tolerances import LARGEST_NUMBER
+
+__all__ = ["cast_rays"]
+
+
+def cast_rays(grid: Any, points: Any, angles: Any, max_range: float = np.inf) -> Any:
+    """How far rays go until they enter a blocked cell, (...) [m]; a float for one ray.
+
+    grid: an OccupancyGrid, whose outside is blocked. points (..., 2) [m], angles (...) [rad] in the world
+    frame, which broadcast. max_range [m]: what is returned where nothing is nearer. From inside a blocked
+    cell or outside the range is 0. A ray between two cells is stopped where both are blocked, one through a
+    corner by the cell behind it or by both beside it.
+
+    Raises InputTypeError for what is no OccupancyGrid, InputError for what is no point or angle, or a
+    max_range that is not above zero. Amanatides and Woo 1987.
+    """
+    if not isinstance(grid, _core.GridBase):
+        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    places = as_floats(points, "points", last=(2,), largest=LARGEST_NUMBER)
+    turns = as_floats(angles, "angles", largest=LARGEST_NUMBER)
+    most = as_floats(max_range, "max_range", finite=False)
+    if most.ndim or not most > 0:
+        raise InputError(f"max_range is {max_range!r}; give one length above zero, in metres")
+    batch = leading_axes(points=places.shape[:-1], angles=turns.shape)
+    rows = np.ascontiguousarray(np.broadcast_to(places, (*batch, 2)).reshape(-1, 2))
+    out = np.empty(len(rows))
+    flat = np.ascontiguousarray(np.broadcast_to(turns, batch).ravel())
+    _core._cast_rays(grid, rows, flat, float(most), out)
+    return out.reshape(batch) if batch else float(out[0])
