@@ -7,14 +7,17 @@
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/any_angle/polyanya.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
+#include "cspace/navigation/visibility/search.hpp"
 
 struct PolygonCore {
     explicit PolygonCore(cspace::maps::Outlines outlines) : world(std::move(outlines)) {}
 
     cspace::maps::PolygonWorld world;
     double tolerance = 0;  // how deep in an obstacle rounding may have put a point that lies on a wall [m]
-    std::unique_ptr<cspace::navigation::Walls> felt;  // what robots touch; made when first asked, as the next
-    std::unique_ptr<cspace::navigation::Polyanya> shortest;  // made when first asked; used with the GIL held
+    // Made when first asked; used with the GIL held.
+    std::unique_ptr<cspace::navigation::Walls> felt;  // what robots touch
+    std::unique_ptr<cspace::navigation::Polyanya> shortest;
+    std::unique_ptr<cspace::navigation::VisibilitySearch> visibility;
 };
 
 // The core behind a Python object; null for other objects.

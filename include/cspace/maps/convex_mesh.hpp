@@ -2,7 +2,7 @@
 // (after Hertel & Mehlhorn 1983, "Fast triangulation of simple polygons"), the longest edges first.
 #pragma once
 
-#include "cspace/maps/free_space.hpp"
+#include "cspace/maps/sectors.hpp"
 
 namespace cspace::maps {
 
@@ -89,54 +89,14 @@ class Merger {
     }
 };
 
-// The sectors of free space around each point: those of a point in open space are the whole turn.
-struct Sectors {
-    std::vector<Index> of;            // of corner i of triangle t at 3t + i
-    std::vector<Point> points;        // of each sector
-    std::vector<std::uint8_t> turns;  // whether a sector is larger than half a turn and ends at walls
-};
-
-inline Sectors find_sectors(const FreeSpace& space) {
-    const Triangulation& mesh = space.mesh;
-    Sectors found;
-    found.of.assign(3 * mesh.triangles.size(), none);
-    for (Index seed = 0; seed < Index(found.of.size()); ++seed) {
-        if (!space.is_free(seed / 3) || found.of[std::size_t(seed)] != none) continue;
-        Index t = seed / 3;
-        int i = int(seed % 3);
-        const Index v = mesh[t].corner[std::size_t(i)];
-        while (!space.is_wall(t, before(i))) {  // clockwise to a wall, or once around
-            t = mesh[t].across[std::size_t(before(i))];
-            i = mesh[t].place_of(v);
-            if (t == seed / 3) break;
-        }
-        const bool has_walls = space.is_wall(t, before(i));
-        const Point first = mesh.point(mesh[t].corner[std::size_t(after(i))]), center = mesh.point(v);
-        const Index sector = Index(found.points.size());
-        for (;;) {
-            found.of[std::size_t(3 * t + i)] = sector;
-            if (space.is_wall(t, after(i))) break;
-            t = mesh[t].across[std::size_t(after(i))];
-            i = mesh[t].place_of(v);
-            if (found.of[std::size_t(3 * t + i)] == sector) break;
-        }
-        const Point last = mesh.point(mesh[t].corner[std::size_t(before(i))]);
-        const int turn = orientation(last, center, first);
-        found.points.push_back(center);
-        found.turns.push_back(
-            has_walls && (turn < 0 || (turn == 0 && (first == last || !is_between(last, center, first)))));
-    }
-    return found;
-}
-
 }  // namespace detail
 
 inline ConvexMesh make_convex_mesh(const FreeSpace& space) {
     const detail::Merger merged(space);
-    detail::Sectors sectors = detail::find_sectors(space);
+    const Sectors sectors = find_sectors(space);
     ConvexMesh mesh;
-    mesh.points = std::move(sectors.points);
-    mesh.turns = std::move(sectors.turns);
+    mesh.points = sectors.points;
+    mesh.turns = sectors.turns;
     mesh.of_triangle.assign(space.mesh.triangles.size(), none);
     mesh.first.push_back(0);
     std::vector<Index> number(merged.next.size(), none), half;

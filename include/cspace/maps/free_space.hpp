@@ -5,29 +5,11 @@
 #include <span>
 
 #include "cspace/maps/boundary.hpp"
+#include "cspace/maps/outlines.hpp"
+#include "cspace/maps/snap_rounding.hpp"
 #include "cspace/maps/triangulator.hpp"
 
 namespace cspace::maps {
-
-// The outlines of obstacles as directed or undirected edges between points, each owned by an obstacle. A
-// place belongs to an obstacle if a line from far away to it crosses the obstacle's outline an odd number of
-// times: an outline inside an outline is a hole.
-struct Outlines {
-    struct Edge {
-        Index from, to, owner;
-    };
-    std::vector<Point> points;
-    std::vector<Edge> edges;
-    Index obstacles = 0;  // owners are numbered from 0 to obstacles − 1
-    Point low, high;      // the bounds: what lies outside them is no free space
-
-    void add_ring(std::span<const Point> ring, Index owner) {
-        const Index first = Index(points.size()), count = Index(ring.size());
-        points.insert(points.end(), ring.begin(), ring.end());
-        for (Index i = 0; i < count; ++i) edges.push_back({first + i, first + (i + 1) % count, owner});
-        obstacles = std::max(obstacles, owner + 1);
-    }
-};
 
 struct FreeSpace {
     Triangulation mesh;
@@ -37,6 +19,7 @@ struct FreeSpace {
     std::vector<Triangulator::Crossing> crossings;  // where outlines cross
     std::vector<Triangulator::Owner> owners;        // the lists that edges and crossings name
     bool complete = false;                          // false: the outlines cross too often
+    bool is_snapped = false;  // whether outlines that nearly coincide were brought together
 
     bool is_free(Index t) const { return t != none && component[std::size_t(t)] != none; }
     bool is_wall(Index t, int edge) const { return mesh[t].owners[std::size_t(edge)] != none; }
@@ -128,9 +111,8 @@ inline void find_components(FreeSpace& space) {
     }
 }
 
-}  // namespace detail
-
-inline FreeSpace make_free_space(const Outlines& world) {
+// The triangulation of outlines, or false as `complete` where bending them to their crossings would not end.
+inline FreeSpace triangulated(const Outlines& world) {
     FreeSpace space;
     Point low = world.low, high = world.high;
     for (const Point p : world.points) {
@@ -143,7 +125,7 @@ inline FreeSpace make_free_space(const Outlines& world) {
     for (std::size_t i = 0; i < n; ++i) order[i] = {along_hilbert(world.points[i], low, side), Index(i)};
     std::sort(order.begin(), order.end());
 
-    Triangulator make(low, high);
+    Triangulator make(low, high, world.edges.size());
     make.mesh.points.reserve(n + 16);
     make.mesh.triangles.reserve(2 * n + 32);
     std::vector<Index> vertex(n);
@@ -163,6 +145,19 @@ inline FreeSpace make_free_space(const Outlines& world) {
     space.mesh = std::move(make.mesh);
     space.owners = std::move(make.owners);
     space.crossings = std::move(make.crossings);
+    return space;
+}
+
+}  // namespace detail
+
+inline FreeSpace make_free_space(const Outlines& world) {
+    FreeSpace space = detail::triangulated(world);
+    Outlines snapped;
+    for (int tries = 0; !space.complete && tries < 4; ++tries) {
+        snapped = snap_rounded(tries == 0 ? world : snapped);
+        space = detail::triangulated(snapped);
+        space.is_snapped = true;
+    }
     space.component.assign(space.mesh.triangles.size(), none);
     space.obstacle.assign(space.mesh.triangles.size(), none);
     if (!space.complete) return space;

@@ -5,12 +5,11 @@
 #include <cstdint>
 #include <vector>
 
-#include "cspace/math/plane.hpp"
+#include "cspace/maps/outlines.hpp"
 #include "cspace/math/predicates.hpp"
 
 namespace cspace::maps {
 
-using Index = std::int32_t;
 inline constexpr Index none = -1;
 
 constexpr int after(int i) { return i == 2 ? 0 : i + 1; }

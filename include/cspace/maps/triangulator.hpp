@@ -30,8 +30,9 @@ class Triangulator {
     std::vector<Owner> owners;
     std::vector<Crossing> crossings;
 
-    // Everything that will be inserted lies between low and high.
-    Triangulator(Point low, Point high) {
+    // Everything that will be inserted lies between low and high; `segments` says how many there are.
+    Triangulator(Point low, Point high, std::size_t segments)
+        : most_crossings_(std::min<std::size_t>(5'000'000, 64 + 4 * segments * segments)) {
         const double reach = std::max({high.x - low.x, high.y - low.y, 1e-300});
         low = low - Point{reach, reach};
         high = high + Point{reach, reach};
@@ -63,12 +64,10 @@ class Triangulator {
             const Segment s = pending_.back();
             pending_.pop_back();
             if (s.a != s.b) advance(s);
-            if (crossings.size() > most_crossings) return false;
+            if (crossings.size() > most_crossings_) return false;
         }
         return true;
     }
-
-    static constexpr std::size_t most_crossings = 5'000'000;
 
   private:
     struct Segment {
@@ -77,6 +76,7 @@ class Triangulator {
     using Edge = std::pair<Index, Index>;
 
     Index last_ = 0;
+    std::size_t most_crossings_;
     double rounding_;  // how far a crossing may be moved by rounding
     std::vector<Segment> pending_;
     std::vector<std::pair<Index, Index>>

@@ -204,6 +204,7 @@ class Polyanya {
         ++price_.nodes;
         Node from{};
         from.root = at_start;
+        from.edge = none;
         for (Index e = mesh_.begin(p); e < mesh_.end(p); ++e)
             if (mesh_.twin[std::size_t(e)] != none) see(from, none, e);
     }
@@ -215,34 +216,42 @@ class Polyanya {
         const int facing = a == from.root || b == from.root ? 0 : orientation(r, at(a), at(b));
         if (facing < 0) return;
         if (facing == 0) return see_along(from, parent, edge, a, b);
-        if (side(from.on_right, b) <= 0 && from.on_right.to != none) return;
-        if (side(from.on_left, a) >= 0 && from.on_left.to != none) return;
+        if (is_past(from.on_right, -1, r, b) || is_past(from.on_left, 1, r, a)) return;
         const bool a_is_hidden = from.on_right.to != none && side(from.on_right, a) < 0;
         const bool b_is_hidden = from.on_left.to != none && side(from.on_left, b) > 0;
         push(from.root, from.g, b_is_hidden ? from.on_left : Line{from.root, b},
              a_is_hidden ? from.on_right : Line{from.root, a}, edge, parent);
     }
-    // An edge on one line with the root: it is entered from its nearer end, or from the root itself. Where
-    // the start lies on the edge, the polygon across holds it too; where the root lies outside the polygon,
-    // turns at the ends of the interval lead there.
+    // An edge on one line with the root: it is entered from the root itself, or from its nearer end. Where
+    // the start lies on the edge, the polygon across holds it too; at an end of the edge that was entered it
+    // is reached by a turn.
     void see_along(const Node& from, Index parent, Index edge, Index a, Index b) {
         const Point r = at(from.root);
         if (a == from.root) return push(from.root, from.g, {from.root, b}, {}, edge, parent);
         if (b == from.root) return push(from.root, from.g, {}, {from.root, a}, edge, parent);
-        if (from.root == at_start ? is_between(at(a), r, at(b)) : !is_entered_at_root(from)) return;
+        if (from.root == at_start && is_between(at(a), r, at(b))) return;
         if (hidden(from, a) || hidden(from, b)) return;
-        if (is_between(r, at(a), at(b)))
+        const bool a_is_near = is_between(r, at(a), at(b));
+        if (is_end_of(from.edge, a_is_near ? a : b)) return;
+        if (a_is_near)
             push_along(from.root, from.g, a, b, to_the_right, edge, parent, none);
         else
             push_along(from.root, from.g, b, a, to_the_left, edge, parent, none);
     }
-    bool is_entered_at_root(const Node& from) const {
-        return mesh_.corner[std::size_t(from.edge)] == from.root ||
-               mesh_.corner[std::size_t(mesh_.next(from.edge))] == from.root;
+    bool is_end_of(Index edge, Index v) const {
+        return edge != none &&
+               (mesh_.corner[std::size_t(edge)] == v || mesh_.corner[std::size_t(mesh_.next(edge))] == v);
     }
     bool hidden(const Node& from, Index v) const {
         return (from.on_right.to != none && side(from.on_right, v) < 0) ||
                (from.on_left.to != none && side(from.on_left, v) > 0);
+    }
+    // Whether a point lies on a side of a line (1: left) or, ahead of the root, on the line. Behind the root
+    // the line bounds nothing: that far a path turns around the end of a wall.
+    bool is_past(Line line, int hand, Point root, Index v) const {
+        if (line.to == none) return false;
+        const int where = side(line, v) * hand;
+        return where > 0 || (where == 0 && dot(at(line.to) - at(line.from), at(v) - root) > 0);
     }
     int side(Line line, Index v) const {
         if (line.to == none || line.to == v || line.from == v) return 0;

@@ -1,0 +1,59 @@
+// The sectors of free space around each point: the parts between two walls, or the whole turn.
+//
+// Where obstacles meet in a point, free space has several sectors there that do not touch: a path through one
+// does not come to the other.
+#pragma once
+
+#include "cspace/maps/free_space.hpp"
+
+namespace cspace::maps {
+
+struct Sectors {
+    std::vector<Index> of;      // of corner i of triangle t at 3t + i
+    std::vector<Point> points;  // of each sector
+    std::vector<Index> first;   // its first corner counterclockwise, as 3t + i
+    std::vector<Point> begin,
+        end;  // the ends of the walls that it begins and ends at, the sector on the left of the first
+    std::vector<std::uint8_t>
+        turns;  // whether it is larger than half a turn and ends at walls: paths turn there
+
+    std::size_t size() const { return points.size(); }
+};
+
+inline Sectors find_sectors(const FreeSpace& space) {
+    const Triangulation& mesh = space.mesh;
+    Sectors found;
+    found.of.assign(3 * mesh.triangles.size(), none);
+    for (Index seed = 0; seed < Index(found.of.size()); ++seed) {
+        if (!space.is_free(seed / 3) || found.of[std::size_t(seed)] != none) continue;
+        Index t = seed / 3;
+        int i = int(seed % 3);
+        const Index v = mesh[t].corner[std::size_t(i)];
+        while (!space.is_wall(t, before(i))) {  // clockwise to a wall, or once around
+            t = mesh[t].across[std::size_t(before(i))];
+            i = mesh[t].place_of(v);
+            if (t == seed / 3) break;
+        }
+        const bool has_walls = space.is_wall(t, before(i));
+        const Point first = mesh.point(mesh[t].corner[std::size_t(after(i))]), center = mesh.point(v);
+        const Index sector = Index(found.points.size());
+        found.first.push_back(3 * t + i);
+        for (;;) {
+            found.of[std::size_t(3 * t + i)] = sector;
+            if (space.is_wall(t, after(i))) break;
+            t = mesh[t].across[std::size_t(after(i))];
+            i = mesh[t].place_of(v);
+            if (found.of[std::size_t(3 * t + i)] == sector) break;
+        }
+        const Point last = mesh.point(mesh[t].corner[std::size_t(before(i))]);
+        const int turn = orientation(last, center, first);
+        found.points.push_back(center);
+        found.begin.push_back(first);
+        found.end.push_back(last);
+        found.turns.push_back(
+            has_walls && (turn < 0 || (turn == 0 && (first == last || !is_between(last, center, first)))));
+    }
+    return found;
+}
+
+}  // namespace cspace::maps

@@ -1,0 +1,114 @@
+// The visibility graph: the corners that free space bends around, and which of them see each other so that a
+// taut string may run from one to the other (Lozano-Pérez & Wesley 1979; only bitangents are kept: Latombe
+// 1991, section 4.1).
+#pragma once
+
+#include "cspace/navigation/visibility/view.hpp"
+
+namespace cspace::navigation {
+
+class VisibilityGraph {
+  public:
+    struct Edge {
+        Index to;
+        double length;
+    };
+
+    explicit VisibilityGraph(const FreeSpace& space) : space_(space), sectors_(maps::find_sectors(space)) {
+        node_of_.assign(sectors_.size(), none);
+        for (Index s = 0; s < Index(sectors_.size()); ++s)
+            if (sectors_.turns[std::size_t(s)]) {
+                node_of_[std::size_t(s)] = size();
+                sector_.push_back(s);
+            }
+        seen_by_.assign(sector_.size(), none);
+        first_.push_back(0);
+        View view(space_);
+        for (Index n = 0; n < size(); ++n) {
+            connect(view, n);
+            first_.push_back(Index(edges_.size()));
+        }
+    }
+
+    Index size() const { return Index(sector_.size()); }
+    std::size_t edges() const { return edges_.size(); }
+    Point point(Index n) const { return sectors_.points[std::size_t(sector_[std::size_t(n)])]; }
+    std::span<const Edge> edges_of(Index n) const {
+        return {edges_.data() + first_[std::size_t(n)], edges_.data() + first_[std::size_t(n) + 1]};
+    }
+
+    // The nodes that a point of free space sees and a taut string from it may turn at; `triangles` hold the
+    // point. `enter` is called as by View.
+    template <class Enter>
+    void see_from(View& view, Point p, const std::vector<Index>& triangles, std::vector<Edge>& out,
+                  Enter enter) const {
+        const auto note = [&](Index corner) {
+            const Index n = node_of_[std::size_t(sectors_.of[std::size_t(corner)])];
+            if (n == none || point(n) == p || !is_tangent(p, n)) return;
+            for (const Edge& known : out)
+                if (known.to == n) return;
+            out.push_back({n, distance(p, point(n))});
+        };
+        for (const Index t : triangles) {
+            const maps::Triangle& tri = space_.mesh[t];
+            for (int i = 0; i < 3; ++i) {
+                note(3 * t + i);
+                const Point a = space_.mesh.point(tri.begin(i)), b = space_.mesh.point(tri.end(i));
+                if (orientation(p, a, b) > 0) view.look(p, t, i, {{p, a}, {p, b}}, enter, note);
+            }
+        }
+    }
+
+  private:
+    const FreeSpace& space_;
+    Sectors sectors_;
+    std::vector<Index> node_of_, sector_;  // of each sector its node, and back
+    std::vector<Index> first_;
+    std::vector<Edge> edges_;
+    std::vector<Index> seen_by_;
+
+    // Whether the walls that meet at a node lie on one side of the line to it.
+    bool is_tangent(Point from, Index n) const {
+        const std::size_t s = std::size_t(sector_[std::size_t(n)]);
+        const Point w = sectors_.points[s];
+        return orientation(from, w, sectors_.begin[s]) * orientation(from, w, sectors_.end[s]) >= 0;
+    }
+
+    // The edges of a node. Seen from it, a taut string comes in or leaves along its walls' sides alone:
+    // counterclockwise from its first wall to the line of the last, or from the line of the first to the
+    // last.
+    void connect(View& view, Index n) {
+        const std::size_t s = std::size_t(sector_[std::size_t(n)]);
+        const maps::Triangulation& mesh = space_.mesh;
+        const Point v = sectors_.points[s];
+        const Ray past_last{sectors_.end[s], v}, past_first{sectors_.begin[s], v};
+        const auto note = [&](Index corner) {
+            const Index m = node_of_[std::size_t(sectors_.of[std::size_t(corner)])];
+            if (m == none || m == n || seen_by_[std::size_t(m)] == n) return;
+            const Point w = point(m);
+            if ((past_last.side(w) > 0 && past_first.side(w) < 0) || !is_tangent(v, m)) return;
+            seen_by_[std::size_t(m)] = n;
+            edges_.push_back({m, distance(v, w)});
+        };
+        const auto enter = [](Index, const Cone&) {};
+        const bool is_tip = sectors_.begin[s] == sectors_.end[s];  // of a wall without thickness
+        Index t = sectors_.first[s] / 3;
+        for (int i = int(sectors_.first[s] % 3);;) {
+            const maps::Triangle& tri = mesh[t];
+            const Point a = mesh.point(tri.begin(i)), b = mesh.point(tri.end(i));
+            note(3 * t + maps::after(i));
+            note(3 * t + maps::before(i));
+            const Ray right{v, a}, left{v, b};
+            if (past_last.side(a) < 0 || (is_tip && a == sectors_.end[s]))
+                view.look(v, t, i, {right, past_last.side(b) <= 0 ? left : past_last}, enter, note);
+            if (past_first.side(b) > 0 || (is_tip && b == sectors_.begin[s]))
+                view.look(v, t, i, {past_first.side(a) >= 0 ? right : past_first, left}, enter, note);
+            if (space_.is_wall(t, maps::after(i))) return;
+            const Index u = tri.across[std::size_t(maps::after(i))];
+            i = mesh[u].place_of(tri.corner[std::size_t(i)]);
+            t = u;
+        }
+    }
+};
+
+}  // namespace cspace::navigation

@@ -1,0 +1,62 @@
+"""The shortest path over the visibility graph: corners of obstacles that see each other.
+
+Lozano-Pérez & Wesley 1979, "An algorithm for planning collision-free paths among polyhedral obstacles".
+Only corners that free space bends around can be turned at, and only edges that touch the obstacles at both
+ends without entering them (bitangents) can be part of a shortest path. What a corner sees is found by
+walking through the triangles of free space (Bungiu et al. 2014); the graph is kept with the world, and a
+search by A* with the straight line to the goal as estimate joins start and goal to what they see.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import numpy.typing as npt
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.navigation.trace import Trace
+
+if TYPE_CHECKING:
+    from cspace.maps import PolygonWorld
+    from cspace.navigation.route import Route
+
+__all__ = ["plan", "reason", "trace", "visibility_graph"]
+
+_WORDS = ("expand",)
+
+
+def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
+    """The shortest path from start to goal (2,) [m] through a PolygonWorld.
+
+    The trace holds the event "expand": the last edge of the shortest way to a corner; its value is that way's
+    length [m].
+    """
+    route: Route | None = _core._visibility(world, world._core, "visibility_graph", None, start, goal)
+    if route is None:
+        ends = world.check_free(start, "start"), world.check_free(goal, "goal")
+        route = _core._visibility(world, world._core, "visibility_graph", None, *ends)
+        assert route is not None
+    return route
+
+
+def reason(route: Route) -> str:
+    """The verdict in a sentence."""
+    if route:
+        nodes = len(visibility_graph(route.world)[0])
+        return f"the shortest path, over {len(route.path) - 2} of the graph's {nodes} corners"
+    return f"walls divide start from goal: no path connects the {route.world.components} parts of free space"
+
+
+def trace(route: Route) -> Trace:
+    """The corners in the order in which they were expanded."""
+    return Trace(_WORDS, *_core._visibility_trace(route.world._core, route.start, route.goal))
+
+
+def visibility_graph(world: PolygonWorld) -> tuple[Array, npt.NDArray[np.int32]]:
+    """The corners (n, 2) [m] that free space bends around, and the pairs (k, 2) of them that a path may
+    join."""
+    nodes, edges = _core._visibility_graph(world._core)
+    return nodes, edges
