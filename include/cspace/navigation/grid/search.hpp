@@ -8,6 +8,7 @@
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/navigation/best_first.hpp"
+#include "cspace/navigation/bucket_queue.hpp"
 #include "cspace/navigation/focal_queue.hpp"
 #include "cspace/navigation/grid/grid_search.hpp"
 #include "cspace/navigation/grid/jump_points.hpp"
@@ -60,15 +61,22 @@ struct GridScratch {
     PagedNodes<double> lengths;
     SparseNodes sparse;
     PriorityQueue queue;
+    BucketQueue buckets;
     Waves waves;
 
     std::size_t bytes() const {
-        return steps.bytes() + lengths.bytes() + sparse.bytes() + queue.bytes() + waves.bytes();
+        return steps.bytes() + lengths.bytes() + sparse.bytes() + queue.bytes() + buckets.bytes() +
+               waves.bytes();
     }
-    void release() { steps.release(), lengths.release(), sparse.release(), queue.release(), waves.release(); }
+    void release() {
+        steps.release(), lengths.release(), sparse.release(), queue.release(), buckets.release(),
+            waves.release();
+    }
 };
 
 namespace search {
+
+inline constexpr double bucket_width = 0.05;  // cells, or the least cost of one: few f differ by less
 
 template <class Look>
 void note_settled(GridAnswer& answer, const Look& look) {
@@ -169,14 +177,14 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
     const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
         search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen, answer);
     };
-    scratch.queue.clear();
+    scratch.buckets.begin(search::bucket_width * query.least_cost);
     switch (query.planner) {
         case GridPlanner::best_first:
             if (query.costs)
-                run(StepParents<StepCost>{{query.costs, grid.columns()}}, scratch.lengths, scratch.queue,
+                run(StepParents<StepCost>{{query.costs, grid.columns()}}, scratch.lengths, scratch.buckets,
                     false);
             else
-                run(StepParents<StepLength>{}, scratch.steps, scratch.queue, false);
+                run(StepParents<StepLength>{}, scratch.steps, scratch.buckets, false);
             break;
         case GridPlanner::focal: {
             FocalQueue queue(query.bound);
@@ -204,10 +212,10 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
             }
             break;
         case GridPlanner::theta_star:
-            run(SightParents{query.corners}, scratch.lengths, scratch.queue, false);
+            run(SightParents{query.corners}, scratch.lengths, scratch.buckets, false);
             break;
         case GridPlanner::lazy_theta_star:
-            run(LazySightParents{query.corners}, scratch.lengths, scratch.queue, false);
+            run(LazySightParents{query.corners}, scratch.lengths, scratch.buckets, false);
             break;
         case GridPlanner::waves:
             scratch.waves.clear();
