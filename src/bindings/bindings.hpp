@@ -5,6 +5,7 @@ void bind_cars(nanobind::module_& m);
 void bind_coverage(nanobind::module_& m);
 void bind_bugs(nanobind::module_& m);
 void bind_curves(nanobind::module_& m);
+void bind_curves_quick(nanobind::module_& m);
 void bind_following(nanobind::module_& m);
 void bind_math(nanobind::module_& m);
 void bind_robot(nanobind::module_& m);

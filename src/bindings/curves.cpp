@@ -20,16 +20,6 @@ using Pieces = Array<const double, nb::shape<-1, 2>>;
 
 CarPose pose_of(const double* row) { return {row[0], row[1], row[2]}; }
 
-// The pieces of the shortest curve, (turn, signed length [m]) each.
-nb::list shortest(bool reverses, PoseRow start, PoseRow goal, double radius) {
-    const CarPose from = pose_of(start.data()), to = pose_of(goal.data());
-    const Curve curve = reverses ? reeds_shepp_curve(from, to, radius) : dubins_curve(from, to, radius);
-    nb::list pieces;
-    for (int i = 0; i < curve.count; ++i)
-        pieces.append(nb::make_tuple(curve.piece[i].turn, radius * curve.piece[i].length));
-    return pieces;
-}
-
 void distances(bool reverses, Poses starts, Poses goals, double radius, RowOut out) {
     if (starts.shape(0) != out.size() || goals.shape(0) != out.size())
         throw nb::value_error("as many starts, goals and distances");
@@ -57,8 +47,6 @@ void poses_along(PoseRow start, Pieces pieces, double radius, Row s, PosesOut ou
 }  // namespace
 
 void bind_curves(nb::module_& m) {
-    m.def("_car_curve", shortest, "reverses"_a, "start"_a, "goal"_a, "radius"_a,
-          "Pieces (turn, signed length) of the Dubins or Reeds–Shepp curve.");
     m.def("_car_distances", distances, "reverses"_a, "starts"_a, "goals"_a, "radius"_a, "out"_a,
           "Lengths of Dubins or Reeds–Shepp curves between rows of poses, written into out.");
     m.def("_car_poses", poses_along, "start"_a, "pieces"_a, "radius"_a, "s"_a, "out"_a,

@@ -11,6 +11,7 @@ NB_MODULE(_core, m) {
     m.attr("isa") = cspace::kernels::isa_name();
     bind_math(m);
     bind_curves(m);
+    bind_curves_quick(m);
     bind_robot(m);
     bind_rotations(m);
     bind_short_arms(m);

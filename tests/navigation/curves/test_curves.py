@@ -198,3 +198,30 @@ def test_what_is_no_question_is_refused(name):
     with pytest.raises(InputError, match="leading axes"):
         DISTANCE[name](np.zeros((2, 3)), np.zeros((3, 3)), 1.0)
     assert DISTANCE[name](np.zeros((4, 1, 3)), np.zeros((5, 3)), 1.0).shape == (4, 5)
+
+
+def test_a_word_is_one_of_the_48_of_reeds_and_shepp():
+    """Turns alternate with at most two changes of direction, and no straight segment beside one (Reeds and
+    Shepp 1990, theorem 1), whatever the goal."""
+    rng = np.random.default_rng(9)
+    for goal in np.concatenate([random_poses(rng, 1500, size=s) for s in (0.3, 2.0, 6.0)]):
+        curve = nav.reeds_shepp(np.zeros(3), goal, 1.0)
+        letters, signs = curve.word[::2], curve.word[1::2]
+        assert all(
+            a != b or s != t for a, b, s, t in zip(letters, letters[1:], signs, signs[1:], strict=False)
+        )
+        assert len(curve.cusps) <= 2
+        assert letters.count("S") <= 1
+        at = letters.find("S")
+        if at >= 0:  # the car shifts gears between two arcs alone
+            assert len(set(signs[max(at - 1, 0) : at + 2])) == 1
+        assert all(s.length <= np.pi + 1e-9 for s in curve.segments if s.kind != "straight")
+
+
+def test_the_poses_of_a_curve_are_its_own():
+    start = np.zeros(3)
+    curve = nav.dubins(start, (1, 2, 3), 1)
+    start[:] = 7
+    np.testing.assert_array_equal(curve.start, 0)
+    assert nav.dubins([0, 0, 0], [1, 2, 3], 1).length == curve.length
+    assert nav.dubins_distance((0, 0, 0), (1, 2, 3), 1) == curve.length

@@ -14,7 +14,8 @@
 //   L(t) R(w) S(u) L(w) R(v)     (−4i + (u + 2i) e^{−iw}) e^{it}        v = t − turn
 // with w a quarter turn, driven like u, where the car shifts gears before w; the two shapes with one quarter
 // turn also hold read backwards. Every solution of such an equation is a curve that meets the goal, so that a
-// wrong bound on its arcs cannot spoil an answer: each is taken the short way round.
+// wrong bound on its arcs cannot spoil an answer: each is taken the short way round. Of curves that are
+// equally long but for rounding the first counts, and simple shapes come first.
 #pragma once
 
 #include "cspace/navigation/curves/curve.hpp"
@@ -51,12 +52,6 @@ class Words {
         back_cross_ = {other.length, (mirrored ? -other.angle : other.angle) + std::numbers::pi - turn_};
     }
 
-    void all() {
-        between_like_circles();
-        between_unlike_circles();
-    }
-
-  private:
     void between_like_circles() {
         const double d = same_.length, a = same_.angle;
         if (d <= slack_) return consider(Shape::lsl, turn_, 0, 0, 0);
@@ -73,14 +68,6 @@ class Words {
             const double q = std::sqrt(d * d - 4), lean = std::atan2(q, 2.0);
             quarter_then_straight(Shape::lrsl, same_, turn_, q - 2, lean);
             quarter_then_straight(Shape::lsrl, back_same_, -turn_, q - 2, lean);
-        }
-    }
-
-    // L R S L, w and u forwards or backwards; read from the goal it is L S R L.
-    void quarter_then_straight(Shape shape, const Task::Way& way, double turn, double u, double lean) {
-        for (const double s : {1.0, -1.0}) {  // w = s π/2: −2i + (su + 2i)(−si) = 2s − iq
-            const double t = way.angle + (s > 0 ? lean : std::numbers::pi - lean);
-            ends(shape, t, s * u, turn - t + s * half_pi, s);
         }
     }
 
@@ -118,6 +105,15 @@ class Words {
         quarter_then_straight_across(Shape::rsrl, back_cross_, -turn_);
     }
 
+  private:
+    // L R S L, w and u forwards or backwards; read from the goal it is L S R L.
+    void quarter_then_straight(Shape shape, const Task::Way& way, double turn, double u, double lean) {
+        for (const double s : {1.0, -1.0}) {  // w = s π/2: −2i + (su + 2i)(−si) = 2s − iq
+            const double t = way.angle + (s > 0 ? lean : std::numbers::pi - lean);
+            ends(shape, t, s * u, turn - t + s * half_pi, s);
+        }
+    }
+
     // L R S R; read from the goal, in its mirror image, it is R S R L.
     void quarter_then_straight_across(Shape shape, const Task::Way& way, double turn) {
         if (way.length < 2) return;
@@ -141,7 +137,7 @@ class Words {
         t = short_angle(t);
         v = short_angle(v);
         const double length = std::fabs(t) + middle + std::fabs(v);
-        if (length < best_.length) best_ = {length, shape, mirrored_, t, u, v, quarter * half_pi};
+        if (length < best_.length - slack_) best_ = {length, shape, mirrored_, t, u, v, quarter * half_pi};
     }
 
     bool mirrored_;
@@ -152,7 +148,11 @@ class Words {
 
 inline Word shortest(const Task& task) {
     Word best;
-    for (const bool mirrored : {false, true}) Words(task, mirrored, best).all();
+    Words left(task, false, best), right(task, true, best);
+    left.between_like_circles();
+    right.between_like_circles();
+    left.between_unlike_circles();
+    right.between_unlike_circles();
     return best;
 }
 

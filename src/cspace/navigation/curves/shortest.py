@@ -57,18 +57,23 @@ def reeds_shepp_distance(start: Any, goal: Any, radius: float) -> Any:
     return distances(True, start, goal, radius)
 
 
-def shortest(reverses: bool, start: Any, goal: Any, radius: float) -> Curve:
+def shortest(reverses: bool, start: Any, goal: Any, radius: Any) -> Curve:
     """The curve of one start and one goal."""
-    r = turning_radius(radius)
-    a, b = car_poses(start, "start", r), car_poses(goal, "goal", r)
-    for pose, name in ((a, "start"), (b, "goal")):
-        if pose.ndim != 1:
-            raise InputError(f"{name} has shape {pose.shape}, expected (3,): x, y, theta")
-    return Curve(a, b, r, tuple(_core._car_curve(reverses, a, b, r)))
+    told = _core._car_shortest(reverses, start, goal, radius)
+    if told is None:  # not plain numbers: said what is wrong, or made plain
+        r = turning_radius(radius)
+        ends = car_poses(start, "start", r), car_poses(goal, "goal", r)
+        for pose, name in zip(ends, ("start", "goal"), strict=True):
+            if pose.ndim != 1:
+                raise InputError(f"{name} has shape {pose.shape}, expected (3,): x, y, theta")
+        told = _core._car_shortest(reverses, *ends, r)
+    return Curve(*told)
 
 
-def distances(reverses: bool, start: Any, goal: Any, radius: float) -> Any:
+def distances(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
     """The lengths of the curves of broadcast starts and goals."""
+    if (length := _core._car_distance(reverses, start, goal, radius)) is not None:
+        return length
     r = turning_radius(radius)
     a, b = car_poses(start, "start", r), car_poses(goal, "goal", r)
     batch = leading_axes(start=a.shape[:-1], goal=b.shape[:-1])
@@ -80,8 +85,6 @@ def distances(reverses: bool, start: Any, goal: Any, radius: float) -> Any:
 
 def turning_radius(radius: Any) -> float:
     """A turning radius [m]; InputError unless it is one number above zero."""
-    if type(radius) is float and 0 < radius <= LARGEST_NUMBER:
-        return radius
     r = as_floats(radius, "radius", largest=LARGEST_NUMBER)
     if r.ndim or not r > 0:
         raise InputError(
