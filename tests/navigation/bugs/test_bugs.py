@@ -71,6 +71,40 @@ def test_verdicts_and_bounds_in_worlds_of_cells(family):
                 check_bound(route, lengths, entries)
 
 
+def stars(rng, scale, offset):
+    """Up to 20 overlapping polygons, some with corners on a lattice, near the origin or far from it."""
+    polygons = []
+    for _ in range(rng.integers(1, 21)):
+        n = rng.integers(3, 9)
+        angles, radii = np.sort(rng.uniform(0, 2 * np.pi, n)), rng.uniform(0.2, 3, (n, 1))
+        corners = rng.uniform(0, 10, 2) + radii * np.c_[np.cos(angles), np.sin(angles)]
+        polygons.append(scale * np.round(corners, rng.choice([0, 1, 15])) + offset)
+    return polygons
+
+
+def test_verdicts_in_fields_of_overlapping_polygons():
+    rng = np.random.default_rng(3)
+    judged = 0
+    while judged < 150:
+        scale = 10.0 ** rng.integers(-3, 4)
+        offset = scale * rng.choice([0, 1e3, 1e6]) * rng.normal(size=2)
+        bounds = (*(offset - scale), *(offset + 11 * scale))
+        try:
+            world = cs.PolygonWorld(stars(rng, scale, offset), bounds=bounds, repair=True)
+        except InputError:  # rounding left a polygon without corners
+            continue
+        ring = world.walls[rng.integers(len(world.walls))]
+        points = [*(offset + scale * rng.uniform(-1, 11, (3, 2))), ring[0], (ring[0] + ring[1]) / 2]
+        points = [point for point in points if world.is_free(point)]
+        start, goal = (points[k] for k in rng.integers(len(points), size=2))
+        judged += 1
+        # Two points of one triangulation: the parts of free space that hold them.
+        parts = [set(world._core.components_at(*point)) for point in (start, goal)]
+        for planner, options in BUGS + TANGENT:
+            route = cs.navigate(world, start, goal, planner=planner, **options)
+            assert bool(route) == bool(parts[0] & parts[1]), (planner, options, start, goal)
+
+
 def square(x, y, side):
     return np.array([(x, y), (x + side, y), (x + side, y + side), (x, y + side)], dtype=float)
 

@@ -111,7 +111,19 @@ class ContactRobot {
         const Wall wall = walls_->wall(place.in);
         if (at == wall.begin) return corner_before(place.in);
         if (at == wall.end) return {place.in, walls_->next(place.in)};
-        return orientation(wall.begin, wall.end, at) > 0 ? Place{} : place;
+        return orientation(wall.begin, wall.end, at) > 0 && is_in_front(at, place.in) ? Place{} : place;
+    }
+
+    // Whether no other wall is so near that rounding may have set the point behind it.
+    bool is_in_front(Point at, int wall) const {
+        bool in_front = true;
+        const double off = rounding_of(walls_->largest());
+        walls_->at(at, [&](int other) {
+            const Point a = walls_->begin(other), b = walls_->end(other);
+            if (other != wall && orientation(a, b, at) <= 0 && distance(at, nearest_on(a, b, at)) <= off)
+                in_front = false;
+        });
+        return in_front;
     }
 
     Way way_ahead(Point at, const Place& place, Point target) const {

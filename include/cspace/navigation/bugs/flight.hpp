@@ -86,12 +86,19 @@ class Flight {
 
     bool is_ahead(Point p) const {
         if (p != line_.to && !comes_after(line_, p, line_.to)) return false;
-        return leaves_ ? orientation(behind_.begin, behind_.end, p) > 0 : comes_after(line_, line_.from, p);
+        if (!leaves_) return comes_after(line_, line_.from, p);
+        return orientation(behind_.begin, behind_.end, p) > 0 && is_no_further_back(p);
     }
     bool is_ahead(const Wall& wall) const {
         if (!leaves_) return orientation(wall.begin, wall.end, line_.from) > 0;
         const int side = side_of(behind_, wall);
-        return side == 2 ? side_of(wall, behind_) == 1 : side == 1;
+        return (side == 2 ? side_of(wall, behind_) == 1 : side == 1) &&
+               is_no_further_back(crossing_point(line_, wall));
+    }
+    // A line that begins at the rounded position may cross the wall left behind elsewhere, and others before
+    // that.
+    bool is_no_further_back(Point p) const {
+        return line_.from != position_ || dot(line_.to - line_.from, p - position_) >= -near_;
     }
 
     bool comes_first(Point p) const {

@@ -32,17 +32,18 @@ class TangentBug {
           slack_(rounding_of(std::max(std::abs(goal.x), std::abs(goal.y)))) {}
 
     Trip run() {
-        for (;;) {
-            switch (approach()) {
-                case Stage::arrived:
-                    return walker_.finish(Status::found);
-                case Stage::tired:
-                    return walker_.finish(Status::undetermined);
-                default:
-                    break;
-            }
+        double before = std::numeric_limits<double>::infinity();
+        for (bool patient = false;;) {
+            const Stage way = approach();
+            if (way == Stage::arrived) return walker_.finish(Status::found);
+            // Each wall is met nearer to the goal than the last; where rounding denies it, all around that
+            // wall.
+            const bool nearer = is_nearer(robot_.position(), before);
+            if (way == Stage::tired || (patient && !nearer)) return walker_.finish(Status::undetermined);
+            patient = !nearer;
+            before = to_goal(robot_.position());
             walker_.begin_follow();
-            const Stage end = follow(hand_ ? *hand_ : better_hand());
+            const Stage end = follow(hand_ ? *hand_ : better_hand(), patient);
             walker_.end_follow();
             if (end == Stage::arrived) return walker_.finish(Status::found);
             if (end == Stage::shut) return walker_.finish(Status::unreachable);
@@ -111,7 +112,7 @@ class TangentBug {
     }
 
     // Along the wall until something nearer to the goal comes into view than the wall so far, or all around.
-    Stage follow(Hand hand) {
+    Stage follow(Hand hand, bool patient) {
         const Touch hit = robot_.touch();
         double nearest = to_goal(hit.at);
         seen_nearer_.reset();
@@ -126,7 +127,7 @@ class TangentBug {
             const bool last = !first && !hit.is_corner() && piece.name == hit.in.name;
             const Point end = last ? hit.at : far_end(piece, hand);
             const Point foot = nearest_on(from, end, goal_);
-            if (leaves_from(piece, from, foot, nearest)) {
+            if (!patient && leaves_from(piece, from, foot, nearest)) {
                 walker_.stop(hand, where_as_near(from, foot, nearest));
                 return Stage::left;
             }
@@ -139,7 +140,7 @@ class TangentBug {
             if (last) return all_around(round, hand);
             round.add(robot_.touch());
             if (robot_.touch().is_place_of(hit)) return all_around(round, hand);
-            if (leaves_corner(nearest)) return Stage::left;
+            if (!patient && leaves_corner(nearest)) return Stage::left;
         }
     }
 
