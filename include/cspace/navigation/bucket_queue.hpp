@@ -5,7 +5,9 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "cspace/navigation/best_first.hpp"
@@ -17,8 +19,8 @@ class BucketQueue {
     // Forgets everything; a bucket is so wide, in units of priority.
     void begin(double width) {
         near_.clear();
-        for (; current_ < used_; ++current_) buckets_[current_].clear();
-        current_ = used_ = 0;
+        for (std::size_t k = next_filled(); k < most; k = next_filled()) take(k);
+        current_ = 0;
         left_ = 0;
         per_unit_ = 1 / width;
         is_first_ = true;
@@ -30,18 +32,19 @@ class BucketQueue {
             first_ = entry.priority;
         }
         ++left_;
+        // The heap holds all before bucket `current_`.
         const double at = (entry.priority - first_) * per_unit_;
-        if (!(at >= double(current_)) || current_ == most)
-            return near_.push(entry);  // the heap holds all before bucket `current_`
+        if (!(at >= double(current_)) || current_ == most) return near_.push(entry);
         const std::size_t k = at < double(most - 1) ? std::size_t(at) : most - 1;
-        if (k >= buckets_.size()) buckets_.resize(std::min(most, 2 * k + 64));
-        used_ = std::max(used_, k + 1);
+        if (k >= buckets_.size()) grow(k);
+        filled_[k / 64] |= std::uint64_t(1) << (k % 64);
         buckets_[k].push_back(entry);
     }
     Waiting pop() {
-        while (near_.empty()) {
-            for (const Waiting& entry : buckets_[current_]) near_.push(entry);
-            buckets_[current_++].clear();
+        if (near_.empty()) {
+            const std::size_t k = next_filled();
+            for (const Waiting& entry : buckets_[k]) near_.push(entry);
+            take(k);
         }
         --left_;
         return near_.pop();
@@ -51,13 +54,36 @@ class BucketQueue {
         for (const auto& bucket : buckets_) sum += bucket.capacity() * sizeof(Waiting) + sizeof bucket;
         return sum;
     }
-    void release() { near_.release(), std::vector<std::vector<Waiting>>().swap(buckets_), begin(1); }
+    void release() {
+        near_.release();
+        std::vector<std::vector<Waiting>>().swap(buckets_);
+        filled_.clear();
+        begin(1);
+    }
 
   private:
     static constexpr std::size_t most = 1 << 16;  // the last bucket holds all that is farther
+
+    // The first bucket from `current_` on that is not empty, or `most`.
+    std::size_t next_filled() const {
+        for (std::size_t word = current_ / 64; word < filled_.size(); ++word)
+            if (filled_[word]) return 64 * word + std::size_t(std::countr_zero(filled_[word]));
+        return most;
+    }
+    void take(std::size_t k) {
+        buckets_[k].clear();
+        filled_[k / 64] &= filled_[k / 64] - 1;
+        current_ = k + 1;
+    }
+    void grow(std::size_t k) {
+        buckets_.resize(std::min(most, (2 * k + 64) / 64 * 64));
+        filled_.resize(buckets_.size() / 64);
+    }
+
     PriorityQueue near_;
     std::vector<std::vector<Waiting>> buckets_;
-    std::size_t current_ = 0, used_ = 0, left_ = 0;
+    std::vector<std::uint64_t> filled_;  // a bit for each bucket that is not empty
+    std::size_t current_ = 0, left_ = 0;
     double first_ = 0, per_unit_ = 1;
     bool is_first_ = true;
 };

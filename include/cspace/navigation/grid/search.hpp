@@ -60,17 +60,14 @@ struct GridScratch {
     PagedNodes<Steps> steps;
     PagedNodes<double> lengths;
     SparseNodes sparse;
-    PriorityQueue queue;
     BucketQueue buckets;
     Waves waves;
 
     std::size_t bytes() const {
-        return steps.bytes() + lengths.bytes() + sparse.bytes() + queue.bytes() + buckets.bytes() +
-               waves.bytes();
+        return steps.bytes() + lengths.bytes() + sparse.bytes() + buckets.bytes() + waves.bytes();
     }
     void release() {
-        steps.release(), lengths.release(), sparse.release(), queue.release(), buckets.release(),
-            waves.release();
+        steps.release(), lengths.release(), sparse.release(), buckets.release(), waves.release();
     }
 };
 
@@ -134,9 +131,8 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
               GridAnswer& answer) {
     SparseNodes& nodes = scratch.sparse;
     JumpPoints<rule> space(grid, order, nodes);
-    scratch.queue.clear();
-    space.start(start, scratch.queue, answer.effort);
-    const std::uint32_t reached = best_first(space, scratch.queue, answer.effort);
+    space.start(start, scratch.buckets, answer.effort);
+    const std::uint32_t reached = best_first(space, scratch.buckets, answer.effort);
     answer.found = reached != no_node;
     note_settled(answer, [&](std::uint32_t place) {
         const auto& node = nodes[place];
