@@ -30,6 +30,7 @@ NB_MODULE(_core, m) {
     bind_cars(m);
     bind_following(m);
     bind_any_angle(m);
+    bind_brushfire(m);
     bind_bugs(m);
     bind_visibility(m);
     bind_polygon_world(m);

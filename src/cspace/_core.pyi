@@ -304,6 +304,33 @@ class GridBase:
     def _unpack(self, into: NDArray[numpy.uint8]) -> None: ...
     def _locate(self, x: float, y: float) -> tuple[int, int, int]: ...
 
+class BrushfireCore:
+    """The compiled half of cspace.navigation.BrushfireDiagram."""
+
+    def __init__(self, grid: GridBase) -> None: ...
+
+    def clearance(self) -> NDArray[numpy.float64]:
+        """Of each cell (rows, columns) [m]."""
+
+    def labels(self) -> NDArray[numpy.int32]:
+        """The nearest piece of boundary of each cell (rows, columns), or -1."""
+
+    def cells(self) -> NDArray[numpy.uint8]:
+        """A byte per cell (rows, columns): 1 in the diagram."""
+
+    def branches(self) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """Ends (k, 4), lengths (k,) [m] and least clearances (k,) [m]."""
+
+    @property
+    def pieces(self) -> int:
+        """How many pieces the boundary has."""
+
+    def route(self, world: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, widest: bool) -> Any:
+        """A way along the diagram."""
+
+    def trace(self) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """The waves and the diagram as arrays of a trace."""
+
 class PolygonCore:
     """The compiled half of cspace.maps.PolygonWorld."""
 

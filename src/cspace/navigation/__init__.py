@@ -1,6 +1,7 @@
 """Navigation in the plane: from start to goal through a world, by classical planners and new ones."""
 
 from cspace.navigation.boustrophedon import Coverage, coverage
+from cspace.navigation.brushfire import BrushfireDiagram, brushfire_diagram
 from cspace.navigation.cars import CarRoute, hybrid_a_star
 from cspace.navigation.curves import (
     Curve,
@@ -22,3 +23,4 @@ __all__ += ["Curve", "Segment", "dubins", "dubins_distance", "reeds_shepp", "ree
 __all__ += ["DStarLite"]
 __all__ += ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "cast_rays", "follow"]
 __all__ += ["CarRoute", "Coverage", "coverage", "hybrid_a_star"]
+__all__ += ["BrushfireDiagram", "brushfire_diagram"]

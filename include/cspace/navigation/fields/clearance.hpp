@@ -1,0 +1,131 @@
+// The exact Euclidean distance from the centre of every free cell of a grid to the nearest blocked cell, the
+// border around the grid among them, and which cell that is: columns first, then in each row the lower
+// envelope of what the columns offer (Meijster, Roerdink & Hesselink 2000; Felzenszwalb & Huttenlocher 2012).
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "cspace/maps/bit_grid.hpp"
+
+namespace cspace::navigation {
+
+struct Clearance {
+    // By number of cell; of blocked cells 0 and the cell itself.
+    std::vector<std::uint32_t> squared;  // of the distance to the side or corner that is nearest [half cells]
+    std::vector<std::uint32_t> nearest;
+
+    double of(std::uint32_t cell) const { return 0.5 * std::sqrt(double(squared[cell])); }  // [cells]
+};
+
+namespace clearance {
+
+// From the centre of a cell to the near side of one so many rows or columns away, squared. [half cells]
+inline std::int64_t squared_gap(std::int64_t away) {
+    const std::int64_t gap = away == 0 ? 0 : 2 * std::abs(away) - 1;
+    return gap * gap;
+}
+
+// The nearest blocked row in the column of every cell.
+inline std::vector<std::int32_t> nearest_rows(const maps::BitGrid& grid) {
+    const int rows = grid.rows(), columns = grid.columns();
+    const std::size_t stride = grid.stride();
+    std::vector<std::int32_t> nearest(grid.numbers()), seen(stride, -1);
+    for (int row = -1; row <= rows; ++row) {
+        std::int32_t* into = nearest.data() + std::size_t(row + 1) * stride;
+        for (int column = -1; column <= columns; ++column) {
+            std::int32_t& last = seen[std::size_t(column + 1)];
+            if (grid.blocked(row, column)) last = row;
+            into[column + 1] = last;
+        }
+    }
+    for (int row = rows; row >= -1; --row) {
+        std::int32_t* into = nearest.data() + std::size_t(row + 1) * stride;
+        for (std::size_t k = 0; k < stride; ++k) {
+            std::int32_t& last = seen[k];
+            if (into[k] == row)
+                last = row;
+            else if (last - row < row - into[k])
+                into[k] = last;
+        }
+    }
+    return nearest;
+}
+
+// The sites of a run of free cells, from which each of them gets its nearest one.
+class Envelope {
+  public:
+    // Cells first … last of a row are free, those before and after it blocked; gap[c] is how far down or up
+    // column c the next blocked cell is, squared. Calls give(column, site, squared).
+    template <class Gap, class Give>
+    void run(int first, int last, const Gap& gap, const Give& give) {
+        sites_.clear();
+        for (int j = first - 1; j <= last + 1; ++j) {
+            const std::int64_t up = gap(j);
+            int from = first;
+            while (!sites_.empty()) {
+                from = first_nearer(sites_.back(), {j, up, 0}, last + 1);
+                if (from > sites_.back().from) break;
+                from = first;
+                sites_.pop_back();
+            }
+            if (from <= last) sites_.push_back({j, up, from});
+        }
+        for (std::size_t k = 0; k < sites_.size(); ++k) {
+            const int end = k + 1 < sites_.size() ? sites_[k + 1].from - 1 : last;
+            for (int c = sites_[k].from; c <= end; ++c) give(c, sites_[k].column, at(sites_[k], c));
+        }
+    }
+
+  private:
+    struct Site {
+        int column;
+        std::int64_t up;
+        int from;  // the first cell that it is nearest to
+    };
+    static std::int64_t at(const Site& site, int column) {
+        return squared_gap(column - site.column) + site.up;
+    }
+    // The first column from which on b, to the right of a, is nearer; at most `end`.
+    static int first_nearer(const Site& a, const Site& b, int end) {
+        const double apart = b.column - a.column;
+        const double guess = 0.5 * (a.column + b.column) + double(b.up - a.up) / (8 * apart);
+        if (!(guess < end + 2.0)) return end;
+        int x = guess > a.from ? int(guess) : a.from;
+        while (x > a.from && at(b, x - 1) < at(a, x - 1)) --x;
+        while (x < end && at(b, x) >= at(a, x)) ++x;
+        return x;
+    }
+    std::vector<Site> sites_;
+};
+
+}  // namespace clearance
+
+inline Clearance make_clearance(const maps::BitGrid& grid) {
+    const std::vector<std::int32_t> rows = clearance::nearest_rows(grid);
+    Clearance made{std::vector<std::uint32_t>(grid.numbers()), std::vector<std::uint32_t>(grid.numbers())};
+    clearance::Envelope envelope;
+    for (int row = 0; row < grid.rows(); ++row) {
+        const std::uint32_t line = grid.number({row, 0});
+        const auto gap = [&](int column) {
+            return clearance::squared_gap(rows[line + std::uint32_t(column)] - row);
+        };
+        for (int column = 0; column < grid.columns();) {
+            if (grid.blocked(row, column)) {
+                ++column;
+                continue;
+            }
+            int last = column;
+            while (!grid.blocked(row, last + 1)) ++last;
+            envelope.run(column, last, gap, [&](int c, int site, std::int64_t squared) {
+                made.squared[line + std::uint32_t(c)] = std::uint32_t(squared);
+                made.nearest[line + std::uint32_t(c)] = grid.number({rows[line + std::uint32_t(site)], site});
+            });
+            column = last + 1;
+        }
+    }
+    return made;
+}
+
+}  // namespace cspace::navigation
