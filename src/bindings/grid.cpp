@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <new>
+#include <utility>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
@@ -34,6 +35,16 @@ void unpack(const GridWorld& world, BytesOut into) {
     if (int(into.shape(0)) != world.bits.rows() || int(into.shape(1)) != world.bits.columns())
         throw nb::value_error("an array of the shape of the grid");
     world.bits.unpack(into.data());
+}
+// Which points (k, 2) lie in free cells or on their borders.
+void free_points(const GridWorld& world, Array<const double, nb::shape<-1, 2>> points,
+                 Array<std::uint8_t, nb::ndim<1>> into) {
+    if (into.shape(0) != points.shape(0)) throw nb::value_error("as many answers as points");
+    for (std::size_t k = 0; k < points.shape(0); ++k) {
+        maps::Cell cell;
+        const Point p = {points(k, 0), points(k, 1)};
+        into(k) = world.frame.locate(world.bits, p, cell) == maps::Place::free;
+    }
 }
 // (place, row, column); place: 0 free, 1 blocked, 2 outside.
 nb::tuple locate(const GridWorld& world, double x, double y) {
@@ -141,8 +152,12 @@ PyObject* grid_route(PyObject*, PyObject* const* args, Py_ssize_t count) {
     const int read = read_ask(args, count, ask);
     if (read < 0) return nullptr;
     if (read == 0) Py_RETURN_NONE;
-    thread_local GridAnswer answer;
-    thread_local Route route;
+    // Their memory is kept from one query to the next. Making the route may collect garbage and so run any
+    // code, another query too, which then finds them empty.
+    thread_local GridAnswer kept_answer;
+    thread_local Route kept_route;
+    GridAnswer answer = std::move(kept_answer);
+    Route route = std::move(kept_route);
     try {
         const auto began = std::chrono::steady_clock::now();
         run_freely(ask, answer, route);
@@ -157,6 +172,8 @@ PyObject* grid_route(PyObject*, PyObject* const* args, Py_ssize_t count) {
             else
                 Py_DECREF(evidence);
         }
+        kept_answer = std::move(answer);
+        kept_route = std::move(route);
         tidy();
         return made;
     } catch (const std::bad_alloc&) {
@@ -211,6 +228,7 @@ void bind_grid(nb::module_& m) {
         .def("__init__", new_grid, "blocked"_a, "resolution"_a, "x"_a, "y"_a)
         .def("__init__", new_inflated, "other"_a, "radius"_a, "from_centers"_a)
         .def("_unpack", unpack, "into"_a, "Writes a byte per cell.")
+        .def("_free", free_points, "points"_a, "into"_a, "Writes 1 for points in free cells.")
         .def("_locate", locate, "x"_a, "y"_a, "Place, row and column of a point.")
         .def_prop_ro(
             "rows", [](const GridWorld& world) { return world.bits.rows(); }, "Number of rows.")

@@ -41,6 +41,17 @@ def test_rows_go_up_and_columns_go_right():
     assert grid.resolution == 0.5
 
 
+def test_many_points_at_once():
+    rng = np.random.default_rng(4)
+    grid = cs.OccupancyGrid(random_blocked(rng), 0.5, (-1, 2))
+    points = rng.uniform(-5, 50, (4, 30, 2))
+    free = grid.is_free(points)
+    assert free.shape == (4, 30)
+    assert free.dtype == bool
+    assert [grid.is_free(point) for point in points.reshape(-1, 2)] == free.ravel().tolist()
+    assert grid.is_free(np.empty((0, 2))).shape == (0,)
+
+
 def test_a_point_on_a_border_is_in_the_free_cell():
     grid = cs.OccupancyGrid([[0, 1, 0], [0, 1, 1]], 0.1)
     assert grid.cell_of((0.1, 0.05)) == (0, 0)
@@ -129,6 +140,20 @@ def test_copies_and_pickles_are_the_same():
     assert "cells of 0.25 m" in repr(grid)
 
 
+def test_a_map_of_64_million_cells():
+    blocked = np.zeros((8000, 8000), bool)
+    blocked[100::200] = True
+    blocked[:, 100::200] = True
+    blocked[::200] = False
+    blocked[:, ::200] = False
+    grid = cs.OccupancyGrid(blocked)
+    assert grid.nbytes < 0.26 * blocked.size
+    for goal, length in (((250.5, 0.5), 250), ((7999.5, 0.5), 7999)):
+        route = cs.navigate(grid, (0.5, 0.5), goal, planner="jump_point_search")
+        assert route.length == length
+    assert cs.navigate(grid, (0.5, 0.5), (350.5, 90.5), planner="a_star").price.nodes < 1e5
+
+
 def test_a_grid_takes_a_quarter_of_a_byte_per_cell():
     grid = cs.OccupancyGrid(np.zeros((2000, 3000), bool))
     assert grid.nbytes < 0.26 * 6e6
@@ -166,7 +191,9 @@ def test_what_cannot_be_asked():
     ):
         grid.cell_of((5, 0))
     with pytest.raises(ValueError, match=r"point has shape \(1, 2\)"):
-        grid.is_free([(0, 0)])
+        grid.cell_of([(0, 0)])
+    with pytest.raises(ValueError, match=r"points has shape \(3,\)"):
+        grid.is_free((0, 0, 0))
     with pytest.raises(ValueError, match="radius is -1; it must be zero or more"):
         grid.inflate(-1)
     with pytest.raises(KeyError, match="did you mean 'centers'"):

@@ -135,10 +135,26 @@ class OccupancyGrid(_core.GridBase):
         index = as_floats(cell, "cell", last=(2,))
         return self.origin + self.resolution * (index[..., ::-1] + 0.5)
 
-    def is_free(self, point: ArrayLike) -> bool:
-        """Whether a point (2,) [m] lies in a free cell or on its border; nothing outside of the grid is
-        free."""
-        return bool(self._locate(*_point(point))[0] == FREE)
+    def is_free(self, points: ArrayLike) -> Any:
+        """Whether points (..., 2) [m] lie in free cells or on their borders: (...) of bool; none outside
+        do."""
+        given = as_floats(points, "points", last=(2,))
+        free = np.empty(given.size // 2, np.uint8)
+        self._free(np.ascontiguousarray(given).reshape(-1, 2), free)
+        return free.view(np.bool_).reshape(given.shape[:-1]) if given.ndim > 1 else bool(free[0])
+
+    def check_free(self, point: ArrayLike, subject: str) -> Array:
+        """The point (2,) [m]; InputError if it is not finite, outside of the grid or in a blocked cell."""
+        given = as_floats(point, subject, last=(2,))
+        if given.ndim != 1:
+            raise InputError(f"{subject} has shape {given.shape}, expected (2,)")
+        x, y = map(float, given)
+        place, row, column = self._locate(x, y)
+        if place == OUTSIDE:
+            raise outside(self, subject, x, y)
+        if place != FREE:
+            raise InputError(f"{subject} ({x:g}, {y:g}) lies in cell ({row}, {column}), which is blocked")
+        return np.array([x, y])
 
     def inflate(self, radius: float, *, clear: str = "cells") -> OccupancyGrid:
         """The grid for the centre of a round robot of a radius [m]: obstacles, and the outside, have grown by

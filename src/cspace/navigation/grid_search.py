@@ -15,7 +15,6 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.maps import OccupancyGrid
-from cspace.maps.occupancy_grid import outside
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
 
@@ -101,19 +100,7 @@ def checked_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
     """Start and goal as points (2,) [m] in free cells; InputError names the one that is not."""
     if not isinstance(world, OccupancyGrid):
         raise InputTypeError(f"world must be an OccupancyGrid, got an object of type {type(world).__name__}")
-    ends = []
-    for subject, point in (("start", start), ("goal", goal)):
-        array = as_floats(point, subject, last=(2,))
-        if array.ndim != 1:
-            raise InputError(f"{subject} has shape {array.shape}, expected (2,)")
-        x, y = map(float, array)
-        place, row, column = world._locate(x, y)
-        if place == 2:
-            raise outside(world, subject, x, y)
-        if place == 1:
-            raise InputError(f"{subject} ({x:g}, {y:g}) lies in cell ({row}, {column}), which is blocked")
-        ends.append(np.array([x, y]))
-    return ends[0], ends[1]
+    return world.check_free(start, "start"), world.check_free(goal, "goal")
 
 
 def reason(route: Route) -> str:
