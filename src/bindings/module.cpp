@@ -31,8 +31,8 @@ NB_MODULE(_core, m) {
     bind_following(m);
     bind_any_angle(m);
     bind_brushfire(m);
+    bind_polygon_routes(m);
     bind_bugs(m);
-    bind_visibility(m);
     bind_polygon_world(m);
     bind_grid_replanning(m);
 }

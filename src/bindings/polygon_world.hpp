@@ -7,6 +7,7 @@
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/any_angle/polyanya.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
+#include "cspace/navigation/cells/exact_cells.hpp"
 #include "cspace/navigation/visibility/search.hpp"
 
 struct PolygonCore {
@@ -18,6 +19,7 @@ struct PolygonCore {
     std::unique_ptr<cspace::navigation::Walls> felt;  // what robots touch
     std::unique_ptr<cspace::navigation::Polyanya> shortest;
     std::unique_ptr<cspace::navigation::VisibilitySearch> visibility;
+    std::unique_ptr<cspace::navigation::ExactCells> cells;
 };
 
 // The core behind a Python object; null for other objects.

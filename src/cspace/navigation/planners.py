@@ -60,6 +60,7 @@ _ROWS: Final[tuple[Planner, ...]] = (
     Planner("theta_star", "a short way of any angle over cells that see each other", "grid", "map"),
     Planner("wavefront", "a way of the fewest steps over cells, down the waves from the goal", "grid", "map"),
     Planner("weighted_a_star", "a way at most so many times the shortest", "grid", "map"),
+    Planner("exact_cells", "a path through trapezoids between the corners, pulled taut", "polygons", "map"),
     Planner("visibility_graph", "the shortest path over corners that see each other", "polygons", "map"),
     Planner("any_angle", "the shortest path, through convex polygons (Polyanya)", "polygons", "map"),
 )

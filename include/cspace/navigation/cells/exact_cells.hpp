@@ -1,0 +1,106 @@
+// A path over the trapezoids of free space: from cell to cell through the middles of their doors, then pulled
+// taut.
+#pragma once
+
+#include "cspace/maps/polygon_world.hpp"
+#include "cspace/navigation/cells/funnel.hpp"
+#include "cspace/navigation/cells/trapezoids.hpp"
+#include "cspace/navigation/route.hpp"
+
+namespace cspace::navigation {
+
+class ExactCells {
+  public:
+    explicit ExactCells(const maps::PolygonWorld& world)
+        : cells_(world.walls), first_(cells_.cells.size() + 1, 0), door_(2 * cells_.doors.size()) {
+        const Point low = world.outlines.low, high = world.outlines.high;
+        far_ = 4 * (std::abs(low.y) + std::abs(high.y) + (high.x - low.x) + (high.y - low.y));
+        for (const Door& d : cells_.doors)
+            ++first_[std::size_t(d.left) + 1], ++first_[std::size_t(d.right) + 1];
+        for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
+        std::vector<Index> filled(first_.begin(), first_.end() - 1);
+        for (Index d = 0; d < Index(cells_.doors.size()); ++d)
+            for (const Index cell : {cells_.doors[std::size_t(d)].left, cells_.doors[std::size_t(d)].right})
+                door_[std::size_t(filled[std::size_t(cell)]++)] = d;
+    }
+
+    const Trapezoids& cells() const { return cells_; }
+
+    Route solve(Point start, Point goal, Trace* trace = nullptr) const {
+        Route route;
+        route.status = Status::unreachable;
+        const std::size_t count = cells_.cells.size();
+        std::vector<State> state(count);
+        std::vector<std::uint8_t> is_goal(count, 0);
+        std::vector<std::pair<double, Index>> queue;
+        const auto reach = [&](Index cell, double g, Point at, Index door) {
+            State& s = state[std::size_t(cell)];
+            ++route.price.edges;
+            if (s.closed || g >= s.g) return;
+            s = {g, at, door, false};
+            queue.push_back({g, cell});
+            std::push_heap(queue.begin(), queue.end(), std::greater<>());
+        };
+        for (Index c = 0; c < Index(count); ++c) {
+            is_goal[std::size_t(c)] = cells_.contains(c, goal);
+            if (cells_.contains(c, start)) reach(c, 0, start, -1);
+        }
+        while (!queue.empty()) {
+            std::pop_heap(queue.begin(), queue.end(), std::greater<>());
+            const Index c = queue.back().second;
+            queue.pop_back();
+            State& s = state[std::size_t(c)];
+            if (s.closed) continue;
+            s.closed = true;
+            ++route.price.nodes;
+            if (trace) trace->push_back({0, s.door < 0 ? start : s.at, s.at, s.g});
+            if (is_goal[std::size_t(c)]) return finish(route, state, c, start, goal);
+            for (Index k = first_[std::size_t(c)]; k < first_[std::size_t(c) + 1]; ++k) {
+                const Index d = door_[std::size_t(k)];
+                const Door& door = cells_.doors[std::size_t(d)];
+                const Point at = middle(door);
+                reach(door.left == c ? door.right : door.left, s.g + distance(s.at, at), at, d);
+            }
+        }
+        return route;
+    }
+
+  private:
+    struct State {
+        double g = std::numeric_limits<double>::infinity();
+        Point at{};
+        Index door = -1;
+        bool closed = false;
+    };
+    Trapezoids cells_;
+    std::vector<Index> first_, door_;  // the doors of each cell
+    double far_;
+
+    Point middle(const Door& door) const {
+        const Trapezoid& cell = cells_.cells[std::size_t(door.left)];
+        const double y = cells_.wall(door.is_above ? cell.top : cell.bottom).y_at(door.corner.x);
+        return {door.corner.x, 0.5 * (door.corner.y + y)};
+    }
+    // The door as a gap. Its other end lies on a wall that bounds both cells; the string cannot reach that
+    // wall but at its corners, which are ends of gaps themselves, so the gap may as well be open there.
+    Gap gap(const Door& door, bool to_the_right) const {
+        const Point open{door.corner.x, door.is_above ? far_ : -far_};
+        return to_the_right == door.is_above ? Gap{open, door.corner, true, false}
+                                             : Gap{door.corner, open, false, true};
+    }
+    Route& finish(Route& route, const std::vector<State>& state, Index cell, Point start, Point goal) const {
+        std::vector<Gap> gaps;
+        while (state[std::size_t(cell)].door >= 0) {
+            const Door& door = cells_.doors[std::size_t(state[std::size_t(cell)].door)];
+            gaps.push_back(gap(door, door.right == cell));
+            cell = door.right == cell ? door.left : door.right;
+        }
+        std::reverse(gaps.begin(), gaps.end());
+        route.status = Status::found;
+        route.path = taut_string(start, goal, gaps);
+        route.length = length_of(route.path);
+        return route;
+    }
+};
+
+}  // namespace cspace::navigation
