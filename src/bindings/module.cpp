@@ -29,7 +29,6 @@ NB_MODULE(_core, m) {
     bind_coverage(m);
     bind_cars(m);
     bind_following(m);
-    bind_any_angle(m);
     bind_brushfire(m);
     bind_polygon_routes(m);
     bind_bugs(m);
