@@ -32,11 +32,11 @@ void clear(const GridWorld& world, FootprintRow body, Poses poses, Flags out) {
         out.data()[k] = cars.is_clear(footprint_of(body), pose_of(poses.data() + 3 * k));
 }
 
-// settings (6,): turning radius, box, headings, reverse cost, gear cost, most nodes.
+// settings (7,): turning radius, box, headings, reverse cost, gear cost, most nodes, weight.
 nb::tuple find(const GridWorld& world, FootprintRow body, PoseRow start, PoseRow goal, bool reverses,
-               Array<const double, nb::shape<6>> settings) {
+               Array<const double, nb::shape<7>> settings) {
     const double* s = settings.data();
-    const HybridSettings how{s[0], reverses, s[1], int(s[2]), s[3], s[4], std::int64_t(s[5])};
+    const HybridSettings how{s[0], reverses, s[1], int(s[2]), s[3], s[4], std::int64_t(s[5]), s[6]};
     const auto began = std::chrono::steady_clock::now();
     CarRoute route;
     {

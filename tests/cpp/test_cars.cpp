@@ -89,7 +89,7 @@ TEST(ways_of_hybrid_a_star_meet_their_goals_without_contact) {
         const maps::GridFrame frame{0.5, {0, 0}};
         const CarWorld world(grid, frame);
         const Footprint body{0.5, 2.5, 0.7, 0};
-        const HybridSettings settings{3, repeat % 2 == 0, 0.5, 72, 1.2, 1.5, 20000};
+        const HybridSettings settings{3, repeat % 2 == 0, 0.5, 72, 1.2, 1.5, 20000, 1.2};
         CarPose ends[2];
         for (CarPose& pose : ends) do
                 pose = {random.uniform(0, 30), random.uniform(0, 30), random.uniform(-4, 4)};

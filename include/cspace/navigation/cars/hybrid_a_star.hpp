@@ -21,6 +21,7 @@ struct HybridSettings {
     double reverse_cost;  // of a metre driven backwards; forwards it is 1
     double gear_cost;     // of a change of direction [m]
     std::int64_t most;    // poses settled before giving up
+    double weight;        // of what is left beside what is driven
 };
 
 enum class HybridReason : std::int8_t { found, no_gap, exhausted, budget };
@@ -119,7 +120,7 @@ class HybridAStar {
         const std::uint32_t number = std::uint32_t(nodes_.size());
         nodes_.push_back({pose, std::int32_t(at), piece, cost, false});
         best_[box] = number;
-        queue.push({cost + more, 0, number});
+        queue.push({cost + set_.weight * more, float(more), number});
     }
 
     double price(const Piece& piece) const {

@@ -30,6 +30,7 @@ def hybrid_a_star(
     headings: int = 72,
     reverse_cost: float = 1.2,
     gear_cost: float | None = None,
+    weight: float = 2.0,
     max_nodes: int = 1_000_000,
 ) -> CarRoute:
     """A way of a car on an occupancy grid: arcs of its turning circle and straight segments, without contact.
@@ -43,8 +44,10 @@ def hybrid_a_star(
     rear axle, theta [rad]. vehicle: a Car() unless given. radius [m]: of the arcs, the car's smallest unless
     given. reverse: whether it may drive backwards. box [m]: side of the boxes, an eighth of the radius unless
     given, at least a cell; headings: how many there are. reverse_cost: of a metre backwards beside one
-    forwards; gear_cost [m]: of a change of direction, half a radius unless given. max_nodes: how many poses
-    are settled at most.
+    forwards; gear_cost [m]: of a change of direction, half a radius unless given. weight: of what is left
+    beside what is driven, 1 for the fewest detours on the lattice, more for less search (2 takes a twentieth
+    of it on large maps, and after the last curves the ways are no longer). max_nodes: how many poses are
+    settled at most.
 
     Returns CarRoute: "found"; "unreachable" where not even a disc within the car can pass, which proves it;
     or else "undetermined". The way is no shortest one. Raises InputTypeError for what is no OccupancyGrid or
@@ -61,7 +64,8 @@ def hybrid_a_star(
     side = max(turning / 8, grid.resolution) if box is None else number(box, "box", grid.resolution / 16)
     gear = turning / 2 if gear_cost is None else number(gear_cost, "gear_cost", 0.0)
     lattice = [side, number(headings, "headings", 4.0), number(reverse_cost, "reverse_cost", 1.0), gear]
-    settings = np.array([turning, *lattice, number(max_nodes, "max_nodes", 1.0)])
+    ends = [number(max_nodes, "max_nodes", 1.0), number(weight, "weight", 0.0)]
+    settings = np.array([turning, *lattice, *ends])
     body = np.array(car._footprint)
     a, b = (clear_pose(grid, body, pose, name) for pose, name in ((start, "start"), (goal, "goal")))
     status, why, pieces, *price = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)
