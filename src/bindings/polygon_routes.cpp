@@ -35,8 +35,10 @@ Route answer(Planner planner, Question& q, Trace* trace) {
     route.status = Status::unreachable;
     if (q.core.world.shared_component(q.from, q.to) == none) return route;
     route = planner(q, trace);
-    if (!route.path.empty())
-        route.path.front() = {q.start[0], q.start[1]}, route.path.back() = {q.goal[0], q.goal[1]};
+    const Point start{q.start[0], q.start[1]}, goal{q.goal[0], q.goal[1]};
+    if (route.path.empty() || (q.from.at == start && q.to.at == goal)) return route;
+    route.path.front() = start, route.path.back() = goal;  // they were taken off a wall
+    route.length = length_of(route.path);
     return route;
 }
 

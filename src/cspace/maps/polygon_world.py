@@ -157,9 +157,10 @@ class PolygonWorld:
 
     def check_free(self, point: ArrayLike, subject: str) -> Array:
         """The point (2,) [m]; InputError if it is not finite, outside the bounds or inside an obstacle."""
-        x, y = given = as_floats(point, subject, last=(2,))
+        given = as_floats(point, subject, last=(2,))
         if given.shape != (2,):
             raise InputError(f"{subject} has shape {given.shape}, expected (2,)")
+        x, y = map(float, given)
         if self._core.components_at(x, y):
             return np.array([x, y])
         where = f"{subject} ({x:g}, {y:g})"

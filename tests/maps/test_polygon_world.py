@@ -1,0 +1,220 @@
+"""Worlds of polygons: what is read, refused by name, mended, grown, and turned into cells and back."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.errors import DescriptionError, InputError, InputTypeError
+from cspace.maps import GeometryError
+
+BOX = [(4, 4), (6, 4), (6, 6), (4, 6)]
+BOUNDS = (0, 0, 10, 10)
+
+
+def test_a_world_says_what_it_is():
+    world = cs.PolygonWorld([BOX], BOUNDS)
+    assert world.bounds == BOUNDS
+    assert world.components == 1
+    assert world.repairs == ()
+    assert "1 obstacles" in repr(world)
+    np.testing.assert_array_equal(world.obstacles[0][0], BOX)
+    assert sorted(len(ring) for ring in world.walls) == [4, 4]
+
+
+def test_free_points_and_their_clearance():
+    world = cs.PolygonWorld([BOX], BOUNDS)
+    points = np.array([[[1, 5], [5, 5]], [[4, 5], [11, 5]]])
+    np.testing.assert_array_equal(world.is_free(points), [[True, False], [True, False]])
+    np.testing.assert_array_equal(world.clearance(points), [[1, 0], [0, 0]])
+    assert world.is_free((2, 2))
+    assert world.clearance((3, 5)) == 1
+
+
+def test_without_bounds_there_is_room_around_the_obstacles():
+    assert cs.PolygonWorld([BOX]).bounds == (3.5, 3.5, 6.5, 6.5)
+    assert cs.PolygonWorld([]).bounds == (0, 0, 1, 1)
+
+
+@pytest.mark.parametrize("turn", [1, -1])
+def test_rings_in_either_direction_closed_or_not(turn):
+    ring = BOX[::turn]
+    for given in (ring, [*ring, ring[0]], np.array(ring, float), [*ring, ring[-1]]):
+        assert cs.PolygonWorld([given], BOUNDS).clearance((1, 5)) == 1
+
+
+def test_holes_are_free_and_cut_off():
+    world = cs.PolygonWorld([[[(2, 2), (8, 2), (8, 8), (2, 8)], BOX]], BOUNDS)
+    assert world.components == 2
+    assert world.is_free((5, 5))
+    assert not world.is_free((3, 3))
+    assert not cs.navigate(world, (1, 1), (5, 5))
+
+
+@pytest.mark.parametrize(
+    ("obstacles", "words"),
+    [
+        ([[(0, 0), (2, 2), (2, 0), (0, 2)]], ["obstacle 0", "crosses itself", "(1, 1)", "repair=True"]),
+        ([BOX, [(1, 1), (2, 2), (3, 3)]], ["obstacle 1", "no area", "3 corners", "repair=True"]),
+    ],
+)
+def test_polygons_that_are_none_are_named_and_can_be_mended(obstacles, words):
+    with pytest.raises(GeometryError) as error:
+        cs.PolygonWorld(obstacles, BOUNDS)
+    assert all(word in str(error.value) for word in words)
+    mended = cs.PolygonWorld(obstacles, BOUNDS, repair=True)
+    assert len(mended.repairs) == 1
+    assert words[1] in mended.repairs[0]
+
+
+def test_what_a_repair_leaves_is_read_by_the_even_odd_rule():
+    world = cs.PolygonWorld([[(0, 0), (2, 2), (2, 0), (0, 2)]], (-1, -1, 3, 3), repair=True)
+    assert world.is_free((1, 0.5))
+    assert not world.is_free((0.5, 1))
+    wall = cs.PolygonWorld([[(1, 0), (1, 3)]], (0, 0, 3, 3), repair=True)
+    assert wall.components == 2
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "words"),
+    [
+        (lambda: cs.PolygonWorld("abc"), InputTypeError, ["obstacles", "str"]),
+        (lambda: cs.PolygonWorld([[(0, 0), (1, np.nan), (1, 1)]]), InputError, ["obstacle 0", "nan"]),
+        (lambda: cs.PolygonWorld([[(0, 0, 0), (1, 1, 1)]]), InputError, ["obstacle 0", "(..., 2)"]),
+        (lambda: cs.PolygonWorld([[(1, 1)]]), InputError, ["obstacle 0", "one corner"]),
+        (lambda: cs.PolygonWorld([BOX], (0, 0, 0, 1)), InputError, ["bounds", "enclose nothing"]),
+        (lambda: cs.PolygonWorld([BOX], (0, 0, 1)), InputError, ["bounds", "(..., 4)"]),
+        (lambda: cs.PolygonWorld([[(0, 0), (1e300, 0), (0, 1)]]), InputError, ["obstacle 0", "1e+15"]),
+        (lambda: cs.PolygonWorld([BOX], BOUNDS).inflate(-1), InputError, ["radius", "-1"]),
+        (lambda: cs.PolygonWorld([BOX], BOUNDS).inflate(6), InputError, ["radius", "no room"]),
+        (lambda: cs.PolygonWorld([BOX], BOUNDS).to_grid(0), InputError, ["resolution", "positive"]),
+        (lambda: cs.PolygonWorld([BOX], BOUNDS).to_grid(1e-9), InputError, ["resolution", "cells"]),
+    ],
+)
+def test_bad_worlds_are_refused_with_a_reason(make, error, words):
+    with pytest.raises(error) as raised:
+        make()
+    assert all(word in str(raised.value) for word in words)
+
+
+@pytest.mark.parametrize(
+    ("point", "words"),
+    [
+        ((5, 5), ["start", "inside obstacle 0", "1 m deep", "nearest free point"]),
+        ((11, 5), ["start", "outside the world", "x from 0 to 10"]),
+        ((np.nan, 5), ["start", "finite"]),
+        ((1, 2, 3), ["start", "(..., 2)"]),
+        ([[1, 2]], ["start", "(1, 2)", "(2,)"]),
+    ],
+)
+def test_a_start_that_is_not_free_is_named(point, words):
+    with pytest.raises(InputError) as error:
+        cs.navigate(cs.PolygonWorld([BOX], BOUNDS), point, (1, 1))
+    assert all(word in str(error.value) for word in words)
+
+
+def test_a_point_that_rounding_put_into_the_wall_is_on_it():
+    world = cs.PolygonWorld([[(0, 0), (3, 1), (1, 3)]], (-5, -5, 5, 5))
+    for t in np.linspace(0, 1, 101):
+        on_wall = (1 - t) * np.array([3.0, 1]) + t * np.array([1.0, 3])
+        route = cs.navigate(world, (4, 4), on_wall)
+        assert route.length == pytest.approx(math.dist((4, 4), on_wall), abs=1e-9)
+        np.testing.assert_array_equal(route.path[-1], on_wall)
+
+
+def test_growing_keeps_the_radius_and_gives_little_away():
+    rng = np.random.default_rng(3)
+    world = cs.PolygonWorld([BOX, [(1, 1), (2, 1.2), (1.5, 3)]], BOUNDS)
+    grown = world.inflate(0.5)
+    points = rng.uniform(0.5, 9.5, (2000, 2))
+    far, free = world.clearance(points), grown.is_free(points)
+    assert np.all(far[free] >= 0.5 - 1e-12)
+    assert np.all(free[far >= 0.5 / math.cos(math.pi / 32) + 1e-12])
+    assert grown.bounds == (0.5, 0.5, 9.5, 9.5)
+    assert world.inflate(0) is world
+
+
+def test_cells_are_blocked_where_an_obstacle_reaches_into_them():
+    rng = np.random.default_rng(4)
+    world = cs.PolygonWorld([BOX, [(1, 1), (2, 1.2), (1.5, 3)]], BOUNDS)
+    grid = world.to_grid(0.25)
+    assert grid.shape == (40, 40)
+    assert grid.blocked[16:24, 16:24].all()
+    assert grid.blocked.sum() < 64 + 40  # the box fills its cells and no others
+    points = rng.uniform(0, 10, (2000, 2))
+    assert all(world.is_free(p) for p in points if grid.is_free(p))
+
+
+def test_a_grid_becomes_polygons_with_its_own_walls():
+    rng = np.random.default_rng(5)
+    grid = cs.OccupancyGrid(rng.random((12, 9)) < 0.35, resolution=0.5, origin=(-1, 2))
+    world = cs.PolygonWorld.from_grid(grid)
+    assert world.bounds == grid.bounds
+    points = rng.uniform((-1, 2), (3.5, 8), (500, 2))
+    assert [world.is_free(p) for p in points] == [grid.is_free(p) for p in points]
+    again = cs.PolygonWorld(world.obstacles, world.bounds)
+    assert again.components == world.components
+    assert [again.is_free(p) for p in points] == [world.is_free(p) for p in points]
+
+
+def test_geojson_of_every_kind(tmp_path):
+    polygon = {"type": "Polygon", "coordinates": [[[4, 4, 7], [6, 4, 7], [6, 6, 7], [4, 6, 7], [4, 4, 7]]]}
+    many = {"type": "MultiPolygon", "coordinates": [polygon["coordinates"]]}
+    collection = {
+        "type": "FeatureCollection",
+        "bbox": [0, 0, 10, 10],
+        "features": [
+            {"type": "Feature", "geometry": polygon, "properties": {}},
+            {"type": "Feature", "geometry": None},
+            {"type": "Feature", "geometry": {"type": "Point", "coordinates": [0, 0]}},
+            {"type": "Feature", "geometry": {"type": "GeometryCollection", "geometries": [many]}},
+        ],
+    }
+    world = cs.PolygonWorld.from_geojson(collection)
+    assert len(world.obstacles) == 2
+    assert world.bounds == BOUNDS
+    path = tmp_path / "map.geojson"
+    path.write_text(json.dumps(polygon))
+    assert cs.PolygonWorld.from_geojson(path, bounds=BOUNDS).clearance((1, 5)) == 1
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("{", ["map.geojson:1", "JSON"]),
+        ("[]", ["no GeoJSON object"]),
+        ('{"type": "Blob"}', ["'Blob'"]),
+        ('{"type": "Polygon"}', ["coordinates"]),
+        ('{"type": "Polygon", "coordinates": [[1, 2]]}', ["[x, y]"]),
+        ('{"type": "FeatureCollection", "features": 3}', ["features"]),
+    ],
+)
+def test_broken_geojson_is_named(tmp_path, text, words):
+    path = tmp_path / "map.geojson"
+    path.write_text(text)
+    with pytest.raises(DescriptionError) as error:
+        cs.PolygonWorld.from_geojson(path)
+    assert all(word in str(error.value) for word in words)
+
+
+def test_polygons_from_text(tmp_path):
+    path = tmp_path / "map.txt"
+    path.write_text(
+        "# a yard\nbounds 0 0 10 10\n2 2\n8 2\n8, 8\n2 8\n\n"
+        "hole\n4 4\n6 4\n6 6\n4 6  # its corner\n\n0 0\n1 0\n0 1\n"
+    )
+    world = cs.PolygonWorld.from_text(path)
+    assert [len(rings) for rings in world.obstacles] == [2, 1]
+    assert world.components == 2
+    path.write_text("1 2\n3 x\n")
+    with pytest.raises(DescriptionError, match=r"map.txt:2.*two numbers"):
+        cs.PolygonWorld.from_text(path)
+    path.write_text("hole\n1 2\n")
+    with pytest.raises(DescriptionError, match="before any polygon"):
+        cs.PolygonWorld.from_text(path)
+    with pytest.raises(DescriptionError, match="cannot be read"):
+        cs.PolygonWorld.from_text(tmp_path / "none.txt")
