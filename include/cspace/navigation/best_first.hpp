@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace cspace::navigation {
@@ -49,6 +50,8 @@ class Heap {
         if (!entries_.empty()) sink(last);
         return least;
     }
+    // All entries, in no order; the heap is empty then.
+    std::vector<Entry> take() { return std::exchange(entries_, {}); }
     std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
     void release() { std::vector<Entry>().swap(entries_); }
 

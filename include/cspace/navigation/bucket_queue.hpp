@@ -19,19 +19,20 @@ class BucketQueue {
     // Forgets everything; a bucket is so wide, in units of priority.
     void begin(double width) {
         near_.clear();
-        for (std::size_t k = next_filled(); k < most; k = next_filled()) take(k);
-        current_ = 0;
+        if (is_spread_)
+            for (std::size_t k = next_filled(); k < most; k = next_filled()) take(k);
         left_ = 0;
         per_unit_ = 1 / width;
-        is_first_ = true;
+        is_spread_ = false;
     }
     bool empty() const { return left_ == 0; }
     void push(const Waiting& entry) {
-        if (is_first_) {
-            is_first_ = false;
-            first_ = entry.priority;
-        }
         ++left_;
+        if (!is_spread_) {
+            near_.push(entry);
+            if (left_ > few) spread();
+            return;
+        }
         // The heap holds all before bucket `current_`.
         const double at = (entry.priority - first_) * per_unit_;
         if (!(at >= double(current_)) || current_ == most) return near_.push(entry);
@@ -56,13 +57,23 @@ class BucketQueue {
     }
     void release() {
         near_.release();
+        begin(1);
         std::vector<std::vector<Waiting>>().swap(buckets_);
         filled_.clear();
-        begin(1);
     }
 
   private:
+    static constexpr std::size_t few = 256;       // entries that need no buckets
     static constexpr std::size_t most = 1 << 16;  // the last bucket holds all that is farther
+
+    // From one heap to a small one and buckets.
+    void spread() {
+        is_spread_ = true;
+        first_ = near_.top().priority;
+        current_ = 1;
+        left_ = 0;
+        for (const Waiting& entry : near_.take()) push(entry);
+    }
 
     // The first bucket from `current_` on that is not empty, or `most`.
     std::size_t next_filled() const {
@@ -85,7 +96,7 @@ class BucketQueue {
     std::vector<std::uint64_t> filled_;  // a bit for each bucket that is not empty
     std::size_t current_ = 0, left_ = 0;
     double first_ = 0, per_unit_ = 1;
-    bool is_first_ = true;
+    bool is_spread_ = false;
 };
 
 }  // namespace cspace::navigation
