@@ -26,6 +26,7 @@ struct Question {
 };
 
 Trip answer(const Question& q, Point start, Point goal) {
+    const nanobind::gil_scoped_release free;
     const Walls& walls = *q.core->felt;
     const Hand hand = q.hand == 0 ? Hand::left : Hand::right;
     if (q.kind == tangent_bug_kind) {

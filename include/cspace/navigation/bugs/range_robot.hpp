@@ -55,6 +55,8 @@ class RangeRobot : public ContactRobot {
         const Point corner = walls_->begin(wall);
         const double away = distance(at_, corner);
         if (corner == at_ || away > range_) return;
+        const Point before = walls_->begin(walls_->previous(wall)), after = walls_->end(wall);
+        if (way_towards(before, corner, after, at_) == Way::blocked) return;  // it faces away
         const Cast ray = cast(corner);
         if (!ray.arrived || ray.place != Place{walls_->previous(wall), wall}) return;
         const Wall in = walls_->wall(ray.place.in), out = walls_->wall(wall);
