@@ -50,7 +50,7 @@ _ROWS: Final[tuple[Planner, ...]] = (
         "contact",
     ),
     Planner("brushfire", "the widest way over cells, along the diagram of waves from walls", "grid", "map"),
-    Planner("dijkstra", "the same, found without a guess of what is left", "grid", "map"),
+    Planner("dijkstra", "the shortest way over cells, found without a guess of what is left", "grid", "map"),
     Planner("focal_search", "a way at most so many times the shortest, and a bound for it", "grid", "map"),
     Planner("greedy_best_first", "a way over cells that is soon found", "grid", "map"),
     Planner("jump_point_search", "the shortest way over cells, from turn to turn", "grid", "map"),
