@@ -1,7 +1,7 @@
 // The diagram of a grid by brushfire, made once, and ways along it.
 #include "cspace/navigation/fields/brushfire.hpp"
 
-#include "fields.hpp"
+#include "grid_fields.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

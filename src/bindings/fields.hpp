@@ -1,4 +1,4 @@
-// What the bindings of fields share: arrays from vectors, and routes from ways over cells.
+// What the bindings of fields share: arrays from vectors, routes and traces from what planners return.
 #pragma once
 
 #include <chrono>
@@ -7,8 +7,6 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "cspace/navigation/grid/grid_route.hpp"
-#include "grid.hpp"
 #include "route.hpp"
 
 namespace fields {
@@ -23,25 +21,6 @@ nanobind::object table(std::vector<T>&& values, std::size_t rows, std::size_t co
     using Made = nanobind::ndarray<nanobind::numpy, T, nanobind::c_contig>;
     if (columns == 0) return nanobind::cast(Made(data, {rows}, owner));
     return nanobind::cast(Made(data, {rows, columns}, owner));
-}
-
-// One number per cell, by rows.
-template <class T, class Of>
-nanobind::object map_of(const cspace::maps::BitGrid& grid, const Of& of) {
-    std::vector<T> values;
-    values.reserve(std::size_t(grid.rows()) * std::size_t(grid.columns()));
-    for (int row = 0; row < grid.rows(); ++row)
-        for (int column = 0; column < grid.columns(); ++column)
-            values.push_back(of(cspace::maps::Cell{row, column}));
-    return table(std::move(values), std::size_t(grid.rows()), std::size_t(grid.columns()));
-}
-
-inline cspace::maps::Cell free_cell(const cspace::maps::BitGrid& grid, const cspace::maps::GridFrame& frame,
-                                    const PointRow& point) {
-    cspace::maps::Cell cell{};
-    if (frame.locate(grid, {point.data()[0], point.data()[1]}, cell) != cspace::maps::Place::free)
-        throw nanobind::value_error("points in free cells");
-    return cell;
 }
 
 inline nanobind::object made_route(nanobind::handle world, nanobind::handle planner, nanobind::handle options,

@@ -332,6 +332,24 @@ class BrushfireCore:
     def trace(self) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
         """The waves and the diagram as arrays of a trace."""
 
+class NearWalls:
+    """The walls of a PolygonWorld, sorted by where they repel."""
+
+    def __init__(self, core: PolygonCore, reach: float) -> None: ...
+
+    @property
+    def reach(self) -> float:
+        """How far walls repel [m]."""
+
+    def route(self, core: PolygonCore, world: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, settings: ArrayLike, evidence: Any) -> Any:
+        """A descent; its evidence is made by evidence(rest, force, saddles)."""
+
+    def trace(self, core: PolygonCore, start: ArrayLike, goal: ArrayLike, settings: ArrayLike) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """The steps of a descent."""
+
+    def values(self, core: PolygonCore, goal: ArrayLike, points: ArrayLike, settings: ArrayLike) -> NDArray[numpy.float64]:
+        """The potential at points (n, 2)."""
+
 class PolygonCore:
     """The compiled half of cspace.maps.PolygonWorld."""
 

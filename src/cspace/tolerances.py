@@ -9,6 +9,7 @@ __all__ = [
     "CALIBRATION_ANGLE",
     "CALIBRATION_BYTES",
     "CALIBRATION_DISTANCE",
+    "DESCENT_LOOKS",
     "DESCRIPTION_BYTES",
     "DESCRIPTION_DEPTH",
     "DH_COINCIDENT",
@@ -212,3 +213,7 @@ wall: the point of a slanted wall that someone computes is off by a few rounding
 FARTHEST_POINT: Final = 1e15
 """Largest coordinate [m] of a world: beyond it products of three coordinates and their rests leave the
 range in which exact decisions are exact, and neighbouring numbers are decimetres apart."""
+
+DESCENT_LOOKS: Final = 10_000
+"""Most looks at a potential on the way down: descents that arrive take some hundreds, and so many take five
+milliseconds."""

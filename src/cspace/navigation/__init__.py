@@ -14,6 +14,7 @@ from cspace.navigation.curves import (
 from cspace.navigation.d_star_lite import DStarLite
 from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, cast_rays, follow
 from cspace.navigation.planners import PLANNERS, Planner
+from cspace.navigation.potential_field import PotentialRest, potential
 from cspace.navigation.query import World, navigate
 from cspace.navigation.route import STATUSES, Price, Route
 from cspace.navigation.trace import Trace
@@ -24,3 +25,4 @@ __all__ += ["DStarLite"]
 __all__ += ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "cast_rays", "follow"]
 __all__ += ["CarRoute", "Coverage", "coverage", "hybrid_a_star"]
 __all__ += ["BrushfireDiagram", "brushfire_diagram"]
+__all__ += ["PotentialRest", "potential"]

@@ -1,0 +1,115 @@
+// The walls near a point, from square cells that list every wall within a reach of them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+#include "cspace/maps/boundary.hpp"
+#include "cspace/math/predicates.hpp"
+
+namespace cspace::navigation {
+
+class NearWalls {
+  public:
+    NearWalls(maps::Boundary walls, double reach)
+        : walls_(std::move(walls)), previous_(walls_.size()), reach_(reach) {
+        for (std::size_t e = 0; e < walls_.size(); ++e)
+            previous_[std::size_t(walls_.next[e])] = std::int32_t(e);
+        choose_cells();
+        fill_cells();
+    }
+
+    const maps::Boundary& walls() const { return walls_; }
+    std::int32_t previous(std::int32_t wall) const { return previous_[std::size_t(wall)]; }
+    double reach() const { return reach_; }
+    // At least the walls within the reach of a point inside the bounds.
+    template <class Visit>
+    void visit(Point p, const Visit& visit) const {
+        const std::size_t cell = cell_of(p);
+        for (std::int32_t k = begin_[cell]; k < begin_[cell + 1]; ++k) visit(members_[std::size_t(k)]);
+    }
+    // Whether the way from p to q, no longer than the reach, passes through a wall; exact.
+    bool is_crossed(Point p, Point q) const {
+        bool crossed = false;
+        visit(p, [&](std::int32_t e) {
+            const Point a = walls_.begin(e), b = walls_.end(e);
+            crossed = crossed || (orientation(a, b, p) * orientation(a, b, q) < 0 &&
+                                  orientation(p, q, a) * orientation(p, q, b) < 0);
+        });
+        return crossed;
+    }
+    // Into free space from a point on walls, or within a tolerance of them; zero where there are none.
+    Point inward(Point p, double tolerance) const {
+        Point sum, first;
+        visit(p, [&](std::int32_t e) {
+            const Point a = walls_.begin(e), along = walls_.end(e) - a;
+            const double t = std::clamp(dot(p - a, along) / squared_norm(along), 0.0, 1.0);
+            if (distance(p, a + t * along) > tolerance) return;
+            const Point left = (1 / norm(along)) * Point{-along.y, along.x};
+            if (squared_norm(first) == 0) first = left;
+            sum = sum + left;
+        });
+        return squared_norm(sum) > 1e-6 ? sum : first;
+    }
+
+  private:
+    static constexpr int most = 96;  // cells along the longer side
+    maps::Boundary walls_;
+    std::vector<std::int32_t> previous_;
+    double reach_, side_ = 1;
+    Point low_;
+    int columns_ = 1, rows_ = 1;
+    std::vector<std::int32_t> begin_, members_;
+
+    static int clamped(double at, int count) { return at <= 0 ? 0 : at >= count ? count - 1 : int(at); }
+    std::size_t cell_of(Point p) const {
+        const int column = clamped((p.x - low_.x) / side_, columns_);
+        return std::size_t(clamped((p.y - low_.y) / side_, rows_)) * std::size_t(columns_) +
+               std::size_t(column);
+    }
+    void choose_cells() {
+        if (walls_.size() == 0) return;
+        Point high = low_ = walls_.points[0];
+        for (const Point p : walls_.points) {
+            low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        }
+        const double longest = std::max(high.x - low_.x, high.y - low_.y);
+        side_ = std::max(0.5 * reach_, longest / most);
+        columns_ = std::max(1, int(std::ceil((high.x - low_.x) / side_)));
+        rows_ = std::max(1, int(std::ceil((high.y - low_.y) / side_)));
+    }
+    template <class Put>
+    void each_member(const Put& put) const {
+        const double around = 0.7072 * side_ + reach_ * (1 + 1e-9);  // from the centre of a cell
+        for (std::int32_t e = 0; e < std::int32_t(walls_.size()); ++e) {
+            const Point a = walls_.begin(e), b = walls_.end(e), along = b - a;
+            const auto from = [&](double x, double low) { return (x - reach_ - low) / side_ - 1e-9; };
+            const auto to = [&](double x, double low) { return (x + reach_ - low) / side_ + 1e-9; };
+            const int left = clamped(from(std::min(a.x, b.x), low_.x), columns_);
+            const int right = clamped(to(std::max(a.x, b.x), low_.x), columns_);
+            const int bottom = clamped(from(std::min(a.y, b.y), low_.y), rows_);
+            const int top = clamped(to(std::max(a.y, b.y), low_.y), rows_);
+            for (int row = bottom; row <= top; ++row)
+                for (int column = left; column <= right; ++column) {
+                    const Point middle = low_ + side_ * Point{column + 0.5, row + 0.5};
+                    const double t = std::clamp(dot(middle - a, along) / squared_norm(along), 0.0, 1.0);
+                    if (distance(middle, a + t * along) <= around)
+                        put(std::size_t(row) * std::size_t(columns_) + std::size_t(column), e);
+                }
+        }
+    }
+    void fill_cells() {
+        begin_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
+        each_member([&](std::size_t cell, std::int32_t) { ++begin_[cell + 1]; });
+        for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
+        members_.resize(std::size_t(begin_.back()));
+        std::vector<std::int32_t> filled(begin_.begin(), begin_.end() - 1);
+        each_member([&](std::size_t cell, std::int32_t e) { members_[std::size_t(filled[cell]++)] = e; });
+    }
+};
+
+}  // namespace cspace::navigation

@@ -1,0 +1,156 @@
+"""Potential field: the goal attracts, walls repel, and the robot goes down the sum of both (Khatib 1986,
+"Real-time obstacle avoidance for manipulators and mobile robots").
+
+U(p) = U_goal(d) + Σ ½ k_r (1/ρ − 1/ρ₀)² over the rings of walls nearer than ρ₀, where d is the distance to
+the goal and ρ that to the nearest place of a ring. U_goal is ½ k d² within `cone` of the goal and grows with
+the constant slope k · cone beyond it, so that the force is limited. A robot sees no farther than ρ₀, and has
+no notion of what lies beyond: it may come to rest away from the goal, which is then said.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.maps import PolygonWorld
+from cspace.navigation.trace import Trace
+from cspace.tolerances import DESCENT_LOOKS
+
+if TYPE_CHECKING:
+    from cspace.navigation.route import Route
+
+__all__ = ["PotentialRest", "plan", "potential", "reason", "trace"]
+
+WORDS: Final = ("descend", "rest")
+RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget")
+SAID: Final = {
+    "minimum": "the potential rises in every direction",
+    "saddle": "no force is left, and the potential is too flat to tell which way is down",
+    "crease": "one ring of walls holds it from two sides",
+    "wall": "it is pressed against a wall",
+    "budget": f"it found no rest within {DESCENT_LOOKS} looks at the potential",
+}
+
+
+class PotentialRest(NamedTuple):
+    """Where and how a descent ended."""
+
+    kind: str
+    """ "goal", "minimum", "saddle", "crease", "wall", or "budget": no rest in that many steps."""
+    force: float
+    """What is left of it, in units of k times metres."""
+    saddles: int
+    """How many places without force were left again."""
+    gains: dict[str, float]
+    """k, k_r, rho_0, cone and step as they were used."""
+
+
+def plan(
+    world: Any,
+    start: Any,
+    goal: Any,
+    *,
+    k: float = 1.0,
+    k_r: float | None = None,
+    rho_0: float | None = None,
+    cone: float | None = None,
+    step: float | None = None,
+) -> Route:
+    """Down the potential from start until the goal is reached, or the robot rests.
+
+    start, goal: (2,) [m]. k: attraction. rho_0 [m]: how far walls repel; by default a twentieth of the longer
+    side of the bounds. k_r [m⁴]: repulsion; by default ¼ k ρ₀⁴, with which a wall holds the goal's pull at
+    half of ρ₀. cone [m]: from how far on the goal pulls with the same force; by default rho_0. step [m]: the
+    longest step; by default a quarter of rho_0. A step is never longer than half the clearance. The status is
+    "local_minimum" where the robot rests elsewhere; route.evidence, a PotentialRest, says how. InputError for
+    a gain or a length that is not positive.
+    """
+    options: dict[str, Any] = {"k": k, "k_r": k_r, "rho_0": rho_0, "cone": cone, "step": step}
+    ends = world.check_free(start, "start"), world.check_free(goal, "goal")
+    settings = _settings(world, **options)
+    walls = _walls(world, settings[2])
+    gains = dict(zip(options, map(float, settings[[0, 1, 2, 3, 4]]), strict=True))
+
+    def evidence(rest: int, force: float, saddles: int) -> PotentialRest:
+        return PotentialRest(RESTS[rest], force, saddles, gains)
+
+    made: Route = walls.route(world._core, world, "potential_field", options, *ends, settings, evidence)
+    return made
+
+
+def reason(route: Route) -> str:
+    """The verdict in a sentence."""
+    rest: PotentialRest = route.evidence
+    if route:
+        over = f", over {rest.saddles} saddles" if rest.saddles else ""
+        return f"went down the potential for {route.length:.6g} m{over}"
+    x, y = route.path[-1]
+    left = float(np.hypot(x - route.goal[0], y - route.goal[1]))
+    near = "; the goal itself is near a wall" if left < rest.gains["rho_0"] else ""
+    return f"the robot rests at ({x:.6g}, {y:.6g}), {left:.6g} m from the goal: {SAID[rest.kind]}{near}"
+
+
+def trace(route: Route) -> Trace:
+    """The steps: "descend", and "rest" where it rests away from the goal. start, end: (k, 2) [m]; value: the
+    potential."""
+    world = route.world
+    settings = _settings(world, **route.options)
+    return Trace(WORDS, *_walls(world, settings[2]).trace(world._core, route.start, route.goal, settings))
+
+
+def potential(
+    world: PolygonWorld,
+    goal: ArrayLike,
+    points: ArrayLike,
+    *,
+    k: float = 1.0,
+    k_r: float | None = None,
+    rho_0: float | None = None,
+    cone: float | None = None,
+) -> Array:
+    """The potential of a goal (2,) [m] at points (..., 2) [m]: (...), infinite inside obstacles.
+
+    k, k_r, rho_0, cone: as for the planner "potential_field". InputTypeError for other worlds than polygons.
+    """
+    if not isinstance(world, PolygonWorld):
+        raise InputTypeError(f"world is a {type(world).__name__}; give a PolygonWorld")
+    settings = _settings(world, k, k_r, rho_0, cone, None)
+    at = as_floats(points, "points", last=(2,))
+    rows = np.ascontiguousarray(at.reshape(-1, 2))
+    walls = _walls(world, settings[2])
+    found: Array = walls.values(world._core, world.check_free(goal, "goal"), rows, settings)
+    return found.reshape(at.shape[:-1])
+
+
+def _settings(
+    world: Any, k: float, k_r: float | None, rho_0: float | None, cone: float | None, step: float | None
+) -> Array:
+    """k, k_r, rho_0, cone, step, looks: (6,)."""
+    xmin, ymin, xmax, ymax = world.bounds
+    reach = _positive("rho_0", max(xmax - xmin, ymax - ymin) / 20 if rho_0 is None else rho_0)
+    pull = _positive("k", k)
+    push = _positive("k_r", 0.25 * pull * reach**4 if k_r is None else k_r)
+    limit = _positive("cone", reach if cone is None else cone)
+    longest = min(_positive("step", 0.25 * reach if step is None else step), reach)
+    return np.array([pull, push, reach, limit, longest, float(DESCENT_LOOKS)])
+
+
+def _positive(name: str, value: float) -> float:
+    number = float(as_floats(value, name).reshape(())) if np.size(value) == 1 else np.nan
+    if not number > 0:
+        raise InputError(f"{name} is {value!r}; it must be one positive number")
+    return number
+
+
+def _walls(world: Any, reach: float) -> _core.NearWalls:
+    """What the core has made of the walls, kept beside the world."""
+    kept = vars(world)
+    walls: _core.NearWalls | None = kept.get("_near_walls")
+    if walls is None or walls.reach != reach:
+        walls = kept["_near_walls"] = _core.NearWalls(world._core, reach)
+    return walls
