@@ -9,6 +9,7 @@
 #include "cspace/navigation/bugs/walls.hpp"
 #include "cspace/navigation/cells/exact_cells.hpp"
 #include "cspace/navigation/visibility/search.hpp"
+#include "cspace/navigation/voronoi/roadmap.hpp"
 
 struct PolygonCore {
     explicit PolygonCore(cspace::maps::Outlines outlines) : world(std::move(outlines)) {}
@@ -20,6 +21,7 @@ struct PolygonCore {
     std::unique_ptr<cspace::navigation::Polyanya> shortest;
     std::unique_ptr<cspace::navigation::VisibilitySearch> visibility;
     std::unique_ptr<cspace::navigation::ExactCells> cells;
+    std::unique_ptr<cspace::navigation::voronoi::Roadmap> voronoi;
 };
 
 // The core behind a Python object; null for other objects.

@@ -217,3 +217,6 @@ range in which exact decisions are exact, and neighbouring numbers are decimetre
 DESCENT_LOOKS: Final = 10_000
 """Most looks at a potential on the way down: descents that arrive take some hundreds, and so many take five
 milliseconds."""
+DIAGRAM_CHORD: Final = 1e-4
+"""How far a polyline may lie from a parabola of a Voronoi diagram, in sides of the world: less than the width
+of a line in a picture of it."""

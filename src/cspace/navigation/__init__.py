@@ -18,6 +18,7 @@ from cspace.navigation.potential_field import PotentialRest, potential
 from cspace.navigation.query import World, navigate
 from cspace.navigation.route import STATUSES, Price, Route
 from cspace.navigation.trace import Trace
+from cspace.navigation.voronoi import VoronoiDiagram, voronoi_diagram
 
 __all__ = ["PLANNERS", "STATUSES", "Planner", "Price", "Route", "Trace", "World", "navigate"]
 __all__ += ["Curve", "Segment", "dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]
@@ -26,3 +27,4 @@ __all__ += ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "cast_rays", "f
 __all__ += ["CarRoute", "Coverage", "coverage", "hybrid_a_star"]
 __all__ += ["BrushfireDiagram", "brushfire_diagram"]
 __all__ += ["PotentialRest", "potential"]
+__all__ += ["VoronoiDiagram", "voronoi_diagram"]

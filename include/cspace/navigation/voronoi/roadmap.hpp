@@ -1,0 +1,270 @@
+// Ways that keep away from walls: up to the Voronoi diagram, along it, and down to the goal.
+//
+// Away from the nearest wall the clearance grows until a second wall is as near: so any path between two
+// points can be moved onto the diagram without coming nearer to a wall (Ó'Dúnlaing & Yap 1985, "A
+// 'retraction' method for planning the motion of a disc"). The widest way on the diagram is therefore the
+// widest at all.
+#pragma once
+
+#include <memory>
+
+#include "cspace/maps/polygon_world.hpp"
+#include "cspace/navigation/best_first.hpp"
+#include "cspace/navigation/route.hpp"
+#include "cspace/navigation/voronoi/tracer.hpp"
+
+namespace cspace::navigation::voronoi {
+
+// A place on the diagram, and how to get there from a point of free space.
+struct Landing {
+    std::vector<Point> lead;  // from the point to the diagram
+    double clearance = 0;     // the least on that way, which is that of the point [m]
+    Index arc = none;
+    double t = 0;
+};
+
+// Part of an arc, from parameter t0 to t1 in either direction.
+struct Stretch {
+    Index arc;
+    double t0, t1;
+};
+
+struct Way {
+    Route route;
+    double clearance = 0;   // least distance from walls on the whole way [m]
+    double on_diagram = 0;  // and on the diagram
+    double at_start = 0, at_goal = 0;
+};
+
+// What a search is for: the widest way, or the shortest among the arcs that are wide enough.
+struct Wish {
+    bool widest;
+    double floor;
+};
+
+class Roadmap {
+  public:
+    explicit Roadmap(const maps::PolygonWorld& world)
+        : world_(world),
+          diagram_(make_diagram(world.walls, seeds_of(world.space),
+                                0.5 * (world.outlines.low + world.outlines.high))) {
+        const Index n = Index(diagram_.vertices.size());
+        first_.assign(std::size_t(n) + 1, 0);
+        for (const Arc& arc : diagram_.arcs)
+            ++first_[std::size_t(arc.from) + 1], ++first_[std::size_t(arc.to) + 1];
+        for (std::size_t v = 0; v < std::size_t(n); ++v) first_[v + 1] += first_[v];
+        std::vector<Index> fill(first_.begin(), first_.end() - 1);
+        around_.resize(2 * diagram_.arcs.size());
+        for (Index k = 0; k < Index(diagram_.arcs.size()); ++k) {
+            const Arc& arc = diagram_.arcs[std::size_t(k)];
+            around_[std::size_t(fill[std::size_t(arc.from)]++)] = k;
+            around_[std::size_t(fill[std::size_t(arc.to)]++)] = k;
+            between_.emplace(pair_key(arc.a, arc.b), k);
+        }
+    }
+
+    const Diagram& diagram() const { return diagram_; }
+
+    // The way between two settled points of one component; tolerance: how far a chord may lie from its arc
+    // [m]. Undetermined where the component's part of the diagram is not whole.
+    Way solve(const maps::Settled& start, const maps::Settled& goal, Index component, bool widest,
+              double tolerance, Trace* trace) const {
+        Way way;
+        if (!diagram_.is_whole[std::size_t(component)]) return way;
+        const Landing from = land(start, component), to = land(goal, component);
+        if (from.arc == none || to.arc == none) return way;
+        if (trace)
+            for (const Landing* end : {&from, &to})
+                trace->push_back(
+                    {0, diagram_.place(end->lead.front()), diagram_.place(end->lead.back()), end->clearance});
+        const double floor = widest ? search(from, to, {true, 0}, nullptr, way, trace) : 0;
+        std::vector<Stretch> stretches;
+        search(from, to, {false, floor}, &stretches, way, trace);
+        way.route.status = Status::found;
+        draw(from, to, stretches, tolerance, way);
+        return way;
+    }
+
+  private:
+    const maps::PolygonWorld& world_;
+    Diagram diagram_;
+    std::vector<Index> first_, around_;  // the arcs around each vertex
+    std::unordered_multimap<std::uint64_t, Index> between_;
+
+    static std::uint64_t pair_key(Index a, Index b) {
+        return (std::uint64_t(std::uint32_t(std::min(a, b))) << 32) | std::uint32_t(std::max(a, b));
+    }
+    const Arc& arc(Index k) const { return diagram_.arcs[std::size_t(k)]; }
+    Point vertex(Index v) const { return diagram_.vertices[std::size_t(v)].at; }
+
+    Landing land(const maps::Settled& end, Index component) const {
+        Landing landing;
+        Point p = end.at - diagram_.sites.origin;
+        landing.lead = {p};
+        Retraction up = retract(diagram_.sites, diagram_.tree, p);
+        const double on_wall = 1e-9 * diagram_.sites.extent;
+        landing.clearance = up.clearance;
+        for (const double share : {1.0 / 64, 1.0 / 4, 1.0}) {
+            if (up.clearance > on_wall && up.b != none) break;
+            p = landing.lead[0] + share * (middle_of(end, component) - landing.lead[0]);
+            up = retract(diagram_.sites, diagram_.tree, p);
+        }
+        if (p != landing.lead[0]) landing.lead.push_back(p), landing.clearance = 0;
+        if (up.b == none) return landing;
+        locate(up, component, landing);
+        if (landing.arc != none) landing.lead.push_back(arc(landing.arc).curve.at(landing.t));
+        return landing;
+    }
+    // The middle of the triangle of the component in whose closure a point lies.
+    Point middle_of(const maps::Settled& end, Index component) const {
+        for (const Index t : end.triangles)
+            if (world_.space.component[std::size_t(t)] == component) {
+                const auto& mesh = world_.space.mesh;
+                const auto& c = mesh[t].corner;
+                const Point a = mesh.point(c[0]), b = mesh.point(c[1]) - a, d = mesh.point(c[2]) - a;
+                return a + (1.0 / 3) * (b + d) - diagram_.sites.origin;
+            }
+        return end.at - diagram_.sites.origin;
+    }
+
+    void locate(const Retraction& up, Index component, Landing& landing) const {
+        double best = 1e-7 * diagram_.sites.extent;
+        const auto consider = [&](Index k) {
+            const Arc& a = arc(k);
+            const double t = std::clamp(a.curve.parameter(up.at), a.begin, a.end);
+            const double off = distance(a.curve.at(t), up.at);
+            if (off < best) best = off, landing.arc = k, landing.t = t;
+        };
+        const auto [begin, end] = between_.equal_range(pair_key(up.a, up.b));
+        for (auto it = begin; it != end; ++it) consider(it->second);
+        if (landing.arc != none) return;
+        best = std::numeric_limits<double>::infinity();
+        for (Index k = 0; k < Index(diagram_.arcs.size()); ++k)
+            if (diagram_.vertices[std::size_t(arc(k).from)].component == component) consider(k);
+    }
+
+    struct Search;
+    double search(const Landing& from, const Landing& to, Wish wish, std::vector<Stretch>* stretches,
+                  Way& way, Trace* trace) const;
+
+    void draw(const Landing& from, const Landing& to, const std::vector<Stretch>& stretches, double tolerance,
+              Way& way) const {
+        std::vector<Point>& path = way.route.path;
+        path = from.lead;
+        way.on_diagram = arc(from.arc).curve.radius(from.t);
+        for (const Stretch& s : stretches) {
+            sample(arc(s.arc).curve, s.t0, s.t1, tolerance, path);
+            way.on_diagram = std::min(
+                way.on_diagram, arc(s.arc).curve.least_radius(std::min(s.t0, s.t1), std::max(s.t0, s.t1)));
+        }
+        path.insert(path.end(), to.lead.rbegin(), to.lead.rend());
+        path.erase(std::unique(path.begin(), path.end()), path.end());
+        if (path.size() == 1) path.push_back(path[0]);
+        for (Point& p : path) p = diagram_.place(p);
+        way.clearance = std::min({from.clearance, to.clearance, way.on_diagram});
+        way.at_start = from.clearance;
+        way.at_goal = to.clearance;
+        way.route.length = length_of(path);
+    }
+
+  public:
+    // Appends the points after the first of a polyline no farther from the curve than the tolerance [m], and
+    // than a hundredth of its clearance.
+    static void sample(const Bisector& curve, double t0, double t1, double tolerance,
+                       std::vector<Point>& out) {
+        const double bend = 2 * norm(curve.p2);
+        double steps = 1;
+        if (bend > 0) {
+            const double off = std::min(tolerance, 0.01 * curve.radius(0));
+            steps = std::clamp(std::ceil(std::abs(t1 - t0) * std::sqrt(bend / (8 * off))), 1.0, 1e5);
+        }
+        for (int i = 1; i <= int(steps); ++i) out.push_back(curve.at(t0 + (t1 - t0) * (i / steps)));
+    }
+};
+
+// A space for best_first: the vertices, and after them the goal.
+struct Roadmap::Search {
+    const Roadmap& map;
+    const Landing& to;
+    Wish wish;
+    Price& price;
+    Trace* trace;
+    std::vector<double> value;  // the length up to a vertex, or minus the least width
+    std::vector<Stretch> came;  // by which stretch
+    std::vector<Index> parent;
+    std::vector<std::uint8_t> settled;
+
+    Search(const Roadmap& roadmap, const Landing& goal, Wish wanted, Price& cost, Trace* record)
+        : map(roadmap), to(goal), wish(wanted), price(cost), trace(record) {
+        const std::size_t n = map.diagram_.vertices.size() + 1;
+        value.assign(n, std::numeric_limits<double>::infinity());
+        came.resize(n);
+        parent.assign(n, none);
+        settled.assign(n, 0);
+    }
+    Index goal() const { return Index(value.size()) - 1; }
+    Point at(Index node) const { return node == goal() ? to.lead.back() : map.vertex(node); }
+
+    bool settle(std::uint32_t node) {
+        if (settled[node]) return false;
+        settled[node] = 1;
+        ++price.nodes;
+        if (trace) record(Index(node));
+        return true;
+    }
+    bool is_goal(std::uint32_t node) const { return Index(node) == goal(); }
+    void record(Index node) const {
+        const Stretch& s = came[std::size_t(node)];
+        const Bisector& curve = map.arc(s.arc).curve;
+        trace->push_back({std::int8_t(wish.widest ? 1 : 2), map.diagram_.place(curve.at(s.t0)),
+                          map.diagram_.place(curve.at(s.t1)), std::abs(value[std::size_t(node)])});
+    }
+
+    void push(Index node, Index from, double before, const Stretch& s, PriorityQueue& queue) {
+        ++price.edges;
+        const Bisector& curve = map.arc(s.arc).curve;
+        const double low = std::min(s.t0, s.t1), high = std::max(s.t0, s.t1);
+        const double width = curve.least_radius(low, high);
+        if (width < wish.floor) return;
+        const double after = wish.widest ? std::max(before, -width) : before + curve.length(low, high);
+        if (!(after < value[std::size_t(node)])) return;
+        value[std::size_t(node)] = after;
+        came[std::size_t(node)] = s;
+        parent[std::size_t(node)] = from;
+        const double left = wish.widest ? 0 : distance(at(node), to.lead.back());
+        queue.push({after + left, 0, std::uint32_t(node)});
+    }
+    void leave(Index from, double before, Index k, double t, PriorityQueue& queue) {
+        const Arc& arc = map.arc(k);
+        if (t != arc.begin || from == none) push(arc.from, from, before, {k, t, arc.begin}, queue);
+        if (t != arc.end || from == none) push(arc.to, from, before, {k, t, arc.end}, queue);
+        if (k == to.arc) push(goal(), from, before, {k, t, to.t}, queue);
+    }
+    void expand(std::uint32_t node, PriorityQueue& queue) {
+        const Index v = Index(node);
+        for (Index i = map.first_[node]; i < map.first_[node + 1]; ++i) {
+            const Index k = map.around_[std::size_t(i)];
+            const Arc& arc = map.arc(k);
+            if (arc.from == v) leave(v, value[node], k, arc.begin, queue);
+            if (arc.to == v) leave(v, value[node], k, arc.end, queue);
+        }
+    }
+};
+
+// The value of the goal as a width; the stretches of the way to it.
+inline double Roadmap::search(const Landing& from, const Landing& to, Wish wish,
+                              std::vector<Stretch>* stretches, Way& way, Trace* trace) const {
+    Search space(*this, to, wish, way.route.price, trace);
+    PriorityQueue queue;
+    Effort effort;
+    space.leave(none, wish.widest ? -std::numeric_limits<double>::infinity() : 0, from.arc, from.t, queue);
+    best_first(space, queue, effort);
+    if (stretches) {
+        for (Index v = space.goal(); v != none; v = space.parent[std::size_t(v)])
+            stretches->push_back(space.came[std::size_t(v)]);
+        std::reverse(stretches->begin(), stretches->end());
+    }
+    return -space.value.back();
+}
+
+}  // namespace cspace::navigation::voronoi

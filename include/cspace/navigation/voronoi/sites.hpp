@@ -1,0 +1,93 @@
+// What a Voronoi diagram of free space is the diagram of: the walls, and the points where they bend away.
+//
+// A ring of walls is a chain of sites. Edge i comes after the point that it begins at; where free space bends
+// around that point (more than half a turn), the point is a site of its own, nearest to what lies between the
+// normals of the two edges. At corners into which free space tapers, and on straight lines, it is none.
+#pragma once
+
+#include "cspace/maps/boundary.hpp"
+#include "cspace/math/predicates.hpp"
+
+namespace cspace::navigation::voronoi {
+
+using Index = std::int32_t;
+inline constexpr Index none = -1;
+
+enum class Turn : std::int8_t { corner, straight, around };
+
+struct Sites {
+    Point origin;               // what has been taken from all coordinates, so that they are small
+    double extent = 0;          // the largest coordinate that is left
+    std::vector<Point> points;  // where each edge begins
+    std::vector<Point> along;   // its direction, of length one; free space lies on the left
+    std::vector<double> length;
+    std::vector<Index> next, before;
+    std::vector<Turn> turn;  // at the point where it begins
+    std::vector<Index> component;
+
+    Index size() const { return Index(points.size()); }
+
+    // Site i < size() is an edge, site size() + i the point where edge i begins.
+    bool is_edge(Index site) const { return site < size(); }
+    Index edge_of(Index site) const { return is_edge(site) ? site : site - size(); }
+    Point begin(Index edge) const { return points[std::size_t(edge)]; }
+    Point end(Index edge) const { return points[std::size_t(next[std::size_t(edge)])]; }
+    Point direction(Index edge) const { return along[std::size_t(edge)]; }
+    Point normal(Index edge) const { return {-direction(edge).y, direction(edge).x}; }
+    double height(Index edge, Point p) const { return dot(normal(edge), p - begin(edge)); }
+    double advance(Index edge, Point p) const { return dot(direction(edge), p - begin(edge)); }
+    Index after(Index edge) const { return next[std::size_t(edge)]; }
+    Index previous(Index edge) const { return before[std::size_t(edge)]; }
+    Turn turn_at(Index edge) const { return turn[std::size_t(edge)]; }
+
+    // Whether the point where an edge begins is the nearest of its ring to what lies around p.
+    bool is_in_cone(Index edge, Point p, double slack) const {
+        const Point from = p - begin(edge);
+        return dot(from, direction(previous(edge))) >= -slack && dot(from, direction(edge)) <= slack;
+    }
+    // The unit vector from p to the nearest point of a site.
+    Point towards(Index site, Point p) const {
+        if (is_edge(site)) return -1.0 * normal(site);
+        const Point to = begin(edge_of(site)) - p;
+        const double far = norm(to);
+        return far > 0 ? (1 / far) * to : Point{};
+    }
+    double distance_to(Index site, Point p) const {
+        return is_edge(site) ? height(site, p) : distance(p, begin(edge_of(site)));
+    }
+};
+
+// Turns of less than this (sine) count as straight: what they do to the diagram is below rounding.
+inline constexpr double straight_turn = 1e-8;
+
+inline Turn turn_between(Point a, Point b, Point c, Point in, Point out) {
+    if (std::abs(cross(in, out)) < straight_turn && dot(in, out) > 0) return Turn::straight;
+    return orientation(a, b, c) > 0 ? Turn::corner : Turn::around;
+}
+
+inline Sites sites_of(const maps::Boundary& walls, Point origin) {
+    Sites sites;
+    const std::size_t n = walls.size();
+    sites.origin = origin;
+    sites.next = walls.next;
+    sites.before.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        sites.points.push_back(walls.points[i] - origin);
+        sites.before[std::size_t(walls.next[i])] = Index(i);
+        sites.component.push_back(walls.component[std::size_t(walls.ring[i])]);
+        sites.extent = std::max({sites.extent, std::abs(sites.points[i].x), std::abs(sites.points[i].y)});
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        const Point way = sites.end(Index(i)) - sites.points[i];
+        sites.length.push_back(norm(way));
+        sites.along.push_back((1 / norm(way)) * way);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+        const Index in = sites.before[i];
+        sites.turn.push_back(turn_between(walls.begin(in), walls.begin(Index(i)), walls.end(Index(i)),
+                                          sites.direction(in), sites.direction(Index(i))));
+    }
+    return sites;
+}
+
+}  // namespace cspace::navigation::voronoi
