@@ -22,6 +22,7 @@ VERBS: Final[Mapping[str, str]] = MappingProxyType(
         "ik": "every joint configuration that reaches a pose",
         "jacobian": "the Jacobian, its singular values and the distance to singularity",
         "dh": "the Denavit-Hartenberg table and the link matrices",
+        "nav": "a way through a map, by one planner or by all of them side by side",
         "export": "the inverse kinematics of an arm as C++, C or Python that needs nothing of cspace",
         "doctor": "versions, optional parts and a self-check",
     }

@@ -32,7 +32,7 @@ _WORDS = ("enter",)
 def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
     """A path from start to goal (2,) [m] through the trapezoids of a PolygonWorld.
 
-    The trace holds the event "enter": the middle of the door through which a cell is entered; its value is
+    The trace holds the event "enter": the point of the door through which a cell is entered; its value is
     the length [m] of the way there.
     """
     route: Route | None = _core._exact_cells(world, world._core, "exact_cells", None, start, goal)

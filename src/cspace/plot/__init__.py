@@ -1,4 +1,5 @@
-"""Pictures of robots: every function takes `ax=None`, returns the artists it made and never calls show.
+"""Pictures of robots, worlds and routes: every function takes `ax=None`, returns the artists it made and
+never calls show.
 
 Needs the extra `[plot]` (matplotlib), which is imported when a function is first called.
 """
@@ -9,5 +10,17 @@ from cspace.plot.arms import robot, solutions
 from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
+from cspace.plot.worlds import animation, route, routes, world
 
-__all__ = ["frames", "manipulability", "robot", "save", "solutions", "workspace"]
+__all__ = [
+    "animation",
+    "frames",
+    "manipulability",
+    "robot",
+    "route",
+    "routes",
+    "save",
+    "solutions",
+    "workspace",
+]
+__all__ += ["world"]

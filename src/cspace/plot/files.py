@@ -12,18 +12,19 @@ from cspace.model.files import whole_file
 __all__ = ["save"]
 
 
-def save(artists: Sequence[Any], path: str | Path, *, dpi: float = 150.0) -> None:
+def save(artists: Sequence[Any] | Any, path: str | Path, *, dpi: float = 150.0) -> None:
     """Write the figure that some artists belong to, and close it.
 
-    artists: what a function of this room returned. path: a file; its ending names the format (png, svg, pdf).
+    artists: what a function of this room returned, artists or a figure. path: a file; its ending names the format (png, svg, pdf).
     dpi: pixels per inch. The file is written whole or not at all.
     Raises InputError if there are no artists or the file cannot be written.
     """
-    if not artists:
+    is_figure = hasattr(artists, "savefig")
+    if not is_figure and not artists:
         raise InputError("nothing to save: there are no artists")
     import matplotlib.pyplot as plt
 
-    figure = artists[0].figure
+    figure = artists if is_figure else artists[0].figure
     try:
         with whole_file(path) as draft:
             figure.savefig(draft, dpi=dpi)

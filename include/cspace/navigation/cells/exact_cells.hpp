@@ -58,7 +58,7 @@ class ExactCells {
             for (Index k = first_[std::size_t(c)]; k < first_[std::size_t(c) + 1]; ++k) {
                 const Index d = door_[std::size_t(k)];
                 const Door& door = cells_.doors[std::size_t(d)];
-                const Point at = middle(door);
+                const Point at = nearest(door, s.at);
                 reach(door.left == c ? door.right : door.left, s.g + distance(s.at, at), at, d);
             }
         }
@@ -76,10 +76,11 @@ class ExactCells {
     std::vector<Index> first_, door_;  // the doors of each cell
     double far_;
 
-    Point middle(const Door& door) const {
+    // The point of a door that is nearest to p: a straight line leads there, for cells are convex.
+    Point nearest(const Door& door, Point p) const {
         const Trapezoid& cell = cells_.cells[std::size_t(door.left)];
         const double y = cells_.wall(door.is_above ? cell.top : cell.bottom).y_at(door.corner.x);
-        return {door.corner.x, 0.5 * (door.corner.y + y)};
+        return {door.corner.x, std::clamp(p.y, std::min(y, door.corner.y), std::max(y, door.corner.y))};
     }
     // The door as a gap. Its other end lies on a wall that bounds both cells; the string cannot reach that
     // wall but at its corners, which are ends of gaps themselves, so the gap may as well be open there.

@@ -1,0 +1,159 @@
+"""What each planner works with, drawn beneath its path: cells, graphs, diagrams, waves, the points it
+touched."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.plot import colors
+
+__all__ = ["draw_idea"]
+
+MOST_EVENTS: Final = 20_000
+"""Events that a picture shows: of more every second, third … is drawn; a reader could not tell them apart."""
+FAINT: Final = (0.78, 0.81, 0.86)
+"""Lines of what the planner prepared."""
+
+
+def draw_idea(axes: Any, route: Any) -> list[Any]:
+    """Draw what a route's planner prepared and what it looked at; returns the artists."""
+    prepared = PREPARED.get(route.planner)
+    artists = prepared(axes, route) if prepared else []
+    drawn = SEARCHED.get(route.planner, draw_events)
+    return artists + drawn(axes, route)
+
+
+def lines(axes: Any, pieces: Array, **style: Any) -> list[Any]:
+    """Segments (k, 2, 2)."""
+    from matplotlib.collections import LineCollection
+
+    return [axes.add_collection(LineCollection(list(pieces), **style))]
+
+
+def draw_events(axes: Any, route: Any) -> list[Any]:
+    """The events of the trace in the order of time, blue to yellow: lines, or dots where they have no
+    length."""
+    events = route.trace
+    if not len(events):
+        return []
+    kept = slice(None, None, 1 + len(events) // MOST_EVENTS)
+    start, end = events.start[kept], events.end[kept]
+    when = np.linspace(0, 1, len(start))
+    is_line = np.any(start != end, axis=1)
+    artists: list[Any] = []
+    if is_line.any():
+        pieces = np.stack([start, end], axis=1)[is_line]
+        artists += lines(
+            axes, pieces, array=when[is_line], cmap="viridis", linewidths=0.8, zorder=3, alpha=0.8
+        )
+    if not is_line.all():
+        dots = end[~is_line]
+        artists.append(axes.scatter(*dots.T, c=when[~is_line], cmap="viridis", s=4, linewidths=0, zorder=3))
+    return artists
+
+
+def draw_cells(axes: Any, route: Any) -> list[Any]:
+    """The cells of a grid that were expanded, by when."""
+    grid, events = route.world, route.trace
+    if not len(events):
+        return []
+    when = np.full(grid.shape, np.nan)
+    column, row = np.floor((events.end - grid.origin) / grid.resolution).astype(int).T
+    inside = (row >= 0) & (row < grid.rows) & (column >= 0) & (column < grid.columns)
+    when[row[inside], column[inside]] = np.linspace(0, 1, len(events))[inside]
+    xmin, ymin, xmax, ymax = grid.bounds
+    box = (xmin, xmax, ymin, ymax)
+    return [
+        axes.imshow(when, extent=box, origin="lower", cmap="viridis", alpha=0.75, interpolation="nearest")
+    ]
+
+
+def draw_walk(axes: Any, route: Any) -> list[Any]:
+    """The line to the goal, and where a robot without a map met walls and left them."""
+    m_line = np.stack([route.start, route.goal])
+    artists: list[Any] = axes.plot(*m_line.T, "--", color=FAINT, linewidth=1.2, zorder=2)
+    for word, marker, tint in (("hit", "x", colors.INK), ("leave", "o", colors.JOINT)):
+        places = route.trace.only(word).end
+        if len(places):
+            artists += axes.plot(*places.T, marker, color=tint, ms=6, mfc="none", mew=1.6, zorder=8)
+    return artists
+
+
+def draw_visibility_graph(axes: Any, route: Any) -> list[Any]:
+    from cspace.navigation.visibility_graph import visibility_graph
+
+    nodes, edges = visibility_graph(route.world)
+    return lines(axes, nodes[edges], colors=[FAINT], linewidths=0.5, zorder=2)
+
+
+def draw_exact_cells(axes: Any, route: Any) -> list[Any]:
+    from matplotlib.collections import PolyCollection
+
+    from cspace.navigation.exact_cells import exact_cells
+
+    corners, _ = exact_cells(route.world)
+    wide = corners[:, 1, 0] > corners[:, 0, 0]
+    cells = PolyCollection(
+        list(corners[wide]), facecolors="none", edgecolors=[FAINT], linewidths=0.7, zorder=2
+    )
+    return [axes.add_collection(cells)]
+
+
+def draw_convex_polygons(axes: Any, route: Any) -> list[Any]:
+    from matplotlib.collections import PolyCollection
+
+    shapes = route.world._core.convex_polygons()
+    return [
+        axes.add_collection(PolyCollection(shapes, facecolors="none", edgecolors=[FAINT], linewidths=0.6))
+    ]
+
+
+def draw_brushfire(axes: Any, route: Any) -> list[Any]:
+    """How far from the walls each cell is, and the cells where fires meet."""
+    from cspace.navigation.brushfire import brushfire_diagram
+
+    grid = route.world
+    diagram = brushfire_diagram(grid)
+    far = np.where(diagram.clearance > 0, diagram.clearance, np.nan)
+    xmin, ymin, xmax, ymax = grid.bounds
+    box = (xmin, xmax, ymin, ymax)
+    shade = axes.imshow(far, extent=box, origin="lower", cmap="Blues", alpha=0.9, interpolation="nearest")
+    row, column = np.nonzero(diagram.cells)
+    centers = grid.center_of(np.stack([row, column], axis=1))
+    return [shade, axes.scatter(*centers.T, s=2, color=colors.INK, linewidths=0, zorder=3)]
+
+
+def nothing(axes: Any, route: Any) -> list[Any]:
+    return []
+
+
+PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
+    "visibility_graph": draw_visibility_graph,
+    "exact_cells": draw_exact_cells,
+    "any_angle": draw_convex_polygons,
+    "brushfire": draw_brushfire,
+}
+"""What a planner prepares before it is asked."""
+
+CELL_PLANNERS: Final = (
+    *(
+        "a_star",
+        "dijkstra",
+        "focal_search",
+        "greedy_best_first",
+        "theta_star",
+        "wavefront",
+        "weighted_a_star",
+    ),
+)
+
+SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
+    **{name: draw_cells for name in CELL_PLANNERS},
+    **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
+    "brushfire": nothing,
+}
+"""How a planner's search is drawn, where not as its events."""

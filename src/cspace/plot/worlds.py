@@ -1,0 +1,113 @@
+"""Worlds of the plane and routes through them, each planner's own idea beneath its path."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.errors import InputError
+from cspace.plot import colors
+from cspace.plot.axes import flat_axes, need_matplotlib
+from cspace.plot.ideas import draw_idea
+
+__all__ = ["animation", "route", "routes", "world"]
+
+WALL: Final = (0.36, 0.39, 0.44)
+"""Obstacles."""
+PATH: Final = (0.84, 0.18, 0.20)
+"""The path that a planner found."""
+PANEL: Final = 3.6
+"""Side of one world in a picture of several [inch]."""
+FRAMES: Final = 60
+"""Frames in which an animation tells the search."""
+
+
+def world(world: Any, *, ax: Any | None = None) -> list[Any]:
+    """Draw a PolygonWorld or an OccupancyGrid: obstacles dark, free space white. Returns the artists."""
+    axes = flat_axes(ax)
+    xmin, ymin, xmax, ymax = world.bounds
+    axes.set(xlim=(xmin, xmax), ylim=(ymin, ymax), aspect="equal")
+    axes.tick_params(labelsize=8, colors=colors.INK)
+    if world.kind == "grid":
+        shade = np.ones((*world.shape, 3))
+        shade[world.blocked] = WALL
+        return [axes.imshow(shade, extent=(xmin, xmax, ymin, ymax), origin="lower", interpolation="nearest")]
+    from matplotlib.collections import PolyCollection
+
+    free = PolyCollection(world._core.triangles(), facecolors="white", edgecolors="white", linewidths=0.6)
+    axes.set_facecolor(WALL)
+    return [axes.add_collection(free)]
+
+
+def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
+    """Draw a route in its world: what the planner looked at, the path, start (circle) and goal (star).
+
+    idea: also draw what the planner works with (cells, graph, diagram, waves, hit points) and its search.
+    Returns the artists.
+    """
+    axes = flat_axes(ax)
+    artists = world(route.world, ax=axes)
+    if idea:
+        artists += draw_idea(axes, route)
+    if len(route.path):
+        artists += axes.plot(*route.path.T, color=PATH, linewidth=2.0, zorder=6, solid_capstyle="round")
+    for point, marker, size in ((route.start, "o", 7), (route.goal, "*", 12)):
+        artists += axes.plot(*point, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+    said = f"{route.length:.5g} m" if route else route.status.replace("_", " ")
+    title = f"{route.planner.replace('_', ' ')}: {said}"
+    artists.append(axes.set_title(title, fontsize=9, color=colors.INK, loc="left"))
+    return artists
+
+
+def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
+    """Several routes side by side, one set of axes each; returns the figure."""
+    need_matplotlib()
+    import matplotlib.pyplot as plt
+
+    if not len(routes):
+        raise InputError("routes is empty; give one route or more")
+    wide = columns or math.ceil(math.sqrt(len(routes)))
+    high = math.ceil(len(routes) / wide)
+    figure, grid = plt.subplots(
+        high, wide, figsize=(PANEL * wide, PANEL * high), dpi=120, layout="constrained", squeeze=False
+    )
+    for axes, each in zip(grid.flat, routes, strict=False):
+        route(each, ax=axes)
+        axes.set(xticks=[], yticks=[])
+    for axes in grid.flat[len(routes) :]:
+        axes.set_axis_off()
+    return figure
+
+
+def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any:
+    """A search as it happened, then its path: a matplotlib FuncAnimation, whose `save` writes a GIF.
+
+    frames: into how many pictures the events of `route.trace` are divided.
+    """
+    axes = flat_axes(ax)
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.collections import LineCollection
+
+    world(route.world, ax=axes)
+    events = route.trace
+    order = np.linspace(0, 1, max(len(events), 1))
+    tints = np.asarray([colors.mix(colors.JOINT, PATH, t) for t in order])
+    pieces = np.stack([events.start, events.end], axis=1) if len(events) else np.empty((0, 2, 2))
+    searched = axes.add_collection(LineCollection([], linewidths=1.2, zorder=4))
+    reached = axes.scatter([], [], s=6, zorder=5)
+    (path,) = axes.plot([], [], color=PATH, linewidth=2.2, zorder=6)
+    for point, marker, size in ((route.start, "o", 7), (route.goal, "*", 12)):
+        axes.plot(*point, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+
+    def show(frame: int) -> tuple[Any, ...]:
+        told = math.ceil(len(pieces) * min(frame + 1, frames) / frames)
+        searched.set(segments=pieces[:told], color=tints[:told])
+        reached.set_offsets(pieces[:told, 1] if told else np.empty((0, 2)))
+        reached.set_color(tints[:told])
+        path.set_data(*(route.path.T if frame >= frames else np.empty((2, 0))))
+        return searched, reached, path
+
+    return FuncAnimation(axes.figure, show, frames=frames + 12, interval=80, blit=False)
