@@ -88,6 +88,26 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "lost_direction": VECTOR,
         "lost_by": [TEXT],
     },
+    "cspace.nav/1": {
+        "map": TEXT,
+        "start": VECTOR,
+        "goal": VECTOR,
+        "radius": NUMBER,
+        "routes": [
+            {
+                "planner": TEXT,
+                "status": TEXT,
+                "reason": TEXT,
+                "length": NUMBER_OR_NULL,
+                "ratio_to_shortest": NUMBER_OR_NULL,
+                "clearance": NUMBER_OR_NULL,
+                "nodes": int,
+                "edges": int,
+                "seconds": NUMBER,
+                "path": MATRIX,
+            }
+        ],
+    },
     "cspace.export/1": {
         "language": TEXT,
         "name": TEXT,

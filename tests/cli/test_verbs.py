@@ -18,6 +18,7 @@ LINES = {
     "jacobian": "jacobian ur5e 0.1 -1.2 1 0.2 0.4 0.3",
     "dh": "dh ur5e",
     "export": "export planar_2r",
+    "nav": f"nav {ROOT}/examples/yard.txt --start 1 1 --goal 9 9",
     "doctor": "doctor",
 }
 Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]
@@ -72,7 +73,7 @@ def test_examples_of_the_help_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for verb in VERBS:
         for line in load(verb).EXAMPLES.strip().splitlines():
-            if not any(word in line for word in ("arm.urdf", "--plot")):
+            if not any(word in line for word in ("arm.urdf", "--plot", "yard.geojson")):
                 result = cspace(line.removeprefix("cspace "))
                 assert result.code == 0, f"{line}\n{result.err}"
 

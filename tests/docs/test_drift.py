@@ -18,6 +18,8 @@ ROOMS = {
     "kinematics": "kinematics",
     "ik": "inverse-kinematics",
     "plot": "plots",
+    "maps": "navigation",
+    "navigation": "navigation",
 }
 
 

@@ -64,7 +64,6 @@ _ROWS: Final[tuple[Planner, ...]] = (
     Planner("weighted_a_star", "a way at most so many times the shortest", "grid", "map"),
     Planner("exact_cells", "a path through trapezoids between the corners, pulled taut", "polygons", "map"),
     Planner("visibility_graph", "the shortest path over corners that see each other", "polygons", "map"),
-    Planner("any_angle", "the shortest path, through convex polygons (Polyanya)", "polygons", "map"),
 )
 
 PLANNERS: Final = MappingProxyType({row.name: row for row in _ROWS})

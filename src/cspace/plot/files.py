@@ -15,8 +15,8 @@ __all__ = ["save"]
 def save(artists: Sequence[Any] | Any, path: str | Path, *, dpi: float = 150.0) -> None:
     """Write the figure that some artists belong to, and close it.
 
-    artists: what a function of this room returned, artists or a figure. path: a file; its ending names the format (png, svg, pdf).
-    dpi: pixels per inch. The file is written whole or not at all.
+    artists: what a function of this room returned, artists or a figure. path: a file; its ending names the
+    format (png, svg, pdf). dpi: pixels per inch. The file is written whole or not at all.
     Raises InputError if there are no artists or the file cannot be written.
     """
     is_figure = hasattr(artists, "savefig")

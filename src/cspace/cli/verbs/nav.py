@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 __all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
-cspace nav map.yaml --start 1 1 --goal 9 7 --planner all --save ways.png
+cspace nav map.yaml --start 1 1 --goal 9 7 --planner all --plot ways.png
 cspace nav yard.geojson --start 0 0 --goal 20 5 --radius 0.3 --planner visibility_graph --json
 """
 
@@ -45,7 +45,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--resolution", type=number, help="side of a cell [m], of images and where polygons become cells"
     )
     parser.add_argument(
-        "--save", type=Path, metavar="FILE", help="save the routes side by side (.png, .svg, .pdf)"
+        "--plot", type=Path, metavar="FILE", help="save the routes side by side (.png, .svg, .pdf)"
     )
     parser.add_argument(
         "--animate", type=Path, metavar="FILE.gif", help="save the search of the first planner, moving"
@@ -55,8 +55,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace, out: Output) -> int:
     """Ask the planners and print what they answer, side by side."""
     names = planners_of(args.planner)
-    if args.save:
-        check_format(args.save)
+    if args.plot:
+        check_format(args.plot)
     if args.animate and args.animate.suffix.lower() != ".gif":
         raise UsageError(f"an animation is a GIF; end {str(args.animate)!r} with .gif")
     world = load(args.map, args.resolution)
@@ -66,10 +66,10 @@ def run(args: argparse.Namespace, out: Output) -> int:
         out.document(document(args, routes, best))
     else:
         show(routes, best, out)
-    if args.save:
+    if args.plot:
         from cspace import plot
 
-        plot.save(plot.routes(routes), args.save)
+        plot.save(plot.routes(routes), args.plot)
     if args.animate:
         from cspace import plot
 
