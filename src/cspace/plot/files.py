@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +11,7 @@ from cspace.model.files import whole_file
 __all__ = ["save"]
 
 
-def save(artists: Sequence[Any] | Any, path: str | Path, *, dpi: float = 150.0) -> None:
+def save(artists: Any, path: str | Path, *, dpi: float = 150.0) -> None:
     """Write the figure that some artists belong to, and close it.
 
     artists: what a function of this room returned, artists or a figure. path: a file; its ending names the
