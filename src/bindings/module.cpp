@@ -33,7 +33,6 @@ NB_MODULE(_core, m) {
     bind_polygon_routes(m);
     bind_bugs(m);
     bind_potential(m);
-    bind_visibility(m);
     bind_voronoi(m);
     bind_polygon_world(m);
     bind_grid_replanning(m);
