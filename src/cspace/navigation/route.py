@@ -31,10 +31,10 @@ class Price(NamedTuple):
 class Route(_core.RouteBase):
     """The answer of one planner to one question; truthy if a path was found.
 
-    path: (m, 2) [m] from start to goal, of which a robot that came to rest elsewhere has gone a part.
-    length [m], inf where there is no path. start, goal: (2,) [m]. world, planner: what was asked. `status` is
-    "found", "unreachable" (proven), "undetermined" (the search ended without a proof) or "local_minimum";
-    `reason` says it in a sentence.
+    path: (m, 2) [m] from start to goal; of a robot that walks, the walk it made, also where it came to rest
+    elsewhere or proved that no way exists. length [m] of the path, inf where there is none. start, goal:
+    (2,) [m]. world, planner: what was asked. `status` is "found", "unreachable" (proven), "undetermined"
+    (the search ended without a proof) or "local_minimum"; `reason` says it in a sentence.
     """
 
     @property

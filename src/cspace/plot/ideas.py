@@ -15,6 +15,8 @@ __all__ = ["draw_idea"]
 
 MOST_EVENTS: Final = 20_000
 """Events that a picture shows: of more every second, third … is drawn; a reader could not tell them apart."""
+FIELD: Final = 160
+"""Places along a side of the world at which a field is evaluated for its picture."""
 FAINT: Final = (0.78, 0.81, 0.86)
 """Lines of what the planner prepared."""
 
@@ -127,6 +129,32 @@ def draw_brushfire(axes: Any, route: Any) -> list[Any]:
     return [shade, axes.scatter(*centers.T, s=2, color=colors.INK, linewidths=0, zorder=3)]
 
 
+def draw_voronoi(axes: Any, route: Any) -> list[Any]:
+    """The arcs of the diagram."""
+    from cspace.navigation.voronoi import voronoi_diagram
+
+    arcs = [points for points, _ in voronoi_diagram(route.world).arcs]
+    from matplotlib.collections import LineCollection
+
+    return [axes.add_collection(LineCollection(arcs, colors=[colors.JOINT], linewidths=0.8, zorder=2))]
+
+
+def draw_potential(axes: Any, route: Any) -> list[Any]:
+    """The potential as bands of equal height."""
+    from cspace.navigation.potential_field import potential
+
+    xmin, ymin, xmax, ymax = route.world.bounds
+    x, y = np.linspace(xmin, xmax, FIELD), np.linspace(ymin, ymax, FIELD)
+    gains = {name: value for name, value in route.evidence.gains.items() if name != "step"}
+    at = np.stack(np.meshgrid(x, y), axis=-1)
+    height = potential(route.world, route.goal, at, **gains)
+    free = np.isfinite(height)
+    level = np.where(free, height, np.nan)
+    top = np.nanquantile(level, 0.85) if free.any() else 1.0
+    bands = axes.contourf(x, y, np.minimum(level, top), levels=24, cmap="Blues", zorder=1, alpha=0.85)
+    return [bands]
+
+
 def nothing(axes: Any, route: Any) -> list[Any]:
     return []
 
@@ -136,6 +164,8 @@ PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     "exact_cells": draw_exact_cells,
     "any_angle": draw_convex_polygons,
     "brushfire": draw_brushfire,
+    "voronoi": draw_voronoi,
+    "potential_field": draw_potential,
 }
 """What a planner prepares before it is asked."""
 
@@ -155,5 +185,6 @@ SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     **{name: draw_cells for name in CELL_PLANNERS},
     **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
     "brushfire": nothing,
+    "voronoi": nothing,
 }
 """How a planner's search is drawn, where not as its events."""
