@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import math
+import pickle
 
 import numpy as np
 import pytest
@@ -159,6 +161,25 @@ def test_a_grid_becomes_polygons_with_its_own_walls():
     again = cs.PolygonWorld(world.obstacles, world.bounds)
     assert again.components == world.components
     assert [again.is_free(p) for p in points] == [world.is_free(p) for p in points]
+
+
+def test_worlds_can_be_copied_and_pickled():
+    for world in (cs.PolygonWorld([BOX], BOUNDS), cs.PolygonWorld.from_grid(cs.OccupancyGrid(np.eye(4) > 0))):
+        for again in (copy.deepcopy(world), pickle.loads(pickle.dumps(world))):
+            assert again.bounds == world.bounds
+            assert again.components == world.components
+            start, goal = (0, 3), (3, 4)
+            assert cs.navigate(again, start, goal).length == cs.navigate(world, start, goal).length
+
+
+def test_what_is_made_from_a_world_is_kept_with_it():
+    world = cs.PolygonWorld([BOX], BOUNDS)
+    for more in ({"radius": 0.5}, {"planner": "a_star"}, {"planner": "a_star", "resolution": 0.5}):
+        first, again = (cs.navigate(world, (1, 1), (9, 9), **more).world for _ in range(2))
+        assert first is again
+    assert (
+        len({id(cs.navigate(world, (1, 1), (9, 9), radius=r).world) for r in np.linspace(0.1, 1, 20)}) == 20
+    )
 
 
 def test_geojson_of_every_kind(tmp_path):

@@ -176,6 +176,10 @@ class PolygonWorld:
             f"the nearest free point is ({wall_x:.9g}, {wall_y:.9g})"
         )
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Obstacles and bounds: what pickle makes it from again."""
+        return _again, (self._outlines, self._bounds)
+
     def __repr__(self) -> str:
         corners = sum(len(ring) for rings in self._outlines for ring in rings)
         return f"PolygonWorld({len(self._outlines)} obstacles, {corners} corners, bounds={self.bounds})"
@@ -191,6 +195,10 @@ def _build(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore:
     if not core.complete:
         raise GeometryError("the obstacles cross each other more than five million times; simplify them")
     return core
+
+
+def _again(outlines: list[Outline], bounds: Array) -> PolygonWorld:
+    return PolygonWorld(outlines, bounds, repair=True)
 
 
 def _in_order(following: Any, first: int) -> list[int]:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from collections.abc import Callable, Hashable
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from numpy.typing import ArrayLike
 
@@ -16,18 +17,11 @@ if TYPE_CHECKING:
 
 __all__ = ["World", "navigate"]
 
+MOST_DERIVED: Final = 8
+"""Worlds grown by a radius or converted that are kept with a world: making one takes milliseconds."""
 
-class World(Protocol):
-    """What every kind of world offers to `navigate`."""
-
-    kind: str
-    """ "polygons" or "grid"."""
-
-    def inflate(self, radius: float) -> World:
-        """The world of a robot's centre: its obstacles grown by the radius [m]."""
-
-    def to_grid(self, resolution: float | None = None) -> World:
-        """The same obstacles as cells of a side [m]."""
+World: TypeAlias = PolygonWorld | OccupancyGrid
+"""Every kind of world that `navigate` takes: each has a `kind`, "polygons" or "grid", and can be inflated."""
 
 
 def navigate(
@@ -65,17 +59,24 @@ def _prepared(world: World, kind: str | None, wanted: str, radius: float, resolu
         raise InputTypeError(
             f"world must be a PolygonWorld or an OccupancyGrid, got an object of type {type(world).__name__}"
         )
-    if (grown := float(as_floats(radius, "radius"))) < 0:
-        raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
-    if grown:
-        world = world.inflate(grown)
+    if radius:
+        if not (grown := float(as_floats(radius, "radius"))) > 0:
+            raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
+        world = _derived(world, ("grown", grown), lambda: world.inflate(grown))
     if kind == "grid" and resolution is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
     if kind == wanted:
         return world
-    if wanted == "grid":
-        return world.to_grid(resolution)
-    kept = vars(world)
-    if "_as_polygons" not in kept:
-        kept["_as_polygons"] = PolygonWorld.from_grid(cast(OccupancyGrid, world))
-    return cast(World, kept["_as_polygons"])
+    if isinstance(world, OccupancyGrid):
+        return _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
+    return _derived(world, ("grid", resolution), lambda: world.to_grid(resolution))
+
+
+def _derived(world: World, key: Hashable, make: Callable[[], World]) -> World:
+    """What was made from a world, kept with it for the next question."""
+    kept: dict[Hashable, World] = vars(world).setdefault("_derived", {})
+    if key not in kept:
+        if len(kept) >= MOST_DERIVED:
+            kept.pop(next(iter(kept)))
+        kept[key] = make()
+    return kept[key]
