@@ -32,6 +32,7 @@ NB_MODULE(_core, m) {
     bind_brushfire(m);
     bind_polygon_routes(m);
     bind_bugs(m);
+    bind_grid_fields(m);
     bind_potential(m);
     bind_voronoi(m);
     bind_polygon_world(m);

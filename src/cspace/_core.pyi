@@ -332,6 +332,26 @@ class BrushfireCore:
     def trace(self) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
         """The waves and the diagram as arrays of a trace."""
 
+class ClearanceField:
+    """The distance of every cell of a grid to the nearest wall."""
+
+    def __init__(self, grid: GridBase) -> None: ...
+
+    def potential_route(self, grid: GridBase, owner: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, settings: ArrayLike, corners: int) -> Any:
+        """A search that counts on a potential."""
+
+    def potential_trace(self, grid: GridBase, start: ArrayLike, goal: ArrayLike, settings: ArrayLike, corners: int) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """The cells in the order in which they are settled."""
+
+    def march_route(self, grid: GridBase, owner: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, slow_within: float) -> Any:
+        """The way down the times of a front."""
+
+    def march_times(self, grid: GridBase, goal: ArrayLike, slow_within: float) -> NDArray[numpy.float64]:
+        """When a front from the goal arrives (rows, columns)."""
+
+    def march_trace(self, grid: GridBase, start: ArrayLike, goal: ArrayLike, slow_within: float) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """The cells in the order in which the front arrives."""
+
 class NearWalls:
     """The walls of a PolygonWorld, sorted by where they repel."""
 

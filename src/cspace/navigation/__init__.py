@@ -12,6 +12,7 @@ from cspace.navigation.curves import (
     reeds_shepp_distance,
 )
 from cspace.navigation.d_star_lite import DStarLite
+from cspace.navigation.fast_marching import arrival_times
 from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, cast_rays, follow
 from cspace.navigation.planners import PLANNERS, Planner
 from cspace.navigation.potential_field import PotentialRest, potential
@@ -28,3 +29,4 @@ __all__ += ["CarRoute", "Coverage", "coverage", "hybrid_a_star"]
 __all__ += ["BrushfireDiagram", "brushfire_diagram"]
 __all__ += ["PotentialRest", "potential"]
 __all__ += ["VoronoiDiagram", "voronoi_diagram"]
+__all__ += ["arrival_times"]

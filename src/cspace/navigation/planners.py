@@ -54,6 +54,8 @@ _ROWS: Final[tuple[Planner, ...]] = (
     Planner("focal_search", "a way at most so many times the shortest, and a bound for it", "grid", "map"),
     Planner("greedy_best_first", "a way over cells that is soon found", "grid", "map"),
     Planner("jump_point_search", "the shortest way over cells, from turn to turn", "grid", "map"),
+    Planner("fast_marching", "down the times of a front from the goal, at any angle", "grid", "map"),
+    Planner("potential_a_star", "over cells, by a search that counts on a potential", "grid", "map"),
     Planner("potential_field", "down a potential: the goal attracts, walls repel", "polygons", "map"),
     Planner(
         "tangent_bug", "a robot that sees walls up to a distance: around what is in view", "polygons", "range"

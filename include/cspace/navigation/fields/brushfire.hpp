@@ -36,7 +36,8 @@ class Walk {
     }
     bool settle(std::uint32_t at) {
         if (settled_[at]) return false;
-        return settled_[at] = true;
+        settled_[at] = true;
+        return true;
     }
     bool is_goal(std::uint32_t at) const { return at == goal_; }
     template <class Queue>

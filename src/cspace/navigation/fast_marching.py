@@ -1,0 +1,72 @@
+"""Fast marching: a front leaves the goal, the time at which it arrives solves |∇T| · speed = 1, and the way
+goes down T (Sethian 1996, "A fast marching level set method for monotonically advancing fronts").
+
+T is found by upwind differences of first order, in the order in which the front arrives, so it has no minimum
+but the goal. Its error shrinks with the cells, by their side times the logarithm of their number; ways over a
+grid keep the error of their eight directions.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final
+
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.errors import InputTypeError
+from cspace.navigation.grid_search import checked_ends
+from cspace.navigation.potential_a_star import clearance_field, number_of
+from cspace.navigation.trace import Trace
+
+if TYPE_CHECKING:
+    from cspace.navigation.route import Route
+
+__all__ = ["arrival_times", "plan", "reason", "trace"]
+
+WORDS: Final = ("arrive",)
+
+
+def plan(world: Any, start: Any, goal: Any, *, slow_within: float = 0.0) -> Route:
+    """The way down the times of a front from the goal, of any angle.
+
+    start, goal: (2,) [m] in free cells. slow_within [m]: nearer to walls than this the speed falls in
+    proportion to the clearance, so that the way keeps away from them (Garrido et al. 2006); elsewhere, and
+    with 0, it is 1. The front passes from cell to cell along sides; the way lies in free cells and passes
+    corners no closer than the centre of a cell beside them. route.evidence["time"] [m] is T of the start's
+    cell.
+    """
+    near = number_of("slow_within", slow_within, 0.0)
+    ends = checked_ends(world, start, goal)
+    options = {"slow_within": slow_within}
+    made: Route = clearance_field(world).march_route(
+        world, world, "fast_marching", options, *ends, near / world.resolution
+    )
+    return made
+
+
+def arrival_times(grid: Any, goal: ArrayLike, *, slow_within: float = 0.0) -> Array:
+    """When a front from the cell of goal (2,) [m] arrives at the centres of cells: (rows, columns) [m, over a
+    speed of 1]; infinite where it never does. slow_within: as for the planner. InputTypeError for other
+    worlds than grids."""
+    if not isinstance(grid, _core.GridBase):
+        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    near = number_of("slow_within", slow_within, 0.0)
+    _, end = checked_ends(grid, goal, goal)
+    found: Array = clearance_field(grid).march_times(grid, end, near / grid.resolution)
+    return found
+
+
+def reason(route: Route) -> str:
+    """The verdict in a sentence."""
+    if not route:
+        return f"no way leads to the goal: its front has come to all {route.price.nodes} cells that it can"
+    return f"went down the times of a front that takes {route.evidence['time']:.6g} m to the start"
+
+
+def trace(route: Route) -> Trace:
+    """The cells in the order in which the front arrives: start and end (k, 2) [m] are their centre; value [m]
+    is the time."""
+    world = route.world
+    near = route.options["slow_within"] / world.resolution
+    return Trace(WORDS, *clearance_field(world).march_trace(world, route.start, route.goal, near))
