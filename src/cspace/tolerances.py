@@ -36,6 +36,7 @@ __all__ = [
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
     "SAME_PLACE",
+    "SAMPLE_STEP",
     "SERVED",
     "SETTLED",
     "SINGULAR_ROUNDING",
@@ -217,6 +218,9 @@ range in which exact decisions are exact, and neighbouring numbers are decimetre
 DESCENT_LOOKS: Final = 10_000
 """Most looks at a potential on the way down: descents that arrive take some hundreds, and so many take five
 milliseconds."""
+SAMPLE_STEP: Final = 0.1
+"""Longest edge of a tree of samples, in sides of the world: about the ball of RRT* at a thousand nodes, and
+short enough that the first edges pass between obstacles."""
 DIAGRAM_CHORD: Final = 1e-4
 """How far a polyline may lie from a parabola of a Voronoi diagram, in sides of the world: less than the width
 of a line in a picture of it."""

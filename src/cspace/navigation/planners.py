@@ -58,6 +58,11 @@ _ROWS: Final[tuple[Planner, ...]] = (
     Planner("potential_a_star", "over cells, by a search that counts on a potential", "grid", "map"),
     Planner("potential_field", "down a potential: the goal attracts, walls repel", "polygons", "map"),
     Planner(
+        "prm", "a roadmap of random points that see each other, and a shortest way on it", "polygons", "map"
+    ),
+    Planner("rrt", "a tree that grows towards random points until it sees the goal", "polygons", "map"),
+    Planner("rrt_star", "a tree of random points whose ways tend to the shortest", "polygons", "map"),
+    Planner(
         "tangent_bug", "a robot that sees walls up to a distance: around what is in view", "polygons", "range"
     ),
     Planner("theta_star", "a short way of any angle over cells that see each other", "grid", "map"),
