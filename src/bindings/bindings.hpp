@@ -1,6 +1,7 @@
 #pragma once
 #include <nanobind/nanobind.h>
 
+void bind_approximate_cells(nanobind::module_& m);
 void bind_cars(nanobind::module_& m);
 void bind_coverage(nanobind::module_& m);
 void bind_brushfire(nanobind::module_& m);

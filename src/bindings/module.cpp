@@ -31,6 +31,7 @@ NB_MODULE(_core, m) {
     bind_following(m);
     bind_brushfire(m);
     bind_polygon_routes(m);
+    bind_approximate_cells(m);
     bind_bugs(m);
     bind_grid_fields(m);
     bind_potential(m);

@@ -33,6 +33,8 @@ __all__ = [
     "ON_WALL",
     "PLANAR_AXES",
     "PURE_TRANSLATION_ANGLE",
+    "QUADTREE_CELLS",
+    "QUADTREE_DEPTH",
     "ROTATION_ERROR",
     "ROTATION_PROJECTION",
     "SAME_PLACE",
@@ -45,6 +47,7 @@ __all__ = [
     "TANGENT_PLACE",
     "TOML_BYTES",
     "TRACK_BEYOND",
+    "UNIFORM_DEPTH",
     "UNLIMITED",
     "WEAK_DIRECTION",
     "WHOLE_TURN",
@@ -224,3 +227,11 @@ short enough that the first edges pass between obstacles."""
 DIAGRAM_CHORD: Final = 1e-4
 """How far a polyline may lie from a parabola of a Voronoi diagram, in sides of the world: less than the width
 of a line in a picture of it."""
+
+QUADTREE_DEPTH: Final = 12
+"""The level down to which mixed squares are split: upright gaps of a two-thousandth of the world's side are
+found, and what stays open is soon given up."""
+UNIFORM_DEPTH: Final = 9
+"""The same for squares of one size, of which there are 4ᵏ: a quarter of a million."""
+QUADTREE_CELLS: Final = 4_000_000
+"""Most squares of a tree, some hundreds of megabytes; the answer stays open beyond."""

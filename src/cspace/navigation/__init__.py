@@ -1,5 +1,6 @@
 """Navigation in the plane: from start to goal through a world, by classical planners and new ones."""
 
+from cspace.navigation.approximate_cells import CellEvidence, approximate_cells
 from cspace.navigation.boustrophedon import Coverage, coverage
 from cspace.navigation.brushfire import BrushfireDiagram, brushfire_diagram
 from cspace.navigation.cars import CarRoute, hybrid_a_star
@@ -30,3 +31,4 @@ __all__ += ["BrushfireDiagram", "brushfire_diagram"]
 __all__ += ["PotentialRest", "potential"]
 __all__ += ["VoronoiDiagram", "voronoi_diagram"]
 __all__ += ["arrival_times"]
+__all__ += ["CellEvidence", "approximate_cells"]

@@ -37,6 +37,7 @@ _ROWS: Final[tuple[Planner, ...]] = (
     Planner("a_star", "the shortest way over cells, or with costs the cheapest", "grid", "map"),
     Planner("d_star_lite", "the shortest way over cells, mended when they change", "grid", "map"),
     Planner("any_angle", "the shortest path, through convex polygons (Polyanya)", "polygons", "map"),
+    Planner("approximate_cells", "a path through free squares, split where needed", "polygons", "map"),
     Planner(
         "bug_1",
         "a robot that feels walls: around each, then on from its point nearest the goal",

@@ -39,7 +39,15 @@ def lines(axes: Any, pieces: Array, **style: Any) -> list[Any]:
 def draw_events(axes: Any, route: Any) -> list[Any]:
     """The events of the trace in the order of time, blue to yellow: lines, or dots where they have no
     length."""
-    events = route.trace
+    return draw_trace(axes, route.trace)
+
+
+def draw_expanded(axes: Any, route: Any) -> list[Any]:
+    """The events "expand" alone, where others are drawn as what the planner prepared."""
+    return draw_trace(axes, route.trace.only("expand"))
+
+
+def draw_trace(axes: Any, events: Any) -> list[Any]:
     if not len(events):
         return []
     kept = slice(None, None, 1 + len(events) // MOST_EVENTS)
@@ -105,6 +113,23 @@ def draw_exact_cells(axes: Any, route: Any) -> list[Any]:
     return [axes.add_collection(cells)]
 
 
+def draw_squares(axes: Any, route: Any) -> list[Any]:
+    """The free squares that were made, beneath them those that were split."""
+    from matplotlib.collections import PolyCollection
+
+    artists = []
+    for word, face in (("split", "none"), ("free", (*FAINT, 0.35))):
+        made = route.trace.only(word)
+        if len(made):
+            (x, y), (u, v) = made.start.T, made.end.T
+            corners = np.stack([x, y, u, y, u, v, x, v], axis=1).reshape(-1, 4, 2)
+            shown = PolyCollection(
+                list(corners), facecolors=[face], edgecolors=[FAINT], linewidths=0.5, zorder=2
+            )
+            artists.append(axes.add_collection(shown))
+    return artists
+
+
 def draw_convex_polygons(axes: Any, route: Any) -> list[Any]:
     from matplotlib.collections import PolyCollection
 
@@ -162,6 +187,7 @@ def nothing(axes: Any, route: Any) -> list[Any]:
 PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     "visibility_graph": draw_visibility_graph,
     "exact_cells": draw_exact_cells,
+    "approximate_cells": draw_squares,
     "any_angle": draw_convex_polygons,
     "brushfire": draw_brushfire,
     "voronoi": draw_voronoi,
@@ -184,6 +210,7 @@ CELL_PLANNERS: Final = (
 SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     **{name: draw_cells for name in CELL_PLANNERS},
     **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
+    "approximate_cells": draw_expanded,
     "brushfire": nothing,
     "voronoi": nothing,
 }

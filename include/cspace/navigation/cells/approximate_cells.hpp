@@ -1,0 +1,210 @@
+// A path through the free leaves of a quadtree, which is refined where only mixed leaves would connect
+// (Latombe 1991, section 5.3).
+#pragma once
+
+#include <numeric>
+
+#include "cspace/navigation/best_first.hpp"
+#include "cspace/navigation/cells/quadtree.hpp"
+
+namespace cspace::navigation {
+
+struct CellOptions {
+    int depth = 6;           // mixed leaves are split down to this level first,
+    int most_depth = 12;     // and where that leaves the answer open, to this one
+    bool refine = true;      // false: the answer stays open
+    bool uniform = false;    // free leaves are split as well
+    bool manhattan = false;  // the metric of the search
+    std::size_t most_cells = std::size_t(1) << 22;
+};
+
+struct CellAnswer {
+    Route route;
+    std::array<std::int64_t, 3> leaves{};  // free, mixed, full
+    int depth = 0;                         // of the deepest leaf
+};
+
+class ApproximateCells {
+  public:
+    ApproximateCells(const maps::PolygonWorld& world, const CellOptions& options, Trace* trace = nullptr)
+        : tree_(world, trace), options_(options), trace_(trace) {
+        options_.most_depth = std::min(options_.most_depth, tree_.deepest());
+        for (int level = 0; level < std::min(options_.depth, options_.most_depth); ++level)
+            split_all([&](maps::Index) { return true; }, level + 1);
+    }
+
+    const Quadtree& tree() const { return tree_; }
+
+    CellAnswer solve(Point start, Point goal) {
+        CellAnswer answer;
+        if (start == goal) {
+            answer.route.status = Status::found;
+            answer.route.path = {start, goal};
+            answer.route.length = 0;
+        }
+        while (answer.route.status != Status::found) {
+            doors_ = tree_.doors();
+            answer.route.price.edges += std::int64_t(doors_.size());
+            tree_.leaves_at(start, at_start_);
+            tree_.leaves_at(goal, at_goal_);
+            if (search(start, goal, answer.route)) break;
+            answer.route.status = Status::unreachable;
+            if (!join()) break;
+            answer.route.status = Status::undetermined;
+            if (!options_.refine) break;
+            const auto connects = [&](maps::Index c) { return options_.uniform || connecting_[root(c)]; };
+            if (!split_all(connects, options_.most_depth)) break;
+        }
+        count(answer);
+        return answer;
+    }
+
+  private:
+    enum : std::int8_t { expand_word = 2 };
+    Quadtree tree_;
+    CellOptions options_;
+    Trace* trace_;
+    std::vector<CellDoor> doors_;
+    std::vector<maps::Index> at_start_, at_goal_, part_;
+    std::vector<std::uint8_t> connecting_;  // of each root: whether its leaves hold start and goal
+
+    std::size_t root(maps::Index c) {
+        while (part_[std::size_t(c)] != c)
+            c = part_[std::size_t(c)] = part_[std::size_t(part_[std::size_t(c)])];
+        return std::size_t(c);
+    }
+
+    // Splits the leaves above a level that may hide a way, once each; false where there are none, or too
+    // many.
+    template <class Wanted>
+    bool split_all(Wanted wanted, int level) {
+        std::vector<maps::Index> chosen;
+        for (maps::Index c = 0; c < maps::Index(tree_.cells().size()); ++c) {
+            const QuadCell& cell = tree_[c];
+            const bool can_be =
+                cell.kind == QuadCell::mixed || (options_.uniform && cell.kind == QuadCell::free);
+            if (tree_.is_leaf(c) && can_be && cell.level < level && wanted(c)) chosen.push_back(c);
+        }
+        if (tree_.cells().size() + 4 * chosen.size() > options_.most_cells) return false;
+        for (const maps::Index c : chosen) tree_.split(c);
+        return !chosen.empty();
+    }
+
+    // Joins leaves that doors connect, mixed ones too; whether start and goal then hang together.
+    bool join() {
+        part_.resize(tree_.cells().size());
+        std::iota(part_.begin(), part_.end(), 0);
+        for (const CellDoor& d : doors_) part_[root(d.one)] = maps::Index(root(d.other));
+        std::vector<std::uint8_t> from(part_.size(), 0);
+        connecting_.assign(part_.size(), 0);
+        const auto is_full = [&](maps::Index c) { return tree_[c].kind == QuadCell::full; };
+        for (const maps::Index c : at_start_) from[root(c)] = !is_full(c);
+        bool joined = false;
+        for (const maps::Index c : at_goal_)
+            if (!is_full(c) && from[root(c)]) connecting_[root(c)] = 1, joined = true;
+        return joined;
+    }
+
+    double metric(Point a, Point b) const {
+        return options_.manhattan ? std::abs(b.x - a.x) + std::abs(b.y - a.y) : distance(a, b);
+    }
+
+    // A* over the doors of free leaves.
+    struct Space {
+        struct State {
+            double g = std::numeric_limits<double>::infinity();
+            std::uint32_t before = no_node;
+            bool settled = false;
+        };
+        const ApproximateCells& cells;
+        Point start, goal;
+        Trace* trace;
+        std::vector<std::uint32_t> first, door;  // the open doors of each leaf
+        std::vector<State> state;                // of each door, and of the goal
+        std::vector<std::uint8_t> holds_goal;    // each leaf
+
+        std::uint32_t last() const { return std::uint32_t(cells.doors_.size()); }
+        Point at(std::uint32_t node) const { return node == last() ? goal : cells.doors_[node].at; }
+        bool is_goal(std::uint32_t node) const { return node == last(); }
+        bool settle(std::uint32_t node) {
+            State& s = state[node];
+            if (s.settled) return false;
+            if (trace)
+                trace->push_back({expand_word, s.before == no_node ? start : at(s.before), at(node), s.g});
+            return s.settled = true;
+        }
+        void reach(std::uint32_t node, double g, std::uint32_t before, PriorityQueue& queue) {
+            State& s = state[node];
+            if (s.settled || g >= s.g) return;
+            s.g = g, s.before = before;
+            queue.push({g + cells.metric(at(node), goal), float(-g), node});
+        }
+        // What can be reached from a point of a leaf.
+        void leave(maps::Index c, Point from, double g, std::uint32_t before, PriorityQueue& queue) {
+            const std::size_t leaf = std::size_t(c);
+            if (holds_goal[leaf]) reach(last(), g + cells.metric(from, goal), before, queue);
+            for (std::uint32_t k = first[leaf]; k < first[leaf + 1]; ++k)
+                reach(door[k], g + cells.metric(from, at(door[k])), before, queue);
+        }
+        void expand(std::uint32_t node, PriorityQueue& queue) {
+            const CellDoor& d = cells.doors_[node];
+            for (const maps::Index c : {d.one, d.other}) leave(c, d.at, state[node].g, node, queue);
+        }
+    };
+
+    bool is_passage(const CellDoor& d) const {
+        return d.is_open && tree_[d.one].kind == QuadCell::free && tree_[d.other].kind == QuadCell::free;
+    }
+
+    Space space(Point start, Point goal) const {
+        const std::size_t cells = tree_.cells().size();
+        Space made{*this, start, goal, trace_, {}, {}, {}, {}};
+        made.first.assign(cells + 1, 0);
+        made.state.resize(doors_.size() + 1);
+        made.holds_goal.assign(cells, 0);
+        for (const maps::Index c : at_goal_)
+            made.holds_goal[std::size_t(c)] = tree_[c].kind == QuadCell::free;
+        for (const CellDoor& d : doors_)
+            if (is_passage(d)) ++made.first[std::size_t(d.one) + 1], ++made.first[std::size_t(d.other) + 1];
+        std::partial_sum(made.first.begin(), made.first.end(), made.first.begin());
+        made.door.resize(made.first.back());
+        std::vector<std::uint32_t> filled(made.first.begin(), made.first.end() - 1);
+        for (std::uint32_t d = 0; d < std::uint32_t(doors_.size()); ++d)
+            if (is_passage(doors_[d]))
+                for (const maps::Index c : {doors_[d].one, doors_[d].other})
+                    made.door[filled[std::size_t(c)]++] = d;
+        return made;
+    }
+
+    bool search(Point start, Point goal, Route& route) const {
+        const auto is_free = [&](maps::Index c) { return tree_[c].kind == QuadCell::free; };
+        if (std::none_of(at_start_.begin(), at_start_.end(), is_free)) return false;
+        if (std::none_of(at_goal_.begin(), at_goal_.end(), is_free)) return false;
+        Space space = this->space(start, goal);
+        PriorityQueue queue;
+        for (const maps::Index c : at_start_)
+            if (is_free(c)) space.leave(c, start, 0, no_node, queue);
+        Effort effort;
+        const std::uint32_t reached = best_first(space, queue, effort);
+        route.price.nodes += std::int64_t(effort.settled);
+        if (reached == no_node) return false;
+        for (std::uint32_t node = reached; node != no_node; node = space.state[node].before)
+            if (route.path.empty() || route.path.back() != space.at(node))
+                route.path.push_back(space.at(node));
+        route.path.push_back(start);
+        std::reverse(route.path.begin(), route.path.end());
+        route.status = Status::found;
+        route.length = length_of(route.path);
+        return true;
+    }
+
+    void count(CellAnswer& answer) const {
+        for (maps::Index c = 0; c < maps::Index(tree_.cells().size()); ++c) {
+            if (!tree_.is_leaf(c)) continue;
+            ++answer.leaves[std::size_t(tree_[c].kind)];
+            answer.depth = std::max(answer.depth, int(tree_[c].level));
+        }
+    }
+};
+
+}  // namespace cspace::navigation

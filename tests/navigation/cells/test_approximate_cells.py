@@ -1,0 +1,154 @@
+"""Approximate cells: squares that are free lie in free space, a path keeps out of obstacles, a proof is a
+proof, and what is left open closes as squares shrink."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.errors import InputError, UnknownNameError
+from cspace.navigation import approximate_cells
+from oracles.segments import enters
+
+FREE, MIXED, FULL = range(3)
+
+
+def ask(world, start, goal, **options):
+    """A route whose path, where there is one, is checked."""
+    route = cs.navigate(world, start, goal, "approximate_cells", **options)
+    assert route.reason
+    assert min(route.evidence[:3]) >= 0
+    if route:
+        np.testing.assert_array_equal(route.path[[0, -1]], [start, goal])
+        assert enters(route.path, world.obstacles, world.bounds) is None
+        assert route.length == pytest.approx(np.hypot(*np.diff(route.path, axis=0).T).sum(), rel=1e-12)
+    else:
+        assert len(route.path) == 0
+    return route
+
+
+def gate(low, high, side=16.0):
+    """A wall across a square world with a gap from low to high."""
+    left, right = side / 2 - 0.3, side / 2 + 0.3
+    below = [(left, 0), (right, 0), (right, low), (left, low)]
+    above = [(left, high), (right, high), (right, side), (left, side)]
+    return cs.PolygonWorld([below, above], (0, 0, side, side))
+
+
+def are_connected(world, start, goal):
+    one, other = (set(world._core.components_at(*map(float, p))) for p in (start, goal))
+    return bool(one & other)
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.5, 0.25])
+@pytest.mark.parametrize("width", [0.98, 1.02, 1.98, 2.02])
+def test_gaps_about_as_wide_as_a_square(width, shift):
+    """Squares of one metre: a gap is seen if it holds a whole row of them."""
+    world = gate(5 + shift, 5 + shift + width)
+    holds = math.floor(5 + shift + width) - math.ceil(5 + shift) >= 1
+    route = ask(world, (1.3, 5.4), (14.2, 5.6), depth=4, refine=False)
+    assert route.status == ("found" if holds else "undetermined")
+    assert ask(world, (1.3, 5.4), (14.2, 5.6), depth=4)
+    assert ask(world, (1.3, 5.4), (14.2, 5.6), depth=2, min_size=1.0).status == route.status
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, math.pi / 4, 1.2])
+@pytest.mark.parametrize("width", [0.6, 0.1])
+def test_corridors_at_an_angle(angle, width):
+    c, s = math.cos(angle), math.sin(angle)
+    turn = np.array([(c, -s), (s, c)])
+    near, far = width / 2, 30
+    blocks = [[(-4, k * near), (4, k * near), (4, k * far), (-4, k * far)] for k in (1, -1)]
+    world = cs.PolygonWorld([np.array(block) @ turn.T for block in blocks], (-8, -8, 8, 8))
+    start, goal = turn @ (-6, 0.01), turn @ (6, 0.02)
+    assert ask(world, start, goal, depth=3, refine=False).status == "undetermined"
+    assert ask(world, start, goal, depth=3)
+
+
+def test_a_gap_without_width_is_no_way():
+    for low in (5.3, 5.0):
+        route = ask(gate(low, low), (1, 1), (15, 15), max_depth=10)
+        assert route.status in {"unreachable", "undetermined"}
+    boxes = [[(0, 0), (4, 0), (4, 4), (0, 4)], [(4, 4), (8, 4), (8, 8), (4, 8)]]
+    assert ask(cs.PolygonWorld(boxes, (0, 0, 8, 8)), (1, 7), (7, 1)).status == "unreachable"
+
+
+def test_a_wall_without_thickness_on_a_line_of_the_tree():
+    for end, status in ((8.0, "unreachable"), (7.9, "found")):
+        world = cs.PolygonWorld([[(4, 0), (4, end), (4, 0)]], (0, 0, 8, 8), repair=True)
+        assert ask(world, (1, 1), (7, 1)).status == status
+
+
+def test_a_goal_in_a_mixed_square():
+    world = cs.PolygonWorld([[(3.1, 3.1), (6.2, 3.1), (6.2, 6.2), (3.1, 6.2)]], (0, 0, 8, 8))
+    assert ask(world, (1, 1), (3.0, 4.0), depth=2, refine=False).status == "undetermined"
+    assert ask(world, (1, 1), (3.0, 4.0), depth=2)
+    slanted = cs.PolygonWorld([[(3, 3), (5, 4), (4, 6)]], (0, 0, 8, 8))
+    assert ask(slanted, (1, 1), (4, 3.5), max_depth=9).status in {"found", "undetermined"}
+
+
+def test_whole_numbers_against_what_is_connected():
+    rng = np.random.default_rng(4)
+    seen = set()
+    for _ in range(40):
+        rings = [rng.integers(0, 9, (rng.integers(3, 6), 2)) for _ in range(rng.integers(1, 7))]
+        rings = [ring for ring in rings if len(np.unique(ring, axis=0)) > 2]
+        world = cs.PolygonWorld(rings, (0, 0, 8, 8), repair=True)
+        points = [p for p in rng.integers(0, 33, (12, 2)) / 4 if world.is_free(p)]
+        for start, goal in zip(points[::2], points[1::2], strict=False):
+            route = ask(world, start, goal, max_depth=8)
+            seen.add(route.status)
+            if route.status != "undetermined":
+                assert bool(route) == are_connected(world, start, goal)
+    assert {"found", "unreachable"} <= seen
+
+
+def test_uniform_squares_are_manhattan_optimal():
+    """Against breadth-first steps over the same squares."""
+    rng = np.random.default_rng(5)
+    rings = [np.array([(0, 0), (1.7, 0.2), (0.9, 1.6)]) + rng.uniform(0.2, 14, 2) for _ in range(22)]
+    world = cs.PolygonWorld(rings, (0, 0, 16, 16), repair=True)
+    squares, kinds = approximate_cells(world, 5, uniform=True)
+    free = {tuple(map(int, 2 * square[:2])) for square in squares[kinds == FREE]}
+    first, last = min(free), max(free)
+    steps, wave = {first: 0}, [first]
+    for x, y in wave:
+        for near in ((x + 1, y), (x - 1, y), (x, y + 1), (x, y - 1)):
+            if near in free and near not in steps:
+                steps[near] = steps[x, y] + 1
+                wave.append(near)
+    start, goal = (np.array(first) + 0.5) / 2, (np.array(last) + 0.5) / 2
+    route = ask(world, start, goal, depth=5, uniform=True, refine=False)
+    assert np.abs(np.diff(route.path, axis=0)).sum() == pytest.approx(steps[last] * 0.5, rel=1e-12)
+
+
+def test_the_squares_tile_the_world():
+    world = cs.PolygonWorld([[(2, 2), (5, 3), (3, 6)], [(6, 1), (7, 1), (7, 2)]], (0, 0, 8, 6.5))
+    squares, kinds = approximate_cells(world, 6)
+    areas = (squares[:, 2:] - squares[:, :2]).prod(axis=1)
+    assert areas.sum() == pytest.approx(64)
+    free, mixed = areas[kinds == FREE].sum(), areas[kinds == MIXED].sum()
+    assert free < 8 * 6.5 - 5.5 - 0.5 < free + mixed
+    middles = 0.5 * (squares[:, :2] + squares[:, 2:])
+    assert np.all(world.is_free(middles[kinds == FREE]))
+    assert not np.any(world.is_free(middles[kinds == FULL]))
+
+
+def test_trace_and_evidence():
+    route = ask(gate(5.2, 5.9), (1, 1), (15, 15), depth=2)
+    assert {word for word, *_ in route.trace} == {"split", "free", "expand"}
+    assert len(route.trace.only("expand")) >= route.price.nodes > 0
+    assert route.evidence.depth > 2
+    assert route.evidence.side == 16 / 2**route.evidence.depth
+
+
+def test_options_that_make_no_sense():
+    world = gate(5, 6)
+    with pytest.raises(UnknownNameError, match="manhattan"):
+        ask(world, (1, 1), (2, 2), metric="manhatten")
+    for options in ({"depth": -1}, {"depth": 2.5}, {"max_depth": 99}, {"min_size": -1.0}):
+        with pytest.raises(InputError):
+            ask(world, (1, 1), (2, 2), **options)
