@@ -60,11 +60,12 @@ WORLDS |= {"slalom": slalom, "trap": trap}
 
 
 def free_pair(world, seed):
+    """A start and a goal that do not see each other."""
     rng = np.random.default_rng(seed)
     left, low, right, high = world.bounds
     while True:
         pair = rng.uniform((left, low), (right, high), (2, 2))
-        if all(map(world.is_free, pair)) and cs.navigate(world, *pair):
+        if all(map(world.is_free, pair)) and len(cs.navigate(world, *pair).path) > 2:
             return pair
 
 
