@@ -56,6 +56,7 @@ def thin_walls():
 
 WORLDS = {f"field {seed}": (lambda seed=seed: field(seed)) for seed in range(6)}
 WORLDS |= {f"quarters {seed}": (lambda seed=seed: field(seed, integer=True)) for seed in range(6)}
+WORLDS["a disc that bulges beyond a point"] = lambda: field(296, per_side=5)
 WORLDS |= {"corridors": corridors, "comb": comb, "thin walls": thin_walls}
 
 

@@ -46,7 +46,7 @@ inline Nearest nearest_site(const Sites& sites, const EdgeTree& tree, Point p) {
     best.distance = 4 * sites.extent;
     const double slack = 1e-12 * sites.extent;
     tree.visit_shrinking(
-        p, Side{}, [&] { return std::pair{p, best.distance + slack}; },
+        p, EitherSide{}, [&] { return std::pair{p, best.distance + slack}; },
         [&](Index e) {
             const double s = sites.advance(e, p), h = sites.height(e, p);
             if (s >= -slack && s <= sites.length[std::size_t(e)] + slack && h >= -slack && h < best.distance)
@@ -89,7 +89,7 @@ inline Retraction retract(const Sites& sites, const EdgeTree& tree, Point p) {
         if (t >= least && t < radius) radius = t, up.b = site;
     };
     tree.visit_shrinking(
-        p, Side{}, [&] { return std::pair{at(), radius}; },
+        p, EitherSide{}, [&] { return std::pair{at(), radius}; },
         [&](Index e) {
             const Point q = sites.begin(e);
             if (!is_own(e) && q != up.foot && sites.end(e) != up.foot) {

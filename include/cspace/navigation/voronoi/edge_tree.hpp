@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "cspace/navigation/voronoi/sites.hpp"
@@ -13,6 +14,7 @@ struct Side {
     Point n;
     double least = 0;
 };
+using EitherSide = std::array<Side, 2>;
 
 class EdgeTree {
   public:
@@ -22,9 +24,10 @@ class EdgeTree {
         if (!order_.empty()) build(sites, 0, Index(order_.size()));
     }
 
-    // Calls visit(edge) for walls that may reach into the part of a disc on one side, until it answers false.
+    // Calls visit(edge) for walls that may reach into the part of a disc on either of two sides, until it
+    // answers false.
     template <class Visit>
-    bool visit_disc(Point center, double radius, Side side, Visit visit) const {
+    bool visit_disc(Point center, double radius, const EitherSide& side, Visit visit) const {
         if (nodes_.empty()) return true;
         Index stack[128];
         int top = 0;
@@ -46,7 +49,7 @@ class EdgeTree {
     // The same for a disc that shrinks: disc() says its centre and radius as they are now. Those near `from`
     // come first.
     template <class Disc, class Visit>
-    void visit_shrinking(Point from, Side side, Disc disc, Visit visit) const {
+    void visit_shrinking(Point from, const EitherSide& side, Disc disc, Visit visit) const {
         if (nodes_.empty()) return;
         Index stack[128];
         int top = 0;
@@ -81,10 +84,12 @@ class EdgeTree {
         return dx * dx + dy * dy;
     }
 
-    static bool is_beyond(const Node& node, Side side) {
-        return side.n.x * (side.n.x > 0 ? node.high.x : node.low.x) +
-                   side.n.y * (side.n.y > 0 ? node.high.y : node.low.y) <
-               side.least;
+    static bool is_beyond(const Node& node, const EitherSide& sides) {
+        for (const auto& [n, least] : sides)
+            if (!(n.x * (n.x > 0 ? node.high.x : node.low.x) + n.y * (n.y > 0 ? node.high.y : node.low.y) <
+                  least))
+                return false;
+        return true;
     }
 
     void build(const Sites& sites, Index begin, Index end) {

@@ -49,11 +49,11 @@ class FirstTouch {
 
     // Takes the end back, touch by touch, as long as something reaches into the disc there.
     void shorten() {
-        const Side ahead = ahead_of(begin_);
         for (int tries = 0; tries < 64; ++tries) {
             const Point p = curve_.at(end_);
             double radius = curve_.radius(end_) * (1 - 1e-9);
             Index nearest = none;
+            const EitherSide ahead{gained(begin_, end_), gained(begin_, end_)};
             tree_.visit_shrinking(
                 p, ahead, [&] { return std::pair{p, radius}; },
                 [&](Index e) {
@@ -70,14 +70,23 @@ class FirstTouch {
         }
     }
 
-    // The side on which lies all that discs reach from now on and the disc at t does not: that of the line
-    // through its feet on the two sites.
-    Side ahead_of(double t) const {
-        const Point p = curve_.at(t), velocity = curve_.velocity(t);
+    // The side on which lies all that the disc at t1 reaches and the disc at t0 does not: that of the line
+    // through where their circles cross.
+    Side gained(double t0, double t1) const {
+        const Point p = curve_.at(t0), q = curve_.at(t1);
+        const double r = curve_.radius(t0), s = curve_.radius(t1), apart = distance(p, q);
+        if (!(apart > 1e-7 * r)) return {};
+        const Point way = (1 / apart) * (q - p);
+        return {way, dot(way, 0.5 * (p + q)) + (r - s) * (r + s) / (2 * apart) - 1e2 * grain_.at(r)};
+    }
+    // All that discs between t0 and t1 reach and the disc at t0 does not: those lines cross in a point, where
+    // one site is one, or never; so they turn from that through the feet at t0 to that of the last disc.
+    EitherSide gained_between(double t0, double t1) const {
+        const Point p = curve_.at(t0), velocity = curve_.velocity(t0);
         const Point way = (1 / norm(velocity)) * velocity;
-        const double radius = curve_.radius(t);
+        const double r = curve_.radius(t0);
         const double foot = std::min(dot(way, sites_.towards(a_, p)), dot(way, sites_.towards(b_, p)));
-        return {way, dot(way, p) + radius * foot - 1e2 * grain_.at(radius)};
+        return {Side{way, dot(way, p) + r * foot - 1e2 * grain_.at(r)}, gained(t0, t1)};
     }
 
     // Looks at all walls that discs between two parameters may meet; false where they are many and a shorter
@@ -87,7 +96,7 @@ class FirstTouch {
         const double speed = std::max(norm(curve_.velocity(t0)), norm(curve_.velocity(t1)));
         const double half = 0.5 * (t1 - t0) * speed, largest = std::max(curve_.radius(t0), curve_.radius(t1));
         const double reach = (largest + half) * (1 + 1e-9) + grain_.fine;
-        const Side ahead = ahead_of(t0);
+        const EitherSide ahead = gained_between(t0, t1);
         Index found[24];
         int count = 0;
         const bool all = tree_.visit_disc(center, reach, ahead, [&](Index e) {

@@ -103,7 +103,7 @@ class Tracer {
             const Touch touch{site, s_.towards(site, p)};
             if (turn_from(start, touch.towards) < sector) all.push_back(touch);
         };
-        d_.tree.visit_disc(p, radius + slack, Side{}, [&](Index e) {
+        d_.tree.visit_disc(p, radius + slack, EitherSide{}, [&](Index e) {
             const double s = s_.advance(e, p), h = s_.height(e, p);
             if (h > 0.5 * radius && h <= radius + slack && s >= 0 && s <= s_.length[std::size_t(e)]) add(e);
             if (s_.turn_at(e) == Turn::around && distance(p, s_.begin(e)) <= radius + slack &&
