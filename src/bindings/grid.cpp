@@ -43,13 +43,13 @@ void free_points(const GridWorld& world, Array<const double, nb::shape<-1, 2>> p
     for (std::size_t k = 0; k < points.shape(0); ++k) {
         maps::Cell cell;
         const Point p = {points(k, 0), points(k, 1)};
-        into(k) = world.frame.locate(world.bits, p, cell) == maps::Place::free;
+        into(k) = world.frame.locate(world.bits, p, cell) == maps::CellState::free;
     }
 }
 // (place, row, column); place: 0 free, 1 blocked, 2 outside.
 nb::tuple locate(const GridWorld& world, double x, double y) {
     maps::Cell cell = {-1, -1};
-    const maps::Place place = world.frame.locate(world.bits, {x, y}, cell);
+    const maps::CellState place = world.frame.locate(world.bits, {x, y}, cell);
     return nb::make_tuple(int(place), cell.row, cell.column);
 }
 
@@ -122,8 +122,8 @@ int read_ask(PyObject* const* args, Py_ssize_t count, Ask& ask) {
     ask.start = {ends[0], ends[1]};
     ask.goal = {ends[2], ends[3]};
     const GridWorld& world = *ask.world;
-    return world.frame.locate(world.bits, ask.start, ask.from) == maps::Place::free &&
-           world.frame.locate(world.bits, ask.goal, ask.to) == maps::Place::free;
+    return world.frame.locate(world.bits, ask.start, ask.from) == maps::CellState::free &&
+           world.frame.locate(world.bits, ask.goal, ask.to) == maps::CellState::free;
 }
 
 void run(const Ask& ask, GridAnswer& answer, Route& route) {

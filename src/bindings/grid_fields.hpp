@@ -21,7 +21,7 @@ nanobind::object map_of(const cspace::maps::BitGrid& grid, const Of& of) {
 inline cspace::maps::Cell free_cell(const cspace::maps::BitGrid& grid, const cspace::maps::GridFrame& frame,
                                     const PointRow& point) {
     cspace::maps::Cell cell{};
-    if (frame.locate(grid, {point.data()[0], point.data()[1]}, cell) != cspace::maps::Place::free)
+    if (frame.locate(grid, {point.data()[0], point.data()[1]}, cell) != cspace::maps::CellState::free)
         throw nanobind::value_error("points in free cells");
     return cell;
 }

@@ -25,7 +25,7 @@ struct Replanner {
 
 maps::Cell cell_of(const GridWorld& world, Point p) {
     maps::Cell cell = {0, 0};
-    if (world.frame.locate(world.bits, p, cell) == maps::Place::outside)
+    if (world.frame.locate(world.bits, p, cell) == maps::CellState::outside)
         throw nb::value_error("a point within the grid");
     return cell;
 }
@@ -52,7 +52,7 @@ void set_cells(Replanner& planner, Cells cells, bool blocked) {
 
 void move_to(Replanner& planner, double x, double y) {
     maps::Cell cell = {0, 0};
-    if (planner.frame.locate(planner.search.grid(), {x, y}, cell) == maps::Place::outside)
+    if (planner.frame.locate(planner.search.grid(), {x, y}, cell) == maps::CellState::outside)
         throw nb::value_error("a point within the grid");
     planner.start = {x, y};
     planner.search.move(cell);

@@ -81,7 +81,7 @@ TEST(a_front_comes_where_cells_join_and_its_way_leads_down) {
         if (k % 2 == 0) CHECK(answer.time <= shortest.cost + 1e-9);
         for (const Point p : answer.route.path) {
             Cell cell{};
-            CHECK(frame.locate(grid, p, cell) == Place::free);
+            CHECK(frame.locate(grid, p, cell) == CellState::free);
         }
     }
 }

@@ -10,7 +10,7 @@
 
 namespace cspace::maps {
 
-enum class Place : signed char { free, blocked, outside };
+enum class CellState : signed char { free, blocked, outside };
 
 struct GridFrame {
     double resolution = 1;  // the side of a cell [m]
@@ -21,23 +21,23 @@ struct GridFrame {
     }
     // The cell of a point. Where it lies on the border of cells it is in each of them,
     // and a free one is preferred.
-    Place locate(const BitGrid& grid, Point p, Cell& cell) const {
+    CellState locate(const BitGrid& grid, Point p, Cell& cell) const {
         const double across = (p.x - origin.x) / resolution, up = (p.y - origin.y) / resolution;
         if (!(across >= -on_border && across <= grid.columns() + on_border && up >= -on_border &&
               up <= grid.rows() + on_border))
-            return Place::outside;
+            return CellState::outside;
         cell = {place(up, grid.rows()), place(across, grid.columns())};
-        if (!grid.blocked(cell)) return Place::free;
+        if (!grid.blocked(cell)) return CellState::free;
         for (int down = -1; down <= 1; ++down)
             for (int along = -1; along <= 1; ++along) {
                 const Cell beside = {cell.row + down, cell.column + along};
                 if (grid.contains(beside) && touches(up, beside.row) && touches(across, beside.column) &&
                     !grid.blocked(beside)) {
                     cell = beside;
-                    return Place::free;
+                    return CellState::free;
                 }
             }
-        return Place::blocked;
+        return CellState::blocked;
     }
 
   private:

@@ -38,7 +38,7 @@ struct StepCost {
 };
 
 template <class G>
-struct Way {
+struct Reach {
     G g;
     std::uint32_t parent;
 };
@@ -49,7 +49,7 @@ struct StepParents {
     using G = typename Length::G;
     Length length;
     template <class Search>
-    Way<G> way(Search&, std::uint32_t number, const G& g, std::uint32_t, maps::Cell from, maps::Cell to,
+    Reach<G> way(Search&, std::uint32_t number, const G& g, std::uint32_t, maps::Cell from, maps::Cell to,
                int direction) const {
         return {g + length.step(from, to, direction), number};
     }
@@ -63,7 +63,7 @@ struct SightParents {
     using G = double;
     Corners corners;
     template <class Search>
-    Way<G> way(Search& search, std::uint32_t number, double g, std::uint32_t parent, maps::Cell,
+    Reach<G> way(Search& search, std::uint32_t number, double g, std::uint32_t parent, maps::Cell,
                maps::Cell to, int direction) const {
         const maps::Cell before = search.cell(parent);
         if (sees(search.grid(), corners, before, to))
@@ -81,7 +81,7 @@ struct LazySightParents {
     using G = double;
     Corners corners;
     template <class Search>
-    Way<G> way(Search& search, std::uint32_t, double, std::uint32_t parent, maps::Cell, maps::Cell to,
+    Reach<G> way(Search& search, std::uint32_t, double, std::uint32_t parent, maps::Cell, maps::Cell to,
                int) const {
         const maps::Cell before = search.cell(parent);
         return {search.node(parent).g + straight_distance(to.row - before.row, to.column - before.column),
