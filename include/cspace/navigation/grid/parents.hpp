@@ -50,7 +50,7 @@ struct StepParents {
     Length length;
     template <class Search>
     Reach<G> way(Search&, std::uint32_t number, const G& g, std::uint32_t, maps::Cell from, maps::Cell to,
-               int direction) const {
+                 int direction) const {
         return {g + length.step(from, to, direction), number};
     }
     template <class Search>
@@ -64,7 +64,7 @@ struct SightParents {
     Corners corners;
     template <class Search>
     Reach<G> way(Search& search, std::uint32_t number, double g, std::uint32_t parent, maps::Cell,
-               maps::Cell to, int direction) const {
+                 maps::Cell to, int direction) const {
         const maps::Cell before = search.cell(parent);
         if (sees(search.grid(), corners, before, to))
             return {search.node(parent).g + straight_distance(to.row - before.row, to.column - before.column),
@@ -82,7 +82,7 @@ struct LazySightParents {
     Corners corners;
     template <class Search>
     Reach<G> way(Search& search, std::uint32_t, double, std::uint32_t parent, maps::Cell, maps::Cell to,
-               int) const {
+                 int) const {
         const maps::Cell before = search.cell(parent);
         return {search.node(parent).g + straight_distance(to.row - before.row, to.column - before.column),
                 parent};
