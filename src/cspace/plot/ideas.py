@@ -15,6 +15,8 @@ __all__ = ["draw_idea"]
 
 MOST_EVENTS: Final = 20_000
 """Events that a picture shows: of more every second, third … is drawn; a reader could not tell them apart."""
+CROWD: Final = 1000
+"""Lines from which on each is drawn thinner and fainter."""
 FIELD: Final = 160
 """Places along a side of the world at which a field is evaluated for its picture."""
 FAINT: Final = (0.78, 0.81, 0.86)
@@ -57,9 +59,8 @@ def draw_trace(axes: Any, events: Any) -> list[Any]:
     artists: list[Any] = []
     if is_line.any():
         pieces = np.stack([start, end], axis=1)[is_line]
-        artists += lines(
-            axes, pieces, array=when[is_line], cmap="viridis", linewidths=0.8, zorder=3, alpha=0.8
-        )
+        style = dict(linewidths=0.8, alpha=0.8) if len(pieces) < CROWD else dict(linewidths=0.4, alpha=0.35)
+        artists += lines(axes, pieces, array=when[is_line], cmap="viridis", zorder=3, **style)
     if not is_line.all():
         dots = end[~is_line]
         artists.append(axes.scatter(*dots.T, c=when[~is_line], cmap="viridis", s=4, linewidths=0, zorder=3))
@@ -196,15 +197,8 @@ PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
 """What a planner prepares before it is asked."""
 
 CELL_PLANNERS: Final = (
-    *(
-        "a_star",
-        "dijkstra",
-        "focal_search",
-        "greedy_best_first",
-        "theta_star",
-        "wavefront",
-        "weighted_a_star",
-    ),
+    *("a_star", "dijkstra", "fast_marching", "focal_search", "greedy_best_first", "potential_a_star"),
+    *("theta_star", "wavefront", "weighted_a_star"),
 )
 
 SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
