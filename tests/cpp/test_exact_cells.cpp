@@ -5,6 +5,7 @@
 #include "check.hpp"
 #include "cspace/navigation/cells/exact_cells.hpp"
 #include "cspace/navigation/visibility/search.hpp"
+#include "whole_worlds.hpp"
 
 using namespace cspace;
 using namespace cspace::maps;
@@ -80,36 +81,13 @@ TEST(a_box_makes_four_cells) {
 TEST(worlds_of_whole_numbers) {
     std::mt19937 random(11);
     for (int trial = 0; trial < 3000; ++trial) {
-        Outlines world;
-        const int side = 3 + int(random() % 8);
-        world.high = {double(side), double(side)};
-        const int obstacles = 1 + int(random() % 8);
-        for (int o = 0; o < obstacles; ++o) {
-            std::vector<Point> ring;
-            const int corners = trial % 5 == 0 ? 2 : 3 + int(random() % 3);
-            for (int i = 0; i < corners; ++i)
-                ring.push_back(
-                    {double(random() % unsigned(side + 1)), double(random() % unsigned(side + 1))});
-            world.add_ring(ring, o);
-        }
-        check_world(world, random, 10);
+        check_world(whole_polygons(random, trial % 5 == 0), random, 10);
     }
 }
 
 TEST(worlds_of_boxes) {
     std::mt19937 random(12);
     for (int trial = 0; trial < 1000; ++trial) {
-        Outlines world;
-        const int side = 4 + int(random() % 6);
-        world.high = {double(side), double(side)};
-        int owner = 0;
-        for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x)
-                if (random() % 3 == 0) {
-                    const double u = x, v = y;
-                    const Point box[4] = {{u, v}, {u + 1, v}, {u + 1, v + 1}, {u, v + 1}};
-                    world.add_ring(box, owner++);
-                }
-        check_world(world, random, 10);
+        check_world(whole_boxes(random), random, 10);
     }
 }

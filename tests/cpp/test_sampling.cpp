@@ -6,27 +6,13 @@
 #include "cspace/navigation/any_angle/polyanya.hpp"
 #include "cspace/navigation/sampling/prm.hpp"
 #include "cspace/navigation/sampling/rrt.hpp"
+#include "whole_worlds.hpp"
 
 using namespace cspace;
 using namespace cspace::maps;
 using namespace cspace::navigation;
 
 namespace {
-
-Outlines whole_numbers(std::mt19937& random) {
-    Outlines world;
-    const int side = 3 + int(random() % 8);
-    world.high = {double(side), double(side)};
-    const int obstacles = 1 + int(random() % 8);
-    for (int o = 0; o < obstacles; ++o) {
-        std::vector<Point> ring;
-        const int corners = o % 5 == 4 ? 2 : 3 + int(random() % 3);
-        for (int i = 0; i < corners; ++i)
-            ring.push_back({double(random() % unsigned(side + 1)), double(random() % unsigned(side + 1))});
-        world.add_ring(ring, o);
-    }
-    return world;
-}
 
 double shortest(const PolygonWorld& world, Settled from, Settled to) {
     Polyanya polyanya(world.mesh());
@@ -46,7 +32,7 @@ bool sees(const PolygonWorld& world, const Settled& from, Point to) {
 TEST(sight_is_a_shortest_path_that_is_straight) {
     std::mt19937 random(3);
     for (int trial = 0; trial < 1500; ++trial) {
-        const PolygonWorld world(whole_numbers(random));
+        const PolygonWorld world(whole_polygons(random, false));
         const bool is_whole = trial % 2 == 0;
         const auto draw = [&] {
             const double side = world.outlines.high.x, drawn = double(random()) / 4294967296.0;
@@ -70,7 +56,7 @@ TEST(ways_are_never_shorter_than_the_shortest) {
     std::mt19937 random(4);
     int found = 0;
     for (int trial = 0; trial < 300; ++trial) {
-        const PolygonWorld world(whole_numbers(random));
+        const PolygonWorld world(whole_polygons(random, false));
         const unsigned halves = unsigned(2 * world.outlines.high.x) + 1;
         const Point a{0.5 * double(random() % halves), 0.5 * double(random() % halves)};
         const Point b{0.5 * double(random() % halves), 0.5 * double(random() % halves)};

@@ -6,6 +6,7 @@
 #include "check.hpp"
 #include "cspace/navigation/any_angle/polyanya.hpp"
 #include "cspace/navigation/visibility/search.hpp"
+#include "whole_worlds.hpp"
 
 using namespace cspace;
 using namespace cspace::maps;
@@ -73,37 +74,14 @@ TEST(around_a_box_along_its_walls) {
 TEST(worlds_of_whole_numbers) {
     std::mt19937 random(5);
     for (int trial = 0; trial < 3000; ++trial) {
-        Outlines world;
-        const int side = 3 + int(random() % 8);
-        world.high = {double(side), double(side)};
-        const int obstacles = 1 + int(random() % 8);
-        for (int o = 0; o < obstacles; ++o) {
-            std::vector<Point> ring;
-            const int corners = trial % 5 == 0 ? 2 : 3 + int(random() % 3);
-            for (int i = 0; i < corners; ++i)
-                ring.push_back(
-                    {double(random() % unsigned(side + 1)), double(random() % unsigned(side + 1))});
-            world.add_ring(ring, o);
-        }
-        compare(world, random, 20, trial % 2 ? 1 : 0.5);
+        compare(whole_polygons(random, trial % 5 == 0), random, 20, trial % 2 ? 1 : 0.5);
     }
 }
 
 TEST(worlds_of_boxes_on_a_grid) {
     std::mt19937 random(6);
     for (int trial = 0; trial < 1000; ++trial) {
-        Outlines world;
-        const int side = 4 + int(random() % 8);
-        world.high = {double(side), double(side)};
-        int owner = 0;
-        for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x)
-                if (random() % 3 == 0) {
-                    const double u = x, v = y;
-                    const Point box[4] = {{u, v}, {u + 1, v}, {u + 1, v + 1}, {u, v + 1}};
-                    world.add_ring(box, owner++);
-                }
-        compare(world, random, 20, 0.5);
+        compare(whole_boxes(random), random, 20, 0.5);
     }
 }
 
