@@ -83,3 +83,6 @@ def test_pictures(tmp_path, monkeypatch):
     assert result.code == Exit.DONE
     assert (tmp_path / "ways.png").read_bytes()[:4] == b"\x89PNG"
     assert (tmp_path / "search.gif").read_bytes()[:3] == b"GIF"
+    import matplotlib.pyplot as plt
+
+    assert not plt.get_fignums(), "pictures that are saved are closed"

@@ -60,5 +60,6 @@ def test_several_routes_share_a_figure(world):
 def test_an_animation_tells_the_search(world, tmp_path):
     route = cs.navigate(world, (1, 1), (9, 9), "visibility_graph")
     path = tmp_path / "search.gif"
-    cs.plot.animation(route, frames=3).save(path, writer="pillow", dpi=40)
+    cs.plot.save(cs.plot.animation(route, frames=3), path, dpi=40)
+    assert not plt.get_fignums()
     assert path.read_bytes()[:3] == b"GIF"

@@ -83,7 +83,8 @@ def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
 
 
 def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any:
-    """A search as it happened, then its path: a matplotlib FuncAnimation, whose `save` writes a GIF.
+    """A search as it happened, then its path: a matplotlib FuncAnimation, which `cs.plot.save` writes as a
+    GIF.
 
     frames: into how many pictures the events of `route.trace` are divided.
     """

@@ -73,7 +73,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     if args.animate:
         from cspace import plot
 
-        plot.animation(routes[0]).save(args.animate, writer="pillow")
+        plot.save(plot.animation(routes[0]), args.animate, dpi=80)
     return Exit.DONE if any(routes) else Exit.NEGATIVE
 
 
