@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+import tempfile
 from pathlib import Path
 
 import cspace as cs
@@ -29,10 +31,9 @@ def main() -> None:
     wide = cs.navigate(world, start, goal, radius=0.3)
     print(f"{wide.length - shortest.length:.3f} m longer for a robot of 30 cm")
 
-    try:
-        cs.plot.save(cs.plot.routes(routes), "yard.png")
-    except cs.errors.MissingExtraError as error:
-        print(error)
+    folder = Path(sys.argv[1] if len(sys.argv) > 1 else tempfile.mkdtemp())
+    cs.plot.save(cs.plot.routes(routes), folder / "yard.png")
+    print("drawn into", folder)
     assert all(routes)
     assert not inside
 
