@@ -164,6 +164,14 @@ def test_a_grid_becomes_polygons_with_its_own_walls():
     assert [again.is_free(p) for p in points] == [world.is_free(p) for p in points]
 
 
+@pytest.mark.parametrize("name", ["radius", "resolution"])
+@pytest.mark.parametrize("value", [[1], np.array([3, 4]), {}, "a", np.nan])
+def test_sizes_that_are_no_numbers_are_refused(name, value):
+    for planner in ("any_angle", "a_star"):
+        with pytest.raises((InputError, InputTypeError), match=name):
+            cs.navigate(cs.PolygonWorld([BOX], BOUNDS), (1, 1), (9, 9), planner, **{name: value})
+
+
 def test_worlds_can_be_copied_and_pickled():
     for world in (cs.PolygonWorld([BOX], BOUNDS), cs.PolygonWorld.from_grid(cs.OccupancyGrid(np.eye(4) > 0))):
         for again in (copy.deepcopy(world), pickle.loads(pickle.dumps(world))):

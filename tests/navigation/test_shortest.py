@@ -192,6 +192,8 @@ def test_questions_that_make_no_sense():
         cs.navigate(world, (0, 0), (1, 1), "visibility_grph")
     with pytest.raises(InputTypeError, match="weight"):
         cs.navigate(world, (0, 0), (1, 1), weight=2)
+    with pytest.raises(InputTypeError, match=r"'metric'.*one value"):
+        cs.navigate(world, (0, 0), (1, 1), "a_star", metric=["octile"])
     with pytest.raises(InputTypeError, match="PolygonWorld"):
         cs.navigate([[0, 0]], (0, 0), (1, 1))  # type: ignore[arg-type]
 

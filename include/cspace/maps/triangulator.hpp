@@ -32,7 +32,7 @@ class Triangulator {
 
     // Everything that will be inserted lies between low and high; `segments` says how many there are.
     Triangulator(Point low, Point high, std::size_t segments)
-        : most_crossings_(std::min<std::size_t>(5'000'000, 64 + 4 * segments * segments)) {
+        : most_crossings_(std::min<std::size_t>(200'000 + 50 * segments, 64 + 4 * segments * segments)) {
         const double reach = std::max({high.x - low.x, high.y - low.y, 1e-300});
         low = low - Point{reach, reach};
         high = high + Point{reach, reach};

@@ -63,7 +63,7 @@ def metric_of(metric: str, corners: str) -> tuple[int, int]:
         number = METRICS[metric]
         return (FOUR_MOVES if number == 1 else CORNERS[corners]), number
     except (KeyError, TypeError):
-        if metric not in METRICS:
+        if not isinstance(metric, str) or metric not in METRICS:
             raise suggest("metric", metric, METRICS) from None
         raise suggest("rule corners=", corners, CORNERS) from None
 

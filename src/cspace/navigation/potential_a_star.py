@@ -88,7 +88,7 @@ def _settings(
     """Gain, rho_0 and cap in cells, scale, weight, whether greedy: (6,); and the corner rule's number."""
     if mode not in MODES:
         raise suggest("mode", mode, MODES)
-    if corners not in CORNERS:
+    if not isinstance(corners, str) or corners not in CORNERS:
         raise suggest("rule corners=", corners, CORNERS)
     side = float(world.resolution)
     reach = number_of("rho_0", 4 * side if rho_0 is None else rho_0, 0.0) / side

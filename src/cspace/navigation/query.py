@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 __all__ = ["World", "navigate"]
 
+NO_RADIUS: Final = 0.0
+"""The robot is a point."""
 MOST_DERIVED: Final = 8
 """Worlds grown by a radius or converted that are kept with a world: making one takes milliseconds."""
 
@@ -30,7 +32,7 @@ def navigate(
     goal: ArrayLike,
     planner: str = "any_angle",
     *,
-    radius: float = 0.0,
+    radius: float = NO_RADIUS,
     resolution: float | None = None,
     **options: Any,
 ) -> Route:
@@ -46,7 +48,7 @@ def navigate(
     row = planner_named(planner)
     plan = module_of(planner).plan
     kind = getattr(world, "kind", None)
-    if kind != row.world or radius or resolution:
+    if kind != row.world or radius is not NO_RADIUS or resolution is not None:
         world = _prepared(world, kind, row.world, radius, resolution)
     if options:
         check_options(row, options)
@@ -59,17 +61,27 @@ def _prepared(world: World, kind: str | None, wanted: str, radius: float, resolu
         raise InputTypeError(
             f"world must be a PolygonWorld or an OccupancyGrid, got an object of type {type(world).__name__}"
         )
-    if radius:
-        if not (grown := float(as_floats(radius, "radius"))) > 0:
-            raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
+    if (grown := _one_number(radius, "radius")) < 0:
+        raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
+    if grown:
         world = _derived(world, ("grown", grown), lambda: world.inflate(grown))
-    if kind == "grid" and resolution is not None:
+    side = None if resolution is None else _one_number(resolution, "resolution")
+    if kind == "grid" and side is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
     if kind == wanted:
         return world
     if isinstance(world, OccupancyGrid):
         return _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
-    return _derived(world, ("grid", resolution), lambda: world.to_grid(resolution))
+    return _derived(world, ("grid", side), lambda: world.to_grid(side))
+
+
+def _one_number(value: Any, subject: str) -> float:
+    if type(value) in (float, int) and value == 0:
+        return 0.0
+    number = as_floats(value, subject)
+    if number.ndim:
+        raise InputError(f"{subject} has shape {number.shape}; it must be one number [m]")
+    return float(number)
 
 
 def _derived(world: World, key: Hashable, make: Callable[[], World]) -> World:
