@@ -139,6 +139,7 @@ def test_growing_keeps_the_radius_and_gives_little_away():
     assert np.all(free[far >= 0.5 / math.cos(math.pi / 32) + 1e-12])
     assert grown.bounds == (0.5, 0.5, 9.5, 9.5)
     assert world.inflate(0) is world
+    assert world.inflate(1e-16) is world
 
 
 def test_cells_are_blocked_where_an_obstacle_reaches_into_them():

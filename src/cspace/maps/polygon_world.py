@@ -142,8 +142,9 @@ class PolygonWorld:
         Each obstacle becomes its Minkowski sum with a regular polygon around the disc, so a path keeps the
         radius everywhere, and gives away at most radius · (1 / cos(π / sides) − 1).
         """
-        if not as_floats(radius, "radius"):
-            return self
+        wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
+        if 0 <= float(as_floats(radius, "radius")) <= ON_WALL * wide:
+            return self  # less than the roundings of its corners
         obstacles, bounds = grown(self._outlines, self._bounds, radius, sides)
         return PolygonWorld(obstacles, bounds, repair=True)
 
