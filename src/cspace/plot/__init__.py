@@ -7,6 +7,7 @@ Needs the extra `[plot]` (matplotlib), which is imported when a function is firs
 from __future__ import annotations
 
 from cspace.plot.arms import robot, solutions
+from cspace.plot.drives import coverage, drive
 from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
@@ -23,4 +24,4 @@ __all__ = [
     "solutions",
     "workspace",
 ]
-__all__ += ["world"]
+__all__ += ["coverage", "drive", "world"]

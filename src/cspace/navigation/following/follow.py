@@ -59,8 +59,9 @@ def follow(
     simulator, within which speed and turn are constant. time_limit [s].
 
     Controllers and their options:
-      "pure_pursuit" steers along the arc that meets the path `lookahead` [m] away: unless given, a second of
-        way, at least 1.5 wheelbases and 0.3 m (Coulter 1992).
+      "pure_pursuit" steers along the arc that meets the path `lookahead` [m] away: unless given, half a
+        second of way and 0.3 m at least, of a car a second and 1.5 wheelbases. A shorter one keeps nearer to
+        bends, a longer one comes calmly back from beside the path (Coulter 1992).
       "stanley" steers the front wheels of a Car, forwards alone, by the error of heading and atan(gain ·
         error / (softening + v)); gain [1/s], softening [m/s]. In bends the rear axle cuts the corner
         (Hoffmann, Tomlin, Montemerlo and Thrun 2007).
@@ -104,7 +105,7 @@ def tuning(
     given = {**known, **options}
     wheelbase = vehicle.wheelbase if isinstance(vehicle, Car) else 0.0
     if "lookahead" in given and given["lookahead"] is None:
-        seconds = 1.5 if controller == "dynamic_window" else 1.0
+        seconds = 1.5 if controller == "dynamic_window" else 1.0 if wheelbase else 0.5
         given["lookahead"] = max(seconds * speed, 1.5 * wheelbase, 0.3)
     weights = as_floats(given.pop("weights", (1.0, 1.0, 1.0)), "weights")
     if weights.shape != (3,) or not (weights >= 0).all() or not weights.any():
