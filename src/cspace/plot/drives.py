@@ -98,9 +98,11 @@ def evenly(poses: Array, count: int) -> Array:
     """Poses spaced evenly along the way, at most `count`."""
     if count < 0:
         raise InputError(f"bodies is {count}; give a number of outlines, zero or more")
+    if not len(poses):
+        return poses
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
-    rows = np.searchsorted(along, np.linspace(0.0, along[-1], count)) if len(poses) else []
-    return poses[np.unique(np.asarray(rows, dtype=int))]
+    rows = np.searchsorted(along, np.linspace(0.0, along[-1], count))
+    return np.asarray(poses[np.unique(rows)])
 
 
 def outlines(axes: Any, vehicle: Any, poses: Array, **style: Any) -> list[Any]:
