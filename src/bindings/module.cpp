@@ -35,6 +35,7 @@ NB_MODULE(_core, m) {
     bind_bugs(m);
     bind_grid_fields(m);
     bind_potential(m);
+    bind_navigation_function(m);
     bind_voronoi(m);
     bind_sampling(m);
     bind_polygon_world(m);

@@ -370,6 +370,51 @@ class NearWalls:
     def values(self, core: PolygonCore, goal: ArrayLike, points: ArrayLike, settings: ArrayLike) -> NDArray[numpy.float64]:
         """The potential at points (n, 2)."""
 
+class NavigationCore:
+    """A navigation function of a star or sphere world."""
+
+    @staticmethod
+    def fault(core: PolygonCore, goal: ArrayLike) -> tuple[int, float, float] | None:
+        """What is no star, or touches: (1 or 2, x, y) of a corner of it."""
+
+    @staticmethod
+    def of_polygons(core: PolygonCore, goal: ArrayLike, kappa: float, squares: int, steps: int) -> NavigationCore:
+        """Of a world without fault."""
+
+    @staticmethod
+    def of_discs(discs: ArrayLike, goal: ArrayLike, kappa: float, squares: int, steps: int) -> NavigationCore:
+        """Of discs (n, 3): x, y, radius; the first is the room."""
+
+    @property
+    def kappa(self) -> float:
+        """The power; zero where none was proven."""
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether the goal is proven to be the only minimum."""
+
+    @property
+    def obstacles(self) -> int:
+        """How many."""
+
+    def saddles(self) -> NDArray[numpy.float64]:
+        """Where they are (k, 2)."""
+
+    def log_odds(self, core: PolygonCore | None, points: ArrayLike) -> NDArray[numpy.float64]:
+        """V at points (n, 2)."""
+
+    def phi(self, logs: ArrayLike) -> NDArray[numpy.float64]:
+        """φ of V (n,)."""
+
+    def path(self, start: ArrayLike) -> NDArray[numpy.float64] | None:
+        """The way down from a free point."""
+
+    def route(self, core: PolygonCore, world: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, seconds: float, evidence: Any) -> Any:
+        """A descent; its evidence is made by evidence(saddles)."""
+
+    def trace(self, core: PolygonCore, start: ArrayLike) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """The steps of a descent."""
+
 class PolygonCore:
     """The compiled half of cspace.maps.PolygonWorld."""
 

@@ -29,6 +29,8 @@ __all__ = [
     "MJCF_DEPTH",
     "MJCF_SAME_AXIS",
     "MOST_WINDINGS",
+    "NAVIGATION_SQUARES",
+    "NAVIGATION_STEPS",
     "NUMERIC_TOLERANCE",
     "ON_WALL",
     "PLANAR_AXES",
@@ -218,6 +220,12 @@ FARTHEST_POINT: Final = 1e15
 """Largest coordinate [m] of a world: beyond it products of three coordinates and their rests leave the
 range in which exact decisions are exact, and neighbouring numbers are decimetres apart."""
 
+NAVIGATION_SQUARES: Final = 400_000
+"""Most squares of a proof that a navigation function has one minimum: twenty discs take some tens of
+thousands, and so many a third of a second."""
+NAVIGATION_STEPS: Final = 20_000
+"""Most steps of a descent of a navigation function: along walls, where it is stiff, some thousands are
+taken."""
 DESCENT_LOOKS: Final = 10_000
 """Most looks at a potential on the way down: descents that arrive take some hundreds, and so many take five
 milliseconds."""

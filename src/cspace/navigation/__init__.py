@@ -18,6 +18,7 @@ from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycl
 from cspace.navigation.planners import PLANNERS, Planner
 from cspace.navigation.potential_field import PotentialRest, potential
 from cspace.navigation.query import World, navigate
+from cspace.navigation.rimon_koditschek import NavigationEvidence, NavigationFunction, navigation_function
 from cspace.navigation.route import STATUSES, Price, Route
 from cspace.navigation.trace import Trace
 from cspace.navigation.voronoi import VoronoiDiagram, voronoi_diagram
@@ -32,3 +33,4 @@ __all__ += ["PotentialRest", "potential"]
 __all__ += ["VoronoiDiagram", "voronoi_diagram"]
 __all__ += ["arrival_times"]
 __all__ += ["CellEvidence", "approximate_cells"]
+__all__ += ["NavigationEvidence", "NavigationFunction", "navigation_function"]

@@ -61,6 +61,9 @@ _ROWS: Final[tuple[Planner, ...]] = (
     Planner(
         "prm", "a roadmap of random points that see each other, and a shortest way on it", "polygons", "map"
     ),
+    Planner(
+        "rimon_koditschek", "down a function whose only minimum is the goal, among stars", "polygons", "map"
+    ),
     Planner("rrt", "a tree that grows towards random points until it sees the goal", "polygons", "map"),
     Planner("rrt_star", "a tree of random points whose ways tend to the shortest", "polygons", "map"),
     Planner(

@@ -169,16 +169,38 @@ def draw_potential(axes: Any, route: Any) -> list[Any]:
     """The potential as bands of equal height."""
     from cspace.navigation.potential_field import potential
 
-    xmin, ymin, xmax, ymax = route.world.bounds
-    x, y = np.linspace(xmin, xmax, FIELD), np.linspace(ymin, ymax, FIELD)
+    at, (x, y) = places(route.world)
     gains = {name: value for name, value in route.evidence.gains.items() if name != "step"}
-    at = np.stack(np.meshgrid(x, y), axis=-1)
     height = potential(route.world, route.goal, at, **gains)
     free = np.isfinite(height)
     level = np.where(free, height, np.nan)
     top = np.nanquantile(level, 0.85) if free.any() else 1.0
     bands = axes.contourf(x, y, np.minimum(level, top), levels=24, cmap="Blues", zorder=1, alpha=0.85)
     return [bands]
+
+
+def draw_navigation_function(axes: Any, route: Any) -> list[Any]:
+    """The navigation function as bands of equal area, and its saddles (×)."""
+    function = route.evidence.function
+    if function is None:
+        return []
+    at, where = places(route.world)
+    height = function.log_odds(at)
+    free = np.isfinite(height)
+    levels = np.unique(np.quantile(height[free], np.linspace(0, 1, 25))) if free.any() else np.empty(0)
+    artists: list[Any] = []
+    if len(levels) > 1:
+        rank = np.where(free, np.searchsorted(levels, height) / len(levels), np.nan)
+        artists.append(axes.contourf(*where, rank, levels=24, cmap="Blues", zorder=1, alpha=0.85))
+    artists += axes.plot(*function.saddles.T, "x", color=colors.INK, ms=5, mew=1.2, zorder=5)
+    return artists
+
+
+def places(world: Any) -> tuple[Array, tuple[Array, Array]]:
+    """A raster over the bounds: its points (n, n, 2), and x and y of its columns and rows."""
+    xmin, ymin, xmax, ymax = world.bounds
+    x, y = np.linspace(xmin, xmax, FIELD), np.linspace(ymin, ymax, FIELD)
+    return np.stack(np.meshgrid(x, y), axis=-1), (x, y)
 
 
 def nothing(axes: Any, route: Any) -> list[Any]:
@@ -193,6 +215,7 @@ PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     "brushfire": draw_brushfire,
     "voronoi": draw_voronoi,
     "potential_field": draw_potential,
+    "rimon_koditschek": draw_navigation_function,
 }
 """What a planner prepares before it is asked."""
 
@@ -206,6 +229,7 @@ SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
     "approximate_cells": draw_expanded,
     "brushfire": nothing,
+    "rimon_koditschek": nothing,
     "voronoi": nothing,
 }
 """How a planner's search is drawn, where not as its events."""

@@ -1,0 +1,257 @@
+"""Navigation functions: potentials whose only minimum is the goal (Koditschek & Rimon 1990, "Robot navigation
+functions on manifolds with boundary"; Rimon & Koditschek 1992, "Exact robot navigation using artificial
+potential functions").
+
+In a sphere world, a disc without the discs in it, φ = γ / (γ^κ + β)^(1/κ) with γ = |p − goal|² and β the
+product of what is left to each disc: β₀ = R² − |p − c₀|² for the room, β_i = |p − c_i|² − r_i² for others.
+φ is 0 at the goal alone and 1 on walls, and for κ large enough has no other minimum. How large is decided
+here by proof: V = κ log γ − Σ log β_i grows with φ, and a subdivision of the world shows that no place but
+the goal is a minimum of it. In a star world a homeomorphism takes star-shaped obstacles to discs. Descents
+arrive from everywhere; what holds them up, saddles, one for each obstacle, is left by a push.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import TYPE_CHECKING, Any, Final, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.maps import PolygonWorld
+from cspace.navigation.route import Price, new_route
+from cspace.navigation.trace import Trace
+from cspace.tolerances import NAVIGATION_SQUARES, NAVIGATION_STEPS
+
+if TYPE_CHECKING:
+    from cspace.navigation.route import Route
+
+__all__ = ["NavigationEvidence", "NavigationFunction", "navigation_function", "plan", "reason", "trace"]
+
+WORDS: Final = ("descend",)
+MOST_KEPT: Final = 8
+"""Navigation functions that are kept with a world."""
+
+
+class NavigationEvidence(NamedTuple):
+    """What backs a descent of a navigation function."""
+
+    function: NavigationFunction | None
+    """None where the world is no star world, or the goal touches a wall."""
+    pushes: int
+    """How many saddles the descent was pushed off."""
+    fault: str
+    """What stood in the way of a navigation function, in a sentence; empty where nothing did."""
+
+
+class NavigationFunction:
+    """A navigation function: call it with points (..., 2) [m] for φ (...), 0 at the goal and 1 on walls.
+
+    `kappa` is its power, `is_proven` whether the goal is proven to be its only minimum, `saddles` (k, 2) [m]
+    the other places where it is flat, one for each obstacle.
+    """
+
+    def __init__(self, core: _core.NavigationCore, world: _core.PolygonCore | None, goal: Array) -> None:
+        self._core, self._world = core, world
+        self.goal = goal
+
+    @property
+    def kappa(self) -> float:
+        """The power κ of γ."""
+        return self._core.kappa
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether the goal is proven to be the only minimum."""
+        return self._core.is_proven
+
+    @property
+    def obstacles(self) -> int:
+        """How many obstacles stand in the room."""
+        return self._core.obstacles
+
+    @property
+    def saddles(self) -> Array:
+        """Where it is flat and no minimum: (k, 2) [m]; one for each obstacle where there is one minimum."""
+        found: Array = self._core.saddles()
+        return found
+
+    def __call__(self, points: ArrayLike) -> Any:
+        """φ at points (..., 2) [m]: (...), between 0 and 1; 1 in obstacles and outside. It rounds to 1 where
+        V of `log_odds` does not."""
+        logs = np.asarray(self.log_odds(points))
+        return self._core.phi(np.ascontiguousarray(logs.reshape(-1))).reshape(logs.shape)[()]
+
+    def log_odds(self, points: ArrayLike) -> Any:
+        """V = κ log γ − Σ log β_i at points (..., 2) [m], lengths in radii of the room: (...), infinite on
+        walls and in obstacles. φ = (e^V / (1 + e^V))^(1/κ)."""
+        at = as_floats(points, "points", last=(2,))
+        found: Array = self._core.log_odds(self._world, np.ascontiguousarray(at.reshape(-1, 2)))
+        return found.reshape(at.shape[:-1])[()]
+
+    def descend(self, start: ArrayLike) -> Array | None:
+        """The way down from a free point start (2,) [m] to the goal: (m, 2) [m]; None where it came to no
+        end. InputError where start is not free."""
+        at = np.ascontiguousarray(as_floats(start, "start", last=(2,)))
+        if at.shape != (2,) or np.isposinf(self.log_odds(at)):
+            raise InputError(f"start {at.tolist()} lies in an obstacle or on a wall; give a free point (2,)")
+        found: Array | None = self._core.path(at)
+        return found
+
+    def __repr__(self) -> str:
+        proven = "proven" if self.is_proven else "not proven"
+        return f"<NavigationFunction: kappa {self.kappa:g}, {self.obstacles} obstacles, one minimum {proven}>"
+
+
+def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Route:
+    """Down a navigation function from start to goal.
+
+    start, goal: (2,) [m]. kappa: its power; by default the least power of two with which the goal is proven
+    to be the only minimum. The world around the goal must be a star world: every obstacle, and the room, has
+    a point that sees all of it, and no two touch. Where it is none, or the goal touches a wall, the status is
+    "undetermined" and the reason says which. route.evidence is a NavigationEvidence. InputError for a kappa
+    that is not positive.
+    """
+    power = _power(kappa)
+    ends = world.check_free(start, "start"), world.check_free(goal, "goal")
+    options = {"kappa": kappa}
+    began = time.perf_counter()
+    function, fault = _kept(world, ends[1], power)
+    seconds = time.perf_counter() - began
+    if function is None:
+        apart = not set(world._core.components_at(*ends[0])) & set(world._core.components_at(*ends[1]))
+        status, price = "unreachable" if apart else "undetermined", Price(0, 0, seconds)
+        evidence = NavigationEvidence(None, 0, fault)
+        return new_route(
+            world, "rimon_koditschek", options, ends, status, np.empty((0, 2)), np.inf, price, evidence
+        )
+    made: Route = function._core.route(
+        world._core,
+        world,
+        "rimon_koditschek",
+        options,
+        *ends,
+        seconds,
+        lambda pushes: NavigationEvidence(function, pushes, fault),
+    )
+    return made
+
+
+def reason(route: Route) -> str:
+    """The verdict in a sentence."""
+    evidence: NavigationEvidence = route.evidence
+    if route.status == "unreachable":
+        return "start and goal lie in parts of free space that no way connects"
+    if evidence.fault:
+        return evidence.fault
+    function = evidence.function
+    assert function is not None
+    minimum = "with a single minimum, which is proven" if function.is_proven else "whose minima are not known"
+    said = f"a navigation function with kappa {function.kappa:g}, {minimum}"
+    if not route:
+        return f"the descent came to no end within {NAVIGATION_STEPS} steps, of {said}"
+    pushed = f", pushed off {evidence.pushes} saddles" if evidence.pushes else ""
+    return f"went down {said}, for {route.length:.6g} m{pushed}"
+
+
+def trace(route: Route) -> Trace:
+    """The steps "descend": start, end (k, 2) [m]; value: φ after the step."""
+    function = route.evidence.function
+    if function is None or route.status == "unreachable":
+        return Trace(WORDS, np.empty(0, np.int8), np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
+    return Trace(WORDS, *function._core.trace(route.world._core, route.start))
+
+
+def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = None) -> NavigationFunction:
+    """The navigation function of a star or sphere world with a goal (2,) [m].
+
+    world: a PolygonWorld, or discs (n, 3) as rows of x, y, radius [m], the first the room and the others in
+    it. kappa: as for the planner "rimon_koditschek". InputError where obstacles touch or are no stars, where
+    the goal is not in the interior of free space, or where no kappa was proven.
+    """
+    power = _power(kappa)
+    if isinstance(world, PolygonWorld):
+        function, fault = _kept(world, world.check_free(goal, "goal"), power)
+        if function is None:
+            raise InputError(fault)
+        return function
+    discs = np.ascontiguousarray(as_floats(world, "world", last=(3,)))
+    at = np.ascontiguousarray(as_floats(goal, "goal", last=(2,)))
+    _check_discs(discs, at)
+    core = _core.NavigationCore.of_discs(discs, at, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
+    if not core.kappa:
+        raise InputError("no kappa was proven to leave a single minimum; give kappa= to do without the proof")
+    return NavigationFunction(core, None, at)
+
+
+def _power(kappa: float | None) -> float:
+    if kappa is None:
+        return 0.0
+    power = float(as_floats(kappa, "kappa").reshape(())) if np.size(kappa) == 1 else np.nan
+    if not power > 0:
+        raise InputError(f"kappa is {kappa!r}; it must be one positive number, or None to have it found")
+    return power
+
+
+def _check_discs(discs: Array, goal: Array) -> None:
+    """InputError for discs that touch, or a goal on a wall or in an obstacle."""
+    if discs.ndim != 2 or not len(discs) or not np.all(discs[:, 2] > 0):
+        raise InputError(f"discs have shape {discs.shape}; give (n, 3) rows of x, y and a positive radius")
+    if goal.shape != (2,):
+        raise InputError(f"goal has shape {goal.shape}, expected (2,)")
+    away = np.linalg.norm(discs[:, None, :2] - discs[None, :, :2], axis=-1)
+    reach = discs[:, None, 2] + discs[None, :, 2]
+    reach[0], reach[:, 0] = 0, 0
+    outside = np.flatnonzero(away[0, 1:] + discs[1:, 2] >= discs[0, 2])
+    if len(outside):
+        raise InputError(
+            f"disc {outside[0] + 1} reaches the wall of the room, disc 0; obstacles must lie within"
+        )
+    np.fill_diagonal(away, np.inf)
+    touching = np.argwhere(away[1:, 1:] <= reach[1:, 1:]) + 1
+    if len(touching):
+        raise InputError(f"discs {touching[0][0]} and {touching[0][1]} touch; obstacles must be apart")
+    far = np.linalg.norm(goal - discs[:, :2], axis=1)
+    if far[0] >= discs[0, 2] or np.any(far[1:] <= discs[1:, 2]):
+        raise InputError(f"goal {goal.tolist()} is not in the interior of free space; move it off the walls")
+
+
+def _kept(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
+    """The navigation function of a goal, or None and what is in its way; kept beside the world."""
+    kept = vars(world).setdefault("_navigation_functions", {})
+    key = (*map(float, goal), power)
+    if key not in kept:
+        while len(kept) >= MOST_KEPT:
+            kept.pop(next(iter(kept)))
+        kept[key] = _made(world, goal, power)
+    found: tuple[NavigationFunction | None, str] = kept[key]
+    return found
+
+
+def _made(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
+    fault = _core.NavigationCore.fault(world._core, goal)
+    if fault:
+        return None, _said(world, *fault)
+    core = _core.NavigationCore.of_polygons(world._core, goal, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
+    if core.kappa:
+        return NavigationFunction(core, world._core, goal), ""
+    if world.clearance(goal) <= 1e-9 * max(
+        world.bounds[2] - world.bounds[0], world.bounds[3] - world.bounds[1]
+    ):
+        return None, "the goal touches a wall, where a navigation function is 1; move it off the wall"
+    return None, "no power kappa was proven to leave a single minimum; planner='harmonic' needs none"
+
+
+def _said(world: Any, kind: int, x: float, y: float) -> str:
+    """Why a world is no star world, with the obstacle that has a corner at (x, y)."""
+    owner = ""
+    for number, rings in enumerate(vars(world).get("_outlines", ())):
+        if any(np.any(np.all(ring == (x, y), axis=1)) for ring in rings):
+            owner = f" of obstacle {number}"
+            break
+    at = f"the ring of walls{owner} through ({x:.9g}, {y:.9g})"
+    rule = "touches another" if kind == 2 else "is not star-shaped: no point sees all of it"
+    return f"{at} {rule}; planner='harmonic' takes any shape"
