@@ -3,6 +3,7 @@ found."""
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 from itertools import pairwise
 
@@ -38,7 +39,13 @@ def is_inside(edges, p: Point) -> bool:
 def crossings(p: Point, q: Point, edges) -> list[Fraction]:
     """The parameters along p → q at which it meets edges, or the ends of edges on its line."""
     found = []
+    left, right = sorted((p[0], q[0]))
+    low, high = sorted((p[1], q[1]))
     for a, b in edges:
+        if max(a[0], b[0]) < left or min(a[0], b[0]) > right:
+            continue
+        if max(a[1], b[1]) < low or min(a[1], b[1]) > high:
+            continue
         of_a, of_b = cross(p, q, a), cross(p, q, b)
         if of_a == of_b == 0:
             axis = 0 if p[0] != q[0] else 1
@@ -48,11 +55,11 @@ def crossings(p: Point, q: Point, edges) -> list[Fraction]:
     return [t for t in found if 0 <= t <= 1]
 
 
-def enters(path, obstacles, bounds) -> str | None:
+def enters(path, obstacles, bounds, *, beside=1e-12, slack=0.0) -> str | None:
     """Where a path (m, 2) is inside an obstacle (a list of rings each) or outside the bounds; None: nowhere.
 
     A path may run along a wall, but not between two obstacles that share a side: both sides of it are
-    looked at.
+    looked at, `beside` (a share of a leg's length) away. What is shorter than `slack` [m] is passed over.
     """
     every = [edges_of(rings) for rings in obstacles]
     xmin, ymin, xmax, ymax = map(Fraction, bounds)
@@ -60,11 +67,14 @@ def enters(path, obstacles, bounds) -> str | None:
     for p, q in pairwise(points):
         if p == q:
             continue
+        short = slack / math.hypot(float(q[0] - p[0]), float(q[1] - p[1]))
         cuts = sorted({Fraction(0), Fraction(1), *(t for edges in every for t in crossings(p, q, edges))})
         for low, high in pairwise(cuts):
+            if high - low < short:
+                continue
             t = (low + high) / 2
             m = p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])
-            aside = -(q[1] - p[1]) / 10**12, (q[0] - p[0]) / 10**12
+            aside = -(q[1] - p[1]) * Fraction(beside), (q[0] - p[0]) * Fraction(beside)
             sides = [(m[0] + s * aside[0], m[1] + s * aside[1]) for s in (1, -1)]
             blocked = [
                 any(is_inside(edges, side) for edges in every)

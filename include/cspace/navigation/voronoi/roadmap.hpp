@@ -11,6 +11,7 @@
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/route.hpp"
+#include "cspace/navigation/sampling/sight.hpp"
 #include "cspace/navigation/voronoi/tracer.hpp"
 
 namespace cspace::navigation::voronoi {
@@ -66,7 +67,8 @@ class Roadmap {
     const Diagram& diagram() const { return diagram_; }
 
     // The way between two settled points of one component; tolerance: how far a chord may lie from its arc
-    // [m]. Undetermined where the component's part of the diagram is not whole.
+    // [m]. Undetermined where the component's part of the diagram is not whole, and where rounding has put
+    // the way into a wall.
     Way solve(const maps::Settled& start, const maps::Settled& goal, Index component, bool widest,
               double tolerance, Trace* trace) const {
         Way way;
@@ -80,8 +82,12 @@ class Roadmap {
         const double floor = widest ? search(from, to, {true, 0}, nullptr, way, trace) : 0;
         std::vector<Stretch> stretches;
         search(from, to, {false, floor}, &stretches, way, trace);
-        way.route.status = Status::found;
         draw(from, to, stretches, tolerance, way);
+        way.route.path.front() = start.at, way.route.path.back() = goal.at;
+        if (is_free(way.route.path, start, component))
+            way.route.status = Status::found;
+        else
+            way.route.path.clear(), way.route.length = std::numeric_limits<double>::infinity();
         return way;
     }
 
@@ -96,6 +102,19 @@ class Roadmap {
     }
     const Arc& arc(Index k) const { return diagram_.arcs[std::size_t(k)]; }
     Point vertex(Index v) const { return diagram_.vertices[std::size_t(v)].at; }
+
+    // Whether a path keeps to the open free space of a component, decided exactly.
+    bool is_free(const std::vector<Point>& path, const maps::Settled& start, Index component) const {
+        const maps::FreeSpace& space = world_.space;
+        for (Index t : start.triangles) {
+            if (space.component[std::size_t(t)] != component) continue;
+            std::size_t leg = 1;
+            for (; leg < path.size() && t != none; ++leg)
+                t = sampling::end_of_sight(space, {path[leg - 1], t}, path[leg]);
+            if (t != none) return true;
+        }
+        return false;
+    }
 
     Landing land(const maps::Settled& end, Index component) const {
         Landing landing;
