@@ -27,6 +27,7 @@ void bind_ik_numbers(nanobind::module_& m);
 void bind_ik_tracking(nanobind::module_& m);
 void bind_route(nanobind::module_& m);
 void bind_grid(nanobind::module_& m);
+void bind_grid_any_angle(nanobind::module_& m);
 void bind_polygon_routes(nanobind::module_& m);
 void bind_voronoi(nanobind::module_& m);
 void bind_sampling(nanobind::module_& m);

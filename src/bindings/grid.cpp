@@ -8,6 +8,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "cspace/maps/grid_corners.hpp"
 #include "cspace/maps/grid_inflation.hpp"
 #include "cspace/maps/png_filters.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
@@ -242,6 +243,7 @@ void bind_grid(nb::module_& m) {
         .def_prop_ro(
             "blocked_cells", [](const GridWorld& world) { return world.bits.count_blocked(); },
             "How many cells are blocked.")
+        .def_prop_ro("_corners", [](const GridWorld& world) { return maps::count_corners(world.bits); })
         .def_prop_ro(
             "nbytes", [](const GridWorld& world) { return world.bits.bytes(); },
             "Memory that the cells take [bytes].");

@@ -26,6 +26,7 @@ NB_MODULE(_core, m) {
     bind_ik_numbers(m);
     bind_route(m);
     bind_grid(m);
+    bind_grid_any_angle(m);
     bind_coverage(m);
     bind_cars(m);
     bind_following(m);

@@ -28,6 +28,30 @@ struct ConvexMesh {
         return edge + 1 == end(p) ? begin(p) : edge + 1;
     }
     Point point(Index v) const { return points[std::size_t(v)]; }
+
+    // What a search over a mesh asks: the ends of an edge, the same edge seen from across, whether the
+    // polygon of an edge has others that lead on.
+    using Edge = Index;
+    using Polygon = Index;
+    static constexpr bool is_vast = false;  // every vertex has its place in memory
+    Index tail(Index edge) const { return corner[std::size_t(edge)]; }
+    Index head(Index edge) const { return corner[std::size_t(next(edge))]; }
+    Index across(Index edge) const { return twin[std::size_t(edge)]; }
+    bool may_turn(Index v) const { return turns[std::size_t(v)]; }
+    bool is_side(Index edge, Index p) const { return polygon[std::size_t(edge)] == p; }
+    bool leads_on(Index edge) const { return doors[std::size_t(polygon[std::size_t(edge)])] > 1; }
+    // Visits the edges of a polygon that lead on; all, or those other than the one it was entered by,
+    // counterclockwise from there.
+    template <class Visit>
+    void visit_doors(Index p, Visit visit) const {
+        for (Index e = begin(p); e < end(p); ++e)
+            if (twin[std::size_t(e)] != none) visit(e);
+    }
+    template <class View, class Visit>
+    void visit_doors_beyond(Index entry, const View&, Visit visit) const {
+        for (Index e = next(entry); e != entry; e = next(e))
+            if (twin[std::size_t(e)] != none) visit(e);
+    }
 };
 
 namespace detail {

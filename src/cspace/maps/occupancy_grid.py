@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -110,6 +111,11 @@ class OccupancyGrid(_core.GridBase):
         """xmin, ymin, xmax, ymax [m]."""
         side = self.resolution
         return self._x, self._y, self._x + side * self.columns, self._y + side * self.rows
+
+    @cached_property
+    def corners(self) -> int:
+        """How many corners the outlines of its blocked cells have."""
+        return self._corners
 
     @property
     def blocked(self) -> npt.NDArray[np.bool_]:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, Final, Protocol, cast
 from cspace.errors import InputTypeError, suggest
 
 if TYPE_CHECKING:
+    from cspace.maps import OccupancyGrid
     from cspace.navigation.route import Route
     from cspace.navigation.trace import Trace
 
@@ -29,6 +30,8 @@ class Planner:
     """Its own kind of world, "polygons" or "grid": one of the other kind is converted."""
     sees: str
     """What it is shown: "map", or where it needs none, "contact" or "range"."""
+    takes_cells: bool = False
+    """Whether its file says, by takes_cells(grid), of which grids the cells serve it better than polygons."""
     file: str = ""
     """Its file in this folder, where that is not its name."""
 
@@ -36,7 +39,13 @@ class Planner:
 _ROWS: Final[tuple[Planner, ...]] = (
     Planner("a_star", "the shortest way over cells, or with costs the cheapest", "grid", "map"),
     Planner("d_star_lite", "the shortest way over cells, mended when they change", "grid", "map"),
-    Planner("any_angle", "the shortest path, through convex polygons (Polyanya)", "polygons", "map"),
+    Planner(
+        "any_angle",
+        "the shortest path, through convex polygons (Polyanya)",
+        "polygons",
+        "map",
+        takes_cells=True,
+    ),
     Planner("approximate_cells", "a path through free squares, split where needed", "polygons", "map"),
     Planner(
         "bug_1",
@@ -96,6 +105,9 @@ class PlannerModule(Protocol):
 
     def trace(self, route: Route) -> Trace:
         """The events of the search, by running it again with a record kept."""
+
+    takes_cells: Callable[[OccupancyGrid], bool]
+    """Of planners whose row says so: which grids it takes as they are."""
 
 
 def planner_named(name: object) -> Planner:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid, PolygonWorld
-from cspace.navigation.planners import check_options, module_of, planner_named
+from cspace.navigation.planners import Planner, check_options, module_of, planner_named
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route
@@ -49,13 +49,13 @@ def navigate(
     plan = module_of(planner).plan
     kind = getattr(world, "kind", None)
     if kind != row.world or radius is not NO_RADIUS or resolution is not None:
-        world = _prepared(world, kind, row.world, radius, resolution)
+        world = _prepared(world, kind, row, radius, resolution)
     if options:
         check_options(row, options)
     return plan(world, start, goal, **options)
 
 
-def _prepared(world: World, kind: str | None, wanted: str, radius: float, resolution: float | None) -> World:
+def _prepared(world: World, kind: str | None, row: Planner, radius: float, resolution: float | None) -> World:
     """The world grown by the robot's radius and of the kind that the planner works in."""
     if kind not in {"polygons", "grid"}:
         raise InputTypeError(
@@ -68,9 +68,11 @@ def _prepared(world: World, kind: str | None, wanted: str, radius: float, resolu
     side = None if resolution is None else _one_number(resolution, "resolution")
     if kind == "grid" and side is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
-    if kind == wanted:
+    if kind == row.world:
         return world
     if isinstance(world, OccupancyGrid):
+        if row.takes_cells and module_of(row.name).takes_cells(world):
+            return world
         return _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
     return _derived(world, ("grid", side), lambda: world.to_grid(side))
 

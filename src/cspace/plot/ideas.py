@@ -134,6 +134,8 @@ def draw_squares(axes: Any, route: Any) -> list[Any]:
 def draw_convex_polygons(axes: Any, route: Any) -> list[Any]:
     from matplotlib.collections import PolyCollection
 
+    if route.world.kind == "grid":  # runs of cells, which are to be seen already
+        return []
     shapes = route.world._core.convex_polygons()
     return [
         axes.add_collection(PolyCollection(shapes, facecolors="none", edgecolors=[FAINT], linewidths=0.6))

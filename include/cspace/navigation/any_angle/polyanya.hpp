@@ -7,9 +7,15 @@
 // orientation of three such points; the ends of intervals are computed for the estimates only.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "cspace/maps/convex_mesh.hpp"
+#include "cspace/math/predicates.hpp"
+#include "cspace/navigation/any_angle/vertex_table.hpp"
 #include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {
@@ -18,22 +24,29 @@ using maps::ConvexMesh;
 using maps::Index;
 using maps::none;
 
-class Polyanya {
+// Mesh: convex polygons, corners on one line allowed, with the words of maps::ConvexMesh or maps::RunMesh.
+template <class Mesh>
+class IntervalSearch {
   public:
-    explicit Polyanya(const ConvexMesh& mesh) : mesh_(mesh), best_(mesh.points.size()) {}
+    using Edge = typename Mesh::Edge;
+    using Polygon = typename Mesh::Polygon;
 
-    // starts, goals: the polygons whose closures hold the start and the goal, all of one component.
-    Route solve(Point start, const std::vector<Index>& starts, Point goal, const std::vector<Index>& goals,
-                Trace* trace = nullptr) {
+    explicit IntervalSearch(const Mesh& mesh) : mesh_(mesh), best_(mesh) {}
+
+    // starts, goals: the polygons whose closures hold the start and the goal.
+    Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
+                const std::vector<Polygon>& goals, Trace* trace = nullptr) {
         begin(start, goal, goals, trace);
-        for (const Index p : starts)
-            for (const Index q : goals)
+        for (const Polygon& p : starts)
+            for (const Polygon& q : goals)
                 if (p == q) return straight();
-        for (const Index p : starts) expand_start(p);
+        for (const Polygon& p : starts) expand_start(p);
         while (!heap_.empty()) {
-            const Index n = pop();
-            if (is_goal(mesh_.polygon[std::size_t(node(n).edge)])) return finish(n);
-            if (!is_stale(node(n))) expand(n);
+            const auto [f, n] = pop();
+            const Node least = nodes_[std::size_t(n)];
+            if (is_goal(least.edge)) return finish(least);
+            free_.push_back(n);
+            if (!is_stale(least)) expand(least, f);
         }
         Route route;
         route.status = Status::unreachable;
@@ -41,16 +54,20 @@ class Polyanya {
         return route;
     }
 
+    std::size_t bytes() const {
+        return best_.bytes() + nodes_.capacity() * sizeof(Node) + free_.capacity() * sizeof(Index) +
+               heap_.capacity() * sizeof(heap_[0]);
+    }
+
   private:
     struct Line {  // the line from one point to another, or none
         Index from = none, to = none;
     };
     struct Node {
-        double f, g;
-        Point left, right;  // the ends of the interval, seen from the root
-        Line on_left, on_right;
-        Index root, edge, parent;  // the edge belongs to the polygon that is entered
-        Index via = none;          // a corner between the parent's root and this one
+        double g;
+        Line on_left, on_right;  // what bounds the interval, seen from the root
+        Index root;
+        Edge edge;  // as the polygon has it that is entered
     };
 
     enum Hand { to_the_right, to_the_left };
@@ -58,32 +75,37 @@ class Polyanya {
     struct Arrival {  // the shortest way found to a corner
         double g = 0;
         std::uint32_t query = 0;       // in which it was found
+        Index before = none;           // the corner, or the start, that it comes from
         Index from[2] = {none, none};  // the corner before, of the way that has to turn least, by hand
     };
 
-    const ConvexMesh& mesh_;
-    std::vector<Arrival> best_;
+    const Mesh& mesh_;
+    std::conditional_t<Mesh::is_vast, SparseTable<Arrival>, DenseTable<Arrival>> best_;
     std::uint32_t query_ = 0;
-    std::vector<Node> nodes_;
+    std::vector<Node> nodes_;  // that wait, and places of those that have been expanded
+    std::vector<Index> free_;
     std::vector<std::pair<double, Index>> heap_;
-    std::vector<Index> goals_;
+    std::vector<Polygon> goals_;
     Point start_, goal_;
+    bool is_inside_ = false;  // whether the start itself looks around, in a polygon that holds it
     Price price_;
     Trace* trace_ = nullptr;
 
     static constexpr Index at_start = -2;
 
-    const Node& node(Index n) const { return nodes_[std::size_t(n)]; }
     Point at(Index v) const { return v == at_start ? start_ : mesh_.point(v); }
-    bool turns(Index v) const { return v != at_start && mesh_.turns[std::size_t(v)]; }
-    bool is_goal(Index p) const { return std::find(goals_.begin(), goals_.end(), p) != goals_.end(); }
+    bool turns(Index v) const { return v != at_start && mesh_.may_turn(v); }
+    bool is_goal(const Edge& entered) const {
+        for (const Polygon& p : goals_)
+            if (mesh_.is_side(entered, p)) return true;
+        return false;
+    }
 
-    void begin(Point start, Point goal, const std::vector<Index>& goals, Trace* trace) {
-        if (++query_ == 0) {
-            std::fill(best_.begin(), best_.end(), Arrival{});
-            query_ = 1;
-        }
+    void begin(Point start, Point goal, const std::vector<Polygon>& goals, Trace* trace) {
+        if (++query_ == 0) query_ = 1, best_.forget();
+        best_.begin();
         nodes_.clear();
+        free_.clear();
         heap_.clear();
         start_ = start, goal_ = goal, goals_ = goals, price_ = {}, trace_ = trace;
     }
@@ -99,26 +121,24 @@ class Polyanya {
 
     // --- the order of nodes
     // ----------------------------------------------------------------------------------
-    Index pop() {
+    std::pair<double, Index> pop() {
         std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-        const Index n = heap_.back().second;
+        const auto least = heap_.back();
         heap_.pop_back();
-        return n;
+        return least;
     }
     // Whether a shorter way to the root of a node is known by now.
-    bool is_stale(const Node& n) const {
-        return n.root != at_start && n.g > best_[std::size_t(n.root)].g * (1 + 1e-13);
-    }
+    bool is_stale(const Node& n) { return n.root != at_start && n.g > best_[n.root].g * (1 + 1e-13); }
     // Notes a way of length g to a corner, coming from another one to turn by `hand` there; false if a
     // shorter way is known, or one as long that has to turn less for all that this one reaches. (Grids have
     // many ways of one length; following each of them takes time without end.)
     bool reach(Index v, double g, Index from, Hand hand) {
-        Arrival& best = best_[std::size_t(v)];
+        Arrival& best = best_[v];
         const bool is_first = best.query != query_;
         if (!is_first && g > best.g * (1 + 1e-13)) return false;
         if (is_first || g < best.g * (1 - 1e-13)) best.from[0] = best.from[1] = none;
+        if (is_first || g < best.g) best.g = g, best.before = from;
         best.query = query_;
-        best.g = is_first ? g : std::min(best.g, g);
         Index& known = best.from[hand];
         if (known != none && known != from && sign_of[hand] * orientation(at(known), at(v), at(from)) >= 0)
             return false;
@@ -154,38 +174,45 @@ class Polyanya {
 
     // The interval of the edge from a to b (a on the right) that the root sees between two lines becomes a
     // node.
-    void push(Index root, double g, Line on_left, Line on_right, Index edge, Index parent, Index via = none) {
+    void push(Index root, double g, Line on_left, Line on_right, const Edge& edge) {
         ++price_.edges;
-        const Index entered = mesh_.twin[std::size_t(edge)];
-        const Index p = mesh_.polygon[std::size_t(entered)];
-        if (mesh_.doors[std::size_t(p)] <= 1 && !is_goal(p)) return;
-        const Index a = mesh_.corner[std::size_t(edge)], b = mesh_.corner[std::size_t(mesh_.next(edge))];
-        const Point right = meet(on_right, a, b, a), left = meet(on_left, a, b, b);
-        const double f = g + estimate(at(root), left, right);
-        nodes_.push_back({f, g, left, right, on_left, on_right, root, entered, parent, via});
-        heap_.push_back({f, Index(nodes_.size() - 1)});
+        const Edge entered = mesh_.across(edge);
+        if (!mesh_.leads_on(entered) && !is_goal(entered)) return;
+        const Index a = mesh_.tail(edge), b = mesh_.head(edge);
+        const double f = g + estimate(at(root), meet(on_left, a, b, b), meet(on_right, a, b, a));
+        Index place = Index(nodes_.size());
+        if (free_.empty())
+            nodes_.push_back({g, on_left, on_right, root, entered});
+        else
+            place = free_.back(), free_.pop_back(),
+            nodes_[std::size_t(place)] = {g, on_left, on_right, root, entered};
+        heap_.push_back({f, place});
         std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
     }
 
     // All of an edge is reached from its nearer end v, to which a path leads along the line of the edge.
-    void push_along(Index from, double g, Index v, Index far, Hand hand, Index edge, Index parent,
-                    Index via) {
+    void push_along(Index from, double g, Index v, Index far, Hand hand, const Edge& edge) {
         g += distance(at(from), at(v));
         if (!turns(v) || !reach(v, g, from, hand)) return;
         const Line along{v, far};
-        push(v, g, hand == to_the_right ? along : Line{}, hand == to_the_right ? Line{} : along, edge, parent,
-             via);
+        push(v, g, hand == to_the_right ? along : Line{}, hand == to_the_right ? Line{} : along, edge);
+    }
+
+    // The ends of a node's interval, left and right of who enters.
+    std::pair<Point, Point> interval(const Node& n) const {
+        const Index left = mesh_.tail(n.edge), right = mesh_.head(n.edge);
+        return {meet(n.on_left, right, left, left), meet(n.on_right, right, left, right)};
     }
 
     // What can be reached from the root of a node inside the polygon that it enters.
-    void expand(Index n) {
-        const Node from = node(n);  // nodes_ will grow
+    void expand(const Node& from, double f) {
         ++price_.nodes;
-        if (trace_) trace_->push_back({0, from.right, from.left, from.f});
-        const Index entry = from.edge;
+        if (trace_) {
+            const auto [left, right] = interval(from);
+            trace_->push_back({0, right, left, f});
+        }
         // The edge as the polygon sees it begins on the left of who enters.
-        const Index left_end = mesh_.corner[std::size_t(entry)],
-                    right_end = mesh_.corner[std::size_t(mesh_.next(entry))];
+        const Index left_end = mesh_.tail(from.edge), right_end = mesh_.head(from.edge);
         const bool may_turn_right =
             from.on_right.to == right_end && turns(right_end) && from.root != right_end;
         const bool may_turn_left = from.on_left.to == left_end && turns(left_end) && from.root != left_end;
@@ -193,55 +220,70 @@ class Polyanya {
         const double g_left = may_turn_left ? from.g + distance(at(from.root), at(left_end)) : 0;
         const bool right_open = may_turn_right && reach(right_end, g_right, from.root, to_the_right);
         const bool left_open = may_turn_left && reach(left_end, g_left, from.root, to_the_left);
-        for (Index e = mesh_.next(entry); e != entry; e = mesh_.next(e)) {
-            if (mesh_.twin[std::size_t(e)] == none) continue;
-            see(from, n, e);
-            if (right_open) turn_right(from.on_right, right_end, g_right, e, n);
-            if (left_open) turn_left(from.on_left, left_end, g_left, e, n);
-        }
+        const View view{*this, from, left_open, right_open};
+        mesh_.visit_doors_beyond(from.edge, view, [&](const Edge& e) {
+            see(from, e);
+            if (right_open) turn_right(from.on_right, right_end, g_right, e);
+            if (left_open) turn_left(from.on_left, left_end, g_left, e);
+        });
     }
-    void expand_start(Index p) {
+    void expand_start(const Polygon& p) {
         ++price_.nodes;
         Node from{};
         from.root = at_start;
-        from.edge = none;
-        for (Index e = mesh_.begin(p); e < mesh_.end(p); ++e)
-            if (mesh_.twin[std::size_t(e)] != none) see(from, none, e);
+        is_inside_ = true;
+        mesh_.visit_doors(p, [&](const Edge& e) { see(from, e); });
+        is_inside_ = false;
     }
 
+    // What a node may reach, for meshes that would look at fewer doors: on either side all up to a line, or,
+    // where that is none, everything.
+    struct View {
+        const IntervalSearch& search;
+        const Node& from;
+        bool left_open, right_open;
+
+        Point root() const { return search.at(from.root); }
+        bool is_bounded_left() const { return !left_open && from.on_left.to != none; }
+        bool is_bounded_right() const { return !right_open && from.on_right.to != none; }
+        std::pair<Point, Point> left() const {
+            return {search.at(from.on_left.from), search.at(from.on_left.to)};
+        }
+        std::pair<Point, Point> right() const {
+            return {search.at(from.on_right.from), search.at(from.on_right.to)};
+        }
+    };
+
     // The part of an edge that a root sees between the lines of a node.
-    void see(const Node& from, Index parent, Index edge) {
-        const Index a = mesh_.corner[std::size_t(edge)], b = mesh_.corner[std::size_t(mesh_.next(edge))];
+    void see(const Node& from, const Edge& edge) {
+        const Index a = mesh_.tail(edge), b = mesh_.head(edge);
         const Point r = at(from.root);
         const int facing = a == from.root || b == from.root ? 0 : orientation(r, at(a), at(b));
         if (facing < 0) return;
-        if (facing == 0) return see_along(from, parent, edge, a, b);
+        if (facing == 0) return see_along(from, edge, a, b);
         if (is_past(from.on_right, -1, r, b) || is_past(from.on_left, 1, r, a)) return;
         const bool a_is_hidden = from.on_right.to != none && side(from.on_right, a) < 0;
         const bool b_is_hidden = from.on_left.to != none && side(from.on_left, b) > 0;
         push(from.root, from.g, b_is_hidden ? from.on_left : Line{from.root, b},
-             a_is_hidden ? from.on_right : Line{from.root, a}, edge, parent);
+             a_is_hidden ? from.on_right : Line{from.root, a}, edge);
     }
     // An edge on one line with the root: it is entered from the root itself, or from its nearer end. Where
     // the start lies on the edge, the polygon across holds it too; at an end of the edge that was entered it
     // is reached by a turn.
-    void see_along(const Node& from, Index parent, Index edge, Index a, Index b) {
+    void see_along(const Node& from, const Edge& edge, Index a, Index b) {
         const Point r = at(from.root);
-        if (a == from.root) return push(from.root, from.g, {from.root, b}, {}, edge, parent);
-        if (b == from.root) return push(from.root, from.g, {}, {from.root, a}, edge, parent);
+        if (a == from.root) return push(from.root, from.g, {from.root, b}, {}, edge);
+        if (b == from.root) return push(from.root, from.g, {}, {from.root, a}, edge);
         if (from.root == at_start && is_between(at(a), r, at(b))) return;
         if (hidden(from, a) || hidden(from, b)) return;
         const bool a_is_near = is_between(r, at(a), at(b));
-        if (is_end_of(from.edge, a_is_near ? a : b)) return;
+        if (!is_inside_ && is_end_of(from.edge, a_is_near ? a : b)) return;
         if (a_is_near)
-            push_along(from.root, from.g, a, b, to_the_right, edge, parent, none);
+            push_along(from.root, from.g, a, b, to_the_right, edge);
         else
-            push_along(from.root, from.g, b, a, to_the_left, edge, parent, none);
+            push_along(from.root, from.g, b, a, to_the_left, edge);
     }
-    bool is_end_of(Index edge, Index v) const {
-        return edge != none &&
-               (mesh_.corner[std::size_t(edge)] == v || mesh_.corner[std::size_t(mesh_.next(edge))] == v);
-    }
+    bool is_end_of(const Edge& edge, Index v) const { return mesh_.tail(edge) == v || mesh_.head(edge) == v; }
     bool hidden(const Node& from, Index v) const {
         return (from.on_right.to != none && side(from.on_right, v) < 0) ||
                (from.on_left.to != none && side(from.on_left, v) > 0);
@@ -259,52 +301,47 @@ class Polyanya {
     }
 
     // What lies to the right of the right line, reached by turning at the corner v on it.
-    void turn_right(Line line, Index v, double g, Index edge, Index parent) {
-        const Index a = mesh_.corner[std::size_t(edge)], b = mesh_.corner[std::size_t(mesh_.next(edge))];
+    void turn_right(Line line, Index v, double g, const Edge& edge) {
+        const Index a = mesh_.tail(edge), b = mesh_.head(edge);
         if (a == v) {
-            if (side(line, b) <= 0) push(v, g, {v, b}, {}, edge, parent);
+            if (side(line, b) <= 0) push(v, g, {v, b}, {}, edge);
             return;
         }
         if (b == v || side(line, a) >= 0) return;
-        if (orientation(at(v), at(a), at(b)) == 0)
-            return push_along(v, g, a, b, to_the_right, edge, parent, v);
-        push(v, g, side(line, b) <= 0 ? Line{v, b} : line, {v, a}, edge, parent);
+        if (orientation(at(v), at(a), at(b)) == 0) return push_along(v, g, a, b, to_the_right, edge);
+        push(v, g, side(line, b) <= 0 ? Line{v, b} : line, {v, a}, edge);
     }
-    void turn_left(Line line, Index v, double g, Index edge, Index parent) {
-        const Index a = mesh_.corner[std::size_t(edge)], b = mesh_.corner[std::size_t(mesh_.next(edge))];
+    void turn_left(Line line, Index v, double g, const Edge& edge) {
+        const Index a = mesh_.tail(edge), b = mesh_.head(edge);
         if (b == v) {
-            if (side(line, a) >= 0) push(v, g, {}, {v, a}, edge, parent);
+            if (side(line, a) >= 0) push(v, g, {}, {v, a}, edge);
             return;
         }
         if (a == v || side(line, b) <= 0) return;
-        if (orientation(at(v), at(a), at(b)) == 0)
-            return push_along(v, g, b, a, to_the_left, edge, parent, v);
-        push(v, g, {v, b}, side(line, a) >= 0 ? Line{v, a} : line, edge, parent);
+        if (orientation(at(v), at(a), at(b)) == 0) return push_along(v, g, b, a, to_the_left, edge);
+        push(v, g, {v, b}, side(line, a) >= 0 ? Line{v, a} : line, edge);
     }
 
-    Route finish(Index last) const {
+    Route finish(const Node& end) {
         Route route;
         route.status = Status::found;
         route.price = price_;
-        const Node& end = node(last);
         const Point r = at(end.root);
+        const auto [left, right] = interval(end);
         route.path.push_back(goal_);
-        if (cross(end.left - r, goal_ - r) > 0)
-            route.path.push_back(end.left);
-        else if (cross(end.right - r, goal_ - r) < 0)
-            route.path.push_back(end.right);
-        const auto add = [&](Index v) {
+        if (cross(left - r, goal_ - r) > 0)
+            route.path.push_back(left);
+        else if (cross(right - r, goal_ - r) < 0)
+            route.path.push_back(right);
+        for (Index v = end.root; v != at_start; v = best_[v].before)
             if (!(route.path.back() == at(v))) route.path.push_back(at(v));
-        };
-        for (Index n = last; n != none; n = node(n).parent) {
-            add(node(n).root);
-            if (node(n).via != none) add(node(n).via);
-        }
         if (!(route.path.back() == start_)) route.path.push_back(start_);
         std::reverse(route.path.begin(), route.path.end());
         route.length = length_of(route.path);
         return route;
     }
 };
+
+using Polyanya = IntervalSearch<ConvexMesh>;
 
 }  // namespace cspace::navigation
