@@ -7,14 +7,9 @@ $CSPACE_DATA/navigation/grid and writes benchmarks/results/navigation_grid.json.
 from __future__ import annotations
 
 import argparse
-import gc
 import importlib.metadata
 import importlib.util
-import json
-import os
-import time
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,12 +17,12 @@ import numpy as np
 import cspace as cs
 import run
 import turns
+import worlds
 from chains import Array
 from turns import Question
 
 MAPS = ("arena", "brc202d", "den520d", "AcrosstheCape", "Berlin_1_256", "64room_000", "room-400-40")
 MAPS += ("random-400-33", "maze-100-1", "maze-400-4")
-FOLDER = Path(os.environ.get("CSPACE_DATA", "../shared/data")) / "navigation/grid"
 
 
 def length(cells: Array) -> float:
@@ -37,10 +32,7 @@ def length(cells: Array) -> float:
 
 def ours(name: str, what: str, grid: Any, lines: Any, planner: str, costs: Array | None = None) -> Question:
     """One whole call of the package per line."""
-    ends = [
-        (tuple(map(float, a + 0.5)), tuple(map(float, b + 0.5)))
-        for a, b in zip(lines.start, lines.goal, strict=True)
-    ]
+    ends = worlds.centres(lines)
     more = {} if costs is None else {"costs": costs}
 
     def step(line: Any) -> Any:
@@ -68,8 +60,7 @@ def worst(lines: Any, lengths: list[float]) -> dict[str, float]:
 
 def questions(name: str, count: int) -> Iterator[Question]:
     """What is asked on one map: exact lengths by eight moves, and the cheapest way where cells have costs."""
-    grid = cs.OccupancyGrid.from_movingai(FOLDER / f"{name}.map")
-    every = cs.maps.read_scenarios(FOLDER / f"{name}.map.scen")
+    grid, every = worlds.grid(name), worlds.lines(name)
     chosen = np.linspace(0, len(every.length) - 1, min(count, len(every.length))).astype(int)
     lines = type(every)(*(field[chosen] for field in every))
     costs = np.random.default_rng(0).integers(1, 6, grid.shape).astype(float)
@@ -92,24 +83,6 @@ def questions(name: str, count: int) -> Iterator[Question]:
         yield peer(name, exact, nano_astar_.PACKAGE, lines, made, nano_astar_.NAME)
 
 
-def measure(asked: list[Question], rounds: int) -> list[dict[str, Any]]:
-    """Every line once a round and contender, contender after contender: processor time of each call."""
-    clock = time.process_time_ns
-    for _ in range(rounds):
-        for question in asked:
-            gc.collect()
-            gc.disable()
-            for line in question.inputs:
-                start = clock()
-                question.step(line)
-                question.spent.append(clock() - start)
-            gc.enable()
-    rows = [question.row() for question in asked]
-    for row in rows:
-        print(json.dumps(row), flush=True)
-    return rows
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--rounds", type=int, default=5)
@@ -119,7 +92,7 @@ def main() -> None:
     busy = run.load()
     rows = []
     for name in options.maps:
-        rows += measure(list(questions(name, options.lines)), options.rounds)
+        rows += turns.every_input(list(questions(name, options.lines)), options.rounds)
     turns.write("navigation_grid", rows, busy)
 
 

@@ -3,26 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any
 
 import arms
 import further_tables
+import navigation_numbers
 from arms import CLASSIC as ARMS
+from rows import Row, row
 
 Results = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Row:
-    """A line of the table. holds and aimed are None where nothing was measured or no aim is set."""
-
-    what: str
-    must: str
-    aim: str
-    measured: str
-    holds: bool | None
-    aimed: bool | None
 
 
 def find(results: Results, arm: str, task: str, contender: str) -> dict[str, Any] | None:
@@ -43,10 +32,6 @@ def pairs(results: Results, task: str, peer: str) -> list[tuple[str, dict[str, A
 def ours(results: Results, task: str, names: Iterable[str] = ARMS) -> list[tuple[str, dict[str, Any]]]:
     found = [(arm, find(results, arm, task, "cspace_")) for arm in names]
     return [(arm, row) for arm, row in found if row]
-
-
-def row(what: str, must: str, aim: str, measured: str, holds: bool | None, aimed: bool | None = None) -> Row:
-    return Row(what, must, aim, measured or "not measured", holds if measured else None, aimed)
 
 
 def ratio_row(results: Results, what: str, task: str, peer: str, must: float, aim: float) -> Row:
@@ -303,4 +288,4 @@ ROWS: list[Callable[[Results], Row]] = [
 
 
 def table(results: Results) -> list[Row]:
-    return [build(results) for build in ROWS]
+    return [build(results) for build in [*ROWS, *navigation_numbers.ROWS]]

@@ -19,7 +19,9 @@ sys.path.insert(0, str(HERE))
 import arms  # noqa: E402
 import completeness_table  # noqa: E402
 import further_tables  # noqa: E402
+import navigation_tables  # noqa: E402
 import numbers_table  # noqa: E402
+from rows import Row  # noqa: E402
 
 NAMES = {
     "cspace_": "**cspace**",
@@ -30,6 +32,8 @@ NAMES = {
     "pinocchio_": "Pinocchio",
     "toolbox": "Robotics Toolbox",
 }
+NAVIGATION = ["grid", "any_angle", "polygons", "fields", "sampling", "bugs", "large", "curves", "exact"]
+NAVIGATION += ["degenerate"]
 
 
 def load() -> dict[str, Any]:
@@ -40,7 +44,7 @@ def load() -> dict[str, Any]:
         return json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
 
     names = [*arms.SETS, "cpp", "recorded", "install", "derived", "completeness", "seven", "following"]
-    names += ["building", "soundness"]
+    names += ["building", "soundness", *(f"navigation_{part}" for part in NAVIGATION)]
     results = {name: read(name) for name in names}
     results["measurements"] = results["measurements"] or {"machine": {}, "imports": {}, "rows": []}
     return results
@@ -51,7 +55,7 @@ def markdown(header: list[str], rows: list[list[str]]) -> str:
     return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
 
 
-def verdict(row: numbers_table.Row) -> str:
+def verdict(row: Row) -> str:
     if row.holds is None:
         return "not measured"
     return ("aim reached" if row.aimed else "holds") if row.holds else "**missed**"
@@ -273,6 +277,10 @@ not allow.
 ## Completeness
 
 {completeness_table.section(results["completeness"])}
+
+## Navigation
+
+{navigation_tables.section(results)}
 
 ## Import
 

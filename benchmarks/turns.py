@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import json
 import os
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -56,6 +57,27 @@ def measure(questions: list[Question], rounds: int, seconds: float) -> list[dict
     for _ in range(rounds):
         for question in questions:
             question.turn(seconds)
+    rows = [question.row() for question in questions]
+    for row in rows:
+        print(json.dumps(row), flush=True)
+    return rows
+
+
+def every_input(questions: list[Question], rounds: int) -> list[dict[str, Any]]:
+    """The rows of all questions: every input once a round and question, question after question; processor
+    time of each call."""
+    if hasattr(os, "sched_setaffinity"):
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    clock = time.process_time_ns
+    for _ in range(rounds):
+        for question in questions:
+            gc.collect()
+            gc.disable()
+            for given in question.inputs:
+                start = clock()
+                question.step(given)
+                question.spent.append(clock() - start)
+            gc.enable()
     rows = [question.row() for question in questions]
     for row in rows:
         print(json.dumps(row), flush=True)
