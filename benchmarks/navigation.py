@@ -1,7 +1,7 @@
-"""All benchmarks of navigation in one command, one after the other, in about seven minutes.
+"""All benchmarks of navigation in one command, one after the other, in some seven minutes.
 
-Usage: python benchmarks/navigation.py [--only NAME …] [--python ompl=PATH …]. Peers that are not installed are left
-out; --python names interpreters for the curves' peers (see navigation_curves.py). Ends with
+Usage: python benchmarks/navigation.py [--only NAME …] [--python ompl=PATH …]. Peers not installed are left
+out; --python names interpreters for the peers of curves (see navigation_curves.py). Ends with
 benchmarks/report.py, which needs matplotlib.
 """
 

@@ -66,7 +66,9 @@ def told(name: str) -> list[tuple[float, float]]:
     found = []
     for length in (line.split()[8] for line in text if line.strip()):
         whole, _, decimals = length.partition(".")
-        found.append((float(length), 0.5 * 10.0 ** -max(len(decimals), 6 - len(whole)) + float(length) * SINGLE))
+        found.append(
+            (float(length), 0.5 * 10.0 ** -max(len(decimals), 6 - len(whole)) + float(length) * SINGLE)
+        )
     return found
 
 

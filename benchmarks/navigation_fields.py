@@ -1,7 +1,8 @@
 """Clearance and its diagram on a grid beside distance transforms, and the descent of a potential.
 
-Usage: python benchmarks/navigation_fields.py [--rounds 15] [--queries 200]. Ours lights a fire at every wall
-of a fresh grid: exact clearance, the label of the nearest piece of wall, the diagram's cells and its branches.
+Usage: python benchmarks/navigation_fields.py [--rounds 15] [--queries 200].
+Ours lights a fire at every
+wall of a fresh grid: exact clearance, the label of the nearest piece of wall, the diagram and its branches.
 scipy and edt make the distances alone, scikit-image distances and a skeleton without labels or graph. The
 potential's descents run in convex fields and among traps. Writes benchmarks/results/navigation_fields.json.
 """
@@ -80,7 +81,7 @@ def trap(rng: np.random.Generator) -> tuple[Any, Array, Array]:
     deep, high = rng.uniform(8, 20), rng.uniform(8, 20)
     corners = [(0, -high), (deep, -high), (deep, high), (0, high), (0, high - 2), (deep - 2, high - 2)]
     corners += [(deep - 2, 2 - high), (0, 2 - high)]
-    world = cs.PolygonWorld([np.array(corners) + (x, y)], (0, 0, worlds.SIDE, worlds.SIDE))
+    world = cs.PolygonWorld([np.array(corners) + np.array((x, y))], (0, 0, worlds.SIDE, worlds.SIDE))
     return world, np.array((rng.uniform(5, 30), y)), np.array((rng.uniform(80, 95), y + rng.uniform(-1, 1)))
 
 

@@ -99,7 +99,7 @@ def visibility_row(results: Results) -> Row:
             builds.append(r["build_ms"]["median"])
             queries.append(r["time"]["median"] / 1000)
             peers = [
-                f"{p['contender']} {p['build_ms']['median'] / 1000:.1f} s and {p['time']['median'] / 1000:.0f} ms"
+                f"{p['contender']} {p['build_ms']['median'] / 1e3:.1f} s, {p['time']['median'] / 1000:.0f} ms"
                 for p in found
                 if p is not r and p["build_ms"]
             ]
@@ -138,7 +138,9 @@ def bugs_row(results: Results) -> Row:
 
 def potential_row(results: Results) -> Row:
     found = entries(results, "fields", what="descent")
-    texts = [f"{r['arm']} {r['time']['median']:.0f} µs, 99 of 100 in {r['time']['p99']:.0f} µs" for r in found]
+    texts = [
+        f"{r['arm']} {r['time']['median']:.0f} µs, 99 of 100 in {r['time']['p99']:.0f} µs" for r in found
+    ]
     bad = sum(r["judged"]["unclassified"] + r["judged"]["false"] for r in found)
     text = f"{'; '.join(texts)}; {bad} stops unclassified or false" if found else ""
     holds = bad == 0 and all(r["time"]["p99"] <= 5000 for r in found)
@@ -157,7 +159,9 @@ def large_row(results: Results) -> Row:
     for r in entries(results, "large"):
         planner = r["contender"].removeprefix("cspace ")
         if "failed" in r:
-            texts.append(f"{r['arm']}, {planner}: {r['failed'].splitlines()[-1] if r['failed'] else 'failed'}")
+            texts.append(
+                f"{r['arm']}, {planner}: {r['failed'].splitlines()[-1] if r['failed'] else 'failed'}"
+            )
             holds = False
             continue
         held = r["bytes_per_cell"] + r["kept_bytes_per_cell"]

@@ -1,4 +1,4 @@
-"""Shortest paths among polygons: the visibility graph built and asked, beside pyvisgraph and extremitypathfinder.
+"""Shortest paths among polygons: the visibility graph built and asked, beside packages for Python.
 
 Usage: python benchmarks/navigation_polygons.py [--corners 600 1200] [--rounds 3] [--queries 40]. Every
 contender gets the same disjoint convex polygons; a build goes from their corners to a graph that can be
@@ -14,6 +14,7 @@ import importlib.metadata
 import importlib.util
 import time
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -50,7 +51,7 @@ def build_pyvisgraph(polygons: list[Array], ends: list[Any]) -> tuple[float, Mad
     asked = [tuple(pyvisgraph.Point(*map(float, p)) for p in pair) for pair in ends]
 
     def length(path: Any) -> float:
-        return float(sum(np.hypot(a.x - b.x, a.y - b.y) for a, b in zip(path, path[1:], strict=False)))
+        return float(sum(np.hypot(a.x - b.x, a.y - b.y) for a, b in pairwise(path)))
 
     return seconds, (lambda pair: graph.shortest_path(*pair), length, asked)
 

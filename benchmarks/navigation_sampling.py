@@ -1,4 +1,4 @@
-"""Planners that draw samples, beside OMPL: time, how often they arrive, how long the path is, whether it is free.
+"""Planners that draw samples, beside OMPL: time, how often they arrive, how long and free their paths are.
 
 Usage: python benchmarks/navigation_sampling.py [--queries 30]. OMPL asks a function of Python whether a state
 is valid, as its users write it: here a look-up in a raster of 2,000 × 2,000 made beforehand, the cheapest
@@ -13,6 +13,7 @@ import importlib.metadata
 import importlib.util
 import time
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -121,7 +122,7 @@ def measured(queries: int) -> Iterator[dict[str, Any]]:
 
 def free(world: Any, path: Array) -> bool:
     """Whether no leg enters an obstacle: each shortest path between its ends is the leg itself."""
-    for a, b in zip(path, path[1:], strict=False):
+    for a, b in pairwise(path):
         if not (world.is_free(a) and world.is_free(b)):
             return False
         if cs.navigate(world, a, b).length > np.hypot(*(b - a)) * (1 + 1e-12):

@@ -115,7 +115,9 @@ def large(results: Measured) -> str:
         times = [f"{row[key]:.3g}" for key in ("built_ms", "first_ms", "ms", "worst_ms")]
         keys = ("bytes_per_cell", "kept_bytes_per_cell", "peak_bytes_per_cell")
         found = f"{row['found']} of {row['asked']}"
-        body.append([row["arm"], planner, found, *times, *(f"{row[key]:.2f}" for key in keys), f"{row['nodes']:,}"])
+        body.append(
+            [row["arm"], planner, found, *times, *(f"{row[key]:.2f}" for key in keys), f"{row['nodes']:,}"]
+        )
     head = ["map", "planner", "found", "map made [ms]", "first call [ms]", "median [ms]", "worst [ms]"]
     head += ["map [bytes per cell]", "kept for queries", "most while asked", "nodes"]
     return f"{date(measured)}\n\n{table(head, body)}"
@@ -123,9 +125,10 @@ def large(results: Measured) -> str:
 
 def section(results: Measured) -> str:
     """Everything measured of navigation."""
-    return f"""Processor time of one call from Python, contender after contender on the same questions in one process,
-unless said otherwise; written down by `python benchmarks/navigation.py`. Of grids the questions are scenario lines of
-N. Sturtevant's maps; what a planner keeps with a map was made before, as peers make theirs.
+    return f"""Processor time of one call from Python, contender after contender on the same questions in one
+process, unless said otherwise; written down by `python benchmarks/navigation.py`. Of grids the
+questions are scenario lines of N. Sturtevant's maps; what a planner keeps with a map was made
+before, as peers make theirs.
 
 ### Ways over grids
 
@@ -137,22 +140,23 @@ N. Sturtevant's maps; what a planner keeps with a map was made before, as peers 
 
 ### Among polygons
 
-Disjoint hexagons; "built" is from lists of corners to a graph that can be asked. "longer / shorter" counts paths that
-differ from ours by more than 1e-9 of their length.
+Disjoint hexagons; "built" is from lists of corners to a graph that can be asked. "longer / shorter"
+counts paths that differ from ours by more than 1e-9 of their length.
 
 {polygons(results)}
 
 ### Clearance, and descents of a potential
 
-Ours makes exact distances, the label of the nearest piece of wall, the cells of the diagram and its branches; others
-make what is said of them.
+Ours makes exact distances, the label of the nearest piece of wall, the cells of the diagram and its
+branches; others make what is said of them.
 
 {fields(results)}
 
 ### Random points
 
-600 corners; OMPL asks a function of Python whether a state is free, here a look-up in a raster, and asks it in steps of a
-hundredth of the world along a motion, as it does by default. Whether a path is free was decided exactly.
+600 corners; OMPL asks a function of Python whether a state is free, here a look-up in a raster, and asks
+it in steps of a hundredth of the world along a motion, as it does by default. Whether a path is free was
+decided exactly.
 
 {sampling(results)}
 
@@ -162,8 +166,8 @@ hundredth of the world along a motion, as it does by default. Whether a path is 
 
 ### Maps of 8,000 × 8,000 cells
 
-"rooms" and "scattered" are maps laid side by side, "coast" is one enlarged; bytes are resident memory over the number of
-cells, beside the array that the map was made from.
+"rooms" and "scattered" are maps laid side by side, "coast" is one enlarged; bytes are resident memory
+over the number of cells, beside the array that the map was made from.
 
 {large(results)}
 

@@ -17,9 +17,10 @@ Results = dict[str, Any]
 def find(results: Results, arm: str, task: str, contender: str) -> dict[str, Any] | None:
     """The measurements of a contender; None where it refused or was not run."""
     for name in arms.SETS:
-        for row in results[name].get("rows", []):
-            if (row["arm"], row["task"], row["contender"]) == (arm, task, contender) and "ready" in row:
-                return dict(row)
+        for entry in results[name].get("rows", []):
+            names = (entry["arm"], entry["task"], entry["contender"])
+            if names == (arm, task, contender) and "ready" in entry:
+                return dict(entry)
     return None
 
 
