@@ -93,7 +93,7 @@ class Slow:
     def __call__(self, *question, **options):
         route = cs.navigate(*question, **options)
         spent = float(route.world.rows * route.world.columns) ** self.power
-        self.now += spent
+        self.now += 1e-9 * spent
         return told(route, price=route.price._replace(nodes=int(spent)))
 
     def clock(self):

@@ -10,8 +10,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from claims.families import STEP
-from claims.rows import CELLS, FOUR, KEPT, NO, OVER_CELLS, SAMPLES, SHORTEST, TENDS, WIDEST, WIDEST_CELLS, WITHIN, YES
+from claims.families import FAMILIES, STEP
+from claims.rows import (
+    CELLS,
+    FOUR,
+    KEPT,
+    NO,
+    OVER_CELLS,
+    SAMPLES,
+    SHORTEST,
+    SOME,
+    TENDS,
+    WIDEST,
+    WIDEST_CELLS,
+    WITHIN,
+    YES,
+)
 
 EQUAL = 1e-9
 """Relative: lengths are sums of rounded square roots."""
@@ -20,8 +34,8 @@ NONE = "—"
 NEAR = 1.02
 """A way that tends to the shortest is, in the middle of all questions, no longer than this many times it."""
 MOSTLY = 0.9
-"""A way keeps to the middle if its clearance is at least this share of the largest across it, along half of it
-in half of all questions."""
+"""A way keeps to the middle if its clearance is at least this share of the largest across it, along
+half of it in half of all questions."""
 
 
 @dataclass(frozen=True)
@@ -53,6 +67,9 @@ def complete(row, records, fewer=()):
     if row.draws and (lost := share_missed(fewer)) > share_missed(judged):
         lost, left = (f"{100 * share:.3g} %" for share in (lost, share_missed(judged)))
         return Finding(SAMPLES, f"missed {lost} of the ways with few samples, {left} with many; {said}")
+    if row.some and (lost := {r["family"] for r in records if r["status"] in ("refused", "undetermined")}):
+        decided = [family for family in FAMILIES if family not in lost]
+        return Finding(SOME, f"every {' and '.join(decided)} decided; {said}" if decided else said)
     if missed:
         return Finding(CELLS, said, missed[0]["question"])
     return Finding(YES, said)
@@ -71,7 +88,7 @@ def counted(records):
 
 
 def shortest(row, records, fewer=()):
-    """How the lengths of ways stand to those of the shortest: in the plane, over cells, or within a factor."""
+    """How lengths of ways stand to those of the shortest: in the plane, over cells, or within a factor."""
     ratios, moves = values(records, "ratio"), values(records, "moves")
     if not len(ratios):
         return Finding(NONE)

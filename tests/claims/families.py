@@ -123,7 +123,7 @@ def convex_fields(rng, size, shut):
 
 
 def spirals(rng, size, shut):
-    """A wall of unit width that winds out in 4 + size legs, which overlap where they meet, three metres apart."""
+    """A wall of unit width that winds out in 4 + size legs, three metres apart; walls overlap in its corners."""
     at, obstacles = np.zeros(2, dtype=int), []
     for leg in range(4 + size):
         end = at + 4 * (1 + leg // 2) * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])[leg % 4]
@@ -189,7 +189,9 @@ def u_traps(rng, size, shut):
         pockets.append((corner, turn, depth))
     first, last = rng.permutation(size * size)[:2] if size > 1 else (0, 0)
     places = [np.array([rng.integers(4, 8), 4]) + 0.5 for _ in range(2)]
-    ends = [pockets[k][0] + quarter_turns(p, pockets[k][1]) for k, p in zip((first, last), places, strict=True)]
+    ends = [
+        pockets[k][0] + quarter_turns(p, pockets[k][1]) for k, p in zip((first, last), places, strict=True)
+    ]
     if size == 1:
         ends[1] = np.array([rng.integers(12), 0]) + 0.5
     corner, turn, depth = pockets[last]
@@ -348,7 +350,9 @@ def some_polygon(rng, side):
     if kind == 2:
         return convex(rng, 5) + rng.integers(-1, side - 4, 2)
     left, low = rng.integers(0, side, 2)
-    right, high = (left, low) + rng.integers(1, 5, 2)
+    right, high = (left, low, *rng.integers(1, 5, 2))
     if kind == 0 or right - left < 2 or high - low < 2:
         return box(left, low, right, high)
-    return np.array([(left, low), (right, low), (right, low + 1), (left + 1, low + 1), (left + 1, high), (left, high)])
+    return np.array(
+        [(left, low), (right, low), (right, low + 1), (left + 1, low + 1), (left + 1, high), (left, high)]
+    )

@@ -31,7 +31,7 @@ def ask(row, question, navigate=cs.navigate, **more):
         options = {**row.options, **more, **({"rng": question.seed} if row.draws else {})}
         return navigate(world, question.start, question.goal, row.planner, **cells, **options)
     except InputError:
-        if not row.refuses:
+        if not row.some:
             raise
         return None
 

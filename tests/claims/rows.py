@@ -43,8 +43,8 @@ class Row:
     """How far the robot sees [m]; 0: it feels what it touches."""
     promise: float | None = None
     """The factor within which a way is said to be the best."""
-    refuses: bool = False
-    """Whether it is made for some worlds alone, and refuses the others by name."""
+    some: bool = False
+    """Whether it is made for some worlds alone, and refuses the others or leaves them undetermined."""
 
     @cached_property
     def world(self):
@@ -57,7 +57,7 @@ class Row:
 
 
 YES, NO = "yes", "no"
-CELLS, SAMPLES = "to resolution", "with samples"
+CELLS, SAMPLES, SOME = "to resolution", "with samples", "in some worlds"
 SHORTEST, OVER_CELLS, FOUR, TENDS = "shortest", "shortest over cells", "shortest by four moves", "tends to it"
 WITHIN = "within {:g}"
 WIDEST, WIDEST_CELLS, KEPT = "widest", "widest over cells", "in the middle"
@@ -83,9 +83,20 @@ _ALL = [
     Row("brushfire", "brushfire", lecture(YES, CELLS, clearance=WIDEST_CELLS, cost=LINEAR)),
     Row("exact_cells", "exact_cells", lecture(YES, YES, shortest=NO, cost=LOG_LINEAR)),
     Row("approximate_cells", "approximate_cells", lecture(YES, CELLS, shortest=NO)),
-    Row("potential_field", "potential_field", lecture(YES, NO, shortest=NO, cost=LINEAR), {"rho_0": 0.5}, senses=0.5),
+    Row(
+        "potential_field",
+        "potential_field",
+        lecture(YES, NO, shortest=NO, cost=LINEAR),
+        {"rho_0": 0.5},
+        senses=0.5,
+    ),
     Row("potential_a_star", "potential_a_star", lecture(YES, CELLS, shortest=WITHIN), promise=1.5),
-    Row("potential_a_star, exact", "potential_a_star", lecture(YES, CELLS, shortest=OVER_CELLS), {"mode": "exact"}),
+    Row(
+        "potential_a_star, exact",
+        "potential_a_star",
+        lecture(YES, CELLS, shortest=OVER_CELLS),
+        {"mode": "exact"},
+    ),
     Row("potential_a_star, greedy", "potential_a_star", lecture(YES, CELLS, shortest=NO), {"mode": "greedy"}),
     Row("any_angle", "any_angle", Claim(YES, YES, SHORTEST)),
     Row("tangent_bug", "tangent_bug", Claim(NO, YES, NO), {"range": 3.0}, senses=3.0),
@@ -103,7 +114,7 @@ _ALL = [
     Row("wavefront", "wavefront", on_cells(FOUR, cost=LINEAR)),
     Row("fast_marching", "fast_marching", on_cells(NO, cost=LOG_LINEAR)),
     Row("harmonic", "harmonic", on_cells(NO)),
-    Row("rimon_koditschek", "rimon_koditschek", Claim(YES, YES, NO), refuses=True),
+    Row("rimon_koditschek", "rimon_koditschek", Claim(YES, SOME, NO), some=True),
 ]
 
 ROWS = {row.name: row for row in _ALL if row.planner in PLANNERS}

@@ -6,6 +6,7 @@ A robot that is shown what it feels or sees, and nothing else, walks the same wa
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import replace
 
 import numpy as np
@@ -43,7 +44,10 @@ def needs_map(row, questions, navigate=cs.navigate):
 
 def unseen(path, obstacles, reach):
     """The numbers of obstacles farther from a path (m, 2) than `reach`."""
-    pieces = [np.linspace(p, q, max(2, int(np.ceil(np.hypot(*(q - p)) / SPACING)) + 1)) for p, q in zip(path, path[1:], strict=False)]
+    pieces = [
+        np.linspace(p, q, max(2, int(np.ceil(np.hypot(*(q - p)) / SPACING)) + 1))
+        for p, q in itertools.pairwise(path)
+    ]
     points = np.vstack([path[:1], *pieces])
     away = [nearest(points, [np.asarray(ring, float) for ring in rings])[0].min() for rings in obstacles]
     return [k for k, distance in enumerate(away) if distance > reach + MARGIN]

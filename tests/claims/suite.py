@@ -30,7 +30,12 @@ def questions(sizes=SIZES, seeds=SEEDS, families=FAMILIES):
 
 def questions_of_sight(seeds=3):
     """Worlds from which obstacles are taken away."""
-    return [question(family, size, k) for family in ("convex field", "maze") for size in (3, 5) for k in range(seeds)]
+    return [
+        question(family, size, k)
+        for family in ("convex field", "maze")
+        for size in (3, 5)
+        for k in range(seeds)
+    ]
 
 
 def records(row, asked, navigate=cs.navigate, **more):

@@ -1,5 +1,5 @@
-"""The table of claims: every planner has its row, each cell is what is claimed or has a note that says why not, and
-a planner broken on purpose changes its cell."""
+"""The table of claims: every planner has its row, each cell is what is claimed or has a note that says why
+not, and a planner broken on purpose changes its cell."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ from cspace.navigation import PLANNERS
 from navigation.bugs.worlds import FAMILIES as CELL_FAMILIES
 from navigation.bugs.worlds import questions as questions_of_cells
 from oracles.plane import shortest
+from oracles.shortest import shortest_length
 
 
 @cache
@@ -25,7 +26,7 @@ def asked():
 
 @cache
 def seen():
-    return suite.questions_of_sight(1)
+    return suite.questions_of_sight(2)
 
 
 def found(row, navigate=None, sizes=()):
@@ -40,7 +41,9 @@ def test_every_planner_has_a_row():
 def test_each_cell_is_what_is_claimed_or_has_a_note(name):
     row, told = ROWS[name], found(name)
     differ = set(suite.disagreements(row, told)) - {"cost"}
-    assert differ == {column for label, column in NOTES if label == name} - {"cost"}, {c: told[c] for c in differ}
+    assert differ == {column for label, column in NOTES if label == name} - {"cost"}, {
+        c: told[c] for c in differ
+    }
     assert cells.WRONG not in {finding.word for finding in told.values()}
 
 
@@ -102,6 +105,13 @@ def test_the_oracle_agrees_with_counted_cells(family):
         ends = [world.place(*map(float, point)) for point in (start, goal)]
         length = shortest([[ring] for ring in world.polygons()], bounds, *ends)
         assert (length < np.inf) == reachable, (world, start, goal)
+
+
+def test_two_oracles_agree_on_degenerate_worlds():
+    for seed in range(12):
+        q = question("degenerate", 1 + seed % 3, seed, bool(seed % 2))
+        other = shortest_length(q.obstacles, q.bounds, q.start, q.goal)
+        assert q.length == pytest.approx(other, rel=1e-12)
 
 
 def test_the_oracle_on_ways_that_are_known():
