@@ -123,7 +123,7 @@ def convex_fields(rng, size, shut):
 
 
 def spirals(rng, size, shut):
-    """A wall of unit width that winds out in 4 + size legs, three metres apart; walls overlap in its corners."""
+    """A wall of unit width that winds out in 4 + size legs, three metres apart, which overlap."""
     at, obstacles = np.zeros(2, dtype=int), []
     for leg in range(4 + size):
         end = at + 4 * (1 + leg // 2) * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])[leg % 4]
@@ -350,7 +350,7 @@ def some_polygon(rng, side):
     if kind == 2:
         return convex(rng, 5) + rng.integers(-1, side - 4, 2)
     left, low = rng.integers(0, side, 2)
-    right, high = (left, low, *rng.integers(1, 5, 2))
+    right, high = np.array([left, low]) + rng.integers(1, 5, 2)
     if kind == 0 or right - left < 2 or high - low < 2:
         return box(left, low, right, high)
     return np.array(
