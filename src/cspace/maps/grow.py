@@ -1,50 +1,132 @@
-"""Obstacles grown by the radius of a disc: the world that its centre moves in."""
+"""Obstacles grown by the radius of a disc: the world that its centre moves in.
+
+The exact shape has an arc around each corner. Here a corner gets a polygon around the disc instead, whose
+sides touch it in chosen directions. In those directions nothing is given away, so they are, beside evenly
+spread ones: across the walls that meet in the corner, and towards each corner and wall that the disc just
+passes, so that a gap is open exactly if the disc fits.
+"""
 
 from __future__ import annotations
 
+from typing import Any, Final
+
 import numpy as np
+import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.maps.outlines import Outline
 
 __all__ = ["grown"]
 
+TURN: Final = 2**40
+"""Directions are whole numbers, so many to a turn: those that differ by roundings are one, and what is
+opposite is so exactly."""
+BLOCK: Final = 64
+"""Corners that are compared at once with the walls near them."""
 
-def grown(outlines: list[Outline], bounds: Array, radius: float, sides: int) -> tuple[list[Outline], Array]:
-    """The Minkowski sum of the obstacles with a regular polygon around the disc, inside bounds that are
-    shrunk.
+Directions = npt.NDArray[np.int64]
 
-    The sum of a polygon and a convex polygon is the union of the first with the sums of its edges, each of
-    which is convex: the hull of the second at both ends of the edge.
+
+def grown(
+    outlines: list[Outline], bounds: Array, radius: float, sides: int, keep: Array
+) -> tuple[list[Outline], Array]:
+    """The sum of the obstacles with polygons around the disc, inside bounds that are shrunk.
+
+    keep: (k, 2), places of the centre in whose direction corners give nothing away. The sum of a polygon and
+    a disc is the union of the first with the disc swept along its edges, each of which is convex.
     """
-    if (reach := float(as_floats(radius, "radius"))) < 0:
-        raise InputError(f"radius is {reach:g}; it must be zero or more [m]")
-    if sides < 4:
-        raise InputError(f"sides is {sides}; a polygon around a disc needs four or more here")
+    reach = _radius(radius, sides)
     xmin, ymin, xmax, ymax = map(float, bounds)
     if not (xmin + reach < xmax - reach and ymin + reach < ymax - reach):
         raise InputError(
             f"radius {reach:g} leaves no room inside the bounds, of {xmax - xmin:g} × {ymax - ymin:g} m"
         )
-    angles = 2 * np.pi * (np.arange(sides) + 0.5) / sides
-    disc = reach / np.cos(np.pi / sides) * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    obstacles: list[Outline] = []
-    for rings in outlines:
-        obstacles.append(rings)
-        for ring in rings:
-            ends = zip(ring, np.roll(ring, -1, axis=0), strict=True)
-            obstacles.extend([_swept(disc, a, b)] for a, b in ends)
-    return obstacles, np.array([xmin + reach, ymin + reach, xmax - reach, ymax - reach])
+    rings = [ring for obstacle in outlines for ring in obstacle]
+    corners = np.vstack([np.empty((0, 2)), *rings])
+    nexts = np.vstack([np.empty((0, 2)), *(np.roll(ring, -1, axis=0) for ring in rings)])
+    ahead = _direction(nexts - corners)
+    across = _tight(corners, nexts, ahead, reach, sides, keep)
+    axes = np.arange(4) * (TURN // 4)  # towards the bounds
+    even = np.concatenate([axes, np.rint(np.arange(sides) * (TURN / sides)).astype(np.int64)])
+    first = 0
+    swept: list[Outline] = []
+    for ring in rings:
+        at = np.arange(first, first + len(ring))
+        discs = []
+        for here, before in zip(at, np.roll(at, 1), strict=True):
+            walls = np.array([ahead[here], ahead[before]])
+            quarter = np.concatenate([walls + TURN // 4, walls - TURN // 4])
+            discs.append(np.unique(np.concatenate([even, quarter, across[here]]) % TURN))
+        for k, here in enumerate(at):
+            ends = corners[here], nexts[here]
+            swept.append([_swept(reach, int(ahead[here]), ends, (discs[k], discs[(k + 1) % len(ring)]))])
+        first += len(ring)
+    return [*outlines, *swept], np.array([xmin + reach, ymin + reach, xmax - reach, ymax - reach])
 
 
-def _swept(disc: Array, a: Array, b: Array) -> Array:
-    """The hull (m, 2) of a convex polygon (n, 2) at two places: half of it at each, by which side is
-    foremost."""
-    along = b - a
-    normals = np.roll(disc, -1, axis=0) + disc  # of the sides: side i leads from corner i to the next
-    ahead = normals @ along > 0
-    first = int(np.argmax(ahead & ~np.roll(ahead, 1)))  # the first side that looks ahead
-    order = np.roll(np.arange(len(disc)), -first)
-    count = int(ahead.sum())
-    return np.vstack([b + disc[order[: count + 1]], a + disc[order[count:]], a + disc[order[:1]]])
+def _radius(radius: Any, sides: Any) -> float:
+    if (reach := float(as_floats(radius, "radius"))) < 0:
+        raise InputError(f"radius is {reach:g}; it must be zero or more [m]")
+    if isinstance(sides, bool) or not isinstance(sides, (int, np.integer)):
+        raise InputTypeError(f"sides is a {type(sides).__name__}; it must be a whole number")
+    if not 4 <= sides <= TURN // 2**20:
+        raise InputError(f"sides is {sides}; a polygon around a disc has 4 to {TURN // 2**20} here")
+    return reach
+
+
+def _direction(vectors: Array) -> Directions:
+    """Of vectors (n, 2), counterclockwise from x."""
+    angle = np.arctan2(vectors[:, 1], vectors[:, 0])
+    return np.rint(angle * (TURN / (2 * np.pi))).astype(np.int64) % TURN
+
+
+def _swept(
+    radius: float, ahead: int, ends: tuple[Array, Array], discs: tuple[Directions, Directions]
+) -> Array:
+    """The hull (m, 2) of a polygon around the disc at each end of an edge that leads `ahead`: of the second
+    what looks ahead, of the first the rest. discs: in which directions the sides of each touch."""
+    right, left = (ahead - TURN // 4) % TURN, (ahead + TURN // 4) % TURN
+    fore = _corners(radius, discs[1], right, left)
+    back = _corners(radius, discs[0], left, right)
+    return np.vstack([ends[1] + fore, ends[0] + back])
+
+
+def _corners(radius: float, touches: Directions, begin: int, end: int) -> Array:
+    """The corners (m, 2) of a polygon around a disc from one touching side, counterclockwise, to another."""
+    first, last = np.searchsorted(touches, [begin, end])
+    sides = np.roll(touches, -first)[: (last - first) % len(touches) + 1]
+    wide = np.diff(sides) % TURN
+    middle = (sides[:-1] + wide / 2) * (2 * np.pi / TURN)
+    away = radius / np.cos(wide * (np.pi / TURN))
+    found: Array = away[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1)
+    return found
+
+
+def _tight(
+    corners: Array, nexts: Array, ahead: Directions, radius: float, sides: int, keep: Array
+) -> list[Directions]:
+    """For each corner the directions of what lies as far as the disc just fits between: other corners, walls
+    and the places of `keep`."""
+    found: list[list[Directions]] = [[np.empty(0, np.int64)] for _ in corners]
+    near, far = 2 * radius * (1 - 1e-9), 2 * radius / np.cos(np.pi / sides)
+    low, high = np.minimum(corners, nexts) - far, np.maximum(corners, nexts) + far
+    for first in range(0, len(corners), BLOCK):
+        some = corners[first : first + BLOCK]
+        beside = np.flatnonzero(np.all((low <= some.max(axis=0)) & (high >= some.min(axis=0)), axis=1))
+        begin, along = corners[beside], nexts[beside] - corners[beside]
+        back = some[:, None] - begin
+        apart = np.hypot(back[..., 0], back[..., 1])
+        for i, j in zip(*np.nonzero((apart >= near) & (apart <= far)), strict=True):
+            found[first + i].append(_direction(-back[i, j : j + 1]))
+        share = np.einsum("ijk,jk->ij", back, along) / np.einsum("jk,jk->j", along, along)
+        off = np.abs(along[:, 0] * back[..., 1] - along[:, 1] * back[..., 0]) / np.hypot(*along.T)
+        tight = (share > 0) & (share < 1) & (off >= near) & (off <= far)
+        for i, j in zip(*np.nonzero(tight), strict=True):
+            left = ahead[beside[j]] + TURN // 4
+            found[first + i].append(np.array([left, left - TURN // 2]) % TURN)
+    for p in keep:
+        apart = np.hypot(*(p - corners).T)
+        for i in np.flatnonzero((apart > 0) & (apart <= far / 2)):
+            found[i].append(_direction((p - corners[i])[None]))
+    return [np.concatenate(each) for each in found]

@@ -136,16 +136,20 @@ class PolygonWorld:
         ]
         return np.array(found).reshape(given.shape[:-1]) if given.ndim > 1 else found[0]
 
-    def inflate(self, radius: float, *, sides: int = 32) -> PolygonWorld:
+    def inflate(self, radius: float, *, sides: int = 32, keep: ArrayLike = ()) -> PolygonWorld:
         """The world of the centre of a disc of a radius [m]: obstacles grown by it, bounds shrunk.
 
-        Each obstacle becomes its Minkowski sum with a regular polygon around the disc, so a path keeps the
-        radius everywhere, and gives away at most radius · (1 / cos(π / sides) − 1).
+        What is exactly at the radius from a wall has straight sides and an arc around each corner; in place
+        of the arc stands a polygon of `sides` or more around it. So a path keeps the radius everywhere, and
+        gives away at most radius · (1 / cos(π / sides) − 1), nothing along walls, and nothing in gaps: one
+        is open exactly if the disc fits. keep: (k, 2) [m], where corners give nothing away either, for
+        centres that are less than that farther than the radius from a corner.
         """
         wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
+        places = as_floats(keep, "keep", last=(2,)).reshape(-1, 2) if np.size(keep) else np.empty((0, 2))
         if 0 <= float(as_floats(radius, "radius")) <= ON_WALL * wide:
             return self  # less than the roundings of its corners
-        obstacles, bounds = grown(self._outlines, self._bounds, radius, sides)
+        obstacles, bounds = grown(self._outlines, self._bounds, radius, sides, places)
         return PolygonWorld(obstacles, bounds, repair=True)
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:

@@ -48,10 +48,15 @@ def navigate(
     row = planner_named(planner)
     plan = module_of(planner).plan
     kind = getattr(world, "kind", None)
+    given = world
     if kind != row.world or radius is not NO_RADIUS or resolution is not None:
         world = _prepared(world, kind, row, radius, resolution)
     if options:
         check_options(row, options)
+    if world is not given and isinstance(given, PolygonWorld) and isinstance(world, PolygonWorld):
+        from cspace.navigation.discs import plan_disc
+
+        return plan_disc(given, world, float(radius), planner, (start, goal), options)
     return plan(world, start, goal, **options)
 
 

@@ -45,8 +45,8 @@ class Route(_core.RouteBase):
     @property
     def reason(self) -> str:
         """The verdict in a sentence, with what backs it."""
-        said: str = planners.module_of(self.planner).reason(self)
-        return said
+        said: str | None = getattr(self._evidence, "reason", None)
+        return said or planners.module_of(self.planner).reason(self)
 
     @property
     def price(self) -> Price:

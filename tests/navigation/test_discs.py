@@ -1,0 +1,110 @@
+"""Discs among polygons: they go exactly where they fit."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace.errors import InputError
+
+
+def gate(width, angle):
+    """Two obstacles whose corners leave a gap in a direction, from side to side of the world."""
+    along = np.array([np.cos(angle), np.sin(angle)])
+    across = np.array([-along[1], along[0]])
+    one, other = -width / 2 * along, width / 2 * along
+    left = [one, one - 40 * along + 9 * across, one - 40 * along - 9 * across]
+    right = [other, other + 40 * along - 9 * across, other + 40 * along + 9 * across]
+    return cs.PolygonWorld([left, right], (-6, -6, 6, 6)), 3 * across
+
+
+@pytest.mark.parametrize("planner", ["any_angle", "visibility_graph", "exact_cells", "bug_1"])
+@pytest.mark.parametrize("angle", [0, np.pi / 32, 0.1, 0.777, 2.5])
+def test_a_gap_between_corners_is_open_exactly_if_the_disc_fits(planner, angle):
+    for excess in (1e-2, 1e-3, 1e-6, 1e-9):
+        world, aside = gate(1 + excess, angle)
+        route = cs.navigate(world, aside, -aside, planner, radius=0.5)
+        assert route.status == "found", excess
+        world, aside = gate(1 - excess, angle)
+        assert cs.navigate(world, aside, -aside, planner, radius=0.5).status == "unreachable", excess
+
+
+@pytest.mark.parametrize("angle", [0, 0.1, 0.777])
+def test_a_gap_between_a_corner_and_a_slanted_wall(angle):
+    turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+    for width, status in ((1 + 1e-8, "found"), (1 - 1e-8, "unreachable")):
+        wall = np.array([(-20, -20), (20, -20), (20, 0), (-20, 0)]) @ turn.T
+        tooth = np.array([(0, width), (9, 30), (-9, 30)]) @ turn.T
+        world = cs.PolygonWorld([wall, tooth], (-8, -8, 8, 8))
+        ends = np.array([(-3, 1), (3, 1)]) @ turn.T
+        assert cs.navigate(world, *ends, radius=0.5).status == status
+
+
+def worlds(rng, count):
+    for k in range(count):
+        rings = [rng.uniform(0, 12, 2) + rng.uniform(-2, 2, (rng.integers(3, 6), 2)) for _ in range(6)]
+        if k % 2:
+            rings = [rng.integers(0, 13, (4, 2)) for _ in range(6)]
+        rings = [ring for ring in rings if len(np.unique(ring, axis=0)) > 2]
+        yield cs.PolygonWorld(rings, (0, 0, 12, 12), repair=True)
+
+
+def test_the_widest_way_and_the_grown_world_agree():
+    """A disc a billionth smaller than the widest way goes through, one a billionth larger does not."""
+    rng = np.random.default_rng(21)
+    seen = set()
+    for world in worlds(rng, 40):
+        for start, goal in rng.uniform(0, 12, (4, 2, 2)):
+            if not (world.is_free(start) and world.is_free(goal)):
+                continue
+            widest = cs.navigate(world, start, goal, "voronoi")
+            if widest.status != "found" or widest.evidence.least_clearance < 0.02:
+                continue
+            clearance = widest.evidence.least_clearance
+            for share in (1 - 1e-3, 1 - 1e-9):
+                assert cs.navigate(world, start, goal, radius=share * clearance), (share, clearance)
+            for share in (1 + 1e-3, 1 + 1e-9):
+                radius = share * clearance
+                if min(widest.evidence.at_start, widest.evidence.at_goal) < radius:
+                    with pytest.raises(InputError, match="does not fit there"):
+                        cs.navigate(world, start, goal, radius=radius)
+                    seen.add("ends")
+                else:
+                    status = cs.navigate(world, start, goal, radius=radius).status
+                    assert status == "unreachable"
+                    seen.add(status)
+    assert seen == {"ends", "unreachable"}
+
+
+def test_paths_of_discs_keep_the_radius():
+    rng = np.random.default_rng(22)
+    for world in worlds(rng, 12):
+        grown = world.inflate(0.3)
+        points = [p for p in rng.uniform(0.3, 11.7, (40, 2)) if grown.is_free(p)]
+        for start, goal in zip(points[::2], points[1::2], strict=False):
+            route = cs.navigate(world, start, goal, radius=0.3)
+            legs = zip(route.path, route.path[1:], strict=False)
+            dense = [np.linspace(a, b, 50) for a, b in legs]
+            assert not route or world.clearance(np.vstack(dense)).min() >= 0.3 - 1e-11
+
+
+def test_errors_of_discs_speak_of_the_world_that_was_given():
+    world = cs.PolygonWorld([[(4, 4), (6, 4), (6, 6), (4, 6)]], (0, 0, 10, 10))
+    with pytest.raises(InputError, match=r"start \(3.9, 5\) is 0.1 m from a wall.*radius 0.5"):
+        cs.navigate(world, (3.9, 5), (1, 1), radius=0.5)
+    with pytest.raises(InputError, match=r"goal .* inside obstacle 0, 1 m deep"):
+        cs.navigate(world, (1, 1), (5, 5), radius=0.5)
+    with pytest.raises(InputError, match="start"):
+        cs.navigate(world, (1, np.nan), (5, 5), radius=0.5)
+
+
+def test_a_place_beside_a_corner_is_kept():
+    world = cs.PolygonWorld([[(4, 4), (6, 4), (6, 6), (4, 6)]], (0, 0, 10, 10))
+    beside = np.array([4, 4]) - 0.5000001 * np.array([np.cos(0.6), np.sin(0.6)])
+    assert not world.inflate(0.5).is_free(beside)
+    assert world.inflate(0.5, keep=beside).is_free(beside)
+    assert world.inflate(0.5, sides=5, keep=[beside, (1, 1)]).is_free(beside)
+    route = cs.navigate(world, beside, (9, 9), radius=0.5)
+    assert route
+    np.testing.assert_array_equal(route.start, beside)
