@@ -127,11 +127,17 @@ def module_of(name: str) -> PlannerModule:
 
 def check_options(row: Planner, options: dict[str, Any]) -> None:
     """InputTypeError for an option that the planner does not have, or several values where it takes one."""
-    parameters = inspect.signature(module_of(row.name).plan).parameters.values()
-    known = [p.name for p in parameters if p.kind is p.KEYWORD_ONLY]
+    known = _options_of(row.name)
     for name, value in options.items():
         if name not in known:
             raise InputTypeError(str(suggest("option", name, known, owner=f"planner {row.name!r}")))
         dimensions: int = getattr(value, "ndim", 0)
         if name not in COMPOSED and (dimensions or isinstance(value, (list, tuple, dict, set))):
             raise InputTypeError(f"option {name!r} is a {type(value).__name__}; it must be one value")
+
+
+@cache
+def _options_of(name: str) -> tuple[str, ...]:
+    """The names of a planner's options."""
+    parameters = inspect.signature(module_of(name).plan).parameters.values()
+    return tuple(p.name for p in parameters if p.kind is p.KEYWORD_ONLY)
