@@ -197,6 +197,49 @@ def elbow_solutions():
     return ways("elbow", cs.load_robot("elbow").fk([0.5, -0.7, 0.9, 0.3, 1.1, -0.4]), "elbow arm")
 
 
+def levels(ax, world, goal, **gains):
+    """The potential of a goal as lines of equal height."""
+    xmin, ymin, xmax, ymax = world.bounds
+    x, y = np.meshgrid(np.linspace(xmin, xmax, 401), np.linspace(ymin, ymax, 401))
+    height = cs.navigation.potential(world, goal, np.stack([x, y], axis=-1), **gains)
+    ax.contour(x, y, height, levels=np.linspace(0, 14, 29), colors=FAINT, linewidths=0.6)
+    for obstacle in world.obstacles:
+        ax.fill(*np.asarray(obstacle).reshape(-1, 2).T, color="#d9d9d9", ec=INK, lw=0.8)
+    ax.plot(*goal, "*", color=GREEN, ms=12)
+
+
+def descend(ax, world, goal, starts, **gains):
+    """Descents of a potential, blue where they arrive."""
+    levels(ax, world, goal, **gains)
+    for start in starts:
+        route = cs.navigate(world, start, goal, "potential_field", **gains)
+        ax.plot(*route.path.T, color=BLUE if route else RED, lw=1.2)
+        if not route:
+            ax.plot(*route.path[-1], "x", color=RED, ms=7, mew=2)
+
+
+def descents():
+    """A potential that leads past a silo, and into a trap out of which a search by it finds."""
+    angles = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+    silo = np.stack([5 + np.cos(angles), 5 + np.sin(angles)], axis=1)
+    trap = np.array([(4, 2), (7, 2), (7, 8), (4, 8), (4, 7.5), (6.5, 7.5), (6.5, 2.5), (4, 2.5)])
+    figure, axes = plt.subplots(1, 3, figsize=(12, 4.2), layout="constrained", sharey=True)
+    past, caught = (cs.PolygonWorld([ring], (0, 0, 10, 10)) for ring in (silo, trap))
+    goal, gains = (8.5, 5.0), {"rho_0": 1.0}
+    starts = [(0.6, y) for y in np.linspace(0.7, 9.3, 18)]
+    descend(axes[0], past, goal, starts, **gains)
+    descend(axes[1], caught, goal, starts, **gains)
+    levels(axes[2], caught, goal, **gains)
+    route = cs.navigate(caught, (0.6, 5), goal, "potential_a_star", resolution=0.1, mode="greedy")
+    settled = route.trace.end
+    drawn = axes[2].scatter(*settled.T, c=np.arange(len(settled)), s=3, cmap="viridis", zorder=2)
+    figure.colorbar(drawn, ax=axes[2], label="order in which cells are settled")
+    axes[2].plot(*route.path.T, color=BLUE, lw=2)
+    for ax, title in zip(axes, ("descents arrive", "or rest in a trap", "a search leaves it"), strict=True):
+        bare(ax, title)
+    return axes
+
+
 PICTURES: tuple[Callable[[], Any], ...] = (
     one_point_two_frames,
     turned_tip,
@@ -210,6 +253,7 @@ PICTURES: tuple[Callable[[], Any], ...] = (
     simplified_puma_solutions,
     rpr_solutions,
     elbow_solutions,
+    descents,
 )
 
 
@@ -217,7 +261,7 @@ def main(folder: Path) -> None:
     """Write every picture into a folder."""
     for picture in PICTURES:
         drawn = picture()
-        artists = drawn if isinstance(drawn, (list, tuple)) else [drawn]
+        artists = list(drawn) if isinstance(drawn, (list, tuple, np.ndarray)) else [drawn]
         plot.save(artists, folder / f"{picture.__name__}.png", dpi=DPI)
 
 
