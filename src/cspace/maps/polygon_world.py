@@ -15,6 +15,7 @@ from cspace.errors import InputError
 from cspace.maps.geojson import read_geojson
 from cspace.maps.grow import grown
 from cspace.maps.occupancy_grid import OccupancyGrid
+from cspace.maps.offset import Offset, offset_of
 from cspace.maps.outlines import Outline, bounds_of, check_bounds, read_outlines
 from cspace.maps.rasterize import rasterized
 from cspace.maps.repair import GeometryError, check_area, describe_crossings
@@ -151,6 +152,15 @@ class PolygonWorld:
             return self  # less than the roundings of its corners
         obstacles, bounds = grown(self._outlines, self._bounds, radius, sides, places)
         return PolygonWorld(obstacles, bounds, repair=True)
+
+    def offset(self, radius: float) -> Offset:
+        """Where the centre of a disc of a radius [m] may be, exactly: curves of segments and arcs.
+
+        Exact up to rounding, where `inflate` has polygons around the arcs. InputError on a radius that is
+        not positive.
+        """
+        wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
+        return offset_of(self.walls, self.clearance, wide, radius)
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
         """Cells of a side [m]; by default 1/200 of the longer side of the bounds.

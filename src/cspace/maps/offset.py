@@ -1,0 +1,215 @@
+"""Where the centre of a disc may be, exactly: bounded by segments along walls and arcs around corners.
+
+Every wall and every corner that free space bends around gives a segment or an arc at the radius from it. They
+are cut where they come as near to something else, and of the pieces those are kept that nothing is nearer to
+than the radius.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any, Final, NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.tolerances import ON_WALL
+
+__all__ = ["Offset", "OffsetCurve", "offset_of"]
+
+ROUNDINGS: Final = 100
+"""How many times ON_WALL a point of the boundary may be nearer to walls than the radius, and ends of pieces
+from each other: they are intersections of circles."""
+
+Clearance = Callable[[Array], Any]
+
+
+class OffsetCurve(NamedTuple):
+    """A closed curve of k pieces, the room of the disc's centre on its left."""
+
+    start: Array
+    """(k, 2) [m]: where each piece begins."""
+    end: Array
+    """(k, 2) [m]: where it ends."""
+    center: Array
+    """(k, 2) [m]: of an arc; NaN for a segment."""
+    angles: Array
+    """(k, 2) [rad]: from where to where an arc runs around its centre, clockwise; NaN for a segment."""
+
+    def points(self, chord: float) -> Array:
+        """The curve as a closed polygon (m, 2) [m] whose sides are no farther than `chord` [m] from it."""
+        made = []
+        for start, center, (begin, end) in zip(self.start, self.center, self.angles, strict=True):
+            if np.isnan(begin):
+                made.append(start[None])
+                continue
+            radius = float(np.hypot(*(start - center)))
+            step = 2 * np.arccos(max(0.0, 1 - chord / radius))
+            at = np.linspace(begin, end, 1 + int(np.ceil((begin - end) / step)))[:-1]
+            made.append(center + radius * np.stack([np.cos(at), np.sin(at)], axis=1))
+        return np.vstack(made)
+
+
+class Offset(NamedTuple):
+    """Where the centre of a disc may be."""
+
+    radius: float
+    """Of the disc [m]."""
+    curves: list[OffsetCurve]
+
+    @property
+    def length(self) -> float:
+        """Of all curves [m]."""
+        total = 0.0
+        for curve in self.curves:
+            turns = np.nan_to_num(curve.angles[:, 0] - curve.angles[:, 1])
+            straight = np.isnan(curve.angles[:, 0])
+            total += float(np.hypot(*(curve.end - curve.start)[straight].T).sum() + self.radius * turns.sum())
+        return total
+
+    @property
+    def area(self) -> float:
+        """Of the room of the disc's centre [m²]."""
+        total = 0.0
+        for curve in self.curves:
+            (x, y), (u, v) = (curve.start - curve.start[0]).T, (curve.end - curve.start[0]).T
+            turns = np.nan_to_num(curve.angles[:, 0] - curve.angles[:, 1])
+            caps = self.radius**2 * (turns - np.sin(turns))  # what arcs cut off on the left of their chords
+            total += 0.5 * float(np.sum(x * v - y * u) - np.sum(caps))
+        return total
+
+
+class _Tracks(NamedTuple):
+    """Segments (turn 0) and arcs at the radius from walls and corners, m of them."""
+
+    start: Array
+    along: Array  # unit vectors of segments
+    size: Array  # lengths of segments, turns of arcs [rad]
+    center: Array  # NaN for segments
+    angle: Array  # where arcs begin
+
+    def at(self, k: int, t: Array, radius: float) -> Array:
+        if np.isnan(self.angle[k]):
+            straight: Array = self.start[k] + t[:, None] * self.along[k]
+            return straight
+        angle = self.angle[k] - t
+        bent: Array = self.center[k] + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        return bent
+
+
+def offset_of(walls: list[Array], clearance: Clearance, wide: float, radius: float) -> Offset:
+    """The room of a disc's centre; InputError on a radius that is not positive [m].
+
+    walls: rings (n, 2) [m] with free space on their left; clearance: of points (m, 2) [m], from all walls;
+    wide [m]: the longer side of the bounds.
+    """
+    reach = float(as_floats(radius, "radius"))
+    if not reach > 0:
+        raise InputError(f"radius is {reach:g}; it must be positive [m]")
+    slack = ROUNDINGS * ON_WALL * wide
+    tracks = _tracks(walls, reach)
+    pieces = [piece for k in range(len(tracks.size)) for piece in _kept(clearance, tracks, k, reach, slack)]
+    return Offset(reach, _linked(tracks, pieces, reach, slack))
+
+
+def _tracks(walls: list[Array], radius: float) -> _Tracks:
+    """Walls are rings with free space on their left."""
+    rows = []
+    nothing = (np.nan, np.nan)
+    for ring in walls:
+        after = np.roll(ring, -1, axis=0)
+        along = (after - ring) / np.hypot(*(after - ring).T)[:, None]
+        normal = np.stack([-along[:, 1], along[:, 0]], axis=1)
+        for k in range(len(ring)):
+            f = (k + 1) % len(ring)
+            length = float(np.hypot(*(after[k] - ring[k])))
+            rows.append((*(ring[k] + radius * normal[k]), *along[k], length, *nothing, np.nan))
+            turn = along[k, 0] * along[f, 1] - along[k, 1] * along[f, 0]
+            if turn < 0 or (turn == 0 and along[k] @ along[f] < 0):
+                sweep = float(np.arctan2(-turn, along[k] @ along[f]))
+                begin = float(np.arctan2(normal[k, 1], normal[k, 0]))
+                rows.append(
+                    (*(after[k] + radius * normal[k]), *nothing, sweep % (2 * np.pi), *after[k], begin)
+                )
+    table = np.array(rows, float).reshape(-1, 8)
+    return _Tracks(table[:, :2], table[:, 2:4], table[:, 4], table[:, 5:7], table[:, 7])
+
+
+def _kept(
+    clearance: Clearance, tracks: _Tracks, k: int, radius: float, slack: float
+) -> Iterator[tuple[int, float, float]]:
+    """The pieces of a track, as (track, from, to), that are nowhere nearer to walls than the radius."""
+    size = float(tracks.size[k])
+    fine = 1e-12 * size
+    cuts = np.unique(np.concatenate([[0.0, size], np.clip(_cuts(tracks, k, radius), 0.0, size)]))
+    cuts = cuts[np.concatenate([[True], np.diff(cuts) > fine])]
+    free = clearance(tracks.at(k, (cuts[1:] + cuts[:-1]) / 2, radius)) >= radius - slack
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], free.astype(np.int8), [0]])))
+    for first, last in zip(edges[::2], edges[1::2], strict=True):
+        yield k, float(cuts[first]), float(cuts[last])
+
+
+def _cuts(tracks: _Tracks, k: int, radius: float) -> Array:
+    """Where on a track others meet it: lengths on a segment, clockwise angles on an arc."""
+    lines, arcs = np.isnan(tracks.angle), ~np.isnan(tracks.angle)
+    u, p = tracks.along[lines], tracks.start[lines]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        if lines[k]:
+            start, along = tracks.start[k], tracks.along[k]
+            away = p - start
+            by_lines = _cross(away, u) / _cross(along, u)
+            off = tracks.center[arcs] - start
+            half = np.sqrt(radius**2 - _cross(along, off) ** 2)
+            by_arcs = off @ along + np.array([[1.0], [-1.0]]) * half
+            found: Array = np.concatenate([by_lines, by_arcs.ravel()])
+            return found[np.isfinite(found)]
+        center = tracks.center[k]
+        away = p - center
+        half = np.sqrt(radius**2 - _cross(u, away) ** 2)
+        feet = away - np.einsum("ij,ij->i", away, u)[:, None] * u
+        off = tracks.center[arcs] - center
+        apart = np.hypot(*off.T)
+        high = (
+            np.sqrt(radius**2 - apart**2 / 4)[:, None] * np.stack([-off[:, 1], off[:, 0]], 1) / apart[:, None]
+        )
+        meets = [feet + half[:, None] * u, feet - half[:, None] * u, off / 2 + high, off / 2 - high]
+        at = np.vstack(meets)
+        turn = (tracks.angle[k] - np.arctan2(at[:, 1], at[:, 0])) % (2 * np.pi)
+        within: Array = turn[np.isfinite(turn) & (turn < tracks.size[k])]
+        return within
+
+
+def _cross(a: Array, b: Array) -> Array:
+    crossed: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+    return crossed
+
+
+def _linked(
+    tracks: _Tracks, pieces: list[tuple[int, float, float]], radius: float, slack: float
+) -> list[OffsetCurve]:
+    """Closed curves of pieces, each begun by the piece that starts nearest to the end of the one before."""
+    if not pieces:
+        return []
+    ends = np.array([tracks.at(k, np.array([begin, end]), radius) for k, begin, end in pieces])
+    left = np.ones(len(pieces), bool)
+    curves = []
+    while left.any():
+        chain = [int(np.argmax(left))]
+        left[chain[0]] = False
+        while left.any():
+            here = ends[chain[-1], 1]
+            apart = np.where(left, np.hypot(*(ends[:, 0] - here).T), np.inf)
+            if np.hypot(*(ends[chain[0], 0] - here)) <= max(slack, apart.min()):
+                break
+            chain.append(int(np.argmin(apart)))
+            left[chain[-1]] = False
+        curves.append(_curve(tracks, [pieces[i] for i in chain], ends[chain]))
+    return curves
+
+
+def _curve(tracks: _Tracks, pieces: list[tuple[int, float, float]], ends: Array) -> OffsetCurve:
+    track = np.array([k for k, _, _ in pieces], np.int64)
+    part: npt.NDArray[np.float64] = np.array([(begin, end) for _, begin, end in pieces])
+    return OffsetCurve(ends[:, 0], ends[:, 1], tracks.center[track], tracks.angle[track, None] - part)
