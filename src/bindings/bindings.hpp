@@ -6,6 +6,7 @@ void bind_cars(nanobind::module_& m);
 void bind_coverage(nanobind::module_& m);
 void bind_brushfire(nanobind::module_& m);
 void bind_potential(nanobind::module_& m);
+void bind_harmonic(nanobind::module_& m);
 void bind_navigation_function(nanobind::module_& m);
 void bind_grid_fields(nanobind::module_& m);
 void bind_bugs(nanobind::module_& m);

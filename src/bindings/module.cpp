@@ -36,6 +36,7 @@ NB_MODULE(_core, m) {
     bind_bugs(m);
     bind_grid_fields(m);
     bind_potential(m);
+    bind_harmonic(m);
     bind_navigation_function(m);
     bind_voronoi(m);
     bind_sampling(m);

@@ -372,6 +372,36 @@ class NearWalls:
     def values(self, core: PolygonCore, goal: ArrayLike, points: ArrayLike, settings: ArrayLike) -> NDArray[numpy.float64]:
         """The potential at points (n, 2)."""
 
+class HarmonicField:
+    """A harmonic potential over the cells of a grid."""
+
+    def __init__(self, grid: GridBase, clearance: ClearanceField, goal: ArrayLike, residual: float, most_cycles: int) -> None: ...
+
+    @property
+    def residual(self) -> float:
+        """By what share a cell is off its mean, at most."""
+
+    @property
+    def cycles(self) -> int:
+        """Of the solver."""
+
+    @property
+    def cells(self) -> int:
+        """From which a way leads to the goal."""
+
+    @property
+    def rests(self) -> int:
+        """Cells but the goal from which no step leads down."""
+
+    def heights(self, grid: GridBase) -> NDArray[numpy.float64]:
+        """Minus the logarithm of the chance (rows, columns)."""
+
+    def route(self, grid: GridBase, owner: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, seconds: float, evidence: Any) -> Any:
+        """The way down the field."""
+
+    def trace(self, grid: GridBase, start: ArrayLike) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
+        """The steps of a descent."""
+
 class NavigationCore:
     """A navigation function of a star or sphere world."""
 

@@ -21,6 +21,8 @@ __all__ = [
     "FRAME_SNAP",
     "GIMBAL_LOCK",
     "HALF_TURN",
+    "HARMONIC_CYCLES",
+    "HARMONIC_RESIDUAL",
     "INERTIA_SYMMETRY",
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
@@ -235,6 +237,12 @@ FARTHEST_POINT: Final = 1e15
 """Largest coordinate [m] of a world: beyond it products of three coordinates and their rests leave the
 range in which exact decisions are exact, and neighbouring numbers are decimetres apart."""
 
+HARMONIC_RESIDUAL: Final = 1e-11
+"""By what share of itself a cell of a harmonic field may differ from the mean of the four beside it:
+roundings make 1e-15, and even in the middle of a thousand free cells neighbours differ by 1e-6 of
+themselves."""
+HARMONIC_CYCLES: Final = 400
+"""Most cycles of the solver: corridors of thousands of cells take a hundred."""
 NAVIGATION_SQUARES: Final = 400_000
 """Most squares of a proof that a navigation function has one minimum: twenty discs take some tens of
 thousands, and so many a third of a second."""

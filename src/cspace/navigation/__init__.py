@@ -15,6 +15,7 @@ from cspace.navigation.curves import (
 from cspace.navigation.d_star_lite import DStarLite
 from cspace.navigation.fast_marching import arrival_times
 from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, cast_rays, follow
+from cspace.navigation.harmonic import HarmonicEvidence, harmonic
 from cspace.navigation.planners import PLANNERS, Planner
 from cspace.navigation.potential_field import PotentialRest, potential
 from cspace.navigation.query import World, navigate
@@ -34,3 +35,4 @@ __all__ += ["VoronoiDiagram", "voronoi_diagram"]
 __all__ += ["arrival_times"]
 __all__ += ["CellEvidence", "approximate_cells"]
 __all__ += ["NavigationEvidence", "NavigationFunction", "navigation_function"]
+__all__ += ["HarmonicEvidence", "harmonic"]

@@ -63,6 +63,7 @@ _ROWS: Final[tuple[Planner, ...]] = (
     Planner("dijkstra", "the shortest way over cells, found without a guess of what is left", "grid", "map"),
     Planner("focal_search", "a way at most so many times the shortest, and a bound for it", "grid", "map"),
     Planner("greedy_best_first", "a way over cells that is soon found", "grid", "map"),
+    Planner("harmonic", "down Laplace's equation over cells, whose only rest is the goal", "grid", "map"),
     Planner("jump_point_search", "the shortest way over cells, from turn to turn", "grid", "map"),
     Planner("fast_marching", "down the times of a front from the goal, at any angle", "grid", "map"),
     Planner("potential_a_star", "over cells, by a search that counts on a potential", "grid", "map"),

@@ -198,6 +198,19 @@ def draw_navigation_function(axes: Any, route: Any) -> list[Any]:
     return artists
 
 
+def draw_harmonic(axes: Any, route: Any) -> list[Any]:
+    """How unlikely a random walk is to come to the goal before a wall, as bands of its logarithm."""
+    from cspace.navigation.harmonic import harmonic
+
+    grid = route.world
+    height = harmonic(grid, route.goal)
+    free = np.isfinite(height)
+    bands = np.where(free, np.floor(24 * height / max(height[free].max(), 1e-300)), np.nan)
+    xmin, ymin, xmax, ymax = grid.bounds
+    box = (xmin, xmax, ymin, ymax)
+    return [axes.imshow(bands, extent=box, origin="lower", cmap="Blues", alpha=0.9, interpolation="nearest")]
+
+
 def places(world: Any) -> tuple[Array, tuple[Array, Array]]:
     """A raster over the bounds: its points (n, n, 2), and x and y of its columns and rows."""
     xmin, ymin, xmax, ymax = world.bounds
@@ -216,6 +229,7 @@ PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     "any_angle": draw_convex_polygons,
     "brushfire": draw_brushfire,
     "voronoi": draw_voronoi,
+    "harmonic": draw_harmonic,
     "potential_field": draw_potential,
     "rimon_koditschek": draw_navigation_function,
 }
@@ -231,6 +245,7 @@ SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
     "approximate_cells": draw_expanded,
     "brushfire": nothing,
+    "harmonic": nothing,
     "rimon_koditschek": nothing,
     "voronoi": nothing,
 }
