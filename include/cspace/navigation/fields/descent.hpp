@@ -95,6 +95,11 @@ class DescentRun {
         go(potential_.goal(), seen);
         return true;
     }
+    // A step that is clearly shorter than the clearance needs no closer look.
+    bool is_crossed(Point to, double length) const {
+        const double rounding = 1e-9 * (std::abs(at_.x) + std::abs(at_.y) + length);
+        return length + rounding >= here_.clearance && walls_.is_crossed(at_, to);
+    }
     // A step down that lowers the potential by a tenth of what the slope promises.
     bool descend() {
         for (;; step_ *= 0.5) {
@@ -104,7 +109,7 @@ class DescentRun {
             if (length < shortest() || slope * length <= noise()) return false;
             const Point to = at_ - (length / slope) * here_.slope;
             const Potential::Look seen = look(to);
-            if (!(seen.value <= here_.value - 0.1 * length * slope) || walls_.is_crossed(at_, to)) continue;
+            if (!(seen.value <= here_.value - 0.1 * length * slope) || is_crossed(to, length)) continue;
             go(to, seen);
             step_ = std::min(1.6 * length, longest_);
             return true;

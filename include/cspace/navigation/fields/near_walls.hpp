@@ -18,9 +18,21 @@ class NearWalls {
         : walls_(std::move(walls)), previous_(walls_.size()), reach_(reach) {
         for (std::size_t e = 0; e < walls_.size(); ++e)
             previous_[std::size_t(walls_.next[e])] = std::int32_t(e);
+        for (std::size_t e = 0; e < walls_.size(); ++e) {
+            const std::int32_t k = std::int32_t(e);
+            const Point a = walls_.begin(k), b = walls_.end(k);
+            prepared_.push_back({a, b, b - a, a - walls_.begin(previous(k)), walls_.ring[e]});
+        }
         choose_cells();
         fill_cells();
     }
+
+    struct Wall {
+        Point begin, end, along;
+        Point before;  // along the wall before it
+        std::int32_t ring;
+    };
+    const Wall& wall(std::int32_t e) const { return prepared_[std::size_t(e)]; }
 
     const maps::Boundary& walls() const { return walls_; }
     std::int32_t previous(std::int32_t wall) const { return previous_[std::size_t(wall)]; }
@@ -59,6 +71,7 @@ class NearWalls {
     static constexpr int most = 96;  // cells along the longer side
     maps::Boundary walls_;
     std::vector<std::int32_t> previous_;
+    std::vector<Wall> prepared_;
     double reach_, side_ = 1;
     Point low_;
     int columns_ = 1, rows_ = 1;

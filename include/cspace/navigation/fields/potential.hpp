@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <initializer_list>
 #include <limits>
 #include <vector>
 
@@ -28,8 +29,26 @@ struct Gains {
     }
 };
 
-// The point nearest to zero of all that lie between points, few of them.
-inline Point nearest_to_zero(const std::vector<Point>& points) {
+// A few points.
+class FewPoints {
+  public:
+    static constexpr std::size_t most = 6;
+    FewPoints() = default;
+    FewPoints(std::initializer_list<Point> points) {
+        for (const Point p : points) push_back(p);
+    }
+    void push_back(Point p) { points_[size_++] = p; }
+    void clear() { size_ = 0; }
+    std::size_t size() const { return size_; }
+    Point operator[](std::size_t k) const { return points_[k]; }
+
+  private:
+    Point points_[most];
+    std::size_t size_ = 0;
+};
+
+// The point nearest to zero of all that lie between points.
+inline Point nearest_to_zero(const FewPoints& points) {
     Point best = points[0];
     const auto offer = [&](Point p) {
         if (squared_norm(p) < squared_norm(best)) best = p;
@@ -74,12 +93,11 @@ class Potential {
                 rho = std::min(rho, places_[end].rho);
             seen.clearance = std::min(seen.clearance, rho);
             seen.value += gains_.repulsion(rho);
-            Pull pull;
+            Pull& pull = pulls_.emplace_back();
             for (; i < end; ++i)
-                if (places_[i].rho <= rho + slack && pull.choices.size() < 6)
+                if (places_[i].rho <= rho + slack && pull.choices.size() < FewPoints::most)
                     pull.choices.push_back(gains_.repulsion_rate(places_[i].rho) * places_[i].away);
             if (pull.choices.size() > 1) seen.is_crease = true;
-            pulls_.push_back(std::move(pull));
         }
         seen.slope = least_slope(seen.slope);
         return seen;
@@ -95,7 +113,7 @@ class Potential {
         Point away;  // from it to the point, of length 1
     };
     struct Pull {
-        std::vector<Point> choices;
+        FewPoints choices;
         Point chosen;
     };
     const NearWalls& walls_;
@@ -109,25 +127,32 @@ class Potential {
         return (gains_.k * std::min(1.0, gains_.cone / std::max(norm(d), gains_.cone))) * d;
     }
     void gather(Point p) const {
-        const maps::Boundary& walls = walls_.walls();
         places_.clear();
+        const double reach = gains_.rho_0 * gains_.rho_0 * (1 + 1e-12);
         walls_.visit(p, [&](std::int32_t e) {
-            const Point a = walls.begin(e), along = walls.end(e) - a;
-            // Its end is the beginning of the next wall, which asks the same question.
-            if (dot(p - walls.end(e), along) >= 0) return;
-            const double reached = dot(p - a, along);
-            Point foot = a;
-            if (reached > 0)
-                foot = a + (reached / squared_norm(along)) * along;
-            else if (const Point before = a - walls.begin(walls_.previous(e)); dot(p - a, before) < 0)
+            const NearWalls::Wall& wall = walls_.wall(e);
+            const Point d = p - wall.begin;
+            const double reached = dot(d, wall.along);
+            Point foot = wall.begin;
+            if (reached > 0) {
+                // Past its end begins the next wall, which asks the same question.
+                if (squared_norm(wall.along) * reach < cross(wall.along, d) * cross(wall.along, d) ||
+                    dot(p - wall.end, wall.along) >= 0)
+                    return;
+                foot = wall.begin + (reached / squared_norm(wall.along)) * wall.along;
+            } else if (squared_norm(d) > reach || dot(d, wall.before) < 0) {
                 return;
+            }
             const double rho = distance(p, foot);
-            if (rho < gains_.rho_0)
-                places_.push_back(
-                    {walls.ring[std::size_t(e)], rho, rho > 0 ? (1 / rho) * (p - foot) : Point{}});
+            if (rho < gains_.rho_0) put({wall.ring, rho, rho > 0 ? (1 / rho) * (p - foot) : Point{}});
         });
-        std::stable_sort(places_.begin(), places_.end(),
-                         [](const Place& x, const Place& y) { return x.ring < y.ring; });
+    }
+    // In the order of rings, behind those of the same.
+    void put(const Place& place) const {
+        std::size_t k = places_.size();
+        places_.push_back(place);
+        for (; k > 0 && place.ring < places_[k - 1].ring; --k) places_[k] = places_[k - 1];
+        places_[k] = place;
     }
     // Ring by ring the choice that makes the sum least, until that settles.
     Point least_slope(Point sum) const {
@@ -135,13 +160,15 @@ class Potential {
             pull.chosen = pull.choices[0];
             sum = sum + pull.chosen;
         }
-        std::vector<Point> sums;
+        if (std::none_of(pulls_.begin(), pulls_.end(), [](const Pull& p) { return p.choices.size() > 1; }))
+            return sum;
         for (int round = 0; round < 8; ++round) {
             const Point before = sum;
             for (Pull& pull : pulls_) {
                 if (pull.choices.size() < 2) continue;
-                sums.clear();
-                for (const Point choice : pull.choices) sums.push_back(sum - pull.chosen + choice);
+                FewPoints sums;
+                for (std::size_t k = 0; k < pull.choices.size(); ++k)
+                    sums.push_back(sum - pull.chosen + pull.choices[k]);
                 const Point least = nearest_to_zero(sums);
                 pull.chosen = pull.chosen + least - sum;
                 sum = least;
