@@ -21,6 +21,8 @@ PATH: Final = (0.84, 0.18, 0.20)
 """The path that a planner found."""
 PANEL: Final = 3.6
 """Side of one world in a picture of several [inch]."""
+TITLE: Final = 0.12
+"""What a title takes, over the side of a world."""
 FRAMES: Final = 60
 """Frames in which an animation tells the search."""
 
@@ -71,8 +73,9 @@ def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
         raise InputError("routes is empty; give one route or more")
     wide = columns or math.ceil(math.sqrt(len(routes)))
     high = math.ceil(len(routes) / wide)
+    tall = max(map(_aspect, routes)) + TITLE
     figure, grid = plt.subplots(
-        high, wide, figsize=(PANEL * wide, PANEL * high), dpi=120, layout="constrained", squeeze=False
+        high, wide, figsize=(PANEL * wide, PANEL * tall * high), dpi=120, layout="constrained", squeeze=False
     )
     for axes, each in zip(grid.flat, routes, strict=False):
         route(each, ax=axes)
@@ -80,6 +83,12 @@ def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
     for axes in grid.flat[len(routes) :]:
         axes.set_axis_off()
     return figure
+
+
+def _aspect(route: Any) -> float:
+    """How many times as high as wide the world of a route is, within reason."""
+    xmin, ymin, xmax, ymax = route.world.bounds
+    return min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0)
 
 
 def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any:

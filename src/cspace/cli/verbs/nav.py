@@ -60,6 +60,9 @@ def run(args: argparse.Namespace, out: Output) -> int:
     if args.animate and args.animate.suffix.lower() != ".gif":
         raise UsageError(f"an animation is a GIF; end {str(args.animate)!r} with .gif")
     world = load(args.map, args.resolution)
+    if len(names) > 1:  # the times are compared, without what is made once and kept with the map
+        for name in names:
+            ask(world, name, args)
     routes = [ask(world, name, args) for name in names]
     best = ask(world, "any_angle", args)
     if out.as_json:
@@ -83,7 +86,7 @@ def planners_of(text: str) -> list[str]:
     from cspace.navigation.planners import planner_named
 
     if text == "all":
-        return list(PLANNERS)
+        return sorted(PLANNERS)
     return [planner_named(name.strip()).name for name in text.split(",")]
 
 
@@ -137,7 +140,7 @@ def ratio(route: Route, best: Route) -> float | None:
 
 
 def show(routes: list[Route], best: Route, out: Output) -> None:
-    """One line a planner; of a single one, the reason and the corners too."""
+    """One line a planner, and why some found nothing; of a single one, the reason and the corners too."""
     table = Table(("planner", "status", "length [m]", "/ shortest", "clearance [m]", "nodes", "time [µs]"))
     table.left = frozenset({0, 1})
     for route in routes:
@@ -152,7 +155,11 @@ def show(routes: list[Route], best: Route, out: Output) -> None:
             f"{1e6 * route.price.seconds:.1f}",
         )
     out.table(table)
-    if len(routes) == 1:
+    if len(routes) > 1:
+        for route in routes:
+            if not route:
+                out.line(f"{route.planner}: {route.reason}")
+    else:
         out.line(routes[0].reason)
         for x, y in routes[0].path:
             out.line(f"{x:12.6f} {y:12.6f}")
