@@ -1,6 +1,8 @@
 // Straight through open space up to what a robot touches first: a wall, a corner, or the end of the line.
 #pragma once
 
+#include <compare>
+
 #include "cspace/navigation/bugs/walls.hpp"
 
 namespace cspace::navigation {

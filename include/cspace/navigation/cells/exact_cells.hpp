@@ -2,6 +2,8 @@
 // taut.
 #pragma once
 
+#include <functional>
+
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/cells/funnel.hpp"
 #include "cspace/navigation/cells/trapezoids.hpp"

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <functional>
 
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/route.hpp"

@@ -4,7 +4,9 @@
 // feet move along their rings, the first forward, the second backward.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <limits>
 
 #include "cspace/navigation/voronoi/sites.hpp"
 

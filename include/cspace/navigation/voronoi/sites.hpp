@@ -5,6 +5,8 @@
 // normals of the two edges. At corners into which free space tapers, and on straight lines, it is none.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/maps/boundary.hpp"
 #include "cspace/math/predicates.hpp"
 
