@@ -88,7 +88,7 @@ def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
 def _aspect(route: Any) -> float:
     """How many times as high as wide the world of a route is, within reason."""
     xmin, ymin, xmax, ymax = route.world.bounds
-    return min(max((ymax - ymin) / (xmax - xmin), 0.3), 2.0)
+    return float(np.clip((ymax - ymin) / (xmax - xmin), 0.3, 2.0))
 
 
 def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any:
