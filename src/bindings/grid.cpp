@@ -128,7 +128,7 @@ int read_ask(PyObject* const* args, Py_ssize_t count, Ask& ask) {
 }
 
 void run(const Ask& ask, GridAnswer& answer, Route& route) {
-    find_way(ask.world->bits, ask.from, ask.to, ask.query, scratch(), answer);
+    find_way(ask.world->bits, ask.from, ask.to, ask.query, scratch(), answer, &ask.world->parts);
     draw_route(ask.world->frame, ask.start, ask.goal, answer, route);
 }
 void run_freely(const Ask& ask, GridAnswer& answer, Route& route) {
@@ -143,6 +143,7 @@ void tidy() {
 // What backs the verdict where path and length do not say it: what the way costs, and a bound below the best.
 PyObject* evidence_of(const Ask& ask, const GridAnswer& answer) {
     const double side = ask.world->frame.resolution;
+    if (answer.parts) return Py_BuildValue("{s:L}", "parts", static_cast<long long>(answer.parts));
     if (!answer.found || (!ask.query.costs && ask.query.planner != GridPlanner::focal)) Py_RETURN_NONE;
     return Py_BuildValue("{s:d,s:d}", "cost", side * answer.cost, "at_least", side * answer.least);
 }
@@ -245,8 +246,8 @@ void bind_grid(nb::module_& m) {
             "How many cells are blocked.")
         .def_prop_ro("_corners", [](const GridWorld& world) { return maps::count_corners(world.bits); })
         .def_prop_ro(
-            "nbytes", [](const GridWorld& world) { return world.bits.bytes(); },
-            "Memory that the cells take [bytes].");
+            "nbytes", [](const GridWorld& world) { return world.bits.bytes() + world.parts.bytes(); },
+            "Memory that the cells, and their parts if a search has asked for them, take [bytes].");
     m.def("_png_unfilter", png_unfilter, "lines"_a, "step"_a, "pixels"_a,
           "Undoes the filters of a PNG image; the row with one that is none, or -1.");
     if (PyModule_AddFunctions(m.ptr(), methods) < 0) throw nb::python_error();

@@ -3,8 +3,10 @@
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/maps/grid_frame.hpp"
+#include "cspace/maps/grid_parts.hpp"
 
 struct GridWorld {
     cspace::maps::BitGrid bits;
     cspace::maps::GridFrame frame;
+    cspace::maps::LazyParts parts{};
 };

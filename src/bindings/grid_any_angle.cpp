@@ -17,7 +17,7 @@ using namespace cspace::navigation;
 namespace {
 
 struct Question {
-    const GridWorld* world;
+    GridWorld* world;
     double start[2], goal[2];
     Route route{};
 
@@ -41,7 +41,7 @@ struct Question {
         const Point a{start[0], start[1]}, b{goal[0], goal[1]};
         const SettledInRuns from = search.settle(a), to = search.settle(b);
         if (from.runs.empty() || to.runs.empty()) return false;
-        route = search.solve(a, from, b, to, trace);
+        route = search.solve(a, from, b, to, &world->parts, trace);
         return true;
     }
 };

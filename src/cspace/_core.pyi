@@ -295,7 +295,9 @@ class GridBase:
 
     @property
     def nbytes(self) -> int:
-        """Memory that the cells take [bytes]."""
+        """
+        Memory that the cells, and their parts if a search has asked for them, take [bytes].
+        """
 
     @property
     def _x(self) -> float: ...

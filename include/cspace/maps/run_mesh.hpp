@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/maps/bit_scan.hpp"
 #include "cspace/maps/triangulation.hpp"
 #include "cspace/math/plane.hpp"
 
@@ -124,24 +125,6 @@ class RunMesh {
         }
     }
 
-    // The first column from one on that fits what is set in 64 columns of words, or of two rows.
-    template <class Word>
-    static int first_set(const Word& word, int from) {
-        const unsigned at = unsigned(from + 1);
-        std::size_t k = at >> 6;
-        std::uint64_t set = word(k) & (~std::uint64_t(0) << (at & 63));
-        while (!set) set = word(++k);
-        return int(64 * k) + std::countr_zero(set) - 1;
-    }
-    // The last column up to one.
-    template <class Word>
-    static int last_set(const Word& word, int from) {
-        const unsigned at = unsigned(from + 1);
-        std::size_t k = at >> 6;
-        std::uint64_t set = word(k) & (~std::uint64_t(0) >> (63 - (at & 63)));
-        while (!set) set = word(--k);
-        return int(64 * k) + 63 - std::countl_zero(set) - 1;
-    }
     int end_of_run(int row, int column) const {
         const std::uint64_t* line = grid_.row(row);
         return first_set([&](std::size_t k) { return line[k]; }, column);

@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <vector>
 
@@ -95,12 +96,14 @@ class Waves {
 struct Effort {
     std::uint64_t settled = 0, pushed = 0;
     std::vector<std::uint32_t>* order = nullptr;
+    std::uint64_t pause = std::numeric_limits<std::uint64_t>::max();  // after so many the search waits
 };
 
-// The goal that was reached; no_node where no node waits any more.
+// The goal that was reached; no_node where no node waits any more, or the search is to pause: it goes on
+// where it is asked again.
 template <class Space, class Queue>
 std::uint32_t best_first(Space& space, Queue& queue, Effort& effort) {
-    while (!queue.empty()) {
+    while (!queue.empty() && effort.settled < effort.pause) {
         const std::uint32_t node = queue.pop().node;
         if (!space.settle(node)) continue;
         ++effort.settled;

@@ -21,8 +21,8 @@ from cspace.navigation.trace import Trace
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-__all__ = ["CORNERS", "METRICS", "WORDS", "Settings", "checked_ends", "metric_of", "positive_costs"]
-__all__ += ["reason", "search", "traced"]
+__all__ = ["CORNERS", "METRICS", "WORDS", "Settings", "at_least_one", "checked_ends", "metric_of"]
+__all__ += ["over_costs", "positive_costs", "reason", "search", "traced"]
 
 CORNERS: Final = {"never": 0, "one": 1, "always": 2}
 """When a diagonal step is allowed: both cells beside it are free, one is, always."""
@@ -84,6 +84,22 @@ def positive_costs(world: Any, costs: ArrayLike | None) -> tuple[Array | None, f
     return array, least
 
 
+def over_costs(
+    settings: Settings, world: Any, metric: str, corners: str, costs: ArrayLike | None
+) -> Settings:
+    """The settings of a planner with its options metric=, corners= and costs= (rows, columns) put in."""
+    array, least = positive_costs(world, costs)
+    rule, number = metric_of(metric, corners)
+    return settings._replace(corners=rule, metric=number, costs=array, least_cost=least)
+
+
+def at_least_one(value: float, name: str) -> float:
+    """A factor of the best way; InputError where it is below 1."""
+    if (factor := float(as_floats(value, name))) < 1:
+        raise InputError(f"{name} is {factor:g}; it must be 1 or more")
+    return factor
+
+
 def search(
     world: Any, start: Any, goal: Any, name: str, options: dict[str, Any], settings: Settings
 ) -> Route:
@@ -108,6 +124,11 @@ def reason(route: Route) -> str:
     cells = route.price.nodes
     if route:
         return f"found a way of {route.length:.6g} m after settling {cells} cells"
+    if route.evidence is not None:
+        parts = route.evidence["parts"]
+        return (
+            f"no way leads to the goal: it lies in another of the {parts} connected parts of the free cells"
+        )
     return f"no way leads to the goal: the search has settled all {cells} cells that can be reached"
 
 

@@ -100,6 +100,27 @@ def test_ends_on_the_sides_of_cells():
         any_angle.plan(grid, (0.05, 0.05), (0.35, 0.05))
 
 
+def test_a_goal_that_is_shut_in_is_told_without_a_flood():
+    blocked = np.zeros((400, 500), bool)
+    blocked[100:150, 100] = blocked[100:150, 149] = blocked[100, 100:150] = blocked[149, 100:150] = True
+    grid = cs.OccupancyGrid(blocked)
+    ends = (5.5, 5.5), (120.5, 120.5)
+    for planner in ("a_star", "dijkstra", "jump_point_search", "theta_star", "wavefront", "focal_search"):
+        cs.navigate(grid, *ends, planner)  # the first of them comes to know the parts
+        for start, goal in (ends, ends[::-1]):
+            route = cs.navigate(grid, start, goal, planner)
+            assert route.status == "unreachable"
+            assert route.price.nodes == 0
+            assert route.evidence == {"parts": 2}
+            assert "another of the 2 connected parts" in route.reason
+            assert len(route.trace) == 0
+        assert cs.navigate(grid, ends[0], (490.5, 390.5), planner)
+    assert any_angle.plan(grid, *ends).status == "unreachable"
+    assert any_angle.plan(grid, *ends).price.nodes == 0
+    assert any_angle.plan(grid, ends[0], (490.5, 390.5))
+    assert grid.nbytes < 0.6 * blocked.size  # of bytes
+
+
 @pytest.mark.parametrize("share", [0.1, 0.4])
 def test_large_maps_take_half_a_byte_per_cell(share):
     rng = np.random.default_rng(5)

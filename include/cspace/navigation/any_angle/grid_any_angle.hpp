@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cspace/maps/grid_frame.hpp"
+#include "cspace/maps/grid_parts.hpp"
 #include "cspace/maps/run_mesh.hpp"
 #include "cspace/navigation/any_angle/polyanya.hpp"
 #include "cspace/tolerances.hpp"
@@ -36,10 +37,17 @@ class GridAnyAngle {
         return settled;
     }
 
-    // start, goal [m] as they were given, and as they were settled.
+    // start, goal [m] as they were given, and as they were settled. parts: of this grid, or null for none.
     Route solve(Point start, const SettledInRuns& from, Point goal, const SettledInRuns& to,
-                Trace* trace = nullptr) {
-        Route route = search_.solve(from.at, from.runs, to.at, to.runs, trace);
+                maps::LazyParts* parts = nullptr, Trace* trace = nullptr) {
+        const auto is_divided = [&] { return divided(parts->of(grid_, false), from, to); };
+        const std::uint64_t patience =
+            parts ? maps::LazyParts::patience(grid_) : std::numeric_limits<std::uint64_t>::max();
+        Route route;
+        route.status = Status::unreachable;
+        if (patience < grid_.numbers() && parts->is_made(false) && is_divided()) return route;
+        const auto nodes = std::int64_t(patience >> 1);  // each takes longer than to settle a cell
+        route = search_.solve(from.at, from.runs, to.at, to.runs, trace, nodes, is_divided);
         for (Point& p : route.path) p = in_metres(p);
         if (!route.path.empty()) {
             route.path.front() = start, route.path.back() = goal;
@@ -59,6 +67,13 @@ class GridAnyAngle {
     maps::GridFrame frame_;
     maps::RunMesh mesh_;
     IntervalSearch<maps::RunMesh> search_;
+
+    static bool divided(const maps::GridParts& parts, const SettledInRuns& from, const SettledInRuns& to) {
+        for (const auto& a : from.runs)
+            for (const auto& b : to.runs)
+                if (!parts.divide({a.row, a.begin}, {b.row, b.begin})) return false;
+        return true;
+    }
 
     double in_cells(double at, double origin) const {
         constexpr double roundings = 4.5e-16;

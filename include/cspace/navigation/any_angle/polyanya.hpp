@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -37,6 +39,14 @@ class IntervalSearch {
     // starts, goals: the polygons whose closures hold the start and the goal.
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
                 const std::vector<Polygon>& goals, Trace* trace = nullptr) {
+        return solve(start, starts, goal, goals, trace, std::numeric_limits<std::int64_t>::max(),
+                     [] { return false; });
+    }
+    // After `patience` nodes is_divided() is asked whether there is no path.
+    template <class IsDivided>
+    Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
+                const std::vector<Polygon>& goals, Trace* trace, std::int64_t patience,
+                IsDivided is_divided) {
         begin(start, goal, goals, trace);
         for (const Polygon& p : starts)
             for (const Polygon& q : goals)
@@ -48,6 +58,9 @@ class IntervalSearch {
             if (is_goal(least.edge)) return finish(least);
             free_.push_back(n);
             if (!is_stale(least)) expand(least, f);
+            if (price_.nodes < patience) continue;
+            if (is_divided()) break;
+            patience = std::numeric_limits<std::int64_t>::max();
         }
         Route route;
         route.status = Status::unreachable;

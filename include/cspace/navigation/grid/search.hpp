@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/maps/grid_parts.hpp"
 #include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/bucket_queue.hpp"
 #include "cspace/navigation/focal_queue.hpp"
@@ -50,6 +51,8 @@ struct GridAnswer {
     double cost = 0;                // of the way, as the planner counts [cells, or cells · cost]
     double least = 0;               // no way costs less, where the planner proves that of its answer
     Effort effort;
+    std::int64_t parts =
+        0;  // how many there are, where the ends lie in two of them, which proves the verdict
     std::vector<Settled>* settled = nullptr;  // takes the cells in the order in which they were settled
     std::vector<std::uint32_t> order;         // the same as the search numbers them
 };
@@ -104,13 +107,43 @@ double summed(const std::vector<maps::Cell>& cells, const Length& length) {
     return value_of(sum);
 }
 
+// What may prove, before all cells that can be reached have been settled, that the goal is none of them.
+struct Division {
+    const maps::BitGrid& grid;
+    maps::LazyParts* parts;  // or null
+    maps::Cell a, b;
+    bool diagonal;
+
+    // Parts are looked at before a search if they are known, else where it has taken long.
+    std::uint64_t patience() const {
+        return parts ? maps::LazyParts::patience(grid) : std::numeric_limits<std::uint64_t>::max();
+    }
+    bool is_known() const { return patience() < grid.numbers() && parts->is_made(diagonal); }
+    bool proves(GridAnswer& answer) const {
+        const maps::GridParts& made = parts->of(grid, diagonal);
+        if (!made.divide(a, b)) return false;
+        answer.parts = made.count();
+        return true;
+    }
+};
+
+// Best first, unless it is proven meanwhile that no way exists.
+template <class Space, class Queue>
+std::uint32_t search_or_divide(Space& space, Queue& queue, const Division& division, GridAnswer& answer) {
+    if (!division.is_known()) answer.effort.pause = division.patience();
+    const std::uint32_t reached = best_first(space, queue, answer.effort);
+    if (reached != no_node || queue.empty() || division.proves(answer)) return reached;
+    answer.effort.pause = std::numeric_limits<std::uint64_t>::max();
+    return best_first(space, queue, answer.effort);
+}
+
 template <class Parents, class Queue>
 void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& order, maps::Cell start,
               const Parents& parents, PagedNodes<typename Parents::G>& nodes, Queue& queue, bool reopen,
-              GridAnswer& answer) {
+              const Division& division, GridAnswer& answer) {
     GridSearch<Parents> space(grid, query.corners, order, parents, nodes, reopen);
     space.start(start, queue, answer.effort);
-    const std::uint32_t reached = best_first(space, queue, answer.effort);
+    const std::uint32_t reached = search_or_divide(space, queue, division, answer);
     answer.found = reached != no_node;
     note_settled(answer, [&](std::uint32_t k) {
         const auto& node = nodes.at(k);
@@ -128,11 +161,11 @@ void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& or
 
 template <Corners rule>
 void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, GridScratch& scratch,
-              GridAnswer& answer) {
+              const Division& division, GridAnswer& answer) {
     SparseNodes& nodes = scratch.sparse;
     JumpPoints<rule> space(grid, order, nodes);
     space.start(start, scratch.buckets, answer.effort);
-    const std::uint32_t reached = best_first(space, scratch.buckets, answer.effort);
+    const std::uint32_t reached = search_or_divide(space, scratch.buckets, division, answer);
     answer.found = reached != no_node;
     note_settled(answer, [&](std::uint32_t place) {
         const auto& node = nodes[place];
@@ -160,18 +193,23 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
 
 }  // namespace search
 
-// The way from start to goal, both free cells of the grid.
+// The way from start to goal, both free cells of the grid. parts: of this grid, or null for none.
 inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goal, const GridQuery& query,
-                     GridScratch& scratch, GridAnswer& answer) {
+                     GridScratch& scratch, GridAnswer& answer, maps::LazyParts* parts = nullptr) {
     const bool backward = query.planner == GridPlanner::waves;
     const Order order = {backward ? start : goal, query.metric, query.g_weight, query.h_weight,
                          query.least_cost};
     answer.found = false;
     answer.cells.clear();
     answer.order.clear();
-    answer.effort = {0, 0, answer.settled ? &answer.order : nullptr};
+    answer.parts = 0;
+    answer.effort = {};
+    answer.effort.order = answer.settled ? &answer.order : nullptr;
+    const search::Division division{grid, parts, start, goal, query.corners == Corners::always};
+    if (division.is_known() && division.proves(answer)) return;
     const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
-        search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen, answer);
+        search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen, division,
+                         answer);
     };
     scratch.buckets.begin(search::bucket_width * query.least_cost);
     switch (query.planner) {
@@ -194,16 +232,16 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
         case GridPlanner::jump_points:
             switch (query.corners) {
                 case Corners::never:
-                    search::by_jumps<Corners::never>(grid, order, start, scratch, answer);
+                    search::by_jumps<Corners::never>(grid, order, start, scratch, division, answer);
                     break;
                 case Corners::one:
-                    search::by_jumps<Corners::one>(grid, order, start, scratch, answer);
+                    search::by_jumps<Corners::one>(grid, order, start, scratch, division, answer);
                     break;
                 case Corners::always:
-                    search::by_jumps<Corners::always>(grid, order, start, scratch, answer);
+                    search::by_jumps<Corners::always>(grid, order, start, scratch, division, answer);
                     break;
                 case Corners::four:
-                    search::by_jumps<Corners::four>(grid, order, start, scratch, answer);
+                    search::by_jumps<Corners::four>(grid, order, start, scratch, division, answer);
                     break;
             }
             break;
