@@ -6,15 +6,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from cspace.navigation.grid_search import (
-    BEST_FIRST,
-    Settings,
-    metric_of,
-    positive_costs,
-    reason,
-    search,
-    traced,
-)
+from cspace.navigation.grid_search import BEST_FIRST, Settings, over_costs, reason, search, traced
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
 
@@ -47,5 +39,4 @@ def trace(route: Route) -> Trace:
 
 
 def _settings(world: Any, metric: str, corners: str, costs: ArrayLike | None) -> Settings:
-    array, least = positive_costs(world, costs)
-    return Settings(BEST_FIRST, *metric_of(metric, corners), costs=array, least_cost=least)
+    return over_costs(Settings(BEST_FIRST), world, metric, corners, costs)

@@ -7,17 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from cspace.arrays import as_floats
-from cspace.errors import InputError
-from cspace.navigation.grid_search import (
-    FOCAL,
-    Settings,
-    metric_of,
-    positive_costs,
-    reason,
-    search,
-    traced,
-)
+from cspace.navigation.grid_search import FOCAL, Settings, at_least_one, over_costs, reason, search, traced
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
 
@@ -50,8 +40,5 @@ def trace(route: Route) -> Trace:
 
 
 def _settings(world: Any, bound: float, metric: str, corners: str, costs: ArrayLike | None) -> Settings:
-    if (factor := float(as_floats(bound, "bound"))) < 1:
-        raise InputError(f"bound is {factor:g}; it must be 1 or more")
-    array, least = positive_costs(world, costs)
-    moves = metric_of(metric, corners)
-    return Settings(FOCAL, *moves, bound=factor, costs=array, least_cost=least)
+    given = Settings(FOCAL, bound=at_least_one(bound, "bound"))
+    return over_costs(given, world, metric, corners, costs)

@@ -39,12 +39,7 @@ def plan(
     Generator or None; `route.options` keeps the seed. route.evidence is a Sampled. The status is
     "undetermined" where the samples were too few. InputError on options out of range.
     """
-    options = {
-        "samples": sampling.count_of("samples", samples, 1),
-        "step": sampling.step_of(world, step),
-        "goal_bias": sampling.fraction_of("goal_bias", goal_bias),
-        "rng": sampling.seed_of(rng),
-    }
+    options = sampling.tree_options(world, samples, step, goal_bias, rng)
     return sampling.ask(world, "rrt", options, start, goal)
 
 

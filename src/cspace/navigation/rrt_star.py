@@ -42,12 +42,7 @@ def plan(
     to 1. rng: seed, Generator or None; `route.options` keeps the seed. route.evidence is a Sampled. The
     status is "undetermined" where the samples were too few. InputError on options out of range.
     """
-    options = {
-        "samples": sampling.count_of("samples", samples, 1),
-        "step": sampling.step_of(world, step),
-        "goal_bias": sampling.fraction_of("goal_bias", goal_bias),
-        "rng": sampling.seed_of(rng),
-    }
+    options = sampling.tree_options(world, samples, step, goal_bias, rng)
     return sampling.ask(world, "rrt_star", options, start, goal)
 
 

@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
     from cspace.navigation.route import Route
 
-__all__ = ["Sampled", "ask", "count_of", "fraction_of", "seed_of", "step_of", "trace_of", "verdict_of"]
+__all__ = ["Sampled", "ask", "count_of", "fraction_of", "seed_of", "step_of", "trace_of"]
+__all__ += ["tree_options", "verdict_of"]
 
 WORDS: Final = ("connect", "rewire")
 KINDS: Final = ("prm", "rrt", "rrt_star")
@@ -78,6 +79,22 @@ def _settings(planner: str, options: dict[str, Any]) -> tuple[int, int, int, int
         options.get("step", 1.0),
         options.get("goal_bias", 0.0),
     )
+
+
+def tree_options(
+    world: PolygonWorld,
+    samples: int,
+    step: float | None,
+    goal_bias: float,
+    rng: int | np.random.Generator | None,
+) -> dict[str, Any]:
+    """The options of a planner that grows a tree, checked."""
+    return {
+        "samples": count_of("samples", samples, 1),
+        "step": step_of(world, step),
+        "goal_bias": fraction_of("goal_bias", goal_bias),
+        "rng": seed_of(rng),
+    }
 
 
 def seed_of(rng: int | np.random.Generator | None) -> int:

@@ -6,13 +6,11 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from cspace.arrays import as_floats
-from cspace.errors import InputError
 from cspace.navigation.grid_search import (
     BEST_FIRST,
     Settings,
-    metric_of,
-    positive_costs,
+    at_least_one,
+    over_costs,
     reason,
     search,
     traced,
@@ -48,8 +46,5 @@ def trace(route: Route) -> Trace:
 
 
 def _settings(world: Any, weight: float, metric: str, corners: str, costs: ArrayLike | None) -> Settings:
-    if (factor := float(as_floats(weight, "weight"))) < 1:
-        raise InputError(f"weight is {factor:g}; it must be 1 or more")
-    array, least = positive_costs(world, costs)
-    moves = metric_of(metric, corners)
-    return Settings(BEST_FIRST, *moves, h_weight=factor, costs=array, least_cost=least)
+    given = Settings(BEST_FIRST, h_weight=at_least_one(weight, "weight"))
+    return over_costs(given, world, metric, corners, costs)
