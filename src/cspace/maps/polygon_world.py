@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.maps.discs import disc_outlines
 from cspace.maps.geojson import read_geojson
 from cspace.maps.grow import grown
 from cspace.maps.occupancy_grid import OccupancyGrid
@@ -73,6 +74,17 @@ class PolygonWorld:
         """
         obstacles, bounds = read_text(path)
         return cls(obstacles, **{"bounds": bounds, **keywords})
+
+    @classmethod
+    def from_discs(
+        cls, centers: ArrayLike, radii: ArrayLike, bounds: ArrayLike | None = None, *, sides: int = 64
+    ) -> PolygonWorld:
+        """Discs as obstacles: centers (n, 2) [m], radii (n,) or one for all [m].
+
+        Each becomes a regular polygon around it, which sticks out by at most radius · (1 / cos(π / sides) −
+        1). InputError on a radius that is not positive, and on less than four sides.
+        """
+        return cls(disc_outlines(centers, radii, sides), bounds)
 
     @classmethod
     def from_grid(cls, grid: OccupancyGrid) -> PolygonWorld:

@@ -1,0 +1,33 @@
+"""Discs as polygons around them."""
+
+from __future__ import annotations
+
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.tolerances import FARTHEST_POINT
+
+__all__ = ["disc_outlines"]
+
+MOST_SIDES: Final = 1 << 20
+
+
+def disc_outlines(centers: Any, radii: Any, sides: int) -> list[Array]:
+    """A regular polygon (sides, 2) [m] around each disc; its first side looks along x."""
+    at = as_floats(centers, "centers", last=(2,), largest=FARTHEST_POINT)
+    reach = as_floats(radii, "radii", largest=FARTHEST_POINT)
+    if at.ndim != 2:
+        raise InputError(f"centers has shape {at.shape}, expected (n, 2)")
+    if reach.shape not in {(), (len(at),)}:
+        raise InputError(f"radii has shape {reach.shape}, expected () or ({len(at)},): one per disc")
+    if not np.all(reach > 0):
+        raise InputError(f"radii has {np.min(reach):g} in it; a disc has a radius above zero [m]")
+    if int(as_floats(sides, "sides")) != sides or not 4 <= sides <= MOST_SIDES:
+        raise InputError(f"sides is {sides}; a polygon around a disc has 4 to {MOST_SIDES} here")
+    angles = 2 * np.pi * (np.arange(int(sides)) + 0.5) / sides
+    around = np.stack([np.cos(angles), np.sin(angles)], axis=1) / np.cos(np.pi / sides)
+    sizes = np.broadcast_to(reach, len(at))
+    return [center + radius * around for center, radius in zip(at, sizes, strict=True)]
