@@ -34,7 +34,7 @@ def grown(
     """The sum of the obstacles with polygons around the disc, inside bounds that are shrunk.
 
     keep: (k, 2), places of the centre in whose direction corners give nothing away. The sum of a polygon and
-    a disc is the union of the first with the disc swept along its edges, each of which is convex.
+    a disc is the union of the first with the disc at each corner and a strip along each edge.
     """
     reach = _radius(radius, sides)
     xmin, ymin, xmax, ymax = map(float, bounds)
@@ -50,19 +50,20 @@ def grown(
     axes = np.arange(4) * (TURN // 4)  # towards the bounds
     even = np.concatenate([axes, np.rint(np.arange(sides) * (TURN / sides)).astype(np.int64)])
     first = 0
-    swept: list[Outline] = []
+    made: list[Outline] = []
     for ring in rings:
         at = np.arange(first, first + len(ring))
         discs = []
         for here, before in zip(at, np.roll(at, 1), strict=True):
             walls = np.array([ahead[here], ahead[before]])
             quarter = np.concatenate([walls + TURN // 4, walls - TURN // 4])
-            discs.append(np.unique(np.concatenate([even, quarter, across[here]]) % TURN))
+            touches = np.unique(np.concatenate([even, quarter, across[here]]) % TURN)
+            discs.append((touches, corners[here] + _around(reach, touches)))
+        made += [[corner] for _, corner in discs]
         for k, here in enumerate(at):
-            ends = corners[here], nexts[here]
-            swept.append([_swept(reach, int(ahead[here]), ends, (discs[k], discs[(k + 1) % len(ring)]))])
+            made.append([_beside(int(ahead[here]), discs[k], discs[(k + 1) % len(ring)])])
         first += len(ring)
-    return [*outlines, *swept], np.array([xmin + reach, ymin + reach, xmax - reach, ymax - reach])
+    return [*outlines, *made], np.array([xmin + reach, ymin + reach, xmax - reach, ymax - reach])
 
 
 def _radius(radius: Any, sides: Any) -> float:
@@ -81,26 +82,21 @@ def _direction(vectors: Array) -> Directions:
     return np.rint(angle * (TURN / (2 * np.pi))).astype(np.int64) % TURN
 
 
-def _swept(
-    radius: float, ahead: int, ends: tuple[Array, Array], discs: tuple[Directions, Directions]
-) -> Array:
-    """The hull (m, 2) of a polygon around the disc at each end of an edge that leads `ahead`: of the second
-    what looks ahead, of the first the rest. discs: in which directions the sides of each touch."""
-    right, left = (ahead - TURN // 4) % TURN, (ahead + TURN // 4) % TURN
-    fore = _corners(radius, discs[1], right, left)
-    back = _corners(radius, discs[0], left, right)
-    return np.vstack([ends[1] + fore, ends[0] + back])
-
-
-def _corners(radius: float, touches: Directions, begin: int, end: int) -> Array:
-    """The corners (m, 2) of a polygon around a disc from one touching side, counterclockwise, to another."""
-    first, last = np.searchsorted(touches, [begin, end])
-    sides = np.roll(touches, -first)[: (last - first) % len(touches) + 1]
-    wide = np.diff(sides) % TURN
-    middle = (sides[:-1] + wide / 2) * (2 * np.pi / TURN)
+def _around(radius: float, touches: Directions) -> Array:
+    """The polygon (m, 2) whose sides touch a disc in directions (m,): side i lies before corner i."""
+    wide = np.diff(touches, append=touches[:1]) % TURN
+    middle = (touches + wide / 2) * (2 * np.pi / TURN)
     away = radius / np.cos(wide * (np.pi / TURN))
-    found: Array = away[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1)
-    return found
+    corners: Array = away[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1)
+    return corners
+
+
+def _beside(ahead: int, one: tuple[Directions, Array], other: tuple[Directions, Array]) -> Array:
+    """What lies beside an edge (4, 2) that leads `ahead` from one corner to another, between the sides of
+    their polygons that touch in its two directions across: its own sides end where those do."""
+    right, left = (ahead - TURN // 4) % TURN, (ahead + TURN // 4) % TURN
+    (i, j), (k, n) = (np.searchsorted(touches, [right, left]) for touches, _ in (one, other))
+    return np.array([one[1][i], other[1][k - 1], other[1][n], one[1][j - 1]])
 
 
 def _tight(

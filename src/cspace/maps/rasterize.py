@@ -25,6 +25,8 @@ def rasterized(
     side = wide / 200 if resolution is None else float(as_floats(resolution, "resolution"))
     if not side > 0:
         raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
+    if not wide / side <= MAP_CELLS:
+        raise InputError(f"resolution {side:g} makes more than {MAP_CELLS:g} cells along one side")
     rows, columns = (math.ceil((high - low) / side - 1e-9) for low, high in ((ymin, ymax), (xmin, xmax)))
     if rows * columns > MAP_CELLS:
         raise InputError(

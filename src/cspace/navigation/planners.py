@@ -127,18 +127,21 @@ def module_of(name: str) -> PlannerModule:
 
 
 def check_options(row: Planner, options: dict[str, Any]) -> None:
-    """InputTypeError for an option that the planner does not have, or several values where it takes one."""
+    """InputTypeError for an option that the planner does not have, several values where it takes one, or
+    others than True and False where it takes these."""
     known = _options_of(row.name)
     for name, value in options.items():
         if name not in known:
             raise InputTypeError(str(suggest("option", name, known, owner=f"planner {row.name!r}")))
-        dimensions: int = getattr(value, "ndim", 0)
-        if name not in COMPOSED and (dimensions or isinstance(value, (list, tuple, dict, set))):
+        several = hasattr(value, "__len__") and not isinstance(value, (str, bytes))
+        if name not in COMPOSED and getattr(value, "ndim", several):
             raise InputTypeError(f"option {name!r} is a {type(value).__name__}; it must be one value")
+        if isinstance(known[name], bool) and value not in (True, False):
+            raise InputTypeError(f"option {name!r} is {value!r}; it must be True or False")
 
 
 @cache
-def _options_of(name: str) -> tuple[str, ...]:
-    """The names of a planner's options."""
+def _options_of(name: str) -> dict[str, Any]:
+    """The names of a planner's options, and what they are by default."""
     parameters = inspect.signature(module_of(name).plan).parameters.values()
-    return tuple(p.name for p in parameters if p.kind is p.KEYWORD_ONLY)
+    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}
