@@ -15,6 +15,7 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 RUNS: dict[str, list[str]] = {
+    "degenerate": [],
     "any_angle": [],
     "fields": ["--rounds", "9"],
     "polygons": [],

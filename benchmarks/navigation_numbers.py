@@ -150,7 +150,11 @@ def potential_row(results: Results) -> Row:
 def degenerate_row(results: Results) -> Row:
     told = results["navigation_degenerate"]
     cases, passed = told.get("cases", 0), told.get("passed", 0)
-    text = f"{passed} of {cases}" if cases else ""
+    peers = told.get("peers", {})
+    beside = [
+        f"{name} {n.get('right', 0)} of {peers['asked']}" for name, n in peers.items() if name != "asked"
+    ]
+    text = "; ".join([f"{passed} of {cases}", *beside]) if cases else ""
     return row("suite of degenerate polygons", "100 % of 200", "", text, passed == cases >= 200)
 
 

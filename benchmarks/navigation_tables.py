@@ -123,6 +123,21 @@ def large(results: Measured) -> str:
     return f"{date(measured)}\n\n{table(head, body)}"
 
 
+def degenerate(results: Measured) -> str:
+    told = results["navigation_degenerate"]
+    if not told:
+        return "Not measured."
+    words = ("right", "wrong", "raises", "hangs")
+    body = [
+        ["**cspace**", f"{told['cases']}", f"{told['passed']}", f"{told['cases'] - told['passed']}", "0", "0"]
+    ]
+    for name, counts in told["peers"].items():
+        if name != "asked":
+            asked = str(told["peers"]["asked"])
+            body.append([name, asked, *(str(counts.get(word, 0)) for word in words)])
+    return table(["contender", "cases", *words], body)
+
+
 def section(results: Measured) -> str:
     """Everything measured of navigation."""
     return f"""Processor time of one call from Python, contender after contender on the same questions in one
@@ -144,6 +159,14 @@ Disjoint hexagons; "built" is from lists of corners to a graph that can be asked
 counts paths that differ from ours by more than 1e-9 of their length.
 
 {polygons(results)}
+
+### Degenerate polygons
+
+The cases of `tests/cases/polygons`: outlines that touch, overlap, repeat themselves or cross, ends on walls
+and in corners. Ours is right if six planners are, faults named among them; others were spared what they have
+no words for: faults, holes of obstacles and, pyvisgraph, bounds.
+
+{degenerate(results)}
 
 ### Clearance, and descents of a potential
 
