@@ -28,7 +28,33 @@ def yard() -> cs.PolygonWorld:
     return cs.PolygonWorld(obstacles, bounds=(0, 0, 100, 100))
 
 
+def fields() -> None:
+    """Three fields that robots go down, as surfaces."""
+    import matplotlib.pyplot as plt
+
+    sheds = [
+        [(2, 2), (5, 2), (5, 5), (2, 5)],
+        [(6, 1), (8.5, 1.5), (7, 4)],
+        [(1, 6.5), (7, 6), (7, 7), (1.5, 8)],
+    ]
+    hook = [(3, 3), (7, 3), (7, 8), (3, 8), (3, 7.4), (6.4, 7.4), (6.4, 3.6), (3, 3.6)]
+    trap = cs.PolygonWorld([hook], (0, 0, 10, 10))
+    yard = cs.PolygonWorld(sheds, (0, 0, 10, 10))
+    start, goal = (1.5, 5.7), (8.8, 5.4)
+    routes = [
+        cs.navigate(trap, start, goal, "potential_field", rho_0=1.0),
+        cs.navigate(yard, (1, 1), (8.8, 8.8), "rimon_koditschek"),
+        cs.navigate(trap, start, goal, "harmonic", resolution=0.1),
+    ]
+    figure = plt.figure(figsize=(13.5, 4.6), dpi=120)
+    for k, route in enumerate(routes):
+        box = (0.005 + 0.333 * k, 0.03, 0.32, 0.91)
+        cs.plot.surface(route, ax=figure.add_axes(box, projection="3d"))
+    cs.plot.save(figure, HERE / "fields.png", dpi=75)
+
+
 def main() -> None:
+    fields()
     world = yard()
     routes = [cs.navigate(world, (2, 30), (98, 42), planner) for planner in cs.navigation.PLANNERS]
     cs.plot.save(cs.plot.routes(routes), HERE / "planners.png", dpi=75)

@@ -63,3 +63,28 @@ def test_an_animation_tells_the_search(world, tmp_path):
     cs.plot.save(cs.plot.animation(route, frames=3), path, dpi=40)
     assert not plt.get_fignums()
     assert path.read_bytes()[:3] == b"GIF"
+
+
+def test_surfaces_show_the_path_and_the_minima():
+    hook = [(3, 3), (7, 3), (7, 8), (3, 8), (3, 7.4), (6.4, 7.4), (6.4, 3.6), (3, 3.6)]
+    trap = cs.PolygonWorld([hook], (0, 0, 10, 10))
+    caught = cs.navigate(trap, (1.5, 5.7), (8.8, 5.4), "potential_field", rho_0=1.0)
+    artists = cs.plot.surface(caught)
+    path, dots, star = (np.array(a.get_data_3d()) for a in artists[1:])
+    assert np.hypot(*(path[:2, -1] - caught.path[-1])) < 1e-9
+    assert np.min(np.hypot(*(dots[:2].T - caught.path[-1]).T)) < 0.01  # where it rests is a minimum
+    assert np.allclose(star[:2, 0], caught.goal)
+    flat = cs.plot.route(caught, ax=plt.subplots()[1])
+    assert any(getattr(a, "get_marker", str)() == "o" and a.get_zorder() == 5 for a in flat)
+    plt.close("all")
+
+
+@pytest.mark.parametrize("planner", ["rimon_koditschek", "harmonic"])
+def test_navigation_functions_have_no_minimum_but_the_goal(world, planner):
+    artists = cs.plot.surface(cs.navigate(world, (1, 1), (9, 9), planner))
+    assert np.size(artists[2].get_data_3d()[0]) == 0
+
+
+def test_surfaces_of_planners_without_a_field_are_refused(world):
+    with pytest.raises(InputError, match="a surface needs"):
+        cs.plot.surface(cs.navigate(world, (1, 1), (9, 9), "bug_1"))

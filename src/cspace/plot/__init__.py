@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from cspace.plot.arms import robot, solutions
 from cspace.plot.drives import coverage, drive
+from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
@@ -25,3 +26,4 @@ __all__ = [
     "workspace",
 ]
 __all__ += ["coverage", "drive", "world"]
+__all__ += ["surface"]

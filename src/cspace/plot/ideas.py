@@ -10,6 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.plot import colors
+from cspace.plot.fields import draw_bands
 
 __all__ = ["draw_idea"]
 
@@ -17,8 +18,6 @@ MOST_EVENTS: Final = 20_000
 """Events that a picture shows: of more every second, third … is drawn; a reader could not tell them apart."""
 CROWD: Final = 1000
 """Lines from which on each is drawn thinner and fainter."""
-FIELD: Final = 160
-"""Places along a side of the world at which a field is evaluated for its picture."""
 FAINT: Final = (0.78, 0.81, 0.86)
 """Lines of what the planner prepared."""
 
@@ -167,55 +166,13 @@ def draw_voronoi(axes: Any, route: Any) -> list[Any]:
     return [axes.add_collection(LineCollection(arcs, colors=[colors.JOINT], linewidths=0.8, zorder=2))]
 
 
-def draw_potential(axes: Any, route: Any) -> list[Any]:
-    """The potential as bands of equal height."""
-    from cspace.navigation.potential_field import potential
-
-    at, (x, y) = places(route.world)
-    gains = {name: value for name, value in route.evidence.gains.items() if name != "step"}
-    height = potential(route.world, route.goal, at, **gains)
-    free = np.isfinite(height)
-    level = np.where(free, height, np.nan)
-    top = np.nanquantile(level, 0.85) if free.any() else 1.0
-    bands = axes.contourf(x, y, np.minimum(level, top), levels=24, cmap="Blues", zorder=1, alpha=0.85)
-    return [bands]
-
-
 def draw_navigation_function(axes: Any, route: Any) -> list[Any]:
-    """The navigation function as bands of equal area, and its saddles (×)."""
+    """The navigation function as bands, and its saddles (×)."""
     function = route.evidence.function
-    if function is None:
-        return []
-    at, where = places(route.world)
-    height = function.log_odds(at)
-    free = np.isfinite(height)
-    levels = np.unique(np.quantile(height[free], np.linspace(0, 1, 25))) if free.any() else np.empty(0)
-    artists: list[Any] = []
-    if len(levels) > 1:
-        rank = np.where(free, np.searchsorted(levels, height) / len(levels), np.nan)
-        artists.append(axes.contourf(*where, rank, levels=24, cmap="Blues", zorder=1, alpha=0.85))
-    artists += axes.plot(*function.saddles.T, "x", color=colors.INK, ms=5, mew=1.2, zorder=5)
+    artists = draw_bands(axes, route)
+    if function is not None:
+        artists += axes.plot(*function.saddles.T, "x", color=colors.INK, ms=5, mew=1.2, zorder=5)
     return artists
-
-
-def draw_harmonic(axes: Any, route: Any) -> list[Any]:
-    """How unlikely a random walk is to come to the goal before a wall, as bands of its logarithm."""
-    from cspace.navigation.harmonic import harmonic
-
-    grid = route.world
-    height = harmonic(grid, route.goal)
-    free = np.isfinite(height)
-    bands = np.where(free, np.floor(24 * height / max(height[free].max(), 1e-300)), np.nan)
-    xmin, ymin, xmax, ymax = grid.bounds
-    box = (xmin, xmax, ymin, ymax)
-    return [axes.imshow(bands, extent=box, origin="lower", cmap="Blues", alpha=0.9, interpolation="nearest")]
-
-
-def places(world: Any) -> tuple[Array, tuple[Array, Array]]:
-    """A raster over the bounds: its points (n, n, 2), and x and y of its columns and rows."""
-    xmin, ymin, xmax, ymax = world.bounds
-    x, y = np.linspace(xmin, xmax, FIELD), np.linspace(ymin, ymax, FIELD)
-    return np.stack(np.meshgrid(x, y), axis=-1), (x, y)
 
 
 def nothing(axes: Any, route: Any) -> list[Any]:
@@ -229,8 +186,8 @@ PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     "any_angle": draw_convex_polygons,
     "brushfire": draw_brushfire,
     "voronoi": draw_voronoi,
-    "harmonic": draw_harmonic,
-    "potential_field": draw_potential,
+    "harmonic": draw_bands,
+    "potential_field": draw_bands,
     "rimon_koditschek": draw_navigation_function,
 }
 """What a planner prepares before it is asked."""

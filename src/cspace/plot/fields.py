@@ -1,0 +1,202 @@
+"""Fields that planners go down: bands of equal height in the plane, or a surface in space; their minima."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Final
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import InputError
+from cspace.plot import colors
+from cspace.plot.axes import space_axes
+
+__all__ = ["draw_bands", "minima", "surface"]
+
+PLACES: Final = 160
+"""Places along a side of the world at which a field is evaluated for its picture."""
+TOP: Final = 0.85
+"""The share of free places whose heights are told apart: beyond it, next to walls, fields have no bounds."""
+BANDS: Final = 24
+"""Bands of equal height."""
+SAME: Final = 1e-3
+"""Minima nearer to each other than this, in sides of the world, are one."""
+WALL: Final = (0.36, 0.39, 0.44)
+"""Obstacles."""
+PATH: Final = (0.84, 0.18, 0.20)
+"""The path down."""
+
+Height = Callable[[Array], Array]
+
+
+def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
+    """The field that a route went down as a surface in space, the path on it, and its minima.
+
+    route: of the planner "potential_field", "rimon_koditschek" or "harmonic". The height is the potential; of
+    navigation functions exp(V / kappa), which grows with φ and does not flatten; of harmonic potentials −log
+    of the chance. Obstacles are plateaus at the top; minima are marked by dots, the goal by a star. ax: 3-D
+    axes. Returns the artists. InputError for other planners, and where there was no field.
+    """
+    height = height_of(route)
+    axes = space_axes(ax)
+    at, where = places(route.world)
+    level, top = levels(height(at))
+    solid = np.isnan(level)
+    low = float(np.nanmin(level))
+    shown = np.where(solid, top, level)
+    paint = tinted(shown, solid, low, top)
+    artists = [
+        axes.plot_surface(
+            *np.meshgrid(*where),
+            shown,
+            facecolors=paint,
+            rstride=1,
+            cstride=1,
+            linewidth=0,
+            antialiased=False,
+            shade=True,
+        )
+    ]
+    axes.computed_zorder = False
+    lift = 0.01 * (top - low)
+    path = between(route.path)
+    if len(path):
+        artists += axes.plot(*path.T, np.minimum(height(path), top) + lift, color=PATH, linewidth=2, zorder=6)
+    for points, marker, size in ((minima(route), "o", 6), (route.goal[None], "*", 13)):
+        z = np.clip(height(points), low, top) + lift
+        artists += axes.plot(*points.T, z, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+    xmin, ymin, xmax, ymax = route.world.bounds
+    wide = max(xmax - xmin, ymax - ymin)
+    axes.set_box_aspect(((xmax - xmin) / wide, (ymax - ymin) / wide, 0.45))
+    axes.view_init(elev=58, azim=-72)
+    axes.tick_params(labelsize=7, colors=colors.INK)
+    axes.set_zticks([])
+    said = route.planner if route else f"{route.planner}: {route.status}"
+    axes.set_title(said.replace("_", " "), fontsize=9, color=colors.INK, loc="left")
+    return artists
+
+
+def draw_bands(axes: Any, route: Any) -> list[Any]:
+    """The field as bands of equal height, and its minima beside the goal (dots)."""
+    try:
+        height = height_of(route)
+    except InputError:
+        return []
+    at, where = places(route.world)
+    level, _ = levels(height(at))
+    artists: list[Any] = []
+    if np.nanmax(level) > np.nanmin(level):
+        artists.append(axes.contourf(*where, level, levels=BANDS, cmap="Blues", zorder=1, alpha=0.85))
+    low = minima(route)
+    if len(low):
+        artists += axes.plot(*low.T, "o", ms=5, mfc="white", mec=colors.INK, mew=1.2, zorder=5)
+    return artists
+
+
+def height_of(route: Any) -> Height:
+    """The field of a route: points (..., 2) [m] → (...), infinite or NaN where there is none."""
+    makers = {
+        "potential_field": potential_height,
+        "rimon_koditschek": navigation_height,
+        "harmonic": harmonic_height,
+    }
+    maker = makers.get(getattr(route, "planner", ""))
+    if maker is None:
+        raise InputError(f"a surface needs a route of one of {', '.join(makers)}; this one is {route!r}")
+    return maker(route)
+
+
+def potential_height(route: Any) -> Height:
+    from cspace.navigation.potential_field import potential
+
+    gains = {name: value for name, value in route.evidence.gains.items() if name != "step"}
+    return partial(potential, route.world, route.goal, **gains)
+
+
+def navigation_height(route: Any) -> Height:
+    function = route.evidence.function
+    if function is None:
+        raise InputError(f"there is no navigation function to draw: {route.reason}")
+
+    def height(points: Array) -> Array:
+        found: Array = np.exp(np.asarray(function.log_odds(points)) / function.kappa)
+        return found
+
+    return height
+
+
+def harmonic_height(route: Any) -> Height:
+    from cspace.navigation.harmonic import harmonic
+
+    grid = route.world
+    field = harmonic(grid, route.goal)
+
+    def height(points: Array) -> Array:
+        column, row = np.moveaxis(np.floor((points - grid.origin) / grid.resolution).astype(int), -1, 0)
+        found: Array = field[np.clip(row, 0, grid.rows - 1), np.clip(column, 0, grid.columns - 1)]
+        return found
+
+    return height
+
+
+def minima(route: Any) -> Array:
+    """Where the field of a route rests but at its goal: (k, 2) [m]. Of potential fields what descents from
+    the lowest places of a raster come to; other fields have none."""
+    if route.planner != "potential_field":
+        return np.empty((0, 2))
+    from cspace.navigation import navigate
+
+    at, _ = places(route.world)
+    level = height_of(route)(at)
+    middle = level[1:-1, 1:-1]
+    n = PLACES - 2
+    lower = [level[i : i + n, j : j + n] for i in range(3) for j in range(3) if (i, j) != (1, 1)]
+    side = max(np.ptp(route.world.bounds[::2]), np.ptp(route.world.bounds[1::2]))
+    kept: list[Array] = []
+    for start in at[1:-1, 1:-1][np.isfinite(middle) & np.all([middle < x for x in lower], axis=0)]:
+        rest = navigate(route.world, start, route.goal, "potential_field", **route.evidence.gains)
+        end = rest.path[-1]
+        if not rest and all(np.hypot(*(end - other)) > SAME * side for other in kept):
+            kept.append(end)
+    return np.array(kept).reshape(-1, 2)
+
+
+def places(world: Any) -> tuple[Array, tuple[Array, Array]]:
+    """A raster over the bounds, of centres of cells where they are few: its points (rows, columns, 2), and x
+    of its columns and y of its rows."""
+    xmin, ymin, xmax, ymax = world.bounds
+    columns = min(PLACES, world.columns) if world.kind == "grid" else PLACES
+    rows = min(PLACES, world.rows) if world.kind == "grid" else PLACES
+    x = xmin + (np.arange(columns) + 0.5) * (xmax - xmin) / columns
+    y = ymin + (np.arange(rows) + 0.5) * (ymax - ymin) / rows
+    return np.stack(np.meshgrid(x, y), axis=-1), (x, y)
+
+
+def levels(height: Array) -> tuple[Array, float]:
+    """Heights up to a top, NaN where there is none; and the top."""
+    level = np.where(np.isfinite(height), height, np.nan)
+    if np.isnan(level).all():
+        return np.zeros_like(level), 1.0
+    top = float(np.nanquantile(level, TOP))
+    return np.minimum(level, top), top
+
+
+def tinted(level: Array, solid: Any, low: float, top: float) -> Array:
+    """A colour for every place (n, n, 4): blue by height, obstacles dark."""
+    from matplotlib import colormaps
+
+    share = np.floor(BANDS * (level - low) / max(top - low, 1e-300)) / BANDS
+    paint: Array = colormaps["Blues"](0.15 + 0.75 * share)
+    paint[solid] = (*WALL, 1.0)
+    return paint
+
+
+def between(path: Array) -> Array:
+    """A path with points in between, so that it lies on a surface: (m, 2)."""
+    if len(path) < 2:
+        return path
+    along = np.concatenate(([0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))))
+    where = np.linspace(0, along[-1], 4 * PLACES)
+    return np.stack([np.interp(where, along, path[:, k]) for k in (0, 1)], axis=1)
