@@ -90,8 +90,8 @@ class Walker {
 
 // Runs plan(robot) from each side of the walls on which the start lies, until one finds the goal.
 template <ContactSensor Robot, class Plan>
-Trip from_every_side(Robot& robot, Plan plan) {
-    Trip trip;
+auto from_every_side(Robot& robot, Plan plan) {
+    decltype(plan(robot)) trip;
     Price price;
     bool sure = true;
     for (std::size_t side = 0; side < robot.sides(); ++side) {

@@ -65,31 +65,28 @@ struct Retraction {
     double clearance = 0, radius = 0;  // at the point itself, and on the diagram
 };
 
-inline Retraction retract(const Sites& sites, const EdgeTree& tree, Point p) {
-    const Nearest near = nearest_site(sites, tree, p);
+// The same on a ray from the foot of a site, from a distance on.
+inline Retraction retract_along(const Sites& sites, const EdgeTree& tree, Index site, Point foot, Point away,
+                                double least) {
     Retraction up;
-    up.a = near.site;
-    if (near.site == none) return up;
-    up.foot = near.foot;
-    up.clearance = near.distance;
-    const Point away = -1.0 * sites.towards(near.site, p);
-    const double least = near.distance * (1 - 1e-9) - 1e-13 * sites.extent;
+    up.a = site;
+    up.foot = foot;
     const double slack = 1e-12 * sites.extent;
     double radius = 4 * sites.extent;
     const auto at = [&] { return up.foot + radius * away; };
-    const Index own = sites.edge_of(near.site), own_before = sites.previous(own),
+    const Index own = sites.edge_of(site), own_before = sites.previous(own),
                 own_after = sites.after(own);
-    const bool is_edge = sites.is_edge(near.site);
+    const bool is_edge = sites.is_edge(site);
     const auto is_own = [&](Index e) {
         if (e == own) return true;
         if (e == own_before) return !is_edge || sites.turn_at(own) != Turn::corner;
         return is_edge && e == own_after && sites.turn_at(own_after) != Turn::corner;
     };
-    const auto consider = [&](double t, Index site) {
-        if (t >= least && t < radius) radius = t, up.b = site;
+    const auto consider = [&](double t, Index other) {
+        if (t >= least && t < radius) radius = t, up.b = other;
     };
     tree.visit_shrinking(
-        p, EitherSide{}, [&] { return std::pair{at(), radius}; },
+        foot + least * away, EitherSide{}, [&] { return std::pair{at(), radius}; },
         [&](Index e) {
             const Point q = sites.begin(e);
             if (!is_own(e) && q != up.foot && sites.end(e) != up.foot) {
@@ -104,6 +101,15 @@ inline Retraction retract(const Sites& sites, const EdgeTree& tree, Point p) {
         });
     up.at = at();
     up.radius = radius;
+    return up;
+}
+
+inline Retraction retract(const Sites& sites, const EdgeTree& tree, Point p) {
+    const Nearest near = nearest_site(sites, tree, p);
+    if (near.site == none) return {};
+    const double least = near.distance * (1 - 1e-9) - 1e-13 * sites.extent;
+    Retraction up = retract_along(sites, tree, near.site, near.foot, -1.0 * sites.towards(near.site, p), least);
+    up.clearance = near.distance;
     return up;
 }
 

@@ -1,0 +1,405 @@
+// A point robot that glides between walls by how far they are: the clearance sensor of a polygon world.
+//
+// All that it reacts to lies on the edge of a disc around it that is free of walls, so it is in view, and no
+// farther than its range.
+#pragma once
+
+#include "cspace/navigation/bugs/clearance_sensor.hpp"
+#include "cspace/navigation/bugs/range_robot.hpp"
+#include "cspace/navigation/voronoi/feet.hpp"
+#include "cspace/navigation/voronoi/rolling.hpp"
+
+namespace cspace::navigation {
+
+// The walls as sites, made once for a world.
+struct Surroundings {
+    voronoi::Sites sites;
+    voronoi::EdgeTree tree;
+
+    explicit Surroundings(const maps::Boundary& walls)
+        : sites(voronoi::sites_of(walls, middle_of(walls))), tree(sites) {}
+
+  private:
+    static Point middle_of(const maps::Boundary& walls) {
+        if (walls.size() == 0) return {};
+        Point low = walls.points[0], high = low;
+        for (const Point& p : walls.points) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+        }
+        return 0.5 * (low + high);
+    }
+};
+
+class ClearanceRobot : public RangeRobot {
+  public:
+    using Index = voronoi::Index;
+    // It keeps a little less than its range from walls, so as not to lose them; no round part of it, so that
+    // in worlds of round numbers no gap is twice that wide.
+    static constexpr double kept_share = 0.99658;
+    static constexpr double beside = 1e-11;  // so near to a wall, in sizes of the world, rounding hides the side
+
+    ClearanceRobot(const Walls& walls, const Surroundings& around, Point start, double range,
+                   voronoi::Grain grain)
+        : RangeRobot(walls, start, range),
+          s_(around.sites),
+          tree_(around.tree),
+          grain_{grain.fine * around.sites.extent, grain.share},
+          contacts_(around.sites, around.tree, grain_),
+          keeps_(kept_share * range) {}
+
+    double keeps() const { return keeps_; }
+    double clearance() const { return radius_; }
+    const std::vector<Foot>& feet() const { return feet_; }
+    void stand_at(Point p) {
+        at_ = p;
+        place_ = {};
+    }
+
+    End begin(Log& log) {
+        if (s_.size() == 0) return End::open;
+        const Point from = local(at_);
+        voronoi::Retraction up;
+        if (!place_.is_open()) {
+            if (is_tapered(place_)) return begin_in_corner(log);
+            up = away_from_wall(from);
+        } else {
+            const voronoi::Nearest near = voronoi::nearest_site(s_, tree_, from);
+            if (near.site == voronoi::none) return End::lost;
+            if (near.distance > keeps_) return End::open;
+            const Index wall = near.distance <= beside * s_.extent ? wall_behind() : voronoi::none;
+            up = wall == voronoi::none ? voronoi::retract(s_, tree_, from) : away_from(wall, from);
+        }
+        const bool is_far = up.b == voronoi::none || up.radius >= keeps_ * (1 - 1e-9);
+        if (is_far && !std::isfinite(keeps_)) return End::lost;
+        const Point away = (1 / distance(up.foot, up.at)) * (up.at - up.foot);
+        const Point to = is_far ? up.foot + keeps_ * away : up.at;
+        const Point target = to + s_.origin;
+        if (!advance({at_, target}, log.path)) return End::lost;
+        note(target, log);
+        place_ = {};
+        radius_ = is_far ? keeps_ : up.radius;
+        feet_ = is_far ? std::vector<Foot>{contacts_.contact(up.a, to)}
+                       : contacts_.everywhere(to, up.a, up.b);
+        return finish(is_far ? End::limit : End::meet, log);
+    }
+
+    template <class Look>
+    End trace(Foot right, Foot left, const Aim& aim, Log& log, Look look) {
+        Index a = right.site, b = left.site;
+        pass(a, log);
+        pass(b, log);
+        for (Index joints = 0; joints <= 2 * s_.size() + 8; ++joints) {
+            const Arc arc = next_arc(a, b, aim);
+            if (arc.why == End::corner) return end_in_corner(arc, a, log, look);
+            if (slide(arc.curve, arc.begin, arc.end, log, look)) return End::told;
+            if (arc.why == End::lost) return End::lost;
+            if (arc.why == End::meet) {
+                Point p = arc.curve.at(arc.end);
+                feet_ = contacts_.around(p, a, b, arc.third);
+                return arrive(p, End::meet, log);
+            }
+            if (arc.why != End::told) {
+                const Point p = arc.curve.at(arc.end);
+                feet_ = {contacts_.contact(a, p), contacts_.contact(b, p)};
+                return arrive(p, arc.why, log);
+            }
+            if (arc.turns_a) pass(a = site_after(s_, a), log);
+            if (arc.turns_b) pass(b = site_before(s_, b), log);
+            if (a == b) return End::lost;
+        }
+        return End::lost;
+    }
+
+    template <class Look>
+    End roll(Foot foot, const Aim& aim, Log& log, Look look) {
+        Index a = foot.site;
+        pass(a, log);
+        double rolled = 0;
+        for (Index joints = 0; joints <= 2 * s_.size() + 8; ++joints) {
+            const Point p = local(at_), away = -1.0 * s_.towards(a, p);
+            std::optional<End> end;
+            if (s_.is_edge(a)) {
+                const double left = s_.length[std::size_t(a)] - s_.advance(a, p);
+                const Point on = p + (keeps_ - s_.height(a, p)) * away;
+                end = roll_along(voronoi::StraightWay{on, s_.direction(a)}, a, std::max(left, 0.0), aim, log,
+                                 look, rolled);
+            } else {
+                const Index e = s_.edge_of(a);
+                double turn = voronoi::turn_from(s_.normal(e), away);
+                if (turn > 1.5 * std::numbers::pi) turn = 0;
+                end = roll_along(voronoi::RoundWay{s_.begin(e), away, keeps_}, a, turn, aim, log, look,
+                                 rolled);
+            }
+            if (end) return *end;
+            if (corner_after(s_, a) != voronoi::none) {
+                feet_ = contacts_.ahead(local(at_), a, corner_after(s_, a));
+                return finish(End::meet, log);
+            }
+            pass(a = site_after(s_, a), log);
+        }
+        return End::lost;
+    }
+
+    End fly(const Aim& aim, Log& log) {
+        const Point from = local(at_), to = local(aim.goal);
+        const double far = distance(from, to), end = std::max(far - keeps_, 0.0);
+        if (!(far > 0)) return End::goal;
+        const voronoi::StraightWay way{from, (1 / far) * (to - from)};
+        const voronoi::FirstMeeting met =
+            voronoi::first_meeting(s_, tree_, grain_, way, keeps_, voronoi::none, end);
+        move_to(way.at(met.at));
+        note(at_, log);
+        if (met.site == voronoi::none) return End::goal;
+        radius_ = keeps_;
+        feet_ = {contacts_.contact(met.site, way.at(met.at))};
+        return finish(End::limit, log);
+    }
+
+  private:
+    const voronoi::Sites& s_;
+    const voronoi::EdgeTree& tree_;
+    voronoi::Grain grain_;
+    voronoi::Contacts contacts_;
+    double keeps_, radius_ = 0;
+    std::vector<Foot> feet_;
+
+    struct Arc {
+        voronoi::Bisector curve;
+        double begin = 0, end = 0;
+        End why = End::told;  // told: a foot goes over to its next site
+        Index third = voronoi::none;
+        bool turns_a = false, turns_b = false;
+    };
+
+    Point local(Point p) const { return p - s_.origin; }
+    void move_to(Point p) {
+        at_ = p + s_.origin;
+        place_ = {};
+    }
+    static void note(Point p, Log& log) {
+        if (log.path.empty() || log.path.back() != p) log.path.push_back(p);
+    }
+    End arrive(Point p, End why, Log& log) {
+        move_to(p);
+        if (!log.path.empty()) log.path.back() = at_;  // as polished
+        radius_ = s_.distance_to(feet_[0].site, p);
+        return finish(why, log);
+    }
+    End finish(End why, Log& log) {
+        log.least = std::min(log.least, radius_);
+        for (const Foot& foot : feet_) pass_ends(foot.site, log);
+        return why;
+    }
+
+    Touch corner_at(Index e) const {
+        return {walls_->begin(e), walls_->wall(s_.previous(e)), walls_->wall(e)};
+    }
+    // Notes the corner under a foot.
+    void pass(Index site, Log& log) const {
+        pass_ends(site, log);
+        if (s_.is_edge(site) && s_.turn_at(site) == voronoi::Turn::straight)
+            log.corners.push_back(corner_at(site));
+    }
+    void pass_ends(Index site, Log& log) const {
+        if (!s_.is_edge(site)) return log.corners.push_back(corner_at(s_.edge_of(site)));
+        const double along = s_.advance(site, local(at_)), near = 1e3 * grain_.at(radius_);
+        if (along <= near) log.corners.push_back(corner_at(site));
+        if (along >= s_.length[std::size_t(site)] - near) log.corners.push_back(corner_at(s_.after(site)));
+    }
+
+    bool is_tapered(const Place& place) const {
+        return place.is_corner() && s_.turn_at(place.out) == voronoi::Turn::corner;
+    }
+    End begin_in_corner(Log& log) {
+        const Point p = local(at_);
+        radius_ = 0;
+        feet_ = {contacts_.contact(place_.out, p), contacts_.contact(place_.in, p)};
+        log.corners.push_back(corner_at(place_.out));
+        return End::corner;
+    }
+    // The wall that a robot is in front of that stands as near to it as rounding; none if it is not sure.
+    Index wall_behind() const {
+        Index nearest = voronoi::none;
+        double least = beside * s_.extent;
+        walls_->at(at_, [&](int e) {
+            const double along = s_.advance(e, local(at_)), off = std::abs(s_.height(e, local(at_)));
+            if (!(off <= least) || along < 0 || along > s_.length[std::size_t(e)]) return;
+            if (orientation(walls_->begin(e), walls_->end(e), at_) <= 0) return;
+            least = off;
+            nearest = e;
+        });
+        return nearest;
+    }
+    voronoi::Retraction away_from(Index wall, Point from) const {
+        return voronoi::retract_along(s_, tree_, wall, from, s_.normal(wall), 1e-12 * s_.extent);
+    }
+    // From a place on a wall straight into free space.
+    voronoi::Retraction away_from_wall(Point from) const {
+        const Index e = place_.out;
+        if (!place_.is_corner() || s_.turn_at(e) != voronoi::Turn::around) return away_from(e, from);
+        const Point both = s_.normal(e) + s_.normal(place_.in);
+        const Point away = norm(both) > 1e-6 ? (1 / norm(both)) * both : s_.direction(place_.in);
+        return voronoi::retract_along(s_, tree_, s_.size() + e, from, away, 1e-12 * s_.extent);
+    }
+
+    // The arc of two sites from here on, and what ends it.
+    Arc next_arc(Index a, Index b, const Aim& aim) const {
+        const Point from = local(at_);
+        Arc arc;
+        arc.curve = voronoi::bisector_of(s_, a, b, from);
+        arc.begin = arc.curve.parameter(from);
+        arc.why = End::lost;
+        arc.end = arc.begin;
+        if (!std::isfinite(arc.begin) || !std::isfinite(squared_norm(arc.curve.p2))) return arc;
+        const double end_a = leaves(arc.curve, arc.begin, forward_gate(s_, a), grain_),
+                     end_b = leaves(arc.curve, arc.begin, backward_gate(s_, b), grain_);
+        double end = std::min({end_a, end_b, arc.begin + 4 * s_.extent});
+        const auto offer = [&](double t, End why) {
+            if (t < end) end = t, arc.why = why;
+        };
+        offer(reaches_limit(arc), End::limit);
+        if (aim.stops) offer(comes_to(arc, local(aim.goal)), End::goal);
+        voronoi::FirstTouch touch(s_, tree_, grain_, arc.curve, a, b, arc.begin, end);
+        touch.find();
+        arc.end = touch.at();
+        arc.third = touch.site();
+        if (arc.third != voronoi::none) {
+            arc.why = End::meet;
+        } else if (arc.why == End::lost) {
+            arc.turns_a = end_a <= arc.end;
+            arc.turns_b = end_b <= arc.end;
+            end_arc(arc, a, b);
+        }
+        return arc;
+    }
+    // Of an arc that nothing else ends than its own sites.
+    void end_arc(Arc& arc, Index a, Index b) const {
+        if (s_.is_edge(a) && s_.is_edge(b) && s_.after(a) == b && s_.turn_at(b) == voronoi::Turn::corner) {
+            arc.why = End::corner;
+            arc.end = arc.curve.parameter(s_.begin(b));
+            return;
+        }
+        const Index corner = arc.turns_a ? voronoi::corner_after(s_, a) : voronoi::none,
+                    other = arc.turns_b ? voronoi::corner_before(s_, b) : voronoi::none;
+        if (corner != voronoi::none || other != voronoi::none) {
+            arc.why = End::meet;
+            arc.third = corner != voronoi::none ? corner : other;
+        } else if (arc.turns_a || arc.turns_b) {
+            arc.why = End::told;
+        }
+    }
+
+    double reaches_limit(const Arc& arc) const {
+        const double far = std::numeric_limits<double>::infinity();
+        if (!std::isfinite(keeps_)) return far;
+        voronoi::Quadratic over = arc.curve.radius_form;
+        over.c0 -= arc.curve.is_squared ? keeps_ * keeps_ : keeps_;
+        const double tiny = 1e-12 * (arc.curve.is_squared ? keeps_ * keeps_ : keeps_);
+        if (over.at(arc.begin) >= -tiny && over.slope(arc.begin) * keeps_ >= -tiny) return arc.begin;
+        double first = far;
+        for (const double t : over.zeros())
+            if (t > arc.begin && t < first && over.slope(t) > 0) first = t;
+        return first;
+    }
+    // Where a point is no farther than the walls.
+    static double comes_to(const Arc& arc, Point goal) {
+        const voronoi::Quadratic gap = arc.curve.against_point(goal);
+        double first = std::numeric_limits<double>::infinity();
+        const double touching = -gap.c1 / (2 * gap.c2);  // of a goal on a wall, rounding hides the zeros
+        if (touching >= arc.begin && gap.at(touching) <= 1e-9 * squared_norm(arc.curve.at(touching) - goal))
+            first = touching;
+        for (const double t : gap.zeros())
+            if (t >= arc.begin && t < first && distance(arc.curve.at(t), goal) <= 2 * arc.curve.radius(t))
+                first = t;
+        return first;
+    }
+
+    // Up to where the corner is in view.
+    template <class Look>
+    End end_in_corner(const Arc& arc, Index a, Log& log, Look look) {
+        const Index corner = s_.after(a);
+        const double far = distance(local(at_), s_.begin(corner));
+        log.corners.push_back(corner_at(corner));
+        if (far > keeps_) {
+            const double stop = arc.curve.parameter(s_.begin(corner)) - keeps_;
+            if (slide(arc.curve, arc.begin, std::max(stop, arc.begin), log, look)) return End::told;
+        }
+        feet_ = {contacts_.contact(a, local(at_)), contacts_.contact(corner, local(at_))};
+        return End::corner;
+    }
+
+    // Moves along an arc. A chord stays in the free disc around its one end.
+    template <class Look>
+    bool slide(const voronoi::Bisector& curve, double t0, double t1, Log& log, Look look) {
+        const bool bends = norm(curve.p2) > 0;
+        const double least = curve.least_radius(t0, t1);
+        log.least = std::min(log.least, least);
+        for (double t = t0; t < t1;) {
+            const double r = std::max(curve.radius(t), 1e-9 * s_.extent);
+            double step = 0.25 * r / norm(curve.velocity(t));
+            if (!bends) step = std::max(step, (t1 - t0) / 32);
+            t = t + step < t1 ? t + step : t1;
+            move_to(curve.at(t));
+            if (bends || t == t1) note(at_, log);
+            radius_ = curve.radius(t);
+            if (!look()) continue;
+            note(at_, log);
+            return true;
+        }
+        return false;
+    }
+
+    // Nothing where the foot comes to the end of its site.
+    template <class Way, class Look>
+    std::optional<End> roll_along(const Way& way, Index a, double end, const Aim& aim, Log& log, Look look,
+                                  double& rolled) {
+        radius_ = keeps_;
+        log.least = std::min(log.least, keeps_);
+        const voronoi::FirstMeeting met =
+            voronoi::first_meeting(s_, tree_, grain_, way, keeps_, a, end);
+        const Point goal = local(aim.goal);
+        double stop = met.at;
+        End why = met.site == voronoi::none ? End::told : End::meet;
+        const auto offer = [&](double t, End reason) {
+            if (t >= 0 && t < stop) stop = t, why = reason;
+        };
+        if (const double t = way.meets_point(0.5 * (keeps_ + range()), goal); aim.stops && std::isfinite(t))
+            offer(t, End::goal);
+        if (aim.mark) {
+            const double t = way.nearest(local(*aim.mark)), off = 1e-7 * keeps_ + 1e-9 * s_.extent;
+            if (rolled + way.length(t) > 2 * off && way.length(t) > -off && distance(way.at(t), local(*aim.mark)) < off)
+                offer(std::max(t, 0.0), End::mark);
+        }
+        const double near = grain_.at(keeps_), nearest = way.nearest(goal), low = std::clamp(nearest, 0.0, stop);
+        const Point there = way.at(low);
+        const bool is_low = way.length(std::abs(nearest - low)) <= near && dot(goal - there, s_.towards(a, there)) < 0;
+        const double far = distance(there, goal);
+        if (is_low && far < aim.nearer) stop = low, why = End::low;
+        const int steps = std::clamp(int(std::ceil(way.length(stop) / (0.25 * keeps_))), 1, 10'000);
+        bool low_noted = !is_low || why == End::low;
+        for (int i = 1; i <= steps; ++i) {
+            const double t = i == steps ? stop : stop * i / steps;
+            if (!low_noted && t >= low) {
+                low_noted = true;
+                if (!log.low || far < distance(local(log.path[*log.low]), goal)) {
+                    log.low = log.path.size();
+                    log.path.push_back(there + s_.origin);
+                }
+            }
+            move_to(way.at(t));
+            if (!s_.is_edge(a) || i == steps) note(at_, log);
+            if (!look()) continue;
+            note(at_, log);
+            return End::told;
+        }
+        rolled += way.length(stop);
+        if (why == End::told) return {};
+        const Point p = local(at_);
+        feet_ = why == End::meet ? contacts_.ahead(p, a, met.site)
+                                 : std::vector<Foot>{contacts_.contact(a, p)};
+        return finish(why, log);
+    }
+};
+
+}  // namespace cspace::navigation

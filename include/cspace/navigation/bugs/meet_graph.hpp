@@ -1,0 +1,206 @@
+// What a robot remembers that traces a Voronoi diagram: the meet points, the ways between them, and which of
+// the gaps between the walls around a meet point it has not been through.
+#pragma once
+
+#include <algorithm>
+#include <queue>
+
+#include "cspace/navigation/bugs/clearance_sensor.hpp"
+
+namespace cspace::navigation {
+
+// Between a foot and the one after it. Where it is wider than half a turn and the walls are as far as the
+// robot keeps from them, no way leads into it but along the wall on its right.
+struct Gap {
+    bool rolls = false, taken = false;
+    int way = -1;  // that leads into it along the wall on its right
+};
+
+struct MeetPoint {
+    Point at;
+    double clearance;
+    std::vector<Foot> feet;
+    std::vector<Gap> gaps;
+};
+
+struct MeetWay {
+    int from, to, to_gap;
+    std::vector<Point> path;
+    double length;
+    bool rolls;
+    std::optional<std::size_t> low;  // the point of the path nearest to the goal, where the wall lies behind
+};
+
+struct Branch {
+    int meet = -1, gap = -1;
+};
+
+class MeetGraph {
+  public:
+    std::vector<MeetPoint> meets;
+    std::vector<MeetWay> ways;
+
+    // Into the last gap the robot has looked already. keeps: how far it keeps from a single wall.
+    int add(Point at, double clearance, const std::vector<Foot>& feet, End came, bool rolled, double keeps) {
+        MeetPoint meet{at, clearance, feet, std::vector<Gap>(feet.size())};
+        const bool is_far = clearance >= keeps * (1 - 1e-9);
+        for (std::size_t k = 0; k < feet.size(); ++k)
+            meet.gaps[k].rolls = came == End::meet && !rolled && is_far && is_wide(feet, k);
+        if (came == End::limit) meet.gaps[0].rolls = true;
+        if (rolled) meet.gaps.back().rolls = true;
+        meets.push_back(std::move(meet));
+        around_.emplace_back();
+        return int(meets.size()) - 1;
+    }
+    void make_roll(int meet, int gap) { meets[std::size_t(meet)].gaps[std::size_t(gap)] = {true}; }
+    void add_way(MeetWay way, int gap) {
+        const int number = int(ways.size());
+        around_[std::size_t(way.from)].push_back(number);
+        around_[std::size_t(way.to)].push_back(number);
+        MeetPoint &from = meets[std::size_t(way.from)], &to = meets[std::size_t(way.to)];
+        from.gaps[std::size_t(gap)].way = number;
+        if (!way.rolls) to.gaps[std::size_t(way.to_gap)].taken = true;
+        ways.push_back(std::move(way));
+    }
+
+    // The meet point and gap at which a robot arrives that comes from between the last foot and the first;
+    // if it can be, a gap that it does not know.
+    Branch find(Point at, double clearance, const std::vector<Foot>& feet, double fine) const {
+        const double near = 1e-6 * clearance + fine;
+        Branch best;
+        double least = 1e-5;
+        for (int m = 0; m < int(meets.size()); ++m) {
+            const MeetPoint& meet = meets[std::size_t(m)];
+            if (std::abs(meet.at.x - at.x) > near || std::abs(meet.at.y - at.y) > near) continue;
+            const std::size_t n = meet.feet.size();
+            for (std::size_t k = 0; k < n; ++k) {
+                const double off = norm(meet.feet[k].towards - feet.back().towards) +
+                                   norm(meet.feet[(k + 1) % n].towards - feet.front().towards);
+                const bool is_known = meet.gaps[k].taken && !meet.gaps[k].rolls;
+                if (!(off < least) || (is_known && best.meet >= 0)) continue;
+                if (!is_known) least = off;
+                best = {m, int(k)};
+            }
+        }
+        return best;
+    }
+
+    // More feet in a gap of a meet point, in their order.
+    void refine(int meet, int gap, std::vector<Foot> more) {
+        MeetPoint& m = meets[std::size_t(meet)];
+        const auto n = std::ptrdiff_t(gap) + 1;
+        const Foot& next = m.feet[std::size_t(n) % m.feet.size()];
+        const bool closes = more.back().site == next.site;
+        if (closes) more.pop_back();
+        m.feet.insert(m.feet.begin() + n, more.begin(), more.end());
+        m.gaps.insert(m.gaps.begin() + n, more.size(), Gap{});
+        const bool rolls = m.gaps[std::size_t(gap)].rolls;
+        for (std::size_t k = std::size_t(gap); k <= std::size_t(gap) + more.size(); ++k)
+            m.gaps[k] = {rolls && !closes && k == std::size_t(gap) + more.size()};
+        for (const int w : around_[std::size_t(meet)]) {
+            MeetWay& way = ways[std::size_t(w)];
+            if (way.to == meet && way.to_gap > gap - int(rolls)) way.to_gap += int(more.size());
+        }
+    }
+
+    // Which gap to go into next: by the way there, and the straight line left from there.
+    Branch next(int here, Point goal) {
+        search(here, [&](int meet) { return distance(meets[std::size_t(meet)].at, goal); });
+        if (found_ < 0) return {};
+        const MeetPoint& meet = meets[std::size_t(found_)];
+        Branch best{found_, -1};
+        double ahead = -2;
+        const Point to = goal - meet.at;
+        for (std::size_t k = 0; k < meet.gaps.size(); ++k) {
+            if (meet.gaps[k].taken) continue;
+            const double along = dot(direction(meet, k), to) / std::max(norm(to), 1e-300);
+            if (along > ahead) ahead = along, best.gap = int(k);
+        }
+        return best;
+    }
+    // The way to what next() found, or to a meet point.
+    void go_back(int here, int there, std::vector<Point>& path) {
+        search(here, [&](int) { return 0.0; }, there);
+        std::vector<int> back;
+        for (int m = there; m != here;) {
+            const int w = came_[std::size_t(m)];
+            back.push_back(w);
+            const MeetWay& way = ways[std::size_t(w)];
+            m = way.from == m ? way.to : way.from;
+        }
+        int at = here;
+        for (auto w = back.rbegin(); w != back.rend(); ++w) {
+            const MeetWay& way = ways[std::size_t(*w)];
+            const bool forward = way.from == at;
+            if (forward)
+                path.insert(path.end(), way.path.begin() + 1, way.path.end());
+            else
+                path.insert(path.end(), way.path.rbegin() + 1, way.path.rend());
+            at = forward ? way.to : way.from;
+        }
+    }
+
+    // The closed curve along walls that begins with a way; empty where it does not close.
+    std::vector<int> loop(int way) const {
+        std::vector<int> found;
+        for (int w = way; found.size() <= ways.size();) {
+            found.push_back(w);
+            const MeetWay& last = ways[std::size_t(w)];
+            w = meets[std::size_t(last.to)].gaps[std::size_t(last.to_gap)].way;
+            if (w < 0) return {};
+            if (w == way) return found;
+        }
+        return {};
+    }
+
+  private:
+    std::vector<std::vector<int>> around_;  // the ways at each meet point
+    std::vector<double> cost_;
+    std::vector<int> came_;
+    int found_ = -1;
+
+    static double angle_of(const std::vector<Foot>& feet, std::size_t k) {
+        if (feet.size() == 1) return 2 * std::numbers::pi;
+        return voronoi::turn_from(feet[k].towards, feet[(k + 1) % feet.size()].towards);
+    }
+    static bool is_wide(const std::vector<Foot>& feet, std::size_t k) {
+        return angle_of(feet, k) > std::numbers::pi * (1 + 1e-9);
+    }
+    static Point direction(const MeetPoint& meet, std::size_t k) {
+        const Point a = meet.feet[k].towards;
+        const double half = meet.gaps[k].rolls ? 0.5 * std::numbers::pi : 0.5 * angle_of(meet.feet, k);
+        const double c = std::cos(half), s = std::sin(half);
+        return {c * a.x - s * a.y, s * a.x + c * a.y};
+    }
+
+    // Dijkstra's search from a meet point, until no other branch can be nearer, or a meet point is reached.
+    template <class Left>
+    void search(int here, Left left, int there = -1) {
+        cost_.assign(meets.size(), std::numeric_limits<double>::infinity());
+        came_.assign(meets.size(), -1);
+        std::priority_queue<std::pair<double, int>, std::vector<std::pair<double, int>>, std::greater<>> open;
+        cost_[std::size_t(here)] = 0;
+        open.push({0, here});
+        double best = std::numeric_limits<double>::infinity();
+        found_ = -1;
+        while (!open.empty()) {
+            const auto [cost, m] = open.top();
+            open.pop();
+            if (cost > cost_[std::size_t(m)]) continue;
+            if (cost >= best || m == there) break;
+            const auto& gaps = meets[std::size_t(m)].gaps;
+            const bool is_open = std::any_of(gaps.begin(), gaps.end(), [](const Gap& g) { return !g.taken; });
+            if (there < 0 && is_open && cost + left(m) < best) best = cost + left(m), found_ = m;
+            for (const int w : around_[std::size_t(m)]) {
+                const MeetWay& way = ways[std::size_t(w)];
+                const int other = way.from == m ? way.to : way.from;
+                if (!(cost + way.length < cost_[std::size_t(other)])) continue;
+                cost_[std::size_t(other)] = cost + way.length;
+                came_[std::size_t(other)] = w;
+                open.push({cost + way.length, other});
+            }
+        }
+    }
+};
+
+}  // namespace cspace::navigation

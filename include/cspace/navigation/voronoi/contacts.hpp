@@ -1,0 +1,135 @@
+// What a disc touches that has come as far as it can: its contacts in order around it.
+#pragma once
+
+#include <numbers>
+
+#include "cspace/navigation/voronoi/first_touch.hpp"
+
+namespace cspace::navigation::voronoi {
+
+struct Contact {
+    Index site;
+    Point towards;  // unit, from the middle of the disc to where it touches the site
+};
+
+// The angle from one direction counterclockwise to another, in [0, 2π).
+inline double turn_from(Point a, Point b) {
+    const double angle = std::atan2(cross(a, b), dot(a, b));
+    return angle < 0 ? angle + 2 * std::numbers::pi : angle;
+}
+
+class Contacts {
+  public:
+    Contacts(const Sites& sites, const EdgeTree& tree, Grain grain)
+        : s_(sites), tree_(tree), grain_(grain) {}
+
+    // The sites that the disc touches that has come along the arc of a and b to p, counterclockwise from a to
+    // b; c is one between them. Between b and a there is only what the disc has left behind.
+    std::vector<Contact> around(Point& p, Index a, Index b, Index c) const {
+        polish(p, a, b, c);
+        std::vector<Contact> all{contact(a, p), contact(b, p), contact(c, p)};
+        add_within(p, turn_from(all[0].towards, all[1].towards), all);
+        sort(all, b);
+        std::vector<Contact> kept = without_twins(all, s_.distance_to(a, p));
+        if (kept.size() > 3) polish_by_spread(p, kept);
+        return kept;
+    }
+    // The same for a disc that has rolled along a alone, its foot moving forward, until it touched c in front.
+    std::vector<Contact> ahead(Point p, Index a, Index c) const {
+        std::vector<Contact> all{contact(a, p), contact(c, p)};
+        add_within(p, std::numbers::pi, all);
+        sort(all, none);
+        return without_twins(all, s_.distance_to(a, p));
+    }
+    // All that a disc touches which touches a and b.
+    std::vector<Contact> everywhere(Point p, Index a, Index b) const {
+        std::vector<Contact> all{contact(a, p), contact(b, p)};
+        add_within(p, 2 * std::numbers::pi, all);
+        sort(all, none);
+        const double radius = s_.distance_to(a, p);
+        std::vector<Contact> kept = without_twins(all, radius);
+        if (kept.size() > 2 && is_same(kept.back(), kept.front(), radius)) kept.pop_back();
+        return kept;
+    }
+    Contact contact(Index site, Point p) const { return {site, s_.towards(site, p)}; }
+
+  private:
+    const Sites& s_;
+    const EdgeTree& tree_;
+    Grain grain_;
+
+    // Adds what the disc touches in the sector of an angle from the first contact on.
+    void add_within(Point p, double sector, std::vector<Contact>& all) const {
+        const double radius = s_.distance_to(all[0].site, p), slack = grain_.at(radius);
+        const Point start = all[0].towards;
+        const std::size_t given = all.size();
+        const auto add = [&](Index site) {
+            for (std::size_t i = 0; i < given; ++i)
+                if (all[i].site == site) return;
+            const Contact touch = contact(site, p);
+            if (turn_from(start, touch.towards) < sector) all.push_back(touch);
+        };
+        tree_.visit_disc(p, radius + slack, EitherSide{}, [&](Index e) {
+            const double s = s_.advance(e, p), h = s_.height(e, p);
+            if (h > 0.5 * radius && h <= radius + slack && s >= 0 && s <= s_.length[std::size_t(e)]) add(e);
+            if (s_.turn_at(e) == Turn::around && distance(p, s_.begin(e)) <= radius + slack &&
+                s_.is_in_cone(e, p, slack))
+                add(s_.size() + e);
+            return true;
+        });
+    }
+    // Counterclockwise from the first; the site that is last, if one is, goes to the end.
+    static void sort(std::vector<Contact>& all, Index last) {
+        const Point start = all[0].towards;
+        std::sort(all.begin() + 1, all.end(), [&](const Contact& x, const Contact& y) {
+            if (x.site == last || y.site == last) return y.site == last && x.site != last;
+            return turn_from(start, x.towards) < turn_from(start, y.towards);
+        });
+    }
+    std::vector<Contact> without_twins(const std::vector<Contact>& all, double radius) const {
+        std::vector<Contact> kept{all.front()};
+        for (std::size_t i = 1; i + 1 < all.size(); ++i)
+            if (!is_same(kept.back(), all[i], radius)) kept.push_back(all[i]);
+        while (kept.size() > 1 && is_same(kept.back(), all.back(), radius)) kept.pop_back();
+        kept.push_back(all.back());
+        return kept;
+    }
+    // By three touches that are far from each other around the disc.
+    void polish_by_spread(Point& p, const std::vector<Contact>& all) const {
+        const auto farthest = [&](auto spread) {
+            return *std::max_element(all.begin(), all.end(),
+                                     [&](const Contact& x, const Contact& y) { return spread(x) < spread(y); });
+        };
+        const Contact a = all.front();
+        const Contact b = farthest([&](const Contact& x) { return squared_norm(x.towards - a.towards); });
+        const Contact c = farthest(
+            [&](const Contact& x) { return std::abs(cross(b.towards - a.towards, x.towards - a.towards)); });
+        polish(p, a.site, b.site, c.site);
+    }
+    // Whether two touches are one: of the same site, or near each other on sites without a corner between.
+    bool is_same(const Contact& x, const Contact& y, double radius) const {
+        if (x.site == y.site) return true;
+        if (!(squared_norm(x.towards - y.towards) < 1e-12) && radius > 0) return false;
+        return follows(x.site, y.site) || follows(y.site, x.site);
+    }
+    bool follows(Index x, Index y) const {
+        const Index e = s_.edge_of(x), f = s_.edge_of(y);
+        if (!s_.is_edge(x)) return f == e || (s_.is_edge(y) && f == s_.previous(e));
+        return s_.after(e) == f && (!s_.is_edge(y) || s_.turn_at(f) != Turn::corner);
+    }
+
+    // Newton's method for the point as far from three sites.
+    void polish(Point& p, Index a, Index b, Index c) const {
+        for (int i = 0; i < 2; ++i) {
+            const Point da = s_.towards(a, p), ab = s_.towards(b, p) - da, ac = s_.towards(c, p) - da;
+            const double det = cross(ab, ac), ra = s_.distance_to(a, p);
+            if (!(std::abs(det) > 1e-6)) return;
+            const double fb = s_.distance_to(b, p) - ra, fc = s_.distance_to(c, p) - ra;
+            const Point step{(fb * ac.y - fc * ab.y) / det, (fc * ab.x - fb * ac.x) / det};
+            if (!(norm(step) <= 1e-6 * s_.extent)) return;
+            p = p + step;
+        }
+    }
+};
+
+}  // namespace cspace::navigation::voronoi
