@@ -25,6 +25,8 @@ PLANNERS = [
     ("tangent_bug", {"range": 0.0}),
     ("tangent_bug", {"range": 2.0}),
     ("tangent_bug", {"range": inf}),
+    ("voronoi_bug", {"range": 2.0}),
+    ("voronoi_bug", {"range": inf}),
 ]
 WARM = 4  # calls before one is measured, and that one
 SHARE = 10  # Tangent Bug looks around in one world of so many

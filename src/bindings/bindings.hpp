@@ -31,6 +31,7 @@ void bind_grid(nanobind::module_& m);
 void bind_grid_any_angle(nanobind::module_& m);
 void bind_polygon_routes(nanobind::module_& m);
 void bind_voronoi(nanobind::module_& m);
+void bind_voronoi_bug(nanobind::module_& m);
 void bind_sampling(nanobind::module_& m);
 void bind_polygon_world(nanobind::module_& m);
 void bind_grid_replanning(nanobind::module_& m);

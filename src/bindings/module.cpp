@@ -39,6 +39,7 @@ NB_MODULE(_core, m) {
     bind_harmonic(m);
     bind_navigation_function(m);
     bind_voronoi(m);
+    bind_voronoi_bug(m);
     bind_sampling(m);
     bind_polygon_world(m);
     bind_grid_replanning(m);

@@ -6,6 +6,7 @@
 #include "bindings.hpp"
 #include "cspace/maps/polygon_world.hpp"
 #include "cspace/navigation/any_angle/polyanya.hpp"
+#include "cspace/navigation/bugs/surroundings.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
 #include "cspace/navigation/cells/exact_cells.hpp"
 #include "cspace/navigation/visibility/search.hpp"
@@ -17,7 +18,8 @@ struct PolygonCore {
     cspace::maps::PolygonWorld world;
     double tolerance = 0;  // how deep in an obstacle rounding may have put a point that lies on a wall [m]
     // Made when first asked; used with the GIL held.
-    std::unique_ptr<cspace::navigation::Walls> felt;  // what robots touch
+    std::unique_ptr<cspace::navigation::Walls> felt;           // what robots touch
+    std::unique_ptr<cspace::navigation::Surroundings> sensed;  // what robots see that keep away from it
     std::unique_ptr<cspace::navigation::Polyanya> shortest;
     std::unique_ptr<cspace::navigation::VisibilitySearch> visibility;
     std::unique_ptr<cspace::navigation::ExactCells> cells;

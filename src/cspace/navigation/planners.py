@@ -81,6 +81,12 @@ _ROWS: Final[tuple[Planner, ...]] = (
     ),
     Planner("theta_star", "a short way of any angle over cells that see each other", "grid", "map"),
     Planner("voronoi", "the widest way, along points as far from two walls", "polygons", "map"),
+    Planner(
+        "voronoi_bug",
+        "a robot that sees walls up to a distance: as far from two of them",
+        "polygons",
+        "range",
+    ),
     Planner("wavefront", "a way of the fewest steps over cells, down the waves from the goal", "grid", "map"),
     Planner("weighted_a_star", "a way at most so many times the shortest", "grid", "map"),
     Planner("exact_cells", "a path through trapezoids between the corners, pulled taut", "polygons", "map"),

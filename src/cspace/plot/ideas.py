@@ -93,6 +93,22 @@ def draw_walk(axes: Any, route: Any) -> list[Any]:
     return artists
 
 
+def draw_traced_diagram(axes: Any, route: Any) -> list[Any]:
+    """What a robot has traced of the diagram and along walls, and the points where walls meet."""
+    trace = route.trace
+    artists: list[Any] = []
+    for word, tint in (("trace", colors.JOINT), ("roll", FAINT)):
+        part = trace.only(word)
+        if len(part):
+            artists += lines(
+                axes, np.stack([part.start, part.end], axis=1), colors=[tint], linewidths=2.4, zorder=2
+            )
+    meets = route.evidence.meets
+    if len(meets):
+        artists += axes.plot(*meets.T, "o", color=colors.INK, ms=4, mfc="none", mew=1.2, zorder=8)
+    return artists
+
+
 def draw_visibility_graph(axes: Any, route: Any) -> list[Any]:
     from cspace.navigation.visibility_graph import visibility_graph
 
@@ -200,6 +216,7 @@ CELL_PLANNERS: Final = (
 SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     **{name: draw_cells for name in CELL_PLANNERS},
     **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
+    "voronoi_bug": draw_traced_diagram,
     "approximate_cells": draw_expanded,
     "brushfire": nothing,
     "harmonic": nothing,

@@ -6,30 +6,11 @@
 
 #include "cspace/navigation/bugs/clearance_sensor.hpp"
 #include "cspace/navigation/bugs/range_robot.hpp"
+#include "cspace/navigation/bugs/surroundings.hpp"
 #include "cspace/navigation/voronoi/feet.hpp"
 #include "cspace/navigation/voronoi/rolling.hpp"
 
 namespace cspace::navigation {
-
-// The walls as sites, made once for a world.
-struct Surroundings {
-    voronoi::Sites sites;
-    voronoi::EdgeTree tree;
-
-    explicit Surroundings(const maps::Boundary& walls)
-        : sites(voronoi::sites_of(walls, middle_of(walls))), tree(sites) {}
-
-  private:
-    static Point middle_of(const maps::Boundary& walls) {
-        if (walls.size() == 0) return {};
-        Point low = walls.points[0], high = low;
-        for (const Point& p : walls.points) {
-            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-        }
-        return 0.5 * (low + high);
-    }
-};
 
 class ClearanceRobot : public RangeRobot {
   public:
@@ -37,7 +18,8 @@ class ClearanceRobot : public RangeRobot {
     // It keeps a little less than its range from walls, so as not to lose them; no round part of it, so that
     // in worlds of round numbers no gap is twice that wide.
     static constexpr double kept_share = 0.99658;
-    static constexpr double beside = 1e-11;  // so near to a wall, in sizes of the world, rounding hides the side
+    static constexpr double beside =
+        1e-11;  // so near to a wall, in sizes of the world, rounding hides the side
 
     ClearanceRobot(const Walls& walls, const Surroundings& around, Point start, double range,
                    voronoi::Grain grain)
@@ -56,8 +38,8 @@ class ClearanceRobot : public RangeRobot {
         place_ = {};
     }
 
-    End begin(Log& log) {
-        if (s_.size() == 0) return End::open;
+    Halt begin(Log& log) {
+        if (s_.size() == 0) return Halt::open;
         const Point from = local(at_);
         voronoi::Retraction up;
         if (!place_.is_open()) {
@@ -65,60 +47,60 @@ class ClearanceRobot : public RangeRobot {
             up = away_from_wall(from);
         } else {
             const voronoi::Nearest near = voronoi::nearest_site(s_, tree_, from);
-            if (near.site == voronoi::none) return End::lost;
-            if (near.distance > keeps_) return End::open;
+            if (near.site == voronoi::none) return Halt::lost;
+            if (near.distance > keeps_) return Halt::open;
             const Index wall = near.distance <= beside * s_.extent ? wall_behind() : voronoi::none;
             up = wall == voronoi::none ? voronoi::retract(s_, tree_, from) : away_from(wall, from);
         }
         const bool is_far = up.b == voronoi::none || up.radius >= keeps_ * (1 - 1e-9);
-        if (is_far && !std::isfinite(keeps_)) return End::lost;
+        if (is_far && !std::isfinite(keeps_)) return Halt::lost;
         const Point away = (1 / distance(up.foot, up.at)) * (up.at - up.foot);
         const Point to = is_far ? up.foot + keeps_ * away : up.at;
         const Point target = to + s_.origin;
-        if (!advance({at_, target}, log.path)) return End::lost;
+        if (!advance({at_, target}, log.path)) return Halt::lost;
         note(target, log);
         place_ = {};
         radius_ = is_far ? keeps_ : up.radius;
-        feet_ = is_far ? std::vector<Foot>{contacts_.contact(up.a, to)}
-                       : contacts_.everywhere(to, up.a, up.b);
-        return finish(is_far ? End::limit : End::meet, log);
+        feet_ =
+            is_far ? std::vector<Foot>{contacts_.contact(up.a, to)} : contacts_.everywhere(to, up.a, up.b);
+        return finish(is_far ? Halt::limit : Halt::meet, log);
     }
 
     template <class Look>
-    End trace(Foot right, Foot left, const Aim& aim, Log& log, Look look) {
+    Halt trace(Foot right, Foot left, const Aim& aim, Log& log, Look look) {
         Index a = right.site, b = left.site;
         pass(a, log);
         pass(b, log);
         for (Index joints = 0; joints <= 2 * s_.size() + 8; ++joints) {
             const Arc arc = next_arc(a, b, aim);
-            if (arc.why == End::corner) return end_in_corner(arc, a, log, look);
-            if (slide(arc.curve, arc.begin, arc.end, log, look)) return End::told;
-            if (arc.why == End::lost) return End::lost;
-            if (arc.why == End::meet) {
+            if (arc.why == Halt::corner) return end_in_corner(arc, a, log, look);
+            if (slide(arc.curve, arc.begin, arc.end, log, look)) return Halt::told;
+            if (arc.why == Halt::lost) return Halt::lost;
+            if (arc.why == Halt::meet) {
                 Point p = arc.curve.at(arc.end);
                 feet_ = contacts_.around(p, a, b, arc.third);
-                return arrive(p, End::meet, log);
+                return arrive(p, Halt::meet, log);
             }
-            if (arc.why != End::told) {
+            if (arc.why != Halt::told) {
                 const Point p = arc.curve.at(arc.end);
                 feet_ = {contacts_.contact(a, p), contacts_.contact(b, p)};
                 return arrive(p, arc.why, log);
             }
             if (arc.turns_a) pass(a = site_after(s_, a), log);
             if (arc.turns_b) pass(b = site_before(s_, b), log);
-            if (a == b) return End::lost;
+            if (a == b) return Halt::lost;
         }
-        return End::lost;
+        return Halt::lost;
     }
 
     template <class Look>
-    End roll(Foot foot, const Aim& aim, Log& log, Look look) {
+    Halt roll(Foot foot, const Aim& aim, Log& log, Look look) {
         Index a = foot.site;
         pass(a, log);
         double rolled = 0;
         for (Index joints = 0; joints <= 2 * s_.size() + 8; ++joints) {
             const Point p = local(at_), away = -1.0 * s_.towards(a, p);
-            std::optional<End> end;
+            std::optional<Halt> end;
             if (s_.is_edge(a)) {
                 const double left = s_.length[std::size_t(a)] - s_.advance(a, p);
                 const Point on = p + (keeps_ - s_.height(a, p)) * away;
@@ -128,32 +110,32 @@ class ClearanceRobot : public RangeRobot {
                 const Index e = s_.edge_of(a);
                 double turn = voronoi::turn_from(s_.normal(e), away);
                 if (turn > 1.5 * std::numbers::pi) turn = 0;
-                end = roll_along(voronoi::RoundWay{s_.begin(e), away, keeps_}, a, turn, aim, log, look,
-                                 rolled);
+                end =
+                    roll_along(voronoi::RoundWay{s_.begin(e), away, keeps_}, a, turn, aim, log, look, rolled);
             }
             if (end) return *end;
             if (corner_after(s_, a) != voronoi::none) {
                 feet_ = contacts_.ahead(local(at_), a, corner_after(s_, a));
-                return finish(End::meet, log);
+                return finish(Halt::meet, log);
             }
             pass(a = site_after(s_, a), log);
         }
-        return End::lost;
+        return Halt::lost;
     }
 
-    End fly(const Aim& aim, Log& log) {
+    Halt fly(const Aim& aim, Log& log) {
         const Point from = local(at_), to = local(aim.goal);
         const double far = distance(from, to), end = std::max(far - keeps_, 0.0);
-        if (!(far > 0)) return End::goal;
+        if (!(far > 0)) return Halt::goal;
         const voronoi::StraightWay way{from, (1 / far) * (to - from)};
         const voronoi::FirstMeeting met =
             voronoi::first_meeting(s_, tree_, grain_, way, keeps_, voronoi::none, end);
         move_to(way.at(met.at));
         note(at_, log);
-        if (met.site == voronoi::none) return End::goal;
+        if (met.site == voronoi::none) return Halt::goal;
         radius_ = keeps_;
         feet_ = {contacts_.contact(met.site, way.at(met.at))};
-        return finish(End::limit, log);
+        return finish(Halt::limit, log);
     }
 
   private:
@@ -167,7 +149,7 @@ class ClearanceRobot : public RangeRobot {
     struct Arc {
         voronoi::Bisector curve;
         double begin = 0, end = 0;
-        End why = End::told;  // told: a foot goes over to its next site
+        Halt why = Halt::told;  // told: a foot goes over to its next site
         Index third = voronoi::none;
         bool turns_a = false, turns_b = false;
     };
@@ -180,13 +162,13 @@ class ClearanceRobot : public RangeRobot {
     static void note(Point p, Log& log) {
         if (log.path.empty() || log.path.back() != p) log.path.push_back(p);
     }
-    End arrive(Point p, End why, Log& log) {
+    Halt arrive(Point p, Halt why, Log& log) {
         move_to(p);
         if (!log.path.empty()) log.path.back() = at_;  // as polished
         radius_ = s_.distance_to(feet_[0].site, p);
         return finish(why, log);
     }
-    End finish(End why, Log& log) {
+    Halt finish(Halt why, Log& log) {
         log.least = std::min(log.least, radius_);
         for (const Foot& foot : feet_) pass_ends(foot.site, log);
         return why;
@@ -211,12 +193,12 @@ class ClearanceRobot : public RangeRobot {
     bool is_tapered(const Place& place) const {
         return place.is_corner() && s_.turn_at(place.out) == voronoi::Turn::corner;
     }
-    End begin_in_corner(Log& log) {
+    Halt begin_in_corner(Log& log) {
         const Point p = local(at_);
         radius_ = 0;
         feet_ = {contacts_.contact(place_.out, p), contacts_.contact(place_.in, p)};
         log.corners.push_back(corner_at(place_.out));
-        return End::corner;
+        return Halt::corner;
     }
     // The wall that a robot is in front of that stands as near to it as rounding; none if it is not sure.
     Index wall_behind() const {
@@ -249,24 +231,24 @@ class ClearanceRobot : public RangeRobot {
         Arc arc;
         arc.curve = voronoi::bisector_of(s_, a, b, from);
         arc.begin = arc.curve.parameter(from);
-        arc.why = End::lost;
+        arc.why = Halt::lost;
         arc.end = arc.begin;
         if (!std::isfinite(arc.begin) || !std::isfinite(squared_norm(arc.curve.p2))) return arc;
         const double end_a = leaves(arc.curve, arc.begin, forward_gate(s_, a), grain_),
                      end_b = leaves(arc.curve, arc.begin, backward_gate(s_, b), grain_);
         double end = std::min({end_a, end_b, arc.begin + 4 * s_.extent});
-        const auto offer = [&](double t, End why) {
+        const auto offer = [&](double t, Halt why) {
             if (t < end) end = t, arc.why = why;
         };
-        offer(reaches_limit(arc), End::limit);
-        if (aim.stops) offer(comes_to(arc, local(aim.goal)), End::goal);
+        offer(reaches_limit(arc), Halt::limit);
+        if (aim.stops) offer(comes_to(arc, local(aim.goal)), Halt::goal);
         voronoi::FirstTouch touch(s_, tree_, grain_, arc.curve, a, b, arc.begin, end);
         touch.find();
         arc.end = touch.at();
         arc.third = touch.site();
         if (arc.third != voronoi::none) {
-            arc.why = End::meet;
-        } else if (arc.why == End::lost) {
+            arc.why = Halt::meet;
+        } else if (arc.why == Halt::lost) {
             arc.turns_a = end_a <= arc.end;
             arc.turns_b = end_b <= arc.end;
             end_arc(arc, a, b);
@@ -276,17 +258,17 @@ class ClearanceRobot : public RangeRobot {
     // Of an arc that nothing else ends than its own sites.
     void end_arc(Arc& arc, Index a, Index b) const {
         if (s_.is_edge(a) && s_.is_edge(b) && s_.after(a) == b && s_.turn_at(b) == voronoi::Turn::corner) {
-            arc.why = End::corner;
+            arc.why = Halt::corner;
             arc.end = arc.curve.parameter(s_.begin(b));
             return;
         }
         const Index corner = arc.turns_a ? voronoi::corner_after(s_, a) : voronoi::none,
                     other = arc.turns_b ? voronoi::corner_before(s_, b) : voronoi::none;
         if (corner != voronoi::none || other != voronoi::none) {
-            arc.why = End::meet;
+            arc.why = Halt::meet;
             arc.third = corner != voronoi::none ? corner : other;
         } else if (arc.turns_a || arc.turns_b) {
-            arc.why = End::told;
+            arc.why = Halt::told;
         }
     }
 
@@ -317,16 +299,16 @@ class ClearanceRobot : public RangeRobot {
 
     // Up to where the corner is in view.
     template <class Look>
-    End end_in_corner(const Arc& arc, Index a, Log& log, Look look) {
+    Halt end_in_corner(const Arc& arc, Index a, Log& log, Look look) {
         const Index corner = s_.after(a);
         const double far = distance(local(at_), s_.begin(corner));
         log.corners.push_back(corner_at(corner));
         if (far > keeps_) {
             const double stop = arc.curve.parameter(s_.begin(corner)) - keeps_;
-            if (slide(arc.curve, arc.begin, std::max(stop, arc.begin), log, look)) return End::told;
+            if (slide(arc.curve, arc.begin, std::max(stop, arc.begin), log, look)) return Halt::told;
         }
         feet_ = {contacts_.contact(a, local(at_)), contacts_.contact(corner, local(at_))};
-        return End::corner;
+        return Halt::corner;
     }
 
     // Moves along an arc. A chord stays in the free disc around its one end.
@@ -352,32 +334,34 @@ class ClearanceRobot : public RangeRobot {
 
     // Nothing where the foot comes to the end of its site.
     template <class Way, class Look>
-    std::optional<End> roll_along(const Way& way, Index a, double end, const Aim& aim, Log& log, Look look,
-                                  double& rolled) {
+    std::optional<Halt> roll_along(const Way& way, Index a, double end, const Aim& aim, Log& log, Look look,
+                                   double& rolled) {
         radius_ = keeps_;
         log.least = std::min(log.least, keeps_);
-        const voronoi::FirstMeeting met =
-            voronoi::first_meeting(s_, tree_, grain_, way, keeps_, a, end);
+        const voronoi::FirstMeeting met = voronoi::first_meeting(s_, tree_, grain_, way, keeps_, a, end);
         const Point goal = local(aim.goal);
         double stop = met.at;
-        End why = met.site == voronoi::none ? End::told : End::meet;
-        const auto offer = [&](double t, End reason) {
+        Halt why = met.site == voronoi::none ? Halt::told : Halt::meet;
+        const auto offer = [&](double t, Halt reason) {
             if (t >= 0 && t < stop) stop = t, why = reason;
         };
         if (const double t = way.meets_point(0.5 * (keeps_ + range()), goal); aim.stops && std::isfinite(t))
-            offer(t, End::goal);
+            offer(t, Halt::goal);
         if (aim.mark) {
             const double t = way.nearest(local(*aim.mark)), off = 1e-7 * keeps_ + 1e-9 * s_.extent;
-            if (rolled + way.length(t) > 2 * off && way.length(t) > -off && distance(way.at(t), local(*aim.mark)) < off)
-                offer(std::max(t, 0.0), End::mark);
+            if (rolled + way.length(t) > 2 * off && way.length(t) > -off &&
+                distance(way.at(t), local(*aim.mark)) < off)
+                offer(std::max(t, 0.0), Halt::mark);
         }
-        const double near = grain_.at(keeps_), nearest = way.nearest(goal), low = std::clamp(nearest, 0.0, stop);
+        const double near = grain_.at(keeps_), nearest = way.nearest(goal),
+                     low = std::clamp(nearest, 0.0, stop);
         const Point there = way.at(low);
-        const bool is_low = way.length(std::abs(nearest - low)) <= near && dot(goal - there, s_.towards(a, there)) < 0;
+        const bool is_low =
+            way.length(std::abs(nearest - low)) <= near && dot(goal - there, s_.towards(a, there)) < 0;
         const double far = distance(there, goal);
-        if (is_low && far < aim.nearer) stop = low, why = End::low;
+        if (is_low && far < aim.nearer) stop = low, why = Halt::low;
         const int steps = std::clamp(int(std::ceil(way.length(stop) / (0.25 * keeps_))), 1, 10'000);
-        bool low_noted = !is_low || why == End::low;
+        bool low_noted = !is_low || why == Halt::low;
         for (int i = 1; i <= steps; ++i) {
             const double t = i == steps ? stop : stop * i / steps;
             if (!low_noted && t >= low) {
@@ -391,13 +375,13 @@ class ClearanceRobot : public RangeRobot {
             if (!s_.is_edge(a) || i == steps) note(at_, log);
             if (!look()) continue;
             note(at_, log);
-            return End::told;
+            return Halt::told;
         }
         rolled += way.length(stop);
-        if (why == End::told) return {};
+        if (why == Halt::told) return {};
         const Point p = local(at_);
-        feet_ = why == End::meet ? contacts_.ahead(p, a, met.site)
-                                 : std::vector<Foot>{contacts_.contact(a, p)};
+        feet_ =
+            why == Halt::meet ? contacts_.ahead(p, a, met.site) : std::vector<Foot>{contacts_.contact(a, p)};
         return finish(why, log);
     }
 };

@@ -17,18 +17,18 @@ struct Aim {
     Point goal;
     double nearer = 0;  // where it rolls along a wall, it stops at points next to the goal less far than this
     std::optional<Point> mark;  // a place along a wall that it will know again
-    bool stops = true;  // where the goal is no farther than the walls
+    bool stops = true;          // where the goal is no farther than the walls
 };
 
 // How a glide ends: where more walls are as near (feet() has all of them), where the walls are as far as the
 // robot keeps from them, in view of the corner between the two walls, where the goal is no farther than the
 // walls, at a point of a wall next to the goal, at the mark, when the caller says so, or by rounding.
-enum class End { meet, limit, corner, goal, low, mark, told, open, lost };
+enum class Halt { meet, limit, corner, goal, low, mark, told, open, lost };
 
 // What a robot notes on its way.
 struct Log {
     std::vector<Point> path;
-    std::vector<Touch> corners;  // that its feet came by
+    std::vector<Touch> corners;                              // that its feet came by
     double least = std::numeric_limits<double>::infinity();  // distance from walls [m]
     std::optional<std::size_t> low;                          // the point of the path nearest to the goal
 };
@@ -44,17 +44,16 @@ struct Log {
 //
 // Each calls look() on its way and stops when that is true.
 template <class Robot>
-concept ClearanceSensor =
-    RangeSensor<Robot> && requires(Robot robot, const Robot& still, Foot foot, const Aim& aim, Log& log,
-                                   bool (*look)(), Point p) {
-        { still.keeps() } -> std::convertible_to<double>;
-        { still.clearance() } -> std::convertible_to<double>;
-        { still.feet() } -> std::convertible_to<std::vector<Foot>>;
-        { robot.begin(log) } -> std::same_as<End>;
-        { robot.trace(foot, foot, aim, log, look) } -> std::same_as<End>;
-        { robot.roll(foot, aim, log, look) } -> std::same_as<End>;
-        { robot.fly(aim, log) } -> std::same_as<End>;
-        robot.stand_at(p);
-    };
+concept ClearanceSensor = RangeSensor<Robot> && requires(Robot robot, const Robot& still, Foot foot,
+                                                         const Aim& aim, Log& log, bool (*look)(), Point p) {
+    { still.keeps() } -> std::convertible_to<double>;
+    { still.clearance() } -> std::convertible_to<double>;
+    { still.feet() } -> std::convertible_to<std::vector<Foot>>;
+    { robot.begin(log) } -> std::same_as<Halt>;
+    { robot.trace(foot, foot, aim, log, look) } -> std::same_as<Halt>;
+    { robot.roll(foot, aim, log, look) } -> std::same_as<Halt>;
+    { robot.fly(aim, log) } -> std::same_as<Halt>;
+    robot.stand_at(p);
+};
 
 }  // namespace cspace::navigation

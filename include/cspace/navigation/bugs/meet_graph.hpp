@@ -11,7 +11,7 @@ namespace cspace::navigation {
 
 // Between a foot and the one after it. Where it is wider than half a turn and the walls are as far as the
 // robot keeps from them, no way leads into it but along the wall on its right.
-struct Gap {
+struct Opening {
     bool rolls = false, taken = false;
     int way = -1;  // that leads into it along the wall on its right
 };
@@ -20,7 +20,7 @@ struct MeetPoint {
     Point at;
     double clearance;
     std::vector<Foot> feet;
-    std::vector<Gap> gaps;
+    std::vector<Opening> gaps;
 };
 
 struct MeetWay {
@@ -41,12 +41,12 @@ class MeetGraph {
     std::vector<MeetWay> ways;
 
     // Into the last gap the robot has looked already. keeps: how far it keeps from a single wall.
-    int add(Point at, double clearance, const std::vector<Foot>& feet, End came, bool rolled, double keeps) {
-        MeetPoint meet{at, clearance, feet, std::vector<Gap>(feet.size())};
+    int add(Point at, double clearance, const std::vector<Foot>& feet, Halt came, bool rolled, double keeps) {
+        MeetPoint meet{at, clearance, feet, std::vector<Opening>(feet.size())};
         const bool is_far = clearance >= keeps * (1 - 1e-9);
         for (std::size_t k = 0; k < feet.size(); ++k)
-            meet.gaps[k].rolls = came == End::meet && !rolled && is_far && is_wide(feet, k);
-        if (came == End::limit) meet.gaps[0].rolls = true;
+            meet.gaps[k].rolls = came == Halt::meet && !rolled && is_far && is_wide(feet, k);
+        if (came == Halt::limit) meet.gaps[0].rolls = true;
         if (rolled) meet.gaps.back().rolls = true;
         meets.push_back(std::move(meet));
         around_.emplace_back();
@@ -93,7 +93,7 @@ class MeetGraph {
         const bool closes = more.back().site == next.site;
         if (closes) more.pop_back();
         m.feet.insert(m.feet.begin() + n, more.begin(), more.end());
-        m.gaps.insert(m.gaps.begin() + n, more.size(), Gap{});
+        m.gaps.insert(m.gaps.begin() + n, more.size(), Opening{});
         const bool rolls = m.gaps[std::size_t(gap)].rolls;
         for (std::size_t k = std::size_t(gap); k <= std::size_t(gap) + more.size(); ++k)
             m.gaps[k] = {rolls && !closes && k == std::size_t(gap) + more.size()};
@@ -189,7 +189,8 @@ class MeetGraph {
             if (cost > cost_[std::size_t(m)]) continue;
             if (cost >= best || m == there) break;
             const auto& gaps = meets[std::size_t(m)].gaps;
-            const bool is_open = std::any_of(gaps.begin(), gaps.end(), [](const Gap& g) { return !g.taken; });
+            const bool is_open =
+                std::any_of(gaps.begin(), gaps.end(), [](const Opening& g) { return !g.taken; });
             if (there < 0 && is_open && cost + left(m) < best) best = cost + left(m), found_ = m;
             for (const int w : around_[std::size_t(m)]) {
                 const MeetWay& way = ways[std::size_t(w)];

@@ -58,17 +58,17 @@ class VoronoiBug {
 
     Exploration run() {
         if (robot_.position() == goal_ || look()) return go();
-        End end = begin();
+        Halt end = begin();
         for (double nearest = std::numeric_limits<double>::infinity();;) {
-            if (end == End::open) end = fly();
-            if (end == End::goal) return go();
-            if (end == End::lost || trip_.branches > voronoi_bug_limits::most_branches)
+            if (end == Halt::open) end = fly();
+            if (end == Halt::goal) return go();
+            if (end == Halt::lost || trip_.branches > voronoi_bug_limits::most_branches)
                 return finish(Status::undetermined);
             if (look()) return go();
             nearest = std::min(nearest, distance(robot_.position(), goal_));
             end = explore(end, nearest * voronoi_bug_limits::nearer);
-            if (end == End::meet) end = judge(nearest);
-            if (end == End::corner) return finish(Status::unreachable);
+            if (end == Halt::meet) end = judge(nearest);
+            if (end == Halt::corner) return finish(Status::unreachable);
         }
     }
 
@@ -111,24 +111,24 @@ class VoronoiBug {
         add_leg(move, first, clearance);
     }
 
-    End begin() {
+    Halt begin() {
         Log log;
-        const End end = robot_.begin(log);
+        const Halt end = robot_.begin(log);
         for (const Touch& corner : log.corners) rings_.add(corner);
         take(Move::away, log.path, std::numeric_limits<double>::quiet_NaN());
         return end;
     }
-    End fly() {
+    Halt fly() {
         Log log;
         const Aim aim{goal_, 0, {}, true};
-        const End end = robot_.fly(aim, log);
+        const Halt end = robot_.fly(aim, log);
         take(Move::go, log.path, robot_.keeps());
         return end;
     }
 
     // Through all branches that hang together with the place where the robot stands: goal if it is in view,
     // open if it leaves a wall for the goal, meet if all of them are exhausted.
-    End explore(End end, double nearer) {
+    Halt explore(Halt end, double nearer) {
         graph_ = {};
         rings_.clear();
         Aim aim{goal_, nearer, {}, true};
@@ -137,20 +137,20 @@ class VoronoiBug {
         if (robot_.clearance() == 0) graph_.meets[0].gaps[1].taken = true;  // the corner behind
         for (;;) {
             const Branch branch = graph_.next(here, goal_);
-            if (branch.meet < 0) return here_ = here, End::meet;
+            if (branch.meet < 0) return here_ = here, Halt::meet;
             walk_back(here, branch.meet);
             here = branch.meet;
-            if (++trip_.branches > voronoi_bug_limits::most_branches) return End::lost;
+            if (++trip_.branches > voronoi_bug_limits::most_branches) return Halt::lost;
             end = follow(here, branch.gap, aim);
-            if (end == End::told) return End::goal;
-            if (end == End::goal) aim.stops = false;
-            if (end == End::low) return End::open;
-            if (end == End::lost) return End::lost;
+            if (end == Halt::told) return Halt::goal;
+            if (end == Halt::goal) aim.stops = false;
+            if (end == Halt::low) return Halt::open;
+            if (end == Halt::lost) return Halt::lost;
         }
     }
     int here_ = 0;
 
-    int add_meet(End came, bool rolled) {
+    int add_meet(Halt came, bool rolled) {
         if (robot_.feet().size() > 2) trip_.meets.push_back(robot_.position());
         ++trip_.route.price.nodes;
         return graph_.add(robot_.position(), robot_.clearance(), robot_.feet(), came, rolled, robot_.keeps());
@@ -164,7 +164,7 @@ class VoronoiBug {
     }
 
     // Into a gap of a meet point, up to the next one.
-    End follow(int& here, int gap, const Aim& aim) {
+    Halt follow(int& here, int gap, const Aim& aim) {
         MeetPoint& meet = graph_.meets[std::size_t(here)];
         meet.gaps[std::size_t(gap)].taken = true;
         const bool rolls = meet.gaps[std::size_t(gap)].rolls;
@@ -174,17 +174,17 @@ class VoronoiBug {
         log.path = {meet.at};
         log.least = meet.clearance;
         const auto looks = [&] { return look(); };
-        const End end = rolls ? robot_.roll(right, aim, log, looks)
-                              : robot_.trace(right, left, aim, log, looks);
+        const Halt end =
+            rolls ? robot_.roll(right, aim, log, looks) : robot_.trace(right, left, aim, log, looks);
         ++trip_.route.price.edges;
         for (const Touch& corner : log.corners) rings_.add(corner);
         trip_.clearance = std::min(trip_.clearance, log.least);
         take(rolls ? Move::roll : Move::trace, log.path, log.least);
-        if (end == End::told || end == End::low || end == End::lost) return end;
-        if (look()) return End::told;
-        if (end == End::corner) ++trip_.dead_ends;
-        if (end == End::corner || end == End::goal) {
-            graph_.meets[std::size_t(here)].gaps[std::size_t(gap)].taken = end == End::corner;
+        if (end == Halt::told || end == Halt::low || end == Halt::lost) return end;
+        if (look()) return Halt::told;
+        if (end == Halt::corner) ++trip_.dead_ends;
+        if (end == Halt::corner || end == Halt::goal) {
+            graph_.meets[std::size_t(here)].gaps[std::size_t(gap)].taken = end == Halt::corner;
             come_back(log.path);
         } else {
             arrive(here, gap, end, rolls, std::move(log));
@@ -200,30 +200,31 @@ class VoronoiBug {
         return distance(meet.at, robot_.position()) <= near && length_of(path) <= 2 * near;
     }
     // Where a branch ends as it begins, its meet point has more to it than was seen there.
-    void look_closer(int here, int gap, End end, bool rolls) {
+    void look_closer(int here, int gap, Halt end, bool rolls) {
         const std::vector<Foot>& feet = robot_.feet();
-        if (end == End::limit)
+        if (end == Halt::limit)
             graph_.make_roll(here, gap);
         else if (feet.size() > (rolls ? 1 : 2))
             graph_.refine(here, gap, {feet.begin() + 1, feet.end() - (rolls ? 0 : 1)});
         robot_.stand_at(graph_.meets[std::size_t(here)].at);
     }
-    void arrive(int& here, int gap, End end, bool rolls, Log log) {
-        if (end != End::mark && is_at(graph_.meets[std::size_t(here)], log.path)) return look_closer(here, gap, end, rolls);
+    void arrive(int& here, int gap, Halt end, bool rolls, Log log) {
+        if (end != Halt::mark && is_at(graph_.meets[std::size_t(here)], log.path))
+            return look_closer(here, gap, end, rolls);
         Branch to = graph_.find(robot_.position(), robot_.clearance(), robot_.feet(), fine_);
-        if (end == End::mark && to.meet < 0) to = {0, 0};
+        if (end == Halt::mark && to.meet < 0) to = {0, 0};
         if (to.meet < 0) to = {add_meet(end, rolls), int(robot_.feet().size()) - 1};
         log.path.push_back(graph_.meets[std::size_t(to.meet)].at);
         const double length = length_of(log.path);
         graph_.add_way({here, to.meet, to.gap, std::move(log.path), length, rolls, log.low}, gap);
-        note(graph_.meets[std::size_t(to.meet)].at);
         here = to.meet;
+        take(rolls ? Move::roll : Move::trace, {graph_.meets[std::size_t(here)].at}, robot_.clearance());
         robot_.stand_at(graph_.meets[std::size_t(here)].at);
     }
 
     // Nothing of what hangs together shows the goal: open if it lies beyond a curve along walls, from whose
     // point nearest to the goal the robot leaves, corner if walls shut it off, else lost.
-    End judge(double& nearest) {
+    Halt judge(double& nearest) {
         int best = -1;
         double least = std::numeric_limits<double>::infinity();
         for (int w = 0; w < int(graph_.ways.size()); ++w) {
@@ -241,13 +242,13 @@ class VoronoiBug {
         if (best >= 0) {
             leave(graph_.ways[std::size_t(best)]);
             nearest = least;
-            return End::open;
+            return Halt::open;
         }
-        if (rings_.is_on_wall(goal_)) return End::lost;
+        if (rings_.is_on_wall(goal_)) return Halt::lost;
         const std::optional<Touch> shut = rings_.shuts_off(goal_);
-        if (!shut) return End::lost;
+        if (!shut) return Halt::lost;
         trip_.witness = *shut;
-        return End::corner;
+        return Halt::corner;
     }
     // Whether the goal lies on the side of a closed curve, the left one, that the robot has not been to.
     bool has_beyond(const std::vector<int>& loop) const {
@@ -281,7 +282,8 @@ Exploration voronoi_bug(Robot& robot, Point goal, double fine) {
     return from_every_side(robot, [&](Robot& r) { return VoronoiBug<Robot>(r, goal, fine).run(); });
 }
 
-// In a polygon world. Where the robot loses its way by rounding, one that tells lengths apart otherwise tries.
+// In a polygon world. Where the robot loses its way by rounding, one that tells lengths apart otherwise
+// tries.
 inline Exploration voronoi_bug(const Walls& walls, const Surroundings& around, Point start, Point goal,
                                double range) {
     constexpr voronoi::Grain grains[] = {{1e-13, 1e-9}, {1e-15, 1e-12}, {1e-11, 1e-7}};

@@ -20,8 +20,7 @@ inline double turn_from(Point a, Point b) {
 
 class Contacts {
   public:
-    Contacts(const Sites& sites, const EdgeTree& tree, Grain grain)
-        : s_(sites), tree_(tree), grain_(grain) {}
+    Contacts(const Sites& sites, const EdgeTree& tree, Grain grain) : s_(sites), tree_(tree), grain_(grain) {}
 
     // The sites that the disc touches that has come along the arc of a and b to p, counterclockwise from a to
     // b; c is one between them. Between b and a there is only what the disc has left behind.
@@ -34,7 +33,8 @@ class Contacts {
         if (kept.size() > 3) polish_by_spread(p, kept);
         return kept;
     }
-    // The same for a disc that has rolled along a alone, its foot moving forward, until it touched c in front.
+    // The same for a disc that has rolled along a alone, its foot moving forward, until it touched c in
+    // front.
     std::vector<Contact> ahead(Point p, Index a, Index c) const {
         std::vector<Contact> all{contact(a, p), contact(c, p)};
         add_within(p, std::numbers::pi, all);
@@ -97,8 +97,9 @@ class Contacts {
     // By three touches that are far from each other around the disc.
     void polish_by_spread(Point& p, const std::vector<Contact>& all) const {
         const auto farthest = [&](auto spread) {
-            return *std::max_element(all.begin(), all.end(),
-                                     [&](const Contact& x, const Contact& y) { return spread(x) < spread(y); });
+            return *std::max_element(all.begin(), all.end(), [&](const Contact& x, const Contact& y) {
+                return spread(x) < spread(y);
+            });
         };
         const Contact a = all.front();
         const Contact b = farthest([&](const Contact& x) { return squared_norm(x.towards - a.towards); });

@@ -74,8 +74,7 @@ inline Retraction retract_along(const Sites& sites, const EdgeTree& tree, Index 
     const double slack = 1e-12 * sites.extent;
     double radius = 4 * sites.extent;
     const auto at = [&] { return up.foot + radius * away; };
-    const Index own = sites.edge_of(site), own_before = sites.previous(own),
-                own_after = sites.after(own);
+    const Index own = sites.edge_of(site), own_before = sites.previous(own), own_after = sites.after(own);
     const bool is_edge = sites.is_edge(site);
     const auto is_own = [&](Index e) {
         if (e == own) return true;
@@ -108,7 +107,8 @@ inline Retraction retract(const Sites& sites, const EdgeTree& tree, Point p) {
     const Nearest near = nearest_site(sites, tree, p);
     if (near.site == none) return {};
     const double least = near.distance * (1 - 1e-9) - 1e-13 * sites.extent;
-    Retraction up = retract_along(sites, tree, near.site, near.foot, -1.0 * sites.towards(near.site, p), least);
+    Retraction up =
+        retract_along(sites, tree, near.site, near.foot, -1.0 * sites.towards(near.site, p), least);
     up.clearance = near.distance;
     return up;
 }

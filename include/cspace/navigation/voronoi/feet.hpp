@@ -11,7 +11,8 @@ struct Gate {
 };
 inline Gate forward_gate(const Sites& sites, Index a) {
     const Index e = sites.edge_of(a);
-    return sites.is_edge(a) ? Gate{sites.end(e), sites.direction(e)} : Gate{sites.begin(e), sites.direction(e)};
+    return sites.is_edge(a) ? Gate{sites.end(e), sites.direction(e)}
+                            : Gate{sites.begin(e), sites.direction(e)};
 }
 inline Gate backward_gate(const Sites& sites, Index b) {
     const Index e = sites.edge_of(b);

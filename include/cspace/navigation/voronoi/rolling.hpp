@@ -50,9 +50,7 @@ struct RoundWay {
 
   private:
     // Of angles that are the same direction, that next to half a turn or less.
-    static double nearest_turn(double t) {
-        return t > 1.5 * std::numbers::pi ? t - 2 * std::numbers::pi : t;
-    }
+    static double nearest_turn(double t) { return t > 1.5 * std::numbers::pi ? t - 2 * std::numbers::pi : t; }
 };
 
 struct FirstMeeting {

@@ -130,7 +130,7 @@ class Tracer {
                 const Fan& fan = fans_.at(it->second);
                 for (Index k = 0; k < fan.count; ++k) {
                     const Contact &x = touches_[std::size_t(fan.first + k)],
-                                &y = touches_[std::size_t(fan.first + (k + 1) % fan.count)];
+                                  &y = touches_[std::size_t(fan.first + (k + 1) % fan.count)];
                     const double off = norm(x.towards - last.towards) + norm(y.towards - first.towards);
                     if (taken_[std::size_t(fan.first + k)] || !(off < best)) continue;
                     best = off;
@@ -171,7 +171,8 @@ class Tracer {
             }
             const bool turn_a = end_a <= end, turn_b = end_b <= end;
             if (!turn_a && !turn_b) return;  // nothing in the way: lost
-            const Index corner = turn_a ? corner_after(s_, a) : none, other = turn_b ? corner_before(s_, b) : none;
+            const Index corner = turn_a ? corner_after(s_, a) : none,
+                        other = turn_b ? corner_before(s_, b) : none;
             if (corner != none || other != none) {
                 const Index to = arrive(curve.at(end), a, b, corner != none ? corner : other);
                 return add_arc(vertex, to, a, b, curve, begin, end);
@@ -186,7 +187,6 @@ class Tracer {
             if (a == b) return;
         }
     }
-
 };
 
 // Traces the part of one component; whether it is whole: connected, as traced from one point, with one cycle

@@ -1,0 +1,89 @@
+"""Voronoi Bug (Choset & Burdick 1995): between the walls, by the distance to those in sight.
+
+A robot sees walls up to a distance and has no map. It moves away from the nearest wall until two are as near,
+and follows the points as near to both, branch by branch, keeping a graph of the points where three meet; dead
+ends it sees and leaves. Where no wall is within its range it goes straight for the goal, where only one is it
+follows that wall at this distance. It goes to the goal when that is in view. If all branches that hang
+together are exhausted, the goal lies beyond a wall that it follows, from whose point nearest to the goal it
+goes on, or beyond a ring of walls, and cannot be reached.
+"""
+
+from __future__ import annotations
+
+from math import inf
+from typing import Any, Final, NamedTuple
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.navigation.route import Route
+from cspace.navigation.trace import Trace
+
+__all__ = ["VoronoiBugEvidence", "plan", "reason", "trace"]
+
+WORDS: Final = ("away", "trace", "roll", "back", "go")
+
+
+class VoronoiBugEvidence(NamedTuple):
+    """What a robot met that traces the points as near to two walls, and what shuts off its goal."""
+
+    meets: Array
+    """(k, 2) [m]: where three walls or more are nearest, in the order in which they were found."""
+    branches: int
+    """How many branches it went into."""
+    dead_ends: int
+    """How many of them end in a corner of walls."""
+    clearance: float
+    """The least distance from walls along the branches [m]; inf where it took none."""
+    shut: tuple[int, tuple[float, float]] | None
+    """Unreachable: the ring that shuts the goal off, an index of `world.walls`, and a point (x, y) of it
+    where the line to the goal enters the wall; else None."""
+
+
+def plan(world: Any, start: Any, goal: Any, *, range: float = inf) -> Route:
+    """The walk of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
+
+    range: how far it sees [m], more than 0; inf sees as far as walls let it. The robot keeps just within it
+    from walls that it follows. route.path is the walk even where no way exists; route.evidence is a
+    VoronoiBugEvidence; route.price counts meet points and branches. Raises InputError on a range that is not
+    positive. The status is "undetermined" where rounding hides how branches hang together.
+    """
+    reach = inf if range == inf else float(as_floats(range, "range"))
+    if not reach > 0:
+        raise InputError(f"range is {reach:g}; it must be more than zero [m], or inf")
+    made: Route | None
+    asked = world, "voronoi_bug", {"range": reach}, VoronoiBugEvidence, world._core, reach
+    made = _core._voronoi_bug(*asked, start, goal)
+    if made is None:
+        ends = world.check_free(start, "start"), world.check_free(goal, "goal")
+        made = _core._voronoi_bug(*asked, *ends)
+        assert made is not None
+    return made
+
+
+def trace(route: Route) -> Trace:
+    """The walk, step by step: "away" from the nearest wall, "trace" between two, "roll" along one, "back"
+    where it has been, "go" straight for the goal.
+
+    start, end: (k, 2) [m]. value [m]: the least distance from walls along that branch, NaN where it is none.
+    """
+    return Trace(
+        WORDS,
+        *_core._voronoi_bug_trace(route.world._core, route.options["range"], route.start, route.goal),
+    )
+
+
+def reason(route: Route) -> str:
+    """The verdict in a sentence."""
+    found: VoronoiBugEvidence = route.evidence
+    s = "" if found.branches == 1 else "es"
+    took = f"{found.branches} branch{s} and {len(found.meets)} meet points"
+    if route:
+        return f"arrived after {route.length:.6g} m, {took}"
+    if found.shut is None:
+        return f"gave up after {route.length:.6g} m, {took}: rounding hides how branches hang together"
+    ring, (x, y) = found.shut
+    return (
+        f"{took} are exhausted without sight of the goal, and it lies beyond the ring of walls {ring}: "
+        f"at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
+    )
