@@ -32,7 +32,8 @@ class Triangulator {
 
     // Everything that will be inserted lies between low and high; `segments` says how many there are.
     Triangulator(Point low, Point high, std::size_t segments)
-        : most_crossings_(std::min<std::size_t>(200'000 + 50 * segments, 64 + 4 * segments * segments)) {
+        : most_crossings_(std::min<std::size_t>(200'000 + 50 * segments, 64 + 4 * segments * segments)),
+          most_of_one_(64 + 4 * segments) {
         const double reach = std::max({high.x - low.x, high.y - low.y, 1e-300});
         low = low - Point{reach, reach};
         high = high + Point{reach, reach};
@@ -58,13 +59,14 @@ class Triangulator {
 
     // Makes the segment between two vertices an edge, or several, of the owner; false if that would not end.
     bool insert_segment(Index a, Index b, Index owner) {
+        const std::size_t most = std::min(most_crossings_, crossings.size() + most_of_one_);
         owners.push_back({owner, none});
         pending_.push_back({a, b, Index(owners.size() - 1)});
         while (!pending_.empty()) {
             const Segment s = pending_.back();
             pending_.pop_back();
             if (s.a != s.b) advance(s);
-            if (crossings.size() > most_crossings_) return false;
+            if (crossings.size() > most) return false;
         }
         return true;
     }
@@ -76,7 +78,7 @@ class Triangulator {
     using Edge = std::pair<Index, Index>;
 
     Index last_ = 0;
-    std::size_t most_crossings_;
+    std::size_t most_crossings_, most_of_one_;  // in all, and while one segment is inserted
     double rounding_;  // how far a crossing may be moved by rounding
     std::vector<Segment> pending_;
     std::vector<std::pair<Index, Index>>
