@@ -349,7 +349,8 @@ class ClearanceRobot : public RangeRobot {
             offer(t, Halt::goal);
         if (aim.mark) {
             const double t = way.nearest(local(*aim.mark)), off = 1e-7 * keeps_ + 1e-9 * s_.extent;
-            if (rolled + way.length(t) > 2 * off && way.length(t) > -off &&
+            const bool is_before = met.site == voronoi::none || way.length(met.at - t) > 2 * off;
+            if (is_before && rolled + way.length(t) > 2 * off && way.length(t) > -off &&
                 distance(way.at(t), local(*aim.mark)) < off)
                 offer(std::max(t, 0.0), Halt::mark);
         }
