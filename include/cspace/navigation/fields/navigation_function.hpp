@@ -113,12 +113,28 @@ class NavigationFunction {
         const double steep = norm(slope),
                      near = std::min(discs_.clearance(at), distance(at, potential_->goal()));
         const double length = std::min(0.25 * steep / potential_->stiffness(at), 0.05 * discs_.room.radius);
-        if (length < 1e-6 * near) return leave_saddle(at, made);
+        if (length < 2e-3 * discs_.room.radius) {
+            const Point down = across_valley(at, slope);
+            const double far = norm(down);
+            if (far < 1e-6 * near) return leave_saddle(at, made);
+            const double most = std::min(0.3 * near, 0.02 * discs_.room.radius);
+            if (go(at, (1 / far) * down, std::min(far, most), made)) return true;
+        }
         const Point ahead = at - (0.5 * length / steep) * slope;
         Point turned = slope;
         if (discs_.clearance(ahead) > 0) turned = potential_->slope(ahead);
         return go(at, (-1 / norm(turned)) * turned, length, made) ||
                go(at, (-1 / steep) * slope, length, made) || leave_saddle(at, made);
+    }
+    // In narrow valleys, where steps along the slope would be short: Newton's step with the sizes of
+    // curvatures, which leads down along every axis (Dauphin et al. 2014).
+    Point across_valley(Point at, Point slope) const {
+        const Curvature bend = potential_->curvature(at);
+        const Point u = bend.down(), v{-u.y, u.x};
+        const double least = 1e-12 * potential_->stiffness(at);
+        const double along = -dot(slope, u) / std::max(std::abs(bend.along(u)), least);
+        const double across = -dot(slope, v) / std::max(std::abs(bend.along(v)), least);
+        return along * u + across * v;
     }
     // Where V is flat: to the side on which it falls, that of the goal where it falls on both.
     bool leave_saddle(Point& at, Descent& made) const {
