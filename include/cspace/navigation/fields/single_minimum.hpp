@@ -14,6 +14,7 @@ namespace cspace::navigation {
 
 struct SingleMinimum {
     enum Verdict { proven, refuted, open } verdict = open;
+    Point minimum;  // that refutes it
     std::vector<Point> saddles;
     std::int64_t squares = 0;
 };
@@ -23,6 +24,11 @@ class MinimumProof {
     explicit MinimumProof(const SpherePotential& potential)
         : potential_(potential), terms_(potential.terms()) {}
 
+    // Whether there is a minimum but the goal near a point.
+    bool is_refuted_near(Point m) {
+        is_minimum_near(m, 0.02 * terms_[1].s);
+        return proof_.verdict == SingleMinimum::refuted;
+    }
     SingleMinimum run(std::int64_t most_squares) {
         const LogTerm& room = terms_[1];
         std::vector<Square> waiting{{room.center, room.s}};
@@ -115,18 +121,23 @@ class MinimumProof {
         }
         return false;
     }
+    bool is_free(Point p) const {
+        return std::all_of(terms_.begin(), terms_.end(),
+                           [&](const LogTerm& term) { return term.is_regular(distance(p, term.center), 0); });
+    }
     void note_saddle(Point m, double h) {
         Point at;
         if (!is_flat_near(m, 2 * h, at)) return;
         for (const Point other : proof_.saddles)
             if (distance(other, at) <= 1e-7 * terms_[1].s) return;
-        if (potential_.curvature(at).least() < 0) proof_.saddles.push_back(at);
+        if (is_free(at) && potential_.curvature(at).least() < 0) proof_.saddles.push_back(at);
     }
     bool is_minimum_near(Point m, double half) {
         Point at;
         if (potential_.curvature(m).least() > 0 && is_flat_near(m, 4 * half, at) &&
-            potential_.curvature(at).least() > 0 && distance(at, terms_[0].center) > 1e-9 * terms_[1].s)
-            proof_.verdict = SingleMinimum::refuted;
+            potential_.curvature(at).least() > 0 && is_free(at) &&
+            distance(at, terms_[0].center) > 1e-9 * terms_[1].s)
+            proof_.verdict = SingleMinimum::refuted, proof_.minimum = at;
         return false;
     }
 };
@@ -137,10 +148,14 @@ struct Tuned {
     SingleMinimum proof;
 };
 inline Tuned tuned(const SphereWorld& world, Point goal, double most_kappa, std::int64_t most_squares) {
+    Point refuted = world.room.center;  // where the last power had another minimum: the next may, too
     for (double kappa = 2; kappa <= most_kappa; kappa *= 2) {
         const SpherePotential potential(world, goal, kappa);
-        SingleMinimum proof = MinimumProof(potential).run(most_squares);
+        MinimumProof attempt(potential);
+        if (kappa > 2 && attempt.is_refuted_near(refuted)) continue;
+        SingleMinimum proof = attempt.run(most_squares);
         if (proof.verdict == SingleMinimum::proven) return {kappa, std::move(proof)};
+        refuted = proof.minimum;
     }
     return {};
 }
