@@ -37,6 +37,7 @@ def test_no_way_ends_in_one():
         (f"{YARD} --goal 9 9 --planner bug_3", ["bug_3", "bug_2"]),
         (f"{YARD} --goal 2.5 2.5", ["goal", "inside obstacle 0"]),
         (f"{YARD} --goal 20 2.5", ["goal", "outside the world"]),
+        (f"{YARD} --goal 1.95 3 --radius 0.1", ["goal", "grown by the robot's radius, 0.1 m"]),
         (f"{YARD} --goal 9 9 --plot ways.txt", ["ways.txt", ".png"]),
         (f"{YARD} --goal 9 9 --animate ways.mp4", ["ways.mp4", ".gif"]),
         ("nav yard.dxf --start 1 1 --goal 9 9", ["yard.dxf", ".geojson"]),

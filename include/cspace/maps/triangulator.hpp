@@ -79,7 +79,7 @@ class Triangulator {
 
     Index last_ = 0;
     std::size_t most_crossings_, most_of_one_;  // in all, and while one segment is inserted
-    double rounding_;  // how far a crossing may be moved by rounding
+    double rounding_;                           // how far a crossing may be moved by rounding
     std::vector<Segment> pending_;
     std::vector<std::pair<Index, Index>>
         suspects_;  // (triangle, vertex): the edge opposite it may need a flip

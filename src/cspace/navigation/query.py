@@ -53,11 +53,16 @@ def navigate(
         world = _prepared(world, kind, row, radius, resolution)
     if options:
         check_options(row, options)
-    if world is not given and isinstance(given, PolygonWorld) and isinstance(world, PolygonWorld):
-        from cspace.navigation.discs import plan_disc
+    try:
+        if world is not given and isinstance(given, PolygonWorld) and isinstance(world, PolygonWorld):
+            from cspace.navigation.discs import plan_disc
 
-        return plan_disc(given, world, float(radius), planner, (start, goal), options)
-    return plan(world, start, goal, **options)
+            return plan_disc(given, world, float(radius), planner, (start, goal), options)
+        return plan(world, start, goal, **options)
+    except InputError as error:
+        if radius and str(error).startswith(("start (", "goal (")):
+            raise InputError(f"{error}; obstacles are grown by the robot's radius, {radius:g} m") from None
+        raise
 
 
 def _prepared(world: World, kind: str | None, row: Planner, radius: float, resolution: float | None) -> World:
