@@ -11,7 +11,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
-NOT_ROOMS = {"index", "conventions", "status", "lectures", "benchmarks"}
+NOT_ROOMS = {"index", "conventions", "status", "lectures", "benchmarks", "claims"}
 
 
 def heading(page: Path) -> str:

@@ -136,7 +136,7 @@ def bound(row, records):
     worst = max((r for r in records if "bound" in r), key=lambda r: r["bound"])["question"]
     if ratios.max() > 1 + EQUAL:
         return Finding(WRONG, f"×{spelled(ratios.max())} the bound", worst)
-    return Finding("holds", f"up to {spelled(ratios.max())} of it in {len(ratios)} walks", worst)
+    return Finding("holds", f"up to ×{spelled(ratios.max())} in {len(ratios)} walks", worst)
 
 
 def values(records, key):

@@ -123,9 +123,9 @@ def convex_fields(rng, size, shut):
 
 
 def spirals(rng, size, shut):
-    """A wall of unit width that winds out in 4 + size legs, three metres apart, which overlap."""
+    """A wall of unit width that winds out in 1 + size turns, three metres apart, which overlap."""
     at, obstacles = np.zeros(2, dtype=int), []
-    for leg in range(4 + size):
+    for leg in range(4 * (1 + size)):
         end = at + 4 * (1 + leg // 2) * np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])[leg % 4]
         obstacles.append([slab(at, end)])
         at = end

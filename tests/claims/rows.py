@@ -43,6 +43,8 @@ class Row:
     """How far the robot sees [m]; 0: it feels what it touches."""
     promise: float | None = None
     """The factor within which a way is said to be the best."""
+    sizes: tuple[int, ...] = ()
+    """Sizes over which its growth is fitted, where the usual ones take too long."""
     some: bool = False
     """Whether it is made for some worlds alone, and refuses the others or leaves them undetermined."""
 
@@ -79,7 +81,7 @@ _ALL = [
     Row("visibility_graph", "visibility_graph", lecture(YES, YES, shortest=SHORTEST, cost=SQUARE)),
     Row("voronoi", "voronoi", lecture(YES, YES, clearance=WIDEST, cost=LOG_LINEAR)),
     Row("voronoi, by length", "voronoi", Claim(YES, YES, clearance=KEPT), {"prefer": "length"}),
-    Row("voronoi_bug", "voronoi_bug", lecture(NO, YES, clearance=KEPT), {"range": 3.0}, senses=3.0),
+    Row("voronoi_bug", "voronoi_bug", lecture(NO, YES, clearance=KEPT), {"range": 2.0}, senses=2.0),
     Row("brushfire", "brushfire", lecture(YES, CELLS, clearance=WIDEST_CELLS, cost=LINEAR)),
     Row("exact_cells", "exact_cells", lecture(YES, YES, shortest=NO, cost=LOG_LINEAR)),
     Row("approximate_cells", "approximate_cells", lecture(YES, CELLS, shortest=NO)),
@@ -99,7 +101,7 @@ _ALL = [
     ),
     Row("potential_a_star, greedy", "potential_a_star", lecture(YES, CELLS, shortest=NO), {"mode": "greedy"}),
     Row("any_angle", "any_angle", Claim(YES, YES, SHORTEST)),
-    Row("tangent_bug", "tangent_bug", Claim(NO, YES, NO), {"range": 3.0}, senses=3.0),
+    Row("tangent_bug", "tangent_bug", Claim(NO, YES, NO), {"range": 2.0}, senses=2.0),
     Row("prm", "prm", Claim(YES, SAMPLES, TENDS), {"samples": 3000}, {"samples": 60}),
     Row("rrt", "rrt", Claim(YES, SAMPLES, NO), few={"samples": 60}),
     Row("rrt_star", "rrt_star", Claim(YES, SAMPLES, TENDS), few={"samples": 60}),
@@ -113,8 +115,8 @@ _ALL = [
     Row("theta_star", "theta_star", on_cells(NO)),
     Row("wavefront", "wavefront", on_cells(FOUR, cost=LINEAR)),
     Row("fast_marching", "fast_marching", on_cells(NO, cost=LOG_LINEAR)),
-    Row("harmonic", "harmonic", on_cells(NO)),
-    Row("rimon_koditschek", "rimon_koditschek", Claim(YES, SOME, NO), some=True),
+    Row("harmonic", "harmonic", on_cells(NO), sizes=(3, 4, 6, 8, 12, 17)),
+    Row("rimon_koditschek", "rimon_koditschek", Claim(YES, SOME, NO), sizes=(1, 2, 3, 4, 5, 6), some=True),
 ]
 
 ROWS = {row.name: row for row in _ALL if row.planner in PLANNERS}

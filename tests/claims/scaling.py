@@ -17,6 +17,8 @@ from claims.rows import LINEAR, LOG_LINEAR, SQUARE
 SIZES = (4, 6, 8, 12, 17, 24, 32)
 """Rasters of convex fields: 70 to 4,500 corners, 1,600 to 102,400 cells."""
 SEEDS = 2
+FEWEST = 6
+"""Over fewer sizes no exponent is fitted."""
 TURNS = 3
 """The least of so many times is taken: what else runs only adds."""
 PATIENCE = 3.0
@@ -45,7 +47,7 @@ class Growth:
         return f"n^{self.exponent:.2f} ± {self.within:.2f}"
 
 
-def measure(row, sizes=SIZES, seeds=SEEDS, navigate=cs.navigate, clock=time.perf_counter):
+def measure(row, sizes=SIZES, seeds=SEEDS, navigate=cs.navigate, clock=time.process_time):
     """A list of {n, seconds, nodes}: n is the number of corners, or of cells. The time is that of making a
     world and asking it one question."""
     points = []
@@ -63,7 +65,7 @@ def measure(row, sizes=SIZES, seeds=SEEDS, navigate=cs.navigate, clock=time.perf
             if route is None:
                 continue
             n = asked.blocked.size if row.world == "grid" else asked.corners
-            points.append({"n": int(n), "seconds": min(times), "nodes": int(route.price.nodes)})
+            points.append({"size": size, "n": int(n), "seconds": min(times), "nodes": int(route.price.nodes)})
         if points and points[-1]["seconds"] > PATIENCE:
             break
     return points
@@ -87,7 +89,7 @@ class Fresh:
 def fit(points, key, claimed=None):
     """The slope of log(value) over log(n) by least squares; None for fewer than six sizes."""
     n, value = (np.array([p[k] for p in points], dtype=float) for k in ("n", key))
-    if len(n) < 6 or (value <= 0).any():
+    if len({p["size"] for p in points}) < FEWEST or (value <= 0).any():
         return None
     x, y = np.log(n), np.log(value)
     slope, offset = np.polyfit(x, y, 1)

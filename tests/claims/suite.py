@@ -30,12 +30,8 @@ def questions(sizes=SIZES, seeds=SEEDS, families=FAMILIES):
 
 def questions_of_sight(seeds=3):
     """Worlds from which obstacles are taken away."""
-    return [
-        question(family, size, k)
-        for family in ("convex field", "maze")
-        for size in (3, 5)
-        for k in range(seeds)
-    ]
+    worlds = (("convex field", 3), ("convex field", 5), ("maze", 3), ("maze", 5), ("maze", 8))
+    return [question(family, size, k) for family, size in worlds for k in range(seeds)]
 
 
 def records(row, asked, navigate=cs.navigate, **more):
@@ -49,7 +45,7 @@ def findings(row, asked, seen, sizes=scaling.SIZES, navigate=cs.navigate, clock=
     told = records(row, asked, navigate)
     fewer = records(row, asked, navigate, **row.few) if row.few else []
     timing = {} if clock is None else {"clock": clock}
-    points = scaling.measure(row, sizes, navigate=navigate, **timing) if sizes else []
+    points = scaling.measure(row, row.sizes or sizes, navigate=navigate, **timing) if sizes else []
     found = {
         "map": sight.needs_map(row, seen, navigate),
         "complete": cells.complete(row, told, fewer),

@@ -72,6 +72,17 @@ def test_the_benchmark_page_is_what_the_results_say(monkeypatch):
     assert page == report.page(report.load()), "run benchmarks/report.py"
 
 
+def test_the_page_of_claims_is_what_the_results_say(monkeypatch):
+    monkeypatch.syspath_prepend(str(ROOT / "benchmarks"))
+    import claims_page
+    from claims.rows import ROWS
+
+    results = claims_page.load()
+    assert set(results["rows"]) == set(ROWS), "run benchmarks/navigation_claims.py --missing"
+    told = claims_page.PAGE.read_text(encoding="utf-8")
+    assert told == claims_page.page(results), "run benchmarks/navigation_claims.py --page"
+
+
 def test_the_explained_arm_is_explained_as_the_library_does(monkeypatch):
     monkeypatch.syspath_prepend(str(ROOT / "tools"))
     import explained

@@ -89,10 +89,10 @@ def test_a_planner_that_slows_down_changes_its_cell():
 def test_a_growth_is_fitted_with_its_uncertainty():
     rng = np.random.default_rng(1)
     n = np.repeat(2.0 ** np.arange(6, 13), 3)
-    points = [{"n": k, "seconds": k**1.5 * np.exp(rng.normal(0, 0.1))} for k in n]
+    points = [{"n": k, "size": k, "seconds": k**1.5 * np.exp(rng.normal(0, 0.1))} for k in n]
     growth = scaling.fit(points, "seconds")
     assert abs(growth.exponent - 1.5) < growth.within < 0.1
-    assert scaling.fit(points[:5], "seconds") is None
+    assert scaling.fit(points[:15], "seconds") is None
 
 
 @pytest.mark.parametrize("family", CELL_FAMILIES, ids=lambda f: f.__name__)

@@ -99,11 +99,17 @@ class TangentBug {
         double shortest = std::numeric_limits<double>::infinity();
         for (const Seen& s : seen_) {
             const double way = distance(here, s.at) + to_goal(s.at);
-            if (!s.is_edge || !is_nearer(s.at, limit) || way >= shortest) continue;
+            if (!s.is_edge || !is_nearer(s.at, limit) || way > shortest) continue;
+            if (best && way == shortest && !is_left_of(s.at, *best)) continue;
             shortest = way;
             best = s.at;
         }
         return best;
+    }
+
+    // Of two ways of one length the left one is taken: which wall was named first is nothing a robot sees.
+    bool is_left_of(Point p, Point other) const {
+        return orientation(robot_.position(), goal_, p) > orientation(robot_.position(), goal_, other);
     }
 
     Hand better_hand() {

@@ -1,0 +1,195 @@
+"""The text of docs/claims.md: the table of claims, from benchmarks/results/claims.json."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.append(str(ROOT / "tests"))
+
+from claims.families import STEP  # noqa: E402
+from claims.notes import NOTES  # noqa: E402
+from claims.rows import ROWS  # noqa: E402
+from claims.scaling import CACHES  # noqa: E402
+
+RESULT = ROOT / "benchmarks/results/claims.json"
+PAGE = ROOT / "docs/claims.md"
+FIGURES = {"shortest": "#lengths-and-clearances", "clearance": "#lengths-and-clearances", "cost": "#growth"}
+COLUMNS = {
+    "map": "needs a map",
+    "complete": "complete",
+    "shortest": "shortest",
+    "clearance": "clearance",
+    "cost": "time grows as",
+    "nodes": "nodes grow as",
+}
+RESTS = ("map", "complete", "shortest", "clearance", "bound", "cost")
+
+
+def load() -> dict[str, Any]:
+    results: dict[str, Any] = json.loads(RESULT.read_text(encoding="utf-8"))
+    return results
+
+
+def markdown(header: list[str], rows: list[list[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
+
+
+def ordered(results: dict[str, Any], lecture: bool) -> list[str]:
+    return [name for name, row in ROWS.items() if row.claim.lecture == lecture and name in results["rows"]]
+
+
+def notes_of(results: dict[str, Any]) -> list[tuple[str, str]]:
+    """Every cell that is not what is claimed, in the order of the table."""
+    every = [*ordered(results, True), *ordered(results, False)]
+    return [(name, column) for name in every for column in COLUMNS if differs(results["rows"][name], column)]
+
+
+def differs(row: dict[str, Any], column: str) -> bool:
+    claim = row["claimed"].get(column)
+    return claim is not None and claim != row["found"][column]["word"]
+
+
+def cell(results: dict[str, Any], name: str, column: str) -> str:
+    row = results["rows"][name]
+    word, claim = row["found"][column]["word"], row["claimed"].get(column)
+    if claim is None:
+        return word
+    if column == "cost" and claim == word:
+        return f"{claim} ✓, {row['found'][column]['detail'].split(';')[0]}"
+    if claim == word:
+        return f"{word} ✓"
+    return (
+        f"**{word}**, claimed: {claim} [[{notes_of(results).index((name, column)) + 1}]](#where-they-differ)"
+    )
+
+
+def table(results: dict[str, Any], lecture: bool) -> str:
+    rows = [[name, *(cell(results, name, c) for c in COLUMNS)] for name in ordered(results, lecture)]
+    heads = [f"[{title}]({FIGURES[c]})" if c in FIGURES else title for c, title in COLUMNS.items()]
+    return markdown(["planner", *heads], rows)
+
+
+def bounds(results: dict[str, Any]) -> str:
+    """Whether the bounds on walks held."""
+    found = {name: row["found"]["bound"] for name, row in results["rows"].items()}
+    told = [f"`{name}`: {f['word']}, {f['detail']}" for name, f in found.items() if f["word"] != "—"]
+    return f"Bounds on the length of a walk were looked at in every run: {'; '.join(told)}."
+
+
+def bugs(results: dict[str, Any]) -> str:
+    """In which share of the questions of each family each bug walked less."""
+    first, second = (results["rows"][name]["ratios"] for name in ("bug_1", "bug_2"))
+    rows = []
+    for family in first:
+        pairs = list(zip(first[family], second[family], strict=True))
+        shares = [sum(wins) / len(pairs) for wins in ([a > b for a, b in pairs], [a < b for a, b in pairs])]
+        medians = [f"×{median(values[family]):.3g}" for values in (first, second)]
+        rows.append([family, *medians, *(f"{100 * share:.0f} %" for share in shares)])
+    return markdown(["family", "Bug 1, in the middle", "Bug 2", "Bug 2 walks less", "Bug 1 walks less"], rows)
+
+
+def differences(results: dict[str, Any]) -> str:
+    lines = []
+    for k, (name, column) in enumerate(notes_of(results), 1):
+        finding = results["rows"][name]["found"][column]
+        told = NOTES.get((name, column), "")
+        lines.append(f"{k}. `{name}`, {COLUMNS[column]}: {finding['detail']}. {told}".rstrip())
+    return "\n".join(lines) or "Nowhere."
+
+
+def evidence(results: dict[str, Any]) -> str:
+    blocks = []
+    for name in [*ordered(results, True), *ordered(results, False)]:
+        row = results["rows"][name]
+        lines = [f"**{name}**, {row['questions']} questions{told_options(name)}"]
+        for column in RESTS:
+            finding = row["found"][column]
+            if not finding["detail"]:
+                continue
+            example = f" ({finding['example']})" if finding["example"] else ""
+            lines.append(f"- {COLUMNS.get(column, column)}: {finding['word']}; {finding['detail']}{example}")
+        blocks.append("\n".join([lines[0], "", *lines[1:]]))
+    return "\n\n".join(blocks)
+
+
+def told_options(name: str) -> str:
+    options = ROWS[name].options
+    return f", with {', '.join(f'`{k}={v!r}`' for k, v in options.items())}" if options else ""
+
+
+def page(results: dict[str, Any]) -> str:
+    about = results["about"]
+    return f"""# Claims
+
+*What do textbooks promise of each planner, and does it hold?*
+
+Generated by `benchmarks/navigation_claims.py` from `benchmarks/results/claims.json`; do not edit. Every
+planner is asked the same questions in six families of worlds of whole numbers: convex fields, spirals, mazes,
+U traps, narrow gaps, and degenerate polygons that touch, overlap and stand in line; half of the goals are
+shut in. No cell of the table is typed: each is computed from the answers and from oracles that share no code
+with planners. The tests compute the cells again on some of the questions, and break planners on purpose to
+see that their cells change.
+
+![the families of worlds, with a goal in reach and one that is shut in](figures/claims_worlds.png)
+
+- **needs a map**: obstacles that the robot neither touched nor came near are taken away one by one; "no"
+  means that it then walked the same way each time.
+- **complete**: whether each verdict is the true one. An exact oracle in whole numbers says which goals can be
+  reached. "To resolution": ways are missed where cells are too coarse for them; "with samples": the more
+  samples, the fewer are missed; "in some worlds": others are left undetermined.
+- **shortest**: against the exact length of the shortest way in the plane, or over the same cells.
+- **clearance**: "widest" if no way has a larger least clearance, to {STEP:g} m, by brute force over a fine
+  raster; "in the middle" if mostly nothing across the way is farther from walls.
+- **time, nodes**: the exponent $p$ of $n^p$, fitted over six sizes or more, with its 95 % confidence; $n$
+  counts the corners, or the cells, of a convex field. Time is what a processor spends on making the world and
+  answering one question. A claimed growth stands if the exponent is not significantly more than it would give
+  over these sizes, and {CACHES:g} for caches.
+
+✓ marks what is claimed and was found. Measured {about["date"]} on {about["processor"]}.
+
+## The ten of the lecture
+
+Planners and their options are explained on the [page of navigation](navigation.md). {bounds(results)}
+
+That the potential field is locally optimal in the potential summed along its way, as the lecture says, is
+[measured with the lecture](lectures/navigation.md#the-potential-field).
+
+{table(results, True)}
+
+## Their successors
+
+What is claimed of these stands in the papers that the page of navigation names.
+
+{table(results, False)}
+
+## Bug 1 against Bug 2
+
+Bug 2 is said to be usually better than Bug 1, which wins where the line to the goal crosses many turns of a
+spiral.
+
+{bugs(results)}
+
+## Where they differ
+
+{differences(results)}
+
+## Lengths and clearances
+
+![lengths over the shortest, and clearances over the widest, of every way found](figures/claims_ways.png)
+
+## Growth
+
+![time against the size of the world, with fitted exponents](figures/claims_time.png)
+
+## What it rests on
+
+A question in brackets is the one that decides, or the worst.
+
+{evidence(results)}
+"""
