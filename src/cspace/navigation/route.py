@@ -32,9 +32,10 @@ class Route(_core.RouteBase):
     """The answer of one planner to one question; truthy if a path was found.
 
     path: (m, 2) [m] from start to goal; of a robot that walks, the walk it made, also where it came to rest
-    elsewhere or proved that no way exists. length [m] of the path, inf where there is none. start, goal:
-    (2,) [m]. world, planner: what was asked. `status` is "found", "unreachable" (proven), "undetermined"
-    (the search ended without a proof) or "local_minimum"; `reason` says it in a sentence.
+    elsewhere or proved that no way exists. length [m] of the path, whatever the verdict; inf where the path
+    is empty, as it is of planners with a map that find no way. start, goal: (2,) [m]. world, planner: what
+    was asked. `status` is "found", "unreachable" (proven), "undetermined" (the search ended without a proof)
+    or "local_minimum"; `reason` says it in a sentence.
     """
 
     @property
