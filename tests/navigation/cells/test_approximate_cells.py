@@ -82,12 +82,15 @@ def test_a_wall_without_thickness_on_a_line_of_the_tree():
         assert ask(world, (1, 1), (7, 1)).status == status
 
 
-def test_a_goal_in_a_mixed_square():
+def test_a_goal_in_a_mixed_square_is_joined_to_a_free_one_that_it_sees():
     world = cs.PolygonWorld([[(3.1, 3.1), (6.2, 3.1), (6.2, 6.2), (3.1, 6.2)]], (0, 0, 8, 8))
-    assert ask(world, (1, 1), (3.0, 4.0), depth=2, refine=False).status == "undetermined"
-    assert ask(world, (1, 1), (3.0, 4.0), depth=2)
+    assert ask(world, (1, 1), (3.0, 4.0), depth=2, refine=False)
+    assert ask(world, (1, 1), (3.0, 4.0), depth=1, refine=False).status == "undetermined"
     slanted = cs.PolygonWorld([[(3, 3), (5, 4), (4, 6)]], (0, 0, 8, 8))
-    assert ask(slanted, (1, 1), (4, 3.5), max_depth=9).status in {"found", "undetermined"}
+    for goal in ((4, 3.5), (3, 3), (4, 6), (4.5, 5)):
+        route = ask(slanted, (1, 1), goal)
+        assert route, goal
+        assert enters(route.path, slanted.obstacles, slanted.bounds) is None
 
 
 def test_whole_numbers_against_what_is_connected():

@@ -6,6 +6,7 @@
 
 #include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/cells/quadtree.hpp"
+#include "cspace/navigation/sampling/sight.hpp"
 
 namespace cspace::navigation {
 
@@ -27,7 +28,7 @@ struct CellAnswer {
 class ApproximateCells {
   public:
     ApproximateCells(const maps::PolygonWorld& world, const CellOptions& options, Trace* trace = nullptr)
-        : tree_(world, trace), options_(options), trace_(trace) {
+        : world_(world), tree_(world, trace), options_(options), trace_(trace) {
         options_.most_depth = std::min(options_.most_depth, tree_.deepest());
         for (int level = 0; level < std::min(options_.depth, options_.most_depth); ++level)
             split_all([&](maps::Index) { return true; }, level + 1);
@@ -61,6 +62,7 @@ class ApproximateCells {
 
   private:
     enum : std::int8_t { expand_word = 2 };
+    const maps::PolygonWorld& world_;
     Quadtree tree_;
     CellOptions options_;
     Trace* trace_;
@@ -156,14 +158,38 @@ class ApproximateCells {
         return d.is_open && tree_[d.one].kind == QuadCell::free && tree_[d.other].kind == QuadCell::free;
     }
 
-    Space space(Point start, Point goal) const {
+    // Where an end enters free leaves: itself, or if none holds it the middle of one nearby that it sees.
+    struct Entry {
+        Point at;
+        std::vector<maps::Index> leaves;
+    };
+    Entry entry_of(Point end, const std::vector<maps::Index>& leaves) const {
+        Entry entry{end, {}};
+        const auto is_free = [&](maps::Index c) { return tree_[c].kind == QuadCell::free; };
+        std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(entry.leaves), is_free);
+        if (!entry.leaves.empty()) return entry;
+        constexpr std::size_t most_tried = 24;
+        std::vector<std::pair<double, maps::Index>> near;
+        for (maps::Index c = 0; c < maps::Index(tree_.cells().size()); ++c)
+            if (tree_.is_leaf(c) && is_free(c)) near.push_back({distance(end, middle_of(c)), c});
+        const std::size_t count = std::min(most_tried, near.size());
+        std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(count), near.end());
+        const maps::Settled settled = world_.settle(end, 0);
+        for (std::size_t i = 0; i < count; ++i)
+            for (const maps::Index t : settled.triangles)
+                if (sampling::end_of_sight(world_.space, {end, t}, middle_of(near[i].second)) != maps::none)
+                    return {middle_of(near[i].second), {near[i].second}};
+        return entry;
+    }
+    Point middle_of(maps::Index c) const { return 0.5 * (tree_.low(tree_[c]) + tree_.high(tree_[c])); }
+
+    Space space(Point start, const Entry& goal) const {
         const std::size_t cells = tree_.cells().size();
-        Space made{*this, start, goal, trace_, {}, {}, {}, {}};
+        Space made{*this, start, goal.at, trace_, {}, {}, {}, {}};
         made.first.assign(cells + 1, 0);
         made.state.resize(doors_.size() + 1);
         made.holds_goal.assign(cells, 0);
-        for (const maps::Index c : at_goal_)
-            made.holds_goal[std::size_t(c)] = tree_[c].kind == QuadCell::free;
+        for (const maps::Index c : goal.leaves) made.holds_goal[std::size_t(c)] = 1;
         for (const CellDoor& d : doors_)
             if (is_passage(d)) ++made.first[std::size_t(d.one) + 1], ++made.first[std::size_t(d.other) + 1];
         std::partial_sum(made.first.begin(), made.first.end(), made.first.begin());
@@ -177,21 +203,24 @@ class ApproximateCells {
     }
 
     bool search(Point start, Point goal, Route& route) const {
-        const auto is_free = [&](maps::Index c) { return tree_[c].kind == QuadCell::free; };
-        if (std::none_of(at_start_.begin(), at_start_.end(), is_free)) return false;
-        if (std::none_of(at_goal_.begin(), at_goal_.end(), is_free)) return false;
-        Space space = this->space(start, goal);
+        const Entry from = entry_of(start, at_start_), to = entry_of(goal, at_goal_);
+        if (from.leaves.empty() || to.leaves.empty()) return false;
+        Space space = this->space(from.at, to);
         PriorityQueue queue;
-        for (const maps::Index c : at_start_)
-            if (is_free(c)) space.leave(c, start, 0, no_node, queue);
+        for (const maps::Index c : from.leaves) space.leave(c, from.at, 0, no_node, queue);
         Effort effort;
         const std::uint32_t reached = best_first(space, queue, effort);
         route.price.nodes += std::int64_t(effort.settled);
         if (reached == no_node) return false;
+        route.path = {goal};
+        const auto add = [&](Point p) {
+            if (route.path.back() != p) route.path.push_back(p);
+        };
         for (std::uint32_t node = reached; node != no_node; node = space.state[node].before)
-            if (route.path.empty() || route.path.back() != space.at(node))
-                route.path.push_back(space.at(node));
-        route.path.push_back(start);
+            add(space.at(node));
+        add(from.at);
+        add(start);
+        if (route.path.size() == 1) route.path.push_back(start);
         std::reverse(route.path.begin(), route.path.end());
         route.status = Status::found;
         route.length = length_of(route.path);
