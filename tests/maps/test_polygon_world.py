@@ -173,6 +173,20 @@ def test_sizes_that_are_no_numbers_are_refused(name, value):
             cs.navigate(cs.PolygonWorld([BOX], BOUNDS), (1, 1), (9, 9), planner, **{name: value})
 
 
+@pytest.mark.parametrize(
+    ("planner", "options", "word"),
+    [
+        ("tangent_bug", {"range": range(3)}, "one value"),
+        ("approximate_cells", {"uniform": "a"}, "True or False"),
+        ("approximate_cells", {"refine": None}, "True or False"),
+        ("a_star", {"resolution": 1e-320}, "resolution"),
+    ],
+)
+def test_options_of_the_wrong_kind_are_refused(planner, options, word):
+    with pytest.raises((InputError, InputTypeError), match=word):
+        cs.navigate(cs.PolygonWorld([BOX], BOUNDS), (1, 1), (9, 9), planner, **options)
+
+
 def test_worlds_can_be_copied_and_pickled():
     for world in (cs.PolygonWorld([BOX], BOUNDS), cs.PolygonWorld.from_grid(cs.OccupancyGrid(np.eye(4) > 0))):
         for again in (copy.deepcopy(world), pickle.loads(pickle.dumps(world))):

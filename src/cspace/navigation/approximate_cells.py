@@ -66,8 +66,8 @@ def plan(
     as well, so that all have one size. metric: what the way through the middles of doors is a shortest in,
     "euclidean" or "manhattan", the default for uniform squares. The status is "undetermined" where mixed
     squares are left that may hide a way: narrow gaps, or an end that sees no free square nearby.
-    route.evidence is a CellEvidence. UnknownNameError for another metric, InputError for a level that is not whole or not within
-    0 and 20, and for a size below zero.
+    route.evidence is a CellEvidence. UnknownNameError for another metric, InputError for a level that is not
+    whole or not within 0 and 20, and for a size below zero.
     """
     options: dict[str, Any] = {
         "depth": depth,
