@@ -99,10 +99,12 @@ FAMILIES = [convex_field, spiral, scattered_cells, comb, nested_rings]
 
 def keeps_bound(route, perimeters):
     """Whether a walk of Bug 1 or Bug 2 is as short as promised; of others nothing is promised."""
+    if route.planner not in {"bug_1", "bug_2"}:
+        return True
     D, met = float(np.linalg.norm(route.goal - route.start)), route.evidence.rings
     if route.planner == "bug_1":
         return len(set(met)) == len(met) and route.length <= (D + 1.5 * perimeters[met].sum()) * (1 + 1e-12)
-    return route.planner != "bug_2" or route.length <= (D + perimeters[met].sum()) * (1 + 1e-12)
+    return route.length <= (D + perimeters[met].sum()) * (1 + 1e-12)
 
 
 def measured(family, count):
