@@ -57,7 +57,7 @@ def main() -> None:
     fields()
     world = yard()
     routes = [cs.navigate(world, (2, 30), (98, 42), planner) for planner in cs.navigation.PLANNERS]
-    cs.plot.save(cs.plot.routes(routes), HERE / "planners.png", dpi=75)
+    cs.plot.save(cs.plot.routes(routes, columns=7), HERE / "planners.png", dpi=75)
 
 
 if __name__ == "__main__":

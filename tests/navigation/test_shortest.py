@@ -199,8 +199,8 @@ def test_questions_that_make_no_sense():
 
 
 def test_the_graph_and_the_cells_can_be_looked_at():
-    from cspace.navigation.exact_cells import exact_cells
-    from cspace.navigation.visibility_graph import visibility_graph
+    from cspace.navigation.cells.exact_cells import exact_cells
+    from cspace.navigation.roadmaps.visibility_graph import visibility_graph
 
     world = cs.PolygonWorld([[(4, 4), (6, 4), (6, 6), (4, 6)]], (0, 0, 10, 10))
     nodes, edges = visibility_graph(world)

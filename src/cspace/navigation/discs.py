@@ -11,8 +11,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from cspace.errors import InputError
-from cspace.navigation import voronoi
 from cspace.navigation.planners import module_of
+from cspace.navigation.roadmaps import voronoi
 from cspace.navigation.route import Route, new_route
 from cspace.tolerances import ON_WALL
 

@@ -109,7 +109,7 @@ def height_of(route: Any) -> Height:
 
 
 def potential_height(route: Any) -> Height:
-    from cspace.navigation.potential_field import potential
+    from cspace.navigation.fields.potential_field import potential
 
     gains = {name: value for name, value in route.evidence.gains.items() if name != "step"}
     return partial(potential, route.world, route.goal, **gains)
@@ -128,7 +128,7 @@ def navigation_height(route: Any) -> Height:
 
 
 def harmonic_height(route: Any) -> Height:
-    from cspace.navigation.harmonic import harmonic
+    from cspace.navigation.fields.harmonic import harmonic
 
     grid = route.world
     field = harmonic(grid, route.goal)

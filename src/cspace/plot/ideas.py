@@ -110,7 +110,7 @@ def draw_traced_diagram(axes: Any, route: Any) -> list[Any]:
 
 
 def draw_visibility_graph(axes: Any, route: Any) -> list[Any]:
-    from cspace.navigation.visibility_graph import visibility_graph
+    from cspace.navigation.roadmaps.visibility_graph import visibility_graph
 
     nodes, edges = visibility_graph(route.world)
     return lines(axes, nodes[edges], colors=[FAINT], linewidths=0.5, zorder=2)
@@ -119,7 +119,7 @@ def draw_visibility_graph(axes: Any, route: Any) -> list[Any]:
 def draw_exact_cells(axes: Any, route: Any) -> list[Any]:
     from matplotlib.collections import PolyCollection
 
-    from cspace.navigation.exact_cells import exact_cells
+    from cspace.navigation.cells.exact_cells import exact_cells
 
     corners, _ = exact_cells(route.world)
     wide = corners[:, 1, 0] > corners[:, 0, 0]
@@ -159,7 +159,7 @@ def draw_convex_polygons(axes: Any, route: Any) -> list[Any]:
 
 def draw_brushfire(axes: Any, route: Any) -> list[Any]:
     """How far from the walls each cell is, and the cells where fires meet."""
-    from cspace.navigation.brushfire import brushfire_diagram
+    from cspace.navigation.fields.brushfire import brushfire_diagram
 
     grid = route.world
     diagram = brushfire_diagram(grid)
@@ -174,7 +174,7 @@ def draw_brushfire(axes: Any, route: Any) -> list[Any]:
 
 def draw_voronoi(axes: Any, route: Any) -> list[Any]:
     """The arcs of the diagram."""
-    from cspace.navigation.voronoi import voronoi_diagram
+    from cspace.navigation.roadmaps.voronoi import voronoi_diagram
 
     arcs = [points for points, _ in voronoi_diagram(route.world).arcs]
     from matplotlib.collections import LineCollection

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.navigation import any_angle
+from cspace.navigation.cells import any_angle
 from data import shared_data
 from oracles.segments import enters
 

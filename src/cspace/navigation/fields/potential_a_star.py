@@ -21,8 +21,8 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
-from cspace.navigation.grid_search import CORNERS, checked_ends
-from cspace.navigation.grid_search import reason as reason
+from cspace.navigation.grid.search import CORNERS, checked_ends
+from cspace.navigation.grid.search import reason as reason
 from cspace.navigation.trace import Trace
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from cspace.navigation.grid_search import (
+from cspace.navigation.grid.search import (
     BEST_FIRST,
     Settings,
     at_least_one,

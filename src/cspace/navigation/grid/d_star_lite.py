@@ -13,7 +13,7 @@ from cspace.arrays import as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid
 from cspace.maps.occupancy_grid import outside
-from cspace.navigation.grid_search import METRICS, WORDS, checked_ends, metric_of
+from cspace.navigation.grid.search import METRICS, WORDS, checked_ends, metric_of
 from cspace.navigation.route import STATUSES, Price, Route, new_route
 from cspace.navigation.trace import Trace
 

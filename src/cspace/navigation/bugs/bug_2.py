@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cspace.navigation.bugs import BUG_2, hand_of, reason, search, traced
+from cspace.navigation.bugs.walk import BUG_2, hand_of, reason, search, traced
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
 

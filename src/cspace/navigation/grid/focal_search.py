@@ -7,7 +7,7 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
-from cspace.navigation.grid_search import FOCAL, Settings, at_least_one, over_costs, reason, search, traced
+from cspace.navigation.grid.search import FOCAL, Settings, at_least_one, over_costs, reason, search, traced
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
 

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cspace.navigation import sampling
+from cspace.navigation.sampling import problem
 from cspace.navigation.trace import Trace
 
 if TYPE_CHECKING:
@@ -39,14 +39,14 @@ def plan(
     Generator or None; `route.options` keeps the seed. route.evidence is a Sampled. The status is
     "undetermined" where the samples were too few. InputError on options out of range.
     """
-    options = sampling.tree_options(world, samples, step, goal_bias, rng)
-    return sampling.ask(world, "rrt", options, start, goal)
+    options = problem.tree_options(world, samples, step, goal_bias, rng)
+    return problem.ask(world, "rrt", options, start, goal)
 
 
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
-    done: sampling.Sampled = route.evidence
-    return sampling.verdict_of(
+    done: problem.Sampled = route.evidence
+    return problem.verdict_of(
         route, f"a tree of {done.nodes} nodes reached the goal after {done.samples} samples"
     )
 
@@ -54,4 +54,4 @@ def reason(route: Route) -> str:
 def trace(route: Route) -> Trace:
     """The growth of the tree: "connect" for each edge, its value the length [m] of the way from the start.
     start, end: (k, 2) [m]."""
-    return sampling.trace_of(route)
+    return problem.trace_of(route)

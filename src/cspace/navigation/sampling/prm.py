@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cspace.navigation import sampling
+from cspace.navigation.sampling import problem
 from cspace.navigation.trace import Trace
 
 if TYPE_CHECKING:
@@ -38,21 +38,21 @@ def plan(
     "undetermined" where the roadmap does not join start and goal. InputError on a count below one.
     """
     options = {
-        "samples": sampling.count_of("samples", samples, 1),
-        "neighbours": None if neighbours is None else sampling.count_of("neighbours", neighbours, 1),
-        "rng": sampling.seed_of(rng),
+        "samples": problem.count_of("samples", samples, 1),
+        "neighbours": None if neighbours is None else problem.count_of("neighbours", neighbours, 1),
+        "rng": problem.seed_of(rng),
     }
-    return sampling.ask(world, "prm", options, start, goal)
+    return problem.ask(world, "prm", options, start, goal)
 
 
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
-    done: sampling.Sampled = route.evidence
-    return sampling.verdict_of(
+    done: problem.Sampled = route.evidence
+    return problem.verdict_of(
         route, f"a shortest way on a roadmap of {done.nodes} points and {done.edges} segments tested"
     )
 
 
 def trace(route: Route) -> Trace:
     """The roadmap: "connect" for each edge, its value the length [m]. start, end: (k, 2) [m]."""
-    return sampling.trace_of(route)
+    return problem.trace_of(route)

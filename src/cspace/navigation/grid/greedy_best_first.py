@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from cspace.navigation.grid_search import BEST_FIRST, Settings, metric_of, reason, search, traced
+from cspace.navigation.grid.search import BEST_FIRST, Settings, metric_of, reason, search, traced
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
 

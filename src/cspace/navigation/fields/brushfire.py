@@ -21,7 +21,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputTypeError, suggest
-from cspace.navigation.grid_search import checked_ends
+from cspace.navigation.grid.search import checked_ends
 from cspace.navigation.trace import Trace
 
 if TYPE_CHECKING:

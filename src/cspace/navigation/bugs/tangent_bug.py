@@ -13,7 +13,7 @@ from typing import Any
 
 from cspace.arrays import as_floats
 from cspace.errors import InputError
-from cspace.navigation.bugs import EITHER, TANGENT_BUG, hand_of, reason, search, traced
+from cspace.navigation.bugs.walk import EITHER, TANGENT_BUG, hand_of, reason, search, traced
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
 

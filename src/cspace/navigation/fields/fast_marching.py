@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputTypeError
-from cspace.navigation.grid_search import checked_ends
-from cspace.navigation.potential_a_star import clearance_field, number_of
+from cspace.navigation.fields.potential_a_star import clearance_field, number_of
+from cspace.navigation.grid.search import checked_ends
 from cspace.navigation.trace import Trace
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import Any
 
 from cspace.errors import InputTypeError
-from cspace.navigation.grid_search import (
+from cspace.navigation.grid.search import (
     LAZY_THETA_STAR,
     METRICS,
     THETA_STAR,

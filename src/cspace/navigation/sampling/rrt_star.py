@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cspace.navigation import sampling
+from cspace.navigation.sampling import problem
 from cspace.navigation.trace import Trace
 
 if TYPE_CHECKING:
@@ -42,14 +42,14 @@ def plan(
     to 1. rng: seed, Generator or None; `route.options` keeps the seed. route.evidence is a Sampled. The
     status is "undetermined" where the samples were too few. InputError on options out of range.
     """
-    options = sampling.tree_options(world, samples, step, goal_bias, rng)
-    return sampling.ask(world, "rrt_star", options, start, goal)
+    options = problem.tree_options(world, samples, step, goal_bias, rng)
+    return problem.ask(world, "rrt_star", options, start, goal)
 
 
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
-    done: sampling.Sampled = route.evidence
-    return sampling.verdict_of(
+    done: problem.Sampled = route.evidence
+    return problem.verdict_of(
         route, f"the best way in a tree of {done.nodes} nodes after {done.samples} samples"
     )
 
@@ -57,4 +57,4 @@ def reason(route: Route) -> str:
 def trace(route: Route) -> Trace:
     """The growth of the tree: "connect" for each edge, "rewire" for a node that is led through another; the
     value is the length [m] of the way from the start. start, end: (k, 2) [m]."""
-    return sampling.trace_of(route)
+    return problem.trace_of(route)
