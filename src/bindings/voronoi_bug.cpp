@@ -1,9 +1,11 @@
 // Voronoi Bug in a polygon world as raw entries.
 #include "cspace/navigation/bugs/voronoi_bug.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <optional>
 
+#include "cspace/navigation/sampling/sight.hpp"
 #include "polygon_world.hpp"
 #include "route.hpp"
 
@@ -29,7 +31,12 @@ std::optional<Exploration> ask(const Question& q) {
     const nanobind::gil_scoped_release free;
     Exploration trip = voronoi_bug(*q.core->felt, *q.core->sensed, from.at, to.at, q.range);
     trip.route.path.front() = q.start;
-    if (trip.route.status == Status::found) trip.route.path.back() = q.goal;
+    if (trip.route.status != Status::found) return trip;
+    trip.route.path.back() = q.goal;
+    const bool is_free = std::any_of(from.triangles.begin(), from.triangles.end(), [&](Index t) {
+        return sampling::keeps_in_sight(q.core->world.space, trip.route.path, t);
+    });
+    if (!is_free) trip.route.status = Status::undetermined;  // through a gap as narrow as a rounding
     return trip;
 }
 

@@ -80,7 +80,7 @@ def stays_poor(*question, **options):
 
 def denies_what_is_undetermined(*question, **options):
     """Cells too coarse for a gap, taken for a wall."""
-    route = cs.navigate(*question, **options)
+    route = cs.navigate(*question, **options | {"depth": 3, "max_depth": 3})
     return told(route, status="unreachable") if route.status == "undetermined" else route
 
 

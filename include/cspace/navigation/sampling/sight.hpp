@@ -51,4 +51,11 @@ inline Index end_of_sight(const FreeSpace& space, Located from, Point q) {
     return none;
 }
 
+// Whether a path that begins in the closure of a free triangle never meets a wall.
+inline bool keeps_in_sight(const FreeSpace& space, const std::vector<Point>& path, Index triangle) {
+    for (std::size_t leg = 1; leg < path.size() && triangle != none; ++leg)
+        triangle = end_of_sight(space, {path[leg - 1], triangle}, path[leg]);
+    return triangle != none;
+}
+
 }  // namespace cspace::navigation::sampling

@@ -6,6 +6,7 @@
 // widest at all.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 
 #include "cspace/maps/polygon_world.hpp"
@@ -106,14 +107,9 @@ class Roadmap {
     // Whether a path keeps to the open free space of a component, decided exactly.
     bool is_free(const std::vector<Point>& path, const maps::Settled& start, Index component) const {
         const maps::FreeSpace& space = world_.space;
-        for (Index t : start.triangles) {
-            if (space.component[std::size_t(t)] != component) continue;
-            std::size_t leg = 1;
-            for (; leg < path.size() && t != none; ++leg)
-                t = sampling::end_of_sight(space, {path[leg - 1], t}, path[leg]);
-            if (t != none) return true;
-        }
-        return false;
+        return std::any_of(start.triangles.begin(), start.triangles.end(), [&](Index t) {
+            return space.component[std::size_t(t)] == component && sampling::keeps_in_sight(space, path, t);
+        });
     }
 
     Landing land(const maps::Settled& end, Index component) const {
