@@ -1,11 +1,10 @@
 // Voronoi Bug in a polygon world as raw entries.
 #include "cspace/navigation/bugs/voronoi_bug.hpp"
 
-#include <algorithm>
 #include <chrono>
 #include <optional>
 
-#include "cspace/navigation/sampling/sight.hpp"
+#include "cspace/navigation/bugs/contact_robot.hpp"
 #include "polygon_world.hpp"
 #include "route.hpp"
 
@@ -33,10 +32,8 @@ std::optional<Exploration> ask(const Question& q) {
     trip.route.path.front() = q.start;
     if (trip.route.status != Status::found) return trip;
     trip.route.path.back() = q.goal;
-    const bool is_free = std::any_of(from.triangles.begin(), from.triangles.end(), [&](Index t) {
-        return sampling::keeps_in_sight(q.core->world.space, trip.route.path, t);
-    });
-    if (!is_free) trip.route.status = Status::undetermined;  // through a gap as narrow as a rounding
+    // Else it went through a gap as narrow as a rounding.
+    if (!can_walk(*q.core->felt, trip.route.path)) trip.route.status = Status::undetermined;
     return trip;
 }
 

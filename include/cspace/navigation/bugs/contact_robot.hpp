@@ -155,4 +155,17 @@ class ContactRobot {
     }
 };
 
+// Whether a robot that touches walls and never enters them can walk along a path, decided exactly.
+inline bool can_walk(const Walls& walls, const std::vector<Point>& path) {
+    ContactRobot robot(walls, path.front());
+    std::vector<Point> touched;
+    for (std::size_t side = 0; side < robot.sides(); ++side) {
+        robot.stand(side);
+        std::size_t leg = 1;
+        while (leg < path.size() && robot.advance({path[leg - 1], path[leg]}, touched)) ++leg;
+        if (leg == path.size()) return true;
+    }
+    return false;
+}
+
 }  // namespace cspace::navigation
