@@ -71,13 +71,19 @@ def chunks(step: Callable[[Any], Any], inputs: list[Any], seconds: float) -> lis
     return found
 
 
+def clock_cost() -> float:
+    """What reading the clock of processor time costs [ns], in the middle."""
+    clock = time.process_time_ns
+    return -float(np.median([clock() - clock() for _ in range(1000)]))
+
+
 def one_by_one(step: Callable[[Any], Any], inputs: list[Any], seconds: float, first: int = 0) -> list[float]:
     """Nanoseconds of processor time per call, less what reading that clock costs, until the time is up.
 
     What else runs on the machine does not count. Begins at the input numbered first and goes round.
     """
     clock = time.process_time_ns
-    reading = -float(np.median([clock() - clock() for _ in range(1000)]))
+    reading = clock_cost()
     found: list[float] = []
     end = time.perf_counter_ns() + int(seconds * 1e9)
     while time.perf_counter_ns() < end:

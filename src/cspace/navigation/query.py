@@ -71,6 +71,10 @@ def _prepared(world: World, kind: str | None, row: Planner, radius: float, resol
         raise InputTypeError(
             f"world must be a PolygonWorld or an OccupancyGrid, got an object of type {type(world).__name__}"
         )
+    if radius is NO_RADIUS and resolution is None:
+        ready: World | None = vars(world).get("_derived", {}).get((row.world, row.takes_cells))
+        if ready is not None:
+            return ready
     if (grown := _one_number(radius, "radius")) < 0:
         raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
     if grown:
@@ -83,7 +87,8 @@ def _prepared(world: World, kind: str | None, row: Planner, radius: float, resol
     if isinstance(world, OccupancyGrid):
         if row.takes_cells and module_of(row.name).takes_cells(world):
             return world
-        return _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
+        polygons = _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
+        return _derived(world, (row.world, row.takes_cells), lambda: polygons)
     return _derived(world, ("grid", side), lambda: world.to_grid(side))
 
 
