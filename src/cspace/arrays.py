@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from cspace.errors import InputError, InputTypeError
 
-__all__ = ["Array", "as_floats", "as_generator", "leading_axes"]
+__all__ = ["Array", "as_floats", "as_generator", "leading_axes", "one_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -43,6 +43,16 @@ def as_floats(
             f"{subject} {_entry(array, tuple(map(int, beyond[0])))}; at most ±{largest:g} makes sense"
         )
     return array
+
+
+def one_number(value: Any, subject: str, *, largest: float | None = None) -> float:
+    """A finite number, alone; InputTypeError and InputError as of as_floats."""
+    if type(value) is float and value == 0:
+        return 0.0
+    number = as_floats(value, subject, largest=largest)
+    if number.ndim:
+        raise InputError(f"{subject} has shape {number.shape}; it must be one number")
+    return float(number)
 
 
 def leading_axes(**shapes: tuple[int, ...]) -> tuple[int, ...]:

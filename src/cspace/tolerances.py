@@ -18,6 +18,7 @@ __all__ = [
     "FARTHEST",
     "FARTHEST_CELL",
     "FARTHEST_POINT",
+    "FINEST_CELL",
     "FRAME_SNAP",
     "GIMBAL_LOCK",
     "HALF_TURN",
@@ -26,6 +27,7 @@ __all__ = [
     "INERTIA_SYMMETRY",
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
+    "LEAST_REACH",
     "MAP_BYTES",
     "MAP_CELLS",
     "MEAN_UNIQUENESS",
@@ -236,6 +238,13 @@ wall: the point of a slanted wall that someone computes is off by a few rounding
 FARTHEST_POINT: Final = 1e15
 """Largest coordinate [m] of a world: beyond it products of three coordinates and their rests leave the
 range in which exact decisions are exact, and neighbouring numbers are decimetres apart."""
+
+FINEST_CELL: Final = 1e-30
+"""Smallest side of a cell [m]: products of four lengths stay in the range of float64."""
+
+LEAST_REACH: Final = 1e-60
+"""Least reach of walls in a potential [m], and the inverse of the largest: its fourth power stays in the
+range of float64."""
 
 HARMONIC_RESIDUAL: Final = 1e-11
 """By what share of itself a cell of a harmonic field may differ from the mean of the four beside it:

@@ -25,6 +25,21 @@ def test_all_planners_side_by_side():
             assert route["clearance"] >= 0
 
 
+def test_clearance_is_that_from_the_walls_of_the_map():
+    [route] = cspace(f"{YARD} --goal 9 9 --radius 0.3 --json").json["routes"]
+    assert 0.3 - 1e-9 <= route["clearance"] < 0.302
+
+
+def test_a_planner_on_cells_may_refuse_what_others_answer():
+    line = f"{YARD} --goal 1.9 3 --resolution 0.3 --planner any_angle,a_star"
+    result = cspace(line)
+    assert result.code == Exit.DONE
+    assert "a_star: goal (1.9, 3) lies in cell" in result.out
+    document = cspace(f"{line} --json").json
+    assert [route["planner"] for route in document["routes"]] == ["any_angle"]
+    assert list(document["refused"]) == ["a_star"]
+
+
 def test_no_way_ends_in_one():
     result = cspace(f"{YARD} --goal 3.5 3.5 --planner bug_2,any_angle")
     assert result.code == Exit.NEGATIVE

@@ -6,7 +6,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError
 from cspace.tolerances import FARTHEST_POINT
 
@@ -25,7 +25,7 @@ def disc_outlines(centers: Any, radii: Any, sides: int) -> list[Array]:
         raise InputError(f"radii has shape {reach.shape}, expected () or ({len(at)},): one per disc")
     if not np.all(reach > 0):
         raise InputError(f"radii has {np.min(reach):g} in it; a disc has a radius above zero [m]")
-    if int(as_floats(sides, "sides")) != sides or not 4 <= sides <= MOST_SIDES:
+    if int(number := one_number(sides, "sides")) != number or not 4 <= sides <= MOST_SIDES:
         raise InputError(f"sides is {sides}; a polygon around a disc has 4 to {MOST_SIDES} here")
     angles = 2 * np.pi * (np.arange(int(sides)) + 0.5) / sides
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1) / np.cos(np.pi / sides)

@@ -11,9 +11,9 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.tolerances import FARTHEST_CELL, MAP_CELLS
+from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
 
 __all__ = ["OccupancyGrid"]
 
@@ -49,6 +49,11 @@ class OccupancyGrid(_core.GridBase):
                 f"origin {tuple(map(float, corner))} is {reach / side:.3g} cells from the farthest cell; "
             )
             raise InputError(message + f"float64 tells cells apart up to {FARTHEST_CELL:g} of them")
+        if side < FINEST_CELL or reach > FARTHEST_POINT:
+            raise InputError(
+                f"resolution is {side:g} and the farthest cell {reach:.3g} m away; cells have sides of "
+                f"{FINEST_CELL:g} m at least and lie within {FARTHEST_POINT:g} m"
+            )
         super().__init__(cells, side, float(corner[0]), float(corner[1]))
 
     @classmethod
@@ -172,7 +177,7 @@ class OccupancyGrid(_core.GridBase):
         distances are compared in half cells as integers; where the square of the radius in half cells is a
         whole number but for rounding, it is taken as that.
         """
-        grown = float(as_floats(radius, "radius"))
+        grown = one_number(radius, "radius")
         if grown < 0:
             raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
         if clear not in RULES:

@@ -13,7 +13,7 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, one_number
 from cspace.errors import InputError
 from cspace.tolerances import ON_WALL
 
@@ -105,9 +105,11 @@ def offset_of(walls: list[Array], clearance: Clearance, wide: float, radius: flo
     walls: rings (n, 2) [m] with free space on their left; clearance: of points (m, 2) [m], from all walls;
     wide [m]: the longer side of the bounds.
     """
-    reach = float(as_floats(radius, "radius"))
+    reach = one_number(radius, "radius")
     if not reach > 0:
         raise InputError(f"radius is {reach:g}; it must be positive [m]")
+    if reach > wide:
+        return Offset(reach, [])  # no place in the bounds is that far from them
     slack = ROUNDINGS * ON_WALL * wide
     tracks = _tracks(walls, reach)
     pieces = [piece for k in range(len(tracks.size)) for piece in _kept(clearance, tracks, k, reach, slack)]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError
 from cspace.maps.discs import disc_outlines
 from cspace.maps.geojson import read_geojson
@@ -160,7 +160,7 @@ class PolygonWorld:
         """
         wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
         places = as_floats(keep, "keep", last=(2,)).reshape(-1, 2) if np.size(keep) else np.empty((0, 2))
-        if 0 <= float(as_floats(radius, "radius")) <= ON_WALL * wide:
+        if 0 <= one_number(radius, "radius") <= ON_WALL * wide:
             return self  # less than the roundings of its corners
         obstacles, bounds = grown(self._outlines, self._bounds, radius, sides, places)
         return PolygonWorld(obstacles, bounds, repair=True)

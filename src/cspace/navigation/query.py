@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from numpy.typing import ArrayLike
 
-from cspace.arrays import as_floats
+from cspace.arrays import one_number
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid, PolygonWorld
 from cspace.navigation.planners import Planner, check_options, module_of, planner_named
@@ -75,11 +75,11 @@ def _prepared(world: World, kind: str | None, row: Planner, radius: float, resol
         ready: World | None = vars(world).get("_derived", {}).get((row.world, row.takes_cells))
         if ready is not None:
             return ready
-    if (grown := _one_number(radius, "radius")) < 0:
+    if (grown := one_number(radius, "radius")) < 0:
         raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
     if grown:
         world = _derived(world, ("grown", grown), lambda: world.inflate(grown))
-    side = None if resolution is None else _one_number(resolution, "resolution")
+    side = None if resolution is None else one_number(resolution, "resolution")
     if kind == "grid" and side is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
     if kind == row.world:
@@ -90,15 +90,6 @@ def _prepared(world: World, kind: str | None, row: Planner, radius: float, resol
         polygons = _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
         return _derived(world, (row.world, row.takes_cells), lambda: polygons)
     return _derived(world, ("grid", side), lambda: world.to_grid(side))
-
-
-def _one_number(value: Any, subject: str) -> float:
-    if type(value) in (float, int) and value == 0:
-        return 0.0
-    number = as_floats(value, subject)
-    if number.ndim:
-        raise InputError(f"{subject} has shape {number.shape}; it must be one number [m]")
-    return float(number)
 
 
 def _derived(world: World, key: Hashable, make: Callable[[], World]) -> World:

@@ -71,6 +71,11 @@ class Route(_core.RouteBase):
         """The options that the planner was given."""
         return dict(self._options or {})
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What it was made from: copies and pickles are made from that again."""
+        ends, found = (self.start, self.goal), (self.status, self.path, self.length)
+        return new_route, (self.world, self.planner, self.options, ends, *found, self.price, self.evidence)
+
     def __repr__(self) -> str:
         if self:
             return f"<Route {self.planner}: found, {self.length:.6g} m, {len(self.path)} points>"

@@ -57,6 +57,8 @@ def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
 
     Returns the artists.
     """
+    if not hasattr(coverage, "regions"):
+        raise InputTypeError(f"coverage is an object of type {type(coverage).__name__}; give a Coverage")
     axes = flat_axes(ax)
     artists = world(coverage.grid, ax=axes)
     xmin, ymin, xmax, ymax = coverage.grid.bounds

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.errors import InputError
+from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes, need_matplotlib
 from cspace.plot.ideas import draw_idea
@@ -29,6 +29,8 @@ FRAMES: Final = 60
 
 def world(world: Any, *, ax: Any | None = None) -> list[Any]:
     """Draw a PolygonWorld or an OccupancyGrid: obstacles dark, free space white. Returns the artists."""
+    if not hasattr(world, "kind"):
+        raise _wrong(world, "world", "a PolygonWorld or an OccupancyGrid")
     axes = flat_axes(ax)
     xmin, ymin, xmax, ymax = world.bounds
     axes.set(xlim=(xmin, xmax), ylim=(ymin, ymax), aspect="equal")
@@ -50,6 +52,8 @@ def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
     idea: also draw what the planner works with (cells, graph, diagram, waves, hit points) and its search.
     Returns the artists.
     """
+    if not hasattr(route, "planner"):
+        raise _wrong(route, "route", "a Route, as cs.navigate answers")
     axes = flat_axes(ax)
     artists = world(route.world, ax=axes)
     if idea:
@@ -69,6 +73,8 @@ def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
     need_matplotlib()
     import matplotlib.pyplot as plt
 
+    if not isinstance(routes, Sequence):
+        raise _wrong(routes, "routes", "a list of Routes")
     if not len(routes):
         raise InputError("routes is empty; give one route or more")
     wide = columns or math.ceil(math.sqrt(len(routes)))
@@ -97,6 +103,8 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
 
     frames: into how many pictures the events of `route.trace` are divided.
     """
+    if not hasattr(route, "planner"):
+        raise _wrong(route, "route", "a Route, as cs.navigate answers")
     axes = flat_axes(ax)
     from matplotlib.animation import FuncAnimation
     from matplotlib.collections import LineCollection
@@ -121,3 +129,7 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
         return searched, reached, path
 
     return FuncAnimation(axes.figure, show, frames=frames + 12, interval=80, blit=False)
+
+
+def _wrong(value: Any, subject: str, remedy: str) -> InputTypeError:
+    return InputTypeError(f"{subject} is an object of type {type(value).__name__}; give {remedy}")

@@ -13,8 +13,10 @@ from cspace.cli.arguments import number
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.pictures import check_format
+from cspace.errors import InputError
 
 if TYPE_CHECKING:
+    from cspace.maps import PolygonWorld
     from cspace.navigation import Route
 
 __all__ = ["EXAMPLES", "arguments", "run"]
@@ -60,15 +62,14 @@ def run(args: argparse.Namespace, out: Output) -> int:
     if args.animate and args.animate.suffix.lower() != ".gif":
         raise UsageError(f"an animation is a GIF; end {str(args.animate)!r} with .gif")
     world = load(args.map, args.resolution)
-    if len(names) > 1:  # the times are compared, without what is made once and kept with the map
-        for name in names:
-            ask(world, name, args)
-    routes = [ask(world, name, args) for name in names]
-    best = ask(world, "any_angle", args)
+    routes, refused = answers(world, names, args)
+    best, walls = ask(world, "any_angle", args), polygons(world)
     if out.as_json:
-        out.document(document(args, routes, best))
+        out.document(document(args, routes, best, walls) | {"refused": refused})
     else:
-        show(routes, best, out)
+        show(routes, best, walls, out)
+        for name, why in refused.items():
+            out.line(f"{name}: {why}")
     if args.plot:
         from cspace import plot
 
@@ -119,17 +120,41 @@ def ask(world: Any, planner: str, args: argparse.Namespace) -> Route:
     return navigate(world, args.start, args.goal, planner, radius=args.radius, **more)
 
 
-def clearance(route: Route) -> float | None:
-    """The least distance [m] between the path and a wall, at many places along it."""
+def answers(world: Any, names: list[str], args: argparse.Namespace) -> tuple[list[Route], dict[str, str]]:
+    """The routes of planners, and why others refuse the question; InputError where all do.
+
+    Of several planners times are compared, without what is made once and kept with the map.
+    """
+    routes, refused = [], {}
+    for name in names:
+        try:
+            route = ask(world, name, args)
+        except InputError as error:
+            if len(names) == 1:
+                raise
+            refused[name] = str(error)
+        else:
+            routes.append(route if len(names) == 1 else ask(world, name, args))
+    if not routes:
+        raise InputError(next(iter(refused.values())))
+    return routes, refused
+
+
+def polygons(world: Any) -> PolygonWorld:
+    """The map as it was read, as polygons."""
     from cspace.maps import PolygonWorld
 
+    return world if isinstance(world, PolygonWorld) else PolygonWorld.from_grid(world)
+
+
+def clearance(route: Route, walls: PolygonWorld) -> float | None:
+    """The least distance [m] between the path and a wall of the map, at many places along it."""
     if not len(route.path):
         return None
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route.path, axis=0).T))])
     at = np.unique(np.concatenate([along, np.linspace(0, along[-1], SAMPLES)]))
     points = np.stack([np.interp(at, along, route.path[:, k]) for k in (0, 1)], axis=1)
-    world = route.world if route.world.kind == "polygons" else PolygonWorld.from_grid(route.world)
-    return float(world.clearance(points).min())
+    return float(walls.clearance(points).min())
 
 
 def ratio(route: Route, best: Route) -> float | None:
@@ -139,12 +164,12 @@ def ratio(route: Route, best: Route) -> float | None:
     return route.length / best.length if best.length else 1.0
 
 
-def show(routes: list[Route], best: Route, out: Output) -> None:
+def show(routes: list[Route], best: Route, walls: PolygonWorld, out: Output) -> None:
     """One line a planner, and why some found nothing; of a single one, the reason and the corners too."""
     table = Table(("planner", "status", "length [m]", "/ shortest", "clearance [m]", "nodes", "time [µs]"))
     table.left = frozenset({0, 1})
     for route in routes:
-        share, free = ratio(route, best), clearance(route)
+        share, free = ratio(route, best), clearance(route, walls)
         table.add(
             route.planner,
             Cell(route.status, "" if route else "yellow"),
@@ -165,7 +190,9 @@ def show(routes: list[Route], best: Route, out: Output) -> None:
             out.line(f"{x:12.6f} {y:12.6f}")
 
 
-def document(args: argparse.Namespace, routes: list[Route], best: Route) -> dict[str, Any]:
+def document(
+    args: argparse.Namespace, routes: list[Route], best: Route, walls: PolygonWorld
+) -> dict[str, Any]:
     """The answers for machines."""
     found = [
         {
@@ -174,7 +201,7 @@ def document(args: argparse.Namespace, routes: list[Route], best: Route) -> dict
             "reason": route.reason,
             "length": route.length if math.isfinite(route.length) else None,
             "ratio_to_shortest": ratio(route, best),
-            "clearance": clearance(route),
+            "clearance": clearance(route, walls),
             "nodes": route.price.nodes,
             "edges": route.price.edges,
             "seconds": route.price.seconds,

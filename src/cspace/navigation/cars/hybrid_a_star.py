@@ -57,6 +57,8 @@ def hybrid_a_star(
     """
     if not isinstance(grid, _core.GridBase):
         raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    if not isinstance(reverse, bool | np.bool_):
+        raise InputTypeError(f"reverse is {reverse!r}; give True or False")
     car = Car() if vehicle is None else vehicle
     if not isinstance(car, Car):
         raise InputTypeError(f"vehicle is a {type(car).__name__}; give a Car")

@@ -61,7 +61,7 @@ def takes_cells(grid: OccupancyGrid) -> bool:
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
     if route:
-        corners = len(route.path) - 2
+        corners = max(len(route.path) - 2, 0)
         return f"the shortest path; it turns at {corners} corner{'s' if corners != 1 else ''} of obstacles"
     if route.world.kind == "grid":
         return "walls divide start from goal: no path connects the parts of free space in which they lie"

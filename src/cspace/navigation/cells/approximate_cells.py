@@ -19,6 +19,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.trace import Trace
+from cspace.navigation.worlds import need_polygons
 from cspace.tolerances import QUADTREE_CELLS, QUADTREE_DEPTH, UNIFORM_DEPTH
 
 if TYPE_CHECKING:
@@ -115,6 +116,7 @@ def approximate_cells(
     depth, uniform: as in `plan`, for a tree that is not refined. InputError for a depth that is not whole or
     not within 0 and 20.
     """
+    need_polygons(world)
     settings = _settings(world, depth, 0.0, False, None, uniform, None)
     squares, kinds = _core._approximate_cells_all(world._core, settings)
     return squares, kinds

@@ -19,7 +19,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import PolygonWorld
 from cspace.navigation.trace import Trace
-from cspace.tolerances import DESCENT_LOOKS
+from cspace.tolerances import DESCENT_LOOKS, LEAST_REACH
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route
@@ -133,6 +133,8 @@ def _settings(
     """k, k_r, rho_0, cone, step, looks: (6,)."""
     xmin, ymin, xmax, ymax = world.bounds
     reach = _positive("rho_0", max(xmax - xmin, ymax - ymin) / 20 if rho_0 is None else rho_0)
+    if not LEAST_REACH < reach < 1 / LEAST_REACH:
+        raise InputError(f"rho_0 is {reach:g} m; give one from {LEAST_REACH:g} to {1 / LEAST_REACH:g} m")
     pull = _positive("k", k)
     push = _positive("k_r", 0.25 * pull * reach**4 if k_r is None else k_r)
     limit = _positive("cone", reach if cone is None else cone)

@@ -24,7 +24,7 @@ from cspace.errors import InputError
 from cspace.maps import PolygonWorld
 from cspace.navigation.route import Price, new_route
 from cspace.navigation.trace import Trace
-from cspace.tolerances import NAVIGATION_SQUARES, NAVIGATION_STEPS
+from cspace.tolerances import FARTHEST_POINT, NAVIGATION_SQUARES, NAVIGATION_STEPS, ON_WALL
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route
@@ -178,8 +178,8 @@ def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = No
         if function is None:
             raise InputError(fault)
         return function
-    discs = np.ascontiguousarray(as_floats(world, "world", last=(3,)))
-    at = np.ascontiguousarray(as_floats(goal, "goal", last=(2,)))
+    discs = np.ascontiguousarray(as_floats(world, "world", last=(3,), largest=FARTHEST_POINT))
+    at = np.ascontiguousarray(as_floats(goal, "goal", last=(2,), largest=FARTHEST_POINT))
     _check_discs(discs, at)
     core = _core.NavigationCore.of_discs(discs, at, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if not core.kappa:
@@ -202,6 +202,12 @@ def _check_discs(discs: Array, goal: Array) -> None:
         raise InputError(f"discs have shape {discs.shape}; give (n, 3) rows of x, y and a positive radius")
     if goal.shape != (2,):
         raise InputError(f"goal has shape {goal.shape}, expected (2,)")
+    small = np.flatnonzero(discs[:, 2] <= ON_WALL * np.abs(discs).max())
+    if len(small):
+        raise InputError(
+            f"disc {small[0]} has radius {discs[small[0], 2]:g}; rounding swallows it beside coordinates "
+            f"of {np.abs(discs).max():g}"
+        )
     away = np.linalg.norm(discs[:, None, :2] - discs[None, :, :2], axis=-1)
     reach = discs[:, None, 2] + discs[None, :, 2]
     reach[0], reach[:, 0] = 0, 0

@@ -30,6 +30,8 @@ CONTROLLERS: Final = tuple(OPTIONS)
 """The controllers, in the order of the compiled core."""
 
 SAMPLES_PER_RADIUS: Final = 50.0
+MOST_STEPS: Final = 1e7
+"""Steps of one run: a row of seven numbers each."""
 Runs = list[tuple[int, int]]
 """The row at which each run begins, and whether it is driven forwards (1) or backwards (−1)."""
 
@@ -82,6 +84,10 @@ def follow(
     step = positive(time_step, "time_step")
     length = float(np.hypot(*np.diff(rows[:, :2], axis=0).T).sum())
     limit = 10 * length / fast + 60 if time_limit is None else positive(time_limit, "time_limit")
+    if limit > MOST_STEPS * step:
+        raise InputError(
+            f"time_step is {step:g} s, time_limit {limit:g} s; give numbers for at most {MOST_STEPS:g} steps"
+        )
     window = 2 * far + 4 * fast * step
     settings = [step, limit, fast, window, positive(tolerance, "tolerance"), positive(patience, "patience")]
     points = np.ascontiguousarray(rows[:, :2])
@@ -138,7 +144,7 @@ def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> No
     """Whether a controller of that name exists and can drive the vehicle along the runs."""
     if not isinstance(vehicle, Unicycle | Car):
         raise InputTypeError(f"vehicle is a {type(vehicle).__name__}; give a Unicycle or a Car")
-    if controller not in CONTROLLERS:
+    if not isinstance(controller, str) or controller not in CONTROLLERS:
         raise suggest("controller", controller, CONTROLLERS)
     if controller == "dynamic_window" and not isinstance(vehicle, Unicycle):
         raise InputTypeError("dynamic_window drives a disc that turns on the spot; give a Unicycle")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 import time
 from typing import Any
 
@@ -26,6 +27,7 @@ class DStarLite:
     grid: what is known at first; it stays as it is. start, goal: (2,) [m] in free cells. metric: "octile"
     (eight moves) or "manhattan" (four). corners: as for A*. Tell what changes by `set_blocked` and where the
     robot is by `move`; `route` is the shortest way from there, of the same length as that of a fresh search.
+    Threads that share one are served one by one.
     """
 
     def __init__(
@@ -46,12 +48,14 @@ class DStarLite:
         self._core = _core.GridReplanner(grid, rule, *self._ends[0], *self._ends[1])
         self._route: Route | None = None
         self._settled = np.empty((0, 2), np.int32)
+        self._busy = threading.Lock()
 
     @property
     def grid(self) -> OccupancyGrid:
         """The grid as it is known now."""
         cells = np.empty(self._grid.shape, np.uint8)
-        self._core.unpack(cells)
+        with self._busy:
+            self._core.unpack(cells)
         return OccupancyGrid(cells.view(np.bool_), self._grid.resolution, self._grid.origin)
 
     def set_blocked(self, cells: ArrayLike, blocked: bool = True) -> None:
@@ -67,8 +71,9 @@ class DStarLite:
             rows, columns = self._grid.shape
             message = f"cells holds ({row:g}, {column:g}); the grid has rows 0 … {rows - 1}, "
             raise InputError(message + f"columns 0 … {columns - 1}")
-        self._core.set(index.astype(np.int32), bool(blocked))
-        self._route = None
+        with self._busy:
+            self._core.set(index.astype(np.int32), bool(blocked))
+            self._route = None
 
     def move(self, point: ArrayLike) -> None:
         """The robot is at a point (2,) [m] now; InputError outside of the grid."""
@@ -78,9 +83,10 @@ class DStarLite:
         x, y = map(float, array)
         if self._grid._locate(x, y)[0] == 2:
             raise outside(self._grid, "point", x, y)
-        self._core.move(x, y)
-        self._ends = (np.array([x, y]), self._ends[1])
-        self._route = None
+        with self._busy:
+            self._core.move(x, y)
+            self._ends = (np.array([x, y]), self._ends[1])
+            self._route = None
 
     @property
     def route(self) -> Route:
@@ -89,21 +95,17 @@ class DStarLite:
         route.price says what mending took, not what the whole search has. route.world is the grid given
         first.
         """
-        if self._route is None:
-            began = time.perf_counter()
-            status, path, length, nodes, edges, self._settled = self._core.replan()
-            price = Price(nodes, edges, time.perf_counter() - began)
-            self._route = new_route(
-                self._grid,
-                "d_star_lite",
-                self._options,
-                self._ends,
-                STATUSES[status],
-                path,
-                length,
-                price,
-            )
-        return self._route
+        with self._busy:
+            if self._route is None:
+                self._route = self._replanned()
+            return self._route
+
+    def _replanned(self) -> Route:
+        began = time.perf_counter()
+        status, path, length, nodes, edges, self._settled = self._core.replan()
+        price = Price(nodes, edges, time.perf_counter() - began)
+        ends, options = self._ends, self._options
+        return new_route(self._grid, "d_star_lite", options, ends, STATUSES[status], path, length, price)
 
     def __repr__(self) -> str:
         (x0, y0), (x1, y1) = self._ends

@@ -129,7 +129,7 @@ def reason(route: Route) -> str:
         return (
             f"no way leads to the goal: it lies in another of the {parts} connected parts of the free cells"
         )
-    return f"no way leads to the goal: the search has settled all {cells} cells that can be reached"
+    return f"no way leads to the goal: after {cells} expansions nothing that can be reached is left"
 
 
 def traced(route: Route, settings: Settings) -> Trace:

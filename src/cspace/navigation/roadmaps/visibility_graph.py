@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array
 from cspace.navigation.trace import Trace
+from cspace.navigation.worlds import need_polygons
 
 if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
@@ -46,7 +47,7 @@ def reason(route: Route) -> str:
     """The verdict in a sentence."""
     if route:
         nodes = len(visibility_graph(route.world)[0])
-        return f"the shortest path, over {len(route.path) - 2} of the graph's {nodes} corners"
+        return f"the shortest path, over {max(len(route.path) - 2, 0)} of the graph's {nodes} corners"
     return f"walls divide start from goal: no path connects the {route.world.components} parts of free space"
 
 
@@ -58,5 +59,6 @@ def trace(route: Route) -> Trace:
 def visibility_graph(world: PolygonWorld) -> tuple[Array, npt.NDArray[np.int32]]:
     """The corners (n, 2) [m] that free space bends around, and the pairs (k, 2) of them that a path may
     join."""
+    need_polygons(world)
     nodes, edges = _core._visibility_graph(world._core)
     return nodes, edges

@@ -19,6 +19,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.trace import Trace
+from cspace.navigation.worlds import need_polygons
 from cspace.tolerances import DIAGRAM_CHORD
 
 if TYPE_CHECKING:
@@ -113,6 +114,7 @@ def voronoi_diagram(world: PolygonWorld, tolerance: float | None = None) -> Voro
 
     tolerance [m]: how far polylines may lie from parabolas, as in `plan`.
     """
+    need_polygons(world)
     made = VoronoiDiagram(*_core._voronoi_diagram(world._core, chord_of(world, tolerance)))
     return made
 
