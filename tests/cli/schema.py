@@ -107,6 +107,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
                 "path": MATRIX,
             }
         ],
+        "refused": dict,
     },
     "cspace.export/1": {
         "language": TEXT,
