@@ -106,13 +106,14 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     if not hasattr(route, "planner"):
         raise _wrong(route, "route", "a Route, as cs.navigate answers")
     axes = flat_axes(ax)
+    import matplotlib
     from matplotlib.animation import FuncAnimation
     from matplotlib.collections import LineCollection
 
     world(route.world, ax=axes)
     events = route.trace
     order = np.linspace(0, 1, max(len(events), 1))
-    tints = np.asarray([colors.mix(colors.JOINT, PATH, t) for t in order])
+    tints = matplotlib.colormaps["viridis"](order)  # as the picture of the whole search
     pieces = np.stack([events.start, events.end], axis=1) if len(events) else np.empty((0, 2, 2))
     searched = axes.add_collection(LineCollection([], linewidths=1.2, zorder=4))
     reached = axes.scatter([], [], s=6, zorder=5)
