@@ -17,7 +17,7 @@ from cspace.cli import app
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table
 from cspace.cli.registry import VERBS
-from cspace.model.files import whole_file
+from cspace.files import whole_file
 
 BAD_LINES = [
     ("nosuchverb", "no verb 'nosuchverb'"),

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import DescriptionError, InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, MapError
 from cspace.maps import GeometryError
 from cspace.navigation.query import MOST_DERIVED
 
@@ -241,7 +241,7 @@ def test_geojson_of_every_kind(tmp_path):
 def test_broken_geojson_is_named(tmp_path, text, words):
     path = tmp_path / "map.geojson"
     path.write_text(text)
-    with pytest.raises(DescriptionError) as error:
+    with pytest.raises(MapError) as error:
         cs.PolygonWorld.from_geojson(path)
     assert all(word in str(error.value) for word in words)
 
@@ -256,10 +256,25 @@ def test_polygons_from_text(tmp_path):
     assert [len(rings) for rings in world.obstacles] == [2, 1]
     assert world.components == 2
     path.write_text("1 2\n3 x\n")
-    with pytest.raises(DescriptionError, match=r"map.txt:2.*two numbers"):
+    with pytest.raises(MapError, match=r"map.txt:2.*two numbers"):
         cs.PolygonWorld.from_text(path)
     path.write_text("hole\n1 2\n")
-    with pytest.raises(DescriptionError, match="before any polygon"):
+    with pytest.raises(MapError, match="before any polygon"):
         cs.PolygonWorld.from_text(path)
-    with pytest.raises(DescriptionError, match="cannot be read"):
+    with pytest.raises(MapError, match="no such file"):
         cs.PolygonWorld.from_text(tmp_path / "none.txt")
+
+
+@pytest.mark.parametrize("form", ["text", "geojson"])
+def test_a_written_world_is_the_same_to_the_last_bit(tmp_path, form):
+    hole = [(4, 4), (6, 4), (6, 6), (4 + 1 / 3, 6)]
+    world = cs.PolygonWorld([[BOX, hole], [(0.1, 0.2), (1e-17, 3), (1 / 7, 9)]], (0, -0.1, 10, 10 + 1 / 3))
+    path = tmp_path / "yard"
+    getattr(world, f"save_{form}")(path)
+    again = getattr(cs.PolygonWorld, f"from_{form}")(path)
+    assert again.bounds == world.bounds
+    for one, other in zip(again.obstacles, world.obstacles, strict=True):
+        assert all(map(np.array_equal, one, other))
+    with pytest.raises(InputError, match="cannot be written"):
+        getattr(world, f"save_{form}")(tmp_path / "none" / "yard")
+    assert [entry.name for entry in tmp_path.iterdir()] == ["yard"]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from cspace.errors import CspaceError, DescriptionError, InputError, InputTypeError, UnknownNameError
+from cspace.files import write_text
 from cspace.model import to_toml, to_urdf
-from cspace.model.files import write_text
 from cspace.robot import Robot
 from cspace.robots import load_description, load_robot
 from cspace.spatial import pose

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import IntEnum
 
-from cspace.errors import CspaceError, DescriptionError, MissingExtraError
+from cspace.errors import CspaceError, DescriptionError, MapError, MissingExtraError
 
 __all__ = ["Exit", "TimeLimitReached", "UsageError", "exit_of"]
 
@@ -33,7 +33,7 @@ class TimeLimitReached(BaseException):
 
 def exit_of(error: CspaceError) -> Exit:
     """The exit code of an error that cspace raised on purpose."""
-    if isinstance(error, DescriptionError):
+    if isinstance(error, DescriptionError | MapError):
         return Exit.BAD_FILE
     if isinstance(error, MissingExtraError):
         return Exit.MISSING_EXTRA

@@ -16,7 +16,7 @@ from cspace.export.c import c_files
 from cspace.export.cpp import cpp_header, words_of
 from cspace.export.python_file import python_file, python_method
 from cspace.export.words import filled
-from cspace.model.files import path_of, write_text
+from cspace.files import path_of, write_text
 
 __all__ = ["LANGUAGES", "Export", "export"]
 

@@ -1,16 +1,18 @@
-"""Polygons from GeoJSON (RFC 7946: Butler et al. 2016), read as coordinates of the plane."""
+"""Polygons from and to GeoJSON (RFC 7946: Butler et al. 2016), as coordinates of the plane."""
 
 from __future__ import annotations
 
 import json
 import os
 from collections.abc import Iterator
-from pathlib import Path
 from typing import Any
 
-from cspace.errors import DescriptionError
+from cspace.arrays import Array
+from cspace.errors import MapError
+from cspace.files import write_text
+from cspace.maps.files import map_path, map_text
 
-__all__ = ["read_geojson"]
+__all__ = ["read_geojson", "write_geojson"]
 
 _SKIPPED = {"Point", "MultiPoint", "LineString", "MultiLineString"}
 
@@ -20,24 +22,30 @@ def read_geojson(source: str | os.PathLike[str] | dict[str, Any]) -> tuple[list[
     if isinstance(source, dict):
         path, found = None, source
     else:
-        path = os.fspath(source)
+        path = map_path(source)
         found = _parsed(path)
     obstacles = list(_polygons(found, path, "the object"))
     box = found.get("bbox")
     return obstacles, box if isinstance(box, list) and len(box) == 4 else None
 
 
+def write_geojson(
+    path: str | os.PathLike[str], obstacles: list[list[Array]], bounds: tuple[float, ...]
+) -> None:
+    """Writes obstacles, each a list of rings (n, 2) [m], as a MultiPolygon whose "bbox" is the bounds."""
+    rings = [[[*ring.tolist(), ring[0].tolist()] for ring in polygon] for polygon in obstacles]
+    write_text(path, json.dumps({"type": "MultiPolygon", "bbox": bounds, "coordinates": rings}) + "\n")
+
+
 def _parsed(path: str) -> dict[str, Any]:
     try:
-        found = json.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise DescriptionError(f"cannot be read: {error.strerror or error}", path=path) from None
-    except (UnicodeDecodeError, RecursionError):
-        raise DescriptionError("is no GeoJSON: not text, or nested without end", path=path) from None
+        found = json.loads(map_text(path))
+    except RecursionError:
+        raise MapError("is no GeoJSON: nested without end", path=path) from None
     except json.JSONDecodeError as error:
-        raise DescriptionError(f"is no JSON: {error.msg}", path=path, line=error.lineno) from None
+        raise MapError(f"is no JSON: {error.msg}", path=path, line=error.lineno) from None
     if not isinstance(found, dict):
-        raise DescriptionError(f"is no GeoJSON object but a {type(found).__name__}", path=path)
+        raise MapError(f"is no GeoJSON object but a {type(found).__name__}", path=path)
     return found
 
 
@@ -59,12 +67,12 @@ def _polygons(thing: Any, path: str | None, where: str) -> Iterator[list[Any]]:
         for i, rings in enumerate(_list(thing, "coordinates", path, where)):
             yield _plane(rings, path, f"{where}, polygon {i}")
     elif kind not in _SKIPPED:
-        raise DescriptionError(f"{where} has the type {kind!r}, which GeoJSON does not know", path=path)
+        raise MapError(f"{where} has the type {kind!r}, which GeoJSON does not know", path=path)
 
 
 def _list(thing: dict[str, Any], name: str, path: str | None, where: str) -> list[Any]:
     if not isinstance(found := thing.get(name), list):
-        raise DescriptionError(f"{where} has no list of {name!r}", path=path)
+        raise MapError(f"{where} has no list of {name!r}", path=path)
     return found
 
 
@@ -73,7 +81,7 @@ def _plane(rings: Any, path: str | None, where: str) -> list[Any]:
     try:
         made = [[[point[0], point[1]] for point in ring] for ring in rings]
     except (TypeError, IndexError, KeyError):
-        raise DescriptionError(f"{where}: coordinates must be rings of [x, y] points", path=path) from None
+        raise MapError(f"{where}: coordinates must be rings of [x, y] points", path=path) from None
     if not made:
-        raise DescriptionError(f"{where}: a polygon without rings", path=path)
+        raise MapError(f"{where}: a polygon without rings", path=path)
     return made

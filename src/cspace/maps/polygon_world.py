@@ -13,14 +13,14 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError
 from cspace.maps.discs import disc_outlines
-from cspace.maps.geojson import read_geojson
+from cspace.maps.geojson import read_geojson, write_geojson
 from cspace.maps.grow import grown
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, offset_of
 from cspace.maps.outlines import Outline, bounds_of, check_bounds, read_outlines
 from cspace.maps.rasterize import rasterized
 from cspace.maps.repair import GeometryError, check_area, describe_crossings
-from cspace.maps.text import read_text
+from cspace.maps.text import read_polygons, write_polygons
 from cspace.tolerances import ON_WALL
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ class PolygonWorld:
 
         source: a path, or the object itself. Polygons, MultiPolygons, collections and features of them are
         obstacles; a "bbox" of the outermost object is the bounds. keywords: those of PolygonWorld.
-        Raises DescriptionError where the file cannot be read.
+        Raises MapError where the file cannot be read.
         """
         obstacles, bounds = read_geojson(source)
         return cls(obstacles, **{"bounds": bounds, **keywords})
@@ -70,9 +70,9 @@ class PolygonWorld:
 
         A line "hole" before a ring makes it a hole of the polygon before it, a line "bounds xmin ymin xmax
         ymax" gives the bounds, "#" begins a comment. keywords: those of PolygonWorld.
-        Raises DescriptionError with the line that cannot be read.
+        Raises MapError with the line that cannot be read.
         """
-        obstacles, bounds = read_text(path)
+        obstacles, bounds = read_polygons(path)
         return cls(obstacles, **{"bounds": bounds, **keywords})
 
     @classmethod
@@ -133,6 +133,14 @@ class PolygonWorld:
         """The boundary of free space as closed rings (n, 2) [m], the free space on their left."""
         points, following, ring, _ = self._core.walls()
         return [points[_in_order(following, first)] for first in np.unique(ring, return_index=True)[1]]
+
+    def save_geojson(self, path: str | PathLike[str]) -> None:
+        """Writes obstacles and bounds as GeoJSON, whole or not at all."""
+        write_geojson(path, self._outlines, self.bounds)
+
+    def save_text(self, path: str | PathLike[str]) -> None:
+        """Writes obstacles and bounds as a text file that from_text reads, whole or not at all."""
+        write_polygons(path, self._outlines, self.bounds)
 
     def is_free(self, points: ArrayLike) -> Any:
         """Whether points (..., 2) [m] lie in free space or on its walls: (...) of bool."""

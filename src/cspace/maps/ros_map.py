@@ -13,7 +13,8 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError, MapError
-from cspace.maps.files import map_bytes, map_path
+from cspace.files import whole_file, write_text
+from cspace.maps.files import map_path, map_text
 from cspace.maps.images import pgm_of, read_image
 
 __all__ = ["RosMap", "read_ros", "write_ros"]
@@ -39,7 +40,7 @@ def read_ros(path: str | os.PathLike[str]) -> RosMap:
     between and where the image is transparent. Fields beyond those of map_server are left alone.
     """
     name = map_path(path)
-    fields = _fields(map_bytes(path), name)
+    fields = _fields(map_text(path), name)
     for field in NEEDED:
         if field not in fields and not (field == "negate" and "occupied_thresh" in fields):
             raise MapError(f"the field '{field}:' is missing", path=name)
@@ -73,8 +74,6 @@ def write_ros(
     path: str | os.PathLike[str], blocked: npt.NDArray[np.bool_], resolution: float, x: float, y: float
 ) -> None:
     """Writes a map of cells (rows, columns): a YAML file at the path, and a PGM image beside it."""
-    from cspace.model.files import whole_file
-
     name = map_path(path)
     stem, ending = os.path.splitext(name)
     if ending not in {".yaml", ".yml"}:
@@ -84,8 +83,7 @@ def write_ros(
         draft.write_bytes(pgm_of(np.where(blocked[::-1], np.uint8(0), np.uint8(254))))
     text = f"image: {_quoted(os.path.basename(image))}\nmode: trinary\nresolution: {resolution!r}\n"
     text += f"origin: [{x!r}, {y!r}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
-    with whole_file(name) as draft:
-        draft.write_text(text, encoding="utf-8")
+    write_text(name, text)
 
 
 def _quoted(text: str) -> str:
@@ -97,15 +95,11 @@ def _quoted(text: str) -> str:
 _Fields = dict[str, tuple[Any, int]]
 
 
-def _fields(data: bytes, name: str) -> _Fields:
+def _fields(document: str, name: str) -> _Fields:
     """The fields of the one level of YAML that map files have: numbers, texts and lists of them."""
-    try:
-        lines = data.decode("utf-8-sig").splitlines()
-    except UnicodeDecodeError as error:
-        raise MapError(f"byte {error.start}: a map file is UTF-8 text", path=name) from None
     fields: _Fields = {}
     open_list: list[Any] | None = None
-    for number, line in enumerate(lines, 1):
+    for number, line in enumerate(document.splitlines(), 1):
         text = _without_comment(line)
         if not text.strip() or text.strip() in {"---", "..."} or text.startswith("%"):
             continue

@@ -1,25 +1,21 @@
-"""Polygons from plain text: a point per line, an empty line between rings."""
+"""Polygons from and to plain text: a point per line, an empty line between rings."""
 
 from __future__ import annotations
 
 import os
-from pathlib import Path
 from typing import Any
 
-from cspace.errors import DescriptionError
+from cspace.arrays import Array
+from cspace.errors import MapError
+from cspace.files import write_text
+from cspace.maps.files import map_path, map_text
 
-__all__ = ["read_text"]
+__all__ = ["read_polygons", "write_polygons"]
 
 
-def read_text(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] | None]:
+def read_polygons(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] | None]:
     """The obstacles, each a list of rings, and the bounds if a line gives them."""
-    name = os.fspath(path)
-    try:
-        lines = Path(name).read_text(encoding="utf-8").splitlines()
-    except OSError as error:
-        raise DescriptionError(f"cannot be read: {error.strerror or error}", path=name) from None
-    except UnicodeDecodeError:
-        raise DescriptionError("is no text", path=name) from None
+    name, lines = map_path(path), map_text(path).splitlines()
     obstacles: list[list[list[list[float]]]] = []
     bounds: list[float] | None = None
     ring: list[list[float]] | None = None
@@ -30,7 +26,7 @@ def read_text(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] | No
             ring = None if not line.strip() else ring
         elif words[0] == "hole":
             if not obstacles:
-                raise DescriptionError("a hole before any polygon", path=name, line=number)
+                raise MapError("a hole before any polygon", path=name, line=number)
             ring, is_hole = None, True
         elif words[0] == "bounds":
             bounds = _numbers(words[1:], 4, name, number)
@@ -47,6 +43,18 @@ def read_text(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] | No
     return obstacles, bounds
 
 
+def write_polygons(
+    path: str | os.PathLike[str], obstacles: list[list[Array]], bounds: tuple[float, ...]
+) -> None:
+    """Writes obstacles, each a list of rings (n, 2) [m], and the bounds, so that every bit comes back."""
+    rings = [
+        ("hole\n" if number else "") + "".join(f"{x!r} {y!r}\n" for x, y in ring.tolist())
+        for polygon in obstacles
+        for number, ring in enumerate(polygon)
+    ]
+    write_text(path, "\n".join(["bounds " + " ".join(map(repr, bounds)) + "\n", *rings]))
+
+
 def _numbers(words: list[str], count: int, path: str, line: int) -> list[float]:
     try:
         numbers = [float(word) for word in words]
@@ -54,5 +62,5 @@ def _numbers(words: list[str], count: int, path: str, line: int) -> list[float]:
         numbers = []
     if len(numbers) != count:
         wanted = "a point is two numbers" if count == 2 else "bounds are xmin ymin xmax ymax"
-        raise DescriptionError(f"cannot read {' '.join(words)[:60]!r}; {wanted}", path=path, line=line)
+        raise MapError(f"cannot read {' '.join(words)[:60]!r}; {wanted}", path=path, line=line)
     return numbers

@@ -13,8 +13,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import InputError
+from cspace.files import write_text
 from cspace.model.description import Description
-from cspace.model.files import write_text
 from cspace.model.joint import LIMIT_FIELDS, Joint, Loop
 from cspace.model.link import Geometry, Link
 from cspace.model.toml import FORMAT

@@ -9,8 +9,8 @@ from collections.abc import Iterable, Iterator
 
 from cspace.arrays import Array
 from cspace.errors import InputError
+from cspace.files import write_text
 from cspace.model.description import Description
-from cspace.model.files import write_text
 from cspace.model.joint import Joint
 from cspace.model.link import SHAPES, Geometry, Inertial, Link
 from cspace.model.transforms import to_rpy

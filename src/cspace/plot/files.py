@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from cspace.errors import InputError
-from cspace.model.files import whole_file
+from cspace.files import whole_file
 
 __all__ = ["save"]
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
+from cspace.errors import UnknownNameError
 from cspace.navigation import Route
 from oracles import grids
 
@@ -26,6 +27,13 @@ def random_grid(rng, rows, columns, share):
 def random_free(rng, blocked):
     free = np.argwhere(~blocked)
     return tuple(map(int, free[rng.integers(len(free))]))
+
+
+@pytest.mark.parametrize("metric", ["octile", "manhattan"])
+def test_an_unknown_corner_rule_is_named_whatever_the_metric(metric):
+    grid = cs.OccupancyGrid(np.zeros((3, 3), bool))
+    with pytest.raises(UnknownNameError, match=r"no corner rule 'some'.* corner rules: always, never, one"):
+        cs.navigate(grid, (0.5, 0.5), (2.5, 2.5), "a_star", metric=metric, corners="some")
 
 
 def centre(cell):

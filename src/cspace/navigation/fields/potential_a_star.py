@@ -89,7 +89,7 @@ def _settings(
     if mode not in MODES:
         raise suggest("mode", mode, MODES)
     if not isinstance(corners, str) or corners not in CORNERS:
-        raise suggest("rule corners=", corners, CORNERS)
+        raise suggest("corner rule", corners, CORNERS)
     side = float(world.resolution)
     reach = number_of("rho_0", 4 * side if rho_0 is None else rho_0, 0.0) / side
     if k_r is None:

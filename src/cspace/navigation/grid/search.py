@@ -60,12 +60,12 @@ WAVES: Final = 5
 def metric_of(metric: str, corners: str) -> tuple[int, int]:
     """The numbers of the corner rule and the metric; UnknownNameError suggests the nearest name."""
     try:
-        number = METRICS[metric]
-        return (FOUR_MOVES if number == 1 else CORNERS[corners]), number
+        number, rule = METRICS[metric], CORNERS[corners]
+        return (FOUR_MOVES if number == 1 else rule), number
     except (KeyError, TypeError):
         if not isinstance(metric, str) or metric not in METRICS:
             raise suggest("metric", metric, METRICS) from None
-        raise suggest("rule corners=", corners, CORNERS) from None
+        raise suggest("corner rule", corners, CORNERS) from None
 
 
 def positive_costs(world: Any, costs: ArrayLike | None) -> tuple[Array | None, float]:
