@@ -12,6 +12,7 @@ import cspace as cs
 from cspace.errors import InputError, UnknownNameError
 from cspace.navigation import voronoi_diagram
 from data import shared_data
+from oracles import roadmap
 from oracles.clearance import is_free, nearest, rings_of, widest_over_grid
 
 
@@ -161,7 +162,37 @@ def test_the_shorter_choice_is_shorter_and_the_wider_wider(world):
         quick = cs.navigate(world, start, goal, "voronoi", prefer="length")
         if wide:
             assert quick.length <= wide.length * (1 + 1e-3)
-            assert wide.evidence.on_diagram >= quick.evidence.on_diagram
+            assert wide.evidence.least_clearance >= quick.evidence.least_clearance - 1e-9
+
+
+def test_of_the_widest_ways_it_is_the_shortest(world):
+    """Beside Dijkstra on the drawn diagram, once over what is a little wider and once a little narrower."""
+    step, rings = 0.005 * side_of(world), rings_of(world)
+    diagram = voronoi_diagram(world, tolerance=1e-4)
+    for start, goal in free_points(world, 8, seed=21).reshape(-1, 2, 2):
+        route = cs.navigate(world, start, goal, "voronoi", tolerance=1e-4)
+        if not route:
+            continue
+        legs = route.trace.only("retract")
+        graph, (a, b) = roadmap.pieces_of(diagram, legs.end, rings, step)
+        of_ends = float(nearest(np.array([start, goal]), rings)[0].min())
+        least = min(of_ends, roadmap.widest(graph, a, b))
+        assert route.evidence.least_clearance == pytest.approx(least, abs=step)
+        on_diagram = route.length - np.hypot(*(legs.end - legs.start).T).sum()
+        lowest, highest = (roadmap.shortest(graph, a, b, least + off) for off in (-2 * step, 2 * step))
+        assert lowest - step <= on_diagram <= highest + step
+
+
+def test_no_detour_is_made_for_what_an_end_has_lost_already():
+    """A gap of 1 m beside the start, and one of 3 m far from it, for a start 0.3 m from a wall."""
+    walls = [[(1, 9), (9, 9), (9, 11), (1, 11)], [(12, 9), (20, 9), (20, 11), (12, 11)]]
+    world = cs.PolygonWorld(walls, bounds=(0, 0, 20, 20))
+    near, far = ((0.3, 6), (0.3, 14)), ((1.5, 6), (1.5, 14))
+    assert cs.navigate(world, *near, "voronoi").length < 16
+    wide = cs.navigate(world, *far, "voronoi")
+    assert wide.length > 20
+    assert wide.evidence.least_clearance == pytest.approx(1.5)
+    assert cs.navigate(world, *near, "voronoi").evidence.least_clearance == pytest.approx(0.3)
 
 
 def test_a_path_from_wall_to_wall_and_from_the_diagram():

@@ -3,7 +3,8 @@
 // Away from the nearest wall the clearance grows until a second wall is as near: so any path between two
 // points can be moved onto the diagram without coming nearer to a wall (Ó'Dúnlaing & Yap 1985, "A
 // 'retraction' method for planning the motion of a disc"). The widest way on the diagram is therefore the
-// widest at all.
+// widest at all. Of all ways whose least clearance is as large, which may be that of an end, the shortest on
+// the diagram is given.
 #pragma once
 
 #include <algorithm>
@@ -80,7 +81,8 @@ class Roadmap {
             for (const Landing* end : {&from, &to})
                 trace->push_back(
                     {0, diagram_.place(end->lead.front()), diagram_.place(end->lead.back()), end->clearance});
-        const double floor = widest ? search(from, to, {true, 0}, nullptr, way, trace) : 0;
+        const double floor =
+            widest ? floor_of(from, to, search(from, to, {true, 0}, nullptr, way, trace)) : 0;
         std::vector<Stretch> stretches;
         search(from, to, {false, floor}, &stretches, way, trace);
         draw(from, to, stretches, tolerance, way);
@@ -110,6 +112,12 @@ class Roadmap {
         return std::any_of(start.triangles.begin(), start.triangles.end(), [&](Index t) {
             return space.component[std::size_t(t)] == component && sampling::keeps_in_sight(space, path, t);
         });
+    }
+
+    // What no way from start to goal exceeds, which no arc may fall short of, less what rounding may have
+    // added to it: `width` is that of the widest way on the diagram, but an end may lie nearer to a wall.
+    double floor_of(const Landing& from, const Landing& to, double width) const {
+        return std::min({width, from.clearance, to.clearance}) - 1e-12 * diagram_.sites.extent;
     }
 
     Landing land(const maps::Settled& end, Index component) const {

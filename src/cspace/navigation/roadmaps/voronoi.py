@@ -69,9 +69,11 @@ def plan(
 ) -> Route:
     """The way from start to goal (2,) [m] over the Voronoi diagram of a PolygonWorld.
 
-    prefer: "clearance" for the way on the diagram whose least clearance is largest, and of those the
-    shortest; "length" for the shortest. tolerance [m]: how far the polyline may lie from parabolas, by
-    default a ten thousandth of the world's longer side, and never more than a hundredth of the clearance.
+    prefer: "clearance" for the shortest of all ways on the diagram whose least clearance, that of start and
+    goal counted, is as large as on any way: where an end is the narrowest place, for the shortest that is
+    nowhere narrower. "length" for the shortest whatever its clearance. tolerance [m]: how far the polyline
+    may lie from parabolas, by default a ten thousandth of the world's longer side, and never more than a
+    hundredth of the clearance.
     route.evidence is a VoronoiEvidence. UnknownNameError for another preference, InputError on a tolerance
     that is not positive.
     """
