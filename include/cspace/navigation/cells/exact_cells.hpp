@@ -2,9 +2,8 @@
 // taut.
 #pragma once
 
-#include <functional>
-
 #include "cspace/maps/polygon_world.hpp"
+#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/cells/funnel.hpp"
 #include "cspace/navigation/cells/trapezoids.hpp"
 #include "cspace/navigation/route.hpp"
@@ -29,42 +28,19 @@ class ExactCells {
     const Trapezoids& cells() const { return cells_; }
 
     Route solve(Point start, Point goal, Trace* trace = nullptr) const {
+        const std::size_t count = cells_.cells.size();
+        Open open{*this, start, trace, std::vector<State>(count), std::vector<std::uint8_t>(count, 0)};
+        PriorityQueue queue;
+        for (Index c = 0; c < Index(count); ++c) {
+            open.holds_goal[std::size_t(c)] = cells_.contains(c, goal);
+            if (cells_.contains(c, start)) open.reach(c, 0, start, -1, queue);
+        }
+        Effort effort;
+        const std::uint32_t last = best_first(open, queue, effort);
         Route route;
         route.status = Status::unreachable;
-        const std::size_t count = cells_.cells.size();
-        std::vector<State> state(count);
-        std::vector<std::uint8_t> is_goal(count, 0);
-        std::vector<std::pair<double, Index>> queue;
-        const auto reach = [&](Index cell, double g, Point at, Index door) {
-            State& s = state[std::size_t(cell)];
-            ++route.price.edges;
-            if (s.closed || g >= s.g) return;
-            s = {g, at, door, false};
-            queue.push_back({g, cell});
-            std::push_heap(queue.begin(), queue.end(), std::greater<>());
-        };
-        for (Index c = 0; c < Index(count); ++c) {
-            is_goal[std::size_t(c)] = cells_.contains(c, goal);
-            if (cells_.contains(c, start)) reach(c, 0, start, -1);
-        }
-        while (!queue.empty()) {
-            std::pop_heap(queue.begin(), queue.end(), std::greater<>());
-            const Index c = queue.back().second;
-            queue.pop_back();
-            State& s = state[std::size_t(c)];
-            if (s.closed) continue;
-            s.closed = true;
-            ++route.price.nodes;
-            if (trace) trace->push_back({0, s.door < 0 ? start : s.at, s.at, s.g});
-            if (is_goal[std::size_t(c)]) return finish(route, state, c, start, goal);
-            for (Index k = first_[std::size_t(c)]; k < first_[std::size_t(c) + 1]; ++k) {
-                const Index d = door_[std::size_t(k)];
-                const Door& door = cells_.doors[std::size_t(d)];
-                const Point at = nearest(door, s.at);
-                reach(door.left == c ? door.right : door.left, s.g + distance(s.at, at), at, d);
-            }
-        }
-        return route;
+        route.price = {std::int64_t(effort.settled), open.edges};
+        return last == no_node ? route : finish(route, open.state, Index(last), start, goal);
     }
 
   private:
@@ -73,6 +49,41 @@ class ExactCells {
         Point at{};
         Index door = -1;
         bool closed = false;
+    };
+    // The cells as nodes of best_first: each knows the point at which the way so far enters it.
+    struct Open {
+        const ExactCells& of;
+        Point start;
+        Trace* trace;
+        std::vector<State> state;
+        std::vector<std::uint8_t> holds_goal;
+        std::int64_t edges = 0;
+
+        bool settle(std::uint32_t cell) {
+            State& s = state[cell];
+            if (s.closed) return false;
+            s.closed = true;
+            if (trace) trace->push_back({0, s.door < 0 ? start : s.at, s.at, s.g});
+            return true;
+        }
+        bool is_goal(std::uint32_t cell) const { return holds_goal[cell]; }
+        void expand(std::uint32_t cell, PriorityQueue& queue) {
+            const State s = state[cell];
+            for (Index k = of.first_[cell]; k < of.first_[cell + 1]; ++k) {
+                const Index d = of.door_[std::size_t(k)];
+                const Door& door = of.cells_.doors[std::size_t(d)];
+                const Point at = of.nearest(door, s.at);
+                const Index other = door.left == Index(cell) ? door.right : door.left;
+                reach(other, s.g + distance(s.at, at), at, d, queue);
+            }
+        }
+        void reach(Index cell, double g, Point at, Index door, PriorityQueue& queue) {
+            State& s = state[std::size_t(cell)];
+            ++edges;
+            if (s.closed || g >= s.g) return;
+            s = {g, at, door, false};
+            queue.push({g, 0, std::uint32_t(cell)});
+        }
     };
     Trapezoids cells_;
     std::vector<Index> first_, door_;  // the doors of each cell

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <functional>
 
 #include "cspace/maps/polygon_world.hpp"
+#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/navigation/visibility/graph.hpp"
 
@@ -14,37 +14,25 @@ namespace cspace::navigation {
 class VisibilitySearch {
   public:
     explicit VisibilitySearch(const maps::PolygonWorld& world)
-        : world_(world), graph_(world.space), view_(world.space), state_(std::size_t(graph_.size())) {}
+        : world_(world), graph_(world.space), view_(world.space), state_(std::size_t(graph_.size()) + 1) {}
 
     const VisibilityGraph& graph() const { return graph_; }
 
     // Start and goal lie in one component of free space.
     Route solve(const maps::Settled& start, const maps::Settled& goal, Trace* trace = nullptr) {
         ++query_;
-        queue_.clear();
         price_ = {};
-        goal_ = goal.at;
-        if (sees(start, goal)) return straight(start.at);
-        for (const auto& edge : at_goal_) {
-            State& s = state_of(edge.to);
-            s.to_goal = edge.length;
-        }
-        for (const auto& edge : at_start_) relax(edge.to, edge.length, none);
-        double best = std::numeric_limits<double>::infinity();
-        Index last = none;
-        while (!queue_.empty() && queue_.front().first < best) {
-            const auto [f, n] = pop();
-            State& s = state_of(n);
-            if (s.closed) continue;
-            s.closed = true;
-            ++price_.nodes;
-            if (trace)
-                trace->push_back(
-                    {0, s.parent == none ? start.at : graph_.point(s.parent), graph_.point(n), s.g});
-            if (s.g + s.to_goal < best) best = s.g + s.to_goal, last = n;
-            for (const auto& edge : graph_.edges_of(n)) relax(edge.to, s.g + edge.length, n);
-        }
-        return last == none ? Route{Status::unreachable, {}, best, price_} : finish(start.at, last);
+        start_ = start.at, goal_ = goal.at;
+        if (sees(start, goal)) return straight();
+        for (const auto& edge : at_goal_) state_of(edge.to).to_goal = edge.length;
+        Open open{*this, trace};
+        queue_.clear();
+        for (const auto& edge : at_start_) open.relax(edge.to, edge.length, none, queue_);
+        Effort effort;
+        const bool arrives = best_first(open, queue_, effort) != no_node;
+        price_.nodes = std::int64_t(effort.settled);
+        if (arrives) return finish();
+        return Route{Status::unreachable, {}, std::numeric_limits<double>::infinity(), price_};
     }
 
   private:
@@ -54,19 +42,49 @@ class VisibilitySearch {
         Index parent = none;
         double g = 0, to_goal = 0;
     };
+    // The corners as nodes of best_first, and the goal after the last of them.
+    struct Open {
+        VisibilitySearch& search;
+        Trace* trace;
+
+        bool settle(std::uint32_t node) {
+            State& s = search.state_of(Index(node));
+            if (s.closed) return false;
+            s.closed = true;
+            if (trace && !is_goal(node))
+                trace->push_back({0, search.point(s.parent), search.point(Index(node)), s.g});
+            return true;
+        }
+        bool is_goal(std::uint32_t node) const { return Index(node) == search.graph_.size(); }
+        void expand(std::uint32_t node, PriorityQueue& queue) {
+            const State s = search.state_of(Index(node));
+            for (const auto& edge : search.graph_.edges_of(Index(node)))
+                relax(edge.to, s.g + edge.length, Index(node), queue);
+            if (s.to_goal < far) relax(search.graph_.size(), s.g + s.to_goal, Index(node), queue);
+        }
+        void relax(Index n, double g, Index parent, PriorityQueue& queue) {
+            State& s = search.state_of(n);
+            ++search.price_.edges;
+            if (s.closed || g >= s.g) return;
+            s.g = g;
+            s.parent = parent;
+            queue.push({g + distance(search.point(n), search.goal_), 0, std::uint32_t(n)});
+        }
+    };
+    static constexpr double far = std::numeric_limits<double>::infinity();
     const maps::PolygonWorld& world_;
     VisibilityGraph graph_;
     View view_;
     std::vector<State> state_;
     std::uint32_t query_ = 0;
-    std::vector<std::pair<double, Index>> queue_;
+    PriorityQueue queue_;
     std::vector<VisibilityGraph::Edge> at_start_, at_goal_;
-    Point goal_;
+    Point start_, goal_;
     Price price_;
 
+    Point point(Index n) const { return n == none ? start_ : n == graph_.size() ? goal_ : graph_.point(n); }
     State& state_of(Index n) {
         State& s = state_[std::size_t(n)];
-        constexpr double far = std::numeric_limits<double>::infinity();
         if (s.query != query_) s = {query_, false, none, far, far};
         return s;
     }
@@ -84,31 +102,17 @@ class VisibilitySearch {
         if (!seen) graph_.see_from(view_, goal.at, goal.triangles, at_goal_, [](Index, const Cone&) {});
         return seen;
     }
-    void relax(Index n, double g, Index parent) {
-        State& s = state_of(n);
-        ++price_.edges;
-        if (s.closed || g >= s.g) return;
-        s.g = g;
-        s.parent = parent;
-        queue_.push_back({g + distance(graph_.point(n), goal_), n});
-        std::push_heap(queue_.begin(), queue_.end(), std::greater<>());
-    }
-    std::pair<double, Index> pop() {
-        std::pop_heap(queue_.begin(), queue_.end(), std::greater<>());
-        const auto top = queue_.back();
-        queue_.pop_back();
-        return top;
-    }
-    Route straight(Point start) const {
-        Route route{Status::found, {start}, distance(start, goal_), price_};
-        if (!(start == goal_)) route.path.push_back(goal_);
+    Route straight() const {
+        Route route{Status::found, {start_}, distance(start_, goal_), price_};
+        if (!(start_ == goal_)) route.path.push_back(goal_);
         return route;
     }
-    Route finish(Point start, Index last) {
+    Route finish() {
         Route route{Status::found, {goal_}, 0, price_};
-        for (Index n = last; n != none; n = state_of(n).parent)
-            if (!(graph_.point(n) == route.path.back())) route.path.push_back(graph_.point(n));
-        if (!(start == route.path.back())) route.path.push_back(start);
+        for (Index n = graph_.size(); n != none;) {
+            n = state_of(n).parent;
+            if (!(point(n) == route.path.back())) route.path.push_back(point(n));
+        }
         std::reverse(route.path.begin(), route.path.end());
         route.length = length_of(route.path);
         return route;
