@@ -1,4 +1,5 @@
-"""Writes the generated parts of docs/: the index of rooms, the index of the lectures, the example in C++.
+"""Writes the generated parts of docs/: the index of rooms, the index of the lectures, the example in C++, the
+options of planners.
 
 Usage: python tools/pages.py [--check]
 """
@@ -11,6 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
+sys.path.insert(0, str(ROOT / "src"))
 NOT_ROOMS = {"index", "conventions", "status", "lectures", "benchmarks", "claims"}
 
 
@@ -52,6 +54,25 @@ def source(path: str, language: str) -> str:
     return f"```{language} no-run\n{(ROOT / path).read_text(encoding='utf-8')}```"
 
 
+def options() -> str:
+    """Of each planner a table of its options, as its function declares and documents them."""
+    from cspace.navigation import PLANNERS
+
+    lines, without = [], []
+    for planner in PLANNERS.values():
+        if not planner.options:
+            without.append(f"`{planner.name}`")
+            continue
+        lines += [f"## {planner.name}", "", planner.line[0].upper() + planner.line[1:] + ".", ""]
+        lines += ["| option | type | default | unit | meaning |", "|---|---|---|---|---|"]
+        for each in planner.options.values():
+            default = "" if each.default is None else f"`{each.default}`"
+            kind, meaning = each.type.replace("|", "or"), each.meaning.replace("*", "\\*")
+            lines.append(f"| `{each.name}` | {kind} | {default} | {each.unit} | {meaning} |")
+        lines.append("")
+    return "\n".join([*lines, f"No options: {', '.join(without)}."])
+
+
 def filled(page: Path, parts: dict[str, str]) -> str:
     """The page with the part between each marker and the next end marker replaced."""
     text = page.read_text(encoding="utf-8")
@@ -66,6 +87,7 @@ def generated() -> dict[Path, str]:
     parts = {
         DOCS / "index.md": {"rooms": rooms()},
         DOCS / "lectures.md": {"lectures": lectures()},
+        DOCS / "planners.md": {"options": options()},
         DOCS / "export.md": {
             "examples/cpp/CMakeLists.txt": source("examples/cpp/CMakeLists.txt", "cmake"),
             "examples/cpp/main.cpp": source("examples/cpp/main.cpp", "cpp"),

@@ -10,6 +10,7 @@
 #include "bindings.hpp"
 #include "cspace/maps/grid_corners.hpp"
 #include "cspace/maps/grid_inflation.hpp"
+#include "cspace/maps/path_clearance.hpp"
 #include "cspace/maps/png_filters.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "route.hpp"
@@ -46,6 +47,12 @@ void free_points(const GridWorld& world, Array<const double, nb::shape<-1, 2>> p
         const Point p = {points(k, 0), points(k, 1)};
         into(k) = world.frame.locate(world.bits, p, cell) == maps::CellState::free;
     }
+}
+// The least distance from a path (m, 2) to a blocked cell or the border [m].
+double path_least(const GridWorld& world, Array<const double, nb::shape<-1, 2>> path) {
+    nb::gil_scoped_release free;
+    return maps::path_clearance({reinterpret_cast<const Point*>(path.data()), path.shape(0)}, world.bits,
+                                world.frame);
 }
 // (place, row, column); place: 0 free, 1 blocked, 2 outside.
 nb::tuple locate(const GridWorld& world, double x, double y) {
@@ -231,6 +238,7 @@ void bind_grid(nb::module_& m) {
         .def("__init__", new_inflated, "other"_a, "radius"_a, "from_centers"_a)
         .def("_unpack", unpack, "into"_a, "Writes a byte per cell.")
         .def("_free", free_points, "points"_a, "into"_a, "Writes 1 for points in free cells.")
+        .def("_path_clearance", path_least, "path"_a, "The least distance from a path to a blocked cell.")
         .def("_locate", locate, "x"_a, "y"_a, "Place, row and column of a point.")
         .def_prop_ro(
             "rows", [](const GridWorld& world) { return world.bits.rows(); }, "Number of rows.")

@@ -5,6 +5,7 @@
 
 #include "arrays.hpp"
 #include "cspace/maps/grid_outlines.hpp"
+#include "cspace/maps/path_clearance.hpp"
 #include "cspace/maps/rasterize.hpp"
 
 namespace nb = nanobind;
@@ -136,6 +137,12 @@ nb::tuple nearest_wall(const PolygonCore& core, double x, double y) {
     return nb::make_tuple(best, at.x, at.y);
 }
 
+// The least distance from a path (m, 2) to a wall [m].
+double path_least(const PolygonCore& core, Array<const double, nb::shape<-1, 2>> path) {
+    nb::gil_scoped_release free;
+    return path_clearance({reinterpret_cast<const Point*>(path.data()), path.shape(0)}, core.world.walls);
+}
+
 void rasterize_into(const PolygonCore& core, double side, Array<std::uint8_t, nb::ndim<2>> blocked) {
     nb::gil_scoped_release free;
     rasterize(core.world.space, core.world.outlines.low, side, int(blocked.shape(0)), int(blocked.shape(1)),
@@ -189,5 +196,6 @@ void bind_polygon_world(nb::module_& m) {
         .def("obstacle_at", obstacle_at, "x"_a, "y"_a, "An obstacle that covers a point, or -1.")
         .def("nearest_wall", nearest_wall,
              nb::sig("def nearest_wall(self, x: float, y: float) -> tuple[float, float, float]"), "x"_a,
-             "y"_a, "Distance to the nearest wall, and its point.");
+             "y"_a, "Distance to the nearest wall, and its point.")
+        .def("path_clearance", path_least, "path"_a, "The least distance from a path to a wall.");
 }

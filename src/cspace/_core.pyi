@@ -308,6 +308,7 @@ class GridBase:
     def _unpack(self, into: NDArray[numpy.uint8]) -> None: ...
     def _free(self, points: NDArray[numpy.float64], into: NDArray[numpy.uint8]) -> None: ...
     def _locate(self, x: float, y: float) -> tuple[int, int, int]: ...
+    def _path_clearance(self, path: NDArray[numpy.float64]) -> float: ...
 
 class BrushfireCore:
     """The compiled half of cspace.navigation.BrushfireDiagram."""
@@ -492,6 +493,9 @@ class PolygonCore:
 
     def nearest_wall(self, x: float, y: float) -> tuple[float, float, float]:
         """Distance to the nearest wall, and its point."""
+
+    def path_clearance(self, path: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> float:
+        """The least distance from a path to a wall."""
 
 class GridReplanner:
     """The compiled half of cspace.navigation.DStarLite."""

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.maps.paths import as_path
 from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
 
 __all__ = ["OccupancyGrid"]
@@ -153,6 +154,15 @@ class OccupancyGrid(_core.GridBase):
         free = np.empty(given.size // 2, np.uint8)
         self._free(np.ascontiguousarray(given).reshape(-1, 2), free)
         return free.view(np.bool_).reshape(given.shape[:-1]) if given.ndim > 1 else bool(free[0])
+
+    def path_clearance(self, path: ArrayLike) -> float:
+        """The least distance [m] from a path (m, 2) [m] to the square of a blocked cell, or to the border of
+        the grid: zero if it touches or enters one.
+
+        Exact up to rounding, over the whole path and not its corners alone; NaN of an empty path.
+        """
+        points = as_path(path)
+        return self._path_clearance(points) if len(points) else np.nan
 
     def check_free(self, point: ArrayLike, subject: str) -> Array:
         """The point (2,) [m]; InputError if it is not finite, outside of the grid or in a blocked cell."""

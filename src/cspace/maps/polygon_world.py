@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from functools import cached_property
+from math import nan
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -18,6 +19,7 @@ from cspace.maps.grow import grown
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, offset_of
 from cspace.maps.outlines import Outline, bounds_of, check_bounds, read_outlines
+from cspace.maps.paths import as_path
 from cspace.maps.rasterize import rasterized
 from cspace.maps.repair import GeometryError, check_area, describe_crossings
 from cspace.maps.text import read_polygons, write_polygons
@@ -156,6 +158,17 @@ class PolygonWorld:
             for x, y in given.reshape(-1, 2)
         ]
         return np.array(found).reshape(given.shape[:-1]) if given.ndim > 1 else found[0]
+
+    def path_clearance(self, path: ArrayLike) -> float:
+        """The least distance [m] from a path (m, 2) [m] to a wall: zero if it touches or crosses one.
+
+        Exact up to rounding, over the whole path and not its corners alone; NaN of an empty path.
+        """
+        points = as_path(path)
+        if not len(points):
+            return nan
+        least: float = self._core.path_clearance(points)
+        return least if self._core.components_at(*points[0]) else 0.0
 
     def inflate(self, radius: float, *, sides: int = 32, keep: ArrayLike = ()) -> PolygonWorld:
         """The world of the centre of a disc of a radius [m]: obstacles grown by it, bounds shrunk.

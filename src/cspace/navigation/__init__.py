@@ -25,13 +25,14 @@ from cspace.navigation.fields import (
 )
 from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, cast_rays, follow
 from cspace.navigation.grid import DStarLite
+from cspace.navigation.options import Option
 from cspace.navigation.planners import PLANNERS, Planner
 from cspace.navigation.query import World, navigate
 from cspace.navigation.roadmaps import VoronoiDiagram, visibility_graph, voronoi_diagram
 from cspace.navigation.route import STATUSES, Price, Route
 from cspace.navigation.trace import Trace
 
-__all__ = ["PLANNERS", "STATUSES", "Planner", "Price", "Route", "Trace", "World", "navigate"]
+__all__ = ["PLANNERS", "STATUSES", "Option", "Planner", "Price", "Route", "Trace", "World", "navigate"]
 __all__ += ["BugEvidence"]
 __all__ += ["CarRoute", "hybrid_a_star"]
 __all__ += ["CellEvidence", "Coverage", "approximate_cells", "coverage"]

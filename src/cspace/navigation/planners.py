@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
-import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Final, Protocol, cast
+from typing import TYPE_CHECKING, Final, Protocol, cast
 
-from cspace.errors import InputTypeError, suggest
+from cspace.errors import suggest
+from cspace.navigation.options import Option, options_of
 
 if TYPE_CHECKING:
     from cspace.maps import OccupancyGrid
     from cspace.navigation.route import Route
     from cspace.navigation.trace import Trace
 
-__all__ = ["PLANNERS", "Planner", "check_options", "module_of", "planner_named"]
+__all__ = ["PLANNERS", "Planner", "module_of", "planner_named"]
 
 
 @dataclass(frozen=True)
@@ -34,6 +34,11 @@ class Planner:
     """What it is shown: "map", or where it needs none, "contact" or "range"."""
     takes_cells: bool = False
     """Whether its file says, by takes_cells(grid), of which grids the cells serve it better than polygons."""
+
+    @property
+    def options(self) -> Mapping[str, Option]:
+        """Its options by name: the type, default, unit and meaning of each."""
+        return options_of(module_of(self.name).plan, module_of("a_star").plan)
 
 
 _ROWS: Final[tuple[Planner, ...]] = (
@@ -159,10 +164,6 @@ PLANNERS: Final = MappingProxyType({row.name: row for row in _ROWS})
 """Every planner of `cs.navigate`, by name."""
 
 
-COMPOSED: Final = {"costs", "rng"}
-"""Options that are not one number or word."""
-
-
 class PlannerModule(Protocol):
     """What a planner's file offers."""
 
@@ -192,24 +193,3 @@ def module_of(name: str) -> PlannerModule:
     """The file of a planner, imported."""
     row = PLANNERS[name]
     return cast(PlannerModule, import_module(f"cspace.navigation.{row.room}.{row.name}"))
-
-
-def check_options(row: Planner, options: dict[str, Any]) -> None:
-    """InputTypeError for an option that the planner does not have, several values where it takes one, or
-    others than True and False where it takes these."""
-    known = _options_of(row.name)
-    for name, value in options.items():
-        if name not in known:
-            raise InputTypeError(str(suggest("option", name, known, owner=f"planner {row.name!r}")))
-        several = hasattr(value, "__len__") and not isinstance(value, (str, bytes))
-        if name not in COMPOSED and getattr(value, "ndim", several):
-            raise InputTypeError(f"option {name!r} is a {type(value).__name__}; it must be one value")
-        if isinstance(known[name], bool) and value not in (True, False):
-            raise InputTypeError(f"option {name!r} is {value!r}; it must be True or False")
-
-
-@cache
-def _options_of(name: str) -> dict[str, Any]:
-    """The names of a planner's options, and what they are by default."""
-    parameters = inspect.signature(module_of(name).plan).parameters.values()
-    return {p.name: p.default for p in parameters if p.kind is p.KEYWORD_ONLY}

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 from cspace.arrays import one_number
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid, PolygonWorld
-from cspace.navigation.planners import Planner, check_options, module_of, planner_named
+from cspace.navigation.options import check_options
+from cspace.navigation.planners import Planner, module_of, planner_named
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route
@@ -52,17 +53,21 @@ def navigate(
     if kind != row.world or radius is not NO_RADIUS or resolution is not None:
         world = _prepared(world, kind, row, radius, resolution)
     if options:
-        check_options(row, options)
+        check_options(planner, row.options, options)
     try:
         if world is not given and isinstance(given, PolygonWorld) and isinstance(world, PolygonWorld):
             from cspace.navigation.discs import plan_disc
 
-            return plan_disc(given, world, float(radius), planner, (start, goal), options)
-        return plan(world, start, goal, **options)
+            route = plan_disc(given, world, float(radius), planner, (start, goal), options)
+        else:
+            route = plan(world, start, goal, **options)
     except InputError as error:
         if radius and str(error).startswith(("start (", "goal (")):
             raise InputError(f"{error}; obstacles are grown by the robot's radius, {radius:g} m") from None
         raise
+    if world is not given:
+        vars(route)["asked"] = given
+    return route
 
 
 def _prepared(world: World, kind: str | None, row: Planner, radius: float, resolution: float | None) -> World:

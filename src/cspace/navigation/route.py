@@ -68,13 +68,31 @@ class Route(_core.RouteBase):
 
     @property
     def options(self) -> dict[str, Any]:
-        """The options that the planner was given."""
+        """The options of the planner with the values in force: those that were given, and the defaults as
+        they came out for this world."""
         return dict(self._options or {})
+
+    @property
+    def clearance(self) -> float:
+        """The least distance [m] between the path and a wall of the world that was asked; NaN without a path.
+
+        A wall is a side of a polygon or of the bounds, in a grid the square of a blocked cell or the border.
+        It is that of the robot's centre: of a disc, `radius` less is left beside it.
+        """
+        if (least := self.__dict__.get("clearance")) is None:
+            least = self.__dict__["clearance"] = self._asked.path_clearance(self.path)
+        return float(least)
+
+    @property
+    def _asked(self) -> Any:
+        """The world before it was grown by a radius, or converted."""
+        return self.__dict__.get("asked", self.world)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What it was made from: copies and pickles are made from that again."""
         ends, found = (self.start, self.goal), (self.status, self.path, self.length)
-        return new_route, (self.world, self.planner, self.options, ends, *found, self.price, self.evidence)
+        made = (self.world, self.planner, self.options, ends, *found, self.price, self.evidence)
+        return new_route, made, {"asked": self._asked}
 
     def __repr__(self) -> str:
         if self:

@@ -20,8 +20,10 @@ __all__ = ["plan", "reason", "trace"]
 def plan(world: Any, start: Any, goal: Any, *, hand: str = "left") -> Route:
     """The walk of a robot without a map from start to goal (2,) [m] in a PolygonWorld.
 
-    hand: the one it keeps on the wall, "left" or "right". route.path is the walk even where no way exists;
-    route.evidence is a BugEvidence; route.price counts the pieces of wall and the straight lines followed.
+    hand: the one it keeps on the wall, "left" or "right".
+
+    route.path is the walk even where no way exists; route.evidence is a BugEvidence; route.price counts
+    the pieces of wall and the straight lines followed.
     """
     return search(world, start, goal, "bug_2", {"hand": hand}, BUG_2, hand_of(hand))
 

@@ -23,9 +23,11 @@ __all__ = ["plan", "reason", "trace"]
 def plan(world: Any, start: Any, goal: Any, *, range: float = inf, hand: str | None = None) -> Route:
     """The walk of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
 
-    range: how far it sees [m]; 0 leaves touch alone, inf sees as far as walls let it. hand: the one it keeps
-    on the wall, "left" or "right"; None turns it to the better edge in view. route.path is the walk even
-    where no way exists; route.evidence is a BugEvidence. Raises InputError on a negative range or NaN.
+    range [m]: how far it sees; 0 leaves touch alone, inf sees as far as walls let it. hand: the one it
+    keeps on the wall, "left" or "right"; None turns it to the better edge in view.
+
+    route.path is the walk even where no way exists; route.evidence is a BugEvidence. Raises InputError on
+    a negative range or NaN.
     """
     reach = inf if range == inf else float(as_floats(range, "range"))
     if reach < 0:

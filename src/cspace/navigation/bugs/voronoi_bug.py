@@ -43,10 +43,12 @@ class VoronoiBugEvidence(NamedTuple):
 def plan(world: Any, start: Any, goal: Any, *, range: float = inf) -> Route:
     """The walk of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
 
-    range: how far it sees [m], more than 0; inf sees as far as walls let it. The robot keeps just within it
-    from walls that it follows. route.path is the walk even where no way exists; route.evidence is a
-    VoronoiBugEvidence; route.price counts meet points and branches. Raises InputError on a range that is not
-    positive. The status is "undetermined" where rounding hides how branches hang together.
+    range [m]: how far it sees, more than 0; inf sees as far as walls let it.
+
+    The robot keeps just within it from walls that it follows. route.path is the walk even where no way
+    exists; route.evidence is a VoronoiBugEvidence; route.price counts meet points and branches. Raises
+    InputError on a range that is not positive. The status is "undetermined" where rounding hides how
+    branches hang together.
     """
     reach = inf if range == inf else float(as_floats(range, "range"))
     if not reach > 0:

@@ -61,14 +61,17 @@ def plan(
 ) -> Route:
     """A path from start to goal (2,) [m] through the free squares of a PolygonWorld.
 
-    depth: the level to which mixed squares are split at once; at level k a square's side is the longer side
-    of the bounds over 2ᵏ. With refine=True those that may still hide a way are split on, down to max_depth,
-    by default 12, or 9 with uniform=True, and never below min_size [m]. uniform=True splits the free squares
-    as well, so that all have one size. metric: what the way through the middles of doors is a shortest in,
-    "euclidean" or "manhattan", the default for uniform squares. The status is "undetermined" where mixed
-    squares are left that may hide a way: narrow gaps, or an end that sees no free square nearby.
-    route.evidence is a CellEvidence. UnknownNameError for another metric, InputError for a level that is not
-    whole or not within 0 and 20, and for a size below zero.
+    depth: the level to which mixed squares are split at once; at level k a square's side is the longer
+    side of the bounds over 2ᵏ. min_size [m]: no square is split into smaller ones than this; 0 sets no
+    bound. refine: whether squares that may still hide a way are split on, where depth does not settle the
+    question. max_depth: the level at which that ends; by default 12, or 9 for squares of one size.
+    uniform: whether free squares are split as well, so that all have one size. metric: what the way
+    through the middles of doors is a shortest in, "euclidean" or "manhattan"; by default the latter for
+    squares of one size.
+
+    The status is "undetermined" where mixed squares are left that may hide a way: narrow gaps, or an end
+    that sees no free square nearby. route.evidence is a CellEvidence. UnknownNameError for another
+    metric, InputError for a level that is not whole or not within 0 and 20, and for a size below zero.
     """
     options: dict[str, Any] = {
         "depth": depth,
@@ -79,6 +82,7 @@ def plan(
         "metric": metric,
     }
     settings = _settings(world, **options)
+    options |= {"max_depth": int(settings[1]), "metric": METRICS[settings[4]]}
     ends = world.check_free(start, "start"), world.check_free(goal, "goal")
 
     def evidence(free: int, mixed: int, full: int, deepest: int) -> CellEvidence:

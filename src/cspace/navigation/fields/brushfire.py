@@ -62,11 +62,13 @@ def brushfire_diagram(grid: Any) -> BrushfireDiagram:
 def plan(world: Any, start: Any, goal: Any, *, prefer: str = "clearance") -> Route:
     """A way over the cells of a grid that keeps away from walls.
 
-    start, goal: (2,) [m] in free cells: from both the way goes up the clearance to the diagram. prefer: on
-    it, "clearance" makes the least clearance as great as on any way by sides of cells, and the way the
-    shortest of those on the diagram; "length" takes the shortest on the diagram. A diagonal step is taken
-    where both cells beside it are free. route.evidence["least_clearance"] [m] is that of the centres of the
-    cells on the way. UnknownNameError for another preference.
+    start, goal: (2,) [m] in free cells. prefer: on the diagram, "clearance" makes the least clearance as
+    great as on any way by sides of cells, and the way the shortest of those on the diagram; "length"
+    takes the shortest on the diagram.
+
+    From start and goal the way goes up the clearance to the diagram. A diagonal step is taken where both
+    cells beside it are free. route.evidence["least_clearance"] [m] is that of the centres of the cells on
+    the way. UnknownNameError for another preference.
     """
     if prefer not in PREFER:
         raise suggest("choice of prefer=", prefer, PREFER)

@@ -31,10 +31,11 @@ def plan(world: Any, start: Any, goal: Any, *, slow_within: float = 0.0) -> Rout
     """The way down the times of a front from the goal, of any angle.
 
     start, goal: (2,) [m] in free cells. slow_within [m]: nearer to walls than this the speed falls in
-    proportion to the clearance, so that the way keeps away from them (Garrido et al. 2006); elsewhere, and
-    with 0, it is 1. The front passes from cell to cell along sides; the way lies in free cells and passes
-    corners no closer than the centre of a cell beside them. route.evidence["time"] [m] is T of the start's
-    cell.
+    proportion to the clearance, so that the way keeps away from them (Garrido et al. 2006); elsewhere,
+    and with 0, it is 1.
+
+    The front passes from cell to cell along sides; the way lies in free cells and passes corners no
+    closer than the centre of a cell beside them. route.evidence["time"] [m] is T of the start's cell.
     """
     near = number_of("slow_within", slow_within, 0.0)
     ends = checked_ends(world, start, goal)

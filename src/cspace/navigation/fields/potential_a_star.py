@@ -48,14 +48,16 @@ def plan(
 ) -> Route:
     """A way over the cells of a grid, found by A* or greedy search that counts on a potential.
 
-    start, goal: (2,) [m] in free cells. mode: "exact", "bounded" or "greedy". rho_0 [m]: how far walls repel,
-    four cells by default. k_r [m³]: repulsion; by default that with which the cells beside walls stand rho_0
-    higher; 0 makes it plain A*. scale: s, and weight: w, both as above; weight is for "bounded" alone.
-    corners: as for A*. What walls add is capped at the diagonal of the grid. InputError for numbers out of
-    range.
+    start, goal: (2,) [m] in free cells. mode: "exact", "bounded" or "greedy". rho_0 [m]: how far walls
+    repel, four cells by default. k_r [m³]: repulsion; by default that with which the cells beside walls
+    stand rho_0 higher; 0 makes it plain A*. scale: s, by which the potential is multiplied before it is
+    compared. weight: w, how many times the shortest the way may be, for "bounded" alone. corners: as for
+    A*.
+
+    What walls add is capped at the diagonal of the grid. InputError for numbers out of range.
     """
-    options: dict[str, Any] = {"mode": mode, "k_r": k_r, "rho_0": rho_0, "scale": scale, "weight": weight}
-    options["corners"] = corners
+    options: dict[str, Any] = {"mode": mode, **_repulsion(world, k_r, rho_0)}
+    options |= {"scale": scale, "weight": weight, "corners": corners}
     ends = checked_ends(world, start, goal)
     settings, rule = _settings(world, **options)
     made: Route = clearance_field(world).potential_route(
@@ -83,7 +85,7 @@ def clearance_field(grid: Any) -> _core.ClearanceField:
 
 
 def _settings(
-    world: Any, mode: str, k_r: float | None, rho_0: float | None, scale: float, weight: float, corners: str
+    world: Any, mode: str, k_r: float, rho_0: float, scale: float, weight: float, corners: str
 ) -> tuple[Array, int]:
     """Gain, rho_0 and cap in cells, scale, weight, whether greedy: (6,); and the corner rule's number."""
     if mode not in MODES:
@@ -91,15 +93,22 @@ def _settings(
     if not isinstance(corners, str) or corners not in CORNERS:
         raise suggest("corner rule", corners, CORNERS)
     side = float(world.resolution)
-    reach = number_of("rho_0", 4 * side if rho_0 is None else rho_0, 0.0) / side
-    if k_r is None:
-        gain = reach / (0.5 * (2 - 1 / reach) ** 2) if reach > 0.5 else 0.0
-    else:
-        gain = number_of("k_r", k_r, 0.0) / side**3
+    reach, gain = rho_0 / side, k_r / side**3
     s, w = number_of("scale", scale, 0.0), number_of("weight", weight, 1.0)
     cap = float(np.hypot(*world.shape))
     bound = w if mode == "bounded" else 1.0
     return np.array([gain, max(reach, 1e-9), cap, s, bound, float(mode == "greedy")]), CORNERS[corners]
+
+
+def _repulsion(world: Any, k_r: float | None, rho_0: float | None) -> dict[str, float]:
+    """k_r [m³] and rho_0 [m], as given or by default."""
+    side = float(world.resolution)
+    far = number_of("rho_0", 4 * side if rho_0 is None else rho_0, 0.0)
+    if k_r is not None:
+        return {"k_r": number_of("k_r", k_r, 0.0), "rho_0": far}
+    reach = far / side
+    gain = reach / (0.5 * (2 - 1 / reach) ** 2) if reach > 0.5 else 0.0
+    return {"k_r": gain * side**3, "rho_0": far}
 
 
 def number_of(name: str, value: Any, least: float) -> float:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 __all__ = ["PotentialRest", "plan", "potential", "reason", "trace"]
 
 WORDS: Final = ("descend", "rest")
+GAINS: Final = ("k", "k_r", "rho_0", "cone", "step")
 RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget")
 SAID: Final = {
     "minimum": "the potential rises in every direction",
@@ -63,23 +64,24 @@ def plan(
 ) -> Route:
     """Down the potential from start until the goal is reached, or the robot rests.
 
-    start, goal: (2,) [m]. k: attraction. rho_0 [m]: how far walls repel; by default a twentieth of the longer
-    side of the bounds. k_r [m⁴]: repulsion; by default ¼ k ρ₀⁴, with which a wall holds the goal's pull at
-    half of ρ₀. cone [m]: from how far on the goal pulls with the same force; by default rho_0. step [m]: the
-    longest step; by default a quarter of rho_0. A step is never longer than half the clearance. The status is
-    "local_minimum" where the robot rests elsewhere; route.evidence, a PotentialRest, says how. InputError for
-    a gain or a length that is not positive.
+    start, goal: (2,) [m]. k: attraction. rho_0 [m]: how far walls repel; by default a twentieth of the
+    longer side of the bounds. k_r [m⁴]: repulsion; by default ¼ k ρ₀⁴, with which a wall holds the goal's
+    pull at half of ρ₀. cone [m]: from how far on the goal pulls with the same force; by default rho_0.
+    step [m]: the longest step; by default a quarter of rho_0.
+
+    A step is never longer than half the clearance. The status is "local_minimum" where the robot rests
+    elsewhere; route.evidence, a PotentialRest, says how. InputError for a gain or a length that is not
+    positive.
     """
-    options: dict[str, Any] = {"k": k, "k_r": k_r, "rho_0": rho_0, "cone": cone, "step": step}
     ends = world.check_free(start, "start"), world.check_free(goal, "goal")
-    settings = _settings(world, **options)
+    settings = _settings(world, k, k_r, rho_0, cone, step)
     walls = _walls(world, settings[2])
-    gains = dict(zip(options, map(float, settings[[0, 1, 2, 3, 4]]), strict=True))
+    gains = dict(zip(GAINS, map(float, settings), strict=False))
 
     def evidence(rest: int, force: float, saddles: int) -> PotentialRest:
         return PotentialRest(RESTS[rest], force, saddles, gains)
 
-    made: Route = walls.route(world._core, world, "potential_field", options, *ends, settings, evidence)
+    made: Route = walls.route(world._core, world, "potential_field", gains, *ends, settings, evidence)
     return made
 
 

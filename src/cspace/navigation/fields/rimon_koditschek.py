@@ -109,11 +109,13 @@ class NavigationFunction:
 def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Route:
     """Down a navigation function from start to goal.
 
-    start, goal: (2,) [m]. kappa: its power; by default the least power of two with which the goal is proven
-    to be the only minimum. The world around the goal must be a star world: every obstacle, and the room, has
-    a point that sees all of it, and no two touch. Where it is none, or the goal touches a wall, the status is
-    "undetermined" and the reason says which. route.evidence is a NavigationEvidence. InputError for a kappa
-    that is not positive.
+    start, goal: (2,) [m]. kappa: the power of the function; by default the least power of two with which
+    the goal is proven to be the only minimum.
+
+    The world around the goal must be a star world: every obstacle, and the room, has a point that sees
+    all of it, and no two touch. Where it is none, or the goal touches a wall, the status is
+    "undetermined" and the reason says which. route.evidence is a NavigationEvidence. InputError for a
+    kappa that is not positive.
     """
     power = _power(kappa)
     ends = world.check_free(start, "start"), world.check_free(goal, "goal")
@@ -128,6 +130,7 @@ def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Ro
         return new_route(
             world, "rimon_koditschek", options, ends, status, np.empty((0, 2)), np.inf, price, evidence
         )
+    options["kappa"] = function.kappa
     made: Route = function._core.route(
         world._core,
         world,

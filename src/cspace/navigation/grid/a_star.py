@@ -24,10 +24,13 @@ def plan(
 ) -> Route:
     """The shortest way over the cells of a grid; with costs the cheapest.
 
-    start, goal: (2,) [m] in free cells. metric: "octile" (eight moves), "manhattan" (four), or "euclidean"
-    (eight, with the straight line as what is left). corners: whether a diagonal step may pass blocked cells:
-    "never", with "one" beside it, "always". costs: (rows, columns), each more than 0; a step costs its length
-    times the mean of its two cells. route.evidence["cost"] is what the way costs then.
+    start, goal: (2,) [m] in free cells. metric: "octile" (eight moves), "manhattan" (four), or
+    "euclidean" (eight, with the straight line as what is left). corners: whether a diagonal step may pass
+    blocked cells: "never", with "one" beside it, "always". costs (rows, columns): of the cells, each more
+    than 0; with None a way costs its length, else a step costs its length times the mean of its two
+    cells.
+
+    route.evidence["cost"] is what the way costs then.
     """
     options = {"metric": metric, "corners": corners, "costs": costs}
     return search(world, start, goal, "a_star", options, _settings(world, metric, corners, costs))

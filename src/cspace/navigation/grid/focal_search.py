@@ -26,9 +26,12 @@ def plan(
 ) -> Route:
     """A way over the cells of a grid at most `bound` times as long, or costly, as the best.
 
-    start, goal: (2,) [m] in free cells. bound: 1 or more. metric, corners, costs (rows, columns): as for A*.
-    route.evidence holds the cost of the way between their cells, and "at_least", below which no way costs:
-    the factor that is proven of this very answer is their quotient. InputError for a bound below 1.
+    start, goal: (2,) [m] in free cells. bound: how many times as long the way may be, 1 or more. metric,
+    corners, costs (rows, columns): as for A*.
+
+    route.evidence holds the cost of the way between their cells, and "at_least", below which no way
+    costs: the factor that is proven of this very answer is their quotient. InputError for a bound below
+    1.
     """
     options: dict[str, Any] = {"bound": bound, "metric": metric, "corners": corners, "costs": costs}
     return search(world, start, goal, "focal_search", options, _settings(world, **options))

@@ -17,8 +17,9 @@ USUAL = Settings(JUMP_POINTS)
 def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: str = "never") -> Route:
     """The shortest way over the cells of a grid, as A* finds it, with far fewer cells looked at.
 
-    start, goal: (2,) [m] in free cells. metric, corners: as for A*. Cells have no costs here: jumps rest on
-    all ways of equal length being alike.
+    start, goal: (2,) [m] in free cells. metric, corners: as for A*.
+
+    Cells have no costs here: jumps rest on all ways of equal length being alike.
     """
     options = {"metric": metric, "corners": corners}
     usual = metric == "octile" and corners == "never"

@@ -33,8 +33,10 @@ def plan(
 ) -> Route:
     """A way over the cells of a grid at most `weight` times as long, or costly, as the best.
 
-    start, goal: (2,) [m] in free cells. weight: 1 or more; 1 is A*. metric, corners, costs (rows, columns):
-    as for A*. InputError for a weight below 1.
+    start, goal: (2,) [m] in free cells. weight: how many times as long the way may be, 1 or more; 1 is
+    A*. metric, corners, costs (rows, columns): as for A*.
+
+    InputError for a weight below 1.
     """
     options: dict[str, Any] = {"weight": weight, "metric": metric, "corners": corners, "costs": costs}
     return search(world, start, goal, "weighted_a_star", options, _settings(world, **options))

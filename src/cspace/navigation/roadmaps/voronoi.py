@@ -74,6 +74,7 @@ def plan(
     nowhere narrower. "length" for the shortest whatever its clearance. tolerance [m]: how far the polyline
     may lie from parabolas, by default a ten thousandth of the world's longer side, and never more than a
     hundredth of the clearance.
+
     route.evidence is a VoronoiEvidence. UnknownNameError for another preference, InputError on a tolerance
     that is not positive.
     """

@@ -32,10 +32,12 @@ def plan(
 ) -> Route:
     """A path from start to goal (2,) [m] over a roadmap of samples in a PolygonWorld.
 
-    samples: points drawn from the part of free space that holds start and goal. neighbours: how many of its
-    nearest points each is joined to; by default all within a radius that shrinks as samples grow. rng: seed,
-    Generator or None; `route.options` keeps the seed. route.evidence is a Sampled. The status is
-    "undetermined" where the roadmap does not join start and goal. InputError on a count below one.
+    samples: how many points are drawn from the part of free space that holds start and goal. neighbours:
+    how many of its nearest points each is joined to; by default all within a radius that shrinks as
+    samples grow. rng: seed, Generator, or None for a seed drawn by chance; `route.options` keeps it.
+
+    route.evidence is a Sampled. The status is "undetermined" where the roadmap does not join start and
+    goal. InputError on a count below one.
     """
     options = {
         "samples": problem.count_of("samples", samples, 1),

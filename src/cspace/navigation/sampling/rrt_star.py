@@ -37,10 +37,12 @@ def plan(
 ) -> Route:
     """A path from start to goal (2,) [m] in a PolygonWorld that tends to the shortest as samples grow.
 
-    samples: how many points are drawn. step [m]: the longest edge; by default a tenth of the longer side of
-    the bounds. goal_bias: how often the goal is drawn in place of a random point while no path is known, 0
-    to 1. rng: seed, Generator or None; `route.options` keeps the seed. route.evidence is a Sampled. The
-    status is "undetermined" where the samples were too few. InputError on options out of range.
+    samples: how many points are drawn. step [m]: the longest edge; by default a tenth of the longer side
+    of the bounds. goal_bias: how often the goal is drawn in place of a random point while no path is
+    known, 0 to 1. rng: seed, Generator, or None for a seed drawn by chance; `route.options` keeps it.
+
+    route.evidence is a Sampled. The status is "undetermined" where the samples were too few. InputError
+    on options out of range.
     """
     options = problem.tree_options(world, samples, step, goal_bias, rng)
     return problem.ask(world, "rrt_star", options, start, goal)
