@@ -258,7 +258,7 @@ thousands, and so many a third of a second."""
 NAVIGATION_STEPS: Final = 20_000
 """Most steps of a descent of a navigation function: along walls, where it is stiff, some thousands are
 taken."""
-DESCENT_LOOKS: Final = 10_000
+DESCENT_LOOKS: Final = 40_000
 """Most looks at a potential on the way down: descents that arrive take some hundreds, and so many take five
 milliseconds."""
 SAMPLE_STEP: Final = 0.1

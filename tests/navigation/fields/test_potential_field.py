@@ -56,7 +56,7 @@ def check(world, route):
         assert np.array_equal(route.path[-1], route.goal)
         return
     assert route.evidence.kind != "budget"
-    assert route.status == "local_minimum"
+    assert (route.status == "local_minimum") == (route.evidence.kind in ("minimum", "crease"))
     assert "rests at" in route.reason
     at = route.path[-1]
     assert np.hypot(*(at - route.goal)) > 1e-3 * gains["rho_0"]
@@ -87,6 +87,56 @@ def test_every_descent_goes_down_and_every_rest_is_one():
         kinds[route.evidence.kind] += 1
     assert kinds["goal"] > 75
     assert kinds["minimum"] > 15
+
+
+def swings(path):
+    """How often a path turns by more than 20 degrees one way, and at once by as much the other way."""
+    steps = np.diff(path, axis=0)
+    steps = steps[np.hypot(*steps.T) > 1e-9]
+    turns = np.diff(np.arctan2(steps[:, 1], steps[:, 0]))
+    turns = (turns + np.pi) % (2 * np.pi) - np.pi
+    both = np.minimum(np.abs(turns[1:]), np.abs(turns[:-1]))
+    return int(np.sum((turns[1:] * turns[:-1] < 0) & (both > np.radians(20))))
+
+
+def test_along_walls_it_does_not_swing():
+    rng = np.random.default_rng(2)
+    for gains in ({}, {"rho_0": 0.1}, {"k_r": 1.0}, {"k_r": 1e-8}):
+        for _ in range(40):
+            world = random_world(rng)
+            route = go(world, random_free(rng, world), random_free(rng, world), **gains)
+            check(world, route)
+            assert swings(route.path) <= 10
+    walls = cs.PolygonWorld([box(2, 3, 8, 4), box(2, 4.3, 8, 5.5)], BOUNDS)
+    for start, goal in [((3, 4.05), (9, 4.2)), ((3, 4.25), (9, 4.05)), ((1, 2.9), (9, 3.2))]:
+        for k_r in (1e-4, 1e-6, 1e-8):
+            route = go(walls, start, goal, rho_0=0.5, k_r=k_r)
+            check(walls, route)
+            assert swings(route.path) <= 2
+            assert route.price.edges < 5000
+
+
+def test_no_piece_of_the_way_climbs():
+    rng = np.random.default_rng(5)
+    for _ in range(40):
+        world = random_world(rng)
+        route = go(world, random_free(rng, world), random_free(rng, world))
+        gains = {name: route.evidence.gains[name] for name in ("k", "k_r", "rho_0", "cone")}
+        middle = (route.path[1:] + route.path[:-1]) / 2
+        before = potential(world, route.goal, route.path[:-1], **gains)
+        inside = potential(world, route.goal, middle, **gains)
+        assert (inside <= before * (1 + 1e-9) + 1e-9).all()
+
+
+def test_looks_that_run_out_are_told_with_what_saves_them():
+    world = cs.PolygonWorld([box(4, 4, 6, 6)], BOUNDS)
+    assert go(world, (1, 1), (9, 2), step=0.001)
+    short = go(world, (1, 1), (9, 2), step=1e-5)
+    assert short.status == "undetermined"
+    assert short.evidence.kind == "budget"
+    assert "still going down at" in short.reason
+    assert "a longer step= than 1e-05 m" in short.reason
+    assert "rests" not in short.reason
 
 
 def test_a_trap_holds_it_and_is_no_arrival():

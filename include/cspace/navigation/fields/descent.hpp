@@ -1,4 +1,5 @@
 // A robot that goes down a potential, step by step, until it arrives or rests; where it rests is named.
+// Along walls it does not swing from side to side: each step knows how stiff the potential is across.
 #pragma once
 
 #include <algorithm>
@@ -7,6 +8,7 @@
 #include <numbers>
 #include <vector>
 
+#include "cspace/navigation/fields/damped_step.hpp"
 #include "cspace/navigation/fields/potential.hpp"
 #include "cspace/navigation/route.hpp"
 
@@ -104,14 +106,15 @@ class DescentRun {
     bool descend() {
         for (;; step_ *= 0.5) {
             here_ = look(at_);
-            const double slope = norm(here_.slope);
-            const double length = std::min(step_, 0.5 * here_.clearance);
-            if (length < shortest() || slope * length <= noise()) return false;
-            const Point to = at_ - (length / slope) * here_.slope;
+            const double most = std::min(step_, 0.5 * here_.clearance);
+            const Point step = damped_step(here_.stiffness, here_.slope, most);
+            const double promised = -dot(step, here_.slope), length = norm(step);
+            if (most < shortest() || !(promised > noise())) return false;
+            const Point to = at_ + step;
             const Potential::Look seen = look(to);
-            if (!(seen.value <= here_.value - 0.1 * length * slope) || is_crossed(to, length)) continue;
+            if (!(seen.value <= here_.value - 0.1 * promised) || is_crossed(to, length)) continue;
             go(to, seen);
-            step_ = std::min(1.6 * length, longest_);
+            step_ = std::min(1.6 * most, longest_);
             return true;
         }
     }
@@ -148,9 +151,10 @@ class DescentRun {
     Descent finish(Rest rest) {
         descent_.rest = rest;
         descent_.force = norm(here_.slope);
-        descent_.route.status = rest == Rest::goal     ? Status::found
-                                : rest == Rest::budget ? Status::undetermined
-                                                       : Status::local_minimum;
+        const bool holds = rest == Rest::minimum || rest == Rest::crease;
+        descent_.route.status = rest == Rest::goal ? Status::found
+                                : holds            ? Status::local_minimum
+                                                   : Status::undetermined;
         descent_.route.length = length_of(descent_.route.path);
         if (descent_.values.size() < descent_.route.path.size()) descent_.values.push_back(here_.value);
         return std::move(descent_);

@@ -27,6 +27,24 @@ struct Gains {
     double repulsion_rate(double rho) const {
         return rho < rho_0 ? -k_r * (1 / rho - 1 / rho_0) / (rho * rho) : 0;
     }
+    // By how much that rate grows with the distance.
+    double repulsion_stiffness(double rho) const {
+        if (!(rho < rho_0)) return 0;
+        const double inverse = 1 / rho;
+        return k_r * inverse * inverse * inverse * (inverse + 2 * (inverse - 1 / rho_0));
+    }
+};
+
+// A symmetric matrix [xx xy; xy yy] that is nowhere negative.
+struct Stiffness {
+    double xx = 0, xy = 0, yy = 0;
+
+    // scale · n nᵀ
+    void add(double scale, Point n) {
+        xx += scale * n.x * n.x;
+        xy += scale * n.x * n.y;
+        yy += scale * n.y * n.y;
+    }
 };
 
 // A few points.
@@ -80,11 +98,14 @@ class Potential {
                            // between theirs: it leads along the crease
         double clearance;  // to the nearest wall, or rho_0 if that is nearer
         bool is_crease = false;
+        Stiffness stiffness;  // of the goal, and of walls along the way to their nearest places: what is
+                              // positive in the second derivative
     };
     // slack: by how much farther than its nearest place a ring's places count for the slope.
     Look look(Point p, double slack) const {
         gather(p);
-        Look seen{gains_.attraction(distance(p, goal_)), attraction_slope(p), gains_.rho_0};
+        Look seen{gains_.attraction(distance(p, goal_)), attraction_slope(p), gains_.rho_0, false,
+                  attraction_stiffness(p)};
         pulls_.clear();
         for (std::size_t i = 0; i < places_.size();) {
             std::size_t end = i;
@@ -95,8 +116,10 @@ class Potential {
             seen.value += gains_.repulsion(rho);
             Pull& pull = pulls_.emplace_back();
             for (; i < end; ++i)
-                if (places_[i].rho <= rho + slack && pull.choices.size() < FewPoints::most)
+                if (places_[i].rho <= rho + slack && pull.choices.size() < FewPoints::most) {
                     pull.choices.push_back(gains_.repulsion_rate(places_[i].rho) * places_[i].away);
+                    seen.stiffness.add(gains_.repulsion_stiffness(places_[i].rho), places_[i].away);
+                }
             if (pull.choices.size() > 1) seen.is_crease = true;
         }
         seen.slope = least_slope(seen.slope);
@@ -125,6 +148,13 @@ class Potential {
     Point attraction_slope(Point p) const {
         const Point d = p - goal_;
         return (gains_.k * std::min(1.0, gains_.cone / std::max(norm(d), gains_.cone))) * d;
+    }
+    Stiffness attraction_stiffness(Point p) const {
+        const double d = distance(p, goal_);
+        if (d < gains_.cone) return {gains_.k, 0, gains_.k};
+        Stiffness across;
+        across.add(gains_.k * gains_.cone / d, (1 / d) * Point{goal_.y - p.y, p.x - goal_.x});
+        return across;
     }
     void gather(Point p) const {
         places_.clear();

@@ -31,10 +31,10 @@ GAINS: Final = ("k", "k_r", "rho_0", "cone", "step")
 RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget")
 SAID: Final = {
     "minimum": "the potential rises in every direction",
-    "saddle": "no force is left, and the potential is too flat to tell which way is down",
+    "saddle": "no force is left, and the potential is too flat to tell which way is down; a start a little "
+    "aside, or another rho_0=, may tell",
     "crease": "one ring of walls holds it from two sides",
-    "wall": "it is pressed against a wall",
-    "budget": f"it found no rest within {DESCENT_LOOKS} looks at the potential",
+    "wall": "it is pressed against a wall; a larger k_r= holds it off",
 }
 
 
@@ -42,7 +42,8 @@ class PotentialRest(NamedTuple):
     """Where and how a descent ended."""
 
     kind: str
-    """ "goal", "minimum", "saddle", "crease", "wall", or "budget": no rest in that many steps."""
+    """ "goal"; "minimum" or "crease", where the potential rises all around; or, where that is not shown,
+    "saddle", "wall", or "budget": the looks at the potential ran out on the way down."""
     force: float
     """What is left of it, in units of k times metres."""
     saddles: int
@@ -69,9 +70,10 @@ def plan(
     pull at half of ρ₀. cone [m]: from how far on the goal pulls with the same force; by default rho_0.
     step [m]: the longest step; by default a quarter of rho_0.
 
-    A step is never longer than half the clearance. The status is "local_minimum" where the robot rests
-    elsewhere; route.evidence, a PotentialRest, says how. InputError for a gain or a length that is not
-    positive.
+    A step is never longer than half the clearance, and goes no farther across a valley than to its bottom.
+    The status is "local_minimum" where the robot rests elsewhere and the potential rises all around,
+    "undetermined" where that is not shown or its looks at the potential ran out; route.evidence, a
+    PotentialRest, says how it ended. InputError for a gain or a length that is not positive.
     """
     ends = world.check_free(start, "start"), world.check_free(goal, "goal")
     settings = _settings(world, k, k_r, rho_0, cone, step)
@@ -93,8 +95,20 @@ def reason(route: Route) -> str:
         return f"went down the potential for {route.length:.6g} m{over}"
     x, y = route.path[-1]
     left = float(np.hypot(x - route.goal[0], y - route.goal[1]))
+    if rest.kind == "budget":
+        return (
+            f"the robot was still going down at ({x:.6g}, {y:.6g}), {left:.6g} m from the goal, when "
+            f"{DESCENT_LOOKS} looks at the potential were spent; {_remedy(rest.gains)}"
+        )
     near = "; the goal itself is near a wall" if left < rest.gains["rho_0"] else ""
     return f"the robot rests at ({x:.6g}, {y:.6g}), {left:.6g} m from the goal: {SAID[rest.kind]}{near}"
+
+
+def _remedy(gains: dict[str, float]) -> str:
+    """What makes steps longer: they are limited by an option, or by how near to walls it goes."""
+    if gains["step"] < 0.1 * gains["rho_0"]:
+        return f"a longer step= than {gains['step']:g} m gets farther"
+    return f"a larger k_r= than {gains['k_r']:g} keeps it farther from walls, where steps are longer"
 
 
 def trace(route: Route) -> Trace:
