@@ -104,10 +104,33 @@ SCHEMAS: dict[str, dict[str, Any]] = {
                 "nodes": int,
                 "edges": int,
                 "seconds": NUMBER,
+                "seconds_first": NUMBER,
+                "seconds_again": NUMBER_OR_NULL,
+                "options": dict,
                 "path": MATRIX,
             }
         ],
         "refused": dict,
+        "written": [TEXT],
+    },
+    "cspace.planners/1": {
+        "planners": [
+            {
+                "name": TEXT,
+                "line": TEXT,
+                "world": TEXT,
+                "sees": TEXT,
+                "options": [
+                    {
+                        "name": TEXT,
+                        "type": TEXT,
+                        "default": (str, int, float, bool, type(None)),
+                        "unit": TEXT,
+                        "meaning": TEXT,
+                    }
+                ],
+            }
+        ]
     },
     "cspace.export/1": {
         "language": TEXT,

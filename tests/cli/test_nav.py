@@ -9,6 +9,7 @@ import pytest
 
 import cspace as cs
 from cli.run import cspace
+from cli.schema import check
 from cspace.cli.exits import Exit
 from data import ROOT
 
@@ -23,6 +24,7 @@ def test_all_planners_side_by_side():
         if route["status"] == "found":
             assert route["ratio_to_shortest"] == pytest.approx(route["length"] / shortest)
             assert route["clearance"] >= 0
+            assert route["seconds_first"] >= route["seconds"] > 0
 
 
 def test_clearance_is_that_from_the_walls_of_the_map():
@@ -46,9 +48,64 @@ def test_no_way_ends_in_one():
     assert result.out.count("unreachable") == 2
 
 
+def test_options_and_seeds():
+    line = f"{YARD} --goal 9 9 --planner rrt,prm,a_star --seed 3 --option prm.samples=300 --option step=0.5"
+    result = cspace(f"{line} --json")
+    check(result.json, "cspace.nav/1")
+    rrt, prm, a_star = result.json["routes"]
+    assert rrt["options"] == {"samples": 20000, "step": 0.5, "goal_bias": 0.05, "rng": 3}
+    assert (prm["options"]["samples"], prm["options"]["rng"]) == (300, 3)
+    assert "rng" not in a_star["options"]
+    again = cspace(f"{line} --json").json["routes"]
+    assert [route["path"] for route in again] == [route["path"] for route in result.json["routes"]]
+    world = cs.PolygonWorld.from_text(ROOT / "examples/yard.txt")
+    assert rrt["path"] == cs.navigate(world, (1, 1), (9, 9), "rrt", step=0.5, rng=3).path.tolist()
+
+
+@pytest.mark.parametrize(
+    ("typed", "value"),
+    [
+        ("theta_star.lazy=True", True),
+        ("tangent_bug.range=inf", "inf"),
+        ("tangent_bug.range=2", 2.0),
+        ("tangent_bug.hand=none", None),
+        ("tangent_bug.hand=right", "right"),
+        ("approximate_cells.depth=7", 7),
+    ],
+)
+def test_values_are_of_the_type_of_their_option(typed, value):
+    planner, name = typed.partition("=")[0].split(".")
+    [route] = cspace(f"{YARD} --goal 9 9 --planner {planner} --option {typed} --json").json["routes"]
+    assert route["options"][name] == value
+
+
+def test_planners_and_their_options():
+    document = cspace("planners --json").json
+    check(document, "cspace.planners/1")
+    assert [row["name"] for row in document["planners"]] == list(cs.navigation.PLANNERS)
+    table = cspace("planners").out
+    assert all(row.line in table for row in cs.navigation.PLANNERS.values())
+    told = cspace("planners rrt any_angle").out
+    assert all(option.meaning in told for option in cs.navigation.PLANNERS["rrt"].options.values())
+    assert "no options" in told
+    assert "rrt_star" in cspace("planners rrt_stat").err
+
+
 @pytest.mark.parametrize(
     ("line", "words"),
     [
+        (f"{YARD} --goal 9 9 --planner rrt --option sampels=3", ["sampels", "planner 'rrt'", "'samples'"]),
+        (f"{YARD} --goal 9 9 --planner rrt,prm --option sampels=3", ["these planners", "'samples'"]),
+        (f"{YARD} --goal 9 9 --planner rrt --option prm.samples=3", ["no planner 'prm'", "--planner", "rrt"]),
+        (f"{YARD} --goal 9 9 --planner rrt --option samples=many", ["samples", "'many'", "whole number"]),
+        (f"{YARD} --goal 9 9 --planner rrt --option samples=0", ["samples is 0", "1 to"]),
+        (f"{YARD} --goal 9 9 --planner rrt --option samples", ["'samples'", "NAME=VALUE"]),
+        (f"{YARD} --goal 9 9 --planner rrt --option rng=1 --seed 2", ["rng", "twice"]),
+        (f"{YARD} --goal 9 9 --planner a_star --seed 2", ["rng", "a_star"]),
+        (f"{YARD} --goal 9 9 --planner a_star --option metric=octil", ["octil", "'octile'"]),
+        (f"{YARD} --goal 9 9 --planner a_star --option costs=2", ["costs", "Python"]),
+        (f"{YARD} --goal 9 9 --planner theta_star --option lazy=maybe", ["lazy", "'maybe'", "true or false"]),
+        (f"{YARD} --goal 9 9 --plot nowhere/ways.png", ["nowhere"]),
         (f"{YARD} --goal 9 9 --planner bug_3", ["bug_3", "bug_2"]),
         (f"{YARD} --goal 2.5 2.5", ["goal", "inside obstacle 0"]),
         (f"{YARD} --goal 20 2.5", ["goal", "outside the world"]),
@@ -97,6 +154,7 @@ def test_pictures(tmp_path, monkeypatch):
         f"{YARD} --goal 9 9 --planner visibility_graph,bug_1 --plot ways.png --animate search.gif"
     )
     assert result.code == Exit.DONE
+    assert result.out.splitlines()[-2:] == ["wrote ways.png", "wrote search.gif"]
     assert (tmp_path / "ways.png").read_bytes()[:4] == b"\x89PNG"
     assert (tmp_path / "search.gif").read_bytes()[:3] == b"GIF"
     import matplotlib.pyplot as plt

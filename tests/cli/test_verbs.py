@@ -19,6 +19,7 @@ LINES = {
     "dh": "dh ur5e",
     "export": "export planar_2r",
     "nav": f"nav {ROOT}/examples/yard.txt --start 1 1 --goal 9 9",
+    "planners": "planners rrt",
     "doctor": "doctor",
 }
 Q = [0.1, -1.2, 1.0, 0.2, 0.4, 0.3]

@@ -23,6 +23,7 @@ VERBS: Final[Mapping[str, str]] = MappingProxyType(
         "jacobian": "the Jacobian, its singular values and the distance to singularity",
         "dh": "the Denavit-Hartenberg table and the link matrices",
         "nav": "a way through a map, by one planner or by all of them side by side",
+        "planners": "the planners of nav, and their options",
         "export": "the inverse kinematics of an arm as C++, C or Python that needs nothing of cspace",
         "doctor": "versions, optional parts and a self-check",
     }

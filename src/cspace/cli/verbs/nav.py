@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import argparse
 import math
+import time
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-import numpy as np
-
-from cspace.cli.arguments import number
+from cspace.cli.arguments import named_value, number
 from cspace.cli.exits import Exit, UsageError
+from cspace.cli.files import check_writable
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.pictures import check_format
+from cspace.cli.planner_options import options_given
+from cspace.cli.verbs.planners import typed
 from cspace.errors import InputError
 
 if TYPE_CHECKING:
-    from cspace.maps import PolygonWorld
     from cspace.navigation import Route
 
 __all__ = ["EXAMPLES", "arguments", "run"]
@@ -24,10 +26,11 @@ __all__ = ["EXAMPLES", "arguments", "run"]
 EXAMPLES: Final = """
 cspace nav map.yaml --start 1 1 --goal 9 7 --planner all --plot ways.png
 cspace nav yard.geojson --start 0 0 --goal 20 5 --radius 0.3 --planner visibility_graph --json
+cspace nav yard.geojson --start 0 0 --goal 20 5 --planner rrt,rrt_star --seed 7 --option rrt.samples=500
 """
 
-SAMPLES: Final = 400
-"""Places along a path at which its clearance is taken."""
+PATIENCE: Final = 5.0
+"""A first call that took longer [s] is not repeated."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -42,6 +45,15 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         default="any_angle",
         help="a planner's name, several with commas, or all (default: any_angle)",
     )
+    parser.add_argument(
+        "--option",
+        action="append",
+        default=[],
+        type=named_value,
+        metavar="[PLANNER.]NAME=VALUE",
+        help="an option of the planners (cspace planners NAME); may be repeated",
+    )
+    parser.add_argument("--seed", type=int, metavar="N", help="the seed of planners that draw samples")
     parser.add_argument("--radius", type=number, default=0.0, help="radius of the robot [m] (default: 0)")
     parser.add_argument(
         "--resolution", type=number, help="side of a cell [m], of images and where polygons become cells"
@@ -56,29 +68,39 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Ask the planners and print what they answer, side by side."""
-    names = planners_of(args.planner)
+    given = options_given(args.option, args.seed, planners_of(args.planner))
+    for path in filter(None, (args.plot, args.animate)):
+        check_writable(path)
     if args.plot:
         check_format(args.plot)
     if args.animate and args.animate.suffix.lower() != ".gif":
         raise UsageError(f"an animation is a GIF; end {str(args.animate)!r} with .gif")
     world = load(args.map, args.resolution)
-    routes, refused = answers(world, names, args)
-    best, walls = ask(world, "any_angle", args), polygons(world)
+    found, refused = answers(world, given, args)
+    best, routes = ask(world, "any_angle", args, {}), [each.route for each in found]
+    written = pictures(args, routes)
     if out.as_json:
-        out.document(document(args, routes, best, walls) | {"refused": refused})
+        out.document(document(args, found, best) | {"refused": refused, "written": written})
     else:
-        show(routes, best, walls, out)
+        show(found, best, out)
         for name, why in refused.items():
             out.line(f"{name}: {why}")
-    if args.plot:
-        from cspace import plot
+        for path in written:
+            out.line(f"wrote {path}")
+    return Exit.DONE if any(routes) else Exit.NEGATIVE
 
+
+def pictures(args: argparse.Namespace, routes: list[Route]) -> list[str]:
+    """Draw what was asked for; the files that were written."""
+    if not (args.plot or args.animate):
+        return []
+    from cspace import plot
+
+    if args.plot:
         plot.save(plot.routes(routes), args.plot)
     if args.animate:
-        from cspace import plot
-
         plot.save(plot.animation(routes[0]), args.animate, dpi=80)
-    return Exit.DONE if any(routes) else Exit.NEGATIVE
+    return [str(path) for path in (args.plot, args.animate) if path]
 
 
 def planners_of(text: str) -> list[str]:
@@ -111,50 +133,58 @@ def load(path: Path, resolution: float | None) -> Any:
     )
 
 
-def ask(world: Any, planner: str, args: argparse.Namespace) -> Route:
+def ask(world: Any, planner: str, args: argparse.Namespace, options: dict[str, Any]) -> Route:
     """The answer of one planner."""
     from cspace.navigation import PLANNERS, navigate
 
     becomes_cells = world.kind == "polygons" and PLANNERS[planner].world == "grid"
     more = {"resolution": args.resolution} if becomes_cells and args.resolution else {}
-    return navigate(world, args.start, args.goal, planner, radius=args.radius, **more)
+    return navigate(world, args.start, args.goal, planner, radius=args.radius, **more, **options)
 
 
-def answers(world: Any, names: list[str], args: argparse.Namespace) -> tuple[list[Route], dict[str, str]]:
-    """The routes of planners, and why others refuse the question; InputError where all do.
+@dataclass(frozen=True)
+class Answer:
+    """A route, and how long the calls took [s]."""
 
-    Of several planners times are compared, without what is made once and kept with the map.
-    """
-    routes, refused = [], {}
-    for name in names:
+    route: Route
+    first: float
+    again: float | None
+    """The same call once more, when what the planner keeps with the map is there; None if it took too long
+    to ask twice."""
+
+
+def answer(world: Any, planner: str, args: argparse.Namespace, options: dict[str, Any]) -> Answer:
+    """Ask a planner twice: the second time with the same seed."""
+    from cspace.navigation.planners import module_of
+
+    module_of(planner)  # imported before the clock starts
+    began = time.perf_counter()
+    route = ask(world, planner, args, options)
+    first, again = time.perf_counter() - began, None
+    if first < PATIENCE:
+        seed = {"rng": route.options["rng"]} if "rng" in route.options else {}
+        began = time.perf_counter()
+        ask(world, planner, args, {**options, **seed})
+        again = time.perf_counter() - began
+    return Answer(route, first, again)
+
+
+def answers(
+    world: Any, given: dict[str, dict[str, Any]], args: argparse.Namespace
+) -> tuple[list[Answer], dict[str, str]]:
+    """What planners answer, and why others refuse the question; InputError where all do. given: the options
+    of each."""
+    found, refused = [], {}
+    for planner, options in given.items():
         try:
-            route = ask(world, name, args)
+            found.append(answer(world, planner, args, options))
         except InputError as error:
-            if len(names) == 1:
+            if len(given) == 1:
                 raise
-            refused[name] = str(error)
-        else:
-            routes.append(route if len(names) == 1 else ask(world, name, args))
-    if not routes:
+            refused[planner] = str(error)
+    if not found:
         raise InputError(next(iter(refused.values())))
-    return routes, refused
-
-
-def polygons(world: Any) -> PolygonWorld:
-    """The map as it was read, as polygons."""
-    from cspace.maps import PolygonWorld
-
-    return world if isinstance(world, PolygonWorld) else PolygonWorld.from_grid(world)
-
-
-def clearance(route: Route, walls: PolygonWorld) -> float | None:
-    """The least distance [m] between the path and a wall of the map, at many places along it."""
-    if not len(route.path):
-        return None
-    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(route.path, axis=0).T))])
-    at = np.unique(np.concatenate([along, np.linspace(0, along[-1], SAMPLES)]))
-    points = np.stack([np.interp(at, along, route.path[:, k]) for k in (0, 1)], axis=1)
-    return float(walls.clearance(points).min())
+    return found, refused
 
 
 def ratio(route: Route, best: Route) -> float | None:
@@ -164,20 +194,31 @@ def ratio(route: Route, best: Route) -> float | None:
     return route.length / best.length if best.length else 1.0
 
 
-def show(routes: list[Route], best: Route, walls: PolygonWorld, out: Output) -> None:
+def show(found: list[Answer], best: Route, out: Output) -> None:
     """One line a planner, and why some found nothing; of a single one, the reason and the corners too."""
-    table = Table(("planner", "status", "length [m]", "/ shortest", "clearance [m]", "nodes", "time [µs]"))
-    table.left = frozenset({0, 1})
-    for route in routes:
-        share, free = ratio(route, best), clearance(route, walls)
+    columns = (
+        "planner",
+        "status",
+        "length [m]",
+        "/ shortest",
+        "clearance [m]",
+        "nodes",
+        "first [ms]",
+        "again [ms]",
+    )
+    table = Table(columns, left=frozenset({0, 1}))
+    routes = [each.route for each in found]
+    for each, route in zip(found, routes, strict=True):
+        share = ratio(route, best)
         table.add(
             route.planner,
             Cell(route.status, "" if route else "yellow"),
             f"{route.length:.3f}" if math.isfinite(route.length) else "-",
             "-" if share is None else f"{share:.3f}",
-            "-" if free is None else f"{free:.3f}",
+            "-" if math.isnan(route.clearance) else f"{route.clearance:.3f}",
             str(route.price.nodes),
-            f"{1e6 * route.price.seconds:.1f}",
+            f"{1e3 * each.first:.3f}",
+            "-" if each.again is None else f"{1e3 * each.again:.3f}",
         )
     out.table(table)
     if len(routes) > 1:
@@ -190,9 +231,7 @@ def show(routes: list[Route], best: Route, walls: PolygonWorld, out: Output) -> 
             out.line(f"{x:12.6f} {y:12.6f}")
 
 
-def document(
-    args: argparse.Namespace, routes: list[Route], best: Route, walls: PolygonWorld
-) -> dict[str, Any]:
+def document(args: argparse.Namespace, answered: list[Answer], best: Route) -> dict[str, Any]:
     """The answers for machines."""
     found = [
         {
@@ -201,13 +240,16 @@ def document(
             "reason": route.reason,
             "length": route.length if math.isfinite(route.length) else None,
             "ratio_to_shortest": ratio(route, best),
-            "clearance": clearance(route, walls),
+            "clearance": None if math.isnan(route.clearance) else route.clearance,
             "nodes": route.price.nodes,
             "edges": route.price.edges,
             "seconds": route.price.seconds,
+            "seconds_first": each.first,
+            "seconds_again": each.again,
+            "options": {name: typed(value) for name, value in route.options.items()},
             "path": route.path.tolist(),
         }
-        for route in routes
+        for each, route in ((each, each.route) for each in answered)
     ]
     given = {"map": str(args.map), "start": list(args.start), "goal": list(args.goal), "radius": args.radius}
     return {"schema": "cspace.nav/1", **given, "routes": found}
