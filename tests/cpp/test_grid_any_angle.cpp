@@ -119,3 +119,20 @@ TEST(metres_and_ends_that_rounding_has_moved) {
     CHECK(runs.settle(at(20.01, 7.5)).runs.empty());
     CHECK(runs.settle(at(41, 7.5)).runs.empty());
 }
+
+// Obstacles in a pattern have many ways of one length. Each is looked at once, so that what is looked through
+// grows with the map and not with the number of ways.
+TEST(many_ways_of_one_length) {
+    for (const int size : {20, 40, 80}) {
+        BitGrid grid(size, size);
+        for (int row = 0; row < size; ++row)
+            for (int column = 0; column < size; ++column)
+                grid.set(row, column, row && row < size - 1 && (row + 2 * column) % 5 == 0);
+        Both both(grid);
+        both.compare({0.5, 0.5}, {size - 0.5, size - 0.5});
+        const Point start{0.5, 0.5}, goal{size - 0.5, size - 0.5};
+        const Route route = both.runs.solve(start, both.runs.settle(start), goal, both.runs.settle(goal));
+        CHECK(route.status == Status::found);
+        CHECK(route.price.nodes < 2 * size * size);
+    }
+}

@@ -62,6 +62,8 @@ class RunMesh {
     bool is_side(const Door& d, const Run& run) const {
         return d.row() == run.row && d.begin >= run.begin && d.end <= run.end;
     }
+    // Tells apart the doors that have a corner on the same hand.
+    Index name(const Door& d) const { return d.is_top(); }
     bool leads_on(const Door& d) const {
         const int near = d.is_top() ? d.row() + 1 : d.row() - 1, far = d.is_top() ? d.row() - 1 : d.row() + 1;
         if (first_open(d.row(), far, d.begin) < d.end) return true;

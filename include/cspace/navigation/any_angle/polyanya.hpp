@@ -88,9 +88,10 @@ class IntervalSearch {
     static constexpr int sign_of[2] = {1, -1};
     struct Arrival {  // the shortest way found to a corner
         double g = 0;
-        std::uint32_t query = 0;       // in which it was found
-        Index before = none;           // the corner, or the start, that it comes from
-        Index from[2] = {none, none};  // the corner before, of the way that has to turn least, by hand
+        std::uint32_t query = 0;          // in which it was found
+        Index before = none;              // the corner, or the start, that it comes from
+        Index from[2] = {none, none};     // the corner before, of the way that has to turn least, by hand
+        Index through[2] = {none, none};  // and the passage by which it arrived
     };
 
     const Mesh& mesh_;
@@ -144,19 +145,24 @@ class IntervalSearch {
     // Whether a shorter way to the root of a node is known by now.
     bool is_stale(const Node& n) { return n.root != at_start && n.g > best_[n.root].g * (1 + 1e-13); }
     // Notes a way of length g to a corner, coming from another one to turn by `hand` there; false if a
-    // shorter way is known, or one as long that has to turn less for all that this one reaches. (Grids have
-    // many ways of one length; following each of them takes time without end.)
-    bool reach(Index v, double g, Index from, Hand hand) {
+    // shorter way is known, or one as long that has to turn less for all that this one reaches, or the same
+    // through the same passage. (Grids have many ways of one length, and the intervals that they lead to
+    // overlap: following each of them takes time without end.)
+    bool reach(Index v, double g, Index from, Hand hand, Index through) {
         Arrival& best = best_[v];
         const bool is_first = best.query != query_;
         if (!is_first && g > best.g * (1 + 1e-13)) return false;
         if (is_first || g < best.g * (1 - 1e-13)) best.from[0] = best.from[1] = none;
         if (is_first || g < best.g) best.g = g, best.before = from;
         best.query = query_;
-        Index& known = best.from[hand];
-        if (known != none && known != from && sign_of[hand] * orientation(at(known), at(v), at(from)) >= 0)
+        const Index known = best.from[hand];
+        if (known == from) {
+            if (best.through[hand] == through) return false;
+        } else if (known != none && sign_of[hand] * orientation(at(known), at(v), at(from)) >= 0) {
             return false;
-        known = from;
+        }
+        best.from[hand] = from;
+        best.through[hand] = through;
         return true;
     }
 
@@ -207,7 +213,7 @@ class IntervalSearch {
     // All of an edge is reached from its nearer end v, to which a path leads along the line of the edge.
     void push_along(Index from, double g, Index v, Index far, Hand hand, const Edge& edge) {
         g += distance(at(from), at(v));
-        if (!turns(v) || !reach(v, g, from, hand)) return;
+        if (!turns(v) || !reach(v, g, from, hand, 2 * mesh_.name(edge) + 1)) return;
         const Line along{v, far};
         push(v, g, hand == to_the_right ? along : Line{}, hand == to_the_right ? Line{} : along, edge);
     }
@@ -232,8 +238,10 @@ class IntervalSearch {
         const bool may_turn_left = from.on_left.to == left_end && turns(left_end) && from.root != left_end;
         const double g_right = may_turn_right ? from.g + distance(at(from.root), at(right_end)) : 0;
         const double g_left = may_turn_left ? from.g + distance(at(from.root), at(left_end)) : 0;
-        const bool right_open = may_turn_right && reach(right_end, g_right, from.root, to_the_right);
-        const bool left_open = may_turn_left && reach(left_end, g_left, from.root, to_the_left);
+        const bool right_open =
+            may_turn_right && reach(right_end, g_right, from.root, to_the_right, 2 * mesh_.name(from.edge));
+        const bool left_open =
+            may_turn_left && reach(left_end, g_left, from.root, to_the_left, 2 * mesh_.name(from.edge));
         const View view{*this, from, left_open, right_open};
         mesh_.visit_doors_beyond(from.edge, view, [&](const Edge& e) {
             see(from, e);
