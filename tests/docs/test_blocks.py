@@ -10,6 +10,7 @@ from __future__ import annotations
 import fnmatch
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from dataclasses import dataclass
@@ -111,6 +112,7 @@ def check_output(expected: list[str], output: str, where: str) -> None:
 
 @pytest.mark.parametrize("page", has("console"), ids=name_of)
 def test_console_blocks_run(page, tmp_path):
+    shutil.copy(ROOT / "examples/yard.txt", tmp_path)
     for block in blocks(page):
         if block.language != "console":
             continue
