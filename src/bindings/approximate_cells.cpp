@@ -1,4 +1,4 @@
-// Approximate cells: a quadtree made for one question.
+// Approximate cells: a quadtree that is kept with its world.
 #include "cspace/navigation/cells/approximate_cells.hpp"
 
 #include "fields.hpp"
@@ -19,12 +19,13 @@ CellOptions options_of(const SettingRow& row) {
     return {int(s[0]), int(s[1]), s[2] != 0, s[3] != 0, s[4] != 0, std::size_t(s[5])};
 }
 
-CellAnswer solve(const PolygonCore& core, const fields::PointRow& start, const fields::PointRow& goal,
+CellAnswer solve(PolygonCore& core, const fields::PointRow& start, const fields::PointRow& goal,
                  const SettingRow& row, Trace* trace) {
     const Point from{start.data()[0], start.data()[1]}, to{goal.data()[0], goal.data()[1]};
     const Point at_start = core.world.settle(from, core.tolerance).at;
     const Point at_goal = core.world.settle(to, core.tolerance).at;
-    CellAnswer answer = ApproximateCells(core.world, options_of(row), trace).solve(at_start, at_goal);
+    CellAnswer answer =
+        ApproximateCells(core.world, options_of(row), trace, &core.quadtree).solve(at_start, at_goal);
     std::vector<Point>& path = answer.route.path;
     if (path.empty() || (at_start == from && at_goal == to)) return answer;
     path.front() = from, path.back() = to;  // they were taken off a wall
@@ -33,7 +34,7 @@ CellAnswer solve(const PolygonCore& core, const fields::PointRow& start, const f
 }
 
 // The evidence is what evidence(free, mixed, full, depth) makes of the leaves.
-nb::object route(const PolygonCore& core, nb::handle world, nb::handle planner, nb::handle options,
+nb::object route(PolygonCore& core, nb::handle world, nb::handle planner, nb::handle options,
                  fields::PointRow start, fields::PointRow goal, SettingRow row, nb::handle evidence) {
     const fields::Watch watch;
     CellAnswer answer;
@@ -46,19 +47,19 @@ nb::object route(const PolygonCore& core, nb::handle world, nb::handle planner, 
     return made;
 }
 
-nb::object trace(const PolygonCore& core, fields::PointRow start, fields::PointRow goal, SettingRow row) {
+nb::object trace(PolygonCore& core, fields::PointRow start, fields::PointRow goal, SettingRow row) {
     Trace events;
     solve(core, start, goal, row, &events);
     return fields::arrays_of(events);
 }
 
 // (squares (k, 4), kinds (k,)) of the leaves
-nb::object leaves(const PolygonCore& core, SettingRow row) {
+nb::object leaves(PolygonCore& core, SettingRow row) {
     std::vector<double> squares;
     std::vector<std::int8_t> kinds;
     {
         nb::gil_scoped_release free;
-        const ApproximateCells cells(core.world, options_of(row));
+        const ApproximateCells cells(core.world, options_of(row), nullptr, &core.quadtree);
         const Quadtree& tree = cells.tree();
         for (maps::Index c = 0; c < maps::Index(tree.cells().size()); ++c) {
             if (!tree.is_leaf(c)) continue;

@@ -15,8 +15,19 @@ Point point_of(const fields::PointRow& row) { return {row.data()[0], row.data()[
 void make(HarmonicField* at, const GridWorld& world, const Clearance& clearance, fields::PointRow goal,
           double residual, int most_cycles) {
     const maps::Cell to = fields::free_cell(world.bits, world.frame, goal);
+    const auto look = [] {
+        nb::gil_scoped_acquire held;
+        if (PyErr_CheckSignals()) throw nb::python_error();
+    };
     nb::gil_scoped_release free;
-    new (at) HarmonicField(world.bits, clearance, to, residual, most_cycles);
+    new (at) HarmonicField(world.bits, clearance, to, residual, most_cycles, look);
+}
+// Whether start and goal certainly lie in different parts of the free cells; not told of small parts.
+bool divide(GridWorld& world, fields::PointRow start, fields::PointRow goal) {
+    const maps::Cell from = fields::free_cell(world.bits, world.frame, start);
+    const maps::Cell to = fields::free_cell(world.bits, world.frame, goal);
+    nb::gil_scoped_release free;
+    return world.parts.of(world.bits, false).divide(from, to);
 }
 // seconds: what making the field took.
 nb::object route(const HarmonicField& field, const GridWorld& world, nb::handle owner, nb::handle planner,
@@ -51,6 +62,8 @@ nb::object trace(const HarmonicField& field, const GridWorld& world, fields::Poi
 }  // namespace
 
 void bind_harmonic(nb::module_& m) {
+    m.def("_walls_divide", divide, "grid"_a, "start"_a, "goal"_a,
+          "Whether walls certainly divide two points.");
     nb::class_<HarmonicField>(m, "HarmonicField", "A harmonic potential over the cells of a grid.")
         .def("__init__", make, "grid"_a, "clearance"_a, "goal"_a, "residual"_a, "most_cycles"_a,
              nb::sig(

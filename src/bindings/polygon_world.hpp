@@ -8,7 +8,9 @@
 #include "cspace/navigation/any_angle/polyanya.hpp"
 #include "cspace/navigation/bugs/surroundings.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
+#include "cspace/navigation/cells/cell_stage.hpp"
 #include "cspace/navigation/cells/exact_cells.hpp"
+#include "cspace/navigation/sampling/prm.hpp"
 #include "cspace/navigation/visibility/search.hpp"
 #include "cspace/navigation/voronoi/roadmap.hpp"
 
@@ -24,6 +26,9 @@ struct PolygonCore {
     std::unique_ptr<cspace::navigation::VisibilitySearch> visibility;
     std::unique_ptr<cspace::navigation::ExactCells> cells;
     std::unique_ptr<cspace::navigation::voronoi::Roadmap> voronoi;
+    // The last of each kind, which options shape; threads may ask for them at once.
+    cspace::navigation::CellStages quadtree;
+    cspace::navigation::sampling::KeptRoadmap roadmap;
 };
 
 // The core behind a Python object; null for other objects.

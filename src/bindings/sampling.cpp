@@ -1,7 +1,6 @@
 // Planners that draw points from free space: roadmaps and trees.
 #include <chrono>
 
-#include "cspace/navigation/sampling/prm.hpp"
 #include "cspace/navigation/sampling/rrt.hpp"
 #include "polygon_world.hpp"
 #include "route.hpp"
@@ -35,6 +34,13 @@ struct Question {
         return read_point(args[1], start) && read_point(args[2], goal);
     }
 
+    sampling::Answer on_roadmap(const sampling::Problem& problem, Trace* trace) const {
+        const sampling::RoadmapKey key{problem.component, growth.samples, neighbours, growth.seed};
+        const auto make = [&] { return std::make_shared<const sampling::Roadmap>(core->world, key); };
+        const auto roadmap = core->roadmap.of(key, make, most_kept_bytes);
+        return sampling::RoadmapSearch(problem, *roadmap).solve(trace);
+    }
+
     // False where an end lies in an obstacle.
     bool answer(sampling::Answer& found, Trace* trace) const {
         const PolygonWorld& world = core->world;
@@ -45,9 +51,7 @@ struct Question {
         found.route.status = Status::unreachable;
         if (component == none) return true;
         const sampling::Problem problem = sampling::problem_of(world, component, from, to);
-        found = planner == prm
-                    ? sampling::Roadmap(problem, growth.samples, neighbours, growth.seed).solve(trace)
-                    : sampling::Tree(problem, growth, trace).solve();
+        found = planner == prm ? on_roadmap(problem, trace) : sampling::Tree(problem, growth, trace).solve();
         std::vector<Point>& path = found.route.path;
         if (path.empty()) return true;
         path.front() = {start[0], start[1]}, path.back() = {goal[0], goal[1]};  // they were taken off a wall

@@ -68,8 +68,6 @@ def test_a_disc_too_large_has_no_room():
 
 @pytest.mark.parametrize("planner", nav.PLANNERS)
 def test_routes_are_copied_and_pickled(planner):
-    if planner == "rimon_koditschek":
-        pytest.skip("its evidence is a function of the compiled core")
     route = cs.navigate(SHED, (1, 1), (9, 9), planner)
     for same in (copy.copy(route), copy.deepcopy(route), pickle.loads(pickle.dumps(route))):
         assert (same.status, same.length, same.reason, same.price) == (

@@ -35,6 +35,7 @@ void check_world(const Outlines& outlines, std::mt19937& random, bool uniform) {
     options.depth = 2 + int(random() % 3), options.most_depth = uniform ? 5 : 8;
     options.uniform = uniform, options.manhattan = uniform;
     check_tree(world, ApproximateCells(world, options).tree());
+    CellStages kept;
     for (int query = 0; query < 6; ++query) {
         const auto draw = [&](double high) { return 0.25 * double(random() % unsigned(1 + 4 * high)); };
         const Point a{draw(outlines.high.x), draw(outlines.high.y)};
@@ -43,6 +44,8 @@ void check_world(const Outlines& outlines, std::mt19937& random, bool uniform) {
         if (!from.is_free() || !to.is_free()) continue;
         const bool connected = world.shared_component(from, to) != none;
         const Route route = ApproximateCells(world, options).solve(a, b).route;
+        const Route again = ApproximateCells(world, options, nullptr, &kept).solve(a, b).route;
+        CHECK(again.status == route.status && again.path == route.path);
         ++verdicts[int(route.status)];
         CHECK(route.status != Status::found || connected);
         CHECK(route.status != Status::unreachable || !connected);

@@ -75,3 +75,18 @@ TEST(what_is_not_connected_is_infinitely_high) {
     const HarmonicField single(alone, make_clearance(alone), {0, 0}, 1e-11, 400);
     CHECK(single.descend({0, 0}).found);
 }
+
+TEST(a_look_that_throws_ends_the_solution) {
+    const BitGrid grid(30, 30);
+    int looks = 0;
+    const auto look = [&] {
+        if (++looks == 3) throw looks;
+    };
+    bool ended = false;
+    try {
+        const HarmonicField field(grid, make_clearance(grid), {0, 0}, 1e-11, 400, look);
+    } catch (int) {
+        ended = true;
+    }
+    CHECK(ended && looks == 3);
+}

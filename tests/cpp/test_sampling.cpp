@@ -69,8 +69,11 @@ TEST(ways_are_never_shorter_than_the_shortest) {
         const Route tree = sampling::Tree(problem, growth, nullptr).solve().route;
         growth.is_optimal = true;
         const Route star = sampling::Tree(problem, growth, nullptr).solve().route;
-        const Route roadmap = sampling::Roadmap(problem, 500, 0, 1).solve(nullptr).route;
-        const Route nearest = sampling::Roadmap(problem, 500, 8, 1).solve(nullptr).route;
+        const auto on_roadmap = [&](std::int64_t neighbours) {
+            const sampling::Roadmap made(world, {problem.component, 500, neighbours, 1});
+            return sampling::RoadmapSearch(problem, made).solve(nullptr).route;
+        };
+        const Route roadmap = on_roadmap(0), nearest = on_roadmap(8);
         for (const Route& route : {tree, star, roadmap, nearest}) {
             if (route.status != Status::found) continue;
             ++found;

@@ -4,6 +4,8 @@ proof, and what is left open closes as squares shrink."""
 from __future__ import annotations
 
 import math
+import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -155,3 +157,24 @@ def test_options_that_make_no_sense():
     for options in ({"depth": -1}, {"depth": 2.5}, {"max_depth": 99}, {"min_size": -1.0}):
         with pytest.raises(InputError):
             ask(world, (1, 1), (2, 2), **options)
+
+
+def test_a_tree_that_is_kept_answers_as_one_made_anew():
+    rng = np.random.default_rng(6)
+    corners = rng.uniform(0, 9, (25, 2))
+    world = cs.PolygonWorld(
+        [c + 0.8 * rng.random((3, 2)) for c in corners], bounds=(0, 0, 10, 10), repair=True
+    )
+    free = [p for p in rng.uniform(0, 10, (60, 2)) if world.is_free(p)]
+    choices = ({}, {"depth": 2}, {"depth": 2, "max_depth": 8}, {"depth": 3, "uniform": True})
+    asked = [(*pair, options) for options in choices for pair in zip(free[::2], free[1::2], strict=False)]
+    fresh = [ask(pickle.loads(pickle.dumps(world)), a, b, **options) for a, b, options in asked]
+    with ThreadPoolExecutor(3) as pool:
+        routes = list(pool.map(lambda one: ask(world, one[0], one[1], **one[2]), asked * 2))
+    for route, other in zip(routes, fresh * 2, strict=True):
+        np.testing.assert_array_equal(route.path, other.path)
+        assert (route.status, route.evidence, route.price[:2]) == (
+            *(other.status, other.evidence),
+            other.price[:2],
+        )
+    assert any(route.evidence.depth > route.options["depth"] for route in fresh)

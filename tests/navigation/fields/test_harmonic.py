@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import signal
+import time
+
 import numpy as np
 import pytest
 
@@ -107,3 +110,35 @@ def test_a_polygon_world_is_converted():
     assert cs.navigate(world, (4, 5), (9, 5), "harmonic", resolution=0.1)
     with pytest.raises(InputTypeError, match="give an OccupancyGrid"):
         harmonic(world, (9, 5))
+
+
+def test_walls_that_divide_are_told_without_a_solution():
+    blocked = np.zeros((400, 400), bool)
+    blocked[:, 200] = True
+    grid = cs.OccupancyGrid(blocked)
+    route = cs.navigate(grid, (1.5, 1.5), (399.5, 399.5), "harmonic")
+    assert route.status == "unreachable"
+    assert route.evidence.cycles == 0
+    assert "walls divide" in route.reason
+    assert len(route.trace) == 0
+    assert route.price.seconds < 0.05
+
+
+@pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs a timer that interrupts")
+def test_an_interrupt_ends_the_solution():
+    grid = cs.OccupancyGrid(np.zeros((700, 700), bool))
+
+    def ring(number, frame):
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, ring)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, 0.3)
+        began = time.perf_counter()
+        with pytest.raises(KeyboardInterrupt):
+            harmonic(grid, (0.5, 0.5))
+        assert time.perf_counter() - began < 1.5
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+    assert harmonic(cs.OccupancyGrid(np.zeros((3, 3), bool)), (0.5, 0.5))[0, 0] == 0

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import copy
 import itertools
+import pickle
 
 import numpy as np
 import pytest
@@ -241,3 +243,21 @@ def test_discs_that_are_no_sphere_world(discs, said):
     with pytest.raises(InputError, match="kappa"):
         navigation_function([(0, 0, 9)], (0, 0), kappa=-1)
     assert isinstance(navigation_function([(0, 0, 9)], (0, 0)), NavigationFunction)
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda made: pickle.loads(pickle.dumps(made))])
+def test_copies_are_the_same_function(again):
+    world = cs.PolygonWorld([[(3, 3), (5, 3), (5, 5), (3, 5)]], bounds=(0, 0, 10, 10))
+    discs = [(0, 0, 10), (3, 3, 1), (-4, 2, 2)]
+    points = np.random.default_rng(2).uniform(0, 6, (40, 2))
+    for made in (
+        navigation_function(world, (8, 8)),
+        navigation_function(discs, (1, -5)),
+        navigation_function(discs, (1, -5), kappa=6.5),
+    ):
+        same = again(made)
+        assert (same.kappa, same.is_proven, same.obstacles) == (made.kappa, made.is_proven, made.obstacles)
+        np.testing.assert_array_equal(same(points), made(points))
+        np.testing.assert_array_equal(same.goal, made.goal)
+        with pytest.raises(ValueError, match="read-only"):
+            same.goal[0] = 3

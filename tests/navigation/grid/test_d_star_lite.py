@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -100,3 +103,25 @@ def test_what_cannot_be_used():
     assert not planner.grid.is_free((0.5, 0.5))
     planner.set_blocked(np.argwhere(np.ones((3, 4), bool)), False)
     assert planner.route.length == 1 + 2 * 2**0.5
+
+
+def pickled(planner):
+    return pickle.loads(pickle.dumps(planner))
+
+
+@pytest.mark.parametrize("again", [pickled, copy.copy, copy.deepcopy])
+def test_copies_know_the_changes_and_go_their_own_way(again):
+    rng = np.random.default_rng(8)
+    grid = cs.OccupancyGrid(rng.random((20, 20)) < 0.2)
+    start, goal, *others = (centre(c) for c in rng.permutation(np.argwhere(~grid.blocked))[:8])
+    planner = DStarLite(grid, start, goal, corners="one")
+    for point in others:
+        planner.set_blocked(rng.integers(0, 20, (12, 2)), bool(rng.integers(2)))
+        planner.move(point)
+        same = again(planner)
+        np.testing.assert_array_equal(same.grid.blocked, planner.grid.blocked)
+        assert same.route.status == planner.route.status
+        assert same.route.length == pytest.approx(planner.route.length, rel=1e-12)
+        same.set_blocked(np.argwhere(np.ones((20, 20), bool)))
+        assert not same.route
+        assert planner.route.length == pytest.approx(again(planner).route.length, rel=1e-12)

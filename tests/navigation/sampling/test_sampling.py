@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import itertools
 import math
+import pickle
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -226,3 +228,27 @@ def test_start_is_goal():
 def test_a_misuse_is_named(planner, options, error, said):
     with pytest.raises(error, match=said):
         cs.navigate(trap(), (1, 1), (9, 9), planner, **options)
+
+
+def test_a_roadmap_that_is_kept_is_the_one_made_anew():
+    world, rng = scattered(4), np.random.default_rng(5)
+    free = [p for p in rng.uniform(0, 10, (60, 2)) if world.is_free(p)]
+    for start, goal in itertools.pairwise(free[:10]):
+        for options in ({"rng": 3, "samples": 300}, {"rng": 3, "samples": 300, "neighbours": 5}):
+            kept = [cs.navigate(world, start, goal, "prm", **options) for _ in range(2)]
+            fresh = cs.navigate(pickle.loads(pickle.dumps(world)), start, goal, "prm", **options)
+            for route in kept:
+                np.testing.assert_array_equal(route.path, fresh.path)
+                assert (route.status, route.evidence) == (fresh.status, fresh.evidence)
+            assert len(kept[0].trace) == len(fresh.trace)
+
+
+def test_threads_that_ask_one_world_for_roadmaps_get_their_own():
+    world = scattered(4)
+    ends = (0.1, 0.1), (9.9, 9.9)
+    alone = [cs.navigate(scattered(4), *ends, "prm", rng=seed, samples=400) for seed in range(4)]
+    asked = [seed % 4 for seed in range(32)]
+    with ThreadPoolExecutor(4) as pool:
+        routes = list(pool.map(lambda seed: cs.navigate(world, *ends, "prm", rng=seed, samples=400), asked))
+    for seed, route in zip(asked, routes, strict=True):
+        np.testing.assert_array_equal(route.path, alone[seed].path)

@@ -2,10 +2,8 @@
 // (Latombe 1991, section 5.3).
 #pragma once
 
-#include <numeric>
-
 #include "cspace/navigation/best_first.hpp"
-#include "cspace/navigation/cells/quadtree.hpp"
+#include "cspace/navigation/cells/cell_stage.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
 
 namespace cspace::navigation {
@@ -27,14 +25,19 @@ struct CellAnswer {
 
 class ApproximateCells {
   public:
-    ApproximateCells(const maps::PolygonWorld& world, const CellOptions& options, Trace* trace = nullptr)
-        : world_(world), tree_(world, trace), options_(options), trace_(trace) {
-        options_.most_depth = std::min(options_.most_depth, tree_.deepest());
-        for (int level = 0; level < std::min(options_.depth, options_.most_depth); ++level)
-            split_all([&](maps::Index) { return true; }, level + 1);
+    // kept: what other questions have split already; a record of the search is of one that splits anew.
+    ApproximateCells(const maps::PolygonWorld& world, const CellOptions& options, Trace* trace = nullptr,
+                     CellStages* kept = nullptr)
+        : world_(world), options_(options), trace_(trace) {
+        const auto make = [&] { return first_stage(); };
+        stage_ = kept && !trace
+                     ? kept->of({options_.depth, options_.most_depth, options_.uniform, options_.most_cells},
+                                make, most_kept_bytes)
+                     : make();
+        options_.most_depth = std::min(options_.most_depth, tree().deepest());
     }
 
-    const Quadtree& tree() const { return tree_; }
+    const Quadtree& tree() const { return stage_->tree; }
 
     CellAnswer solve(Point start, Point goal) {
         CellAnswer answer;
@@ -44,31 +47,29 @@ class ApproximateCells {
             answer.route.length = 0;
         }
         while (answer.route.status != Status::found) {
-            doors_ = tree_.doors();
-            answer.route.price.edges += std::int64_t(doors_.size());
-            tree_.leaves_at(start, at_start_);
-            tree_.leaves_at(goal, at_goal_);
+            answer.route.price.edges += std::int64_t(doors().size());
+            tree().leaves_at(start, at_start_);
+            tree().leaves_at(goal, at_goal_);
             if (search(start, goal, answer.route)) break;
             answer.route.status = Status::unreachable;
             if (!join()) break;
             answer.route.status = Status::undetermined;
-            if (!options_.refine) break;
-            const auto connects = [&](maps::Index c) { return options_.uniform || connecting_[root(c)]; };
-            if (!split_all(connects, options_.most_depth)) break;
+            if (!options_.refine || !refine()) break;
         }
-        count(answer);
+        answer.leaves = stage_->leaves, answer.depth = stage_->depth;
         return answer;
     }
 
   private:
     enum : std::int8_t { expand_word = 2 };
     const maps::PolygonWorld& world_;
-    Quadtree tree_;
     CellOptions options_;
     Trace* trace_;
-    std::vector<CellDoor> doors_;
+    std::shared_ptr<const CellStage> stage_;
     std::vector<maps::Index> at_start_, at_goal_, part_;
     std::vector<std::uint8_t> connecting_;  // of each root: whether its leaves hold start and goal
+
+    const std::vector<CellDoor>& doors() const { return stage_->doors; }
 
     std::size_t root(maps::Index c) {
         while (part_[std::size_t(c)] != c)
@@ -76,30 +77,53 @@ class ApproximateCells {
         return std::size_t(c);
     }
 
-    // Splits the leaves above a level that may hide a way, once each; false where there are none, or too
-    // many.
+    std::shared_ptr<const CellStage> first_stage() const {
+        Quadtree tree(world_, trace_);
+        const int last = std::min({options_.depth, options_.most_depth, tree.deepest()});
+        for (int level = 0; level < last; ++level)
+            for (const maps::Index c : to_split(tree, [](maps::Index) { return true; }, level + 1))
+                tree.split(c);
+        return std::make_shared<const CellStage>(std::move(tree));
+    }
+
+    // The leaves above a level that may hide a way; none where they are too many.
     template <class Wanted>
-    bool split_all(Wanted wanted, int level) {
+    std::vector<maps::Index> to_split(const Quadtree& tree, Wanted wanted, int level) const {
         std::vector<maps::Index> chosen;
-        for (maps::Index c = 0; c < maps::Index(tree_.cells().size()); ++c) {
-            const QuadCell& cell = tree_[c];
+        for (maps::Index c = 0; c < maps::Index(tree.cells().size()); ++c) {
+            const QuadCell& cell = tree[c];
             const bool can_be =
                 cell.kind == QuadCell::mixed || (options_.uniform && cell.kind == QuadCell::free);
-            if (tree_.is_leaf(c) && can_be && cell.level < level && wanted(c)) chosen.push_back(c);
+            if (tree.is_leaf(c) && can_be && cell.level < level && wanted(c)) chosen.push_back(c);
         }
-        if (tree_.cells().size() + 4 * chosen.size() > options_.most_cells) return false;
-        for (const maps::Index c : chosen) tree_.split(c);
-        return !chosen.empty();
+        if (tree.cells().size() + 4 * chosen.size() > options_.most_cells) chosen.clear();
+        return chosen;
+    }
+
+    // Splits the leaves that may hide the way, once each; false where there are none, or too many.
+    bool refine() {
+        const auto connects = [&](maps::Index c) { return options_.uniform || connecting_[root(c)]; };
+        const std::vector<maps::Index> chosen = to_split(tree(), connects, options_.most_depth);
+        if (chosen.empty()) return false;
+        stage_ = stage_->next.of(
+            chosen,
+            [&] {
+                Quadtree tree = stage_->tree;
+                for (const maps::Index c : chosen) tree.split(c);
+                return std::make_shared<const CellStage>(std::move(tree));
+            },
+            most_kept_bytes);
+        return true;
     }
 
     // Joins leaves that doors connect, mixed ones too; whether start and goal then hang together.
     bool join() {
-        part_.resize(tree_.cells().size());
+        part_.resize(tree().cells().size());
         std::iota(part_.begin(), part_.end(), 0);
-        for (const CellDoor& d : doors_) part_[root(d.one)] = maps::Index(root(d.other));
+        for (const CellDoor& d : doors()) part_[root(d.one)] = maps::Index(root(d.other));
         std::vector<std::uint8_t> from(part_.size(), 0);
         connecting_.assign(part_.size(), 0);
-        const auto is_full = [&](maps::Index c) { return tree_[c].kind == QuadCell::full; };
+        const auto is_full = [&](maps::Index c) { return tree()[c].kind == QuadCell::full; };
         for (const maps::Index c : at_start_) from[root(c)] = !is_full(c);
         bool joined = false;
         for (const maps::Index c : at_goal_)
@@ -121,12 +145,11 @@ class ApproximateCells {
         const ApproximateCells& cells;
         Point start, goal;
         Trace* trace;
-        std::vector<std::uint32_t> first, door;  // the open doors of each leaf
-        std::vector<State> state;                // of each door, and of the goal
-        std::vector<std::uint8_t> holds_goal;    // each leaf
+        std::vector<State> state;              // of each door, and of the goal
+        std::vector<std::uint8_t> holds_goal;  // each leaf
 
-        std::uint32_t last() const { return std::uint32_t(cells.doors_.size()); }
-        Point at(std::uint32_t node) const { return node == last() ? goal : cells.doors_[node].at; }
+        std::uint32_t last() const { return std::uint32_t(cells.doors().size()); }
+        Point at(std::uint32_t node) const { return node == last() ? goal : cells.doors()[node].at; }
         bool is_goal(std::uint32_t node) const { return node == last(); }
         bool settle(std::uint32_t node) {
             State& s = state[node];
@@ -145,18 +168,15 @@ class ApproximateCells {
         void leave(maps::Index c, Point from, double g, std::uint32_t before, PriorityQueue& queue) {
             const std::size_t leaf = std::size_t(c);
             if (holds_goal[leaf]) reach(last(), g + cells.metric(from, goal), before, queue);
-            for (std::uint32_t k = first[leaf]; k < first[leaf + 1]; ++k)
-                reach(door[k], g + cells.metric(from, at(door[k])), before, queue);
+            const CellStage& stage = *cells.stage_;
+            for (std::uint32_t k = stage.first[leaf]; k < stage.first[leaf + 1]; ++k)
+                reach(stage.open[k], g + cells.metric(from, at(stage.open[k])), before, queue);
         }
         void expand(std::uint32_t node, PriorityQueue& queue) {
-            const CellDoor& d = cells.doors_[node];
+            const CellDoor& d = cells.doors()[node];
             for (const maps::Index c : {d.one, d.other}) leave(c, d.at, state[node].g, node, queue);
         }
     };
-
-    bool is_passage(const CellDoor& d) const {
-        return d.is_open && tree_[d.one].kind == QuadCell::free && tree_[d.other].kind == QuadCell::free;
-    }
 
     // Where an end enters free leaves: itself, or if none holds it the middle of one nearby that it sees.
     struct Entry {
@@ -165,13 +185,13 @@ class ApproximateCells {
     };
     Entry entry_of(Point end, const std::vector<maps::Index>& leaves) const {
         Entry entry{end, {}};
-        const auto is_free = [&](maps::Index c) { return tree_[c].kind == QuadCell::free; };
+        const auto is_free = [&](maps::Index c) { return tree()[c].kind == QuadCell::free; };
         std::copy_if(leaves.begin(), leaves.end(), std::back_inserter(entry.leaves), is_free);
         if (!entry.leaves.empty()) return entry;
         constexpr std::size_t most_tried = 24;
         std::vector<std::pair<double, maps::Index>> near;
-        for (maps::Index c = 0; c < maps::Index(tree_.cells().size()); ++c)
-            if (tree_.is_leaf(c) && is_free(c)) near.push_back({distance(end, middle_of(c)), c});
+        for (maps::Index c = 0; c < maps::Index(tree().cells().size()); ++c)
+            if (tree().is_leaf(c) && is_free(c)) near.push_back({distance(end, middle_of(c)), c});
         const std::size_t count = std::min(most_tried, near.size());
         std::partial_sort(near.begin(), near.begin() + std::ptrdiff_t(count), near.end());
         const maps::Settled settled = world_.settle(end, 0);
@@ -181,24 +201,13 @@ class ApproximateCells {
                     return {middle_of(near[i].second), {near[i].second}};
         return entry;
     }
-    Point middle_of(maps::Index c) const { return 0.5 * (tree_.low(tree_[c]) + tree_.high(tree_[c])); }
+    Point middle_of(maps::Index c) const { return 0.5 * (tree().low(tree()[c]) + tree().high(tree()[c])); }
 
     Space space(Point start, const Entry& goal) const {
-        const std::size_t cells = tree_.cells().size();
-        Space made{*this, start, goal.at, trace_, {}, {}, {}, {}};
-        made.first.assign(cells + 1, 0);
-        made.state.resize(doors_.size() + 1);
-        made.holds_goal.assign(cells, 0);
+        Space made{*this, start, goal.at, trace_, {}, {}};
+        made.state.resize(doors().size() + 1);
+        made.holds_goal.assign(tree().cells().size(), 0);
         for (const maps::Index c : goal.leaves) made.holds_goal[std::size_t(c)] = 1;
-        for (const CellDoor& d : doors_)
-            if (is_passage(d)) ++made.first[std::size_t(d.one) + 1], ++made.first[std::size_t(d.other) + 1];
-        std::partial_sum(made.first.begin(), made.first.end(), made.first.begin());
-        made.door.resize(made.first.back());
-        std::vector<std::uint32_t> filled(made.first.begin(), made.first.end() - 1);
-        for (std::uint32_t d = 0; d < std::uint32_t(doors_.size()); ++d)
-            if (is_passage(doors_[d]))
-                for (const maps::Index c : {doors_[d].one, doors_[d].other})
-                    made.door[filled[std::size_t(c)]++] = d;
         return made;
     }
 
@@ -225,14 +234,6 @@ class ApproximateCells {
         route.status = Status::found;
         route.length = length_of(route.path);
         return true;
-    }
-
-    void count(CellAnswer& answer) const {
-        for (maps::Index c = 0; c < maps::Index(tree_.cells().size()); ++c) {
-            if (!tree_.is_leaf(c)) continue;
-            ++answer.leaves[std::size_t(tree_[c].kind)];
-            answer.depth = std::max(answer.depth, int(tree_[c].level));
-        }
     }
 };
 

@@ -57,6 +57,9 @@ class Quadtree {
     const std::vector<QuadCell>& cells() const { return cells_; }
     const QuadCell& operator[](maps::Index c) const { return cells_[std::size_t(c)]; }
     int deepest() const { return deepest_; }
+    std::size_t bytes() const {
+        return sizeof(QuadCell) * cells_.capacity() + sizeof(maps::Index) * touching_.capacity();
+    }
     double side(int level) const { return std::ldexp(side_, -level); }
     bool is_leaf(maps::Index c) const { return (*this)[c].children == maps::none; }
     Point low(const QuadCell& cell) const { return {x(cell.i), y(cell.j)}; }

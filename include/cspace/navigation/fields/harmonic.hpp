@@ -9,12 +9,18 @@
 
 namespace cspace::navigation {
 
+struct Undisturbed {
+    void operator()() const {}
+};
+
 class HarmonicField {
   public:
+    // look() is called now and then while the equation is solved; it may throw to give up.
+    template <class Look = Undisturbed>
     HarmonicField(const maps::BitGrid& grid, const Clearance& clearance, maps::Cell goal, double residual,
-                  int most_cycles)
+                  int most_cycles, const Look& look = {})
         : grid_(grid), chance_(grid_, clearance, goal) {
-        chance_.solve(residual, most_cycles);
+        chance_.solve(residual, most_cycles, look);
         for (std::size_t i = 1; i < chance_.size(); ++i) rests_ += uphill(chance_.cell(i)) == chance_.cell(i);
     }
     HarmonicField(const HarmonicField&) = delete;

@@ -47,10 +47,13 @@ class HittingSolver {
         make_levels();
     }
 
-    // Until every cell is the mean of those beside it, but for a share of it, or so many cycles.
-    void solve(double residual, int most_cycles) {
-        for (int k = 0; k < 10; ++k) relax();
+    // Until every cell is the mean of those beside it, but for a share of it, or so many cycles. look() is
+    // called now and then, and may throw.
+    template <class Look>
+    void solve(double residual, int most_cycles, const Look& look) {
+        for (int k = 0; k < 10; ++k) relax(), look();
         for (cycles_ = 0; cycles_ < most_cycles; ++cycles_) {
+            look();
             relax();
             residual_ = gather();
             if (residual_ <= residual || levels_.empty()) break;

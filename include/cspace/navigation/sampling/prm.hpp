@@ -4,101 +4,95 @@
 // nearest).
 #pragma once
 
+#include <span>
+
 #include "cspace/navigation/best_first.hpp"
+#include "cspace/navigation/last_made.hpp"
 #include "cspace/navigation/sampling/buckets.hpp"
 #include "cspace/navigation/sampling/problem.hpp"
 #include "cspace/navigation/sampling/samples.hpp"
 
 namespace cspace::navigation::sampling {
 
+struct RoadmapKey {
+    Index component = none;
+    std::int64_t samples = 0, neighbours = 0;  // 0 neighbours: all within the joining radius
+    std::uint64_t seed = 0;
+    friend bool operator==(const RoadmapKey&, const RoadmapKey&) = default;
+};
+
+// The samples of a component and the segments between them, whatever the ends are; it never changes.
 class Roadmap {
   public:
-    Roadmap(const Problem& problem, std::int64_t samples, std::int64_t neighbours, std::uint64_t seed)
-        : problem_(problem),
-          draws_(problem.world, problem.component, seed),
-          near_(draws_.low(), draws_.high()) {
-        add({problem.start.at, problem.start.triangles.front()});
-        add({problem.goal.at, problem.goal.triangles.front()});
-        for (std::int64_t i = 0; i < samples; ++i) {
-            const Located drawn = draws_.draw();
-            if (drawn.triangle != none) add(drawn);
-        }
-        answer_.samples = samples;
-        choose_pairs(neighbours);
-    }
+    Roadmap(const maps::PolygonWorld& world, const RoadmapKey& key)
+        : Roadmap(world, key, {world, key.component, key.seed}) {}
 
-    Answer solve(Trace* trace) {
-        join(trace);
-        search();
-        answer_.route.price.nodes = std::int64_t(nodes_.size());
-        answer_.route.price.edges = std::int64_t(pairs_.size());
-        return answer_;
+    std::uint32_t size() const { return std::uint32_t(nodes_.size()); }
+    const Located& operator[](std::uint32_t node) const { return nodes_[node]; }
+    const RoadmapKey& key() const { return key_; }
+    std::int64_t tested() const { return std::int64_t(pairs_.size()); }  // segments
+    std::size_t bytes() const {
+        return 64 * nodes_.size() + 8 * pairs_.size() + 4 * (first_.size() + to_.size());
     }
-
-    // What best_first asks of a space.
-    bool settle(std::uint32_t node) {
-        const bool is_new = !settled_[node];
-        settled_[node] = 1;
-        return is_new;
+    // The samples that are joined with a node.
+    std::span<const std::int32_t> joined_with(std::uint32_t node) const {
+        return {to_.data() + first_[node], to_.data() + first_[node + 1]};
     }
-    bool is_goal(std::uint32_t node) const { return node == 1; }
-    void expand(std::uint32_t node, PriorityQueue& queue) {
-        for (std::int32_t k = first_[node]; k < first_[node + 1]; ++k) {
-            const auto to = std::uint32_t(to_[std::size_t(k)]);
-            const double cost = cost_[node] + distance(nodes_[node].at, nodes_[to].at);
-            if (!(cost < cost_[to])) continue;
-            cost_[to] = cost, parent_[to] = node;
-            queue.push({cost + distance(nodes_[to].at, problem_.goal.at), -float(cost), to});
-        }
+    // The samples that an end is joined with if it sees them; returns how far away they may be.
+    double near(Point end, std::vector<std::int32_t>& found) const {
+        if (key_.neighbours <= 0) return near_.within(end, radius_, found), radius_;
+        near_.nearest(end, std::size_t(key_.neighbours), found);
+        return found.empty() ? radius_ : distance(end, (*this)[std::uint32_t(found.back())].at);
     }
 
   private:
-    const Problem& problem_;
-    Samples draws_;
+    RoadmapKey key_;
     Buckets near_;
-    Answer answer_;
-    std::vector<Located> nodes_;                                // start, goal, samples
-    std::vector<std::pair<std::int32_t, std::int32_t>> pairs_;  // the larger first
+    double radius_ = 0;
+    std::vector<Located> nodes_;
+    std::vector<std::pair<std::int32_t, std::int32_t>> pairs_;  // tested, the larger first
     std::vector<std::int32_t> first_, to_;                      // the edges of each node
-    std::vector<double> cost_;
-    std::vector<std::uint32_t> parent_;
-    std::vector<std::uint8_t> settled_;
 
-    void add(Located node) {
-        nodes_.push_back(node);
-        near_.add(node.at);
+    Roadmap(const maps::PolygonWorld& world, const RoadmapKey& key, Samples draws)
+        : key_(key), near_(draws.low(), draws.high()) {
+        for (std::int64_t i = 0; i < key.samples; ++i) {
+            const Located drawn = draws.draw();
+            if (drawn.triangle == none) continue;
+            nodes_.push_back(drawn);
+            near_.add(drawn.at);
+        }
+        constexpr std::size_t ends = 2;
+        radius_ = joining_radius(draws.area(), nodes_.size() + ends);
+        choose_pairs();
+        join(world);
     }
 
-    void choose_pairs(std::int64_t neighbours) {
-        const double radius = joining_radius(draws_.area(), nodes_.size());
+    void choose_pairs() {
         std::vector<std::int32_t> found;
         for (std::int32_t i = 0; i < std::int32_t(nodes_.size()); ++i) {
             const Point at = nodes_[std::size_t(i)].at;
-            if (neighbours > 0)
-                near_.nearest(at, std::size_t(neighbours) + 1, found);
+            if (key_.neighbours > 0)
+                near_.nearest(at, std::size_t(key_.neighbours) + 1, found);
             else
-                near_.within(at, radius, found);
+                near_.within(at, radius_, found);
             for (const std::int32_t j : found)
-                if (j < i || (neighbours > 0 && j != i)) pairs_.push_back({std::max(i, j), std::min(i, j)});
+                if (j < i || (key_.neighbours > 0 && j != i))
+                    pairs_.push_back({std::max(i, j), std::min(i, j)});
         }
-        if (neighbours <= 0) return;
+        if (key_.neighbours <= 0) return;
         std::sort(pairs_.begin(), pairs_.end());
         pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     }
 
-    // Keeps the pairs that see each other. Samples lie inside their triangles, so it is from them that one
-    // looks.
-    void join(Trace* trace) {
+    // Keeps the pairs that see each other.
+    void join(const maps::PolygonWorld& world) {
         std::vector<std::pair<std::int32_t, std::int32_t>> kept;
         first_.assign(nodes_.size() + 1, 0);
         for (const auto& [i, j] : pairs_) {
-            const Located &a = nodes_[std::size_t(i)], &b = nodes_[std::size_t(j)];
-            const Index end =
-                i > 1 ? end_of_sight(problem_.world.space, a, b.at) : problem_.sight(problem_.goal, b.at);
-            if (end == none) continue;
+            if (end_of_sight(world.space, nodes_[std::size_t(i)], nodes_[std::size_t(j)].at) == none)
+                continue;
             kept.push_back({i, j});
             ++first_[std::size_t(i) + 1], ++first_[std::size_t(j) + 1];
-            if (trace) trace->push_back({connect, a.at, b.at, distance(a.at, b.at)});
         }
         for (std::size_t n = 1; n < first_.size(); ++n) first_[n] += first_[n - 1];
         std::vector<std::int32_t> place(first_.begin(), first_.end() - 1);
@@ -108,22 +102,111 @@ class Roadmap {
             to_[std::size_t(place[std::size_t(j)]++)] = i;
         }
     }
+};
 
+// A shortest way from start to goal on a roadmap: its nodes are the samples, then start, then goal.
+class RoadmapSearch {
+  public:
+    RoadmapSearch(const Problem& problem, const Roadmap& roadmap)
+        : problem_(problem), roadmap_(roadmap), start_(roadmap.size()), goal_(start_ + 1) {}
+
+    Answer solve(Trace* trace) {
+        join();
+        if (trace) record(*trace);
+        search();
+        answer_.samples = roadmap_.key().samples;
+        answer_.route.price.nodes = std::int64_t(roadmap_.size()) + 2;
+        answer_.route.price.edges = roadmap_.tested() + looks_;
+        return answer_;
+    }
+
+    // What best_first asks of a space.
+    bool settle(std::uint32_t node) {
+        const bool is_new = !settled_[node];
+        settled_[node] = 1;
+        return is_new;
+    }
+    bool is_goal(std::uint32_t node) const { return node == goal_; }
+    void expand(std::uint32_t node, PriorityQueue& queue) {
+        if (node == start_) {
+            for (const std::int32_t to : from_start_) reach(std::uint32_t(to), node, queue);
+            return;
+        }
+        for (const std::int32_t to : roadmap_.joined_with(node)) reach(std::uint32_t(to), node, queue);
+        if (sees_goal_[node]) reach(goal_, node, queue);
+    }
+
+  private:
+    const Problem& problem_;
+    const Roadmap& roadmap_;
+    std::uint32_t start_, goal_;
+    Answer answer_;
+    std::int64_t looks_ = 0;                // segments tested from the ends
+    std::vector<std::int32_t> from_start_;  // also the goal, where they see each other
+    std::vector<std::uint8_t> sees_goal_;   // each sample
+    std::vector<double> cost_;
+    std::vector<std::uint32_t> parent_;
+    std::vector<std::uint8_t> settled_;
+
+    Point at(std::uint32_t node) const {
+        return node == start_ ? problem_.start.at : node == goal_ ? problem_.goal.at : roadmap_[node].at;
+    }
+
+    // Samples lie inside their triangles, so it is from them that one looks at an end.
+    bool sees(std::int32_t sample, Point end) {
+        ++looks_;
+        return end_of_sight(problem_.world.space, roadmap_[std::uint32_t(sample)], end) != none;
+    }
+    void join() {
+        const Point start = problem_.start.at, goal = problem_.goal.at;
+        std::vector<std::int32_t> found;
+        sees_goal_.assign(roadmap_.size(), 0);
+        const double from_goal = roadmap_.near(goal, found);
+        for (const std::int32_t i : found) sees_goal_[std::size_t(i)] = sees(i, goal);
+        const double from_start = roadmap_.near(start, found);
+        for (const std::int32_t i : found)
+            if (sees(i, start)) from_start_.push_back(i);
+        if (distance(start, goal) > std::max(from_start, from_goal)) return;
+        ++looks_;
+        if (problem_.sight(problem_.goal, start) != none) from_start_.push_back(std::int32_t(goal_));
+    }
+    void record(Trace& trace) const {
+        const auto add = [&](std::uint32_t a, std::uint32_t b) {
+            trace.push_back({connect, at(a), at(b), distance(at(a), at(b))});
+        };
+        for (std::uint32_t i = 0; i < roadmap_.size(); ++i)
+            for (const std::int32_t j : roadmap_.joined_with(i))
+                if (std::uint32_t(j) < i) add(i, std::uint32_t(j));
+        for (const std::int32_t i : from_start_) add(start_, std::uint32_t(i));
+        for (std::uint32_t i = 0; i < roadmap_.size(); ++i)
+            if (sees_goal_[i]) add(i, goal_);
+    }
+
+    void reach(std::uint32_t to, std::uint32_t from, PriorityQueue& queue) {
+        const double cost = cost_[from] + distance(at(from), at(to));
+        if (!(cost < cost_[to])) return;
+        cost_[to] = cost, parent_[to] = from;
+        queue.push({cost + distance(at(to), problem_.goal.at), -float(cost), to});
+    }
     void search() {
-        cost_.assign(nodes_.size(), std::numeric_limits<double>::infinity());
-        parent_.assign(nodes_.size(), no_node);
-        settled_.assign(nodes_.size(), 0);
+        const std::size_t count = std::size_t(roadmap_.size()) + 2;
+        cost_.assign(count, std::numeric_limits<double>::infinity());
+        parent_.assign(count, no_node);
+        settled_.assign(count, 0);
         PriorityQueue queue;
-        cost_[0] = 0;
-        queue.push({distance(problem_.start.at, problem_.goal.at), 0, 0});
+        cost_[start_] = 0;
+        queue.push({distance(problem_.start.at, problem_.goal.at), 0, start_});
         Effort effort;
         if (best_first(*this, queue, effort) == no_node) return;
         Route& route = answer_.route;
-        for (std::uint32_t n = 1; n != no_node; n = parent_[n]) route.path.push_back(nodes_[n].at);
+        for (std::uint32_t n = goal_; n != no_node; n = parent_[n]) route.path.push_back(at(n));
         std::reverse(route.path.begin(), route.path.end());
         route.status = Status::found;
         route.length = length_of(route.path);
     }
 };
+
+// What is kept with a world: the roadmap asked last.
+using KeptRoadmap = LastMade<RoadmapKey, Roadmap>;
 
 }  // namespace cspace::navigation::sampling

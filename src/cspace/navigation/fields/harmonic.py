@@ -13,6 +13,7 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
@@ -20,6 +21,7 @@ from cspace.arrays import Array
 from cspace.errors import InputTypeError
 from cspace.navigation.fields.potential_a_star import clearance_field
 from cspace.navigation.grid.search import checked_ends
+from cspace.navigation.route import Price, new_route
 from cspace.navigation.trace import Trace
 from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_RESIDUAL
 
@@ -44,15 +46,25 @@ class HarmonicEvidence(NamedTuple):
     """Cells but the goal from which no step leads down: with none, descents arrive from everywhere."""
 
 
+UNSOLVED: Final = HarmonicEvidence(0.0, 0, 0)
+"""Where walls are known to divide start from goal."""
+
+
 def plan(world: Any, start: Any, goal: Any) -> Route:
     """Down the harmonic potential from start to goal, from cell to cell, past no blocked corner.
 
     start, goal: (2,) [m] in free cells. The first question for a goal solves for the whole field, further
-    ones go down it. route.evidence is a HarmonicEvidence. "undetermined" where the equation was not solved
-    well enough for the descent to arrive.
+    ones go down it; where walls divide start from goal, none is needed. An interrupt ends the solution.
+    route.evidence is a HarmonicEvidence. "undetermined" where the equation was not solved well enough for
+    the descent to arrive.
     """
     ends = checked_ends(world, start, goal)
     began = time.perf_counter()
+    if _core._walls_divide(world, *ends):
+        price = Price(0, 0, time.perf_counter() - began)
+        return new_route(
+            world, "harmonic", {}, ends, "unreachable", np.empty((0, 2)), np.inf, price, UNSOLVED
+        )
     field = _field(world, ends[1])
     seconds = time.perf_counter() - began
     evidence = HarmonicEvidence(field.residual, field.cycles, field.rests)
@@ -78,6 +90,8 @@ def harmonic(grid: Any, goal: ArrayLike) -> Array:
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
     evidence: HarmonicEvidence = route.evidence
+    if evidence == UNSOLVED:
+        return "no way leads to the goal: walls divide it from the start, as is known without the potential"
     if route.status == "unreachable":
         return f"no way leads to the goal: {route.price.nodes} cells are connected with it, the start is not"
     solved = f"solved to a share of {evidence.residual:.2g} in {evidence.cycles} cycles"
@@ -90,6 +104,8 @@ def trace(route: Route) -> Trace:
     """The steps "descend": start, end (k, 2) [m] are centres of cells; value: −log of the chance at the
     end."""
     world = route.world
+    if route.evidence == UNSOLVED:
+        return Trace(WORDS, np.empty(0, np.int8), np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
     return Trace(WORDS, *_field(world, route.goal).trace(world, route.start))
 
 

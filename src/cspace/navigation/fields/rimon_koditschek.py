@@ -51,12 +51,21 @@ class NavigationFunction:
     """A navigation function: call it with points (..., 2) [m] for φ (...), 0 at the goal and 1 on walls.
 
     `kappa` is its power, `is_proven` whether the goal is proven to be its only minimum, `saddles` (k, 2) [m]
-    the other places where it is flat, one for each obstacle.
+    the other places where it is flat, one for each obstacle. `goal` (2,) [m] cannot be written to: it never
+    changes, so copies are the object itself. Pickles hold what it was made for, and prove again when read.
     """
 
-    def __init__(self, core: _core.NavigationCore, world: _core.PolygonCore | None, goal: Array) -> None:
-        self._core, self._world = core, world
-        self.goal = goal
+    def __init__(
+        self,
+        core: _core.NavigationCore,
+        world: _core.PolygonCore | None,
+        goal: Array,
+        made_for: tuple[Any, float],
+    ) -> None:
+        """made_for: discs (n, 3), or outlines and bounds, and the kappa asked for, zero for none."""
+        self._core, self._world, self._made_for = core, world, made_for
+        self.goal = goal.copy()
+        self.goal.setflags(write=False)
 
     @property
     def kappa(self) -> float:
@@ -100,6 +109,16 @@ class NavigationFunction:
             raise InputError(f"start {at.tolist()} lies in an obstacle or on a wall; give a free point (2,)")
         found: Array | None = self._core.path(at)
         return found
+
+    def __copy__(self) -> NavigationFunction:
+        return self
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> NavigationFunction:
+        return self
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """What it was made for: what pickle makes it from again."""
+        return _again, (*self._made_for, self.goal)
 
     def __repr__(self) -> str:
         proven = "proven" if self.is_proven else "not proven"
@@ -187,7 +206,15 @@ def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = No
     core = _core.NavigationCore.of_discs(discs, at, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if not core.kappa:
         raise InputError("no kappa was proven to leave a single minimum; give kappa= to do without the proof")
-    return NavigationFunction(core, None, at)
+    return NavigationFunction(core, None, at, (discs, power))
+
+
+def _again(world: Any, power: float, goal: Array) -> NavigationFunction:
+    """The same function, made anew."""
+    if isinstance(world, tuple):
+        outlines, bounds = world
+        world = PolygonWorld(outlines, bounds, repair=True)
+    return navigation_function(world, goal, kappa=power or None)
 
 
 def _power(kappa: float | None) -> float:
@@ -246,7 +273,7 @@ def _made(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | N
         return None, _said(world, *fault)
     core = _core.NavigationCore.of_polygons(world._core, goal, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if core.kappa:
-        return NavigationFunction(core, world._core, goal), ""
+        return NavigationFunction(core, world._core, goal, (world.__reduce__()[1], power)), ""
     if world.clearance(goal) <= 1e-9 * max(
         world.bounds[2] - world.bounds[0], world.bounds[3] - world.bounds[1]
     ):

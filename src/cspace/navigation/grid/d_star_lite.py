@@ -7,10 +7,11 @@ import time
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import as_floats
+from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid
 from cspace.maps.occupancy_grid import outside
@@ -39,13 +40,13 @@ class DStarLite:
         metric: str = "octile",
         corners: str = "never",
     ) -> None:
-        self._options = {"metric": metric, "corners": corners}
-        rule, kind = metric_of(metric, corners)
-        if kind == METRICS["euclidean"]:
+        if metric_of(metric, corners)[1] == METRICS["euclidean"]:
             raise InputError("metric is 'euclidean'; D* Lite counts steps: 'octile' or 'manhattan'")
-        self._ends = checked_ends(grid, start, goal)
-        self._grid = grid
-        self._core = _core.GridReplanner(grid, rule, *self._ends[0], *self._ends[1])
+        self._begin(grid, checked_ends(grid, start, goal), {"metric": metric, "corners": corners})
+
+    def _begin(self, grid: OccupancyGrid, ends: tuple[Array, Array], options: dict[str, str]) -> None:
+        self._grid, self._ends, self._options = grid, ends, options
+        self._core = _core.GridReplanner(grid, metric_of(**options)[0], *ends[0], *ends[1])
         self._route: Route | None = None
         self._settled = np.empty((0, 2), np.int32)
         self._busy = threading.Lock()
@@ -100,6 +101,14 @@ class DStarLite:
                 self._route = self._replanned()
             return self._route
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """The grid, what is known of it now and the ends: copies and pickles search from there anew."""
+        with self._busy:
+            cells = np.empty(self._grid.shape, np.uint8)
+            self._core.unpack(cells)
+            changed = np.argwhere(cells.view(np.bool_) != self._grid.blocked)
+            return _again, (self._grid, self._ends, self._options, changed.astype(np.int32))
+
     def _replanned(self) -> Route:
         began = time.perf_counter()
         status, path, length, nodes, edges, self._settled = self._core.replan()
@@ -110,6 +119,18 @@ class DStarLite:
     def __repr__(self) -> str:
         (x0, y0), (x1, y1) = self._ends
         return f"<DStarLite from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) over {self._grid!r}>"
+
+
+def _again(
+    grid: OccupancyGrid, ends: tuple[Array, Array], options: dict[str, str], changed: npt.NDArray[np.int32]
+) -> DStarLite:
+    """A planner with the same ends and cells; changed: (k, 2) cells that are not as in the grid."""
+    made = DStarLite.__new__(DStarLite)
+    made._begin(grid, ends, options)
+    blocked = grid.blocked[tuple(changed.T)]
+    made._core.set(changed[blocked], False)
+    made._core.set(changed[~blocked], True)
+    return made
 
 
 def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: str = "never") -> Route:

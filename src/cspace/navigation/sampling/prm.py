@@ -35,6 +35,7 @@ def plan(
     samples: how many points are drawn from the part of free space that holds start and goal. neighbours:
     how many of its nearest points each is joined to; by default all within a radius that shrinks as
     samples grow. rng: seed, Generator, or None for a seed drawn by chance; `route.options` keeps it.
+    One seed gives one roadmap, and the one asked last is kept with the world.
 
     route.evidence is a Sampled. The status is "undetermined" where the roadmap does not join start and
     goal. InputError on a count below one.

@@ -1,0 +1,41 @@
+// What was made last, kept with what it was made for: threads may ask for it at once. Whoever was given it
+// holds it, also where another takes its place.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <utility>
+
+namespace cspace::navigation {
+
+template <class Key, class Made>
+class LastMade {
+  public:
+    // What is kept for a key, or what make() gives: a shared pointer to something that says its bytes(). More
+    // of them than `most_bytes` are not kept. Two threads that make the same at once make it twice.
+    template <class Make>
+    std::shared_ptr<const Made> of(const Key& key, const Make& make, std::size_t most_bytes) {
+        {
+            const std::lock_guard<std::mutex> lock(busy_);
+            if (made_ && key_ == key) return made_;
+        }
+        std::shared_ptr<const Made> made = make(), before;
+        if (made->bytes() > most_bytes) return made;
+        Key copy = key;
+        const std::lock_guard<std::mutex> lock(busy_);
+        before = std::exchange(made_, made);
+        key_ = std::move(copy);
+        return made;
+    }
+
+  private:
+    std::mutex busy_;
+    Key key_{};
+    std::shared_ptr<const Made> made_;
+};
+
+// The most that is kept of one kind: some hundred thousand cells or samples [bytes].
+constexpr std::size_t most_kept_bytes = std::size_t(64) << 20;
+
+}  // namespace cspace::navigation
