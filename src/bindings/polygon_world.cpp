@@ -146,7 +146,7 @@ double path_least(const PolygonCore& core, Array<const double, nb::shape<-1, 2>>
 void rasterize_into(const PolygonCore& core, double side, Array<std::uint8_t, nb::ndim<2>> blocked) {
     nb::gil_scoped_release free;
     rasterize(core.world.space, core.world.outlines.low, side, int(blocked.shape(0)), int(blocked.shape(1)),
-              blocked.data());
+              core.tolerance, blocked.data());
 }
 
 // The world of a grid's blocked cells (rows, columns), moved to where the grid lies.

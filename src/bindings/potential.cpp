@@ -35,7 +35,7 @@ void make(NearWalls* at, const PolygonCore& core, double reach) {
 Descent descend(const NearWalls& walls, const PolygonCore& core, Point start, Point goal,
                 const Settings& settings) {
     const maps::Settled from = core.world.settle(start, core.tolerance);
-    const Potential potential(walls, settings.gains, goal);
+    const Potential potential(walls, settings.gains, start == goal ? from.at : goal);
     const Point inward = walls.inward(from.at, std::max(2 * core.tolerance, 1e-7 * settings.gains.rho_0));
     Descent made = DescentRun(walls, potential, settings.longest, settings.budget).run(from.at, inward);
     made.route.path.front() = start;

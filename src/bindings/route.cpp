@@ -192,13 +192,16 @@ RouteObject* new_route(PyObject* world, PyObject* planner, PyObject* options, co
 
 PyObject* make_route(PyObject* world, PyObject* planner, PyObject* options, const double* start,
                      const double* goal, const Route& route, double seconds) {
-    RouteObject* made = new_route(world, planner, options, start, goal, route.status, int(route.path.size()));
+    // Who is at the goal already stays: a path of one point, whatever the planner's own way to say so is.
+    const bool stays = route.status == Status::found && start[0] == goal[0] && start[1] == goal[1];
+    const std::size_t count = stays ? 1 : route.path.size();
+    RouteObject* made = new_route(world, planner, options, start, goal, route.status, int(count));
     if (!made) return nullptr;
-    for (std::size_t i = 0; i < route.path.size(); ++i) {
-        made->path[2 * i] = route.path[i].x;
-        made->path[2 * i + 1] = route.path[i].y;
+    for (std::size_t i = 0; i < count; ++i) {
+        made->path[2 * i] = stays ? start[0] : route.path[i].x;
+        made->path[2 * i + 1] = stays ? start[1] : route.path[i].y;
     }
-    made->length = route.length;
+    made->length = stays ? 0 : route.length;
     made->seconds = seconds;
     made->price = route.price;
     return reinterpret_cast<PyObject*>(made);

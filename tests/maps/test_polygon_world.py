@@ -153,6 +153,49 @@ def test_cells_are_blocked_where_an_obstacle_reaches_into_them():
     assert all(world.is_free(p) for p in points if grid.is_free(p))
 
 
+EMPTY = [(0, 0, 10, 10), (-3, 2, 7, 9), (0, 0, 3, 10), (1e6, 1e6, 1e6 + 1, 1e6 + 1)]
+
+
+@pytest.mark.parametrize("bounds", EMPTY)
+def test_an_empty_world_is_all_free_cells(bounds):
+    world = cs.PolygonWorld([], bounds)
+    assert not world.to_grid().blocked.any()
+    assert np.allclose(world.to_grid().bounds, bounds, rtol=1e-12)
+    for resolution in (0.1, 0.05, 1 / 3) if bounds[2] == 10 else ():
+        assert not world.to_grid(resolution).blocked.any()
+
+
+def test_by_default_cells_leave_little_of_the_bounds_over():
+    rng = np.random.default_rng(8)
+    left_over = []
+    for _ in range(100):
+        wide, high = rng.uniform(0.01, 100, 2)
+        grid = cs.PolygonWorld([], (0, 0, wide, high)).to_grid()
+        free = ~grid.blocked
+        rows, columns = free.any(axis=1).sum(), free.any(axis=0).sum()
+        assert free.sum() == rows * columns > 0
+        assert 200 <= max(rows, columns) <= 300 or max(wide, high) > 200 * min(wide, high)
+        over = max(wide - columns * grid.resolution, high - rows * grid.resolution)
+        left_over.append(over / grid.resolution)
+    assert max(left_over) < 0.5
+    assert np.mean(left_over) < 0.05
+
+
+def test_boxes_on_lines_between_cells_fill_their_cells_alone():
+    world = cs.PolygonWorld([[(2, 2), (5, 2), (5, 5), (2, 5)]], BOUNDS)
+    for parts in (40, 50, 100, 200):
+        grid = world.to_grid(10 / parts)
+        assert grid.blocked.sum() == (parts * 3 // 10) ** 2
+
+
+def test_a_wall_without_thickness_between_cells_blocks_both():
+    world = cs.PolygonWorld([[(5, 2), (5, 8), (5, 2)]], BOUNDS, repair=True)
+    grid = world.to_grid(1.0)
+    assert grid.blocked[2:8, 4:6].all()
+    assert cs.navigate(grid, (4.5, 9.5), (5.5, 9.5), "a_star")
+    assert not grid.blocked[:, [0, 1, 2, 3, 6, 7, 8, 9]].any()
+
+
 def test_a_grid_becomes_polygons_with_its_own_walls():
     rng = np.random.default_rng(5)
     grid = cs.OccupancyGrid(rng.random((12, 9)) < 0.35, resolution=0.5, origin=(-1, 2))

@@ -31,11 +31,13 @@ inline bool reaches_into(const Point* corner, int count, Point low, double side)
 }  // namespace detail
 
 // Marks in blocked (rows × columns, row by row from the lower left corner of the bounds, cells of a side)
-// those that an obstacle or a wall reaches into.
-inline void rasterize(const FreeSpace& space, Point origin, double side, int rows, int columns,
+// those that an obstacle reaches into by more than a slack [m], which is what rounding makes of corners, and
+// those that a wall without thickness comes as near to: one between two cells blocks both.
+inline void rasterize(const FreeSpace& space, Point origin, double side, int rows, int columns, double slack,
                       std::uint8_t* blocked) {
     const Triangulation& mesh = space.mesh;
     const auto mark = [&](const Point* corner, int count) {
+        const double inset = count == 2 ? -slack : slack;
         double low[2] = {corner[0].x, corner[0].y}, high[2] = {corner[0].x, corner[0].y};
         for (int i = 1; i < count; ++i) {
             low[0] = std::min(low[0], corner[i].x), high[0] = std::max(high[0], corner[i].x);
@@ -52,8 +54,8 @@ inline void rasterize(const FreeSpace& space, Point origin, double side, int row
                 std::uint8_t& cell_of =
                     blocked[std::size_t(row) * std::size_t(columns) + std::size_t(column)];
                 if (cell_of) continue;
-                const Point at = origin + Point{column * side, row * side};
-                cell_of = detail::reaches_into(corner, count, at, side);
+                const Point at = origin + Point{column * side + inset, row * side + inset};
+                cell_of = detail::reaches_into(corner, count, at, side - 2 * inset);
             }
     };
     for (Index t = 0; t < Index(mesh.triangles.size()); ++t) {

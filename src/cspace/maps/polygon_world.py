@@ -196,9 +196,12 @@ class PolygonWorld:
         return offset_of(self.walls, self.clearance, wide, radius)
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
-        """Cells of a side [m]; by default 1/200 of the longer side of the bounds.
+        """Cells of a side `resolution` [m], cell (0, 0) in the lower left corner of the bounds.
 
-        A cell is blocked if an obstacle reaches into it, or if it sticks out of the bounds.
+        By default 200 along the longer side of the bounds, or up to 300 where that leaves less of the shorter
+        side over. A cell is blocked if an obstacle reaches into it (by more than 1e-12 of the world's side),
+        if a wall without thickness touches it, or if it sticks out of the bounds: a resolution that divides
+        their sides loses none of the room.
         """
         blocked, side = rasterized(self._core, self._bounds, resolution)
         return OccupancyGrid(blocked, side, self._bounds[:2])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +15,10 @@ from cspace.tolerances import MAP_CELLS
 
 __all__ = ["rasterized"]
 
+FEWEST: Final = 200
+"""Cells along the longer side of the bounds where no resolution is asked for: gaps of a two-hundredth of the
+world count as narrow."""
+
 
 def rasterized(
     core: _core.PolygonCore, bounds: Array, resolution: float | None
@@ -22,7 +27,10 @@ def rasterized(
     bounds."""
     xmin, ymin, xmax, ymax = map(float, bounds)
     wide = max(xmax - xmin, ymax - ymin)
-    side = wide / 200 if resolution is None else float(as_floats(resolution, "resolution"))
+    if resolution is None:
+        side = wide / _parts(min(xmax - xmin, ymax - ymin) / wide)
+    else:
+        side = float(as_floats(resolution, "resolution"))
     if not side > 0:
         raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
     if not wide / side <= MAP_CELLS:
@@ -35,3 +43,13 @@ def rasterized(
     blocked = np.zeros((rows, columns), dtype=np.uint8)
     core.rasterize(side, blocked)
     return blocked.view(np.bool_), side
+
+
+def _parts(flatness: float) -> int:
+    """Into how many cells the longer side of the bounds is cut, whose shorter one is `flatness` of it: 200 or
+    up to half as many more, so that least of the shorter side is left over; more where that is no longer than
+    a cell."""
+    first = max(FEWEST, math.ceil(1 / max(flatness, 1 / MAP_CELLS)))
+    rows = flatness * np.arange(first, first + first // 2 + 1)
+    left_over = rows + 1e-9 - np.floor(rows + 1e-9)
+    return first + int(np.argmax(left_over <= left_over.min() + 1e-8))

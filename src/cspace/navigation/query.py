@@ -39,10 +39,12 @@ def navigate(
 ) -> Route:
     """The way of a robot from start to goal, as a planner finds it.
 
-    world: a PolygonWorld or an OccupancyGrid; a planner of the other kind gets it converted, where that is a
-    grid to cells of the side `resolution` [m]. start, goal: (2,) [m]. planner: a name of
-    `cs.navigation.PLANNERS`. radius [m] of the robot: 0 for a point, else obstacles are grown by it first.
-    options: those of the planner. The Route is truthy if a path was found, and says why where not.
+    world: a PolygonWorld or an OccupancyGrid; a planner of the other kind gets it converted. resolution [m]:
+    the side of the cells that polygons become for planners over cells, which `route.reason` tells; by default
+    about 1/200 of the longer side of the bounds, as `PolygonWorld.to_grid` chooses it. start, goal: (2,) [m].
+    planner: a name of `cs.navigation.PLANNERS`. radius [m] of the robot: 0 for a point, else obstacles are
+    grown by it first. options: those of the planner. The Route is truthy if a path was found, and says why
+    where not; where start and goal are the same point its path is that point, (1, 2).
     Raises UnknownNameError on an unknown planner, InputTypeError on an unknown option or no world, InputError
     on points that are not finite, outside the bounds or inside an obstacle.
     """
@@ -62,12 +64,20 @@ def navigate(
         else:
             route = plan(world, start, goal, **options)
     except InputError as error:
-        if radius and str(error).startswith(("start (", "goal (")):
-            raise InputError(f"{error}; obstacles are grown by the robot's radius, {radius:g} m") from None
-        raise
+        if not str(error).startswith(("start (", "goal (")):
+            raise
+        raise InputError(f"{error}{_made_of(given, world, radius)}") from None
     if world is not given:
         vars(route)["asked"] = given
     return route
+
+
+def _made_of(given: World, world: World, radius: float) -> str:
+    """What was done to the world in which an end is not free."""
+    said = f"; obstacles are grown by the robot's radius, {radius:g} m" if radius else ""
+    if given.kind == "polygons" and isinstance(world, OccupancyGrid):
+        said += f"; polygons became cells of {world.resolution:g} m, give a smaller resolution="
+    return said
 
 
 def _prepared(world: World, kind: str | None, row: Planner, radius: float, resolution: float | None) -> World:

@@ -31,11 +31,11 @@ class Price(NamedTuple):
 class Route(_core.RouteBase):
     """The answer of one planner to one question; truthy if a path was found.
 
-    path: (m, 2) [m] from start to goal; of a robot that walks, the walk it made, also where it came to rest
-    elsewhere or proved that no way exists. length [m] of the path, whatever the verdict; inf where the path
-    is empty, as it is of planners with a map that find no way. start, goal: (2,) [m]. world, planner: what
-    was asked. `status` is "found", "unreachable" (proven), "undetermined" (the search ended without a proof)
-    or "local_minimum"; `reason` says it in a sentence.
+    path: (m, 2) [m] from start to goal, (1, 2) where they are the same point; of a robot that walks, the walk
+    it made, also where it came to rest elsewhere or proved that no way exists. length [m] of the path,
+    whatever the verdict; inf where the path is empty, as it is of planners with a map that find no way.
+    start, goal: (2,) [m]. world, planner: what was asked. `status` is "found", "unreachable" (proven),
+    "undetermined" (the search ended without a proof) or "local_minimum"; `reason` says it in a sentence.
     """
 
     @property
@@ -46,8 +46,12 @@ class Route(_core.RouteBase):
     @property
     def reason(self) -> str:
         """The verdict in a sentence, with what backs it."""
-        said: str | None = getattr(self._evidence, "reason", None)
-        return said or planners.module_of(self.planner).reason(self)
+        if self and len(self.path) == 1:
+            return "start and goal are the same point"
+        said: str = getattr(self._evidence, "reason", None) or planners.module_of(self.planner).reason(self)
+        if self.world.kind == "grid" and self._asked.kind == "polygons":
+            said += f"; polygons became cells of {self.world.resolution:g} m"
+        return said
 
     @property
     def price(self) -> Price:

@@ -40,6 +40,7 @@ class DescentRun {
     Descent run(Point start, Point inward) {
         at_ = start;
         descent_.route.path = {start};
+        if (start == potential_.goal()) return finish(Rest::goal);
         if (!leave_wall(inward)) return finish(Rest::wall);
         descent_.values = {here_.value, here_.value};
         if (descent_.route.path.size() == 1) descent_.values.pop_back();

@@ -77,6 +77,7 @@ class Roadmap {
         if (!diagram_.is_whole[std::size_t(component)]) return way;
         const Landing from = land(start, component), to = land(goal, component);
         if (from.arc == none || to.arc == none) return way;
+        if (start.at == goal.at) return stay(start.at, from.clearance);
         if (trace)
             for (const Landing* end : {&from, &to})
                 trace->push_back(
@@ -112,6 +113,15 @@ class Roadmap {
         return std::any_of(start.triangles.begin(), start.triangles.end(), [&](Index t) {
             return space.component[std::size_t(t)] == component && sampling::keeps_in_sight(space, path, t);
         });
+    }
+
+    static Way stay(Point at, double clearance) {
+        Way way;
+        way.route.status = Status::found;
+        way.route.path = {at};
+        way.route.length = 0;
+        way.clearance = way.on_diagram = way.at_start = way.at_goal = clearance;
+        return way;
     }
 
     // What no way from start to goal exceeds, which no arc may fall short of, less what rounding may have

@@ -143,9 +143,13 @@ def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Ro
     function, fault = _kept(world, ends[1], power)
     seconds = time.perf_counter() - began
     if function is None:
+        price, evidence = Price(0, 0, seconds), NavigationEvidence(None, 0, fault)
+        if np.array_equal(*ends):
+            return new_route(
+                world, "rimon_koditschek", options, ends, "found", ends[0][None], 0.0, price, evidence
+            )
         apart = not set(world._core.components_at(*ends[0])) & set(world._core.components_at(*ends[1]))
-        status, price = "unreachable" if apart else "undetermined", Price(0, 0, seconds)
-        evidence = NavigationEvidence(None, 0, fault)
+        status = "unreachable" if apart else "undetermined"
         return new_route(
             world, "rimon_koditschek", options, ends, status, np.empty((0, 2)), np.inf, price, evidence
         )
