@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -139,6 +140,67 @@ TEST(small_grids_under_every_rule) {
         map.blocked[0] = 0;
         compare(map, random, 4);
     }
+}
+// What the cheapest ways from a cell cost, by going over all steps until nothing gets cheaper.
+std::vector<double> costs_from(const Map& map, const std::vector<double>& costs, Corners rule, Cell start) {
+    std::vector<double> least(map.blocked.size(), std::numeric_limits<double>::infinity());
+    least[std::size_t(start.row * map.columns + start.column)] = 0;
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (int k = 0; k < 9 * map.rows * map.columns; ++k) {
+            const int r = k / 9 / map.columns, c = k / 9 % map.columns, dr = k % 9 / 3 - 1, dc = k % 3 - 1;
+            if (map.is_blocked(r, c) || !may_step(map, rule, {r, c}, dr, dc)) continue;
+            const std::size_t a = std::size_t(r * map.columns + c),
+                              b = a + std::size_t(dr * map.columns + dc);
+            const double over = least[a] + 0.5 * (costs[a] + costs[b]) * std::hypot(dr, dc);
+            if (over < least[b] - 1e-9) least[b] = over, changed = true;
+        }
+    }
+    return least;
+}
+// Costs that are often equal, or far from each other.
+TEST(cheapest_ways_under_every_rule) {
+    check::Random random{14};
+    GridScratch scratch;
+    GridAnswer answer;
+    for (int k = 0; k < 1500; ++k) {
+        Map map = random_map(random, 1 + random.below(11), 1 + random.below(11), random.uniform(0, 0.5));
+        map.blocked[0] = 0;
+        const BitGrid grid = map.grid();
+        std::vector<double> costs;
+        const int kinds = 1 + random.below(3);
+        for (std::size_t i = 0; i < map.blocked.size(); ++i)
+            costs.push_back(k % 3 ? 1 + random.below(kinds) : std::pow(10.0, random.uniform(0, 4)));
+        for (const Corners rule : all_rules) {
+            const Cell start = random_free(random, map), goal = random_free(random, map);
+            const double best =
+                costs_from(map, costs, rule, start)[std::size_t(goal.row * map.columns + goal.column)];
+            GridQuery query;
+            query.corners = rule;
+            query.metric = rule == Corners::four ? Metric::manhattan : Metric::octile;
+            query.costs = costs.data();
+            query.least_cost = *std::min_element(costs.begin(), costs.end());
+            for (const double h_weight : {0.0, 1.0, 1.5}) {
+                query.h_weight = h_weight;
+                find_way(grid, start, goal, query, scratch, answer);
+                CHECK(answer.found == std::isfinite(best));
+                if (!answer.found) continue;
+                CHECK(answer.cost >= best * (1 - 1e-12) &&
+                      answer.cost <= std::max(1.0, h_weight) * best * (1 + 1e-12));
+                CHECK(std::isfinite(walked(map, rule, answer.cells)));
+            }
+        }
+    }
+}
+// Around a cell one of several equally long ways is enough: on an empty grid nearly no cell waits twice.
+TEST(no_cell_waits_twice_where_ways_are_equally_long) {
+    const BitGrid grid(60, 80);
+    GridScratch scratch;
+    GridAnswer answer;
+    GridQuery query;
+    query.h_weight = 0;
+    find_way(grid, {30, 40}, {59, 79}, query, scratch, answer);
+    CHECK(answer.found && answer.effort.pushed <= 60 * 80);
 }
 TEST(grids_wider_than_a_word) {
     check::Random random{2};

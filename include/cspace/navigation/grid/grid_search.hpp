@@ -8,6 +8,7 @@
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
+#include "cspace/navigation/grid/onward.hpp"
 #include "cspace/navigation/grid/order.hpp"
 #include "cspace/navigation/grid/parents.hpp"
 
@@ -29,6 +30,8 @@ class GridSearch {
           nodes_(nodes),
           goal_(grid.number(order.goal)),
           reopen_(reopen) {
+        const bool exact = order.g_weight == 1 && (order.h_weight == 0 || order.h_weight == 1);
+        if (Parents::is_length && exact && !reopen) onward_ = &onward_moves[std::size_t(corners)];
         for (int d = 0; d < 8; ++d)
             offset_[d] = std::uint32_t(row_step[d]) * grid.stride() + std::uint32_t(column_step[d]);
         nodes_.begin(grid.numbers());
@@ -54,14 +57,22 @@ class GridSearch {
     void expand(std::uint32_t number, Queue& queue) {
         const maps::Cell from = grid_.cell(number);
         const auto [g, parent, stamp] = nodes_.at(number);
-        for (unsigned open = allowed_[grid_.around(from.row, from.column)]; open; open &= open - 1) {
-            const int d = std::countr_zero(open);
-            auto& node = nodes_.at(number + offset_[d]);
-            if (!reopen_ && nodes_.is_settled(node)) continue;
+        const unsigned around = grid_.around(from.row, from.column);
+        Improved better[8];
+        int count;
+        if constexpr (!Parents::is_neighbour) {
+            count = improved(number, g, parent, from, allowed_[around], better);
+        } else if (parent == number) {
+            count = improved<8>(number, g, from, allowed_[around], 0, better);
+        } else {
+            const int d = arrival(number - parent);
+            const unsigned open = onward_ ? (*onward_)[std::size_t(d)][around] : allowed_[around] & ahead(d);
+            count = improved<5>(number, g, from, open, d + 6, better);
+        }
+        for (int k = 0; k < count; ++k) {
+            const auto& [way, d] = better[k];
             const maps::Cell to = {from.row + row_step[d], from.column + column_step[d]};
-            const auto way = parents_.way(*this, number, g, parent, from, to, d);
-            if (nodes_.is_reached(node) && !(way.g < node.g)) continue;
-            nodes_.reach(node, way.g, way.parent);
+            nodes_.reach(nodes_.at(number + offset_[d]), way.g, way.parent);
             queue.push(order_.rank(way.g, to, number + offset_[d]));
             ++effort_->pushed;
         }
@@ -73,8 +84,56 @@ class GridSearch {
     Nodes& nodes() { return nodes_; }
 
   private:
+    using Node = typename Nodes::Node;
+    struct Improved {
+        Reach<G> way;
+        int direction;
+    };
+    // The neighbours in open directions to which the way over this cell is the shortest so far.
+    int improved(std::uint32_t number, G g, std::uint32_t parent, maps::Cell from, unsigned open,
+                 Improved* better) {
+        int count = 0;
+        for (; open; open &= open - 1) {
+            const int d = std::countr_zero(open);
+            Node& node = nodes_.at(number + offset_[d]);
+            if (!reopen_ && nodes_.is_settled(node)) continue;
+            const maps::Cell to = {from.row + row_step[d], from.column + column_step[d]};
+            better[count] = {parents_.way(*this, number, g, parent, from, to, d), d};
+            count += !nodes_.is_reached(node) || better[count].way.g < node.g;
+        }
+        return count;
+    }
+    // The same where cells are reached from their neighbours. Which of them wait for a shorter way no
+    // processor foresees, so there is no branch for that, and where most are open none for those that are
+    // not.
+    template <int directions>
+    int improved(std::uint32_t number, G g, maps::Cell from, unsigned open, int first, Improved* better) {
+        int count = 0;
+        const auto look = [&](int d, unsigned is_open) {
+            Node& node = nodes_.at(number + offset_[d]);
+            const G way = g + parents_.length.along(from, d, is_open);
+            better[count] = {{way, number}, d};
+            count += int(is_open & unsigned(reopen_ | !nodes_.is_settled(node)) &
+                         (unsigned(!nodes_.is_reached(node)) | unsigned(way < node.g)));
+        };
+        if constexpr (Parents::is_length)
+            for (; open; open &= open - 1) look(std::countr_zero(open), 1);
+        else
+            for (int k = first; k < first + directions; ++k) look(k & 7, open >> (k & 7) & 1);
+        return count;
+    }
+    // All but those that lead to cells beside the one before: from there they are no farther, whatever cells
+    // cost.
+    static unsigned ahead(int d) { return ~(bit_of(d + 3) | bit_of(d + 4) | bit_of(d + 5)); }
+    // The direction of a step, from the difference of the numbers of its cells.
+    int arrival(std::uint32_t difference) const {
+        const int step = int(difference), stride = int(grid_.stride());
+        const int down = (step > 1) - (step < -1);
+        return direction_of[down + 1][step - down * stride + 1];
+    }
     const maps::BitGrid& grid_;
     const std::array<std::uint8_t, 512>& allowed_;
+    const OnwardTable* onward_ = nullptr;  // where ways of equal length need not all be looked at
     const Order& order_;
     Parents parents_;
     Nodes& nodes_;

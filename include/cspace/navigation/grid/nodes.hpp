@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "cspace/math/isa.hpp"
 #include "cspace/navigation/grid/steps.hpp"
 
 namespace cspace::navigation {
@@ -31,12 +32,10 @@ class PagedNodes {
             stamp_ = 2;
         }
     }
-    Node& at(std::uint32_t cell) {
-        auto& page = pages_[cell >> page_bits];
-        if (!page) {
-            page = std::make_unique<Node[]>(std::size_t(1) << page_bits);
-            ++made_;
-        }
+    CSPACE_INLINE Node& at(std::uint32_t cell) {
+        Node* page = pages_[cell >> page_bits].get();
+        if (!page) [[unlikely]]
+            page = made(cell >> page_bits);
         return page[cell & ((1u << page_bits) - 1)];
     }
     bool is_reached(const Node& node) const { return node.stamp >= stamp_; }
@@ -50,6 +49,11 @@ class PagedNodes {
 
   private:
     static constexpr int page_bits = 12;
+    CSPACE_COLD Node* made(std::size_t page) {
+        pages_[page] = std::make_unique<Node[]>(std::size_t(1) << page_bits);
+        ++made_;
+        return pages_[page].get();
+    }
     std::vector<std::unique_ptr<Node[]>> pages_;
     std::size_t made_ = 0;
     std::uint32_t stamp_ = 0;

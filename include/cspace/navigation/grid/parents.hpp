@@ -3,6 +3,7 @@
 
 #include <bit>
 #include <limits>
+#include <type_traits>
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/navigation/grid/line_of_sight.hpp"
@@ -18,23 +19,33 @@ struct StepLength {
     G step(maps::Cell, maps::Cell, int direction) const {
         return is_diagonal(direction) ? Steps{0, 1} : Steps{1, 0};
     }
+    G along(maps::Cell, int direction, unsigned) const { return step({}, {}, direction); }
 };
 // Every step counts alike: the number of a wave.
 struct StepCount {
     using G = Steps;
     G step(maps::Cell, maps::Cell, int) const { return {1, 0}; }
+    G along(maps::Cell, int, unsigned) const { return {1, 0}; }
 };
 // The integral of the cost of the cells along the step: half of it lies in either cell. [cells · cost]
-struct StepCost {
+class StepCost {
+  public:
     using G = double;
-    const double* costs;  // by rows
-    int columns;
-    double cost(maps::Cell c) const {
-        return costs[std::size_t(c.row) * std::size_t(columns) + std::size_t(c.column)];
+    // costs: by rows.
+    StepCost(const double* costs, int columns) : costs_(costs), columns_(columns) {
+        for (int d = 0; d < 8; ++d) offset_[d] = std::ptrdiff_t(row_step[d]) * columns + column_step[d];
     }
-    G step(maps::Cell from, maps::Cell to, int direction) const {
-        return 0.5 * (cost(from) + cost(to)) * (is_diagonal(direction) ? sqrt_two : 1.0);
+    G step(maps::Cell from, maps::Cell, int direction) const { return along(from, direction, 1); }
+    // is_open: 1, or 0 where the step may lead out of the grid: then it counts for nothing.
+    G along(maps::Cell from, int direction, unsigned is_open) const {
+        constexpr double half[2] = {0.5, 0.5 * sqrt_two};
+        const double* at = costs_ + std::ptrdiff_t(from.row) * columns_ + from.column;
+        return (at[0] + at[-std::ptrdiff_t(is_open) & offset_[direction]]) * half[direction & 1];
     }
+
+  private:
+    const double* costs_;
+    std::ptrdiff_t columns_, offset_[8];
 };
 
 template <class G>
@@ -47,6 +58,8 @@ struct Reach {
 template <class Length>
 struct StepParents {
     using G = typename Length::G;
+    static constexpr bool is_neighbour = true;
+    static constexpr bool is_length = std::is_same_v<Length, StepLength>;
     Length length;
     template <class Search>
     Reach<G> way(Search&, std::uint32_t number, const G& g, std::uint32_t, maps::Cell from, maps::Cell to,
@@ -61,6 +74,7 @@ struct StepParents {
 // 2007).
 struct SightParents {
     using G = double;
+    static constexpr bool is_neighbour = false, is_length = false;
     Corners corners;
     template <class Search>
     Reach<G> way(Search& search, std::uint32_t number, double g, std::uint32_t parent, maps::Cell,
@@ -79,6 +93,7 @@ struct SightParents {
 // (Nash, Koenig & Tovey 2010).
 struct LazySightParents {
     using G = double;
+    static constexpr bool is_neighbour = false, is_length = false;
     Corners corners;
     template <class Search>
     Reach<G> way(Search& search, std::uint32_t, double, std::uint32_t parent, maps::Cell, maps::Cell to,

@@ -215,15 +215,16 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
     switch (query.planner) {
         case GridPlanner::best_first:
             if (query.costs)
-                run(StepParents<StepCost>{{query.costs, grid.columns()}}, scratch.lengths, scratch.buckets,
-                    false);
+                run(StepParents<StepCost>{StepCost(query.costs, grid.columns())}, scratch.lengths,
+                    scratch.buckets, false);
             else
                 run(StepParents<StepLength>{}, scratch.steps, scratch.buckets, false);
             break;
         case GridPlanner::focal: {
             FocalQueue queue(query.bound);
             if (query.costs)
-                run(StepParents<StepCost>{{query.costs, grid.columns()}}, scratch.lengths, queue, true);
+                run(StepParents<StepCost>{StepCost(query.costs, grid.columns())}, scratch.lengths, queue,
+                    true);
             else
                 run(StepParents<StepLength>{}, scratch.steps, queue, true);
             answer.least = queue.least();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
 
 namespace cspace::navigation {
 
@@ -13,13 +14,11 @@ struct Steps {
     double value() const { return straight + sqrt_two * diagonal; }
     friend Steps operator+(Steps x, Steps y) { return {x.straight + y.straight, x.diagonal + y.diagonal}; }
     friend bool operator==(Steps, Steps) = default;
-    // Whether a + b √2 < 0 for the differences a, b, decided by a² and 2 b².
+    // Whether a + b √2 < 0 for the differences a, b, that is a |a| + 2 b |b| < 0. For less than 2³⁰ steps.
     friend bool operator<(Steps x, Steps y) {
         const std::int64_t a = std::int64_t(x.straight) - y.straight,
                            b = std::int64_t(x.diagonal) - y.diagonal;
-        if (a <= 0 && b <= 0) return a < 0 || b < 0;
-        if (a >= 0 && b >= 0) return false;
-        return a < 0 ? a * a > 2 * b * b : a * a < 2 * b * b;
+        return a * std::abs(a) + 2 * b * std::abs(b) < 0;
     }
 };
 
