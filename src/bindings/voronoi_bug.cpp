@@ -9,21 +9,24 @@ using namespace cspace::navigation;
 
 namespace {
 
-// Option: range.
+// Options: range, noise (0 for a sensor without), seed.
 struct DiagramTracer {
     using Answer = Exploration;
-    static constexpr int options = 1;
+    static constexpr int options = 3;
     double range;
+    Noise noise;
 
     bool read(PyObject* const* args) {
         range = PyFloat_AsDouble(args[0]);
+        noise = {PyFloat_AsDouble(args[1]), PyLong_AsUnsignedLongLong(args[2])};
         return !PyErr_Occurred();
     }
 
     Exploration answer(PolygonCore& core, Point start, Point goal) const {
         if (!core.sensed) core.sensed = std::make_unique<Surroundings>(core.world.walls);
         const nanobind::gil_scoped_release free;
-        Exploration trip = voronoi_bug(*core.felt, *core.sensed, start, goal, range);
+        Exploration trip = noise.deviation > 0 ? voronoi_bug(*core.felt, start, goal, range, noise)
+                                               : voronoi_bug(*core.felt, *core.sensed, start, goal, range);
         // Else it went through a gap as narrow as a rounding.
         if (trip.route.status == Status::found && !can_walk(*core.felt, trip.route.path))
             trip.route.status = Status::undetermined;
@@ -39,16 +42,17 @@ struct DiagramTracer {
         return events;
     }
 
-    // meets, branches, dead_ends, clearance, shut
+    // meets, branches, dead_ends, clearance, scans, shut
     static PyObject* evidence(const Exploration& trip, const Walls& walls) {
         std::vector<double> meets;
         for (const Point p : trip.meets) meets.insert(meets.end(), {p.x, p.y});
-        return Py_BuildValue("(NLLdN)", rows(meets, 2, NPY_DOUBLE), static_cast<long long>(trip.branches),
-                             static_cast<long long>(trip.dead_ends), trip.clearance, shut_of(trip, walls));
+        return Py_BuildValue("(NLLdLN)", rows(meets, 2, NPY_DOUBLE), static_cast<long long>(trip.branches),
+                             static_cast<long long>(trip.dead_ends), trip.clearance,
+                             static_cast<long long>(trip.scans), shut_of(trip, walls));
     }
 };
 
-// _voronoi_bug(world, planner, options, evidence, core, range, start, goal)
+// _voronoi_bug(world, planner, options, evidence, core, range, noise, seed, start, goal)
 PyMethodDef methods[] = {{"_voronoi_bug", fast(Walk<DiagramTracer>::route), METH_FASTCALL, nullptr},
                          {"_voronoi_bug_trace", fast(Walk<DiagramTracer>::trace), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};

@@ -264,6 +264,10 @@ milliseconds."""
 SAMPLE_STEP: Final = 0.1
 """Longest edge of a tree of samples, in sides of the world: about the ball of RRT* at a thousand nodes, and
 short enough that the first edges pass between obstacles."""
+SCAN_NOISE: Final = 0.2
+"""The most noise of a reading, of a sensor's range: with more, the distance that a robot keeps from walls to
+be sure to see them comes near to none."""
+
 DIAGRAM_CHORD: Final = 1e-4
 """How far a polyline may lie from a parabola of a Voronoi diagram, in sides of the world: less than the width
 of a line in a picture of it."""

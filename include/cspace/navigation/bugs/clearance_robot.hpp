@@ -30,6 +30,8 @@ class ClearanceRobot : public RangeRobot {
           contacts_(around.sites, around.tree, grain_),
           keeps_(kept_share * range) {}
 
+    Likeness likeness() const { return {1e-6, 1e-9 * s_.extent, 1e-5, 1e-9, 2}; }
+    bool again() { return false; }
     double keeps() const { return keeps_; }
     double clearance() const { return radius_; }
     const std::vector<Foot>& feet() const { return feet_; }

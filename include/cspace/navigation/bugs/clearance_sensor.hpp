@@ -33,6 +33,18 @@ struct Log {
     std::optional<std::size_t> low;                          // the point of the path nearest to the goal
 };
 
+// By how much places and directions may differ that the robot takes for one.
+struct Likeness {
+    double share;  // of the distance from walls
+    double fine;   // [m]
+    double turn;   // of the directions of two feet, together
+    double far;    // of how far it keeps from a single wall
+    double loop;   // no way back to where it begins is shorter, by how far places may differ
+};
+
+// range, sees    as of a range sensor
+// likeness       how well it tells places apart
+// again          where all is exhausted, whether it looks again, keeping less far from walls
 // keeps          how far it keeps from a single wall [m], less than its range
 // clearance      the distance to the nearest walls
 // feet           where they are, counterclockwise; the robot came from between the last and the first
@@ -44,16 +56,21 @@ struct Log {
 //
 // Each calls look() on its way and stops when that is true.
 template <class Robot>
-concept ClearanceSensor = RangeSensor<Robot> && requires(Robot robot, const Robot& still, Foot foot,
-                                                         const Aim& aim, Log& log, bool (*look)(), Point p) {
-    { still.keeps() } -> std::convertible_to<double>;
-    { still.clearance() } -> std::convertible_to<double>;
-    { still.feet() } -> std::convertible_to<std::vector<Foot>>;
-    { robot.begin(log) } -> std::same_as<Halt>;
-    { robot.trace(foot, foot, aim, log, look) } -> std::same_as<Halt>;
-    { robot.roll(foot, aim, log, look) } -> std::same_as<Halt>;
-    { robot.fly(aim, log) } -> std::same_as<Halt>;
-    robot.stand_at(p);
-};
+concept ClearanceSensor =
+    ContactSensor<Robot> &&
+    requires(Robot robot, const Robot& still, Foot foot, const Aim& aim, Log& log, bool (*look)(), Point p) {
+        { still.range() } -> std::convertible_to<double>;
+        { robot.sees(p) } -> std::convertible_to<double>;
+        { still.likeness() } -> std::same_as<Likeness>;
+        { robot.again() } -> std::same_as<bool>;
+        { still.keeps() } -> std::convertible_to<double>;
+        { still.clearance() } -> std::convertible_to<double>;
+        { still.feet() } -> std::convertible_to<std::vector<Foot>>;
+        { robot.begin(log) } -> std::same_as<Halt>;
+        { robot.trace(foot, foot, aim, log, look) } -> std::same_as<Halt>;
+        { robot.roll(foot, aim, log, look) } -> std::same_as<Halt>;
+        { robot.fly(aim, log) } -> std::same_as<Halt>;
+        robot.stand_at(p);
+    };
 
 }  // namespace cspace::navigation

@@ -41,9 +41,10 @@ class MeetGraph {
     std::vector<MeetWay> ways;
 
     // Into the last gap the robot has looked already. keeps: how far it keeps from a single wall.
-    int add(Point at, double clearance, const std::vector<Foot>& feet, Halt came, bool rolled, double keeps) {
+    int add(Point at, double clearance, const std::vector<Foot>& feet, Halt came, bool rolled, double keeps,
+            Likeness like) {
         MeetPoint meet{at, clearance, feet, std::vector<Opening>(feet.size())};
-        const bool is_far = clearance >= keeps * (1 - 1e-9);
+        const bool is_far = clearance >= keeps * (1 - like.far);
         for (std::size_t k = 0; k < feet.size(); ++k)
             meet.gaps[k].rolls = came == Halt::meet && !rolled && is_far && is_wide(feet, k);
         if (came == Halt::limit) meet.gaps[0].rolls = true;
@@ -65,14 +66,15 @@ class MeetGraph {
 
     // The meet point and gap at which a robot arrives that comes from between the last foot and the first;
     // if it can be, a gap that it does not know.
-    Branch find(Point at, double clearance, const std::vector<Foot>& feet, double fine) const {
-        const double near = 1e-6 * clearance + fine;
+    Branch find(Point at, double clearance, const std::vector<Foot>& feet, Likeness like) const {
+        const double near = like.share * clearance + like.fine;
         Branch best;
-        double least = 1e-5;
+        double least = like.turn;
         for (int m = 0; m < int(meets.size()); ++m) {
             const MeetPoint& meet = meets[std::size_t(m)];
             if (std::abs(meet.at.x - at.x) > near || std::abs(meet.at.y - at.y) > near) continue;
             const std::size_t n = meet.feet.size();
+            if (n < 3 && feet.size() > 2) continue;
             for (std::size_t k = 0; k < n; ++k) {
                 const double off = norm(meet.feet[k].towards - feet.back().towards) +
                                    norm(meet.feet[(k + 1) % n].towards - feet.front().towards);

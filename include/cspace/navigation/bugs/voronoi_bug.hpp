@@ -17,6 +17,7 @@
 #include "cspace/navigation/bugs/clearance_robot.hpp"
 #include "cspace/navigation/bugs/meet_graph.hpp"
 #include "cspace/navigation/bugs/ring_book.hpp"
+#include "cspace/navigation/bugs/scan_robot.hpp"
 #include "cspace/navigation/bugs/trip.hpp"
 
 namespace cspace::navigation {
@@ -37,22 +38,22 @@ struct Exploration {
     std::vector<Leg> legs;
     std::vector<Point> meets;  // where three walls or more are nearest
     std::int64_t branches = 0, dead_ends = 0;
+    std::int64_t scans = 0;                                      // of a sensor with noise
     double clearance = std::numeric_limits<double>::infinity();  // least on the curves that it followed [m]
     Touch witness;  // unreachable: where the line to the goal enters a wall that shuts the goal off
 };
 
 namespace voronoi_bug_limits {
 constexpr std::int64_t most_branches = 20'000;
-constexpr double nearer = 1 - 1e-9;  // a distance counts as less by more than rounding
-constexpr double thin = 1e-6;        // a curve around less per length and range has nothing inside
-constexpr double fine = 1e-9;        // in sizes of the coordinates: meet points closer than this are one
+constexpr std::size_t most_feet = 1'000;  // of a meet point: with more, something is taken twice
+constexpr double nearer = 1 - 1e-9;       // a distance counts as less by more than rounding
+constexpr double thin = 1e-6;             // a curve around less per length and range has nothing inside
 }  // namespace voronoi_bug_limits
 
 template <ClearanceSensor Robot>
 class VoronoiBug {
   public:
-    // fine: lengths below which two places are one [m].
-    VoronoiBug(Robot& robot, Point goal, double fine) : robot_(robot), goal_(goal), fine_(fine) {
+    VoronoiBug(Robot& robot, Point goal) : robot_(robot), goal_(goal), like_(robot.likeness()) {
         note(robot.position());
     }
 
@@ -68,6 +69,10 @@ class VoronoiBug {
             nearest = std::min(nearest, distance(robot_.position(), goal_));
             end = explore(end, nearest * voronoi_bug_limits::nearer);
             if (end == Halt::meet) end = judge(nearest);
+            if (end == Halt::lost && robot_.again()) {
+                nearest = std::numeric_limits<double>::infinity();
+                end = begin();
+            }
             if (end == Halt::corner) return finish(Status::unreachable);
         }
     }
@@ -75,7 +80,7 @@ class VoronoiBug {
   private:
     Robot& robot_;
     Point goal_;
-    double fine_;
+    Likeness like_;
     Exploration trip_;
     MeetGraph graph_;
     RingBook rings_;
@@ -83,7 +88,7 @@ class VoronoiBug {
     void note(Point p) {
         if (trip_.route.path.empty() || trip_.route.path.back() != p) trip_.route.path.push_back(p);
     }
-    bool look() const {
+    bool look() {
         const double far = distance(robot_.position(), goal_);
         return far <= robot_.range() && robot_.sees(goal_) >= far;
     }
@@ -153,7 +158,8 @@ class VoronoiBug {
     int add_meet(Halt came, bool rolled) {
         if (robot_.feet().size() > 2) trip_.meets.push_back(robot_.position());
         ++trip_.route.price.nodes;
-        return graph_.add(robot_.position(), robot_.clearance(), robot_.feet(), came, rolled, robot_.keeps());
+        return graph_.add(robot_.position(), robot_.clearance(), robot_.feet(), came, rolled, robot_.keeps(),
+                          like_);
     }
     void walk_back(int here, int there) {
         if (here == there) return;
@@ -196,22 +202,23 @@ class VoronoiBug {
         robot_.stand_at(path.front());
     }
     bool is_at(const MeetPoint& meet, const std::vector<Point>& path) const {
-        const double near = 1e-6 * meet.clearance + fine_;
-        return distance(meet.at, robot_.position()) <= near && length_of(path) <= 2 * near;
+        const double near = like_.share * meet.clearance + like_.fine;
+        return distance(meet.at, robot_.position()) <= near && length_of(path) <= like_.loop * near;
     }
     // Where a branch ends as it begins, its meet point has more to it than was seen there.
     void look_closer(int here, int gap, Halt end, bool rolls) {
         const std::vector<Foot>& feet = robot_.feet();
         if (end == Halt::limit)
             graph_.make_roll(here, gap);
-        else if (feet.size() > (rolls ? 1 : 2))
+        else if (feet.size() > (rolls ? 1 : 2) &&
+                 graph_.meets[std::size_t(here)].feet.size() < voronoi_bug_limits::most_feet)
             graph_.refine(here, gap, {feet.begin() + 1, feet.end() - (rolls ? 0 : 1)});
         robot_.stand_at(graph_.meets[std::size_t(here)].at);
     }
     void arrive(int& here, int gap, Halt end, bool rolls, Log log) {
         if (end != Halt::mark && is_at(graph_.meets[std::size_t(here)], log.path))
             return look_closer(here, gap, end, rolls);
-        Branch to = graph_.find(robot_.position(), robot_.clearance(), robot_.feet(), fine_);
+        Branch to = graph_.find(robot_.position(), robot_.clearance(), robot_.feet(), like_);
         if (end == Halt::mark && to.meet < 0) to = {0, 0};
         if (to.meet < 0) to = {add_meet(end, rolls), int(robot_.feet().size()) - 1};
         log.path.push_back(graph_.meets[std::size_t(to.meet)].at);
@@ -278,8 +285,8 @@ class VoronoiBug {
 };
 
 template <ClearanceSensor Robot>
-Exploration voronoi_bug(Robot& robot, Point goal, double fine) {
-    return from_every_side(robot, [&](Robot& r) { return VoronoiBug<Robot>(r, goal, fine).run(); });
+Exploration voronoi_bug(Robot& robot, Point goal) {
+    return from_every_side(robot, [&](Robot& r) { return VoronoiBug<Robot>(r, goal).run(); });
 }
 
 // In a polygon world. Where the robot loses its way by rounding, one that tells lengths apart otherwise
@@ -290,9 +297,18 @@ inline Exploration voronoi_bug(const Walls& walls, const Surroundings& around, P
     Exploration trip;
     for (const voronoi::Grain& grain : grains) {
         ClearanceRobot robot(walls, around, start, range, grain);
-        trip = voronoi_bug(robot, goal, voronoi_bug_limits::fine * around.sites.extent);
+        trip = voronoi_bug(robot, goal);
         if (trip.route.status != Status::undetermined) break;
     }
+    return trip;
+}
+
+// The same by a sensor with noise: its verdict is never that the goal is unreachable, since a gap may not
+// have been seen.
+inline Exploration voronoi_bug(const Walls& walls, Point start, Point goal, double range, Noise noise) {
+    ScanRobot robot(walls, start, range, noise);
+    Exploration trip = voronoi_bug(robot, goal);
+    trip.scans = robot.scans();
     return trip;
 }
 
