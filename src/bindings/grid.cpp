@@ -3,6 +3,7 @@
 #include "grid.hpp"
 
 #include <chrono>
+#include <memory>
 #include <new>
 #include <utility>
 
@@ -68,12 +69,13 @@ std::ptrdiff_t png_unfilter(Bytes lines, std::size_t step, BytesOut pixels) {
     return maps::undo_png_filters(lines.data(), pixels.shape(0), pixels.shape(1), step, pixels.data());
 }
 
-// What a thread's searches remember, given back where a query took so much that others may want it.
+// What a thread's searches remember. More than so many bytes are given back after a query, which took far
+// longer than to ask for them again.
 GridScratch& scratch() {
     thread_local GridScratch one;
     return one;
 }
-constexpr std::size_t kept_bytes = std::size_t(256) << 20;
+constexpr std::size_t kept_bytes = std::size_t(32) << 20;
 constexpr std::uint32_t small_grid =
     1 << 14;  // cells; a search of so few is no longer than a change of threads
 
@@ -134,17 +136,37 @@ int read_ask(PyObject* const* args, Py_ssize_t count, Ask& ask) {
            world.frame.locate(world.bits, ask.goal, ask.to) == maps::CellState::free;
 }
 
+// The scratch of this thread, or, for a search that a signal handler runs amid another one, its own.
+class Borrowed {
+  public:
+    Borrowed() {
+        if (depth()++ > 0) own_ = std::make_unique<GridScratch>();
+    }
+    ~Borrowed() {
+        if (--depth() == 0 && scratch().bytes() > kept_bytes) scratch().release();
+    }
+    Borrowed(const Borrowed&) = delete;
+    Borrowed& operator=(const Borrowed&) = delete;
+    GridScratch& get() { return own_ ? *own_ : scratch(); }
+
+  private:
+    static int& depth() {
+        thread_local int one = 0;
+        return one;
+    }
+    std::unique_ptr<GridScratch> own_;
+};
+
 void run(const Ask& ask, GridAnswer& answer, Route& route) {
-    find_way(ask.world->bits, ask.from, ask.to, ask.query, scratch(), answer, &ask.world->parts);
+    Borrowed borrowed;
+    find_way(ask.world->bits, ask.from, ask.to, ask.query, borrowed.get(), answer, &ask.world->parts,
+             heed_interrupts);
     draw_route(ask.world->frame, ask.start, ask.goal, answer, route);
 }
 void run_freely(const Ask& ask, GridAnswer& answer, Route& route) {
     if (ask.world->bits.numbers() <= small_grid) return run(ask, answer, route);
     nb::gil_scoped_release free;
     run(ask, answer, route);
-}
-void tidy() {
-    if (scratch().bytes() > kept_bytes) scratch().release();
 }
 
 // What backs the verdict where path and length do not say it: what the way costs, and a bound below the best.
@@ -183,11 +205,12 @@ PyObject* grid_route(PyObject*, PyObject* const* args, Py_ssize_t count) {
         }
         kept_answer = std::move(answer);
         kept_route = std::move(route);
-        tidy();
         return made;
     } catch (const std::bad_alloc&) {
-        scratch().release();
-        return PyErr_NoMemory();
+        return refuse_memory(ask.world->bits);
+    } catch (nb::python_error& raised) {
+        raised.restore();
+        return nullptr;
     }
 }
 
@@ -214,11 +237,12 @@ PyObject* grid_order(PyObject*, PyObject* const* args, Py_ssize_t count) {
                 *cell++ = number;
             *g++ = ask.world->frame.resolution * one.g;
         }
-        tidy();
         return Py_BuildValue("NN", cells, lengths);
     } catch (const std::bad_alloc&) {
-        scratch().release();
-        return PyErr_NoMemory();
+        return refuse_memory(ask.world->bits);
+    } catch (nb::python_error& raised) {
+        raised.restore();
+        return nullptr;
     }
 }
 

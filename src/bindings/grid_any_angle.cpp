@@ -41,7 +41,7 @@ struct Question {
         const Point a{start[0], start[1]}, b{goal[0], goal[1]};
         const SettledInRuns from = search.settle(a), to = search.settle(b);
         if (from.runs.empty() || to.runs.empty()) return false;
-        route = search.solve(a, from, b, to, &world->parts, trace);
+        route = search.solve(a, from, b, to, &world->parts, trace, heed_interrupts);
         return true;
     }
 };
@@ -58,7 +58,10 @@ PyObject* ask(PyObject*, PyObject* args) {
         return make_route(grid, planner, options == Py_None ? nullptr : options, q.start, q.goal, q.route,
                           took.count());
     } catch (const std::bad_alloc&) {
-        return PyErr_NoMemory();
+        return refuse_memory(q.world->bits);
+    } catch (nb::python_error& raised) {
+        raised.restore();
+        return nullptr;
     }
 }
 
@@ -73,7 +76,10 @@ PyObject* retrace(PyObject*, PyObject* args) {
         if (read > 0) q.answer(&trace);
         return trace_arrays(trace);
     } catch (const std::bad_alloc&) {
-        return PyErr_NoMemory();
+        return refuse_memory(q.world->bits);
+    } catch (nb::python_error& raised) {
+        raised.restore();
+        return nullptr;
     }
 }
 

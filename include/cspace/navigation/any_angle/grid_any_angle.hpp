@@ -2,7 +2,11 @@
 // search comes to: Polyanya over runs of free cells. It works in cells, whose corners are whole numbers.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
+#include <limits>
 #include <vector>
 
 #include "cspace/maps/grid_frame.hpp"
@@ -38,16 +42,28 @@ class GridAnyAngle {
     }
 
     // start, goal [m] as they were given, and as they were settled. parts: of this grid, or null for none.
+    // look() is called now and then, and may throw.
     Route solve(Point start, const SettledInRuns& from, Point goal, const SettledInRuns& to,
-                maps::LazyParts* parts = nullptr, Trace* trace = nullptr) {
+                maps::LazyParts* parts = nullptr, Trace* trace = nullptr,
+                const std::function<void()>& look = {}) {
         const auto is_divided = [&] { return divided(parts->of(grid_, false), from, to); };
         const std::uint64_t patience =
             parts ? maps::LazyParts::patience(grid_) : std::numeric_limits<std::uint64_t>::max();
         Route route;
         route.status = Status::unreachable;
         if (patience < grid_.numbers() && parts->is_made(false) && is_divided()) return route;
-        const auto nodes = std::int64_t(patience >> 1);  // each takes longer than to settle a cell
-        route = search_.solve(from.at, from.runs, to.at, to.runs, trace, nodes, is_divided);
+        // Nodes after which parts are looked at: each takes longer than to settle a cell.
+        auto asked = std::int64_t(std::min(patience >> 1, std::uint64_t(never)));
+        const auto on_pause = [&](std::int64_t nodes) {
+            if (look) look();
+            if (nodes >= asked) {
+                if (is_divided()) return std::int64_t(0);
+                asked = never;
+            }
+            return std::min(asked, look ? nodes + between_looks : never);
+        };
+        const std::int64_t pause = std::min(asked, look ? between_looks : never);
+        route = search_.solve(from.at, from.runs, to.at, to.runs, trace, pause, on_pause);
         for (Point& p : route.path) p = in_metres(p);
         if (!route.path.empty()) {
             route.path.front() = start, route.path.back() = goal;
@@ -63,6 +79,8 @@ class GridAnyAngle {
     std::size_t bytes() const { return search_.bytes(); }
 
   private:
+    static constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+    static constexpr std::int64_t between_looks = 1 << 16;  // nodes: a twentieth of a second
     const maps::BitGrid& grid_;
     maps::GridFrame frame_;
     maps::RunMesh mesh_;

@@ -39,14 +39,14 @@ class IntervalSearch {
     // starts, goals: the polygons whose closures hold the start and the goal.
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
                 const std::vector<Polygon>& goals, Trace* trace = nullptr) {
-        return solve(start, starts, goal, goals, trace, std::numeric_limits<std::int64_t>::max(),
-                     [] { return false; });
+        constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
+        return solve(start, starts, goal, goals, trace, never, [](std::int64_t) { return never; });
     }
-    // After `patience` nodes is_divided() is asked whether there is no path.
-    template <class IsDivided>
+    // After `pause` nodes look(nodes) is asked, which says after how many it is to be asked again; 0: there
+    // is no path.
+    template <class Look>
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
-                const std::vector<Polygon>& goals, Trace* trace, std::int64_t patience,
-                IsDivided is_divided) {
+                const std::vector<Polygon>& goals, Trace* trace, std::int64_t pause, Look look) {
         begin(start, goal, goals, trace);
         for (const Polygon& p : starts)
             for (const Polygon& q : goals)
@@ -58,9 +58,7 @@ class IntervalSearch {
             if (is_goal(least.edge)) return finish(least);
             free_.push_back(n);
             if (!is_stale(least)) expand(least, f);
-            if (price_.nodes < patience) continue;
-            if (is_divided()) break;
-            patience = std::numeric_limits<std::int64_t>::max();
+            if (price_.nodes >= pause && (pause = look(price_.nodes)) == 0) break;
         }
         Route route;
         route.status = Status::unreachable;

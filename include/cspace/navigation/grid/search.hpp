@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -77,6 +78,7 @@ struct GridScratch {
 namespace search {
 
 inline constexpr double bucket_width = 0.05;  // cells, or the least cost of one: few f differ by less
+inline constexpr std::uint64_t between_looks = 1 << 17;  // cells settled: less than a twentieth of a second
 
 template <class Look>
 void note_settled(GridAnswer& answer, const Look& look) {
@@ -113,6 +115,7 @@ struct Division {
     maps::LazyParts* parts;  // or null
     maps::Cell a, b;
     bool diagonal;
+    const std::function<void()>& look;  // called now and then, or empty
 
     // Parts are looked at before a search if they are known, else where it has taken long.
     std::uint64_t patience() const {
@@ -130,11 +133,18 @@ struct Division {
 // Best first, unless it is proven meanwhile that no way exists.
 template <class Space, class Queue>
 std::uint32_t search_or_divide(Space& space, Queue& queue, const Division& division, GridAnswer& answer) {
-    if (!division.is_known()) answer.effort.pause = division.patience();
-    const std::uint32_t reached = best_first(space, queue, answer.effort);
-    if (reached != no_node || queue.empty() || division.proves(answer)) return reached;
-    answer.effort.pause = std::numeric_limits<std::uint64_t>::max();
-    return best_first(space, queue, answer.effort);
+    constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
+    Effort& effort = answer.effort;
+    std::uint64_t asked = division.is_known() ? never : division.patience();
+    for (;;) {
+        effort.pause = std::min(asked, division.look ? effort.settled + between_looks : never);
+        const std::uint32_t reached = best_first(space, queue, effort);
+        if (reached != no_node || queue.empty()) return reached;
+        if (division.look) division.look();
+        if (effort.settled < asked) continue;
+        if (division.proves(answer)) return no_node;
+        asked = never;
+    }
 }
 
 template <class Parents, class Queue>
@@ -193,9 +203,11 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
 
 }  // namespace search
 
-// The way from start to goal, both free cells of the grid. parts: of this grid, or null for none.
+// The way from start to goal, both free cells of the grid. parts: of this grid, or null for none. look() is
+// called now and then, and may throw.
 inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goal, const GridQuery& query,
-                     GridScratch& scratch, GridAnswer& answer, maps::LazyParts* parts = nullptr) {
+                     GridScratch& scratch, GridAnswer& answer, maps::LazyParts* parts = nullptr,
+                     const std::function<void()>& look = {}) {
     const bool backward = query.planner == GridPlanner::waves;
     const Order order = {backward ? start : goal, query.metric, query.g_weight, query.h_weight,
                          query.least_cost};
@@ -205,7 +217,7 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
     answer.parts = 0;
     answer.effort = {};
     answer.effort.order = answer.settled ? &answer.order : nullptr;
-    const search::Division division{grid, parts, start, goal, query.corners == Corners::always};
+    const search::Division division{grid, parts, start, goal, query.corners == Corners::always, look};
     if (division.is_known() && division.proves(answer)) return;
     const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
         search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen, division,
