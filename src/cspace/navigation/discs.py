@@ -69,13 +69,13 @@ def plan_disc(
 ) -> Route:
     """The route of a disc among polygons; `grown` is the world grown by its radius [m]."""
     plan = module_of(planner).plan
-    route = plan(fitted(world, grown, radius, *ends), *ends, **options)
+    route: Route = plan(fitted(world, grown, radius, *ends), *ends, **options)
     if route.status != "unreachable":
         return route
     widest = voronoi.plan(world, *ends)
     if not widest or (clearance := widest.evidence.least_clearance) <= radius * (1 + 1e-9):
         return route
-    fine = plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
+    fine: Route = plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
     if fine.status != "unreachable":
         return fine
     return new_route(

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Final, Protocol, cast
+from typing import TYPE_CHECKING, Any, Final, Protocol, cast
 
 from cspace.errors import suggest
 from cspace.navigation.options import Option, options_of
 
 if TYPE_CHECKING:
     from cspace.maps import OccupancyGrid
-    from cspace.navigation.route import Route
     from cspace.navigation.trace import Trace
 
 __all__ = ["PLANNERS", "Planner", "module_of", "planner_named"]
@@ -165,16 +164,16 @@ PLANNERS: Final = MappingProxyType({row.name: row for row in _ROWS})
 
 
 class PlannerModule(Protocol):
-    """What a planner's file offers."""
+    """What a planner's file offers; routes know planners by name, so planners' rows know no routes."""
 
-    plan: Callable[..., Route]
-    """plan(world, start, goal, **options): start and goal (2,) lie in free space."""
+    plan: Callable[..., Any]
+    """plan(world, start, goal, **options) → Route: start and goal (2,) lie in free space."""
 
-    def reason(self, route: Route) -> str:
-        """The verdict in a sentence."""
+    reason: Callable[[Any], str]
+    """reason(route): the verdict in a sentence."""
 
-    def trace(self, route: Route) -> Trace:
-        """The events of the search, by running it again with a record kept."""
+    trace: Callable[[Any], Trace]
+    """trace(route): the events of the search, by running it again with a record kept."""
 
     takes_cells: Callable[[OccupancyGrid], bool]
     """Of planners whose row says so: which grids it takes as they are."""

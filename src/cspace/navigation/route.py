@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.navigation import planners
+from cspace.navigation.planners import module_of
 
 if TYPE_CHECKING:
     from cspace.navigation.trace import Trace
@@ -48,7 +48,7 @@ class Route(_core.RouteBase):
         """The verdict in a sentence, with what backs it."""
         if self and len(self.path) == 1:
             return "start and goal are the same point"
-        said: str = getattr(self._evidence, "reason", None) or planners.module_of(self.planner).reason(self)
+        said: str = getattr(self._evidence, "reason", None) or module_of(self.planner).reason(self)
         if self.world.kind == "grid" and self._asked.kind == "polygons":
             said += f"; polygons became cells of {self.world.resolution:g} m"
         return said
@@ -67,7 +67,7 @@ class Route(_core.RouteBase):
     def trace(self) -> Trace:
         """What the planner did, event after event; made by asking it once more with a record kept."""
         if (made := self.__dict__.get("trace")) is None:
-            made = self.__dict__["trace"] = planners.module_of(self.planner).trace(self)
+            made = self.__dict__["trace"] = module_of(self.planner).trace(self)
         return made
 
     @property
