@@ -3,11 +3,14 @@
 // envelope of what the columns offer (Meijster, Roerdink & Hesselink 2000; Felzenszwalb & Huttenlocher 2012).
 #pragma once
 
+#include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/maps/bit_scan.hpp"
 
 namespace cspace::navigation {
 
@@ -27,31 +30,36 @@ inline std::int64_t squared_gap(std::int64_t away) {
     return gap * gap;
 }
 
-// The nearest blocked row in the column of every cell.
-inline std::vector<std::int32_t> nearest_rows(const maps::BitGrid& grid) {
-    const int rows = grid.rows(), columns = grid.columns();
-    const std::size_t stride = grid.stride();
-    std::vector<std::int32_t> nearest(grid.numbers()), seen(stride, -1);
-    for (int row = -1; row <= rows; ++row) {
-        std::int32_t* into = nearest.data() + std::size_t(row + 1) * stride;
-        for (int column = -1; column <= columns; ++column) {
-            std::int32_t& last = seen[std::size_t(column + 1)];
-            if (grid.blocked(row, column)) last = row;
-            into[column + 1] = last;
-        }
+// The nearest blocked row in the column of every free cell of a row, for one row after the other: the walls
+// above and below a stretch of free cells in a column are looked up where it begins.
+class NearestRows {
+  public:
+    explicit NearestRows(const maps::BitGrid& grid)
+        : grid_(grid), above_(grid.stride()), below_(grid.stride()), nearest_(grid.stride()) {}
+    // The first row is 0.
+    void next_row(int row) {
+        const std::uint64_t *line = grid_.row(row), *before = grid_.row(row - 1);
+        for (std::size_t k = 0; k < grid_.row_words(); ++k)
+            for (std::uint64_t begin = ~line[k] & before[k]; begin; begin &= begin - 1) {
+                const int column = int(64 * k) + std::countr_zero(begin) - 1;
+                const std::uint64_t* down = grid_.column(column);
+                above_[std::size_t(column + 1)] = row - 1;
+                below_[std::size_t(column + 1)] =
+                    maps::first_set([&](std::size_t word) { return down[word]; }, row);
+            }
     }
-    for (int row = rows; row >= -1; --row) {
-        std::int32_t* into = nearest.data() + std::size_t(row + 1) * stride;
-        for (std::size_t k = 0; k < stride; ++k) {
-            std::int32_t& last = seen[k];
-            if (into[k] == row)
-                last = row;
-            else if (last - row < row - into[k])
-                into[k] = last;
-        }
+    // For cells first … last of the row, which are free; the cells before and after them are blocked.
+    void look(int row, int first, int last) {
+        nearest_[std::size_t(first)] = nearest_[std::size_t(last + 2)] = row;
+        for (std::size_t k = std::size_t(first + 1); k <= std::size_t(last + 1); ++k)
+            nearest_[k] = below_[k] - row < row - above_[k] ? below_[k] : above_[k];
     }
-    return nearest;
-}
+    int operator[](int column) const { return nearest_[std::size_t(column + 1)]; }
+
+  private:
+    const maps::BitGrid& grid_;
+    std::vector<std::int32_t> above_, below_, nearest_;  // by column + 1
+};
 
 // The sites of a run of free cells, from which each of them gets its nearest one.
 class Envelope {
@@ -103,26 +111,24 @@ class Envelope {
 }  // namespace clearance
 
 inline Clearance make_clearance(const maps::BitGrid& grid) {
-    const std::vector<std::int32_t> rows = clearance::nearest_rows(grid);
     Clearance made{std::vector<std::uint32_t>(grid.numbers()), std::vector<std::uint32_t>(grid.numbers())};
+    clearance::NearestRows rows(grid);
     clearance::Envelope envelope;
     for (int row = 0; row < grid.rows(); ++row) {
-        const std::uint32_t line = grid.number({row, 0});
-        const auto gap = [&](int column) {
-            return clearance::squared_gap(rows[line + std::uint32_t(column)] - row);
-        };
-        for (int column = 0; column < grid.columns();) {
-            if (grid.blocked(row, column)) {
-                ++column;
-                continue;
-            }
-            int last = column;
-            while (!grid.blocked(row, last + 1)) ++last;
+        rows.next_row(row);
+        const std::uint64_t* line = grid.row(row);
+        const auto free = [&](std::size_t k) { return ~line[k]; };
+        const auto blocked = [&](std::size_t k) { return line[k]; };
+        const std::uint32_t number = grid.number({row, 0});
+        const auto gap = [&](int column) { return clearance::squared_gap(rows[column] - row); };
+        for (int column = maps::first_set(free, 0); column < grid.columns();) {
+            const int last = maps::first_set(blocked, column) - 1;
+            rows.look(row, column, last);
             envelope.run(column, last, gap, [&](int c, int site, std::int64_t squared) {
-                made.squared[line + std::uint32_t(c)] = std::uint32_t(squared);
-                made.nearest[line + std::uint32_t(c)] = grid.number({rows[line + std::uint32_t(site)], site});
+                made.squared[number + std::uint32_t(c)] = std::uint32_t(squared);
+                made.nearest[number + std::uint32_t(c)] = grid.number({rows[site], site});
             });
-            column = last + 1;
+            column = maps::first_set(free, last + 1);
         }
     }
     return made;

@@ -43,10 +43,11 @@ class Diagram {
     Diagram& operator=(const Diagram&) = delete;
 
     const maps::BitGrid& grid() const { return grid_; }
+    // Without the nearest blocked cells: mark() says more.
     const Clearance& clearance() const { return clearance_; }
     const Pieces& pieces() const { return pieces_; }
     // The place of the boundary nearest to a free cell.
-    Pieces::Mark mark(std::uint32_t cell) const { return mark_[cell]; }
+    Pieces::Mark mark(std::uint32_t cell) const { return Pieces::Mark(mark_[cell]); }
     bool is_meet(std::uint32_t cell) const { return fate_[cell] == Fate::kept; }
 
     // The cells of the diagram, and for each its neighbours along sides, by their places in the list.
@@ -56,7 +57,7 @@ class Diagram {
         return fate_[cell] > Fate::taken ? std::uint32_t(next_[cell]) : none;
     }
     // From a free cell that is not in the diagram to the next one on its way there.
-    std::uint32_t above(std::uint32_t cell) const { return next_[cell]; }
+    std::uint32_t above(std::uint32_t cell) const { return std::uint32_t(next_[cell]); }
     // Ways between cells of the diagram with other than two neighbours; of a circle, from one of its cells to
     // itself.
     const std::vector<Branch>& branches() const { return branches_; }
@@ -66,8 +67,9 @@ class Diagram {
     Clearance clearance_;
     Pieces pieces_;
     std::vector<Fate> fate_;
-    std::vector<Pieces::Mark> mark_;
-    std::vector<std::uint32_t> next_;  // of cells in the diagram their place, of others the cell above
+    // In memory that was of use before: fresh pages take longer than what is written to them.
+    std::vector<std::uint32_t> mark_;
+    std::vector<std::int32_t> next_;  // of cells in the diagram their place, of others the cell above
     std::vector<std::uint32_t> cells_;
     std::vector<std::array<std::uint32_t, 4>> beside_;
     std::vector<Branch> branches_;
@@ -86,9 +88,9 @@ class Diagram {
     }
 
     void name_marks() {
-        mark_.assign(grid_.numbers(), -1);
+        mark_ = std::move(clearance_.nearest);
         each_free([&](maps::Cell cell, std::uint32_t n) {
-            mark_[n] = pieces_.nearest(cell, grid_.cell(clearance_.nearest[n]));
+            mark_[n] = std::uint32_t(pieces_.nearest(cell, grid_.cell(mark_[n])));
             fate_[n] = Fate::left;
         });
     }
@@ -96,26 +98,25 @@ class Diagram {
     void keep_meets() {
         const auto meet = [&](maps::Cell cell, std::uint32_t n, maps::Cell beside) {
             const std::uint32_t m = grid_.number(beside);
-            const bool is_wall = mark_[m] < 0;
-            const Pieces::Mark mark = is_wall ? pieces_.nearest(cell, beside) : mark_[m];
-            if (!pieces_.are_apart(mark_[n], mark)) return;
+            const bool is_wall = fate_[m] == Fate::blocked;
+            if (!pieces_.are_apart(mark(n), is_wall ? pieces_.nearest(cell, beside) : mark(m))) return;
             fate_[is_wall || clearance_.squared[n] >= clearance_.squared[m] ? n : m] = Fate::kept;
         };
         each_free([&](maps::Cell cell, std::uint32_t n) {
             meet(cell, n, {cell.row, cell.column + 1});
             meet(cell, n, {cell.row + 1, cell.column});
-            if (mark_[n - 1] < 0) meet(cell, n, {cell.row, cell.column - 1});
-            if (mark_[n - grid_.stride()] < 0) meet(cell, n, {cell.row - 1, cell.column});
+            if (fate_[n - 1] == Fate::blocked) meet(cell, n, {cell.row, cell.column - 1});
+            if (fate_[n - grid_.stride()] == Fate::blocked) meet(cell, n, {cell.row - 1, cell.column});
         });
     }
     void number_cells(const Thinning& thin) {
-        next_.assign(grid_.numbers(), none);
+        next_ = pieces_.give_sides();
         each_free([&](maps::Cell, std::uint32_t n) {
             if (fate_[n] == Fate::taken) {
-                next_[n] = thin.above(n);
+                next_[n] = std::int32_t(thin.above(n));
                 return;
             }
-            next_[n] = std::uint32_t(cells_.size());
+            next_[n] = std::int32_t(cells_.size());
             cells_.push_back(n);
         });
         beside_.reserve(cells_.size());

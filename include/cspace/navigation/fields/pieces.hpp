@@ -4,7 +4,10 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
@@ -27,10 +30,12 @@ class Pieces {
     explicit Pieces(const maps::BitGrid& grid)
         : grid_(grid), below_(grid.numbers(), -1), before_(grid.numbers(), -1) {
         for (int row = 0; row < grid.rows(); ++row)
-            for (int column = 0; column < grid.columns(); ++column)
-                if (!grid.blocked(row, column) && grid.blocked(row - 1, column) &&
-                    below_[grid.number({row, column})] < 0)
-                    follow(row, column);
+            for (std::size_t k = 0; k < grid.row_words(); ++k)
+                for (std::uint64_t begin = ~grid.row(row)[k] & grid.row(row - 1)[k]; begin;
+                     begin &= begin - 1) {
+                    const int column = int(64 * k) + std::countr_zero(begin) - 1;
+                    if (below_[grid.number({row, column})] < 0) follow(row, column);
+                }
         ring_begin_.push_back(std::int32_t(sides_.size()));
     }
 
@@ -55,6 +60,12 @@ class Pieces {
         // At a corner the side that leaves it.
         if ((above > 0) == (beyond < 0)) return 2 * level;
         return 2 * before_[grid_.number(blocked) + (beyond > 0)];
+    }
+
+    // Gives the memory of the sides of cells, a number for each cell, to another use: nearest() needed them.
+    std::vector<std::int32_t> give_sides() {
+        before_ = {};
+        return std::move(below_);
     }
 
     // Whether two places belong to different stretches of boundary: to different rings, or farther apart
