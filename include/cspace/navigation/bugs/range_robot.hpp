@@ -3,6 +3,7 @@
 
 #include "cspace/navigation/bugs/contact_robot.hpp"
 #include "cspace/navigation/bugs/range_sensor.hpp"
+#include "cspace/navigation/bugs/skyline.hpp"
 
 namespace cspace::navigation {
 
@@ -28,9 +29,12 @@ class RangeRobot : public ContactRobot {
 
     void look(std::vector<Seen>& seen) const {
         seen.clear();
+        const bool knows = Skyline::pays(*walls_);
+        if (knows) skyline_.look(*walls_, at_);
         for (int wall = 0; wall < walls_->size(); ++wall) {
-            look_at_corner(wall, seen);
-            if (range_ < std::numeric_limits<double>::infinity()) look_at_horizon(walls_->wall(wall), seen);
+            if (!knows || !skyline_.hides_corner(wall)) look_at_corner(wall, seen);
+            if (range_ < std::numeric_limits<double>::infinity())
+                look_at_horizon(walls_->wall(wall), seen, knows);
         }
     }
 
@@ -42,6 +46,7 @@ class RangeRobot : public ContactRobot {
     };
     double range_;
     mutable std::vector<Point> touched_;
+    mutable Skyline skyline_;
 
     // Where a ray towards a point ends.
     Cast cast(Point target) const {
@@ -72,7 +77,7 @@ class RangeRobot : public ContactRobot {
     }
 
     // Where a wall leaves the range, if it is in view there.
-    void look_at_horizon(const Wall& wall, std::vector<Seen>& seen) const {
+    void look_at_horizon(const Wall& wall, std::vector<Seen>& seen, bool knows) const {
         if (orientation(wall.begin, wall.end, at_) < 0) return;
         const Point d = wall.end - wall.begin, from = wall.begin - at_;
         const double a = squared_norm(d), b = dot(from, d), c = squared_norm(from) - range_ * range_;
@@ -81,6 +86,7 @@ class RangeRobot : public ContactRobot {
         for (const double t : {(-b - std::sqrt(root)) / a, (-b + std::sqrt(root)) / a}) {
             if (!(t > 0 && t < 1)) continue;
             const Point p = wall.begin + t * d;
+            if (knows && skyline_.hides(p)) continue;
             if (distance(cast(p).at, p) <= 1e-9 * range_) seen.push_back({p, wall, true});
         }
     }
