@@ -11,6 +11,7 @@ import numpy as np
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes, need_matplotlib
+from cspace.plot.films import Steps
 from cspace.plot.ideas import draw_idea
 
 __all__ = ["animation", "route", "routes", "world"]
@@ -25,6 +26,10 @@ TITLE: Final = 0.12
 """What a title takes, over the side of a world."""
 FRAMES: Final = 60
 """Frames in which an animation tells the search."""
+STILL: Final = 12
+"""Frames that show the path at its end."""
+INTERVAL: Final = 80
+"""How long a frame is shown [ms]."""
 
 
 def world(world: Any, *, ax: Any | None = None) -> list[Any]:
@@ -60,12 +65,17 @@ def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
         artists += draw_idea(axes, route)
     if len(route.path):
         artists += axes.plot(*route.path.T, color=PATH, linewidth=2.0, zorder=6, solid_capstyle="round")
-    for point, marker, size in ((route.start, "o", 7), (route.goal, "*", 12)):
-        artists += axes.plot(*point, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+    artists += draw_ends(axes, route)
     said = f"{route.length:.5g} m" if route else route.status.replace("_", " ")
     title = f"{route.planner.replace('_', ' ')}: {said}"
     artists.append(axes.set_title(title, fontsize=9, color=colors.INK, loc="left"))
     return artists
+
+
+def draw_ends(axes: Any, route: Any) -> list[Any]:
+    """Start (circle) and goal (star)."""
+    style = dict(mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+    return [*axes.plot(*route.start, "o", ms=7, **style), *axes.plot(*route.goal, "*", ms=12, **style)]
 
 
 def routes(routes: Sequence[Any], *, columns: int | None = None) -> Any:
@@ -118,18 +128,24 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     searched = axes.add_collection(LineCollection([], linewidths=1.2, zorder=4))
     reached = axes.scatter([], [], s=6, zorder=5)
     (path,) = axes.plot([], [], color=PATH, linewidth=2.2, zorder=6)
-    for point, marker, size in ((route.start, "o", 7), (route.goal, "*", 12)):
-        axes.plot(*point, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
+    ends = draw_ends(axes, route)
 
-    def show(frame: int) -> tuple[Any, ...]:
-        told = math.ceil(len(pieces) * min(frame + 1, frames) / frames)
-        searched.set(segments=pieces[:told], color=tints[:told])
-        reached.set_offsets(pieces[:told, 1] if told else np.empty((0, 2)))
-        reached.set_color(tints[:told])
+    def told(frame: int) -> int:
+        return math.ceil(len(pieces) * min(max(frame + 1, 0), frames) / frames)
+
+    def show(frame: int, since: int = 0) -> tuple[list[Any], list[Any]]:
+        new = slice(since, told(frame))
+        searched.set(segments=pieces[new], color=tints[new])
+        reached.set_offsets(pieces[new, 1])
+        reached.set_color(tints[new])
         path.set_data(*(route.path.T if frame >= frames else np.empty((2, 0))))
-        return searched, reached, path
+        return [searched, reached], [path, *ends]
 
-    return FuncAnimation(axes.figure, show, frames=frames + 12, interval=80, blit=False)
+    film: Any = FuncAnimation(
+        axes.figure, lambda frame: sum(show(frame), []), frames=frames + STILL, interval=INTERVAL, blit=True
+    )
+    film.steps = Steps(frames + STILL, INTERVAL, lambda frame: show(frame, told(frame - 1)))
+    return film
 
 
 def _wrong(value: Any, subject: str, remedy: str) -> InputTypeError:
