@@ -61,7 +61,7 @@ def walled():
 def test_a_run_is_drawn_with_its_end(ax):
     run = nav.follow([(0, 0), (3, 0), (3, 2)])
     artists = cs.plot.drive(run, ax=ax)
-    assert artists[-1].get_text() == "pure pursuit: arrived"
+    assert artists[-1].get_text() == "pure_pursuit: arrived"
     np.testing.assert_allclose(way(artists).get_segments()[0][0], run.poses[0, :2])
 
 

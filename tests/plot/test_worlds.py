@@ -7,6 +7,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError
+from cspace.plot.ideas import shown_events
 
 plt = pytest.importorskip("matplotlib.pyplot")
 
@@ -31,7 +32,7 @@ def test_every_planner_draws_its_idea(world, planner):
     bare = cs.plot.route(route, ax=axes[0], idea=False)
     full = cs.plot.route(route, ax=axes[1])
     assert len(full) > len(bare)
-    assert route.planner.replace("_", " ") in axes[1].get_title(loc="left")
+    assert route.planner in axes[1].get_title(loc="left")
     line = next(a for a in full if getattr(a, "get_zorder", int)() == 6)
     np.testing.assert_allclose(np.column_stack(line.get_data()), route.path)
 
@@ -88,3 +89,61 @@ def test_navigation_functions_have_no_minimum_but_the_goal(world, planner):
 def test_surfaces_of_planners_without_a_field_are_refused(world):
     with pytest.raises(InputError, match="a surface needs"):
         cs.plot.surface(cs.navigate(world, (1, 1), (9, 9), "bug_1"))
+
+
+@pytest.mark.parametrize("corners", ["never", "one"])
+@pytest.mark.parametrize("metric", ["octile", "manhattan"])
+@pytest.mark.parametrize("seed", range(5))
+def test_jumps_are_drawn_along_free_cells(metric, corners, seed):
+    rng = np.random.default_rng(seed)
+    blocked = rng.random((30, 40)) < 0.25
+    blocked[0, 0] = blocked[-1, -1] = False
+    grid = cs.OccupancyGrid(blocked, resolution=0.5)
+    route = cs.navigate(
+        grid, (0.25, 0.25), (19.75, 14.75), "jump_point_search", metric=metric, corners=corners
+    )
+    events = shown_events(route)
+    for start, end in zip(events.start, events.end, strict=True):
+        across, up = np.abs(end - start)
+        assert min(across, up) < 1e-9 or (abs(across - up) < 1e-9 and metric == "octile")
+        assert grid.path_clearance([start, end]) > 0 or corners != "never"
+    assert np.array_equal(events.end[1::2], route.trace.end)
+
+
+def test_a_film_ends_as_it_is_played(world, tmp_path):
+    from PIL import Image
+
+    route = cs.navigate(world, (1, 1), (9, 9), "rrt", rng=3)
+    film = cs.plot.animation(route, frames=5)
+    added, over = film.steps.show(5)
+    assert len(added[0].get_segments()) == 0, "all events are drawn before"
+    film._func(5)
+    assert len(added[0].get_segments()) == len(route.trace)
+    assert np.allclose(over[0].get_xydata(), route.path)
+    cs.plot.save(film, tmp_path / "film.gif", dpi=40)
+    with Image.open(tmp_path / "film.gif") as shown:
+        assert shown.n_frames == 6
+        shown.seek(5)
+        last = np.asarray(shown.convert("RGB")).astype(int)
+    red = np.array([214, 46, 51])
+    assert (np.abs(last - red).sum(axis=2) < 30).sum() > 20
+
+
+@pytest.mark.parametrize("ending", ["mp4", "xyz", "png"])
+def test_animations_of_other_formats_are_refused_by_name(world, tmp_path, ending):
+    film = cs.plot.animation(cs.navigate(world, (1, 1), (9, 9)), frames=2)
+    with pytest.raises(InputError, match=rf"search\.{ending}.*\.gif"):
+        cs.plot.save(film, tmp_path / f"search.{ending}")
+    assert not plt.get_fignums()
+
+
+@pytest.mark.parametrize("name", ["ways.xyz", "ways"])
+def test_pictures_of_unknown_formats_are_refused_by_name(world, tmp_path, name):
+    with pytest.raises(InputError, match=rf"{name}.*\.png"):
+        cs.plot.save(cs.plot.world(world), tmp_path / name)
+    assert not plt.get_fignums()
+
+
+def test_titles_are_what_users_type(world):
+    artists = cs.plot.route(cs.navigate(world, (1, 1), (9, 9), "visibility_graph"))
+    assert artists[-1].get_text().startswith("visibility_graph: ")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from cspace import _core
 from cspace.arrays import Array
 from cspace.navigation.planners import module_of
+from cspace.navigation.words import counted
 
 if TYPE_CHECKING:
     from cspace.navigation.trace import Trace
@@ -100,7 +101,7 @@ class Route(_core.RouteBase):
 
     def __repr__(self) -> str:
         if self:
-            return f"<Route {self.planner}: found, {self.length:.6g} m, {len(self.path)} points>"
+            return f"<Route {self.planner}: found, {self.length:.6g} m, {counted(len(self.path), 'point')}>"
         return f"<Route {self.planner}: {self.status}>"
 
 

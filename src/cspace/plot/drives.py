@@ -90,10 +90,10 @@ def poses_of(drive: Any) -> Array:
 
 def title_of(drive: Any) -> str:
     if hasattr(drive, "controller"):
-        return f"{drive.controller.replace('_', ' ')}: {drive.status}"
+        return f"{drive.controller}: {drive.status}"
     if hasattr(drive, "word"):
         return f"{drive.word}, {drive.length:.5g} m"
-    return f"hybrid A*: {drive.reason.split(',')[0] if not drive else format(drive.length, '.5g') + ' m'}"
+    return f"hybrid_a_star: {drive.reason.split(',')[0] if not drive else format(drive.length, '.5g') + ' m'}"
 
 
 def evenly(poses: Array, count: int) -> Array:

@@ -74,7 +74,7 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
     axes.tick_params(labelsize=7, colors=colors.INK)
     axes.set_zticks([])
     said = route.planner if route else f"{route.planner}: {route.status}"
-    axes.set_title(said.replace("_", " "), fontsize=9, color=colors.INK, loc="left")
+    axes.set_title(said, fontsize=9, color=colors.INK, loc="left")
     return artists
 
 

@@ -45,4 +45,6 @@ def check_ending(path: str | Path, figure: Any, *, moves: bool) -> None:
     known = {".gif"} if moves else {f".{name}" for name in figure.canvas.get_supported_filetypes()}
     if Path(path).suffix.lower() not in known:
         what = "an animation" if moves else "a picture"
-        raise InputError(f"cannot write {str(path)!r}: end the name of {what} with {' or '.join(sorted(known))}")
+        raise InputError(
+            f"cannot write {str(path)!r}: end the name of {what} with {' or '.join(sorted(known))}"
+        )

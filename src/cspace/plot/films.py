@@ -1,4 +1,4 @@
-"""Searches as GIF files: the world is drawn once, each picture adds what is new and lays over it what moves."""
+"""Searches as GIF files: the world is drawn once, each picture adds what is new."""
 
 from __future__ import annotations
 
@@ -35,8 +35,12 @@ def write_gif(figure: Any, steps: Steps, path: str | Path, dpi: float) -> None:
     canvas = FigureCanvasAgg(figure)
     pictures = list(drawn(figure, canvas, steps))
     # One palette for all: that of the last picture, which has every colour.
-    palette = Image.fromarray(pictures[-1]).quantize(256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE)
-    first, *others = (Image.fromarray(each).quantize(palette=palette, dither=Image.Dither.NONE) for each in pictures)
+    palette = Image.fromarray(pictures[-1]).quantize(
+        256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
+    )
+    first, *others = (
+        Image.fromarray(each).quantize(palette=palette, dither=Image.Dither.NONE) for each in pictures
+    )
     first.save(path, format="GIF", save_all=True, append_images=others, duration=steps.interval, loop=0)
 
 

@@ -4,6 +4,7 @@ touched."""
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from cspace.arrays import Array
 from cspace.plot import colors
 from cspace.plot.fields import draw_bands
 
-__all__ = ["draw_idea"]
+__all__ = ["draw_idea", "shown_events"]
 
 MOST_EVENTS: Final = 20_000
 """Events that a picture shows: of more every second, third … is drawn; a reader could not tell them apart."""
@@ -37,10 +38,37 @@ def lines(axes: Any, pieces: Array, **style: Any) -> list[Any]:
     return [axes.add_collection(LineCollection(list(pieces), **style))]
 
 
+def shown_events(route: Any) -> Any:
+    """The trace of a route, as a picture shows it: jumps from cell to cell along the moves that they stand
+    for, of eight directions diagonal first, else straight first, whichever way is free."""
+    trace = route.trace
+    if route.planner != "jump_point_search":
+        return trace
+    turns = np.array([turn_of(route, *ends) for ends in zip(trace.start, trace.end, strict=True)])
+    start = np.stack([trace.start, turns.reshape(-1, 2)], axis=1).reshape(-1, 2)
+    end = np.stack([turns.reshape(-1, 2), trace.end], axis=1).reshape(-1, 2)
+    return replace(trace, kind=trace.kind.repeat(2), start=start, end=end, value=trace.value.repeat(2))
+
+
+def turn_of(route: Any, start: Array, end: Array) -> Array:
+    """Where the moves of a jump turn: (2,) [m]."""
+    step = end - start
+    if route.options["metric"] == "manhattan":
+        turns = [np.array((end[0], start[1])), np.array((start[0], end[1]))]
+    else:
+        slant = np.sign(step) * np.abs(step).min()
+        turns = [start + slant, end - slant]
+    side = 0.1 * route.world.resolution  # of a way between centres, past free corners even
+    for turn in turns:
+        if route.world.path_clearance([start, turn, end]) > side:
+            return turn
+    return turns[0]
+
+
 def draw_events(axes: Any, route: Any) -> list[Any]:
     """The events of the trace in the order of time, blue to yellow: lines, or dots where they have no
     length."""
-    return draw_trace(axes, route.trace)
+    return draw_trace(axes, shown_events(route))
 
 
 def draw_expanded(axes: Any, route: Any) -> list[Any]:

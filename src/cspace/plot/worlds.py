@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from itertools import chain
 from typing import Any, Final
 
 import numpy as np
@@ -12,7 +13,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes, need_matplotlib
 from cspace.plot.films import Steps
-from cspace.plot.ideas import draw_idea
+from cspace.plot.ideas import draw_idea, shown_events
 
 __all__ = ["animation", "route", "routes", "world"]
 
@@ -66,9 +67,8 @@ def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
     if len(route.path):
         artists += axes.plot(*route.path.T, color=PATH, linewidth=2.0, zorder=6, solid_capstyle="round")
     artists += draw_ends(axes, route)
-    said = f"{route.length:.5g} m" if route else route.status.replace("_", " ")
-    title = f"{route.planner.replace('_', ' ')}: {said}"
-    artists.append(axes.set_title(title, fontsize=9, color=colors.INK, loc="left"))
+    said = f"{route.length:.5g} m" if route else route.status
+    artists.append(axes.set_title(f"{route.planner}: {said}", fontsize=9, color=colors.INK, loc="left"))
     return artists
 
 
@@ -121,7 +121,7 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     from matplotlib.collections import LineCollection
 
     world(route.world, ax=axes)
-    events = route.trace
+    events = shown_events(route)
     order = np.linspace(0, 1, max(len(events), 1))
     tints = matplotlib.colormaps["viridis"](order)  # as the picture of the whole search
     pieces = np.stack([events.start, events.end], axis=1) if len(events) else np.empty((0, 2, 2))
@@ -142,7 +142,11 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
         return [searched, reached], [path, *ends]
 
     film: Any = FuncAnimation(
-        axes.figure, lambda frame: sum(show(frame), []), frames=frames + STILL, interval=INTERVAL, blit=True
+        axes.figure,
+        lambda frame: list(chain(*show(frame))),
+        frames=frames + STILL,
+        interval=INTERVAL,
+        blit=True,
     )
     film.steps = Steps(frames + STILL, INTERVAL, lambda frame: show(frame, told(frame - 1)))
     return film

@@ -29,6 +29,7 @@ from cspace.errors import InputError
 from cspace.navigation.route import Route
 from cspace.navigation.sampling.problem import seed_of
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 from cspace.tolerances import SCAN_NOISE
 
 __all__ = ["VoronoiBugEvidence", "plan", "reason", "trace"]
@@ -111,13 +112,14 @@ def trace(route: Route) -> Trace:
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
     found: VoronoiBugEvidence = route.evidence
-    s = "" if found.branches == 1 else "es"
-    took = f"{found.branches} branch{s} and {len(found.meets)} meet points"
+    branches = counted(found.branches, "branch", "branches")
+    took = f"{branches} and {counted(len(found.meets), 'meet point')}"
     if route:
         return f"arrived after {route.length:.6g} m, {took}"
     if route.options["noise"]:
+        scans = counted(found.scans, "scan")
         return (
-            f"gave up after {route.length:.6g} m, {took}, {found.scans} scans: a sensor with noise did not "
+            f"gave up after {route.length:.6g} m, {took}, {scans}: a sensor with noise did not "
             "show the goal, which proves nothing"
         )
     if found.shut is None:

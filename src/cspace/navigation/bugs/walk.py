@@ -15,6 +15,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import suggest
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route
@@ -87,8 +88,7 @@ def reason(route: Route) -> str:
     found: BugEvidence = route.evidence
     walls = len(found.rings)
     if route:
-        times = f"{walls} time{'s' if walls != 1 else ''}"
-        return f"arrived after {route.length:.6g} m, having followed walls {times}"
+        return f"arrived after {route.length:.6g} m, having followed walls {counted(walls, 'time')}"
     if found.shut is None:
         return f"gave up after {route.length:.6g} m: rounding hides which walls are nearer to the goal"
     ring, (x, y) = found.shut

@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.maps import OccupancyGrid
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted, divided
 from cspace.tolerances import CELLS_PER_CORNER, MESHED_CORNERS, RUN_CELLS
 
 if TYPE_CHECKING:
@@ -62,10 +63,10 @@ def reason(route: Route) -> str:
     """The verdict in a sentence."""
     if route:
         corners = max(len(route.path) - 2, 0)
-        return f"the shortest path; it turns at {corners} corner{'s' if corners != 1 else ''} of obstacles"
+        return f"the shortest path; it turns at {counted(corners, 'corner')} of obstacles"
     if route.world.kind == "grid":
         return "walls divide start from goal: no path connects the parts of free space in which they lie"
-    return f"walls divide start from goal: no path connects the {route.world.components} parts of free space"
+    return divided(route.world.components)
 
 
 def trace(route: Route) -> Trace:

@@ -19,6 +19,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 from cspace.navigation.worlds import need_polygons
 from cspace.tolerances import QUADTREE_CELLS, QUADTREE_DEPTH, UNIFORM_DEPTH
 
@@ -96,7 +97,9 @@ def plan(
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
     found: CellEvidence = route.evidence
-    squares = f"{found.free} free and {found.mixed} mixed squares, the smallest {found.side:.6g} m wide"
+    squares = (
+        f"{found.free} free and {counted(found.mixed, 'mixed square')}, the smallest {found.side:.6g} m wide"
+    )
     if route:
         return f"a chain of free squares leads from start to goal, among {squares}"
     if route.status == "unreachable":

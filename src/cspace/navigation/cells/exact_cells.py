@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 
 if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
@@ -45,12 +46,10 @@ def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
 
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
-    count = len(exact_cells(route.world)[0])
+    cells = counted(len(exact_cells(route.world)[0]), "cell")
     if route:
-        return (
-            f"a chain of cells leads from start to goal; the shortest path inside it, of {count} cells in all"
-        )
-    return f"no chain of the {count} cells leads from start to goal, and they fill free space"
+        return f"a chain of cells leads from start to goal; the shortest path inside it, of {cells} in all"
+    return f"no chain of the {cells} leads from start to goal, and they fill free space"
 
 
 def trace(route: Route) -> Trace:

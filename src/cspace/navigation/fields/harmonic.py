@@ -23,6 +23,7 @@ from cspace.navigation.fields.potential_a_star import clearance_field
 from cspace.navigation.grid.search import checked_ends
 from cspace.navigation.route import Price, new_route
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_RESIDUAL
 
 if TYPE_CHECKING:
@@ -93,10 +94,11 @@ def reason(route: Route) -> str:
     if evidence == UNSOLVED:
         return "no way leads to the goal: walls divide it from the start, as is known without the potential"
     if route.status == "unreachable":
-        return f"no way leads to the goal: {route.price.nodes} cells are connected with it, the start is not"
-    solved = f"solved to a share of {evidence.residual:.2g} in {evidence.cycles} cycles"
+        cells = counted(route.price.nodes, "cell")
+        return f"no way leads to the goal: the start is not among the {cells} connected with it"
+    solved = f"solved to a share of {evidence.residual:.2g} in {counted(evidence.cycles, 'cycle')}"
     if not route:
-        return f"the potential rests on {evidence.rests} cells that are not the goal; it was {solved}"
+        return f"the potential rests on {counted(evidence.rests, 'cell')} beside the goal; it was {solved}"
     return f"went down a harmonic potential without rest but the goal, {solved}, for {route.length:.6g} m"
 
 

@@ -19,6 +19,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import PolygonWorld
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 from cspace.tolerances import DESCENT_LOOKS, LEAST_REACH
 
 if TYPE_CHECKING:
@@ -91,7 +92,7 @@ def reason(route: Route) -> str:
     """The verdict in a sentence."""
     rest: PotentialRest = route.evidence
     if route:
-        over = f", over {rest.saddles} saddles" if rest.saddles else ""
+        over = f", over {counted(rest.saddles, 'saddle')}" if rest.saddles else ""
         return f"went down the potential for {route.length:.6g} m{over}"
     x, y = route.path[-1]
     left = float(np.hypot(x - route.goal[0], y - route.goal[1]))

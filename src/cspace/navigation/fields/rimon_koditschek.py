@@ -24,6 +24,7 @@ from cspace.errors import InputError
 from cspace.maps import PolygonWorld
 from cspace.navigation.route import Price, new_route
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 from cspace.tolerances import FARTHEST_POINT, NAVIGATION_SQUARES, NAVIGATION_STEPS, ON_WALL
 
 if TYPE_CHECKING:
@@ -122,7 +123,8 @@ class NavigationFunction:
 
     def __repr__(self) -> str:
         proven = "proven" if self.is_proven else "not proven"
-        return f"<NavigationFunction: kappa {self.kappa:g}, {self.obstacles} obstacles, one minimum {proven}>"
+        among = counted(self.obstacles, "obstacle")
+        return f"<NavigationFunction: kappa {self.kappa:g}, {among}, one minimum {proven}>"
 
 
 def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Route:
@@ -179,7 +181,7 @@ def reason(route: Route) -> str:
     said = f"a navigation function with kappa {function.kappa:g}, {minimum}"
     if not route:
         return f"the descent came to no end within {NAVIGATION_STEPS} steps, of {said}"
-    pushed = f", pushed off {evidence.pushes} saddles" if evidence.pushes else ""
+    pushed = f", pushed off {counted(evidence.pushes, 'saddle')}" if evidence.pushes else ""
     return f"went down {said}, for {route.length:.6g} m{pushed}"
 
 

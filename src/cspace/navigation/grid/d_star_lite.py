@@ -18,6 +18,7 @@ from cspace.maps.occupancy_grid import outside
 from cspace.navigation.grid.search import METRICS, WORDS, checked_ends, metric_of
 from cspace.navigation.route import STATUSES, Price, Route, new_route
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 
 __all__ = ["DStarLite", "plan", "reason", "trace"]
 
@@ -145,8 +146,8 @@ def reason(route: Route) -> str:
     """The verdict in a sentence."""
     cells = route.price.nodes
     if route:
-        return f"found a way of {route.length:.6g} m after settling {cells} cells"
-    return f"no way leads to the goal, as is known after settling {cells} cells more"
+        return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"
+    return f"no way leads to the goal, as is known after settling {counted(cells, 'cell')} more"
 
 
 def trace(route: Route) -> Trace:

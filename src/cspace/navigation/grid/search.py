@@ -17,6 +17,7 @@ from cspace.errors import InputError, InputTypeError, suggest
 from cspace.maps import OccupancyGrid
 from cspace.navigation.route import Route
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -123,13 +124,15 @@ def reason(route: Route) -> str:
     """The verdict of a planner of this family, in a sentence."""
     cells = route.price.nodes
     if route:
-        return f"found a way of {route.length:.6g} m after settling {cells} cells"
+        return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"
     if route.evidence is not None:
         parts = route.evidence["parts"]
         return (
             f"no way leads to the goal: it lies in another of the {parts} connected parts of the free cells"
         )
-    return f"no way leads to the goal: after {cells} expansions nothing that can be reached is left"
+    return (
+        f"no way leads to the goal: after {counted(cells, 'expansion')} nothing that can be reached is left"
+    )
 
 
 def traced(route: Route, settings: Settings) -> Trace:

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted, divided
 from cspace.navigation.worlds import need_polygons
 
 if TYPE_CHECKING:
@@ -47,8 +48,10 @@ def reason(route: Route) -> str:
     """The verdict in a sentence."""
     if route:
         nodes = len(visibility_graph(route.world)[0])
-        return f"the shortest path, over {max(len(route.path) - 2, 0)} of the graph's {nodes} corners"
-    return f"walls divide start from goal: no path connects the {route.world.components} parts of free space"
+        return (
+            f"the shortest path, over {max(len(route.path) - 2, 0)} of the graph's {counted(nodes, 'corner')}"
+        )
+    return divided(route.world.components)
 
 
 def trace(route: Route) -> Trace:

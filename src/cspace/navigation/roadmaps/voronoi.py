@@ -19,6 +19,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import divided
 from cspace.navigation.worlds import need_polygons
 from cspace.tolerances import DIAGRAM_CHORD
 
@@ -100,7 +101,7 @@ def reason(route: Route) -> str:
         return f"it keeps {way}{wide}"
     if route.status == "undetermined":
         return "rounding has lost part of the diagram: walls lie closer to each other than numbers tell"
-    return f"walls divide start from goal: no path connects the {route.world.components} parts of free space"
+    return divided(route.world.components)
 
 
 def trace(route: Route) -> Trace:

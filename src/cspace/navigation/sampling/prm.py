@@ -13,6 +13,7 @@ import numpy as np
 
 from cspace.navigation.sampling import problem
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 
 if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
@@ -51,8 +52,10 @@ def plan(
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
     done: problem.Sampled = route.evidence
+    segments = counted(done.edges, "segment")
     return problem.verdict_of(
-        route, f"a shortest way on a roadmap of {done.nodes} points and {done.edges} segments tested"
+        route,
+        f"a shortest way on a roadmap of {counted(done.nodes, 'point')} and {segments} tested",
     )
 
 

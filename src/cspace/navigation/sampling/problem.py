@@ -11,6 +11,7 @@ from cspace import _core
 from cspace.arrays import as_floats, as_generator
 from cspace.errors import InputError, InputTypeError
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted, divided
 from cspace.tolerances import SAMPLE_STEP
 
 if TYPE_CHECKING:
@@ -57,15 +58,13 @@ def trace_of(route: Route) -> Trace:
 def verdict_of(route: Route, found: str) -> str:
     """The verdict in a sentence; `found` where there is a path."""
     done: Sampled = route.evidence
+    tried = f"{counted(done.samples, 'sample')}, {counted(done.nodes, 'node')}"
     if route:
         return found
     if route.status == "unreachable":
-        return (
-            f"walls divide start from goal: no path connects the {route.world.components} parts of free "
-            "space; this is known from the map, without a sample"
-        )
+        return f"{divided(route.world.components)}; this is known from the map, without a sample"
     return (
-        f"no path among {done.samples} samples, {done.nodes} nodes and {done.edges} segments tested; that "
+        f"no path among {tried} and {counted(done.edges, 'segment')} tested; that "
         "proves nothing: one exists, and more samples= may find it"
     )
 

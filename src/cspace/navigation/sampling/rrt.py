@@ -14,6 +14,7 @@ import numpy as np
 
 from cspace.navigation.sampling import problem
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 
 if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
@@ -49,7 +50,8 @@ def reason(route: Route) -> str:
     """The verdict in a sentence."""
     done: problem.Sampled = route.evidence
     return problem.verdict_of(
-        route, f"a tree of {done.nodes} nodes reached the goal after {done.samples} samples"
+        route,
+        f"a tree of {counted(done.nodes, 'node')} reached the goal after {counted(done.samples, 'sample')}",
     )
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from cspace.navigation.sampling import problem
 from cspace.navigation.trace import Trace
+from cspace.navigation.words import counted
 
 if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
@@ -52,7 +53,8 @@ def reason(route: Route) -> str:
     """The verdict in a sentence."""
     done: problem.Sampled = route.evidence
     return problem.verdict_of(
-        route, f"the best way in a tree of {done.nodes} nodes after {done.samples} samples"
+        route,
+        f"the best way in a tree of {counted(done.nodes, 'node')} after {counted(done.samples, 'sample')}",
     )
 
 
