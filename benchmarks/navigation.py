@@ -22,7 +22,7 @@ RUNS: dict[str, list[str]] = {
     "grid": ["--rounds", "3", "arena", "brc202d", "random-400-33", "maze-400-4", "Berlin_1_256"],
     "sampling": ["--queries", "20"],
     "bugs": [],
-    "large": ["--patience", "60"],
+    "large": ["--patience", "300"],
     "curves": ["--rounds", "3"],
     "exact": [],
 }

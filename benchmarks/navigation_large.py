@@ -1,6 +1,6 @@
 """Maps of 8,000 × 8,000 cells: what the map object takes beside its input, and what a question takes.
 
-Usage: python benchmarks/navigation_large.py [--patience 60]. Maps of N. Sturtevant are laid out side by side
+Usage: python benchmarks/navigation_large.py [--patience 300]. Maps of N. Sturtevant are laid out side by side
 or enlarged. Every planner runs in a fresh process, whose resident memory is read before and after (Linux
 alone). Writes benchmarks/results/navigation_large.json.
 """
@@ -93,7 +93,7 @@ def one(kind: str, planner: str) -> dict[str, Any]:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--one", nargs=2, metavar=("MAP", "PLANNER"))
-    parser.add_argument("--patience", type=float, default=60.0)
+    parser.add_argument("--patience", type=float, default=300.0)
     options = parser.parse_args()
     if options.one:
         print(json.dumps(one(*options.one)))
