@@ -48,7 +48,10 @@ def limit(seconds: float | None) -> Iterator[None]:
     signal.signal(CARRIER, stop)
     try:
         timer.start()
-        yield
+        try:
+            yield
+        finally:
+            timer.cancel()
+            timer.join()  # a thread alive when the interpreter ends holds on to what it has seen
     finally:
-        timer.cancel()
         signal.signal(CARRIER, before)
