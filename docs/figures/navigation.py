@@ -53,8 +53,21 @@ def fields() -> None:
     cs.plot.save(figure, HERE / "fields.png", dpi=75)
 
 
+def noise() -> None:
+    """One walk by a sensor without noise, with a little and with much."""
+    walks = [
+        cs.navigate(yard(), (2, 30), (98, 42), "voronoi_bug", range=20.0, noise=share * 20, rng=1)
+        for share in (0, 0.02, 0.1)
+    ]
+    figure = cs.plot.routes(walks, columns=3)
+    for axes, share in zip(figure.axes, ("no noise", "2 % of the range", "10 % of the range"), strict=False):
+        axes.set_title(share, loc="left", fontsize="small")
+    cs.plot.save(figure, HERE / "noise.png", dpi=75)
+
+
 def main() -> None:
     fields()
+    noise()
     world = yard()
     routes = [cs.navigate(world, (2, 30), (98, 42), planner) for planner in cs.navigation.PLANNERS]
     cs.plot.save(cs.plot.routes(routes, columns=7), HERE / "planners.png", dpi=75)
