@@ -47,22 +47,21 @@ class GridAnyAngle {
                 maps::LazyParts* parts = nullptr, Trace* trace = nullptr,
                 const std::function<void()>& look = {}) {
         const auto is_divided = [&] { return divided(parts->of(grid_, false), from, to); };
-        const std::uint64_t patience =
-            parts ? maps::LazyParts::patience(grid_) : std::numeric_limits<std::uint64_t>::max();
+        const std::uint64_t patience = parts ? maps::LazyParts::patience(grid_) : never;
         Route route;
         route.status = Status::unreachable;
         if (patience < grid_.numbers() && parts->is_made(false) && is_divided()) return route;
         // Nodes after which parts are looked at: each takes longer than to settle a cell.
-        auto asked = std::int64_t(std::min(patience >> 1, std::uint64_t(never)));
-        const auto on_pause = [&](std::int64_t nodes) {
+        std::uint64_t asked = parts ? patience >> 1 : never;
+        const auto on_pause = [&](std::uint64_t nodes) {
             if (look) look();
             if (nodes >= asked) {
-                if (is_divided()) return std::int64_t(0);
+                if (is_divided()) return std::uint64_t(0);
                 asked = never;
             }
             return std::min(asked, look ? nodes + between_looks : never);
         };
-        const std::int64_t pause = std::min(asked, look ? between_looks : never);
+        const std::uint64_t pause = std::min(asked, look ? between_looks : never);
         route = search_.solve(from.at, from.runs, to.at, to.runs, trace, pause, on_pause);
         for (Point& p : route.path) p = in_metres(p);
         if (!route.path.empty()) {
@@ -79,8 +78,8 @@ class GridAnyAngle {
     std::size_t bytes() const { return search_.bytes(); }
 
   private:
-    static constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
-    static constexpr std::int64_t between_looks = 1 << 16;  // nodes: a twentieth of a second
+    static constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
+    static constexpr std::uint64_t between_looks = 1 << 16;  // nodes: a twentieth of a second
     const maps::BitGrid& grid_;
     maps::GridFrame frame_;
     maps::RunMesh mesh_;

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <type_traits>
 #include <utility>
@@ -19,6 +18,7 @@
 #include "cspace/maps/convex_mesh.hpp"
 #include "cspace/math/predicates.hpp"
 #include "cspace/navigation/any_angle/vertex_table.hpp"
+#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {
@@ -39,26 +39,25 @@ class IntervalSearch {
     // starts, goals: the polygons whose closures hold the start and the goal.
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
                 const std::vector<Polygon>& goals, Trace* trace = nullptr) {
-        constexpr std::int64_t never = std::numeric_limits<std::int64_t>::max();
-        return solve(start, starts, goal, goals, trace, never, [](std::int64_t) { return never; });
+        constexpr auto never = std::numeric_limits<std::uint64_t>::max();
+        return solve(start, starts, goal, goals, trace, never, [](std::uint64_t) { return never; });
     }
     // After `pause` nodes look(nodes) is asked, which says after how many it is to be asked again; 0: there
     // is no path.
     template <class Look>
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
-                const std::vector<Polygon>& goals, Trace* trace, std::int64_t pause, Look look) {
+                const std::vector<Polygon>& goals, Trace* trace, std::uint64_t pause, Look look) {
         begin(start, goal, goals, trace);
         for (const Polygon& p : starts)
             for (const Polygon& q : goals)
                 if (p == q) return straight();
         for (const Polygon& p : starts) expand_start(p);
-        while (!heap_.empty()) {
-            const auto [f, n] = pop();
-            const Node least = nodes_[std::size_t(n)];
-            if (is_goal(least.edge)) return finish(least);
-            free_.push_back(n);
-            if (!is_stale(least)) expand(least, f);
-            if (price_.nodes >= pause && (pause = look(price_.nodes)) == 0) break;
+        Open open{*this};
+        Effort effort;
+        for (effort.pause = pause; effort.pause > 0; effort.pause = look(effort.settled)) {
+            const std::uint32_t last = best_first(open, queue_, effort);
+            if (last != no_node) return finish(nodes_[last]);
+            if (queue_.empty()) break;
         }
         Route route;
         route.status = Status::unreachable;
@@ -68,7 +67,7 @@ class IntervalSearch {
 
     std::size_t bytes() const {
         return best_.bytes() + nodes_.capacity() * sizeof(Node) + free_.capacity() * sizeof(Index) +
-               heap_.capacity() * sizeof(heap_[0]);
+               queue_.bytes();
     }
 
   private:
@@ -97,7 +96,12 @@ class IntervalSearch {
     std::uint32_t query_ = 0;
     std::vector<Node> nodes_;  // that wait, and places of those that have been expanded
     std::vector<Index> free_;
-    std::vector<std::pair<double, Index>> heap_;
+    struct Waits {  // without a tie to look at: a twentieth of a search
+        double priority;
+        std::uint32_t node;
+        friend bool operator<(const Waits& x, const Waits& y) { return x.priority < y.priority; }
+    };
+    Heap<Waits> queue_;
     std::vector<Polygon> goals_;
     Point start_, goal_;
     bool is_inside_ = false;  // whether the start itself looks around, in a polygon that holds it
@@ -119,7 +123,7 @@ class IntervalSearch {
         best_.begin();
         nodes_.clear();
         free_.clear();
-        heap_.clear();
+        queue_.clear();
         start_ = start, goal_ = goal, goals_ = goals, price_ = {}, trace_ = trace;
     }
     Route straight() const {
@@ -134,12 +138,22 @@ class IntervalSearch {
 
     // --- the order of nodes
     // ----------------------------------------------------------------------------------
-    std::pair<double, Index> pop() {
-        std::pop_heap(heap_.begin(), heap_.end(), std::greater<>());
-        const auto least = heap_.back();
-        heap_.pop_back();
-        return least;
-    }
+    // Intervals as nodes of best_first. A place that has been expanded serves another interval.
+    struct Open {
+        IntervalSearch& search;
+
+        bool settle(std::uint32_t n) {
+            if (!search.is_stale(search.nodes_[n])) return true;
+            search.free_.push_back(Index(n));
+            return false;
+        }
+        bool is_goal(std::uint32_t n) const { return search.is_goal(search.nodes_[n].edge); }
+        void expand(std::uint32_t n, Heap<Waits>&) {
+            const Node from = search.nodes_[n];
+            search.free_.push_back(Index(n));
+            search.expand(from);
+        }
+    };
     // Whether a shorter way to the root of a node is known by now.
     bool is_stale(const Node& n) { return n.root != at_start && n.g > best_[n.root].g * (1 + 1e-13); }
     // Notes a way of length g to a corner, coming from another one to turn by `hand` there; false if a
@@ -204,8 +218,7 @@ class IntervalSearch {
         else
             place = free_.back(), free_.pop_back(),
             nodes_[std::size_t(place)] = {g, on_left, on_right, root, entered};
-        heap_.push_back({f, place});
-        std::push_heap(heap_.begin(), heap_.end(), std::greater<>());
+        queue_.push({f, std::uint32_t(place)});
     }
 
     // All of an edge is reached from its nearer end v, to which a path leads along the line of the edge.
@@ -223,11 +236,11 @@ class IntervalSearch {
     }
 
     // What can be reached from the root of a node inside the polygon that it enters.
-    void expand(const Node& from, double f) {
+    void expand(const Node& from) {
         ++price_.nodes;
         if (trace_) {
             const auto [left, right] = interval(from);
-            trace_->push_back({0, right, left, f});
+            trace_->push_back({0, right, left, from.g + estimate(at(from.root), left, right)});
         }
         // The edge as the polygon sees it begins on the left of who enters.
         const Index left_end = mesh_.tail(from.edge), right_end = mesh_.head(from.edge);
