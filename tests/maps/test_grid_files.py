@@ -116,6 +116,12 @@ def test_scenarios(tmp_path):
     assert np.array_equal(lines.start, [(1, 11), (0, 1)])
     assert np.array_equal(lines.goal, [(1, 12), (2, 3)])
     assert np.array_equal(lines.length, [1, 3.41421])
+    grid = cs.OccupancyGrid(np.zeros((20, 8), bool), resolution=0.5, origin=(1, 2))
+    assert np.array_equal(lines.ends(1, grid), [(1.25, 2.75), (2.25, 3.75)])
+    with pytest.raises(ValueError, match="line is 2; the file has 2 lines, numbered from 0"):
+        lines.ends(2, grid)
+    with pytest.raises(ValueError, match="line 0 has cells outside of this grid of 9 × 8"):
+        lines.ends(0, cs.OccupancyGrid(np.zeros((9, 8), bool)))
     with pytest.raises(MapError, match=":2: expected bucket, map, width"):
         cs.maps.read_scenarios(write(tmp_path, "b.scen", "version 1\n0 a.map 1 1 0 0 0\n"))
     with pytest.raises(MapError, match="begins with the line 'version 1'"):

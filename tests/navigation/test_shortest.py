@@ -203,7 +203,10 @@ def test_the_graph_and_the_cells_can_be_looked_at():
     from cspace.navigation.roadmaps.visibility_graph import visibility_graph
 
     world = cs.PolygonWorld([[(4, 4), (6, 4), (6, 6), (4, 6)]], (0, 0, 10, 10))
-    nodes, edges = visibility_graph(world)
+    graph = visibility_graph(world)
+    nodes, edges = graph
+    assert graph.corners is nodes
+    assert graph.edges.shape == (len(edges), 2)
     assert len(nodes) == 4
     assert len(edges) == 4
     cells, doors = exact_cells(world)

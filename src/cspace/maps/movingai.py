@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import math
 import os
-from typing import Final, NamedTuple
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.errors import MapError
+from cspace.errors import InputError, MapError
 from cspace.maps.files import map_bytes, map_path
 from cspace.tolerances import MAP_CELLS
 
@@ -33,6 +33,20 @@ class Scenarios(NamedTuple):
     """(k, 2): those of the goal."""
     length: Array
     """(k,): the length of the shortest way by eight moves without cutting corners [cells], as printed."""
+
+    def ends(self, line: int, grid: Any) -> tuple[Array, Array]:
+        """Start and goal of a line, 0 to k − 1, as points (2,) [m]: the centres of their cells in grid, the
+        OccupancyGrid of the file's map. InputError for a line that is none, and for cells that the grid does
+        not have."""
+        count = len(self.length)
+        if not (isinstance(line, (int, np.integer)) and 0 <= line < count):
+            raise InputError(f"line is {line!r}; the file has {count} lines, numbered from 0")
+        rows = np.array([self.start[line][::-1], self.goal[line][::-1]])
+        if (rows >= grid.shape).any():
+            sizes = " × ".join(map(str, grid.shape))
+            raise InputError(f"line {line} has cells outside of this grid of {sizes}; give its own map")
+        start, goal = grid.center_of(rows)
+        return start, goal
 
 
 def read_movingai(path: str | os.PathLike[str]) -> npt.NDArray[np.bool_]:

@@ -2,7 +2,7 @@
 
 from cspace.navigation.bugs import BugEvidence
 from cspace.navigation.cars import CarRoute, hybrid_a_star
-from cspace.navigation.cells import CellEvidence, Coverage, approximate_cells, coverage
+from cspace.navigation.cells import ApproximateCells, CellEvidence, Coverage, approximate_cells, coverage
 from cspace.navigation.curves import (
     Curve,
     Segment,
@@ -28,14 +28,14 @@ from cspace.navigation.grid import DStarLite
 from cspace.navigation.options import Option
 from cspace.navigation.planners import PLANNERS, Planner
 from cspace.navigation.query import World, navigate
-from cspace.navigation.roadmaps import VoronoiDiagram, visibility_graph, voronoi_diagram
+from cspace.navigation.roadmaps import VisibilityGraph, VoronoiDiagram, visibility_graph, voronoi_diagram
 from cspace.navigation.route import STATUSES, Price, Route
 from cspace.navigation.trace import Trace
 
 __all__ = ["PLANNERS", "STATUSES", "Option", "Planner", "Price", "Route", "Trace", "World", "navigate"]
 __all__ += ["BugEvidence"]
 __all__ += ["CarRoute", "hybrid_a_star"]
-__all__ += ["CellEvidence", "Coverage", "approximate_cells", "coverage"]
+__all__ += ["ApproximateCells", "CellEvidence", "Coverage", "approximate_cells", "coverage"]
 __all__ += ["Curve", "Segment", "dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]
 __all__ += ["BrushfireDiagram", "arrival_times", "brushfire_diagram"]
 __all__ += ["HarmonicEvidence", "harmonic"]
@@ -43,4 +43,4 @@ __all__ += ["NavigationEvidence", "NavigationFunction", "navigation_function"]
 __all__ += ["PotentialRest", "potential"]
 __all__ += ["CONTROLLERS", "OUTCOMES", "Car", "Run", "Unicycle", "cast_rays", "follow"]
 __all__ += ["DStarLite"]
-__all__ += ["VoronoiDiagram", "visibility_graph", "voronoi_diagram"]
+__all__ += ["VisibilityGraph", "VoronoiDiagram", "visibility_graph", "voronoi_diagram"]

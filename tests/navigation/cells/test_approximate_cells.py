@@ -132,7 +132,8 @@ def test_uniform_squares_are_manhattan_optimal():
 
 def test_the_squares_tile_the_world():
     world = cs.PolygonWorld([[(2, 2), (5, 3), (3, 6)], [(6, 1), (7, 1), (7, 2)]], (0, 0, 8, 6.5))
-    squares, kinds = approximate_cells(world, 6)
+    cells = approximate_cells(world, 6)
+    squares, kinds = cells.squares, cells.kinds
     areas = (squares[:, 2:] - squares[:, :2]).prod(axis=1)
     assert areas.sum() == pytest.approx(64)
     free, mixed = areas[kinds == FREE].sum(), areas[kinds == MIXED].sum()

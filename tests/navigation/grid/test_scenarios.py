@@ -47,8 +47,7 @@ def test_every_line_has_the_length_that_the_file_prints(name):
     assert len(printed) == len(lines.length) > 0
     blocked = grid.blocked
     for number, text in enumerate(printed):
-        start, goal = tuple(lines.start[number] + 0.5), tuple(lines.goal[number] + 0.5)
-        route = cs.navigate(grid, start, goal, planner="jump_point_search")
+        route = cs.navigate(grid, *lines.ends(number, grid), planner="jump_point_search")
         assert route, f"line {number}: {route.reason}"
         assert abs(route.length - float(text)) <= half_digit(text), f"line {number}"
         if number % 10 == 0:

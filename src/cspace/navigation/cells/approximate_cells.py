@@ -27,13 +27,22 @@ if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
     from cspace.navigation.route import Route
 
-__all__ = ["CellEvidence", "approximate_cells", "plan", "reason", "trace"]
+__all__ = ["ApproximateCells", "CellEvidence", "approximate_cells", "plan", "reason", "trace"]
 
 METRICS: Final = ("euclidean", "manhattan")
 WORDS: Final = ("split", "free", "expand")
 KINDS: Final = ("free", "mixed", "full")
 FINEST: Final = 20
 """The deepest level that the core numbers."""
+
+
+class ApproximateCells(NamedTuple):
+    """The squares that a world is cut into, which fill the square around its bounds."""
+
+    squares: Array
+    """(k, 4): xmin, ymin, xmax, ymax [m]."""
+    kinds: npt.NDArray[np.int8]
+    """(k,): 0 free, 1 mixed, 2 full."""
 
 
 class CellEvidence(NamedTuple):
@@ -115,18 +124,15 @@ def trace(route: Route) -> Trace:
     return Trace(WORDS, *_core._approximate_cells_trace(route.world._core, route.start, route.goal, settings))
 
 
-def approximate_cells(
-    world: PolygonWorld, depth: int = 6, *, uniform: bool = False
-) -> tuple[Array, npt.NDArray[np.int8]]:
-    """The squares (k, 4): xmin, ymin, xmax, ymax [m], and their kinds (k,): 0 free, 1 mixed, 2 full.
+def approximate_cells(world: PolygonWorld, depth: int = 6, *, uniform: bool = False) -> ApproximateCells:
+    """The squares that a PolygonWorld is cut into.
 
     depth, uniform: as in `plan`, for a tree that is not refined. InputError for a depth that is not whole or
     not within 0 and 20.
     """
     need_polygons(world)
     settings = _settings(world, depth, 0.0, False, None, uniform, None)
-    squares, kinds = _core._approximate_cells_all(world._core, settings)
-    return squares, kinds
+    return ApproximateCells(*_core._approximate_cells_all(world._core, settings))
 
 
 def _side(world: PolygonWorld) -> float:

@@ -9,7 +9,7 @@ search by A* with the straight line to the goal as estimate joins start and goal
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -25,9 +25,19 @@ if TYPE_CHECKING:
     from cspace.maps import PolygonWorld
     from cspace.navigation.route import Route
 
-__all__ = ["plan", "reason", "trace", "visibility_graph"]
+__all__ = ["VisibilityGraph", "plan", "reason", "trace", "visibility_graph"]
 
 _WORDS = ("expand",)
+
+
+class VisibilityGraph(NamedTuple):
+    """The corners of a world that see each other."""
+
+    corners: Array
+    """(n, 2) [m]: those that free space bends around."""
+    edges: npt.NDArray[np.int32]
+    """(k, 2): pairs of corners that see each other and between which a taut string may run, the lower number
+    first."""
 
 
 def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
@@ -47,7 +57,7 @@ def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
     if route:
-        nodes = len(visibility_graph(route.world)[0])
+        nodes = len(visibility_graph(route.world).corners)
         return (
             f"the shortest path, over {max(len(route.path) - 2, 0)} of the graph's {counted(nodes, 'corner')}"
         )
@@ -59,9 +69,10 @@ def trace(route: Route) -> Trace:
     return Trace(_WORDS, *_core._visibility_trace(route.world._core, route.start, route.goal))
 
 
-def visibility_graph(world: PolygonWorld) -> tuple[Array, npt.NDArray[np.int32]]:
-    """The corners (n, 2) [m] that free space bends around, and the pairs (k, 2) of them that a path may
-    join."""
+def visibility_graph(world: PolygonWorld) -> VisibilityGraph:
+    """The visibility graph of a PolygonWorld, without any start or goal; InputTypeError for other worlds.
+
+    Bitangents alone (Latombe 1991, section 4.1): no other edges can be part of a shortest path.
+    """
     need_polygons(world)
-    nodes, edges = _core._visibility_graph(world._core)
-    return nodes, edges
+    return VisibilityGraph(*_core._visibility_graph(world._core))
