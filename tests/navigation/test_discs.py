@@ -108,3 +108,12 @@ def test_a_place_beside_a_corner_is_kept():
     route = cs.navigate(world, beside, (9, 9), radius=0.5)
     assert route
     np.testing.assert_array_equal(route.start, beside)
+
+
+@pytest.mark.parametrize("radius", [0.05, 0.2, 0.3])
+def test_a_descent_rests_at_no_side_of_a_polygon_around_an_arc(radius):
+    """Before a round corner the pull across it is stronger than what the wall's bend takes: no minimum."""
+    shed = cs.PolygonWorld([[(2, 2), (5, 2), (5, 5), (2, 5)]], (0, 0, 10, 10))
+    assert cs.navigate(shed, (1, 1), (9, 9), "potential_field", radius=radius)
+    flat = cs.PolygonWorld([[(2, -3), (5, -3), (5, 5), (2, 5)]], (0, -4, 10, 10))
+    assert cs.navigate(flat, (1, 1), (9, 1), "potential_field", radius=radius).status == "local_minimum"

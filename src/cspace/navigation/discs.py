@@ -3,7 +3,8 @@ it.
 
 A world grown by a disc has polygons in place of arcs around corners. Its gaps are open exactly if the disc
 fits, so what it connects and divides is right but for places that the corners of those polygons cover: ends
-that lie there, and nooks. The clearance of the world itself decides about these.
+that lie there, and nooks. The clearance of the world itself decides about these. A descent may rest before a
+side of such a polygon and not before the arc: polygons of many sides decide about that.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["DiscFits", "fitted", "plan_disc"]
 
 FINE: Final = 1024
-"""Sides around a disc where 32 have closed a way: they give away 5e-6 of the radius."""
+"""Sides around a disc where 32 have closed a way or hold a descent: they give away 5e-6 of the radius."""
 
 
 class DiscFits(NamedTuple):
@@ -70,6 +71,8 @@ def plan_disc(
     """The route of a disc among polygons; `grown` is the world grown by its radius [m]."""
     plan = module_of(planner).plan
     route: Route = plan(fitted(world, grown, radius, *ends), *ends, **options)
+    if route.status == "local_minimum":  # which a side of a polygon may be where an arc is none
+        return plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
     if route.status != "unreachable":
         return route
     widest = voronoi.plan(world, *ends)
