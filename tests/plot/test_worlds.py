@@ -45,9 +45,22 @@ def test_obstacles_are_dark_and_free_space_is_white(world):
         shown = pixels(ax)
         white = np.all(shown > 250, axis=-1)
         assert white.any()
-        if each.kind == "grid":
-            place = ax.transData.transform((3.5, 3.5)).astype(int)
-            assert shown[shown.shape[0] - place[1], place[0]].max() < 140
+        place = ax.transData.transform((3.5, 3.5)).astype(int)
+        assert shown[shown.shape[0] - place[1], place[0]].max() < 140
+
+
+def test_what_a_radius_shuts_is_neither_obstacle_nor_free(world):
+    for planner in ("any_angle", "a_star"):
+        _, ax = plt.subplots()
+        cs.plot.route(cs.navigate(world, (1, 1), (9, 9), planner, radius=0.4), ax=ax, idea=False)
+        shown = pixels(ax)
+
+        def tone(x, y, shown=shown, ax=ax):
+            column, row = ax.transData.transform((x, y)).astype(int)
+            return int(shown[shown.shape[0] - row, column].max())
+
+        assert tone(3.5, 3.5) < 140 < tone(3.5, 1.8) < 220 < tone(3.5, 1.3)
+        assert 140 < tone(0.2, 5) < 220
 
 
 def test_several_routes_share_a_figure(world):

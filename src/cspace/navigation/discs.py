@@ -72,7 +72,7 @@ def plan_disc(
     plan = module_of(planner).plan
     route: Route = plan(fitted(world, grown, radius, *ends), *ends, **options)
     if route.status == "local_minimum":  # which a side of a polygon may be where an arc is none
-        return plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
+        route = plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
     if route.status != "unreachable":
         return route
     widest = voronoi.plan(world, *ends)

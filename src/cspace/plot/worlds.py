@@ -19,6 +19,9 @@ __all__ = ["animation", "route", "routes", "world"]
 
 WALL: Final = (0.36, 0.39, 0.44)
 """Obstacles."""
+SHUT: Final = (0.72, 0.74, 0.77)
+"""Where no obstacle is and the centre may not be: within the radius of one, or in a blocked cell."""
+FREE: Final = (1.0, 1.0, 1.0)
 PATH: Final = (0.84, 0.18, 0.20)
 """The path that a planner found."""
 PANEL: Final = 3.6
@@ -37,19 +40,39 @@ def world(world: Any, *, ax: Any | None = None) -> list[Any]:
     """Draw a PolygonWorld or an OccupancyGrid: obstacles dark, free space white. Returns the artists."""
     if not hasattr(world, "kind"):
         raise _wrong(world, "world", "a PolygonWorld or an OccupancyGrid")
-    axes = flat_axes(ax)
-    xmin, ymin, xmax, ymax = world.bounds
+    return _ground(flat_axes(ax), world, world)
+
+
+def _ground(axes: Any, world: Any, asked: Any) -> list[Any]:
+    """The free space of a world on the colour of obstacles; between them what it shuts of the world that was
+    asked: it may be that one, but with obstacles grown by a radius, or polygons as cells."""
+    xmin, ymin, xmax, ymax = asked.bounds
     axes.set(xlim=(xmin, xmax), ylim=(ymin, ymax), aspect="equal")
     axes.tick_params(labelsize=8, colors=colors.INK)
+    from matplotlib.patches import Rectangle
+
+    box = Rectangle((xmin, ymin), xmax - xmin, ymax - ymin, color=WALL, linewidth=0, zorder=0)
+    below = [axes.add_patch(box)]
+    if asked is not world:
+        below.append(_free(axes, asked, SHUT))
+    return [*below, _free(axes, world, FREE)]
+
+
+def _free(axes: Any, world: Any, color: tuple[float, float, float]) -> Any:
+    """The free space of a world in a colour."""
     if world.kind == "grid":
-        shade = np.ones((*world.shape, 3))
-        shade[world.blocked] = WALL
-        return [axes.imshow(shade, extent=(xmin, xmax, ymin, ymax), origin="lower", interpolation="nearest")]
+        xmin, ymin, xmax, ymax = world.bounds
+        shade = np.broadcast_to(np.array([*color, 1.0]), (*world.shape, 4)).copy()
+        shade[world.blocked] = (*WALL, 0.0)
+        shown, box = axes.axis(), (xmin, xmax, ymin, ymax)
+        drawn = axes.imshow(shade, extent=box, origin="lower", interpolation="nearest", zorder=0)
+        axes.axis(shown)
+        return drawn
     from matplotlib.collections import PolyCollection
 
-    free = PolyCollection(world._core.triangles(), facecolors="white", edgecolors="white", linewidths=0.6)
-    axes.set_facecolor(WALL)
-    return [axes.add_collection(free)]
+    triangles = world._core.triangles()
+    free = PolyCollection(triangles, facecolors=[color], edgecolors=[color], linewidths=0.6, zorder=0)
+    return axes.add_collection(free)
 
 
 def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
@@ -61,7 +84,7 @@ def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
     if not hasattr(route, "planner"):
         raise _wrong(route, "route", "a Route, as cs.navigate answers")
     axes = flat_axes(ax)
-    artists = world(route.world, ax=axes)
+    artists = _ground(axes, route.world, route._asked)
     if idea:
         artists += draw_idea(axes, route)
     if len(route.path):
@@ -120,7 +143,7 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     from matplotlib.animation import FuncAnimation
     from matplotlib.collections import LineCollection
 
-    world(route.world, ax=axes)
+    _ground(axes, route.world, route._asked)
     events = shown_events(route)
     order = np.linspace(0, 1, max(len(events), 1))
     tints = matplotlib.colormaps["viridis"](order)  # as the picture of the whole search

@@ -91,8 +91,10 @@ def clear_pose(grid: Any, body: Array, pose: Any, name: str) -> Array:
     clear = np.empty(1, dtype=np.bool_)
     _core._car_clear(grid, body, p[None], clear)
     if not clear[0]:
+        behind, ahead, aside, _ = body
         raise InputError(
             f"at {name} ({p[0]:g}, {p[1]:g}, {p[2]:g}) the vehicle covers a blocked cell or leaves the grid;"
-            " give a pose at which it is free"
+            f" it reaches {behind:g} m behind that place, {ahead:g} m ahead and {aside:g} m to each side;"
+            " give a pose at which it is free, or another vehicle"
         )
     return p
