@@ -60,7 +60,10 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
 
     So the file is either complete or untouched. Raises InputError where writing is impossible.
     """
-    target = Path(os.path.abspath(path_of(path)))
+    name = path_of(path)
+    if "\0" in name:
+        raise InputError(f"{name!r} cannot be written: a path holds no null character")
+    target = Path(os.path.abspath(name))
     draft = target.with_name(f".{target.stem[:STEM]}.{os.getpid()}.{next(DRAFTS)}{target.suffix}")
     try:
         yield draft

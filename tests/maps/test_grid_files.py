@@ -124,6 +124,10 @@ def test_scenarios(tmp_path):
         lines.ends(0, cs.OccupancyGrid(np.zeros((9, 8), bool)))
     with pytest.raises(MapError, match=":2: expected bucket, map, width"):
         cs.maps.read_scenarios(write(tmp_path, "b.scen", "version 1\n0 a.map 1 1 0 0 0\n"))
+    with pytest.raises(MapError, match="start and goal, length"):
+        cs.maps.read_scenarios(write(tmp_path, "b.scen", "version 1\n0 a.map 2 2 0 0 1 1\n"))
+    with pytest.raises(MapError, match="version 1"):
+        cs.maps.read_scenarios(write(tmp_path, "b.scen", "version x\n"))
     with pytest.raises(MapError, match="begins with the line 'version 1'"):
         cs.maps.read_scenarios(write(tmp_path, "c.scen", ""))
 

@@ -276,6 +276,7 @@ def test_geojson_of_every_kind(tmp_path):
         ("{", ["map.geojson:1", "JSON"]),
         ("[]", ["no GeoJSON object"]),
         ('{"type": "Blob"}', ["'Blob'"]),
+        ('{"type": ' + "1" * 5000 + "}", ["no JSON"]),
         ('{"type": "Polygon"}', ["coordinates"]),
         ('{"type": "Polygon", "coordinates": [[1, 2]]}', ["[x, y]"]),
         ('{"type": "FeatureCollection", "features": 3}', ["features"]),
@@ -320,4 +321,21 @@ def test_a_written_world_is_the_same_to_the_last_bit(tmp_path, form):
         assert all(map(np.array_equal, one, other))
     with pytest.raises(InputError, match="cannot be written"):
         getattr(world, f"save_{form}")(tmp_path / "none" / "yard")
+    with pytest.raises(InputError, match="null character"):
+        getattr(world, f"save_{form}")("a\0b")
     assert [entry.name for entry in tmp_path.iterdir()] == ["yard"]
+
+
+@pytest.mark.parametrize("side", [[], [1], (1, 2), np.array([1.0, 2.0])])
+def test_a_side_of_cells_is_one_number(side):
+    world = cs.PolygonWorld([BOX], BOUNDS)
+    for given in (world, world.to_grid(1.0)):
+        with pytest.raises(InputError, match="one number"):
+            given.to_grid(side)
+
+
+def test_a_side_of_cells_is_positive_whoever_takes_it():
+    world = cs.PolygonWorld([BOX], BOUNDS)
+    for planner in ("any_angle", "a_star"):
+        with pytest.raises(InputError, match="resolution is -1; it must be a positive length"):
+            cs.navigate(world, (1, 1), (9, 9), planner, resolution=-1)

@@ -44,6 +44,8 @@ def _parsed(path: str) -> dict[str, Any]:
         raise MapError("is no GeoJSON: nested without end", path=path) from None
     except json.JSONDecodeError as error:
         raise MapError(f"is no JSON: {error.msg}", path=path, line=error.lineno) from None
+    except ValueError as error:
+        raise MapError(f"is no JSON that can be read: {error}", path=path) from None
     if not isinstance(found, dict):
         raise MapError(f"is no GeoJSON object but a {type(found).__name__}", path=path)
     return found

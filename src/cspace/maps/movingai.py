@@ -24,6 +24,10 @@ BLOCKED: Final = b"@OTW"
 """Out of bounds, trees, and water, which nobody enters who is not in it."""
 
 
+VERSIONS: Final = (["version", "1"], ["version", "1.0"])
+"""First lines of a scenario file."""
+
+
 class Scenarios(NamedTuple):
     """The questions of a scenario file, a row each."""
 
@@ -103,7 +107,7 @@ def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
     fault."""
     name = map_path(path)
     lines = map_bytes(path).decode("utf-8", "replace").split("\n")
-    if lines[0].split()[:1] != ["version"]:
+    if lines[0].split() not in VERSIONS:
         raise MapError("a scenario file begins with the line 'version 1'", path=name, line=1)
     rows: list[tuple[int, int, int, int]] = []
     lengths: list[float] = []
@@ -113,6 +117,8 @@ def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
         try:
             ends, length = words[-5:-1], float(words[-1])
             x0, y0, x1, y1 = (int(word) for word in ends)
+            bucket, _ = words[0].split(maxsplit=1)  # and the name of the map, which may hold spaces
+            int(bucket)
         except ValueError:
             x0 = y0 = x1 = y1 = -1
             length = math.nan

@@ -198,7 +198,7 @@ class OccupancyGrid(_core.GridBase):
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
         """The grid itself: it has its own resolution."""
-        if resolution is not None and resolution != self.resolution:
+        if resolution is not None and one_number(resolution, "resolution") != self.resolution:
             raise InputTypeError(f"the grid has cells of {self.resolution:g} m; they cannot be resampled")
         return self
 

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, one_number
 from cspace.errors import InputError
 from cspace.tolerances import MAP_CELLS
 
@@ -30,7 +30,7 @@ def rasterized(
     if resolution is None:
         side = wide / _parts(min(xmax - xmin, ymax - ymin) / wide)
     else:
-        side = float(as_floats(resolution, "resolution"))
+        side = one_number(resolution, "resolution")
     if not side > 0:
         raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
     if not wide / side <= MAP_CELLS:

@@ -95,6 +95,8 @@ def _prepared(world: World, kind: str | None, row: Planner, radius: float, resol
     if grown:
         world = _derived(world, ("grown", grown), lambda: world.inflate(grown))
     side = None if resolution is None else one_number(resolution, "resolution")
+    if side is not None and side <= 0:
+        raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
     if kind == "grid" and side is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
     if kind == row.world:

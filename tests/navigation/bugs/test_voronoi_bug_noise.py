@@ -114,8 +114,10 @@ def test_noise_is_checked():
     world = cs.PolygonWorld([square(4, 4, 2)], bounds=ROOM)
     ask = {"planner": "voronoi_bug", "range": 2.0}
     for wrong in (-0.1, 0.41):
-        with pytest.raises(InputError, match="a fifth of the range"):
+        with pytest.raises(InputError, match="a fifth of the farthest reading"):
             cs.navigate(world, (1, 1), (9, 9), noise=wrong, **ask)
+    with pytest.raises(InputError, match="a fifth of the farthest reading"):
+        cs.navigate(world, (1, 1), (9, 9), planner="voronoi_bug", noise=1e160)
     with pytest.raises(InputError, match="finite"):
         cs.navigate(world, (1, 1), (9, 9), noise=np.nan, **ask)
     with pytest.raises(InputError, match="seed"):

@@ -133,6 +133,25 @@ def test_bounds_hold_over_costs_and_costs_are_exact():
                 assert best * (1 - 1e-9) <= cost <= factor * best * (1 + 1e-9) + 1e-12
 
 
+@pytest.mark.parametrize("spread", [0.5, 8])
+def test_focal_search_takes_few_cells_often(spread):
+    """Whatever the costs, and where the goal is shut in: at most twice as often as there are cells."""
+    rng = np.random.default_rng(3)
+    blocked = np.zeros((60, 60), bool)
+    costs = 10 ** rng.uniform(-spread, spread, blocked.shape)
+    for shut in (False, True):
+        blocked[55:58, 55:58] = shut
+        blocked[56, 56] = False
+        grid = cs.OccupancyGrid(blocked)
+        route = cs.navigate(grid, (0.5, 0.5), (56.5, 56.5), "focal_search", bound=1.5, costs=costs)
+        assert route.price.nodes <= 2 * 62 * 62
+        assert route.status == ("unreachable" if shut else "found")
+        if not shut:
+            best = cs.navigate(grid, (0.5, 0.5), (56.5, 56.5), "dijkstra", costs=costs).evidence["cost"]
+            assert best * (1 - 1e-12) <= route.evidence["cost"] <= 1.5 * best
+            assert route.evidence["at_least"] <= best * (1 + 1e-12)
+
+
 def test_waves_by_four_moves_are_shortest_and_by_eight_have_the_fewest_steps():
     for _, blocked, start, goal, _ in questions(4, 300):
         grid = cs.OccupancyGrid(blocked)

@@ -233,7 +233,7 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
                 run(StepParents<StepLength>{}, scratch.steps, scratch.buckets, false);
             break;
         case GridPlanner::focal: {
-            FocalQueue queue(query.bound);
+            FocalQueue queue(query.bound, grid.numbers());
             if (query.costs)
                 run(StepParents<StepCost>{StepCost(query.costs, grid.columns())}, scratch.lengths, queue,
                     true);

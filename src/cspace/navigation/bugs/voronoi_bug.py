@@ -18,7 +18,7 @@ times in all. Since a gap may have been missed, it never says that the goal is u
 
 from __future__ import annotations
 
-from math import inf
+from math import hypot, inf
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -81,11 +81,8 @@ def plan(
     if not reach > 0:
         raise InputError(f"range is {reach:g}; it must be more than zero [m], or inf")
     deviation = float(as_floats(noise, "noise"))
-    most = SCAN_NOISE * reach
-    if not 0 <= deviation <= most:
-        raise InputError(
-            f"noise is {deviation:g}; it must lie between 0 and {most:g} m, a fifth of the range"
-        )
+    if deviation:
+        _check_noise(deviation, reach, world)
     options = {"range": reach, "noise": deviation, "rng": seed_of(rng) if deviation else 0}
     made: Route | None
     asked = world, "voronoi_bug", options, VoronoiBugEvidence, world._core, *options.values()
@@ -95,6 +92,16 @@ def plan(
         made = _core._voronoi_bug(*asked, *ends)
         assert made is not None
     return made
+
+
+def _check_noise(deviation: float, reach: float, world: Any) -> None:
+    """InputError for noise beyond a fifth of what the sensor can read."""
+    xmin, ymin, xmax, ymax = world.bounds
+    most = SCAN_NOISE * min(reach, hypot(xmax - xmin, ymax - ymin))
+    if not 0 <= deviation <= most:
+        raise InputError(
+            f"noise is {deviation:g}; it must lie between 0 and {most:g} m, a fifth of the farthest reading"
+        )
 
 
 def trace(route: Route) -> Trace:
