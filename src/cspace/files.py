@@ -64,6 +64,8 @@ def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
     if "\0" in name:
         raise InputError(f"{name!r} cannot be written: a path holds no null character")
     target = Path(os.path.abspath(name))
+    if target.exists() and not target.is_file():
+        raise InputError(f"{target} cannot be written: it is no regular file, and would be replaced by one")
     draft = target.with_name(f".{target.stem[:STEM]}.{os.getpid()}.{next(DRAFTS)}{target.suffix}")
     try:
         yield draft

@@ -210,7 +210,7 @@ FULL = "/dev/full"
 """The device on which every write meets a full disk."""
 
 
-@pytest.mark.skipif(not Path(FULL).exists(), reason="needs the device /dev/full")
+@pytest.mark.skipif(not Path(FULL).is_char_device(), reason="needs the device /dev/full")
 @pytest.mark.parametrize(
     "line",
     [

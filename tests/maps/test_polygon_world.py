@@ -321,6 +321,8 @@ def test_a_written_world_is_the_same_to_the_last_bit(tmp_path, form):
         assert all(map(np.array_equal, one, other))
     with pytest.raises(InputError, match="cannot be written"):
         getattr(world, f"save_{form}")(tmp_path / "none" / "yard")
+    with pytest.raises(InputError, match="no regular file"):
+        getattr(world, f"save_{form}")(tmp_path)
     with pytest.raises(InputError, match="null character"):
         getattr(world, f"save_{form}")("a\0b")
     assert [entry.name for entry in tmp_path.iterdir()] == ["yard"]
