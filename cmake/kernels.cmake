@@ -2,19 +2,30 @@
 # AVX-512. Whoever links cspace_kernels gets the definitions by which src/kernels/dispatch.hpp declares the copies.
 file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/*.cpp)
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
+# Kernels that work on packs of four numbers, and the slow paths: an AVX-512 copy of them is no faster than that for
+# AVX2 (docs/decisions/0036-compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
+set(narrow_kernels ik_general ik_pose ik_locked ik_nearest ik_intervals ik_sweep ik_swivel)
+list(TRANSFORM narrow_kernels PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/)
+list(TRANSFORM narrow_kernels APPEND .cpp)
+set(wide_files ${kernel_files})
+list(REMOVE_ITEM wide_files ${narrow_kernels})
 
 add_library(cspace_kernels STATIC src/kernels/dispatch.cpp)
 set_target_properties(cspace_kernels PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
                                                 LINKER_LANGUAGE CXX)
 target_link_libraries(cspace_kernels PUBLIC cspace PRIVATE cspace_flags)
-target_include_directories(cspace_kernels PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels)
+target_include_directories(cspace_kernels PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/src)
 
 function(add_kernels isa)
-  add_library(cspace_kernels_${isa} OBJECT ${kernel_files})
+  set(files ${kernel_files})
+  if(isa STREQUAL "avx512")
+    set(files ${wide_files})
+  endif()
+  add_library(cspace_kernels_${isa} OBJECT ${files})
   set_target_properties(cspace_kernels_${isa} PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
   target_compile_options(cspace_kernels_${isa} PRIVATE ${ARGN})
   target_compile_definitions(cspace_kernels_${isa} PRIVATE CSPACE_COMPILING_KERNELS
-                                                           ${kernel_copies})
+                                                           CSPACE_ISA=${isa} ${kernel_copies})
   target_link_libraries(cspace_kernels_${isa} PRIVATE cspace cspace_flags)
   target_sources(cspace_kernels PRIVATE $<TARGET_OBJECTS:cspace_kernels_${isa}>)
   set_property(GLOBAL APPEND PROPERTY cspace_kernel_copies ${isa})
@@ -42,3 +53,10 @@ if("CSPACE_HAS_AVX512" IN_LIST kernel_copies)
   add_kernels(avx512 -mavx512f -mavx512dq -mavx512vl -mfma
               $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
 endif()
+
+# The library: what calls the kernels and what needs no instruction set of its own, compiled once behind plain
+# functions. The bindings include these headers and no solver.
+file(GLOB library_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/library/*.cpp)
+add_library(cspace_library STATIC ${library_files})
+set_target_properties(cspace_library PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
+target_link_libraries(cspace_library PUBLIC cspace_kernels PRIVATE cspace_flags)

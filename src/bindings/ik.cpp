@@ -1,7 +1,5 @@
 // robot.ik(T): the compiled entry. One 4×4 goal without keywords is answered here; everything else goes to
 // cspace.ik, which finds the words and comes back with plain arrays.
-#include "ik.hpp"
-
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -9,9 +7,9 @@
 
 #include "bindings.hpp"
 #include "chains.hpp"
-#include "cspace/ik/goal.hpp"
-#include "ik_general.hpp"
 #include "ik_shared.hpp"
+#include "kernels/ik_closed_form.hpp"
+#include "library/ik_arm.hpp"
 
 using namespace cspace;
 
@@ -51,8 +49,8 @@ PyObject* to_python(PyObject* robot, const double* goal, int dof, const ik::Solu
     }
     return reinterpret_cast<PyObject*>(made);
 }
-PyObject* from_careful(PyObject* robot, const ik::Arm& arm, const double* goal, const double* idle) {
-    return to_python(robot, goal, arm.plan.chain.n, solve_pose(arm, read_goal(goal).T, idle));
+PyObject* answer_slowly(PyObject* robot, const ik::BuiltArm& arm, const double* goal, const double* idle) {
+    return to_python(robot, goal, arm.dof, ik::solve_goal(arm, goal, idle));
 }
 
 // The 16 numbers of a float64 4×4 array, in `copy` if they are not contiguous; null if it is something else.
@@ -71,15 +69,13 @@ const double* goal_in_place(PyObject* value, double* copy) {
 }
 
 // Null without an error for a goal that is no pose.
-PyObject* answer_single(PyObject* robot, const ik::Arm& arm, const double* goal) {
+PyObject* answer_single(PyObject* robot, const ik::BuiltArm& arm, const double* goal) {
     double q[max_branches * 6];
     std::int8_t branch[max_branches];
     int count;
-    const ik::Quick quick = arm.has_plan              ? kernels::ik_one(arm.plan, goal, q, branch, &count)
-                            : read_goal(goal).is_pose ? ik::Quick::doubtful
-                                                      : ik::Quick::refused;
+    const ik::Quick quick = kernels::ik_one(*arm.arm, goal, q, branch, &count);
     if (quick == ik::Quick::refused) return nullptr;
-    if (quick == ik::Quick::doubtful) return from_careful(robot, arm, goal, nullptr);
+    if (quick == ik::Quick::doubtful) return answer_slowly(robot, arm, goal, nullptr);
     SolutionsObject* made =
         new_solutions(robot, goal, count, 6, count ? ik::Status::exact : ik::Status::unreachable);
     if (!made) return nullptr;
@@ -111,9 +107,8 @@ PyObject* answer_keyword(PyObject* robot, PyObject* const* args, Py_ssize_t narg
 
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     double copy[16];
-    const auto* arm = static_cast<const ik::Arm*>(reinterpret_cast<RobotObject*>(self)->ik.get());
-    const double* goal =
-        arm && can_solve(*arm) && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
+    const auto* arm = static_cast<const ik::BuiltArm*>(reinterpret_cast<RobotObject*>(self)->ik.get());
+    const double* goal = arm && arm->room && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
     if (goal) {
         PyObject* answer = answer_single(self, *arm, goal);
         if (answer || PyErr_Occurred()) return answer;
@@ -124,8 +119,6 @@ PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
 }
 
 namespace {
-
-int room_of(const ik::Arm& arm) { return can_solve(arm) ? room_for(arm) : 0; }
 
 // _ik_build(robot, axes (n, 3), points (n, 3), prismatic (n,), T_zero (4, 4)) → rows that a goal's solutions
 // may need; 0 if nothing solves the arm
@@ -144,11 +137,11 @@ PyObject* build(PyObject*, PyObject* args) {
         return nullptr;
     }
     // Two threads may both come here first: the later one takes what the earlier one built and may be using.
-    if (const ik::Arm* built = arm_of(robot)) return PyLong_FromLong(room_of(*built));
+    if (const ik::BuiltArm* built = arm_of(robot)) return PyLong_FromLong(built->room);
     const ik::Chain chain =
         chain_from(int(n), data_of(axes), data_of(points), data_of(prismatic), data_of(tip));
-    auto arm = std::make_shared<ik::Arm>(make_arm(chain, kernels::plan_general));
-    const int room = room_of(*arm);
+    auto arm = std::make_shared<ik::BuiltArm>(ik::build_arm(chain));
+    const int room = arm->room;
     reinterpret_cast<RobotObject*>(robot)->ik = std::move(arm);
     return PyLong_FromLong(room);
 }
@@ -157,13 +150,13 @@ PyObject* build(PyObject*, PyObject* args) {
 PyObject* careful(PyObject*, PyObject* args) {
     PyObject *robot, *goal, *idle;
     if (!PyArg_ParseTuple(args, "OOO", &robot, &goal, &idle)) return nullptr;
-    const ik::Arm* arm = arm_of(robot);
-    if (!arm || !can_solve(*arm) || !is_doubles(goal, 16) || !is_doubles(idle, arm->plan.chain.n)) {
+    const ik::BuiltArm* arm = arm_of(robot);
+    if (!arm || !arm->room || !is_doubles(goal, 16) || !is_doubles(idle, arm->dof)) {
         PyErr_SetString(PyExc_TypeError,
                         "_ik_careful takes a robot with a solver and contiguous float64 arrays");
         return nullptr;
     }
-    return from_careful(robot, *arm, data_of(goal), data_of(idle));
+    return answer_slowly(robot, *arm, data_of(goal), data_of(idle));
 }
 
 // _ik_miss(robot, goal (4, 4), stiffness) → (q, position error [m], rotation error [rad])
@@ -171,14 +164,14 @@ PyObject* miss(PyObject*, PyObject* args) {
     PyObject *robot, *goal;
     double stiffness;
     if (!PyArg_ParseTuple(args, "OOd", &robot, &goal, &stiffness)) return nullptr;
-    const ik::Arm* arm = arm_of(robot);
+    const ik::BuiltArm* arm = arm_of(robot);
     if (!arm || !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError,
                         "_ik_miss takes a robot with a solver and a contiguous float64 goal");
         return nullptr;
     }
-    const ik::Miss best = nearest_miss(*arm, read_goal(data_of(goal)).T, stiffness);
-    npy_intp n = arm->plan.chain.n;
+    const ik::NearestMiss best = ik::nearest_to_goal(*arm, data_of(goal), stiffness);
+    npy_intp n = arm->dof;
     PyObject* q = PyArray_SimpleNew(1, &n, NPY_DOUBLE);
     if (!q) return nullptr;
     std::memcpy(data_of(q), best.q, sizeof(double) * std::size_t(n));
@@ -189,21 +182,20 @@ PyObject* miss(PyObject*, PyObject* args) {
 PyObject* beyond(PyObject*, PyObject* args) {
     PyObject *robot, *goal;
     if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
-    const ik::Arm* arm = arm_of(robot);
+    const ik::BuiltArm* arm = arm_of(robot);
     if (!arm || !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError,
                         "_ik_is_beyond takes a robot with a solver and a contiguous float64 goal");
         return nullptr;
     }
-    const ik::Plan& plan = arm->plan;
-    return PyBool_FromLong(is_beyond(plan.chain, read_goal(data_of(goal)).T, plan.form.length));
+    return PyBool_FromLong(ik::is_ruled_out(*arm, data_of(goal)));
 }
 
 // The arm and the goal of a call about a position; null with an error set.
-const ik::Arm* position_arm(PyObject* args, const char* function, PyObject*& robot, Vec3d& p) {
+const ik::BuiltArm* position_arm(PyObject* args, const char* function, PyObject*& robot, Vec3d& p) {
     PyObject* goal;
     if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
-    const ik::Arm* arm = arm_of(robot);
+    const ik::BuiltArm* arm = arm_of(robot);
     if (!arm || !arm->is_short || !is_doubles(goal, 3)) {
         PyErr_Format(PyExc_TypeError, "%s takes an arm of up to three joints and a float64 point (3,)",
                      function);
@@ -218,28 +210,26 @@ const ik::Arm* position_arm(PyObject* args, const char* function, PyObject*& rob
 PyObject* position(PyObject*, PyObject* args) {
     PyObject* robot;
     Vec3d p;
-    const ik::Arm* arm = position_arm(args, "_ik_position", robot, p);
+    const ik::BuiltArm* arm = position_arm(args, "_ik_position", robot, p);
     if (!arm) return nullptr;
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     const double goal[16] = {none, none, none, p.x, none, none, none, p.y,
                              none, none, none, p.z, none, none, none, none};
-    return to_python(robot, goal, arm->plan.chain.n,
-                     from_short(arm->plan.chain, solve_position(arm->plan.chain, p, false)));
+    return to_python(robot, goal, arm->dof, ik::solve_point(*arm, p));
 }
 
 // _ik_position_miss(robot, p (3,)) → (q that comes nearest (n,), what is missing there [m])
 PyObject* position_miss(PyObject*, PyObject* args) {
     PyObject* robot;
     Vec3d p;
-    const ik::Arm* arm = position_arm(args, "_ik_position_miss", robot, p);
+    const ik::BuiltArm* arm = position_arm(args, "_ik_position_miss", robot, p);
     if (!arm) return nullptr;
-    const ik::PositionSolutions found = solve_position(arm->plan.chain, p);
-    npy_intp n = arm->plan.chain.n;
+    const ik::NearestMiss best = ik::nearest_to_point(*arm, p);
+    npy_intp n = arm->dof;
     PyObject* q = PyArray_SimpleNew(1, &n, NPY_DOUBLE);
     if (!q) return nullptr;
-    const double* best = found.count ? found.q[0] : found.nearest;
-    std::copy(best, best + n, data_of(q));
-    return Py_BuildValue("Nd", q, found.missing);
+    std::copy(best.q, best.q + n, data_of(q));
+    return Py_BuildValue("Nd", q, best.position);
 }
 
 // _ik_single(robot, goal (4, 4)) → solutions, or None for a goal that is no pose
@@ -247,9 +237,9 @@ PyObject* single(PyObject*, PyObject* args) {
     PyObject *robot, *goal;
     if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
     double copy[16];
-    const ik::Arm* arm = arm_of(robot);
+    const ik::BuiltArm* arm = arm_of(robot);
     const double* T = goal_in_place(goal, copy);
-    if (!arm || !can_solve(*arm) || !T) {
+    if (!arm || !arm->room || !T) {
         PyErr_SetString(PyExc_TypeError, "_ik_single takes a robot with a solver and a float64 (4, 4) goal");
         return nullptr;
     }
@@ -258,37 +248,16 @@ PyObject* single(PyObject*, PyObject* args) {
     Py_RETURN_NONE;
 }
 
-// What the first three axes share; −1 for an arm that was not asked: its wrist is not spherical, nor are its
-// joints three that turn.
-int first_three(const ik::Arm& arm) {
-    if (arm.has_plan)
-        return arm.plan.family == ik::Family::spherical_wrist ? int(arm.plan.wrist.first.kind) : -1;
-    const ik::Chain& c = arm.plan.chain;
-    if (c.n != 3 || c.prismatic[0] || c.prismatic[1] || c.prismatic[2]) return -1;
-    bool parallel[2], meeting[2];
-    for (int i = 0; i < 2; ++i) {
-        const Vec3d normal = cross(c.axis[i], c.axis[i + 1]), gap = c.point[i + 1] - c.point[i];
-        parallel[i] = norm(normal) <= tolerance::axis_relation;
-        meeting[i] = !parallel[i] && std::fabs(dot(gap, normal)) <=
-                                         tolerance::axis_relation * arm.plan.form.length * norm(normal);
-    }
-    return int(parallel[1]   ? ik::FirstThree::last_parallel
-               : parallel[0] ? ik::FirstThree::first_parallel
-               : meeting[0]  ? ik::FirstThree::first_meet
-               : meeting[1]  ? ik::FirstThree::last_meet
-                             : ik::FirstThree::general);
-}
-
 // _ik_geometry(robot) → what the classification saw, for cspace.ik to put into words.
 PyObject* geometry(PyObject*, PyObject* robot) {
-    const ik::Arm* arm = arm_of(robot);
+    const ik::BuiltArm* arm = arm_of(robot);
     if (!arm) Py_RETURN_NONE;
-    const ik::Plan& plan = arm->plan;
-    return Py_BuildValue("{s:i,s:O,s:i,s:i,s:O,s:O,s:d,s:d}", "family", arm->has_plan ? int(plan.family) : -1,
-                         "general", arm->is_general && !arm->has_plan ? Py_True : Py_False, "virtual_joints",
-                         plan.virtual_joints, "first_three", first_three(*arm), "reversed",
-                         plan.reversed ? Py_True : Py_False, "polish", plan.polish ? Py_True : Py_False,
-                         "deviation", plan.form.deviation, "length", plan.form.length);
+    const ik::ArmGeometry seen = ik::geometry_of(*arm);
+    return Py_BuildValue("{s:i,s:O,s:i,s:i,s:O,s:O,s:d,s:d}", "family", seen.family, "general",
+                         seen.is_general ? Py_True : Py_False, "virtual_joints", seen.virtual_joints,
+                         "first_three", seen.first_three, "reversed", seen.reversed ? Py_True : Py_False,
+                         "polish", seen.polish ? Py_True : Py_False, "deviation", seen.deviation, "length",
+                         seen.length);
 }
 
 PyMethodDef functions[] = {

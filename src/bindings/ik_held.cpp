@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include "cspace/ik/goal.hpp"
-#include "ik_redundant.hpp"
+#include "cspace/tolerances.hpp"
 #include "ik_shared.hpp"
+#include "library/ik_redundant.hpp"
 
 using namespace cspace;
 
@@ -86,18 +86,16 @@ PyObject* ik_held(PyObject* robot, const double* goal, PyObject* fixed) {
     if (!joints) return nullptr;
     const auto plan = std::find_if(entry->plans.begin(), entry->plans.end(),
                                    [joints](const HeldPlan& known) { return known.joints == joints; });
-    const ReadGoal<double> read = read_goal(goal);
-    if (plan == entry->plans.end() || !read.is_pose) return nullptr;
-    const ik::LockedArm& locked = *plan->locked;
+    if (plan == entry->plans.end()) return nullptr;
     ik::Solutions found;
-    kernels::redundant_locked(locked, read.T, at, nullptr, found);
-    if (found.count == 0) return nullptr;
-    const int n = locked.whole.n;
+    double q[ik::max_solutions * ik::max_joints];
+    if (!ik::solve_locked_goal(*plan->locked, goal, at, found, q)) return nullptr;
+    const int n = int(PyTuple_GET_SIZE(entry->names));
     SolutionsObject* made = new_solutions(robot, goal, found.count, n, found.status);
     if (!made) return nullptr;
     made->complete = found.complete;
+    std::copy(q, q + n * found.count, made->q);
     for (int k = 0; k < found.count; ++k) {
-        whole_row(locked, at, found.q[k], made->q + n * k);
         branches_of(made)[k] = std::int8_t(found.branch[k]);
         families_of(made)[k] = found.family[k];
     }

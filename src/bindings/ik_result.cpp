@@ -91,7 +91,7 @@ PyObject* get_about(PyObject* self, void*) {
 }
 PyObject* get_verdict(PyObject* self, void*) {
     const auto* s = reinterpret_cast<SolutionsObject*>(self);
-    return PyLong_FromLong(static_cast<long>(s->status) + (s->complete ? 0 : incomplete));
+    return PyLong_FromLong(static_cast<long>(s->status) + (s->complete ? 0 : ik::incomplete));
 }
 PyObject* get_branch_numbers(PyObject* self, void*) {
     auto* s = reinterpret_cast<SolutionsObject*>(self);
@@ -153,7 +153,7 @@ PyObject* ik_make(PyObject*, PyObject* args) {
     const Py_ssize_t k = PyTuple_GET_SIZE(branches);
     const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
     const npy_intp dof = shaped ? PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 1) : -1;
-    if (!PyObject_TypeCheck(robot, robot_type) || status < 0 || (status & ~incomplete) > last_status) {
+    if (!PyObject_TypeCheck(robot, robot_type) || status < 0 || (status & ~ik::incomplete) > last_status) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes a robot and a status it knows");
         return nullptr;
     }
@@ -162,10 +162,10 @@ PyObject* ik_make(PyObject*, PyObject* args) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes contiguous float64 arrays and tuples of one length");
         return nullptr;
     }
-    SolutionsObject* made =
-        new_solutions(robot, data_of(goal), int(k), int(dof), static_cast<ik::Status>(status & ~incomplete));
+    SolutionsObject* made = new_solutions(robot, data_of(goal), int(k), int(dof),
+                                          static_cast<ik::Status>(status & ~ik::incomplete));
     if (!made) return nullptr;
-    made->complete = !(status & incomplete);
+    made->complete = !(status & ik::incomplete);
     std::memcpy(made->q, data_of(q), sizeof(double) * std::size_t(k * dof));
     for (Py_ssize_t i = 0; i < k; ++i) {
         branches_of(made)[i] = static_cast<std::int8_t>(PyLong_AsLong(PyTuple_GET_ITEM(branches, i)));

@@ -4,16 +4,15 @@
 
 #include <vector>
 
-#include "cspace/ik/arm.hpp"
+#include "library/ik_arm.hpp"
 #include "robot.hpp"
 
 // --- the solver ----------------------------------------------------------------------------------------
 // The solver of a robot that has one; null for every other object.
-inline const cspace::ik::Arm* arm_of(PyObject* robot) {
+inline const cspace::ik::BuiltArm* arm_of(PyObject* robot) {
     if (!PyObject_TypeCheck(robot, robot_type)) return nullptr;
-    return static_cast<const cspace::ik::Arm*>(reinterpret_cast<RobotObject*>(robot)->ik.get());
+    return static_cast<const cspace::ik::BuiltArm*>(reinterpret_cast<RobotObject*>(robot)->ik.get());
 }
-inline bool can_solve(const cspace::ik::Arm& arm) { return arm.has_plan || arm.is_short || arm.is_general; }
 
 // --- the result ----------------------------------------------------------------------------------------
 // Followed in memory by count rows of dof angles, count branch numbers and count flags (families).
@@ -31,9 +30,6 @@ inline std::int8_t* branches_of(SolutionsObject* s) {
     return reinterpret_cast<std::int8_t*>(s->q + std::ptrdiff_t(s->count) * s->dof);
 }
 inline std::int8_t* families_of(SolutionsObject* s) { return branches_of(s) + s->count; }
-
-// In a verdict as a number: solutions may be missing.
-inline constexpr int incomplete = 8;
 
 // A complete result without note whose rows are still to be written; null with an error set.
 SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, int dof,
@@ -56,10 +52,10 @@ inline bool is_writable(PyObject* array) {
 
 // --- near= and fixed= (ik_near.cpp, ik_held.cpp) -------------------------------------------------------
 namespace cspace::ik {
-struct Redundant;
+class RedundantSolver;
 struct LockedArm;
 }  // namespace cspace::ik
-void ik_set_near(PyObject* robot, const cspace::ik::Redundant* arm, PyObject* solver, PyObject* about);
+void ik_set_near(PyObject* robot, const cspace::ik::RedundantSolver* arm, PyObject* solver, PyObject* about);
 PyObject* ik_serve_near(PyObject*, PyObject* args);
 PyObject* ik_near(PyObject* robot, const double* goal, PyObject* seed);
 void ik_add_held(PyObject* robot, PyObject* solver, PyObject* names, PyObject* about,

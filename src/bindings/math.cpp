@@ -1,6 +1,6 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "trig.hpp"
+#include "kernels/trig.hpp"
 
 namespace nb = nanobind;
 

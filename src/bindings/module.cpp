@@ -3,7 +3,7 @@
 
 #include "bindings.hpp"
 #include "cspace/version.hpp"
-#include "dispatch.hpp"
+#include "kernels/dispatch.hpp"
 
 NB_MODULE(_core, m) {
     m.doc() = "The compiled core of cspace; use it through the package.";
@@ -22,8 +22,7 @@ NB_MODULE(_core, m) {
     bind_ik_swivel(m);
     bind_ik_tasks(m);
     bind_ik_tracking(m);
-    bind_ik_plan(m);
-    bind_ik_numbers(m);
+    bind_ik_description(m);
     bind_route(m);
     bind_grid(m);
     bind_grid_any_angle(m);

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "bindings.hpp"
-#include "kinematics.hpp"
+#include "kernels/kinematics.hpp"
 #include "robot_load.hpp"
 #include "robot_rows.hpp"
 

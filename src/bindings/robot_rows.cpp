@@ -4,7 +4,7 @@
 #include <new>
 
 #include "cspace/math/threads.hpp"
-#include "kinematics.hpp"
+#include "kernels/kinematics.hpp"
 #include "robot.hpp"
 
 using namespace cspace;

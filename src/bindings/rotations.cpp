@@ -1,4 +1,4 @@
-#include "rotations.hpp"
+#include "kernels/rotations.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

@@ -1,4 +1,4 @@
-#include "subproblems.hpp"
+#include "kernels/subproblems.hpp"
 
 #include "arrays.hpp"
 #include "bindings.hpp"

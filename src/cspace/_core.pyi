@@ -231,7 +231,7 @@ class SwivelSolver:
     """Arms with two spherical joints and an elbow between them."""
 
     def __init__(self, axes: Annotated[NDArray[numpy.float64], dict(shape=(7, 3), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(shape=(7, 3), order='C', device='cpu', writable=False)], T_zero: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C', device='cpu', writable=False)]) -> None:
-        """From the screws of seven turns."""
+        """From the screws of seven revolute joints."""
 
     @property
     def serves(self) -> bool:

@@ -1,9 +1,9 @@
-#include "ik_general.hpp"
-
 #include "cspace/ik/general/completion.hpp"
+#include "once.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
-bool plan_general(const ik::Chain& chain, ik::GeneralArm& arm) { return make_general_arm(chain, arm); }
+template bool make_general_arm(const ik::Chain&, ik::GeneralArm&);
+template bool renumber_general_arm(const ik::GeneralArm&, const ik::Chain&, ik::GeneralArm&);
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -1,26 +1,47 @@
 #pragma once
 
-#include "cspace/ik/redundant/arcs.hpp"
-#include "cspace/ik/redundant/nearest_search.hpp"
+#include "cspace/ik/solution.hpp"
 #include "dispatch.hpp"
 
-// The configuration on the manifold of a goal nearest to a seed; false where nothing reaches the goal.
-CSPACE_KERNEL(bool, redundant_nearest,
-              (const cspace::ik::Redundant& arm, const cspace::Posed& goal, const double* seed, double* q))
+namespace cspace {
+struct Trail;
+struct SweptRows;
+namespace ik {
+struct Intervals;
+struct LimitArms;
+struct LockedArm;
+struct Redundant;
+}  // namespace ik
+}  // namespace cspace
 
-// The feasible intervals of joint `parameter`, which `locked` holds.
-CSPACE_KERNEL(void, redundant_intervals,
-              (const cspace::ik::Redundant& arm, const cspace::ik::LockedArm& locked, int parameter,
-               const cspace::ik::LimitArms& arms, const cspace::Posed& goal, cspace::Trail& trail,
-               cspace::ik::Intervals& out))
+// ik_locked.cpp: plans of a redundant arm and of an arm with joints locked.
+CSPACE_NARROW_KERNEL(void, ik_make_redundant,
+                     (const cspace::ik::Chain& chain, const double* lower, const double* upper,
+                      const double* weight, cspace::ik::Redundant& arm))
+CSPACE_NARROW_KERNEL(void, ik_lock_joints,
+                     (const cspace::ik::Redundant& arm, const int* joints, int count,
+                      cspace::ik::LockedArm& out))
 
-// All solutions at n values of joint `parameter`, the other held joints standing at their values `at`.
-CSPACE_KERNEL(void, redundant_sweep,
-              (const cspace::ik::LockedArm& locked, int parameter, const cspace::Posed& goal,
-               const double* at, const double* values, int n, cspace::SweptRows* rows))
+// Every solution for the joints that move, those locked at their values `at`; idle: null, or the values of
+// joints that the goal leaves free.
+CSPACE_NARROW_KERNEL(void, ik_locked,
+                     (const cspace::ik::LockedArm& locked, const cspace::Posed& goal, const double* at,
+                      const double* idle, cspace::ik::Solutions& out))
 
-// Every solution for the joints that move, those held standing at their values `at`; idle: null, or the
-// values of joints that the goal leaves free.
-CSPACE_KERNEL(void, redundant_locked,
-              (const cspace::ik::LockedArm& locked, const cspace::Posed& goal, const double* at,
-               const double* idle, cspace::ik::Solutions& out))
+// ik_nearest.cpp: the configuration on the self-motion of a goal nearest to a seed; false where nothing
+// reaches it.
+CSPACE_NARROW_KERNEL(bool, ik_nearest,
+                     (const cspace::ik::Redundant& arm, const cspace::Posed& goal, const double* seed,
+                      double* q))
+
+// ik_intervals.cpp: the feasible intervals of joint `parameter`, which `locked` locks.
+CSPACE_NARROW_KERNEL(void, ik_make_limit_arms, (const cspace::ik::Redundant& arm, cspace::ik::LimitArms& out))
+CSPACE_NARROW_KERNEL(void, ik_intervals,
+                     (const cspace::ik::Redundant& arm, const cspace::ik::LockedArm& locked, int parameter,
+                      const cspace::ik::LimitArms& arms, const cspace::Posed& goal, cspace::Trail& trail,
+                      cspace::ik::Intervals& out))
+
+// ik_sweep.cpp: all solutions at n values of joint `parameter`, the other locked joints at their values `at`.
+CSPACE_NARROW_KERNEL(void, ik_sweep,
+                     (const cspace::ik::LockedArm& locked, int parameter, const cspace::Posed& goal,
+                      const double* at, const double* values, int n, cspace::SweptRows* rows))

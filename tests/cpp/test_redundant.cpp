@@ -27,7 +27,7 @@ static ik::Redundant shoulder_arm() {
         chain.point[i] = T.t;
     }
     chain.tip = T * Posed{identity_pose().R, {0, 0, 0.107}};
-    return make_redundant(chain, lower, upper, weight, make_general_arm);
+    return make_redundant(chain, lower, upper, weight);
 }
 
 static void random_within(arms::Rng& rng, const ik::Redundant& arm, double* q) {
@@ -43,7 +43,7 @@ TEST(held_joints_change_no_pose) {
             double q[7], typical[7];
             typical_values(arm, typical);
             random_within(rng, arm, q);
-            const ik::LockedArm locked = lock_joints(arm.chain, held, 2, typical, no_general_arm);
+            const ik::LockedArm locked = lock_joints(arm.chain, held, 2, typical, false);
             double moving[5];
             for (int k = 0; k < 5; ++k) moving[k] = q[locked.moving[k]];
             const Posed whole = forward(arm.chain, q);
@@ -66,7 +66,7 @@ TEST(cells_and_arcs_agree) {
     const auto limits = std::make_unique<ik::LimitArms>();
     const auto cells = std::make_unique<ik::Intervals>(), arcs = std::make_unique<ik::Intervals>();
     const auto trail = std::make_unique<Trail>();
-    make_limit_arms(arm, *limits, make_general_arm);
+    make_limit_arms(arm, *limits);
     arms::Rng rng(2);
     for (int k = 0; k < 25; ++k) {
         double q[7];

@@ -27,18 +27,18 @@ inline int room_for(const Arm& arm) { return arm.is_general ? max_solutions : ma
 
 namespace cspace::inline CSPACE_ISA {
 
-// plan_general: with which instruction set general arms are solved, that of the caller unless given.
-inline ik::Arm make_arm(const ik::Chain& chain,
-                        bool (*plan_general)(const ik::Chain&, ik::GeneralArm&) = make_general_arm) {
+// with_general: whether arms in general position are planned too, which takes milliseconds.
+CSPACE_ONCE ik::Arm make_arm(const ik::Chain& chain, bool with_general = true) {
     ik::Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
     arm.is_short = chain.n <= ik::max_position_joints;
     if (!arm.has_plan) arm.plan.form.length = characteristic_length(chain);
-    if (!arm.has_plan && !arm.is_short && chain.n <= 6) arm.is_general = plan_general(chain, arm.general);
+    if (!arm.has_plan && !arm.is_short && chain.n <= 6)
+        arm.is_general = with_general && make_general_arm(chain, arm.general);
     // Behind a form that idealises visibly stands the arm itself; neighbours would idealise it once more.
     if (arm.has_plan && arm.plan.form.deviation > tolerance::visible_deviation && chain.n == 6) {
         arm.general.alone = true;
-        arm.is_general = plan_general(chain, arm.general) && arm.general.plan.regular > 0;
+        arm.is_general = with_general && make_general_arm(chain, arm.general) && arm.general.plan.regular > 0;
     }
     return arm;
 }
@@ -81,7 +81,7 @@ inline void refine_short(const ik::Chain& chain, const Posed& goal, double lengt
 inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, const double* idle) {
     const Posed goal_form = goal_in_form(arm.plan, goal);
     ik::Solutions out = solve_general_carefully(arm.general, goal, idle);
-    if (!out.complete || closed_form(arm.plan, goal_form, care_of(arm.plan)).doubt) {
+    if (!out.complete || solve_closed_form(arm.plan, goal_form, care_of(arm.plan)).doubt) {
         const int alone = out.count;
         const ik::Solutions form = solve_carefully(arm.plan, goal, idle);
         for (int k = 0; k < form.count; ++k) {
@@ -92,7 +92,7 @@ inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, cons
         Care care;
         care.band = 2 * arm.plan.form.deviation;
         const bool agree = form.count == alone && alone % 2 == 0;
-        const bool certain = out.complete || (agree && !closed_form(arm.plan, goal_form, care).doubt);
+        const bool certain = out.complete || (agree && !solve_closed_form(arm.plan, goal_form, care).doubt);
         out.complete = certain && out.count == alone;
         judge(out);
     }
@@ -103,7 +103,7 @@ inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, cons
 // By the closed form at goals beside this one, wherever virtual joints stand there.
 inline bool search_beside_form(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
     const auto propose = [&](const Posed& beside, const auto& offer) {
-        const Branches<double> b = closed_form(plan, goal_in_form(plan, beside), care_of(plan));
+        const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, beside), care_of(plan));
         for (int k = 0; k < max_branches; ++k) {
             if (!b.ok[k]) continue;
             double q[ik::max_joints] = {};
@@ -133,7 +133,7 @@ inline ik::Solutions solutions_and_families(const ik::Arm& arm, const Posed& goa
         // Where the completed arm is singular the arm itself need not be, and where a wrist is almost free
         // rounding may put a goal on the border out of reach.
         if ((arm.plan.virtual_joints == 0 && out.count > 0) ||
-            !closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
+            !solve_closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
             return out;
         if (search_beside_form(arm.plan, goal, out)) out.complete = false;
         if (out.count == 0) search_by_descent(chain, goal, length, 4 * starts, out);
@@ -146,7 +146,7 @@ inline ik::Solutions solutions_and_families(const ik::Arm& arm, const Posed& goa
     return out;
 }
 
-inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
+CSPACE_ONCE ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
     const ik::Chain& chain = arm.plan.chain;
     ik::Solutions out = solutions_and_families(arm, goal, idle);
     if (chain.n > ik::max_position_joints)
@@ -158,13 +158,13 @@ inline ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const dou
 // keeps the orientation and gives the distance by which the goal is out of reach. Starts from the branches
 // cut off at their borders and from configurations spread over the joints; a large weight comes in by steps,
 // for the way along the orientations that it allows is narrow.
-inline ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double weight) {
+CSPACE_ONCE ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double weight) {
     const ik::Plan& plan = arm.plan;
     const int n = plan.chain.n;
     Care care;
     care.band = std::numeric_limits<double>::infinity();
     Branches<double> b{};
-    if (arm.has_plan) b = closed_form(plan, goal_in_form(plan, goal), care);
+    if (arm.has_plan) b = solve_closed_form(plan, goal_in_form(plan, goal), care);
     ik::Miss best;
     best.cost = std::numeric_limits<double>::infinity();
     constexpr int spread = 16;

@@ -66,8 +66,8 @@ inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, co
 }
 
 // Adds q to the solutions unless it is no solution or already there.
-inline void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal, double length, double* q,
-                  int branch, int most_steps) {
+CSPACE_ONCE void admit(ik::Solutions& out, const ik::Chain& chain, const Posed& goal, double length,
+                       double* q, int branch, int most_steps) {
     PoseError error;
     const double size = refine(chain, goal, length, q, error, most_steps);
     if (!(size <= tolerance::reached) || out.count == ik::max_solutions) return;
@@ -97,7 +97,7 @@ struct Search {
 // The plan's branches for one choice of idle joints, as configurations of the chain.
 inline void candidates(const ik::Plan& plan, const Posed& goal_form, const Care& care, ik::Solutions& out,
                        const Posed& goal, const Search& search = {}) {
-    const Branches<double> b = closed_form(plan, goal_form, care);
+    const Branches<double> b = solve_closed_form(plan, goal_form, care);
     for (int k = search.first; k < search.last; ++k) {
         if (!b.ok[k]) continue;
         double q[ik::max_joints] = {};
@@ -127,10 +127,10 @@ inline void set_idle(const ik::Plan& plan, const double* idle, Care& care, doubl
 
 // Whether the branches depend on the angle that joint i takes when it is free.
 inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
-    const Branches<double> b = closed_form(plan, goal_form, care);
+    const Branches<double> b = solve_closed_form(plan, goal_form, care);
     Care other = care;
     other.idle[i] = {std::cos(t + 2.4), std::sin(t + 2.4)};
-    const Branches<double> moved = closed_form(plan, goal_form, other);
+    const Branches<double> moved = solve_closed_form(plan, goal_form, other);
     for (int k = 0; k < max_branches; ++k) {
         if (b.ok[k] != moved.ok[k]) return true;
         for (int j = 0; j < 6 && b.ok[k]; ++j)
@@ -160,7 +160,7 @@ inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, cons
 inline void try_beside(const ik::Plan& plan, const Posed& goal_form, Care care, ik::Solutions& out,
                        const Posed& goal) {
     care.band = std::sqrt(care.band);
-    if (closed_form(plan, goal_form, care).doubt)
+    if (solve_closed_form(plan, goal_form, care).doubt)
         candidates(plan, goal_form, care, out, goal, {0, max_branches, pi});
 }
 
@@ -189,7 +189,7 @@ inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care c
 inline void number_by_branches(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
     Care care = care_of(plan);
     care.spread = 4 * plan.form.deviation;
-    const Branches<double> b = closed_form(plan, goal_in_form(plan, goal), care);
+    const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, goal), care);
     const auto gap = [&](int m, int k) {
         double worst = 0;
         for (int i = 0; i < 6; ++i)
@@ -237,7 +237,7 @@ inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const doubl
     out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
     // Merging pairs of the true arm may lie where the form has none.
     if (plan.form.deviation > tolerance::visible_deviation &&
-        closed_form(plan, goal_form, care_of(plan)).doubt)
+        solve_closed_form(plan, goal_form, care_of(plan)).doubt)
         out.complete = false;
 }
 

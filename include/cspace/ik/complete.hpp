@@ -113,7 +113,7 @@ inline bool complete(ik::Plan& plan, const ik::Chain& c, const int* source) {
 }
 
 // The plan of an arm of four to six revolute joints.
-inline bool make_plan(ik::Plan& plan, const ik::Chain& chain) {
+CSPACE_ONCE bool make_plan(ik::Plan& plan, const ik::Chain& chain) {
     plan.chain = chain;
     plan.family = ik::Family::none;
     if (chain.n < 4 || chain.n > 6) return false;

@@ -35,6 +35,11 @@ CSPACE_INLINE Branches<V> closed_form(const ik::Plan& plan, const Pose<V>& goal,
     }
 }
 
+// One goal on one lane, for the slow paths.
+CSPACE_ONCE Branches<double> solve_closed_form(const ik::Plan& plan, const Posed& goal, const Care& care) {
+    return closed_form(plan, goal, care);
+}
+
 // How far from a fold the closed form may be trusted: an idealised geometry shifts the folds.
 inline Care care_of(const ik::Plan& plan) {
     Care care;

@@ -4,18 +4,8 @@
 #include "cspace/ik/evaluate.hpp"
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/polish.hpp"
+#include "cspace/ik/solution.hpp"
 #include "cspace/math/rows.hpp"
-
-namespace cspace::ik {
-
-// What the closed form says of a goal before anybody looks twice.
-enum class Quick : std::uint8_t {
-    settled,   // the branches listed are all there are
-    doubtful,  // the careful path has to decide
-    refused,   // not a pose: a number that is not finite, a wrong last row, no rotation
-};
-
-}  // namespace cspace::ik
 
 namespace cspace::inline CSPACE_ISA {
 
@@ -28,8 +18,8 @@ CSPACE_INLINE mask_of<W> polished_angles(const ik::Plan& plan, const Pose<W>& go
 }
 
 // T: 16 numbers, row by row; q takes up to max_branches rows of 6 and branch their numbers.
-CSPACE_INLINE ik::Quick solve_quickly(const ik::Plan& plan, const double* T, double* q, signed char* branch,
-                                      int* count) {
+CSPACE_ONCE ik::Quick solve_quickly(const ik::Plan& plan, const double* T, double* q, signed char* branch,
+                                    int* count) {
     const ReadGoal<double> goal = read_goal(T);
     *count = 0;
     if (!goal.is_pose) return ik::Quick::refused;

@@ -143,8 +143,8 @@ inline SparseDirections sparse_directions(const double* const* basis, int k, int
 // Looks for a self-motion at q, whose decomposed Jacobian is J; on success `direction` is its unit velocity.
 // Where freedom is lost twice or more (an elbow stretched over a wrist), the null space has more dimensions
 // than the motion: its sparse directions are tried, then some all around it.
-inline bool find_self_motion(const ik::Chain& chain, const Posed& goal, double length, const double* q,
-                             const PoseSvd& J, double* direction) {
+CSPACE_ONCE bool find_self_motion(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                                  const PoseSvd& J, double* direction) {
     constexpr double lost = 1e-7;
     const double* basis[ik::max_joints];
     int k = 0;

@@ -1,6 +1,7 @@
 // What inverse kinematics answers for one goal.
 #pragma once
 
+#include "cspace/ik/branches.hpp"
 #include "cspace/ik/chain.hpp"
 
 namespace cspace::ik {
@@ -13,6 +14,13 @@ enum class Status : unsigned char {
     exact,        // every configuration that meets it is listed
     singular,     // some of those listed stand for a family: joints move and the tip does not
     nearest,      // nothing meets the goal; the least-squares answer, because it was asked for
+};
+
+// What the closed form alone says of a goal.
+enum class Quick : unsigned char {
+    settled,   // the branches listed are all there are
+    doubtful,  // the slow path has to decide
+    refused,   // not a pose: a number that is not finite, a wrong last row, no rotation
 };
 
 struct Solutions {

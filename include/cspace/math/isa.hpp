@@ -3,16 +3,20 @@
 // A kernel is compiled once per instruction set and chosen at run time, so the same template exists several
 // times in one program. Every function that may be compiled so lives in `cspace::inline CSPACE_ISA`, which
 // keeps the copies apart for the linker; plain data shared between them lives in `cspace`.
+//
+// The copies of the library are named by the build (CSPACE_ISA=baseline, avx2, …). Code that includes the
+// headers itself has names of its own, so that the linker never takes one for the other.
 #pragma once
 
-#if defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
-#define CSPACE_ISA avx512
+#if defined(CSPACE_ISA)
+#elif defined(__AVX512F__) && defined(__AVX512DQ__) && defined(__AVX512VL__)
+#define CSPACE_ISA header_avx512
 #elif defined(__AVX2__)
-#define CSPACE_ISA avx2
+#define CSPACE_ISA header_avx2
 #elif defined(__aarch64__) || defined(_M_ARM64)
-#define CSPACE_ISA neon
+#define CSPACE_ISA header_neon
 #else
-#define CSPACE_ISA baseline
+#define CSPACE_ISA header
 #endif
 
 namespace cspace {
@@ -33,6 +37,10 @@ inline namespace CSPACE_ISA {}
 #define CSPACE_NOINLINE __declspec(noinline)
 #define CSPACE_COLD __declspec(noinline)
 #endif
+
+// Before a large function that several files of the library call: each copy compiles it once, in the file
+// that instantiates it (src/kernels/once.hpp). For others it is a function template like any other.
+#define CSPACE_ONCE template <class = void>
 
 // Registers of the vector extensions of GCC and Clang; other compilers (or CSPACE_FORCE_ARRAY_LANES, so that
 // their path can be tested anywhere) get arrays.

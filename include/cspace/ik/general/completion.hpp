@@ -91,7 +91,7 @@ inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
 
 // The solver of an arm of up to six joints none of which is to spare; false for others. `arm.alone` says
 // whether it has to do without neighbours.
-inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
+CSPACE_ONCE bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
     const bool alone = arm.alone;
     arm = {};
     arm.alone = alone;
@@ -116,7 +116,8 @@ inline bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
 // The same arm with other numbers, say with another value of a joint that is held: the choices that were made
 // for `typical` (virtual joints, formulations and their order) stay, for to make them takes a thousand times
 // as long as to use them.
-inline bool renumber_general_arm(const ik::GeneralArm& typical, const ik::Chain& chain, ik::GeneralArm& arm) {
+CSPACE_ONCE bool renumber_general_arm(const ik::GeneralArm& typical, const ik::Chain& chain,
+                                      ik::GeneralArm& arm) {
     arm = typical;
     arm.chain = chain;
     const double length = characteristic_length(chain);

@@ -69,7 +69,7 @@ inline Basis basis_of(const ik::Chain& chain, double length, const int* order, i
     return best;
 }
 inline Basis basis_of(const ik::Chain& chain, double length) {
-    int order[ik::max_joints];
+    int order[ik::max_joints] = {};
     for (int i = 0; i < chain.n; ++i) order[i] = i;
     return basis_of(chain, length, order, chain.n);
 }

@@ -17,7 +17,8 @@ struct CurvePoint {
 namespace cspace::inline CSPACE_ISA {
 
 // One Newton step from q back onto the curve, and what is known at q before it.
-inline void onto_curve(const ik::Chain& chain, int rank, const Posed& goal, double length, CurvePoint& at) {
+CSPACE_ONCE void onto_curve(const ik::Chain& chain, int rank, const Posed& goal, double length,
+                            CurvePoint& at) {
     TipMotion<double> motion;
     SplitJacobian<double> split;
     const int n = chain.n;

@@ -71,7 +71,7 @@ inline void add_true_folds(const ik::Redundant& arm, const Sweep& sweep, double 
     const Posed goal = goal_at(sweep.in_form, std::cos(value), std::sin(value));
     Care care = care_of(plan);
     care.band = 1e-3;
-    const Branches<double> b = closed_form(plan, goal, care);
+    const Branches<double> b = solve_closed_form(plan, goal, care);
     for (int k = 0; k < max_branches; ++k) {
         if (!b.ok[k]) continue;
         CurvePoint at;
@@ -113,7 +113,7 @@ inline void add_roots(const ik::Redundant& arm, const Sweep& sweep, const Functi
     }
 }
 
-inline FoldValues fold_values(const ik::Redundant& whole, const Sweep& sweep) {
+CSPACE_ONCE FoldValues fold_values(const ik::Redundant& whole, const Sweep& sweep) {
     FoldValues out;
     if (!sweep.on_lanes || sweep.in_form.slides) return out;
     const ik::Plan& plan = sweep.locked->arm.plan;

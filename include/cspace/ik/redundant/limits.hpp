@@ -57,19 +57,17 @@ inline int freest_joint(const ik::Redundant& arm) {
 }
 
 // out: as ik::LimitArms{}; it is large and lives where the caller puts it.
-inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out,
-                            bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
+inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
     double at[ik::max_joints];
     typical_values(arm, at);
     out.freest = freest_joint(arm);
-    if (out.freest >= 0) out.by_freest = lock_joints(arm.chain, &out.freest, 1, at, plan_general);
+    if (out.freest >= 0) out.by_freest = lock_joints(arm.chain, &out.freest, 1, at);
     for (int i = 0; i < arm.chain.n; ++i) {
         if (!ik::is_stopped(arm, i)) continue;
         const int k = out.count++;
         out.joint[k] = i;
-        out.locked[k] = arm.locked.n_held == 1 && arm.locked.held[0] == i
-                            ? arm.locked
-                            : lock_joints(arm.chain, &i, 1, at, plan_general);
+        out.locked[k] = arm.locked.n_held == 1 && arm.locked.held[0] == i ? arm.locked
+                                                                          : lock_joints(arm.chain, &i, 1, at);
         for (int side = 0; side < 2 && !out.locked[k].at_ends; ++side) {
             if (!std::isfinite(limit_of(arm, i, side))) continue;
             double there[ik::max_joints];

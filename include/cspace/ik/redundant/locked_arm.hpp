@@ -15,7 +15,6 @@ struct LockedArm {
     int n_held = 0, n_moving = 0;
     bool at_ends = true;  // the joints that move follow one another
     Arm arm;              // of those that move; the held ones at zero, or at typical values if not at_ends
-    bool (*plan_general)(const Chain&, GeneralArm&) = nullptr;
 };
 
 }  // namespace cspace::ik
@@ -47,11 +46,10 @@ inline ik::Chain locked_chain(const ik::LockedArm& locked, const double* at) {
 
 // held: the numbers of the joints to hold, ascending; typical: a value for each joint of the chain at which
 // nothing special is expected.
-inline ik::LockedArm lock_joints(const ik::Chain& whole, const int* held, int n_held, const double* typical,
-                                 bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
+CSPACE_ONCE ik::LockedArm lock_joints(const ik::Chain& whole, const int* held, int n_held,
+                                      const double* typical, bool with_general = true) {
     ik::LockedArm out;
     out.whole = whole;
-    out.plan_general = plan_general;
     out.n_held = n_held;
     for (int k = 0; k < n_held; ++k) out.held[k] = held[k];
     for (int i = 0, k = 0; i < whole.n; ++i) {
@@ -63,7 +61,7 @@ inline ik::LockedArm lock_joints(const ik::Chain& whole, const int* held, int n_
     if (out.n_moving > ik::max_moving || out.n_moving == 0) return out;
     out.at_ends = out.moving[out.n_moving - 1] - out.moving[0] == out.n_moving - 1;
     const double zero[ik::max_joints] = {};
-    out.arm = make_arm(locked_chain(out, out.at_ends ? zero : typical), plan_general);
+    out.arm = make_arm(locked_chain(out, out.at_ends ? zero : typical), with_general);
     return out;
 }
 
@@ -98,7 +96,7 @@ CSPACE_INLINE Pose<V> goal_between_ends(const ik::LockedArm& locked, const Pose<
 // its typical values: to rank them takes a thousand times as long as to use them.
 inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
     const ik::Chain chain = locked_chain(locked, at);
-    if (!locked.arm.is_general) return make_arm(chain, locked.plan_general);
+    if (!locked.arm.is_general) return make_arm(chain);
     ik::Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
     if (arm.has_plan && !arm.plan.idealised) return arm;
@@ -124,7 +122,7 @@ inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal)
 }
 
 // By the closed form alone where it is sure of itself.
-inline ik::Solutions solve_arm_quickly(const ik::Arm& arm, const Posed& goal) {
+CSPACE_ONCE ik::Solutions solve_arm_quickly(const ik::Arm& arm, const Posed& goal) {
     ik::Solutions out;
     if (arm.has_plan) {
         double T[16] = {0, 0, 0, goal.t.x, 0, 0, 0, goal.t.y, 0, 0, 0, goal.t.z, 0, 0, 0, 1},
@@ -151,8 +149,8 @@ inline ik::Solutions solve_arm(const ik::Arm& arm, const Posed& goal, const doub
 
 // Every solution for the joints that move, the others at their values `at`; idle (null, or of the whole
 // chain): what joints take that the goal leaves free.
-inline ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed& goal, const double* at,
-                                  const double* idle) {
+CSPACE_ONCE ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed& goal, const double* at,
+                                       const double* idle) {
     double rest[ik::max_joints] = {};
     for (int k = 0; idle && k < locked.n_moving; ++k) rest[k] = idle[locked.moving[k]];
     if (locked.at_ends)

@@ -102,13 +102,12 @@ inline int rank_of(const ik::Arm& arm) {
 }
 // The arm with all joints held but those of a basis.
 inline ik::LockedArm lock_outside(const ik::Redundant& arm, unsigned basis, const double* typical,
-                                  bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
+                                  bool with_general) {
     int held[ik::max_joints], n_held = 0;
     for (int i = 0; i < arm.chain.n; ++i)
         if (!(basis >> i & 1)) held[n_held++] = i;
-    return lock_joints(arm.chain, held, n_held, typical, plan_general);
+    return lock_joints(arm.chain, held, n_held, typical, with_general);
 }
-inline bool no_general_arm(const ik::Chain&, ik::GeneralArm&) { return false; }
 
 // Sets of joints that may be left to move, the best to try first: neighbours from each joint on, with those
 // nearest behind and before them where neighbours do each other's work; then all but one joint.
@@ -149,14 +148,14 @@ inline Bases bases_of(const ik::Redundant& arm) {
 
 // Chooses the joints to hold: at the ends, so that neighbours move and a value only moves the goal; the last
 // ones if that is as good as any. Only if nothing solves neighbours, one between others is held.
-inline void choose_locks(ik::Redundant& arm, bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
+inline void choose_locks(ik::Redundant& arm) {
     double typical[ik::max_joints];
     typical_values(arm, typical);
     const Bases bases = bases_of(arm);
     int best = -1, best_score = 0;
     for (int k = 0; k < bases.count; ++k) {
         if (arm.rank == 6 && !are_neighbours(bases.joints[k])) continue;
-        const ik::LockedArm locked = lock_outside(arm, bases.joints[k], typical, no_general_arm);
+        const ik::LockedArm locked = lock_outside(arm, bases.joints[k], typical, false);
         const int rank = locked.at_ends ? rank_of(locked.arm) : min(rank_of(locked.arm), 2);
         const int score = 2 * rank + locked.at_ends;
         if (rank < 2 || score <= best_score) continue;
@@ -164,13 +163,13 @@ inline void choose_locks(ik::Redundant& arm, bool (*plan_general)(const ik::Chai
         best_score = score;
     }
     if (best >= 0) {
-        arm.locked = lock_outside(arm, bases.joints[best], typical, plan_general);
+        arm.locked = lock_outside(arm, bases.joints[best], typical, true);
         return;
     }
     for (const bool at_ends : {true, false})
         for (int k = 0; k < bases.count; ++k) {
             if (are_neighbours(bases.joints[k]) != at_ends) continue;
-            arm.locked = lock_outside(arm, bases.joints[k], typical, plan_general);
+            arm.locked = lock_outside(arm, bases.joints[k], typical, true);
             if (rank_of(arm.locked.arm) > 0) return;
         }
 }
@@ -184,9 +183,8 @@ inline int spare_with(const ik::Redundant& arm, unsigned held) {
 }
 
 // lower, upper, weight: per joint. An arm without a joint to spare has nothing to hold.
-inline ik::Redundant make_redundant(const ik::Chain& chain, const double* lower, const double* upper,
-                                    const double* weight,
-                                    bool (*plan_general)(const ik::Chain&, ik::GeneralArm&)) {
+CSPACE_ONCE ik::Redundant make_redundant(const ik::Chain& chain, const double* lower, const double* upper,
+                                         const double* weight) {
     ik::Redundant arm;
     arm.chain = chain;
     arm.length = characteristic_length(chain);
@@ -199,7 +197,7 @@ inline ik::Redundant make_redundant(const ik::Chain& chain, const double* lower,
     }
     arm.rank = basis_of(chain, arm.length).rank;
     arm.spare = chain.n - arm.rank;
-    if (arm.spare) choose_locks(arm, plan_general);
+    if (arm.spare) choose_locks(arm);
     bool alike = arm.rank == 6;
     for (int i = 0; i < chain.n; ++i) alike = alike && weight[i] == 1;
     if (alike) arm.halves = make_halves(chain, arm.length);

@@ -88,7 +88,8 @@ CSPACE_INLINE void value_on_circle(const MovingGoal& goal, V value, V& c, V& s) 
 }
 
 // at: the values of all held joints; that of the parameter does not matter.
-inline Sweep make_sweep(const ik::LockedArm& locked, int parameter, const Posed& goal, const double* at) {
+CSPACE_ONCE Sweep make_sweep(const ik::LockedArm& locked, int parameter, const Posed& goal,
+                             const double* at) {
     Sweep sweep;
     sweep.locked = &locked;
     sweep.parameter = parameter;

@@ -1,6 +1,9 @@
-#include "ik.hpp"
+#include "ik_closed_form.hpp"
 
+#include "cspace/ik/arm.hpp"
+#include "cspace/ik/quick.hpp"
 #include "cspace/math/stream.hpp"
+#include "once.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 namespace {
@@ -30,12 +33,17 @@ CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
 
 }  // namespace
 
-ik::Quick ik_one(const ik::Plan& plan, const double* T, double* q, std::int8_t* branch, int* count) {
-    return solve_quickly(plan, T, q, branch, count);
+template ik::Quick solve_quickly(const ik::Plan&, const double*, double*, signed char*, int*);
+template Branches<double> solve_closed_form(const ik::Plan&, const Posed&, const Care&);
+
+ik::Quick ik_one(const ik::Arm& arm, const double* T, double* q, std::int8_t* branch, int* count) {
+    if (arm.has_plan) return solve_quickly(arm.plan, T, q, branch, count);
+    return read_goal(T).is_pose ? ik::Quick::doubtful : ik::Quick::refused;
 }
 
-void ik_many(const ik::Plan& plan, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
+void ik_many(const ik::Arm& arm, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
              ik::Quick* quick) {
+    const ik::Plan& plan = arm.plan;
     const Care care = care_of(plan);
     const std::size_t row = std::size_t(room) * 6;
     alignas(64) double stage[native_width * ik::max_solutions * 6];

@@ -1,13 +1,15 @@
-#include "ik_held.hpp"
+#include "ik_locked_rows.hpp"
 
 #include <limits>
 
+#include "cspace/ik/redundant/locked_arm.hpp"
 #include "cspace/math/rows.hpp"
+#include "once.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
-void held_goals(const ik::LockedArm& locked, const double* goals, const double* at, std::size_t stride,
-                std::size_t rows, double* moved) {
+void locked_goals(const ik::LockedArm& locked, const double* goals, const double* at, std::size_t stride,
+                  std::size_t rows, double* moved) {
     using V = Pack<native_width>;
     for (std::size_t first = 0; first < rows; first += native_width) {
         const int count = rows - first < native_width ? int(rows - first) : native_width;
@@ -30,8 +32,8 @@ void held_goals(const ik::LockedArm& locked, const double* goals, const double* 
     }
 }
 
-void held_rows(const ik::LockedArm& locked, const double* at, const double* q, std::int64_t count,
-               std::size_t room, double* rows) {
+void locked_rows(const ik::LockedArm& locked, const double* at, const double* q, std::int64_t count,
+                 std::size_t room, double* rows) {
     const std::size_t n = std::size_t(locked.whole.n);
     for (std::int64_t k = 0; k < count; ++k) whole_row(locked, at, q + 6 * k, rows + n * std::size_t(k));
     for (std::size_t i = n * std::size_t(count); i < n * room; ++i)

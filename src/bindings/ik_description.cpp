@@ -1,0 +1,65 @@
+// How an arm is solved, as plain objects: see library/ik_description.hpp.
+#include "library/ik_description.hpp"
+
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "bindings.hpp"
+#include "ik_shared.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace cspace;
+
+namespace {
+
+nb::object to_python(const Value& value) {
+    switch (value.kind) {
+        case Value::Kind::truth:
+            return nb::bool_(value.number != 0);
+        case Value::Kind::integer:
+            return nb::int_(int(value.number));
+        case Value::Kind::real:
+            return nb::float_(value.number);
+        case Value::Kind::list: {
+            nb::list out;
+            for (const Value& item : value.items) out.append(to_python(item));
+            return out;
+        }
+        default: {
+            nb::dict out;
+            for (std::size_t k = 0; k < value.items.size(); ++k)
+                out[value.names[k].c_str()] = to_python(value.items[k]);
+            return out;
+        }
+    }
+}
+
+nb::object numbers(nb::handle robot) {
+    const ik::BuiltArm* arm = arm_of(robot.ptr());
+    if (!arm || !arm->room) throw nb::type_error("_ik_numbers takes a robot with a solver");
+    const auto [solver, plan] = ik::plan_numbers(*arm);
+    return nb::make_tuple(solver, to_python(plan));
+}
+
+nb::object outline(nb::handle robot) {
+    const ik::BuiltArm* arm = arm_of(robot.ptr());
+    return arm ? to_python(ik::plan_outline(*arm)) : nb::dict();
+}
+
+double determinant(nb::handle robot, const std::vector<double>& goal, int formulation, double a0) {
+    const ik::BuiltArm* arm = arm_of(robot.ptr());
+    if (!arm || goal.size() != 16)
+        throw nb::type_error("_ik_determinant takes a robot and the 16 numbers of a goal");
+    return ik::hidden_determinant(*arm, goal.data(), formulation, a0);
+}
+
+}  // namespace
+
+void bind_ik_description(nb::module_& m) {
+    m.def("_ik_numbers", &numbers, "robot"_a,
+          "How a robot is solved (closed, general, short, any) and the numbers of its plan.");
+    m.def("_ik_plan", &outline, "robot"_a, "What the solver of a robot rests on.");
+    m.def("_ik_determinant", &determinant, "robot"_a, "goal"_a, "formulation"_a, "a0"_a,
+          "The determinant of a general arm at one hidden angle.");
+}

@@ -1,0 +1,16 @@
+#include "cspace/ik/redundant/arcs.hpp"
+#include "ik_redundant.hpp"
+#include "once.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+void ik_make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) { make_limit_arms(arm, out); }
+
+void ik_intervals(const ik::Redundant& arm, const ik::LockedArm& locked, int parameter,
+                  const ik::LimitArms& arms, const Posed& goal, Trail& trail, ik::Intervals& out) {
+    const bool by_default = &locked == &arm.locked;
+    if (by_default && intervals_by_cells(arm, arms, goal, out)) return;
+    intervals_by_arcs(arm, locked, parameter, arms, goal, trail, out);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,18 @@
+#include "cspace/ik/redundant/folds.hpp"
+#include "ik_redundant.hpp"
+#include "once.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+template Sweep make_sweep(const ik::LockedArm&, int, const Posed&, const double*);
+template void branches_at(const Sweep&, Pack<4>, Branches<Pack<4>>&);
+template FoldValues fold_values(const ik::Redundant&, const Sweep&);
+template void onto_curve(const ik::Chain&, int, const Posed&, double, CurvePoint&);
+
+void ik_sweep(const ik::LockedArm& locked, int parameter, const Posed& goal, const double* at,
+              const double* values, int n, SweptRows* rows) {
+    const Sweep sweep = make_sweep(locked, parameter, goal, at);
+    sweep_values(sweep, values, n, [&](int k, const SweptRows& found) { rows[k] = found; });
+}
+
+}  // namespace cspace::inline CSPACE_ISA

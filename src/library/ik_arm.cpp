@@ -1,0 +1,211 @@
+#include "ik_arm.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+
+#include "cspace/ik/arm.hpp"
+#include "cspace/ik/goal.hpp"
+#include "cspace/math/threads.hpp"
+#include "kernels/ik_closed_form.hpp"
+#include "kernels/ik_pose.hpp"
+
+namespace cspace::ik {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t rows_worth_a_thread = 256;
+
+// What the first three axes share, of arms with a spherical wrist and of three revolute joints.
+int shared_by_first_three(const Arm& arm) {
+    if (arm.has_plan) return arm.plan.family == Family::spherical_wrist ? int(arm.plan.wrist.first.kind) : -1;
+    const Chain& c = arm.plan.chain;
+    if (c.n != 3 || c.prismatic[0] || c.prismatic[1] || c.prismatic[2]) return -1;
+    bool parallel[2], meeting[2];
+    for (int i = 0; i < 2; ++i) {
+        const Vec3d normal = cross(c.axis[i], c.axis[i + 1]), gap = c.point[i + 1] - c.point[i];
+        parallel[i] = norm(normal) <= tolerance::axis_relation;
+        meeting[i] = !parallel[i] && std::fabs(dot(gap, normal)) <=
+                                         tolerance::axis_relation * arm.plan.form.length * norm(normal);
+    }
+    return int(parallel[1]   ? FirstThree::last_parallel
+               : parallel[0] ? FirstThree::first_parallel
+               : meeting[0]  ? FirstThree::first_meet
+               : meeting[1]  ? FirstThree::last_meet
+                             : FirstThree::general);
+}
+
+// Solutions into one goal's rows, NaN behind them.
+void write_rows(const Solutions& found, int room, int dof, double* q, std::int64_t* count,
+                unsigned char* status) {
+    std::fill(q, q + room * dof, none);
+    *count = std::min(found.count, room);
+    for (int k = 0; k < *count; ++k) std::copy(found.q[k], found.q[k] + dof, q + k * dof);
+    *status = static_cast<unsigned char>(int(found.status) + (found.complete ? 0 : incomplete));
+}
+
+// The closed form over a slice, then the slow path where it is in doubt. Returns the first goal refused, or
+// the end.
+std::size_t solve_slice(const BuiltArm& built, const GoalRows& rows, std::size_t from, std::size_t to) {
+    const Arm& arm = *built.arm;
+    const bool has_kernel = arm.has_plan && arm.plan.on_lanes && arm.plan.virtual_joints == 0;
+    const std::size_t row = std::size_t(built.room * built.dof);
+    auto* quick = reinterpret_cast<Quick*>(rows.status);
+    if (has_kernel)
+        kernels::ik_many(arm, rows.goals + 16 * from, to - from, built.room, rows.q + row * from,
+                         rows.count + from, quick + from);
+    Solutions found;
+    for (std::size_t i = from; i < to; ++i) {
+        if (has_kernel && quick[i] == Quick::settled) {
+            rows.status[i] = static_cast<unsigned char>(rows.count[i] ? Status::exact : Status::unreachable);
+            continue;
+        }
+        const ReadGoal<double> goal = read_goal(rows.goals + 16 * i);
+        if (!goal.is_pose) return i;
+        kernels::ik_pose(arm, goal.T, nullptr, found);
+        write_rows(found, built.room, built.dof, rows.q + row * i, rows.count + i, rows.status + i);
+    }
+    return to;
+}
+
+std::size_t solve_point_slice(const BuiltArm& built, const GoalRows& rows, std::size_t from, std::size_t to) {
+    const std::size_t row = std::size_t(built.room * built.dof);
+    for (std::size_t i = from; i < to; ++i) {
+        const double* p = rows.goals + 3 * i;
+        if (!(std::fabs(p[0]) + std::fabs(p[1]) + std::fabs(p[2]) <= tolerance::farthest)) return i;
+        write_rows(solve_point(built, {p[0], p[1], p[2]}), built.room, built.dof, rows.q + row * i,
+                   rows.count + i, rows.status + i);
+    }
+    return to;
+}
+
+// All goals, on threads. Returns the first goal refused, or their number.
+template <class Slice>
+std::size_t solve_on_threads(const BuiltArm& built, const GoalRows& rows, Slice solve_slice) {
+    std::atomic<std::size_t> refused = rows.n;
+    over_rows(rows.n, rows.threads, 1, rows_worth_a_thread, [&](std::size_t from, std::size_t to) {
+        const std::size_t stopped = solve_slice(built, rows, from, to);
+        if (stopped == to) return true;
+        std::size_t first = refused;
+        while (stopped < first && !refused.compare_exchange_weak(first, stopped)) {
+        }
+        return false;
+    });
+    return refused;
+}
+
+}  // namespace
+
+BuiltArm build_arm(const Chain& chain) {
+    auto arm = std::make_shared<Arm>();
+    kernels::ik_make_arm(chain, *arm);
+    const bool solvable = arm->has_plan || arm->is_short || arm->is_general;
+    return {arm, chain.n, solvable ? room_for(*arm) : 0, arm->is_short};
+}
+
+ArmGeometry geometry_of(const BuiltArm& built) {
+    const Arm& arm = *built.arm;
+    const Plan& plan = arm.plan;
+    return {arm.has_plan ? int(plan.family) : -1,
+            arm.is_general && !arm.has_plan,
+            plan.virtual_joints,
+            shared_by_first_three(arm),
+            plan.reversed,
+            plan.polish,
+            plan.form.deviation,
+            plan.form.length};
+}
+
+Solutions solve_goal(const BuiltArm& built, const double* goal, const double* idle) {
+    Solutions found;
+    kernels::ik_pose(*built.arm, read_goal(goal).T, idle, found);
+    return found;
+}
+
+Solutions solve_point(const BuiltArm& built, const Vec3d& goal) {
+    const Chain& chain = built.arm->plan.chain;
+    PositionSolutions found;
+    kernels::ik_position(chain, goal, false, found);
+    return from_short(chain, found);
+}
+
+std::size_t solve_goals(const BuiltArm& built, const GoalRows& rows) {
+    return solve_on_threads(built, rows, solve_slice);
+}
+std::size_t solve_points(const BuiltArm& built, const GoalRows& rows) {
+    return solve_on_threads(built, rows, solve_point_slice);
+}
+
+NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness) {
+    Miss best;
+    kernels::ik_nearest_miss(*built.arm, read_goal(goal).T, stiffness, best);
+    NearestMiss out = {{}, best.position, best.rotation};
+    std::copy(best.q, best.q + built.dof, out.q);
+    return out;
+}
+
+NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal) {
+    PositionSolutions found;
+    kernels::ik_position(built.arm->plan.chain, goal, true, found);
+    NearestMiss out = {{}, found.missing, 0};
+    const double* best = found.count ? found.q[0] : found.nearest;
+    std::copy(best, best + built.dof, out.q);
+    return out;
+}
+
+bool is_ruled_out(const BuiltArm& built, const double* goal) {
+    return is_beyond(built.arm->plan.chain, read_goal(goal).T, built.arm->plan.form.length);
+}
+
+void turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper, const double* seed,
+                  double* q) {
+    constexpr double turn = 6.283185307179586, on_limit = 1e-9;
+    for (int i = 0; i < n; ++i) {
+        if (prismatic[i]) continue;
+        const double least = std::ceil((lower[i] - on_limit - q[i]) / turn);
+        const double most = std::floor((upper[i] + on_limit - q[i]) / turn);
+        const double wanted = std::nearbyint((seed[i] - q[i]) / turn);
+        const double turns = least <= most ? std::fmin(std::fmax(wanted, least), most) : wanted;
+        const double moved = q[i] + turn * turns, inside = std::fmin(std::fmax(moved, lower[i]), upper[i]);
+        q[i] = std::fabs(moved - inside) <= on_limit ? inside : moved;
+    }
+}
+
+bool nearest_listed(const BuiltArm& built, const double* lower, const double* upper, const double* goal,
+                    const double* seed, double* q, std::int8_t* branch) {
+    const Arm& arm = *built.arm;
+    const Chain& chain = arm.plan.chain;
+    double rows[max_branches * 6];
+    std::int8_t branches[max_branches];
+    int count = 0;
+    Solutions found;
+    const double* row = rows;
+    const std::int8_t* number = branches;
+    int stride = 6;
+    const Quick quick = kernels::ik_one(arm, goal, rows, branches, &count);
+    if (quick == Quick::refused) return false;
+    if (quick == Quick::doubtful) {
+        kernels::ik_pose(arm, read_goal(goal).T, seed, found);
+        if (found.status != Status::exact || !found.complete) return false;
+        row = found.q[0];
+        number = found.branch;
+        stride = max_arm;
+        count = found.count;
+    }
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < count; ++k) {
+        double turned[max_joints], sum = 0;
+        std::copy(row + k * stride, row + k * stride + chain.n, turned);
+        turn_to_seed(chain.prismatic, chain.n, lower, upper, seed, turned);
+        for (int i = 0; i < chain.n; ++i) sum += (turned[i] - seed[i]) * (turned[i] - seed[i]);
+        if (!(sum < least)) continue;
+        least = sum;
+        std::copy(turned, turned + chain.n, q);
+        *branch = number[k];
+    }
+    return std::isfinite(least);
+}
+
+}  // namespace cspace::ik

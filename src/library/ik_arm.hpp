@@ -1,0 +1,75 @@
+// Every solution of arms of up to six joints: what the bindings call. The solver is opaque here; a goal is
+// the 16 numbers of a pose, row by row.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+
+#include "cspace/ik/solution.hpp"
+
+namespace cspace::ik {
+
+struct Arm;
+
+struct BuiltArm {
+    std::shared_ptr<const Arm> arm;
+    int dof;
+    int room;       // rows that the solutions of a goal may need; 0 where nothing solves the arm
+    bool is_short;  // up to three joints: it answers points too
+};
+BuiltArm build_arm(const Chain& chain);
+
+// What the classification saw.
+struct ArmGeometry {
+    int family;  // −1 without a closed form
+    bool is_general;
+    int virtual_joints;
+    int first_three;  // what the first three axes share; −1 where that does not matter
+    bool reversed, polish;
+    double deviation, length;
+};
+ArmGeometry geometry_of(const BuiltArm& built);
+
+Solutions solve_goal(const BuiltArm& built, const double* goal, const double* idle);
+Solutions solve_point(const BuiltArm& built, const Vec3d& goal);
+
+// In a verdict as a number: solutions may be missing.
+inline constexpr int incomplete = 8;
+
+// n goals, poses of 16 numbers or points of 3: q (n, room, dof) is padded with NaN, one count and one verdict
+// per goal. Returns the first goal refused, or n.
+struct GoalRows {
+    const double* goals;
+    std::size_t n;
+    double* q;
+    std::int64_t* count;
+    unsigned char* status;
+    int threads;
+};
+std::size_t solve_goals(const BuiltArm& built, const GoalRows& rows);
+std::size_t solve_points(const BuiltArm& built, const GoalRows& rows);
+
+// The configuration that comes nearest to a goal out of reach, and what is missing there.
+struct NearestMiss {
+    double q[max_joints];
+    double position;  // [m]
+    double rotation;  // [rad]
+};
+NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness);
+NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal);
+
+// Whether the lengths and directions of the axes alone rule the goal out.
+bool is_ruled_out(const BuiltArm& built, const double* goal);
+
+// Among solutions that stand alone the one nearest to a seed, by multiples of 2π inside the limits where one
+// is. False where the list is not settled.
+bool nearest_listed(const BuiltArm& built, const double* lower, const double* upper, const double* goal,
+                    const double* seed, double* q, std::int8_t* branch);
+
+// Moves the revolute joints of q by multiples of 2π as close to the seed as the limits allow, if they allow
+// any; onto a limit that rounding takes them past.
+void turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper, const double* seed,
+                  double* q);
+
+}  // namespace cspace::ik

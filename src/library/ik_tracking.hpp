@@ -1,0 +1,29 @@
+// Branches along a path of poses: what the bindings call. Rows have one column per coordinate of the robot.
+#pragma once
+
+#include <cstddef>
+
+#include "cspace/model/chain.hpp"
+
+namespace cspace {
+
+inline constexpr int track_info = 5;  // poses reached, end, fate, joint, least singular value
+
+// poses (count, 16); starts (branches, dof); bounds (3, dof): lower, upper, the longest step from pose to
+// pose. q (branches, count, dof) up to the poses reached, last (branches, dof) and info (branches,
+// track_info) take the results.
+struct TrackRows {
+    const Chain& chain;
+    const double* poses;
+    std::size_t count;
+    const double* starts;
+    std::size_t branches;
+    const double* bounds;
+    bool whole_turns;  // a branch may begin multiples of 2π away from its start
+    double* q;
+    double* last;
+    double* info;
+};
+void track_branches(const TrackRows& rows);
+
+}  // namespace cspace
