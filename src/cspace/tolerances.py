@@ -15,6 +15,7 @@ __all__ = [
     "DESCRIPTION_DEPTH",
     "DH_COINCIDENT",
     "DH_PARALLEL",
+    "DOUBLE_SOLUTION",
     "FARTHEST",
     "FARTHEST_CELL",
     "FARTHEST_POINT",
@@ -38,6 +39,7 @@ __all__ = [
     "NAVIGATION_SQUARES",
     "NAVIGATION_STEPS",
     "NUMERIC_TOLERANCE",
+    "ON_LIMIT",
     "ON_WALL",
     "PLANAR_AXES",
     "PURE_TRANSLATION_ANGLE",
@@ -47,6 +49,7 @@ __all__ = [
     "ROTATION_PROJECTION",
     "RUN_CELLS",
     "SAME_PLACE",
+    "SAME_TIP",
     "SAMPLE_STEP",
     "SERVED",
     "SETTLED",
@@ -176,6 +179,18 @@ and lie within SAME_PLACE of each other for the square root of that, 1e-5."""
 MOST_WINDINGS: Final = 100_000
 """Most copies of the solutions of one goal by whole turns that are listed: limits of ±2π on six joints give
 512, and a list beyond this one is no answer any more."""
+
+ON_LIMIT: Final = 1e-9
+"""How far beyond a limit (rad, m) a joint still counts as on it: solutions carry a rounding of about 1e-15,
+the solvers lose up to 1e-10 on ill-conditioned arms, and no encoder resolves 1e-8."""
+
+DOUBLE_SOLUTION: Final = 3e-7
+"""How far beyond a limit (rad, m) a double solution may lie whose true place is on the limit: up to this
+distance the core takes two solutions for one, known to the square root of the rounding."""
+
+SAME_TIP: Final = 1e-12
+"""Difference of two tip poses (m relative to the reach, rad) below which two configurations reach one goal:
+what the core accepts as an exact solution."""
 
 FARTHEST: Final = 1e100
 """Largest number in a goal, a seed or a geometric subproblem, and largest sum of a goal's coordinates

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import os
 import shutil
 import subprocess
@@ -59,6 +60,15 @@ def c_program(made, folder: Path, cxx: str, cc: str) -> Path:
     run([cxx, "-std=c++17", "-O1", "-fno-exceptions", *STRICT, "-c", source, "-o", "arm.o"], folder)
     run([cc, "-std=c99", *STRICT, *words, HERE / "driver.c", "arm.o", "-lm", "-o", program], folder)
     return program
+
+
+def shared_library(made, folder: Path, cxx: str) -> ctypes.CDLL:
+    """The C interface of an export, written to the folder, as a library that Python loads."""
+    made.write(folder)
+    _, source = made.files
+    flags = ["-std=c++17", "-O0", "-fPIC", "-shared", *STRICT]
+    run([cxx, *flags, source, "-o", "arm.so"], folder)
+    return ctypes.CDLL(str(folder / "arm.so"))
 
 
 def ask(program: Path, goals: np.ndarray, dof: int) -> list[Answer]:

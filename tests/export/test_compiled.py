@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import subprocess
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import cspace as cs
 from cspace import _core
+from cspace.ik.windings import into_limits
 from export import agree, arms, compiled
 
 
@@ -53,6 +55,28 @@ def test_every_compiler_that_is_here(name, cxx, tmp_path):
 def test_every_kind_in_c(name, tmp_path):
     robot = arms.arm(name)
     check(robot, compiled.c_program(robot.export("c"), tmp_path, compiled.cxx(), compiled.cc()))
+
+
+@pytest.mark.parametrize("name", ["rpr", "cobra600"])
+def test_joints_are_moved_into_their_limits_as_the_library_moves_them(name, tmp_path):
+    robot, rng = cs.load_robot(name), np.random.default_rng(0)
+    made = robot.export("c")
+    library = compiled.shared_library(made, tmp_path, compiled.cxx())
+    moves = getattr(library, f"{made.name}_into_limits")
+    lower, upper = robot.limits.lower, robot.limits.upper
+    side = np.where(np.isfinite(lower), lower, -1.0), np.where(np.isfinite(upper), upper, 1.0)
+    turns = np.array([2 * np.pi if kind == "R" else 0.0 for kind in robot.joint_types])
+    inside = 0
+    for off in (0.0, 1e-15, 5e-10, 1e-6, 0.1) * 40:
+        q = np.where(rng.random(robot.dof) < 0.5, side[0] - off, side[1] + off)
+        q = np.where(rng.random(robot.dof) < 0.3, rng.uniform(*side), q) + turns * rng.integers(-2, 3)
+        moved, fits = into_limits(q, robot.joint_types, lower, upper)
+        assert moves(q.ctypes.data_as(ctypes.POINTER(ctypes.c_double))) == fits
+        if fits:
+            assert ((lower <= q) & (q <= upper)).all()
+            np.testing.assert_allclose(np.sin((q - moved) / 2), 0, atol=1e-15)
+        inside += int(fits)
+    assert 20 < inside < 190
 
 
 @pytest.mark.parametrize("name", ["irb120"])

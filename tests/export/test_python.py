@@ -96,6 +96,27 @@ def test_limits():
     assert not module.into_limits(robot.limits.upper + 0.1)[1]
 
 
+@pytest.mark.parametrize("name", ["irb120", "stanford", "rpr", "ur5e"])
+def test_rounding_beyond_a_limit_is_set_to_it(name):
+    robot = cs.load_robot(name)
+    module, limits = module_of(robot.export("python").text), robot.limits
+    middle = robot.random_configuration(rng=0, reach=0.5)
+    for side, way in ((limits.lower, -1), (limits.upper, 1)):
+        turns = [2 * np.pi if kind == "R" else 0.0 for kind in robot.joint_types]
+        on = np.where(np.isfinite(side), side, middle)
+        for turn in (0, 1, -2):
+            for off in (0.0, 1e-15, 5e-10):
+                q, inside = module.into_limits(on + way * off + turn * np.array(turns))
+                assert inside
+                assert ((limits.lower <= q) & (q <= limits.upper)).all()
+                assert np.abs(np.sin((q - on) / 2)).max() < 1e-9
+        narrow = np.isfinite(side) & ((limits.upper - limits.lower < 6) | (np.array(turns) == 0))
+        for joint in np.flatnonzero(narrow):
+            q = middle.copy()
+            q[joint] = side[joint] + way * 1e-6
+            assert not module.into_limits(q)[1]
+
+
 def test_the_file_and_its_example_run_alone(tmp_path):
     made = cs.load_robot("ur5e").export("python", tmp_path / "arm.py")
     made.write_example(tmp_path / "main.py")

@@ -1,5 +1,6 @@
 import importlib.util
 import json
+import math
 
 import numpy as np
 import pytest
@@ -103,9 +104,52 @@ def test_the_arms_of_the_shared_data_are_here_to_rounding():
         turning = np.array([kind == "R" for kind in c.joint_types])
         np.testing.assert_allclose(gap[turning], 0, atol=1e-15)
         for i in range(n):
+            if arm["name"] == "puma560":
+                continue  # ±180° in the data; the published ranges have a test of their own
             lower, upper = (arm["joints"][i][key] for key in ("lower", "upper"))
-            assert c.limits.lower[i] == (-np.inf if lower is None else lower)
-            assert c.limits.upper[i] == (np.inf if upper is None else upper)
+            assert c.limits.lower[i] == (-np.inf if lower is None else unrounded(lower))
+            assert c.limits.upper[i] == (np.inf if upper is None else unrounded(upper))
+
+
+PRINTED = 1e-8
+"""How much of a limit [rad] is lost by files that print nine digits or more."""
+
+
+def unrounded(value):
+    """A limit as printed, or the multiple of half a degree that was printed with nine digits or more."""
+    round_angle = math.radians(round(2 * math.degrees(value)) / 2)
+    return round_angle if round_angle and abs(value - round_angle) < PRINTED else value
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_limit_that_is_a_round_angle_is_it_to_the_last_digit(name):
+    """π printed with 15 digits is 3e-15 short of the angle that a solution stands at."""
+    for joint in load_description(name).moving_joints:
+        if joint.type == "revolute":
+            for limit in filter(math.isfinite, (joint.lower, joint.upper)):
+                assert limit == unrounded(limit), f"{joint.name}: {limit!r} is {math.degrees(limit)}°"
+
+
+def test_the_published_ranges_of_the_puma():
+    """Of Lee's table, where the zero of joints 2 and 3 is half a turn away from Paul's and Corke's."""
+    published = [(-160, 160), (-225, 45), (-45, 225), (-110, 170), (-100, 100), (-266, 266)]
+    table = [(-90, 0, 0), (0, 0.4318, 0.15005), (90, -0.0203, 0), (-90, 0, 0.4318), (90, 0, 0), (0, 0, 0)]
+    half = np.array([0, 180, 180, 0, 0, 0])
+    turned = np.diag([-1.0, -1.0, 1.0, 1.0])  # base and flange, half a turn about z
+    robot = load_robot("puma560")
+    for theta in np.random.default_rng(0).uniform(-180, 180, (20, 6)):
+        T = np.eye(4)
+        for (alpha, a, d), angle in zip(table, theta, strict=True):
+            T = T @ dh_matrix(np.radians(alpha), a, d, np.radians(angle), convention="standard")
+        np.testing.assert_allclose(turned @ robot.fk(np.radians(theta + half)) @ turned, T, atol=1e-14)
+    for name in ("puma560", "puma560_dh"):
+        limits = load_robot(name).limits
+        gaps = [
+            np.degrees(side) - (np.array(ends) + half)
+            for side, ends in zip((limits.lower, limits.upper), zip(*published, strict=True), strict=True)
+        ]
+        np.testing.assert_allclose(gaps[0], gaps[1], atol=1e-12)  # by the same multiple of a turn
+        np.testing.assert_allclose(gaps[0], 360 * np.round(gaps[0] / 360), atol=1e-12)
 
 
 def cos_sin(*angles):

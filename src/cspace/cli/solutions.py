@@ -41,7 +41,7 @@ class Rows:
         q = np.asarray(answer.q, dtype=np.float64)
         if check:  # each joint where its limits are, if a whole turn brings it there
             limits = robot.limits
-            q = into_limits(q, robot.joint_types, limits.lower, limits.upper)[0]
+            q = into_limits(answer._settled(limits), robot.joint_types, limits.lower, limits.upper)[0]
         self.distance: Array | None = None
         order = np.arange(len(q))
         if near is not None:

@@ -12,6 +12,7 @@ from cspace.export.family import general_method, only_this_family, other_familie
 from cspace.export.numbers import bounds, initialiser, literal, quoted
 from cspace.export.plain import in_ascii
 from cspace.export.words import filled, template
+from cspace.tolerances import ON_LIMIT
 
 __all__ = ["cpp_header", "words_of"]
 
@@ -63,6 +64,7 @@ def words_of(arm: ExportedArm) -> dict[str, Any]:
         "prismatic": literal([kind == "P" for kind in arm.joint_types])[1:-1],
         "lower": bounds(arm.lower),
         "upper": bounds(arm.upper),
+        "on_limit": ON_LIMIT,
         **words_of_held(arm),
     }
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from cspace.export.arm import ExportedArm
 from cspace.export.words import filled
+from cspace.tolerances import ON_LIMIT
 
 __all__ = ["METHODS", "python_file", "python_method"]
 
@@ -64,6 +65,7 @@ def python_file(arm: ExportedArm) -> str:
         "joint_names": repr(list(arm.joint_names)),
         "lower": literal(np.array(arm.lower), 0),
         "upper": literal(np.array(arm.upper), 0),
+        "on_limit": ON_LIMIT,
         "dof": arm.dof,
         **python_words_of_held(arm),
     }

@@ -14,6 +14,7 @@ from cspace.ik.branches import branch_labels
 from cspace.ik.derivative import derivative
 from cspace.ik.families import Family, family_at
 from cspace.ik.goals import one_configuration
+from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.prepare import prepare
 from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
@@ -171,24 +172,29 @@ class Solutions(_core.SolutionsBase):
         return cast(Array, self.q[row])
 
     def within(self, limits: Limits | None = None, *, windings: bool = False) -> Solutions:
-        """The solutions inside the limits, each joint first moved by whole turns to where it fits.
+        """The solutions inside the limits, each revolute joint first moved by a multiple of 2π to fit.
 
-        limits: the robot's own unless given. windings: every combination of whole turns that fits, not only
-        one.
+        limits: the robot's own unless given. A joint that rounding takes past a limit is set to it, so q is
+        inside exactly. windings: every combination of multiples of 2π that fits, not only one.
         """
         bounds = bounds_of(self.robot, limits)
         kinds = self.robot.joint_types
         if not isinstance(windings, (bool, np.bool_)):
             raise InputTypeError(f"windings must be True or False, got {type(windings).__name__}")
+        settled = self._settled(bounds)
         if windings:
-            rows, q = all_windings(self.q, kinds, bounds.lower, bounds.upper)
+            rows, q = all_windings(settled, kinds, bounds.lower, bounds.upper)
         else:
-            moved, fits = into_limits(self.q, kinds, bounds.lower, bounds.upper)
+            moved, fits = into_limits(settled, kinds, bounds.lower, bounds.upper)
             rows, q = np.flatnonzero(fits), moved[fits]
         note = None
         if len(rows) == 0 and len(self):
-            note = limits_reason(self, bounds.lower, bounds.upper)
+            note = limits_reason(self, settled, bounds)
         return self._take(rows, q, note)
+
+    def _settled(self, limits: Limits) -> Array:
+        """The solutions (k, dof), those that rounding takes past a limit set to it."""
+        return settle_on_limits(self.robot, self.q, limits, slice(6 if self.goal.shape == (4, 4) else 3))
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Solutions:
         """The one solution nearest to q (dof,), each revolute joint taken by the turn that brings it closest.
@@ -229,9 +235,12 @@ class Solutions(_core.SolutionsBase):
         return self._take(np.arange(len(self)), wrap(self.q, self.robot.joint_types), self._note)
 
     def violations(self, limits: Limits | None = None) -> tuple[dict[str, float], ...]:
-        """Per solution, the joints that no whole turn brings into the limits, and by how much [rad, m]."""
+        """Per solution, the joints that no multiple of 2π brings into the limits, and by how much [rad, m].
+
+        Empty for exactly the solutions that `within` keeps.
+        """
         bounds = bounds_of(self.robot, limits)
-        excess = violations(self.q, self.robot.joint_types, bounds.lower, bounds.upper)
+        excess = violations(self._settled(bounds), self.robot.joint_types, bounds.lower, bounds.upper)
         names = self.robot.joint_names
         return tuple({name: float(e) for name, e in zip(names, row, strict=True) if e > 0} for row in excess)
 
@@ -371,8 +380,8 @@ def nearest_miss(found: Solutions, radian: float = 1.0) -> tuple[Array, float, s
     return q, float(max(goal.misses(T)[0], default=0.0)), goal.miss_in_words(T)
 
 
-def limits_reason(found: Solutions, lower: Array, upper: Array) -> str:
-    excess = violations(found.q, found.robot.joint_types, lower, upper)
+def limits_reason(found: Solutions, q: Array, limits: Limits) -> str:
+    excess = violations(q, found.robot.joint_types, limits.lower, limits.upper)
     best = int(np.argmin(excess.max(axis=1)))
     joint = int(np.argmax(excess[best]))
     unit = "rad" if found.robot.joint_types[joint] == "R" else "m"

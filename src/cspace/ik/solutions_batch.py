@@ -12,6 +12,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.about import About
 from cspace.ik.derivative import derivative
+from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.prepare import prepare
 from cspace.ik.solutions import (
     INCOMPLETE,
@@ -173,9 +174,14 @@ class SolutionsBatch:
         return cast(Solutions, made)
 
     def within(self, limits: Limits | None = None) -> SolutionsBatch:
-        """The solutions inside the limits, each joint first moved by whole turns to where it fits."""
+        """The solutions inside the limits, each revolute joint first moved by a multiple of 2π to fit.
+
+        A joint that rounding takes past a limit is set to it, so q is inside exactly.
+        """
         bounds = bounds_of(self.robot, limits)
-        moved, fits = into_limits(self.q, self.robot.joint_types, bounds.lower, bounds.upper)
+        rows = slice(3 if self.goal.shape[self.count.ndim :] == (3,) else 6)
+        settled = settle_on_limits(self.robot, self.q, bounds, rows)
+        moved, fits = into_limits(settled, self.robot.joint_types, bounds.lower, bounds.upper)
         return self._keep(moved, fits & self._real)
 
     def wrapped(self) -> SolutionsBatch:

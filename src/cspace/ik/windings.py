@@ -15,14 +15,12 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError
-from cspace.tolerances import MOST_WINDINGS
+from cspace.tolerances import MOST_WINDINGS, ON_LIMIT
 
 __all__ = ["all_windings", "into_limits", "nearest_winding", "short_way", "turning", "violations", "wrap"]
 
 Flags = npt.NDArray[np.bool_]
 TURN = 2 * np.pi
-ON_LIMIT = 1e-9
-"""By how much [rad] a whole turn may take a joint past its limit: rounding."""
 
 
 def turning(kinds: Sequence[str]) -> Flags:
@@ -47,48 +45,52 @@ def wrap(q: Array, kinds: Sequence[str]) -> Array:
     return np.where(outside, np.pi - np.mod(np.pi - q, TURN), q)
 
 
-def fewest_turns(q: Array, kinds: Sequence[str], lower: Array, upper: Array, wanted: Array) -> Array:
-    """The whole number of turns nearest to `wanted` that brings each joint inside; `wanted` where none
-    does.
+def copies_inside(q: Array, turns: Flags, lower: Array, upper: Array, wanted: Array, slack: float) -> Array:
+    """Each joint value moved by a multiple of 2π, as near to `wanted` turns as the limits allow or `wanted`
+    where no multiple is inside; a value beyond a limit by `slack` or less is set to it. All (n,) or alike.
     """
     with np.errstate(invalid="ignore"):
-        least, most = np.ceil((lower - q) / TURN), np.floor((upper - q) / TURN)
-    turns = np.where(least <= most, np.clip(wanted, least, most), wanted)
-    return np.asarray(np.where(turns_of(kinds) > 0, turns, 0.0))
-
-
-def into_limits(q: Array, kinds: Sequence[str], lower: Array, upper: Array) -> tuple[Array, Flags]:
-    """Each joint moved by the fewest whole turns that bring it inside; per row whether all joints are
-    inside.
-    """
-    moved = q + TURN * fewest_turns(q, kinds, lower, upper, np.zeros_like(q))
-    fits = (moved >= lower) & (moved <= upper)
-    return moved, np.asarray(fits.all(axis=-1))
-
-
-def violations(q: Array, kinds: Sequence[str], lower: Array, upper: Array) -> Array:
-    """By how much each joint stays outside its limits whatever turn is taken, (k, dof), zero where inside."""
-    turn = turns_of(kinds)
-    span = np.where(np.isfinite(upper - lower), upper - lower, np.inf)
-    below, above = lower - q, q - upper
-    outside = np.maximum(np.maximum(below, above), 0.0)
-    # A revolute joint outside sits in the gap of the circle between upper and lower + 2π.
-    with np.errstate(invalid="ignore"):
-        past_upper = np.mod(q - upper, TURN)
-        to_lower = np.mod(lower - q, TURN)
-        around = np.where(np.mod(q - lower, TURN) <= span, 0.0, np.minimum(past_upper, to_lower))
-    return np.where(turn > 0, np.where(outside > 0, around, 0.0), outside)
+        least = np.ceil((lower - slack - q) / TURN)
+        most = np.floor((upper + slack - q) / TURN)
+    taken = np.where(least <= most, np.clip(wanted, least, most), wanted)
+    moved = q + np.where(turns, TURN * taken, 0.0)
+    inside = np.clip(moved, lower, upper)
+    return np.asarray(np.where(np.abs(moved - inside) <= slack, inside, moved))
 
 
 def nearest_winding(q: Array, seed: Array, kinds: Sequence[str], lower: Array, upper: Array) -> Array:
-    """Each revolute joint by the turn that brings it closest to the seed, inside its limits if one is; on a
-    limit that rounding takes it past.
+    """Each revolute joint moved by the multiple of 2π that brings it closest to the seed, of those that bring
+    it inside its limits if there are any; a joint that rounding takes past a limit is set to it.
     """
     wanted = np.round((seed - q) / TURN)
-    moved = q + TURN * fewest_turns(q, kinds, lower - ON_LIMIT, upper + ON_LIMIT, wanted)
-    inside = np.clip(moved, lower, upper)
-    on_limit = turning(kinds) & (np.abs(moved - inside) <= ON_LIMIT)
-    return np.asarray(np.where(on_limit, inside, moved))
+    return copies_inside(q, turning(kinds), lower, upper, wanted, ON_LIMIT)
+
+
+def into_limits(
+    q: Array, kinds: Sequence[str], lower: Array, upper: Array, slack: float = ON_LIMIT
+) -> tuple[Array, Flags]:
+    """Each revolute joint moved by the least multiple of 2π that brings it inside its limits, a joint beyond
+    a limit by `slack` or less set to it; per row whether all joints are inside.
+    """
+    moved = q.copy()
+    out = np.nonzero((q < lower) | (q > upper))
+    joint = out[-1]
+    turns = turning(kinds)[joint]
+    moved[out] = copies_inside(q[out], turns, lower[joint], upper[joint], np.zeros(len(joint)), slack)
+    return moved, np.asarray(((moved >= lower) & (moved <= upper)).all(axis=-1))
+
+
+def violations(q: Array, kinds: Sequence[str], lower: Array, upper: Array, slack: float = ON_LIMIT) -> Array:
+    """The distance of each joint from its limits over all multiples of 2π, (k, dof), zero up to `slack`."""
+    moved, _ = into_limits(q, kinds, lower, upper, slack)
+    excess = np.zeros_like(moved)
+    out = np.nonzero((moved < lower) | (moved > upper))
+    joint = out[-1]
+    below, above = lower[joint] - q[out], q[out] - upper[joint]
+    with np.errstate(invalid="ignore"):  # of a limit at infinity, which is not the one that is broken
+        around = np.fmin(np.mod(below, TURN), np.mod(above, TURN))
+    excess[out] = np.where(turning(kinds)[joint], around, np.maximum(below, above))
+    return excess
 
 
 def all_windings(
@@ -114,12 +116,15 @@ def all_windings(
         choices = [[first + TURN * k for k in range(count)] for first, count in turns]
         for combination in itertools.product(*choices):
             rows.append(row)
-            out.append(np.array(combination))
+            out.append(np.clip(combination, lower, upper))
     return np.array(rows, dtype=np.intp), np.array(out).reshape(len(out), q.shape[1])
 
 
 def joint_windings(angle: float, kind: str, lower: float, upper: float) -> tuple[float, int]:
-    """The lowest copy of an angle inside its limits, and how many follow a turn apart."""
+    """The lowest copy of an angle inside its limits or onto one by rounding, and how many follow a turn
+    apart.
+    """
+    lower, upper = lower - ON_LIMIT, upper + ON_LIMIT
     if kind == "P":
         return angle, int(lower <= angle <= upper)
     least, most = np.ceil((lower - angle) / TURN), np.floor((upper - angle) / TURN)

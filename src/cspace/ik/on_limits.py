@@ -1,0 +1,77 @@
+"""Double solutions at a joint limit.
+
+Where two solutions meet, a solver finds them to the square root of the rounding, some 1e-8 rad; a joint that
+stands on its limit there may come out beyond it. The configuration on the limit then reaches the same pose,
+since the error lies along a direction in which the tip does not move to first order.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.prepare import prepare
+from cspace.ik.windings import Flags, into_limits, violations
+from cspace.model import Limits
+from cspace.tolerances import DOUBLE_SOLUTION, SAME_TIP
+
+__all__ = ["settle_on_limits"]
+
+STEPS = 4
+"""Corrections of a configuration: each squares an error of 1e-7 or less, and any may add a joint."""
+WEAK = 1e-5
+"""Singular value, relative to the largest, of a direction that is left alone: the double solution's own."""
+
+
+def settle_on_limits(robot: Any, q: Array, limits: Limits, rows: slice) -> Array:
+    """Configurations (..., dof), those beyond a limit by DOUBLE_SOLUTION or less replaced by the one on the
+    limit if it reaches the same goal. rows: of the Jacobian that the goal counts.
+
+    An arm with redundant joints could be brought onto a limit anywhere; its configurations stay as they are.
+    """
+    prepare(robot)
+    kinds, lower, upper = robot.joint_types, limits.lower, limits.upper
+    _, fits = into_limits(q, kinds, lower, upper, SAME_TIP)
+    outside = np.nonzero(~fits)
+    if not robot._ik_direct or not len(outside[0]):
+        return q
+    excess = violations(q[outside], kinds, lower, upper, SAME_TIP)
+    close = (excess <= DOUBLE_SOLUTION).all(axis=-1) & (excess > 0).any(axis=-1)
+    settled = q.copy()
+    for index in zip(*(axis[close] for axis in outside), strict=True):
+        settled[index] = settle_row(robot, q[index], limits, rows)
+    return settled
+
+
+def settle_row(robot: Any, q: Array, limits: Limits, rows: slice) -> Array:
+    """The configuration (dof,) on the limits that q breaks, or q where it does not reach the same goal.
+
+    Newton's method in the joints that are not on a limit.
+    """
+    bounds = robot.joint_types, limits.lower, limits.upper
+    T, x, held = robot.fk(q), q, np.zeros(len(q), dtype=bool)
+    for _ in range(STEPS):
+        x, held = onto_limits(x, held, *bounds)
+        J = robot.jacobian(x)[rows]
+        miss = displacement(robot.fk(x), T)[rows]
+        size = max(1.0, float(np.abs(J).max()))
+        if np.abs(miss).max() <= SAME_TIP * size and into_limits(x, *bounds, SAME_TIP)[1]:
+            return x
+        x = x.copy()
+        x[~held] += np.linalg.lstsq(J[:, ~held], miss, rcond=WEAK)[0]
+    return q
+
+
+def onto_limits(q: Array, held: Flags, kinds: str, lower: Array, upper: Array) -> tuple[Array, Flags]:
+    """q (dof,) with joints slightly beyond a limit set to it, and which joints are held there so far."""
+    moved, _ = into_limits(q, kinds, lower, upper, DOUBLE_SOLUTION)
+    return moved, held | (moved == lower) | (moved == upper)
+
+
+def displacement(T_from: Array, T_to: Array) -> Array:
+    """The small motion [v; ω] (6,) that takes a pose to another one, to first order."""
+    turn = T_to[:3, :3] @ T_from[:3, :3].T
+    w = 0.5 * np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])
+    return np.concatenate([T_to[:3, 3] - T_from[:3, 3], w])
