@@ -153,6 +153,18 @@ def test_a_seed_for_a_batch_is_refused_with_the_remedy(robot, goal):
         robot.ik(goal[None], least_squares=True)
 
 
+@pytest.mark.parametrize("name", ["ur5e", "panda", "al5d", "planar_3r", "simplified_puma"])
+@pytest.mark.parametrize("seeds", [(), (4,), (3,), (2, 4)])
+@pytest.mark.parametrize("parts", ["position", "direction", "position direction", "look_at", "ray"])
+def test_a_seed_for_many_partial_goals_is_refused_with_the_remedy(name, seeds, parts):
+    robot = load(name)
+    T = robot.fk(random_q(np.random.default_rng(0), 4, robot.dof))
+    p, d = T[:, :3, 3], T[:, :3, 2]
+    values = {"position": p, "direction": d, "look_at": p + 0.1 * d, "ray": (p, d)}
+    with pytest.raises(InputTypeError, match=r"one goal.*(call ik for each|\.nearest)"):
+        robot.ik(**{part: values[part] for part in parts.split()}, near=np.zeros((*seeds, robot.dof)))
+
+
 # --- arms without a closed form ------------------------------------------------------------------------
 
 

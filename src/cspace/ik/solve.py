@@ -159,6 +159,11 @@ def answer_partial(robot: Any, goal: PartialGoal, wish: Wish) -> Answer:
         raise InputTypeError("swivel= goes with a full pose; hold joints with fixed=")
     if wish.holds and goal.T.ndim > 2:
         raise InputTypeError("fixed= and samples= go with one goal where parts of a pose are asked for")
+    if wish.near is not None and goal.T.ndim > 2:
+        count = int(np.prod(goal.T.shape[:-2]))
+        raise InputTypeError(
+            f"near= goes with one goal where parts of a pose are asked for, got {count}; call ik for each"
+        )
 
     def ask(whole: Any, T: Array) -> Answer:
         prepare(whole)
