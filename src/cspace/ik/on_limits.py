@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.prepare import prepare
 from cspace.ik.windings import Flags, into_limits, violations
 from cspace.model import Limits
 from cspace.tolerances import DOUBLE_SOLUTION, SAME_TIP
@@ -29,16 +28,17 @@ def settle_on_limits(robot: Any, q: Array, limits: Limits, rows: slice) -> Array
     """Configurations (..., dof), those beyond a limit by DOUBLE_SOLUTION or less replaced by the one on the
     limit if it reaches the same goal. rows: of the Jacobian that the goal counts.
 
-    An arm with redundant joints could be brought onto a limit anywhere; its configurations stay as they are.
+    An arm with more joints than rows could be brought onto a limit anywhere, locked joints among them: its
+    configurations stay as they are.
     """
-    prepare(robot)
-    kinds, lower, upper = robot.joint_types, limits.lower, limits.upper
-    _, fits = into_limits(q, kinds, lower, upper, SAME_TIP)
-    outside = np.nonzero(~fits)
-    if not robot._ik_direct or not len(outside[0]):
+    bounds = robot.joint_types, limits.lower, limits.upper
+    if robot.dof > rows.stop:
         return q
-    excess = violations(q[outside], kinds, lower, upper, SAME_TIP)
+    outside = np.nonzero(~into_limits(q, *bounds, SAME_TIP)[1])
+    excess = violations(q[outside], *bounds, SAME_TIP)
     close = (excess <= DOUBLE_SOLUTION).all(axis=-1) & (excess > 0).any(axis=-1)
+    if not close.any():
+        return q
     settled = q.copy()
     for index in zip(*(axis[close] for axis in outside), strict=True):
         settled[index] = settle_row(robot, q[index], limits, rows)
