@@ -81,6 +81,22 @@ TEST(roots_of_very_different_sizes_come_back) {
     }
 }
 
+TEST(roots_beside_a_flat_turning_point_come_back) {
+    // Coefficients in between that are zero or nothing but rounding: Halley's step vanishes with the slope.
+    Random random{6};
+    for (int repeat = 0; repeat < 20000; ++repeat) {
+        const double rounding = random.below(3) ? std::pow(10.0, random.uniform(-20, -12)) : 0.0;
+        const double far = std::pow(10.0, random.uniform(-2, 2)), fourth = far * far * far * far;
+        const double unit[5] = {fourth, far * far * far, far * far, far, 1};
+        double a[5] = {-fourth, 0, 0, 0, 1};
+        for (int i = 1; i < 4; ++i) a[i] = random.below(2) * rounding * random.uniform(-1, 1) * unit[i];
+        check_roots<4>(a, {-far, far}, 1e-10);
+        a[0] = -unit[1];
+        a[1] *= 1 / far, a[2] *= 1 / far, a[3] = 1;
+        check_roots<3>(a, {far}, 1e-10);
+    }
+}
+
 TEST(clusters_keep_their_multiplicity) {
     Random random{2};
     for (int repeat = 0; repeat < 2000; ++repeat) {
@@ -180,6 +196,27 @@ TEST(trigonometric_roots_are_all_found) {
             before = after;
         }
         CHECK(roots % 2 == 0 && roots <= 4 && crossings <= roots);
+    }
+}
+
+TEST(a_trigonometric_polynomial_of_degree_one_has_two_roots_wherever_they_lie) {
+    Random random{7};
+    for (int repeat = 0; repeat < 20000; ++repeat) {
+        const double rounding = random.below(3) ? std::pow(10.0, random.uniform(-20, -13)) : 0.0;
+        const auto any = [&] { return random.below(2) * rounding * random.uniform(-1, 1); };
+        const double middle = random.below(3) ? 0.25 * pi * random.below(8) : random.uniform(-3, 3);
+        const double aside = random.below(3) ? 0.5 * pi : random.uniform(0.2, 2.9);
+        const double size = std::pow(10.0, random.uniform(-3, 3));
+        const TrigPolynomial f = {size * (any() - std::cos(aside)), size * (any() + std::cos(middle)),
+                                  size * (any() + std::sin(middle)), size * any(), size * any()};
+        const TrigRoots r = trig_roots(f, size);
+        CHECK(r.count == 2);
+        for (const double expected : {middle + aside, middle - aside}) {
+            double nearest = 10;
+            for (int i = 0; i < r.count; ++i)
+                nearest = std::fmin(nearest, std::fabs(short_way(angle_of(r.theta[i]) - expected)));
+            CHECK_NEAR(nearest, 0, 1e-11);
+        }
     }
 }
 

@@ -42,6 +42,27 @@ def on_a_grid(word, rng):
     return axes, points, T_zero
 
 
+def planar(word, rng):
+    """Axes that are all parallel, as those of a SCARA; one of the slides, or none, lies across."""
+    axes, points, T_zero = on_a_grid(word, rng)
+    axes[:] = np.where(rng.random((len(word), 1)) < 0.3, -1, 1) * np.eye(3)[2]
+    slides = np.flatnonzero(np.array(list(word)) == "P")
+    if len(slides) > 1 or (len(slides) and rng.random() < 0.3):
+        axes[rng.choice(slides)] = np.eye(3)[rng.integers(0, 2)]
+    points[:, 0] += np.cumsum(rng.uniform(0.2, 0.5, len(word)))
+    return axes, points, T_zero
+
+
+def with_wrist(word, rng):
+    """On a grid or planar, but for a wrist: the last turns, up to three, are square and meet in a point."""
+    axes, points, T_zero = (on_a_grid if rng.random() < 0.5 else planar)(word, rng)
+    turns = min(len(word) - len(word.rstrip("R")), 3)
+    directions = np.eye(3)[rng.permutation(3)]
+    for k in range(len(word) - turns, len(word)):
+        axes[k], points[k] = directions[(len(word) - k) % 2], points[-1]
+    return axes, points, T_zero
+
+
 def disturbed(axes, points, T_zero, size, rng):
     """The same arm as a calibration would find it."""
     axes = np.array([unit(h + size * rng.normal(size=3)) for h in axes])
@@ -51,6 +72,8 @@ def disturbed(axes, points, T_zero, size, rng):
 MAKERS: dict[str, Callable] = {
     "general": general,
     "grid": on_a_grid,
+    "wrist": with_wrist,
+    "planar": planar,
     "calibrated": lambda word, rng: disturbed(*on_a_grid(word, rng), 1e-3, rng),
     "nearly special": lambda word, rng: disturbed(*on_a_grid(word, rng), 1e-5, rng),
 }
@@ -150,6 +173,15 @@ LIKENESSES = {
 def random_configurations(robot, rng, n):
     slides = slides_of(robot)
     return np.where(slides, rng.uniform(-1, 1, (n, robot.dof)), rng.uniform(-np.pi, np.pi, (n, robot.dof)))
+
+
+def round_configurations(robot, rng, n):
+    """Joints at multiples of 30, 45 or 90 degrees and slides at zero or round lengths, some among random ones."""
+    slides = slides_of(robot)
+    steps = np.where(slides, rng.choice([0.25, 0.5, np.inf], (n, 1)), np.pi / rng.choice([2, 4, 6], (n, 1)))
+    q = random_configurations(robot, rng, n)
+    rounded = np.where(~np.isfinite(steps), 0, np.where(np.isfinite(steps), steps, 0) * np.round(q / np.where(np.isfinite(steps), steps, 1)))
+    return np.where(rng.random((n, robot.dof)) < rng.choice([0.3, 0.7, 1], (n, 1)), rounded, q)
 
 
 def gap(robot, a, b, length=1.0):

@@ -117,9 +117,10 @@ double bracketed_root(const Uncertain<n>& polynomial, double lower, double upper
         const double halley = p.slope * p.slope - p.value * p.bend;
         const double step = halley != 0 ? -p.value * p.slope / halley : last_step;
         double next = x + step;
-        if (next == x) return x;
+        const bool rests = next == x;  // at a root, or where the slope vanishes and Halley's step with it
+        if (rests && std::fabs(p.value) <= p.noise) return x;
         const bool stalls = std::fabs(step) > 0.5 * std::fabs(last_step);
-        if (!(next > lower && next < upper) || (stalls && i % 3 == 2)) next = middle(lower, upper);
+        if (rests || !(next > lower && next < upper) || (stalls && i % 3 == 2)) next = middle(lower, upper);
         if (next == lower || next == upper) return next;
         last_step = next - x;
         x = next;
