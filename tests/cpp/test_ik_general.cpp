@@ -68,3 +68,60 @@ TEST(every_order_of_turns_and_slides_is_solved) {
     CHECK(tally.uncertain <= 2);
     CHECK(tally.worst < 1e-11);
 }
+
+// Axes along the coordinate axes, points on a grid.
+static ik::Chain grid_arm(int n, int slides, arms::Rng& rng) {
+    ik::Chain chain;
+    chain.n = n;
+    Vec3d at = {0, 0, 0};
+    for (int i = 0; i < n; ++i) {
+        const int k = static_cast<int>(rng() % 3);
+        chain.axis[i] = {k == 0 ? 1.0 : 0.0, k == 1 ? 1.0 : 0.0, k == 2 ? 1.0 : 0.0};
+        const auto step = [&] { return rng() % 2 ? arms::uniform(rng, 0.2, 0.5) : 0; };
+        chain.point[i] = at = at + Vec3d{step(), step(), step()};
+        chain.prismatic[i] = slides >> i & 1;
+    }
+    chain.tip = {identity_pose().R, at + Vec3d{0.1, 0.2, 0.15}};
+    return chain;
+}
+
+static double smallest_singular_value(const ik::Chain& chain, const Posed& goal, const double* q) {
+    PoseError error;
+    measure(chain, goal, 1, q, error);
+    decompose(error.jacobian);
+    double least = 10;
+    for (int i = 0; i < chain.n; ++i) least = min(least, error.jacobian.sigma[i]);
+    return least;
+}
+
+// Quarter turns bring axes of different links into line; base and tip exchanged, other equations vanish.
+TEST(a_certified_list_holds_what_the_reversed_arm_finds_at_quarter_turns) {
+    arms::Rng rng(7);
+    int compared = 0, lacking = 0;
+    for (int repeat = 0; repeat < 400; ++repeat) {
+        const int n = 5 + repeat % 2, first = rng() % n, second = rng() % n;
+        const ik::Chain chain = grid_arm(n, 1 << first | 1 << second, rng), back = reversed(chain);
+        const ik::Arm arm = make_arm(chain), other = make_arm(back);
+        if (!arm.is_general || !other.is_general) continue;
+        for (int pose = 0; pose < 6; ++pose) {
+            double q[6] = {};
+            for (int i = 0; i < n; ++i)
+                q[i] = rng() % 3 ? 0.5 * pi * static_cast<int>(rng() % 4) - pi : arms::uniform(rng, -pi, pi);
+            const Posed goal = forward(chain, q);
+            if (smallest_singular_value(chain, goal, q) < 1e-2) continue;
+            const ik::Solutions found = solve_pose(arm, goal, nullptr);
+            if (!found.complete) continue;
+            const ik::Solutions reversed = solve_pose(other, inverse(goal), nullptr);
+            for (int k = -1; k < reversed.count; ++k) {
+                for (int i = 0; i < n && k >= 0; ++i) q[i] = reversed.q[k][n - 1 - i];
+                if (smallest_singular_value(chain, goal, q) < 1e-2) continue;
+                double nearest = 10;
+                for (int j = 0; j < found.count; ++j) nearest = min(nearest, distance(chain, found.q[j], q));
+                lacking += nearest > 1e-6;
+                ++compared;
+            }
+        }
+    }
+    CHECK(compared > 2000);
+    CHECK(lacking == 0);
+}

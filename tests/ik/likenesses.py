@@ -84,6 +84,12 @@ class Likeness:
     robot: Robot
     to_goal: Callable
     to_q: Callable
+    from_q: Callable
+
+
+def same(x):
+    """x itself."""
+    return x
 
 
 def scaled(robot, factor):
@@ -97,7 +103,10 @@ def scaled(robot, factor):
         return out
 
     return Likeness(
-        arm_of(robot.joint_types, c.axes, factor * c.points, to_goal(c.T_zero)), to_goal, lambda q: units * q
+        arm_of(robot.joint_types, c.axes, factor * c.points, to_goal(c.T_zero)),
+        to_goal,
+        lambda q: units * q,
+        lambda q: q / units,
     )
 
 
@@ -112,7 +121,7 @@ def mirrored(robot):
 
     axes = np.where(slides[:, None], 1.0, -1.0) * (c.axes @ MIRROR)
     return Likeness(
-        arm_of(robot.joint_types, axes, c.points @ MIRROR, to_goal(c.T_zero)), to_goal, lambda q: q
+        arm_of(robot.joint_types, axes, c.points @ MIRROR, to_goal(c.T_zero)), to_goal, same, same
     )
 
 
@@ -123,7 +132,10 @@ def reversed_(robot):
     axes = -(c.axes @ back[:3, :3].T)[::-1]
     points = (c.points @ back[:3, :3].T + back[:3, 3])[::-1]
     return Likeness(
-        arm_of(robot.joint_types[::-1], axes, points, back), np.linalg.inv, lambda q: q[..., ::-1]
+        arm_of(robot.joint_types[::-1], axes, points, back),
+        np.linalg.inv,
+        lambda q: q[..., ::-1],
+        lambda q: q[..., ::-1],
     )
 
 
@@ -140,13 +152,13 @@ def shifted(robot, q_zero):
         )
         axes[i], points[i] = T[:3, :3] @ c.axes[i], T[:3, :3] @ c.points[i] + T[:3, 3]
     moved = arm_of(robot.joint_types, axes, points, robot.fk(q_zero))
-    return Likeness(moved, lambda T: T, lambda q: q - q_zero)
+    return Likeness(moved, same, lambda q: q - q_zero, lambda q: q + q_zero)
 
 
 def mounted(robot, T_world_base, T_tip_tool):
     """On another base, with a tool."""
     other = robot.with_base(T_world_base).with_tool(T_tip_tool)
-    return Likeness(other, lambda T: T_world_base @ T @ T_tip_tool, lambda q: q)
+    return Likeness(other, lambda T: T_world_base @ T @ T_tip_tool, same, same)
 
 
 def drawn_otherwise(robot, rng):
@@ -155,7 +167,10 @@ def drawn_otherwise(robot, rng):
     sign = rng.choice([-1.0, 1.0], robot.dof)
     points = c.points + rng.uniform(-1, 1, (robot.dof, 1)) * c.axes
     return Likeness(
-        arm_of(robot.joint_types, sign[:, None] * c.axes, points, c.T_zero), lambda T: T, lambda q: sign * q
+        arm_of(robot.joint_types, sign[:, None] * c.axes, points, c.T_zero),
+        same,
+        lambda q: sign * q,
+        lambda q: sign * q,
     )
 
 
@@ -176,11 +191,15 @@ def random_configurations(robot, rng, n):
 
 
 def round_configurations(robot, rng, n):
-    """Joints at multiples of 30, 45 or 90 degrees and slides at zero or round lengths, some among random ones."""
+    """Turns at multiples of 30, 45 or 90 degrees, slides at zero or round lengths, among random ones."""
     slides = slides_of(robot)
     steps = np.where(slides, rng.choice([0.25, 0.5, np.inf], (n, 1)), np.pi / rng.choice([2, 4, 6], (n, 1)))
     q = random_configurations(robot, rng, n)
-    rounded = np.where(~np.isfinite(steps), 0, np.where(np.isfinite(steps), steps, 0) * np.round(q / np.where(np.isfinite(steps), steps, 1)))
+    rounded = np.where(
+        ~np.isfinite(steps),
+        0,
+        np.where(np.isfinite(steps), steps, 0) * np.round(q / np.where(np.isfinite(steps), steps, 1)),
+    )
     return np.where(rng.random((n, robot.dof)) < rng.choice([0.3, 0.7, 1], (n, 1)), rounded, q)
 
 

@@ -28,8 +28,9 @@ struct Certificate {
 namespace cspace::inline CSPACE_ISA {
 
 inline constexpr double clear_equation =
-    1e-8;                                   // its rounding moves no pair of roots that the signs would miss
-inline constexpr double rough_root = 1e-5;  // solutions are polished on the arm
+    1e-8;                                     // its rounding moves no pair of roots that the signs would miss
+inline constexpr double clear_sheets = 1e-9;  // square of the sine that parts the two sheets
+inline constexpr double rough_root = 1e-5;    // solutions are polished on the arm
 inline constexpr double as_isolated = 2 * rough_root;
 inline constexpr double equation_error = 3e-14;  // of their entries, with a margin
 inline constexpr double near_roots = 3e-3;       // [rad] hidden angles this close share a null plane
@@ -295,7 +296,11 @@ inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Pose
     if (!is_possible(loop, formulation(number))) return {};
     if (plan.slides == 2) {
         const TwoSheets sheets = two_sheets(loop);
-        if (!(sheets.square_end > 1e-9)) return {};
+        if (!(min(sheets.square_end, sheets.square_corner) > clear_sheets)) {
+            ik::Certificate vanished;
+            vanished.hidden.alias = 1;
+            return vanished;
+        }
         const auto f = [&](Pack<4> c, Pack<4> s) { return lack_on_both(sheets, c, s); };
         const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, bool again,
                                 ik::Candidates& found) {

@@ -22,6 +22,7 @@ struct TwoSheets {
     int turn[4], slide[2];  // the joints of the chain
     Vec3d end, row;         // A2ᵀ z and A2 z
     double square_end;      // of their part across z
+    double square_corner;   // about the largest a² + b²; zero where the axes of a3, a0 and a1 stay parallel
 };
 
 // even ± odd √Δ
@@ -67,7 +68,11 @@ inline TwoSheets two_sheets(const ik::Loop& loop) {
     }
     out.row = column(out.A[2], 2);
     out.end = transpose_times(out.A[2], Vec3d{0, 0, 1});
-    out.square_end = out.end.x * out.end.x + out.end.y * out.end.y;
+    const auto square_across = [](const Vec3d& v) { return v.x * v.x + v.y * v.y; };
+    out.square_end = square_across(out.end);
+    out.square_corner =
+        max(square_across(column(out.A[0], 2)), square_across(column(transpose(out.A[3]), 2))) *
+        square_across(column(out.A[1], 2));
     return out;
 }
 
