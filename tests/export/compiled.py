@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 HERE = Path(__file__).parent
-STRICT = ["-Wall", "-Wextra", "-Werror", "-pedantic"]
+STRICT = ["-Wall", "-Wextra", "-Wconversion", "-Werror", "-pedantic"]
 COMPILERS = [name for name in ("g++", "clang++") if shutil.which(name)]
 STATUS = ("unreachable", "exact", "singular", "not_a_pose")
 

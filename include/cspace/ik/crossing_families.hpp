@@ -45,7 +45,7 @@ inline bool only_rolls(const ik::Chain& chain, const ik::Held& held, const doubl
     if (chain.n != 6) return false;
     int first = 6, last = -1;
     for (int i = 0; i < 6; ++i)
-        if (std::fabs(direction[i]) > moving) first = min(first, i), last = max(last, i);
+        if (std::fabs(direction[i]) > moving) first = last < 0 ? i : first, last = i;
     if (last - first != 2 || std::fabs(direction[first + 1]) > moving || (first != 0 && first != 3))
         return false;
     Vec3d axis[6], point[6];

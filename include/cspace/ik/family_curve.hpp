@@ -3,6 +3,8 @@
 // 1990, chapter 6).
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/refine.hpp"
 
 namespace cspace::ik {
@@ -246,7 +248,7 @@ bool follow_family(const ik::Chain& chain, const ik::Held& held, const double* q
             --steps_left;
             visit(way, at, tangent);
         };
-        const int most = min(max(steps_left, 0), most_steps);
+        const int most = std::clamp(steps_left, 0, most_steps);
         const ik::CurveEnd end = follow_curve(chain, held, q, along, count, most);
         if (end == ik::CurveEnd::closed) return true;
         whole = whole && end == ik::CurveEnd::far;

@@ -3,6 +3,8 @@
 // arcs; their ends solve a linear equation in the cosine and sine of the sum.
 #pragma once
 
+#include <initializer_list>
+
 #include "cspace/ik/three_parallel.hpp"
 
 namespace cspace::ik {

@@ -2,6 +2,8 @@
 // a stride along it decides.
 #pragma once
 
+#include <initializer_list>
+
 #include "cspace/ik/family_curve.hpp"
 #include "cspace/ik/general/weak_direction.hpp"
 

@@ -64,8 +64,8 @@ CSPACE_INLINE void load_column_pair(const double* rows, std::size_t stride, Pack
     }
 #endif
     for (int k = 0; k < N; ++k) {
-        set_lane(a, k, rows[k * stride]);
-        set_lane(b, k, rows[k * stride + 1]);
+        set_lane(a, k, rows[std::size_t(k) * stride]);
+        set_lane(b, k, rows[std::size_t(k) * stride + 1]);
     }
 }
 template <int N>
@@ -102,8 +102,8 @@ CSPACE_INLINE void store_column_pair(Pack<N> a, Pack<N> b, double* rows, std::si
 #endif
 #endif
     for (int k = 0; k < N; ++k) {
-        rows[k * stride] = lane(a, k);
-        rows[k * stride + 1] = lane(b, k);
+        rows[std::size_t(k) * stride] = lane(a, k);
+        rows[std::size_t(k) * stride + 1] = lane(b, k);
     }
 }
 
@@ -131,7 +131,7 @@ CSPACE_INLINE void load_rows(const double* rows, std::size_t stride, int count, 
     for (; j < width; ++j) {
         values[j] = fill<V>(rows[j]);
         for (int k = 1; k < Lanes<V>::count; ++k) {
-            set_lane(values[j], k, rows[(k < count ? k : count - 1) * stride + j]);
+            set_lane(values[j], k, rows[std::size_t(k < count ? k : count - 1) * stride + std::size_t(j)]);
         }
     }
 }
@@ -151,7 +151,7 @@ CSPACE_INLINE void store_rows(const V* values, int width, double* rows, std::siz
     }
     for (; j < width; ++j) {
         for (int k = 0; k < Lanes<V>::count; ++k) {
-            if (k < count) rows[k * stride + j] = lane(values[j], k);
+            if (k < count) rows[std::size_t(k) * stride + std::size_t(j)] = lane(values[j], k);
         }
     }
 }

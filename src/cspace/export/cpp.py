@@ -8,7 +8,6 @@ from typing import Any
 
 from cspace.export.amalgam import amalgamate
 from cspace.export.arm import ExportedArm, vector
-from cspace.export.family import general_method, only_this_family, other_families
 from cspace.export.numbers import bounds, initialiser, literal, quoted
 from cspace.export.plain import in_ascii
 from cspace.export.words import filled, template
@@ -16,38 +15,27 @@ from cspace.tolerances import ON_LIMIT
 
 __all__ = ["cpp_header", "words_of"]
 
-ALWAYS_INCLUDED = {"cmath", "initializer_list", "limits"}
-
-
-# A table that is made when the program starts; one made on first use, or shared between files, would need the
-# run-time library of C++.
-TABLE_AT_START = (
-    "static const ik::SamplerTables tables_of_sampler = make_sampler_tables();\n"
-    "inline const ik::SamplerTables& sampler_tables() { return tables_of_sampler; }"
-)
+TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"
+"""Tables made when the program starts; made on first use they would need the run-time library of C++."""
 
 
 def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
-    """The text of the header: the arm's numbers, what of the core's headers they need, the interface.
+    """The text of the header: the arm's numbers, the headers of the core that solve it, the interface.
 
     one_file: only one file of the program will include it, and link without the run-time library of C++.
     """
     words = {**words_of(arm), "storage": "static" if one_file else "inline"}
-    headers, code, replaced = solver(arm)
-    if one_file:
-        replaced["sampler_tables"] = TABLE_AT_START
+    headers, code = solver(arm)
     code = Template(code).substitute(words, plan=initialiser(plan_of(arm)))
     if arm.moving:
         around = {**words, "solver": code, "plan": initialiser(chain_of(arm)), "moving_room": arm.moving.room}
         code = filled("solve_held.hpp.in", around)
-    interface = filled("interface.hpp.in", words)
-    unwanted = other_families(arm.kind, arm.plan)
-    standard, core = amalgamate(headers, code + interface, replaced, unwanted)
-    solve = f"namespace cspace {{\ninline namespace CSPACE_ISA {{\n\n{code}\n}}\n}}  // namespace cspace\n"
-    text = renamed("\n".join([in_ascii(core), filled("types.hpp.in", words), solve, interface]), words)
-    includes = "".join(f"#include <{name}>\n" for name in sorted({*standard, *ALWAYS_INCLUDED}))
+    core = TABLES_AT_START * one_file + in_ascii(amalgamate(headers))
+    solve = f"namespace cspace {{\n\n{code}\n}}  // namespace cspace\n"
+    parts = [core, filled("types.hpp.in", words), solve, filled("interface.hpp.in", words)]
+    text = renamed("\n".join(parts), words)
     undefined = "".join(f"#undef {macro}\n" for macro in left_macros(text, words["MACRO"]))
-    return f"{filled('head.hpp.in', words)}{includes}\n{text}\n{undefined}\n#endif\n"
+    return f"{filled('head.hpp.in', words)}\n{text}\n{undefined}\n#endif\n"
 
 
 def words_of(arm: ExportedArm) -> dict[str, Any]:
@@ -122,34 +110,35 @@ def plan_of(arm: ExportedArm) -> dict[str, Any]:
     return {**arm.plan, "solve": "&solve_general"} if arm.kind == "general" else arm.plan
 
 
-def solver(arm: ExportedArm) -> tuple[list[str], str, dict[str, str]]:
-    """Which headers of the core solve the arm, the code that calls them, and what it replaces in them."""
-    headers = ["cspace/ik/goal.hpp", "cspace/ik/chain.hpp"]
-    parts, replaced = ["refused", "given", f"solve_{arm.kind}"], {}
+def solver(arm: ExportedArm) -> tuple[list[str], str]:
+    """Which headers of the core solve the arm, and the code that calls them."""
+    headers = ["cspace/math/isa.hpp", "cspace/ik/goal.hpp", "cspace/ik/chain.hpp"]
+    parts = ["refused", "given", f"solve_{arm.kind}"]
     if arm.kind == "short":
         headers += ["cspace/ik/position/pose.hpp"]
         parts.remove("given")
     elif arm.kind == "general":
         headers += ["cspace/ik/general/singular.hpp", "cspace/ik/crossing_families.hpp"]
-        replaced = general_method(arm.plan)
     elif arm.kind == "closed":
         quick = arm.plan["on_lanes"] and not arm.plan["virtual_joints"]
         headers += ["cspace/ik/crossing_families.hpp", *["cspace/ik/quick.hpp"] * quick]
         parts.append("solve_closed_quick" if quick else "solve_closed_slow")
-        replaced = only_this_family(arm.plan)
     elif arm.kind == "locked":
         headers += ["cspace/ik/redundant/locked_arm.hpp"]
         parts = ["solve_locked"]
     else:
         headers += ["cspace/ik/arm.hpp"]
-    return headers, "\n".join(template(f"{part}.hpp.in") for part in parts), replaced
+    return headers, "\n".join(template(f"{part}.hpp.in") for part in parts)
 
 
 def renamed(text: str, words: dict[str, Any]) -> str:
-    """The namespace and the macros of the core under the name of the arm, so that nothing meets its like."""
-    inner = f"{words['name']}::detail"
-    text = re.sub(r"\bnamespace cspace\b", f"namespace {inner}", text)
-    return re.sub(r"\bcspace::(?=\w)", f"{inner}::", text).replace("CSPACE_", words["MACRO"])
+    """The namespace and the macros of the core under the name of the arm, so that nothing meets its like.
+
+    The namespace of the instruction set holds all of the core, because C++17 knows no nested inline ones.
+    """
+    text = text.replace("::inline CSPACE_ISA", "")
+    text = re.sub(r"\bcspace\b(?=::|;| \{)", f"{words['name']}::detail::CSPACE_ISA", text)
+    return text.replace("CSPACE_", words["MACRO"])
 
 
 def left_macros(text: str, prefix: str) -> list[str]:

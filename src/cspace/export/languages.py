@@ -24,7 +24,7 @@ LANGUAGES = MappingProxyType(
     {
         "cpp": "a C++17 header",
         "c": "a C99 header and a C++17 file behind it",
-        "python": "a file that needs numpy alone",
+        "python": "a file that needs numpy alone, for closed forms",
     }
 )
 BY_SUFFIX = MappingProxyType({".hpp": "cpp", ".hh": "cpp", ".hxx": "cpp", ".h": "c", ".py": "python"})
@@ -92,7 +92,8 @@ def export(
     more than six joints the solver's own choice unless given.
 
     Raises UnknownNameError for a language that is none, InputError for a name, a path or joints that cannot
-    be used, NoClosedFormError for an arm that robot.ik does not solve.
+    be used, NoClosedFormError for an arm that robot.ik does not solve, and for one without a closed form
+    where lang is "python".
     """
     target = None if path is None else PurePath(path_of(path))
     language = language_of(lang, target)

@@ -1,9 +1,8 @@
-"""One arm as a Python file that needs numpy alone: the arm's numbers and the modules that solve its kind."""
+"""One arm as a Python file that needs numpy alone: the arm's numbers and the closed form of its family."""
 
 from __future__ import annotations
 
 import ast
-import itertools
 import re
 from pathlib import Path
 from typing import Any
@@ -12,13 +11,12 @@ import numpy as np
 
 from cspace.export.arm import ExportedArm
 from cspace.export.words import filled
+from cspace.ik.conditions import NoClosedFormError
 from cspace.tolerances import ON_LIMIT
 
 __all__ = ["METHODS", "python_file", "python_method"]
 
 PACKAGE = "cspace.export.python"
-EXACT, SKEW = 1e-12, 1e-3
-"""Sines below and above which axes count as parallel, and not; arms in between are left to samples."""
 WITH_WRIST = 1
 THREE_PARALLEL = 2
 
@@ -28,27 +26,12 @@ METHODS = {
     "wrist": (*CLOSED, "places", "with_wrist"),
     "three_parallel": (*CLOSED, "three_parallel"),
     "two_turns": (*CLOSED, "two_turns"),
-    "companion": ("base", "sampled", "companion"),
     "short": ("base", "short"),
-    "turns_first": ("base", "turns_first"),
-    "sampled": ("base", "sampled"),
-}
-WORDS = {
-    "companion": "all solutions by the eigenvalues of a 24 x 24 matrix",
-    "sampled": "a sample of solutions by descents from many starts",
-    "short": "all solutions, directly",
-    "turns_first": "all solutions, the turns first and the slides by linear equations",
-}
-SOLVERS = {
-    "companion": "solve_by_companion",
-    "sampled": "solve_by_sample",
-    "short": "solve_short",
-    "turns_first": "solve_turns_first",
 }
 
 
 def python_file(arm: ExportedArm) -> str:
-    """The text of the file."""
+    """The text of the file; NoClosedFormError for an arm without a closed form."""
     method = method_of(arm)
     modules = [module_source(name) for name in (*METHODS[method], *["held"] * bool(arm.held))]
     body = "\n\n".join(without_imports(source) for source in modules)
@@ -59,9 +42,9 @@ def python_file(arm: ExportedArm) -> str:
         "method": python_method(arm),
         "imports": "\n".join(standard_imports(modules)),
         "body": body,
-        "arm": literal(numbers(arm.solved, method), 1),
+        "arm": literal(numbers(arm.solved), 1),
         "free_turns": 'ARM["free_turns"] = free_turns\n' if method == "three_parallel" else "",
-        "branches": "branches" if method in ("wrist", "three_parallel", "two_turns") else "None",
+        "branches": "None" if method == "short" else "branches",
         "joint_names": repr(list(arm.joint_names)),
         "lower": literal(np.array(arm.lower), 0),
         "upper": literal(np.array(arm.upper), 0),
@@ -74,16 +57,13 @@ def python_file(arm: ExportedArm) -> str:
 
 def python_words_of_held(arm: ExportedArm) -> dict[str, str]:
     """The words about joints whose values the caller gives, and how the solver is called."""
-    solver = SOLVERS.get(method_of(arm), "solve_closed")
+    solver = "solve_short" if arm.solved.kind == "short" else "solve_closed"
     if not arm.held:
         none = dict.fromkeys(("fixed_sample", "fixed_of_q", "fixed_parameter", "fixed_words", "held_arm"), "")
         return {**none, "whole": "ARM", "solve": f"{solver}(ARM, goal, rest)"}
     count, held = len(arm.held), list(arm.held)
-    whole = "ARM" if arm.moving is None else "WHOLE"
     lines = f"HELD = {held}  # {arm.held_names}\n"
-    if arm.moving:
-        lines += f"WHOLE: dict[str, Any] = {literal(numbers(arm, 'sampled'), 1)}\n"
-    values = f"values_of(fixed, {count})"
+    lines += f"WHOLE: dict[str, Any] = {literal(chain_numbers(arm), 1)}\n"
     of_q = ", ".join(f"q[{k}]" for k in held)
     return {
         "fixed_sample": ", fixed",
@@ -91,70 +71,46 @@ def python_words_of_held(arm: ExportedArm) -> dict[str, str]:
         "fixed_parameter": "fixed: npt.ArrayLike, ",
         "fixed_words": f"    fixed ({count},): the values of the held joints, {arm.held_names}.\n",
         "held_arm": lines,
-        "whole": whole,
-        "solve": f"solve_held({solver}, ARM, {whole}, HELD, {values}, goal, rest)",
+        "whole": "WHOLE",
+        "solve": f"solve_held({solver}, ARM, WHOLE, HELD, values_of(fixed, {count}), goal, rest)",
     }
 
 
 def python_method(arm: ExportedArm) -> str:
     """How the file solves the arm, as half a sentence."""
-    how = WORDS.get(method_of(arm), "all solutions in closed form")
+    how = "all solutions, directly" if arm.solved.kind == "short" else "all solutions in closed form"
     return f"{how}, with {arm.held_names} held" if arm.held else how
 
 
 def method_of(arm: ExportedArm) -> str:
-    """How the file solves the arm."""
-    arm = arm.solved
-    if arm.kind == "closed":
-        family = arm.plan["family"]
-        return {WITH_WRIST: "wrist", THREE_PARALLEL: "three_parallel"}.get(family, "two_turns")
-    if arm.kind == "short":
+    """Which of METHODS solves the arm; NoClosedFormError for an arm without a closed form."""
+    solved = arm.solved
+    if solved.kind == "closed":
+        return {WITH_WRIST: "wrist", THREE_PARALLEL: "three_parallel"}.get(solved.plan["family"], "two_turns")
+    if solved.kind == "short":
         return "short"
-    if arm.kind == "general" and can_turn_first(arm):
-        return "turns_first"
-    turning = arm.dof == 6 and "P" not in arm.joint_types
-    alone = arm.kind == "general" and turning and arm.plan["plan"]["regular"] > 0
-    return "companion" if alone and not arm.plan["has_neighbours"] else "sampled"
+    held = f" with {arm.held_names} held" if arm.held else ""
+    raise NoClosedFormError(
+        f"{arm.title}{held} has no closed form; a Python file holds a closed form; "
+        "export it with lang='cpp' or lang='c'"
+    )
 
 
-def can_turn_first(arm: ExportedArm) -> bool:
-    """Whether slides take care of the position: up to three turns, about different directions or all about
-    one with slides along it.
-    """
-    h = np.asarray(arm.axes)
-    slides = np.array([kind == "P" for kind in arm.joint_types])
-    turns = h[~slides]
-    sines = [float(np.linalg.norm(np.cross(a, b))) for a, b in itertools.pairwise(turns)]
-    if len(turns) > 3 or not slides.any():
-        return False
-    if len(turns) == 3 and max(sines) < EXACT:
-        along = all(np.linalg.norm(np.cross(axis, turns[0])) < EXACT for axis in h)
-        return along and apart(np.asarray(arm.points)[~slides], turns[0])
-    return min(sines, default=1.0) > SKEW
+def numbers(arm: ExportedArm) -> dict[str, Any]:
+    """What the file's functions know of the arm that they solve."""
+    if arm.kind == "short":
+        return {**chain_numbers(arm), "length": size_of(arm)}
+    plan = {key: arm.plan[key] for key in arm.plan if key not in ("chain", "polish", "on_lanes")}
+    return {**chain_numbers(arm), "length": float(plan["form"]["length"]), "plan": plain(plan)}
 
 
-def apart(points: Any, axis: Any) -> bool:
-    """Whether neighbouring parallel axes stand apart."""
-    steps = np.linalg.norm(np.cross(np.diff(points, axis=0), axis), axis=1)
-    return bool(steps.min() > SKEW * steps.max())
-
-
-def numbers(arm: ExportedArm, method: str) -> dict[str, Any]:
-    """What the file's functions know of the arm."""
-    if arm.kind == "closed" and method != "sampled":
-        plan: Any = {key: arm.plan[key] for key in arm.plan if key not in ("chain", "polish", "on_lanes")}
-        length = plan["form"]["length"]
-    else:
-        plan = arm.plan["plan"] if method == "companion" else {}
-        length = arm.plan["plan"]["length"] if arm.kind == "general" else size_of(arm)
-        plan = {key: plan[key] for key in ("frames", "order") if key in plan}
+def chain_numbers(arm: ExportedArm) -> dict[str, Any]:
+    """The product of exponentials."""
     return {
         "axes": np.asarray(arm.axes),
         "points": np.asarray(arm.points),
         "slides": np.array([kind == "P" for kind in arm.joint_types]),
         "T_zero": np.asarray(arm.T_zero),
-        "length": float(length),
-        "plan": plain(plan),
     }
 
 

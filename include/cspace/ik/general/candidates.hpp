@@ -1,6 +1,8 @@
 // Configurations near solutions become solutions: polished, told apart, with their twins beside folds.
 #pragma once
 
+#include <initializer_list>
+
 #include "cspace/ik/evaluate.hpp"
 #include "cspace/ik/general/isolate.hpp"
 #include "cspace/ik/general/loop.hpp"

@@ -2,6 +2,8 @@
 // reaches is one that the completed arm reaches with its virtual joints at zero.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/general/neighbours.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -74,7 +76,7 @@ inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
     if (with_virtual_wrist(chain, best)) return true;
     int sliding = 0;
     for (int i = 0; i < chain.n; ++i) sliding += chain.prismatic[i];
-    for (int slides = min(6 - chain.n, 3 - sliding); slides >= 0; --slides) {
+    for (int slides = std::min(6 - chain.n, 3 - sliding); slides >= 0; --slides) {
         double most = regular_enough;
         for (int choice = 0; choice < choices; ++choice) {
             const ik::Chain six = with_virtual_joints(chain, slides, choice);

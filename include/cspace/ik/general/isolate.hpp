@@ -1,6 +1,8 @@
 // The hidden angles at which the determinant vanishes: simple roots one by one, close ones as clusters.
 #pragma once
 
+#include <initializer_list>
+
 #include "cspace/ik/general/determinant.hpp"
 #include "cspace/ik/general/sampler.hpp"
 

@@ -2,6 +2,8 @@
 // them as it takes.
 #pragma once
 
+#include <initializer_list>
+
 #include "cspace/ik/general/solve.hpp"
 
 namespace cspace {

@@ -143,10 +143,15 @@ inline ik::SamplerTables make_sampler_tables() {
     fill_halves(t);
     return t;
 }
+#ifdef CSPACE_TABLES_AT_START  // made on first use they would need the run-time library of C++
+static const ik::SamplerTables tables_of_sampler = make_sampler_tables();
+inline const ik::SamplerTables& sampler_tables() { return tables_of_sampler; }
+#else
 inline const ik::SamplerTables& sampler_tables() {
     static const ik::SamplerTables tables = make_sampler_tables();
     return tables;
 }
+#endif
 
 // out = Σ x_j row_j
 CSPACE_INLINE void combine(const double (*row)[ik::padded], const double* x, int count, double* out) {

@@ -1,6 +1,8 @@
 // Every solution of six joints in general position, for one goal.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/careful.hpp"
 #include "cspace/ik/general/candidates.hpp"
 #include "cspace/ik/general/close_pairs.hpp"
@@ -87,7 +89,7 @@ inline void split_planes(const ik::Loop& loop, const Elimination& e, const doubl
 inline int announced(const ik::HiddenAngle& root, double slip) {
     const bool hidden_pair =
         root.expected == ik::unknown || (root.expected == ik::nearly_two && root.depth < slip);
-    return hidden_pair ? 2 : max(root.expected, 0);
+    return hidden_pair ? 2 : std::max(root.expected, 0);
 }
 
 // How many more there are about a root than it and those beside it announce: pairs that the signs do not
@@ -100,7 +102,7 @@ inline int hidden_beside(const ik::Certificate& seen, const ik::HiddenAngle& roo
         if (other.expected == ik::ghost) return 0;
         shown += announced(other, seen.slip);
     }
-    return max(root.order - shown, 0) / 2 * 2;
+    return std::max(root.order - shown, 0) / 2 * 2;
 }
 
 // How many solutions the roots around a hidden angle announce, and how many there are; one may count twice.
@@ -116,7 +118,7 @@ inline Around count_around(const ik::Certificate& seen, const ik::Solutions& fou
         const ik::HiddenAngle& root = seen.hidden.root[j];
         if (!is_near(root.angle)) continue;
         out.expected += announced(root, seen.slip);
-        if (root.order > 2) hidden = max(hidden, hidden_beside(seen, root));
+        if (root.order > 2) hidden = std::max(hidden, hidden_beside(seen, root));
     }
     out.expected += hidden;
     for (int j = 0; j < found.count; ++j)

@@ -8,6 +8,8 @@
 // follow linearly. All candidates are refined on position and rotation together and kept if they meet both.
 #pragma once
 
+#include <initializer_list>
+
 #include "cspace/ik/position/solve.hpp"
 
 namespace cspace::inline CSPACE_ISA {

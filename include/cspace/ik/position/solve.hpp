@@ -8,6 +8,8 @@
 // they reach the goal.
 #pragma once
 
+#include <initializer_list>
+
 #include "cspace/ik/position/families.hpp"
 #include "cspace/ik/position/nearest.hpp"
 #include "cspace/ik/position/pair.hpp"

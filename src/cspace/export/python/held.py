@@ -1,7 +1,6 @@
-"""Some joints stand at given values: the others are solved, and both make a configuration.
+"""Locked joints at the ends of the chain move the goal: T' = B^-1 T C^-1.
 
-Held at the ends they only move the goal, T' = B^-1 T C^-1 with B the motion of those before the others and
-C that of those behind, seen from the tip. Held between others they displace the joints that follow.
+B is the motion of the locked joints before the others, C that of those behind them, seen from the tip.
 """
 
 from __future__ import annotations
@@ -34,40 +33,20 @@ def solve_held(
     T: Array,
     idle: Array,
 ) -> Solutions:
-    """Every configuration with these joints at their values.
-
-    solve: of the arm of those that move; arm: its numbers if those held stand at the ends, else the whole.
-    """
+    """Every configuration with the locked joints at their values; solve, arm: of the joints that move."""
     n = len(whole["axes"])
     moving = [i for i in range(n) if i not in held]
     values = zip(held, fixed, strict=True)
     motion = {i: joint_motion(whole, i, float(value)) for i, value in values}
-    if arm is whole:
-        arm = with_joints_held(whole, motion)
-    else:
-        before, behind = np.eye(4), np.eye(4)
-        for i in held:
-            if i < moving[0]:
-                before = before @ motion[i]
-            else:
-                behind = behind @ motion[i]
-        tip = whole["T_zero"]
-        T = inverse(before) @ T @ inverse(tip) @ inverse(behind) @ tip
+    before, behind = np.eye(4), np.eye(4)
+    for i in held:
+        if i < moving[0]:
+            before = before @ motion[i]
+        else:
+            behind = behind @ motion[i]
+    tip = whole["T_zero"]
+    T = inverse(before) @ T @ inverse(tip) @ inverse(behind) @ tip
     found = solve(arm, T, idle[moving])
     q = np.empty((len(found), n))
     q[:, moving], q[:, held] = found.q, fixed
     return Solutions(q, found.status, found.family, found.complete)
-
-
-def with_joints_held(whole: dict[str, Any], motion: dict[int, Array]) -> dict[str, Any]:
-    """The arm of the other joints: what is held displaces all that follows."""
-    axes, points, slides, at = [], [], [], np.eye(4)
-    for i in range(len(whole["axes"])):
-        if i in motion:
-            at = at @ motion[i]
-            continue
-        axes.append(at[:3, :3] @ whole["axes"][i])
-        points.append(at[:3, :3] @ whole["points"][i] + at[:3, 3])
-        slides.append(whole["slides"][i])
-    rows = {"axes": np.array(axes), "points": np.array(points), "slides": np.array(slides)}
-    return {**whole, **rows, "T_zero": at @ whole["T_zero"]}
