@@ -16,7 +16,6 @@ void bind_following(nanobind::module_& m);
 void bind_math(nanobind::module_& m);
 void bind_robot(nanobind::module_& m);
 void bind_rotations(nanobind::module_& m);
-void bind_short_arms(nanobind::module_& m);
 void bind_subproblems(nanobind::module_& m);
 void bind_ik(nanobind::module_& m);
 void bind_ik_description(nanobind::module_& m);

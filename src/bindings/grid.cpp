@@ -12,7 +12,6 @@
 #include "cspace/maps/grid_corners.hpp"
 #include "cspace/maps/grid_inflation.hpp"
 #include "cspace/maps/path_clearance.hpp"
-#include "cspace/maps/png_filters.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "route.hpp"
 
@@ -60,13 +59,6 @@ nb::tuple locate(const GridWorld& world, double x, double y) {
     maps::Cell cell = {-1, -1};
     const maps::CellState place = world.frame.locate(world.bits, {x, y}, cell);
     return nb::make_tuple(int(place), cell.row, cell.column);
-}
-
-std::ptrdiff_t png_unfilter(Bytes lines, std::size_t step, BytesOut pixels) {
-    if (lines.shape(0) != pixels.shape(0) || lines.shape(1) != pixels.shape(1) + 1)
-        throw nb::value_error("lines one byte longer than the pixels");
-    nb::gil_scoped_release free;
-    return maps::undo_png_filters(lines.data(), pixels.shape(0), pixels.shape(1), step, pixels.data());
 }
 
 // What a thread's searches remember. More than so many bytes are given back after a query, which took far
@@ -280,7 +272,5 @@ void bind_grid(nb::module_& m) {
         .def_prop_ro(
             "nbytes", [](const GridWorld& world) { return world.bits.bytes() + world.parts.bytes(); },
             "Memory that the cells, and their parts if a search has asked for them, take [bytes].");
-    m.def("_png_unfilter", png_unfilter, "lines"_a, "step"_a, "pixels"_a,
-          "Undoes the filters of a PNG image; the row with one that is none, or -1.");
     if (PyModule_AddFunctions(m.ptr(), methods) < 0) throw nb::python_error();
 }

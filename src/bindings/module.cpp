@@ -14,7 +14,6 @@ NB_MODULE(_core, m) {
     bind_curves_quick(m);
     bind_robot(m);
     bind_rotations(m);
-    bind_short_arms(m);
     bind_subproblems(m);
     bind_ik(m);
     bind_ik_numeric(m);

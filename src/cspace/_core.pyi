@@ -117,16 +117,6 @@ def axis_angle_matrices(axis: Annotated[NDArray[numpy.float64], dict(shape=(None
     Rotations by angles (n,) [rad] about axes (n, 3) of any length, written into R (n, 3, 3); False if a row needs care.
     """
 
-def position_solutions(axes: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], prismatic: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu', writable=False)], T_zero: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C', device='cpu', writable=False)], goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, 8, None), order='C', device='cpu')], direction: Annotated[NDArray[numpy.float64], dict(shape=(None, 8, None), order='C', device='cpu')], free: Annotated[NDArray[numpy.bool_], dict(shape=(None, 8), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], missing: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], nearest: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')]) -> None:
-    """
-    Joints that bring the tip of an arm of up to three joints to goals (n, 3); the last six are written.
-    """
-
-def short_pose_solutions(axes: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], prismatic: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu', writable=False)], T_zero: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C', device='cpu', writable=False)], goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 4), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, 8, None), order='C', device='cpu')], direction: Annotated[NDArray[numpy.float64], dict(shape=(None, 8, None), order='C', device='cpu')], free: Annotated[NDArray[numpy.bool_], dict(shape=(None, 8), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')]) -> None:
-    """
-    Joints that bring an arm of up to three joints to poses (n, 4, 4); the last four are written.
-    """
-
 def subproblem_1(k: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], p1: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], p2: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], theta: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], residual: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu')], count: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu')], exact: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], free: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')]) -> None:
     """Subproblem 1 for rows (n, 3), answers written into the last five."""
 
@@ -516,7 +506,6 @@ class GridReplanner:
     def unpack(self, into: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu')]) -> None:
         """Writes a byte per cell."""
 
-def _png_unfilter(*arguments: Any) -> int: ...
 def _car_clear(*arguments: Any) -> None: ...
 def _car_distance(*arguments: Any) -> float | None: ...
 def _car_shortest(*arguments: Any) -> Any: ...
