@@ -15,7 +15,6 @@ enum class Hand { left, right };
 inline Hand other(Hand hand) { return hand == Hand::left ? Hand::right : Hand::left; }
 inline const Wall& ahead(const Touch& touch, Hand hand) { return hand == Hand::right ? touch.out : touch.in; }
 inline Point far_end(const Wall& wall, Hand hand) { return hand == Hand::right ? wall.end : wall.begin; }
-inline Point near_end(const Wall& wall, Hand hand) { return hand == Hand::right ? wall.begin : wall.end; }
 inline bool is_on(const Wall& wall, Point p) {
     return orientation(wall.begin, wall.end, p) == 0 && is_between(wall.begin, p, wall.end);
 }

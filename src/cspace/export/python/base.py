@@ -16,9 +16,7 @@ __all__ = [
     "gap",
     "inverse",
     "joint_motion",
-    "measure",
     "pose_and_jacobian",
-    "units",
 ]
 
 Array = npt.NDArray[np.float64]
