@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -11,6 +12,10 @@ from house import tree
 
 CPP_FILES = sorted(path for ending in ("*.hpp", "*.cpp") for path in (tree.ROOT / "include").rglob(ending))
 KERNEL_FILES = sorted((tree.ROOT / "src/kernels").glob("*.cpp"))
+BINDING_FILES = sorted((tree.ROOT / "src/bindings").glob("*.cpp"))
+# Rooms whose solvers are compiled in src/kernels and src/library, and the headers of plain data that bindings share.
+COMPILED_ROOMS = {"ik"}
+PLAIN_HEADERS = {"cspace/ik/branches.hpp", "cspace/ik/chain.hpp", "cspace/ik/solution.hpp"}
 
 
 def cspace_room(module: str) -> str | None:
@@ -98,3 +103,29 @@ def test_the_walls_hold(tmp_path, monkeypatch):
     found = {i.module: i.at_import for i in tree.imports(path)}
     assert found == {"matplotlib": True, "cspace.planning": True, "rich": False}
     assert tree.RANK["planning"] == tree.RANK[tree.room_of(path)]
+
+
+def reachable_headers(path: Path) -> set[str]:
+    """Every header of the project that a C++ file includes, directly or through others, by its path there."""
+    seen: set[str] = set()
+    waiting = [path]
+    while waiting:
+        at = waiting.pop()
+        for _, target in tree.includes(at):
+            name = target.strip('"<>')
+            places = [at.parent / name, tree.ROOT / "include" / name, tree.ROOT / "src" / name]
+            found = next((place for place in places if place.is_file()), None)
+            if found is not None and name not in seen:
+                seen.add(name)
+                waiting.append(found)
+    return seen
+
+
+@pytest.mark.parametrize("path", BINDING_FILES, ids=lambda path: path.name)
+def test_bindings_include_no_solver(path):
+    solvers = {
+        name
+        for name in reachable_headers(path) - PLAIN_HEADERS
+        if name.startswith("cspace/") and name.split("/")[1] in COMPILED_ROOMS
+    }
+    assert not solvers, f"call a function of src/library instead of including {sorted(solvers)}"
