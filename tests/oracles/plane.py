@@ -195,7 +195,7 @@ def between(directions, k):
     """A direction strictly inside the sector after direction k."""
     if not directions:
         return np.array([1, 0])
-    u, v = np.array(directions[k]), np.array(directions[(k + 1) % len(directions)])
+    u, v = (np.array(directions[i % len(directions)], dtype=object) for i in (k, k + 1))
     side = u[0] * v[1] - u[1] * v[0]
     if side == 0:
         return np.array([-u[1], u[0]]) if u @ v < 0 else -u

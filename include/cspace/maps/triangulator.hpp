@@ -3,15 +3,17 @@
 // Points are inserted along a space-filling curve and made Delaunay by flips (Lawson 1977); a segment is
 // forced by flipping the edges that cross it (Sloan 1993, "A fast algorithm for generating constrained
 // Delaunay triangulations"). Every decision on which the triangles' validity rests is exact. Segments that
-// cross each other meet in a new point, the crossing rounded to the nearest doubles, or in an end of one of
-// them that lies as near to it as rounding can tell; both are then bent to it, and what the bent parts cross
-// is found like any other crossing.
+// cross each other meet in a new vertex: the crossing of the two lines as they were given, rounded to the
+// nearest doubles, or an end of one of them within rounding of it. Both are bent to that vertex, and what the
+// bent parts cross is found like any other crossing. A segment is divided at the vertices on it before it is
+// bent, because afterwards they lie beside it.
 #pragma once
 
 #include <algorithm>
 #include <utility>
 
 #include "cspace/maps/triangulation.hpp"
+#include "cspace/math/crossing.hpp"
 
 namespace cspace::maps {
 
@@ -20,6 +22,7 @@ class Triangulator {
     // What a segment is part of, as a list: segments that lie on one another share an edge.
     struct Owner {
         Index id, next;
+        Index from, to;  // the segment as it was given
     };
     struct Crossing {
         Point at;
@@ -32,7 +35,7 @@ class Triangulator {
 
     // Everything that will be inserted lies between low and high; `segments` says how many there are.
     Triangulator(Point low, Point high, std::size_t segments)
-        : most_crossings_(std::min<std::size_t>(200'000 + 50 * segments, 64 + 4 * segments * segments)),
+        : most_bends_(std::min<std::size_t>(200'000 + 50 * segments, 64 + 4 * segments * segments)),
           most_of_one_(64 + 4 * segments) {
         const double reach = std::max({high.x - low.x, high.y - low.y, 1e-300});
         low = low - Point{reach, reach};
@@ -59,14 +62,14 @@ class Triangulator {
 
     // Makes the segment between two vertices an edge, or several, of the owner; false if that would not end.
     bool insert_segment(Index a, Index b, Index owner) {
-        const std::size_t most = std::min(most_crossings_, crossings.size() + most_of_one_);
-        owners.push_back({owner, none});
-        pending_.push_back({a, b, Index(owners.size() - 1)});
+        const std::size_t most = std::min(most_bends_, bends_ + most_of_one_);
+        owners.push_back({owner, none, a, b});
+        pending_.push_back({a, b, Index(owners.size() - 1), true});
         while (!pending_.empty()) {
             const Segment s = pending_.back();
             pending_.pop_back();
             if (s.a != s.b) advance(s);
-            if (crossings.size() > most) return false;
+            if (bends_ > most) return false;
         }
         return true;
     }
@@ -74,12 +77,13 @@ class Triangulator {
   private:
     struct Segment {
         Index a, b, owners;
+        bool is_straight;  // not bent yet: vertices may lie on it
     };
     using Edge = std::pair<Index, Index>;
 
     Index last_ = 0;
-    std::size_t most_crossings_, most_of_one_;  // in all, and while one segment is inserted
-    double rounding_;                           // how far a crossing may be moved by rounding
+    std::size_t bends_ = 0, most_bends_, most_of_one_;  // in all, and while one segment is inserted
+    double rounding_;                                   // how far a crossing may be moved by rounding
     std::vector<Segment> pending_;
     std::vector<std::pair<Index, Index>>
         suspects_;  // (triangle, vertex): the edge opposite it may need a flip
@@ -232,7 +236,9 @@ class Triangulator {
             chain = list;
         } else {
             for (Index o = list; o != none; o = owners[std::size_t(o)].next) {
-                owners.push_back({owners[std::size_t(o)].id, chain});
+                Owner copy = owners[std::size_t(o)];
+                copy.next = chain;
+                owners.push_back(copy);
                 chain = Index(owners.size() - 1);
             }
         }
@@ -250,20 +256,30 @@ class Triangulator {
         const auto [first, i] = leave(s);
         if (first == none) return;
         crossed_.clear();
+        std::pair<Index, int> met{none, 0};  // the first edge on the way that is part of a segment
         Index t = first, p = mesh[t].corner[std::size_t(after(i))],
               q = mesh[t].corner[std::size_t(before(i))];
         for (int e = i;;) {  // p lies to the right of the segment, q to the left, the edge between crosses it
-            if (mesh[t].owners[std::size_t(e)] != none) return cross(s, t, e);
+            if (met.first == none && mesh[t].owners[std::size_t(e)] != none) {
+                met = {t, e};
+                if (!s.is_straight) return cross(s, t, e);
+            }
             crossed_.push_back({p, q});
             const Index u = mesh[t].across[std::size_t(e)];
             const int opposite = mesh[u].edge_to(t);
             const Index w = mesh[u].corner[std::size_t(opposite)];
             const int side = w == s.b ? 0 : orientation(at(s.a), at(s.b), at(w));
-            if (side == 0) return force({s.a, w, s.owners}, s.b);
+            if (side == 0) return reach(s, w, met);
             e = mesh[u].place_of(side > 0 ? q : p);  // the next edge is (p, w), or (w, q)
             (side > 0 ? q : p) = w;
             t = u;
         }
+    }
+    // The next vertex on a segment is w: the part up to it crosses `met`, or becomes an edge.
+    void reach(const Segment& s, Index w, std::pair<Index, int> met) {
+        if (w != s.b) pending_.push_back({w, s.b, s.owners, s.is_straight});
+        if (met.first != none) return cross({s.a, w, s.owners, false}, met.first, met.second);
+        force({s.a, w, s.owners, s.is_straight});
     }
 
     // The triangle around a through which the segment leaves it, and the place of a in it; none if it leaves
@@ -285,16 +301,22 @@ class Triangulator {
         });
         if (along != none) {
             mark(s.a, along, s.owners);
-            pending_.push_back({along, s.b, s.owners});
+            pending_.push_back({along, s.b, s.owners, s.is_straight});
         }
         return through;
     }
 
-    // The segment crosses the edge e of t, which is part of another: both get the point where they cross.
+    // The segment crosses the edge e of t, which is part of another: both get the vertex where they cross.
     void cross(const Segment& s, Index t, int e) {
         const Index p = mesh[t].begin(e), q = mesh[t].end(e), list = mesh[t].owners[std::size_t(e)];
-        const Point x = crossing(at(s.a), at(s.b), at(p), at(q));
-        crossings.push_back({x, s.owners, list});
+        const Owner &one = owners[std::size_t(s.owners)], &other = owners[std::size_t(list)];
+        const Line a{at(one.from), at(one.to)}, b{at(other.from), at(other.to)};
+        const bool is_given = do_cross(a, b);
+        Point x = is_given ? crossing(a, b) : Point{};
+        if (!is_given || !is_near(x, s.a, s.b) || !is_near(x, p, q))
+            x = crossing({at(s.a), at(s.b)}, {at(p), at(q)});
+        if (is_given) crossings.push_back({x, s.owners, list});
+        ++bends_;
         set_owners(t, e, none);
         Index v = none;
         for (const Index end : {s.a, s.b, p, q})
@@ -303,19 +325,19 @@ class Triangulator {
             last_ = t;
             v = insert(x);
         }
-        for (const Segment& piece :
-             {Segment{s.a, v, s.owners}, Segment{v, s.b, s.owners}, Segment{p, v, list}, Segment{v, q, list}})
+        for (const Segment& piece : {Segment{s.a, v, s.owners, false}, Segment{v, s.b, s.owners, false},
+                                     Segment{p, v, list, false}, Segment{v, q, list, false}})
             pending_.push_back(piece);
     }
-    // Where the segment from a to b crosses the line through c and d.
-    static Point crossing(Point a, Point b, Point c, Point d) {
-        const double along = cspace::cross(d - c, b - a);
-        const double part = along == 0 ? 0.5 : cspace::cross(d - c, c - a) / along;
-        return a + std::clamp(part, 0.0, 1.0) * (b - a);
+    // Whether x lies in the box of two vertices, up to rounding.
+    bool is_near(Point x, Index v, Index w) const {
+        const Point p = at(v), q = at(w);
+        return x.x >= std::min(p.x, q.x) - rounding_ && x.x <= std::max(p.x, q.x) + rounding_ &&
+               x.y >= std::min(p.y, q.y) - rounding_ && x.y <= std::max(p.y, q.y) + rounding_;
     }
 
     // Flips the edges in crossed_ until the segment is an edge.
-    void force(const Segment& s, Index rest) {
+    void force(const Segment& s) {
         made_.clear();
         for (std::size_t i = 0; i < crossed_.size(); ++i) {
             const auto [p, q] = crossed_[i];
@@ -335,7 +357,6 @@ class Triangulator {
         }
         mark(s.a, s.b, s.owners);
         smooth();
-        pending_.push_back({s.b, rest, s.owners});
     }
 
     // Makes the edges that a segment left behind Delaunay again.

@@ -56,11 +56,7 @@ inline int sign_of_difference(double a, double b, double c, double d) {
     return left.sum != right.sum ? sign(left.sum - right.sum) : sign(left.rest - right.rest);
 }
 
-inline int orientation(Point a, Point b, Point c) {
-    const Pair ax = two_sum(a.x, -c.x), ay = two_sum(a.y, -c.y);
-    const Pair bx = two_sum(b.x, -c.x), by = two_sum(b.y, -c.y);
-    if (ax.rest == 0 && ay.rest == 0 && bx.rest == 0 && by.rest == 0)
-        return sign_of_difference(ax.sum, by.sum, ay.sum, bx.sum);
+inline Expansion<12> expanded_determinant(Point a, Point b, Point c) {
     Expansion<12> det;
     det.add_product(a.x, b.y);
     det.add_product(-a.y, b.x);
@@ -68,7 +64,40 @@ inline int orientation(Point a, Point b, Point c) {
     det.add_product(-b.y, c.x);
     det.add_product(c.x, a.y);
     det.add_product(-c.y, a.x);
-    return det.sign();
+    return det;
+}
+
+// Calls with_differences(a − c, b − c) where these are exact, else with_expansion().
+template <class WithDifferences, class WithExpansion>
+auto with_exact_differences(Point a, Point b, Point c, WithDifferences with_differences,
+                            WithExpansion with_expansion) {
+    const Pair ax = two_sum(a.x, -c.x), ay = two_sum(a.y, -c.y);
+    const Pair bx = two_sum(b.x, -c.x), by = two_sum(b.y, -c.y);
+    if (ax.rest == 0 && ay.rest == 0 && bx.rest == 0 && by.rest == 0)
+        return with_differences(Point{ax.sum, ay.sum}, Point{bx.sum, by.sum});
+    return with_expansion();
+}
+
+inline int orientation(Point a, Point b, Point c) {
+    return with_exact_differences(
+        a, b, c, [](Point u, Point v) { return sign_of_difference(u.x, v.y, u.y, v.x); },
+        [&] { return expanded_determinant(a, b, c).sign(); });
+}
+
+// Twice the area of the triangle a, b, c, rounded once or twice.
+inline double determinant(Point a, Point b, Point c) {
+    return with_exact_differences(
+        a, b, c,
+        [](Point u, Point v) {
+            const Pair left = two_product(u.x, v.y), right = two_product(u.y, v.x);
+            return (left.sum - right.sum) + (left.rest - right.rest);
+        },
+        [&] {
+            const Expansion<12> det = expanded_determinant(a, b, c);
+            double sum = 0;
+            for (int i = 0; i < det.size; ++i) sum += det.part[i];
+            return sum;
+        });
 }
 
 }  // namespace exact

@@ -1,0 +1,46 @@
+// Where two lines cross, rounded to the nearest doubles: the same point whichever points of the lines are
+// given.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "cspace/math/predicates.hpp"
+
+namespace cspace {
+
+struct Line {
+    Point from, to;
+};
+
+// Whether two segments cross inside both; exact.
+inline bool do_cross(const Line& a, const Line& b) {
+    return orientation(a.from, a.to, b.from) * orientation(a.from, a.to, b.to) < 0 &&
+           orientation(b.from, b.to, a.from) * orientation(b.from, b.to, a.to) < 0;
+}
+
+// Where line b crosses segment a; the middle of a if they are parallel. The first estimate is corrected by
+// how far it lies off both lines, which is computed without rounding (iterative refinement).
+inline Point crossing(const Line& a, const Line& b) {
+    const Point along = a.to - a.from, other = b.to - b.from;
+    const double whole = cross(other, along), size = std::max(norm(along), norm(other));
+    const double part = whole == 0 ? 0.5 : cross(other, b.from - a.from) / whole;
+    Point at = a.from + std::clamp(part, 0.0, 1.0) * along;
+    for (int round = 0; round < 3 && whole != 0; ++round) {
+        const double off_a = exact::determinant(a.from, a.to, at) / whole;
+        const double off_b = exact::determinant(b.from, b.to, at) / whole;
+        const Point correction = off_a * other - off_b * along;
+        if (!std::isfinite(correction.x) || !std::isfinite(correction.y)) break;
+        at = at + correction;
+        // The relative error of the correction is that of `whole`: 2⁻⁵² size² / whole.
+        if (norm(correction) * size < 0x1p-30 * std::abs(whole)) break;
+    }
+    const auto inside = [&](double value, double from, double to) {
+        if (std::abs(value) < 0x1p-80 * size)
+            value = 0;  // what refinement leaves of a coordinate that is zero
+        return std::clamp(value, std::min(from, to), std::max(from, to));
+    };
+    return {inside(at.x, a.from.x, a.to.x), inside(at.y, a.from.y, a.to.y)};
+}
+
+}  // namespace cspace

@@ -1,0 +1,168 @@
+"""Metamorphic laws: the same world told in another way has the same answer, and one obstacle more never opens
+or shortens a way."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from typing import Any, Final
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from navigation.touching_worlds import slanted_touch, triangle
+from oracles.plane import shortest
+
+SHORTEST: Final = ("any_angle", "visibility_graph")
+CERTAIN: Final = (*SHORTEST, "exact_cells", "bug_1", "bug_2", "tangent_bug")
+"""Planners in the plane whose verdict is never open."""
+OPTIMAL: Final = ("dijkstra", "a_star", "jump_point_search", "d_star_lite", "wavefront")
+OTHERS: Final = ("weighted_a_star", "focal_search", "greedy_best_first", "theta_star", "brushfire")
+CASES: Final = 40
+
+
+def touching_case(seed: int) -> tuple[list[Any], int, Any, Any, float]:
+    """Obstacles of a square world, its side, two free points of it, and the length of the shortest way."""
+    rng = np.random.default_rng([7, seed])
+    while True:
+        side = int(rng.integers(4, 9))
+        obstacles = slanted_touch(rng, side)
+        world = cs.PolygonWorld(obstacles, (0, 0, side, side))
+        ends = [p for p in rng.integers(0, side + 1, (8, 2)) if world.is_free(p)]
+        if len(ends) > 1 and not np.array_equal(ends[0], ends[-1]):
+            bounds = (0, 0, side, side)
+            length = shortest([[ring] for ring in obstacles], bounds, ends[0], ends[-1])
+            return obstacles, side, ends[0], ends[-1], length
+
+
+def agree(world: cs.PolygonWorld, start: Any, goal: Any, length: float) -> None:
+    """All planners say what an exact oracle says."""
+    for planner in CERTAIN:
+        route = cs.navigate(world, start, goal, planner)
+        assert route.status == ("found" if length < math.inf else "unreachable"), planner
+        if planner in SHORTEST:
+            assert route.length == pytest.approx(length, rel=1e-12), planner
+
+
+def test_a_crossed_edge_keeps_the_corner_that_stands_on_it():
+    y, x, z = [(0, 2), (0, 0), (4, 0), (4, 4)], [(2, 3), (3, 5), (1, 5)], [(4, 5), (4, 1), (2, 1)]
+    for obstacles in ([x, y], *itertools.permutations([x, y, z])):
+        agree(cs.PolygonWorld(obstacles, (0, 0, 4, 5)), (0, 5), (4, 5), math.inf)
+
+
+@pytest.mark.parametrize("seed", range(CASES))
+def test_the_order_of_obstacles_changes_nothing(seed):
+    obstacles, side, start, goal, length = touching_case(seed)
+    orders = list(itertools.permutations(obstacles))
+    for order in orders[:: max(1, len(orders) // 24)]:
+        agree(cs.PolygonWorld(order, (0, 0, side, side)), start, goal, length)
+
+
+@pytest.mark.parametrize("seed", range(CASES))
+def test_corners_and_turns_of_outlines_change_nothing(seed):
+    obstacles, side, start, goal, length = touching_case(seed)
+    rng = np.random.default_rng(seed)
+    told = [np.roll(ring, rng.integers(3), axis=0)[:: rng.choice([-1, 1])] for ring in obstacles]
+    agree(cs.PolygonWorld(told, (0, 0, side, side)), start, goal, length)
+
+
+@pytest.mark.parametrize("scale", [2.0**-30, 0.25, 3, 10, 1000, 7 * 2.0**20])
+@pytest.mark.parametrize("by", [(0, 0), (5, -3), (-1001, 4096)])
+def test_scaled_and_moved_a_world_has_the_same_ways(scale, by):
+    for seed in range(0, CASES, 8):
+        obstacles, side, start, goal, length = touching_case(seed)
+        place = [scale * (np.asarray(points) + by) for points in (*obstacles, start, goal)]
+        bounds = (*(scale * np.array(by)), *(scale * (np.array(by) + side)))
+        agree(cs.PolygonWorld(place[:-2], bounds), *place[-2:], scale * length)
+
+
+MIRRORS: Final = [np.array(m) for m in ([[-1, 0], [0, 1]], [[0, 1], [1, 0]], [[0, -1], [1, 0]])]
+
+
+@pytest.mark.parametrize("mirror", MIRRORS, ids=["left and right", "x and y", "a quarter turn"])
+def test_mirrored_and_turned_a_world_has_the_same_ways(mirror):
+    for seed in range(CASES):
+        obstacles, side, start, goal, length = touching_case(seed)
+        *rings, start, goal = (np.asarray(points) @ mirror.T for points in (*obstacles, start, goal))
+        bounds = np.sort(np.array([(0, 0), (side, side)]) @ mirror.T, axis=0).ravel()
+        agree(cs.PolygonWorld(rings, bounds), start, goal, length)
+
+
+@pytest.mark.parametrize("seed", range(CASES))
+def test_one_obstacle_more_opens_nothing_and_shortens_nothing(seed):
+    obstacles, side, start, goal, length = touching_case(seed)
+    rng = np.random.default_rng(seed)
+    for _ in range(6):
+        world = cs.PolygonWorld([*obstacles, triangle(rng, side)], (0, 0, side, side))
+        if not (world.is_free(start) and world.is_free(goal)):
+            continue
+        for planner in CERTAIN:
+            route = cs.navigate(world, start, goal, planner)
+            assert not (route and length == math.inf), planner
+            if route and planner in SHORTEST:
+                assert route.length >= length * (1 - 1e-12)
+
+
+def grid_case(seed: int) -> tuple[Any, Any, Any]:
+    """Blocked cells, and two free ones (row, column)."""
+    rng = np.random.default_rng([8, seed])
+    while True:
+        blocked = rng.random(rng.integers(3, 20, 2)) < rng.uniform(0.1, 0.5)
+        free = rng.permutation(np.argwhere(~blocked))
+        if len(free) > 1:
+            return blocked, free[0], free[1]
+
+
+def walk(blocked: Any, start: Any, goal: Any, planner: str, **frame: Any) -> Any:
+    grid = cs.OccupancyGrid(blocked, **frame)
+    return cs.navigate(grid, grid.center_of(start), grid.center_of(goal), planner)
+
+
+def mirrored(blocked: Any, *cells: Any) -> list[Any]:
+    """The grid and cells of it, mirrored at either axis and at the diagonal."""
+    rows, columns = blocked.shape
+    return [
+        (blocked[::-1], *([rows - 1 - r, c] for r, c in cells)),
+        (blocked[:, ::-1], *([r, columns - 1 - c] for r, c in cells)),
+        (blocked.T, *([c, r] for r, c in cells)),
+    ]
+
+
+@pytest.mark.parametrize("planner", [*OPTIMAL, *OTHERS])
+def test_mirrored_a_grid_has_the_same_ways(planner):
+    for seed in range(CASES):
+        route = walk(*grid_case(seed), planner)
+        for case in mirrored(*grid_case(seed)):
+            other = walk(*case, planner)
+            assert other.status == route.status
+            if planner in OPTIMAL:
+                assert other.length == pytest.approx(route.length, rel=1e-12)
+
+
+@pytest.mark.parametrize("planner", [*OPTIMAL, *OTHERS])
+def test_scaled_and_moved_a_grid_has_the_same_ways(planner):
+    for seed in range(CASES):
+        route = walk(*grid_case(seed), planner)
+        for resolution, origin in [(0.25, (0, 0)), (3, (0, 0)), (1, (-40, 7)), (0.05, (1.5, -2.25))]:
+            other = walk(*grid_case(seed), planner, resolution=resolution, origin=origin)
+            assert other.status == route.status
+            if planner in OPTIMAL:
+                assert other.length == pytest.approx(resolution * route.length, rel=1e-9)
+
+
+@pytest.mark.parametrize("planner", [*OPTIMAL, *OTHERS])
+def test_one_cell_more_opens_nothing_and_shortens_nothing(planner):
+    for seed in range(CASES):
+        blocked, start, goal = grid_case(seed)
+        route = walk(blocked, start, goal, planner)
+        rng = np.random.default_rng(seed)
+        for cell in rng.permutation(np.argwhere(~blocked))[:4]:
+            if np.array_equal(cell, start) or np.array_equal(cell, goal):
+                continue
+            more = blocked.copy()
+            more[tuple(cell)] = True
+            other = walk(more, start, goal, planner)
+            assert route or not other
+            if other and planner in OPTIMAL:
+                assert other.length >= route.length * (1 - 1e-12)
