@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "cspace/navigation/fields/descent.hpp"
+#include "cspace/navigation/fields/start_directions.hpp"
 #include "fields.hpp"
 #include "polygon_world.hpp"
 
@@ -36,7 +37,8 @@ Descent descend(const NearWalls& walls, const PolygonCore& core, Point start, Po
                 const Settings& settings) {
     const maps::Settled from = core.world.settle(start, core.tolerance);
     const Potential potential(walls, settings.gains, start == goal ? from.at : goal);
-    const Point inward = walls.inward(from.at, std::max(2 * core.tolerance, 1e-7 * settings.gains.rho_0));
+    const double near = std::max(2 * core.tolerance, 1e-7 * settings.gains.rho_0);
+    const std::vector<Point> inward = find_start_directions(core.world.space, from, walls, near);
     Descent made = DescentRun(walls, potential, settings.longest, settings.budget).run(from.at, inward);
     made.route.path.front() = start;
     return made;

@@ -36,8 +36,9 @@ class DescentRun {
     DescentRun(const NearWalls& walls, const Potential& potential, double longest, std::int64_t budget)
         : walls_(walls), potential_(potential), longest_(longest), step_(longest), budget_(budget) {}
 
-    // From a point of free space, or on its boundary with the free side in a direction `inward`.
-    Descent run(Point start, Point inward) {
+    // From a point of free space, or on its boundary: there the first step takes one of the directions that
+    // lead into free space.
+    Descent run(Point start, const std::vector<Point>& inward) {
         at_ = start;
         descent_.route.path = {start};
         if (start == potential_.goal()) return finish(Rest::goal);
@@ -76,15 +77,21 @@ class DescentRun {
         descent_.route.path.push_back(to);
         descent_.values.push_back(seen.value);
     }
-    bool leave_wall(Point inward) {
+    // Off the wall, in the direction in which the potential is least.
+    bool leave_wall(const std::vector<Point>& inward) {
         here_ = look(at_);
         if (here_.clearance > shortest()) return true;
-        if (squared_norm(inward) == 0) return false;
         for (double away = 1e-2 * scale(); away > shortest(); away *= 0.5) {
-            const Point to = at_ + (away / norm(inward)) * inward;
-            const Potential::Look seen = look(to);
-            if (!(seen.clearance > 0.5 * shortest()) || walls_.is_crossed(at_, to)) continue;
-            go(to, seen);
+            Point best = at_;
+            Potential::Look least;
+            for (const Point direction : inward) {
+                const Point to = at_ + (away / norm(direction)) * direction;
+                const Potential::Look seen = look(to);
+                if (!(seen.clearance > 0.5 * shortest()) || walls_.is_crossed(at_, to)) continue;
+                if (best == at_ || seen.value < least.value) best = to, least = seen;
+            }
+            if (best == at_) continue;
+            go(best, least);
             return true;
         }
         return false;

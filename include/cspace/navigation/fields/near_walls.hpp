@@ -43,17 +43,18 @@ class NearWalls {
         const std::size_t cell = cell_of(p);
         for (std::int32_t k = begin_[cell]; k < begin_[cell + 1]; ++k) visit(members_[std::size_t(k)]);
     }
-    // Whether the way from p to q, no longer than the reach, passes through a wall; exact.
+    // Whether the segment from p to q, no longer than the reach, meets a wall between its ends that has them
+    // on different sides; exact. A corner on the segment counts: it may lead into an obstacle.
     bool is_crossed(Point p, Point q) const {
         bool crossed = false;
         visit(p, [&](std::int32_t e) {
             const Point a = walls_.begin(e), b = walls_.end(e);
             crossed = crossed || (orientation(a, b, p) * orientation(a, b, q) < 0 &&
-                                  orientation(p, q, a) * orientation(p, q, b) < 0);
+                                  orientation(p, q, a) * orientation(p, q, b) <= 0);
         });
         return crossed;
     }
-    // Into free space from a point on walls, or within a tolerance of them; zero where there are none.
+    // Away from the walls within a tolerance of a point of free space; zero where there are none.
     Point inward(Point p, double tolerance) const {
         Point sum, first;
         visit(p, [&](std::int32_t e) {
