@@ -142,6 +142,26 @@ def test_a_film_ends_as_it_is_played(world, tmp_path):
     assert (np.abs(last - red).sum(axis=2) < 30).sum() > 20
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_every_picture_of_a_rewired_tree_is_a_tree(world, seed):
+    route = cs.navigate(world, (1, 1), (9, 9), "rrt_star", rng=seed, samples=600)
+    film = cs.plot.animation(route, frames=7)
+    for frame in range(8):
+        added, over = film.steps.show(frame)
+        edges = np.array(over[0].get_segments())
+        assert not added
+        assert len(np.unique(edges[:, 1], axis=0)) == len(edges), "one edge leads to each node"
+        from_here = {tuple(route.start)}
+        while more := {tuple(b) for a, b in edges if tuple(a) in from_here} - from_here:
+            from_here |= more
+        assert len(from_here) == len(edges) + 1, "every node hangs on the start"
+    assert len(route.trace) > len(edges)
+    still = cs.plot.route(route, ax=plt.subplots()[1])
+    shown = [a for a in still if hasattr(a, "get_segments")]
+    assert sum(len(a.get_segments()) for a in shown) == len(edges)
+    plt.close("all")
+
+
 @pytest.mark.parametrize("ending", ["mp4", "xyz", "png"])
 def test_animations_of_other_formats_are_refused_by_name(world, tmp_path, ending):
     film = cs.plot.animation(cs.navigate(world, (1, 1), (9, 9)), frames=2)

@@ -13,7 +13,7 @@ from cspace.arrays import Array
 from cspace.plot import colors
 from cspace.plot.fields import draw_bands
 
-__all__ = ["draw_idea", "shown_events"]
+__all__ = ["draw_idea", "replaced_at", "shown_events"]
 
 MOST_EVENTS: Final = 20_000
 """Events that a picture shows: of more every second, third … is drawn; a reader could not tell them apart."""
@@ -65,10 +65,28 @@ def turn_of(route: Any, start: Array, end: Array) -> Array:
     return turns[0]
 
 
+def replaced_at(events: Any) -> Array:
+    """The number of the event that gives the end of each event another parent: (k,); k where none does.
+
+    A tree that is rewired has one edge to each node. Events of searches that rewire nothing stay.
+    """
+    count = len(events)
+    until = np.full(count, count)
+    if len(events.only("rewire")):
+        node = np.unique(events.end, axis=0, return_inverse=True)[1].ravel()
+        order = np.argsort(node, kind="stable")
+        again = node[order[1:]] == node[order[:-1]]
+        until[order[:-1][again]] = order[1:][again]
+    return until
+
+
 def draw_events(axes: Any, route: Any) -> list[Any]:
     """The events of the trace in the order of time, blue to yellow: lines, or dots where they have no
-    length."""
-    return draw_trace(axes, shown_events(route))
+    length. Of a tree that is rewired, the edges that it has at the end."""
+    events = shown_events(route)
+    kept = replaced_at(events) == len(events)
+    names = ("kind", "start", "end", "value")
+    return draw_trace(axes, replace(events, **{name: getattr(events, name)[kept] for name in names}))
 
 
 def draw_expanded(axes: Any, route: Any) -> list[Any]:

@@ -13,7 +13,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes, need_matplotlib
 from cspace.plot.films import Steps
-from cspace.plot.ideas import draw_idea, shown_events
+from cspace.plot.ideas import draw_idea, replaced_at, shown_events
 
 __all__ = ["animation", "route", "routes", "world"]
 
@@ -145,6 +145,8 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
 
     _ground(axes, route.world, route._asked)
     events = shown_events(route)
+    until = replaced_at(events)
+    only_grows = bool((until == len(events)).all())
     order = np.linspace(0, 1, max(len(events), 1))
     tints = matplotlib.colormaps["viridis"](order)  # as the picture of the whole search
     pieces = np.stack([events.start, events.end], axis=1) if len(events) else np.empty((0, 2, 2))
@@ -157,12 +159,14 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
         return math.ceil(len(pieces) * min(max(frame + 1, 0), frames) / frames)
 
     def show(frame: int, since: int = 0) -> tuple[list[Any], list[Any]]:
-        new = slice(since, told(frame))
+        seen = told(frame)
+        new = np.arange(since, seen) if only_grows else np.flatnonzero(until[:seen] >= seen)
         searched.set(segments=pieces[new], color=tints[new])
         reached.set_offsets(pieces[new, 1])
         reached.set_color(tints[new])
         path.set_data(*(route.path.T if frame >= frames else np.empty((2, 0))))
-        return [searched, reached], [path, *ends]
+        over = [path, *ends]
+        return ([searched, reached], over) if only_grows else ([], [searched, reached, *over])
 
     film: Any = FuncAnimation(
         axes.figure,
