@@ -84,6 +84,24 @@ def denies_what_is_undetermined(*question, **options):
     return told(route, status="unreachable") if route.status == "undetermined" else route
 
 
+def refuses_walls(*question, **options):
+    """Takes a goal on a wall for one in an obstacle."""
+    route = cs.navigate(*question, **options)
+    on_wall = route.world.kind == "polygons" and route.world.clearance(route.goal) == 0
+    return told(route, status="unreachable", path=np.empty((0, 2)), length=math.inf) if on_wall else route
+
+
+def hurries(*question, **options):
+    """Weighs what is left four times, and says that its way is within 1.5."""
+    name = {"weighted_a_star": "weight", "focal_search": "bound"}[question[3]]
+    return cs.navigate(*question, **options | {name: 4.0})
+
+
+def prefers_length(*question, **options):
+    """The shortest way along a diagram, taken for the widest."""
+    return cs.navigate(*question, **options | {"prefer": "length"})
+
+
 class Slow:
     """A planner whose time, by its own clock, and nodes grow as a power of the number of cells."""
 

@@ -14,6 +14,7 @@ from scipy.ndimage import label
 from scipy.sparse.csgraph import connected_components
 
 import cspace as cs
+from navigation.touching_worlds import slanted_touch
 from oracles.clearance import is_free, nearest, rings_of
 from oracles.grids import distances, graph
 from oracles.plane import shortest
@@ -34,10 +35,13 @@ class Question:
     bounds: tuple
     start: np.ndarray
     goal: np.ndarray
+    on_wall: bool = False
+    """Whether the goal has been moved onto a wall."""
 
     @property
     def name(self):
-        return f"{self.family} {self.size}, seed {self.seed}{', shut' if self.shut else ''}"
+        more = f"{', shut' if self.shut else ''}{', goal on a wall' if self.on_wall else ''}"
+        return f"{self.family} {self.size}, seed {self.seed}{more}"
 
     @cached_property
     def world(self):
@@ -220,16 +224,73 @@ def degenerate(rng, size, shut):
     side = 4 + 2 * size
     while True:
         obstacles = [[some_polygon(rng, side)] for _ in range(rng.integers(size, 3 * size + 2))]
-        bounds = (0, 0, side, side)
-        world = cs.PolygonWorld(obstacles, bounds)
-        for _ in range(10):
-            ends = rng.integers(0, 2 * side + 1, (2, 2)) / 2
-            if rng.random() < 0.5:
-                ends = np.minimum(np.floor(ends), side - 1) + 0.5
-            if not all(world.is_free(p) for p in ends) or np.array_equal(*ends):
-                continue
-            if (shortest(obstacles, bounds, *ends) == np.inf) == shut:
-                return obstacles, bounds, *ends
+        ends = ends_between(rng, obstacles, side, shut)
+        if ends is not None:
+            return obstacles, (0, 0, side, side), *ends
+
+
+def touching_corners(rng, size, shut):
+    """A corner on a slanted edge that is crossed elsewhere, with more obstacles the larger the size."""
+    side = 3 + size
+    while True:
+        obstacles = [[corners] for corners in slanted_touch(rng, side, min(size, 3))]
+        rng.shuffle(obstacles)
+        ends = ends_between(rng, obstacles, side, shut)
+        if ends is not None:
+            return obstacles, (0, 0, side, side), *ends
+
+
+def ends_between(rng, obstacles, side, shut):
+    """A start and a goal in a square world at multiples of a half, of which half are centres of unit cells;
+    None where ten draws have no such pair."""
+    bounds = (0, 0, side, side)
+    world = cs.PolygonWorld(obstacles, bounds)
+    for _ in range(10):
+        ends = rng.integers(0, 2 * side + 1, (2, 2)) / 2
+        if rng.random() < 0.5:
+            ends = np.minimum(np.floor(ends), side - 1) + 0.5
+        if not all(world.is_free(p) for p in ends) or np.array_equal(*ends):
+            continue
+        if (shortest(obstacles, bounds, *ends) == np.inf) == shut:
+            return ends
+    return None
+
+
+def costly_baits(rng, size, shut):
+    """A serpentine that comes near the goal at once and reaches it late, and a bypass that first leads away:
+    what a greedy search finds is up to three times as long as the shortest way."""
+    lanes, height, room = 2 + 2 * size, rng.integers(8, 11), rng.integers(6, 9)
+    width = 2 + room + 2 * lanes
+    obstacles = [[box(1, height, width - 1, height + 1)]]
+    for k in range(lanes):
+        x = 1 + room + 2 * k
+        obstacles.append([box(x, 1, x + 1, height) if k % 2 == 0 else box(x, 0, x + 1, height - 1)])
+    if shut:
+        obstacles += [
+            [box(width - 3, height - 1, width - 2, height)],
+            [box(width - 1, height, width, height + 1)],
+        ]
+    ends = [np.array([room, rng.integers(height)]) + 0.5, np.array([width - 1, 0]) + 0.5]
+    return obstacles, (0, 0, width, height + 2), *ends
+
+
+def two_gaps(rng, size, shut):
+    """Walls with a gap of one metre on the straight way and one of three metres beside it; shut: the last
+    wall has none."""
+    obstacles = []
+    for k in range(size):
+        x, narrow = 7 + 8 * k, rng.integers(6, 9)
+        wide = narrow + rng.choice([-5, 3])
+        spans = [(0, 15)] if shut and k == size - 1 else between_gaps({narrow: 1, wide: 3}, 15)
+        obstacles += [[box(x, low, x + 1, high)] for low, high in spans]
+    ends = [np.array([x, rng.integers(6, 9)]) + 0.5 for x in (2, 8 * size + 4)]
+    return obstacles, (0, 0, 8 * size + 7, 15), *ends
+
+
+def between_gaps(gaps, length):
+    """The spans (from, to) of a wall of that length that gaps {from: width} leave."""
+    ends = [0, *(end for low in sorted(gaps) for end in (low, low + gaps[low])), length]
+    return list(zip(ends[::2], ends[1::2], strict=True))
 
 
 FAMILIES = {
@@ -239,7 +300,23 @@ FAMILIES = {
     "U trap": u_traps,
     "narrow gap": narrow_gaps,
     "degenerate": degenerate,
+    "touching corner": touching_corners,
+    "costly bait": costly_baits,
+    "two gaps": two_gaps,
 }
+
+
+def goal_on_wall(question):
+    """The question with its goal at a corner or in the middle of a side of an obstacle, still reachable."""
+    rng = np.random.default_rng(question.seed)
+    rings = [np.asarray(ring, float) for rings in question.obstacles for ring in rings]
+    places = np.vstack([p for ring in rings for p in (ring, (ring + np.roll(ring, 1, axis=0)) / 2)])
+    for goal in rng.permutation(places):
+        if question.world.is_free(goal) and not np.array_equal(goal, question.start):
+            moved = replace(question, goal=goal, on_wall=True)
+            if moved.length < np.inf:
+                return moved
+    raise ValueError(f"{question.name} has no reachable wall")
 
 
 def question(family, size, seed, shut=False):

@@ -6,7 +6,7 @@ from dataclasses import asdict
 
 import cspace as cs
 from claims import cells, scaling, sight
-from claims.families import FAMILIES, question
+from claims.families import FAMILIES, goal_on_wall, question
 from claims.judge import ask, judge
 
 SIZES = (1, 2, 3, 4, 5)
@@ -17,15 +17,16 @@ COLUMNS = ("map", "complete", "shortest", "clearance", "bound", "cost", "nodes")
 
 
 def questions(sizes=SIZES, seeds=SEEDS, families=FAMILIES):
-    """Of each family, size and seed one with a goal that can be reached and one that is shut in."""
-    return [
-        question(family, size, seed, shut)
-        for family in families
-        for size in sizes
-        if size in FEWER.get(family, sizes)
-        for seed in range(seeds)
-        for shut in (False, True)
-    ]
+    """Of each family, size and seed one with a goal that can be reached and one that is shut in; of the
+    smallest size of each family one with a goal on a wall, too."""
+    asked = []
+    for family in families:
+        for size in (fit := [size for size in sizes if size in FEWER.get(family, sizes)]):
+            for seed in range(seeds):
+                asked += [question(family, size, seed, shut) for shut in (False, True)]
+                if size == fit[0]:
+                    asked.append(goal_on_wall(asked[-2]))
+    return asked
 
 
 def questions_of_sight(seeds=3):

@@ -11,7 +11,7 @@ import pytest
 from claims import broken, cells, scaling, suite
 from claims.families import FAMILIES, question
 from claims.notes import NOTES
-from claims.rows import NO, ROWS, SHORTEST, YES
+from claims.rows import KEPT, NO, ROWS, SHORTEST, YES
 from cspace.navigation import PLANNERS
 from navigation.bugs.worlds import FAMILIES as CELL_FAMILIES
 from navigation.bugs.worlds import questions as questions_of_cells
@@ -68,6 +68,12 @@ def test_each_cell_is_what_is_claimed_or_has_a_note(name):
         ("voronoi", broken.peeks, "clearance", NO),
         ("brushfire", broken.peeks, "clearance", NO),
         ("prm", broken.stays_poor, "complete", "to resolution"),
+        ("any_angle", broken.refuses_walls, "complete", cells.WRONG),
+        ("bug_1", broken.refuses_walls, "complete", cells.WRONG),
+        ("voronoi", broken.refuses_walls, "complete", cells.WRONG),
+        ("weighted_a_star", broken.hurries, "shortest", NO),
+        ("focal_search", broken.hurries, "shortest", NO),
+        ("brushfire", broken.prefers_length, "clearance", KEPT),
     ],
 )
 def test_a_broken_planner_changes_its_cell(name, navigate, column, word):

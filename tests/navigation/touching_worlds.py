@@ -28,8 +28,8 @@ def slanted_touch(rng, side, more=2):
 
 
 def diamond_on_border(rng, side):
-    """A convex obstacle whose corner touches the border of a square, sometimes beside another one that does so
-    at the same point: obstacles, and the point."""
+    """An obstacle whose corner touches the border of a square, sometimes beside another one that touches the
+    same point: obstacles, and the point."""
     x, half, depth = rng.integers(2, side - 1), rng.integers(1, 3), rng.integers(1, 4)
     below, sideways = side - depth, rng.integers(-1, 2)
     diamond = [(x, side), (x - half, below), (x + sideways, below - rng.integers(1, 3)), (x + half, below)]
