@@ -23,9 +23,10 @@ class Interval:
     """Values of the parameter, lower to upper [rad or m], at which one branch keeps all limits.
 
     branch: its number, as in the names of solutions; for arms without a closed form, and with a parameter of
-    one's own choice, the pieces of the self-motion between its turns are numbered instead. ends: what ends it
-    below and above: a joint at a limit ("elbow at lower limit"), a "fold", where the branch meets another one
-    and both vanish, or "nothing" for a whole turn. q (dof,): a configuration inside it.
+    one's own choice, the pieces of the self-motion between its turns are numbered instead. None is longer
+    than 2π. ends: what ends it below and above: a joint at a limit ("elbow at lower limit"), a "fold", where
+    the branch meets another one and both vanish, or "nothing" for a whole turn and where a longer piece is
+    cut. q (dof,): a configuration inside it.
     """
 
     lower: float
@@ -36,9 +37,11 @@ class Interval:
     _slides: bool = field(repr=False, default=False)
 
     def __contains__(self, value: object) -> bool:
-        turn = 0.0 if self._slides else 2 * np.pi
         number = float(value)  # type: ignore[arg-type]
-        return any(self.lower <= number + k * turn <= self.upper for k in (-1, 0, 1))
+        if not self._slides:
+            turn, middle = 2 * np.pi, 0.5 * (self.lower + self.upper)
+            number += turn * round((middle - number) / turn)
+        return self.lower <= number <= self.upper
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,65 +2,71 @@
 // beforehand; arcs that close are met by the solutions at some values.
 #pragma once
 
-#include "cspace/ik/redundant/trace.hpp"
+#include "cspace/ik/redundant/follow.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
+inline const double* last_of_trail(const Tracer& tracer) { return tracer.trail->q[tracer.trail->count - 1]; }
+
 inline void trace_from_limits(Tracer& tracer) {
-    const ik::Redundant& arm = *tracer.arm;
+    const int n = tracer.arm->chain.n;
     for (int k = 0; k < tracer.points->count; ++k) {
         if (tracer.trail->used[k]) continue;
         const ik::LimitPoint& point = tracer.points->point[k];
         CurvePoint at;
-        for (int i = 0; i < arm.chain.n; ++i) at.q[i] = point.q[i];
+        for (int i = 0; i < n; ++i) at.q[i] = point.q[i];
         put_on_curve(tracer, at);
         tracer.trail->used[k] = true;
         const double inwards = point.side ? -at.tangent[point.joint] : at.tangent[point.joint];
         if (std::fabs(inwards) < 1e-9) continue;  // the joint touches its limit and does not cross it
-        for (int i = 0; inwards < 0 && i < arm.chain.n; ++i) at.tangent[i] = -at.tangent[i];
-        const Critical start{at.q[tracer.parameter], point.joint, point.side};
-        if (follow_arc(tracer, at, start) == ArcEnd::lost) tracer.out->complete = false;
+        for (int i = 0; inwards < 0 && i < n; ++i) at.tangent[i] = -at.tangent[i];
+        use_points(tracer, at, 1);
+        Turns turns;
+        add_turn(tracer, turns, at.q[tracer.parameter], point.joint, point.side, at.q);
+        const ArcEnd end = follow_arc(tracer, at, turns);
+        // An arc has two ends of its own, or none where two limits meet in a corner that it only touches.
+        const bool touches = joint_gap(tracer.arm->chain, at.q, last_of_trail(tracer)) < 1e-6;
+        if (end != ArcEnd::limit && !touches) tracer.out->complete = false;
+        add_pieces(tracer, turns);
     }
 }
 
-// Two pieces that begin at one point and lead away from it to either side are one.
-inline void join_pieces(Tracer& tracer, int a, int b, double value) {
-    ik::Intervals& out = *tracer.out;
-    if (a >= b || b >= out.count) return;
-    const bool upwards = out.interval[a].upper > value + limit_slack;
-    const int low = upwards ? b : a, high = upwards ? a : b;
-    ik::Interval joined = out.interval[a];
-    joined.lower = out.interval[low].lower;
-    joined.upper = out.interval[high].upper;
-    joined.end[0] = out.interval[low].end[0];
-    joined.side[0] = out.interval[low].side[0];
-    joined.end[1] = out.interval[high].end[1];
-    joined.side[1] = out.interval[high].side[1];
-    out.interval[a] = joined;
-    for (int k = b; k + 1 < out.count; ++k) out.interval[k] = out.interval[k + 1];
-    --out.count;
+// The turns of two ways from one point, as one way.
+inline Turns joined_turns(const Tracer& tracer, const Turns& back, const Turns& on) {
+    Turns out;
+    for (int k = back.count - 1; k >= 0; --k)
+        add_turn(tracer, out, back.value[k], back.end[k], back.side[k],
+                 back.q[k + 1 < back.count ? k + 1 : k]);
+    for (int k = 0; k < on.count; ++k) add_turn(tracer, out, on.value[k], on.end[k], on.side[k], on.q[k]);
+    return out;
 }
 
 // Arcs that close within all limits, or go on for ever along a slide that has none: a configuration of one of
 // them.
 inline void trace_loop(Tracer& tracer, const double* q) {
+    const int n = tracer.arm->chain.n, first = tracer.trail->count;
     if (!is_within(*tracer.arm, q, -limit_slack) || is_far(tracer, q) || is_on_trail(tracer, q)) return;
     CurvePoint at;
-    for (int i = 0; i < tracer.arm->chain.n; ++i) at.q[i] = q[i];
+    for (int i = 0; i < n; ++i) at.q[i] = q[i];
     put_on_curve(tracer, at);
-    const double value = at.q[tracer.parameter];
-    const int first = tracer.out->count;
-    ArcEnd end = follow_arc(tracer, at, {value, ik::end_none, 0});
-    if (end == ArcEnd::open) {
-        const int back = tracer.out->count;
-        for (double& t : at.tangent) t = -t;
-        end = follow_arc(tracer, at, {value, ik::end_none, 0});
-        if (end == ArcEnd::open) join_pieces(tracer, first, back, value);
+    Turns turns;
+    const ArcEnd end = follow_arc(tracer, at, turns);
+    if (end == ArcEnd::known_limit) return;  // on a chord's other side
+    if (end == ArcEnd::closed) {
+        for (int k = 0; k < first; ++k)
+            if (tracer.trail->first_of_arc[k] && is_on_trail(tracer, tracer.trail->q[k], first)) return;
+        add_closed_pieces(tracer, turns, at.q[tracer.parameter], at.q);
+        return;
     }
-    if (end != ArcEnd::closed && end != ArcEnd::open) tracer.out->complete = false;
+    for (int i = 0; i < n; ++i) at.tangent[i] = -at.tangent[i];
+    Turns back;
+    const ArcEnd other = follow_arc(tracer, at, back);
+    add_pieces(tracer, joined_turns(tracer, back, turns));
+    if (end != ArcEnd::open || other != ArcEnd::open) tracer.out->complete = false;
 }
-// The solutions at some values of a joint.
+// The solutions at some values of a joint; of one that the goal settles there are none.
 inline void trace_loops_at(Tracer& tracer, const ik::LockedArm& locked, int joint, int looks) {
+    if (!is_solvable(locked.arm)) return;
     const Domain domain = domain_of(*tracer.arm, joint, tracer.goal);
     double at[ik::max_joints], q[ik::max_joints];
     for (int look = 0; look < looks; ++look) {
@@ -72,22 +78,50 @@ inline void trace_loops_at(Tracer& tracer, const ik::LockedArm& locked, int join
         }
     }
 }
+// How many intervals hold a value, whole turns aside; −1 where it lies too near to the end of one to tell.
+inline int count_intervals(const Tracer& tracer, double value) {
+    constexpr double near_end = 1e-4;
+    int count = 0;
+    for (int k = 0; k < tracer.out->count; ++k) {
+        const ik::Interval& interval = tracer.out->interval[k];
+        const double middle = 0.5 * (interval.lower + interval.upper);
+        const double off = std::fabs(joint_way(tracer.arm->chain, tracer.parameter, middle, value)) -
+                           0.5 * (interval.upper - interval.lower);
+        if (std::fabs(off) < near_end && interval.end[0] != ik::end_none) return -1;
+        count += off < 0;
+    }
+    return count;
+}
+// Whether as many intervals hold a value as solutions there keep their limits.
+inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, double value) {
+    int within = 0;
+    for (int j = 0; j < rows.count; ++j) {
+        if (is_within(*tracer.arm, rows.q[j], -1e-6))
+            ++within;
+        else if (is_within(*tracer.arm, rows.q[j], 1e-6))
+            return true;
+    }
+    const int count = count_intervals(tracer, value);
+    return count < 0 || count == within;
+}
+
 // They are met by the solutions at some values of the parameter; and of other joints, for a loop that hardly
-// moves one joint moves others.
-inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms& arms) {
-    constexpr int looks = 24, other_looks = 8;
+// moves one joint moves others. At the values of the parameter the intervals are also counted.
+inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms& arms, SweptRows* swept) {
+    constexpr int looks = loop_looks, other_looks = 8;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
     double values[looks];
     for (int k = 0; k < looks; ++k)
         values[k] = domain.lower + (k + 0.5) / looks * (domain.upper - domain.lower);
-    sweep_values(sweep, values, looks, [&](int, const SweptRows& rows) {
+    sweep_values(sweep, values, looks, [&](int k, const SweptRows& rows) {
+        swept[k] = rows;
         for (int j = 0; j < rows.count; ++j) trace_loop(tracer, rows.q[j]);
     });
-    for (int k = 0; k < arms.count; ++k)
-        if (arms.joint[k] != tracer.parameter)
-            trace_loops_at(tracer, arms.locked[k], arms.joint[k], other_looks);
-    if (arms.freest >= 0 && arms.freest != tracer.parameter)
-        trace_loops_at(tracer, arms.by_freest, arms.freest, looks);
+    for (int joint = 0; joint < tracer.arm->chain.n; ++joint)
+        if (joint != tracer.parameter)
+            trace_loops_at(tracer, arms.locked[joint], joint, joint == arms.freest ? looks : other_looks);
+    for (int k = 0; k < looks && tracer.out->complete; ++k)
+        tracer.out->complete = agrees_with_solutions(tracer, swept[k], values[k]);
 }
 
 // The intervals of joint `parameter`, held by `locked`; trail: working memory.
@@ -106,7 +140,7 @@ inline void intervals_by_arcs(const ik::Redundant& arm, const ik::LockedArm& loc
             far = far_away(arm, goal);
     Tracer tracer{&arm, &points, goal, parameter, &trail, &out, far};
     trace_from_limits(tracer);
-    trace_loops(tracer, make_sweep(locked, parameter, goal, arm.middle), arms);
+    trace_loops(tracer, make_sweep(locked, parameter, goal, arm.middle), arms, trail.swept);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -10,6 +10,8 @@ namespace cspace {
 struct CurvePoint {
     double q[ik::max_joints], tangent[ik::max_joints], bend[ik::max_joints];
     double error;  // what is left of the goal [rad, m over the arm's length]
+    TipMotion<double> motion;
+    SplitJacobian<double> split;
 };
 
 }  // namespace cspace
@@ -19,8 +21,8 @@ namespace cspace::inline CSPACE_ISA {
 // One Newton step from q back onto the curve, and what is known at q before it.
 CSPACE_ONCE void onto_curve(const ik::Chain& chain, int rank, const Posed& goal, double length,
                             CurvePoint& at) {
-    TipMotion<double> motion;
-    SplitJacobian<double> split;
+    TipMotion<double>& motion = at.motion;
+    SplitJacobian<double>& split = at.split;
     const int n = chain.n;
     double step[ik::max_joints];
     tip_motion<0>(chain, goal, length, at.q, motion);
@@ -45,6 +47,22 @@ CSPACE_ONCE void onto_curve(const ik::Chain& chain, int rank, const Posed& goal,
     for (int i = 0; i < n; ++i) largest = max(largest, std::fabs(step[i]));
     const double keep = largest > 0.3 ? 0.3 / largest : 1;
     for (int i = 0; i < n; ++i) at.q[i] += keep * step[i];
+}
+
+// ‖J⁺ (J′ − J)‖, J the Jacobian at `at` and J′ at `other`. Where it stays below 1 on a convex set, every
+// solution in that set lies on one arc: the part of it along the tangent tells two solutions apart.
+inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int n) {
+    const SplitJacobian<double>& split = at.split;
+    double square = 0, y[6];
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < split.rank; ++k) {
+            const int c = split.chosen[k];
+            y[k] = other.motion.column[i][c] - at.motion.column[i][c];
+            for (int j = 0; j < k; ++j) y[k] -= split.upper[j][k] * y[j];
+            y[k] /= away_from_zero(split.upper[k][k]);
+            square += y[k] * y[k];
+        }
+    return std::sqrt(square);
 }
 
 // Walks q along the curve to where joint p turns back: Newton's method on the p-th part of the tangent. False

@@ -6,15 +6,11 @@
 
 namespace cspace::ik {
 
-// The arms with one joint at a limit, for arms with one joint to spare; built when intervals are first asked
-// for. Joints without limits need none.
+// The arms with one joint locked, for arms with one joint to spare; built when intervals are first asked for.
 struct LimitArms {
-    int count = 0;
-    int joint[max_joints];
     LockedArm locked[max_joints];
     Arm at_limit[max_joints][2];  // where the joint stands between others: its arm at lower and upper limit
     int freest = -1;              // of the joints that nothing stops the one that self-motions move most
-    LockedArm by_freest;          // with that one held
 };
 
 // A configuration with one joint at a limit and the others within theirs.
@@ -35,6 +31,9 @@ namespace cspace::inline CSPACE_ISA {
 
 inline double limit_of(const ik::Redundant& arm, int joint, int side) {
     return side ? arm.upper[joint] : arm.lower[joint];
+}
+inline bool has_limit(const ik::Redundant& arm, int joint, int side) {
+    return ik::is_stopped(arm, joint) && std::isfinite(limit_of(arm, joint, side));
 }
 
 // Of the joints that nothing stops the one that self-motions move most; −1 where each can be stopped.
@@ -61,18 +60,15 @@ inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
     double at[ik::max_joints];
     typical_values(arm, at);
     out.freest = freest_joint(arm);
-    if (out.freest >= 0) out.by_freest = lock_joints(arm.chain, &out.freest, 1, at);
     for (int i = 0; i < arm.chain.n; ++i) {
-        if (!ik::is_stopped(arm, i)) continue;
-        const int k = out.count++;
-        out.joint[k] = i;
-        out.locked[k] = arm.locked.n_held == 1 && arm.locked.held[0] == i ? arm.locked
-                                                                          : lock_joints(arm.chain, &i, 1, at);
-        for (int side = 0; side < 2 && !out.locked[k].at_ends; ++side) {
-            if (!std::isfinite(limit_of(arm, i, side))) continue;
+        out.locked[i] = arm.locked.n_held == 1 && arm.locked.held[0] == i
+                            ? arm.locked
+                            : lock_joints(arm.chain, &i, 1, at);
+        for (int side = 0; side < 2 && !out.locked[i].at_ends; ++side) {
+            if (!has_limit(arm, i, side)) continue;
             double there[ik::max_joints];
             there[i] = limit_of(arm, i, side);
-            out.at_limit[k][side] = arm_at(out.locked[k], there);
+            out.at_limit[i][side] = arm_at(out.locked[i], there);
         }
     }
 }
@@ -90,14 +86,13 @@ inline constexpr double limit_slack = 1e-9;  // [rad or m] what rounding may put
 inline void find_limit_points(const ik::Redundant& arm, const ik::LimitArms& arms, const Posed& goal,
                               int except, ik::LimitPoints& out) {
     double at[ik::max_joints] = {};
-    for (int k = 0; k < arms.count; ++k) {
-        const int joint = arms.joint[k];
+    for (int joint = 0; joint < arm.chain.n; ++joint) {
         if (joint == except) continue;
         for (int side = 0; side < 2; ++side) {
-            if (!std::isfinite(limit_of(arm, joint, side))) continue;
+            if (!has_limit(arm, joint, side)) continue;
             at[joint] = limit_of(arm, joint, side);
-            const ik::LockedArm& locked = arms.locked[k];
-            const ik::Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[k][side];
+            const ik::LockedArm& locked = arms.locked[joint];
+            const ik::Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[joint][side];
             // Six joints with one to spare among them: the joint rests there along every self-motion, and no
             // branch crosses its limit.
             if (!is_solvable(rest)) continue;

@@ -111,6 +111,7 @@ CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, int rank
     for (int i = 0; i < n; ++i)
         for (int k = 0; k < 6; ++k) A[i][k] = motion.column[i][k];
     out.rank = rank;
+    for (int k = 0; k < 6; ++k) out.chosen[k] = k;
     for (int k = 0; k < rank_in<N>(out); ++k) {
         if constexpr (N == 0 && Lanes<V>::count == 1)
             if (rank < 6) choose_coordinate(out, n, k);

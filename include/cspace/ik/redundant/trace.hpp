@@ -1,5 +1,5 @@
-// An arc of the self-motion, followed until a joint stops or the curve closes: steps along the tangent and
-// the bend of the curve and back onto it (Allgower & Georg 1990, chapter 6).
+// Steps along the self-motion, as long as one arc of it can be told from every other (Allgower & Georg 1990,
+// chapter 6), and what a step passes over: limits of joints and turning points of the parameter.
 #pragma once
 
 #include "cspace/ik/redundant/curve.hpp"
@@ -7,13 +7,16 @@
 
 namespace cspace {
 
-// All points stepped on, and those arcs' pieces between turns of the held joint.
+inline constexpr int loop_looks = 24;  // values of the parameter at which loops are looked for
+
+// All points stepped on, and the solutions met at some values.
 struct Trail {
-    static constexpr int room = 6000;
+    static constexpr int room = 12000;
     int count = 0;
     bool first_of_arc[room];
-    double q[room][ik::max_joints];
-    bool used[ik::LimitPoints::room];  // limit points that an arc started or ended in
+    double q[room][ik::max_joints], length[room];  // of the chord that ends there
+    bool used[ik::LimitPoints::room];              // limit points that an arc started or ended in
+    SweptRows swept[loop_looks];
 };
 
 struct Tracer {
@@ -27,21 +30,47 @@ struct Tracer {
     int branches = 0;
 };
 
-enum class ArcEnd { limit, closed, open, lost };
-
 }  // namespace cspace
 
 namespace cspace::inline CSPACE_ISA {
 
 inline void put_on_curve(const Tracer& tracer, CurvePoint& at) {
-    for (int k = 0; k < 4; ++k) {
+    constexpr double settled = 1e-9;  // the step taken after it is Newton's: it squares the error
+    for (int k = 0; k < 5; ++k) {
         onto_curve(tracer.arm->chain, tracer.arm->rank, tracer.goal, tracer.arm->length, at);
-        if (at.error < 1e-14) break;
+        if (at.error < settled) break;
     }
 }
 inline void orient(CurvePoint& at, const double* along, int n) {
     if (dot_n(at.tangent, along, n) >= 0) return;
     for (int i = 0; i < n; ++i) at.tangent[i] = -at.tangent[i];
+}
+
+// The way from one value of a joint to another, turning joints the short way round.
+inline double joint_way(const ik::Chain& chain, int i, double from, double to) {
+    return chain.prismatic[i] ? to - from : short_way(to - from);
+}
+
+// Where a solution stands on the chord of a step, 0 to 1; −1 off it. Chords bend by less than the width of
+// the tube, and no other arc enters it: see step_along.
+inline double part_of_chord(const ik::Chain& chain, const double* from, const double* to, const double* q) {
+    constexpr double tube = 0.06;
+    double way[ik::max_joints], gap[ik::max_joints], length2 = 0, along = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        way[i] = to[i] - from[i];
+        length2 += way[i] * way[i];
+    }
+    const double off = tube * std::sqrt(length2);
+    for (int i = 0; i < chain.n; ++i) {
+        gap[i] = joint_way(chain, i, from[i], q[i]);
+        if (std::fabs(gap[i]) > std::fabs(way[i]) + off) return -1;
+        along += gap[i] * way[i];
+    }
+    const double part = along / length2;
+    if (!(part >= -1e-9 && part <= 1 + 1e-9)) return -1;
+    for (int i = 0; i < chain.n; ++i)
+        if (std::fabs(gap[i] - part * way[i]) > off) return -1;
+    return max(0.0, part);
 }
 
 // How far a step may lead: a turning joint by 0.25 rad, slides in proportion where the curve goes far.
@@ -55,21 +84,43 @@ inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
     return 1 / most;
 }
 
-// One step; halved until the curve was followed closely. False where it cannot be followed.
+// A step of length `stride`; true if it followed the curve closely.
+inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride, double most_off,
+                     CurvePoint& to) {
+    const int n = tracer.arm->chain.n;
+    double guess[ik::max_joints], off = 0;
+    for (int i = 0; i < n; ++i)
+        to.q[i] = guess[i] = from.q[i] + stride * from.tangent[i] + 0.5 * stride * stride * from.bend[i];
+    put_on_curve(tracer, to);
+    orient(to, from.tangent, n);
+    for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
+    return to.error < 1e-9 && off < most_off * stride && dot_n(to.tangent, from.tangent, n) > 0.95;
+}
+
+// One step; shortened until the curve was followed closely and the Jacobian changed little, so that two arcs
+// which all but cross are told apart. Where they do cross the step leads straight on, to the far side.
+// False where the curve cannot be followed.
 inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& stride, CurvePoint& to) {
-    constexpr double shortest = 1e-7;
+    constexpr double shortest = 1e-7, crossing = 1e-5, most_change = 0.5;
     const int n = tracer.arm->chain.n;
     const double bend = std::sqrt(dot_n(from.bend, from.bend, n));
     stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + 1e-3));
-    for (; stride > shortest; stride *= 0.5) {
-        double guess[ik::max_joints];
-        for (int i = 0; i < n; ++i)
-            to.q[i] = guess[i] = from.q[i] + stride * from.tangent[i] + 0.5 * stride * stride * from.bend[i];
-        put_on_curve(tracer, to);
-        orient(to, from.tangent, n);
-        double off = 0;
-        for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
-        if (to.error < 1e-9 && off < 0.1 * stride && dot_n(to.tangent, from.tangent, n) > 0.9) return true;
+    bool crosses = false;
+    while (stride > shortest) {
+        if (!try_step(tracer, from, stride, 0.1, to)) {
+            stride *= 0.5;
+            continue;
+        }
+        const double change = min(jacobian_change(from, to, n), jacobian_change(to, from, n));
+        if (change < most_change) return true;
+        if (!crosses && stride < crossing) {
+            crosses = true;
+            if (try_step(tracer, from, 10 * crossing, 0.01, to)) {
+                stride = 10 * crossing;
+                return true;
+            }
+        }
+        stride *= max(0.25, 0.8 * most_change / change);
     }
     return false;
 }
@@ -86,9 +137,9 @@ inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slac
         worst = i;
     }
     if (worst < 0) return -1;
-    const double q = to.q[worst], lower = q - arm.lower[worst], upper = q - arm.upper[worst];
-    const bool turns = !arm.chain.prismatic[worst];
-    side = std::fabs(turns ? short_way(upper) : upper) < std::fabs(turns ? short_way(lower) : lower);
+    const double q = to.q[worst];
+    side = std::fabs(joint_way(arm.chain, worst, arm.upper[worst], q)) <
+           std::fabs(joint_way(arm.chain, worst, arm.lower[worst], q));
     return worst;
 }
 
@@ -99,7 +150,7 @@ inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) 
     double along[ik::max_joints];
     for (int j = 0; j < arm.chain.n; ++j) along[j] = at.tangent[j];
     for (int k = 0; k < 12; ++k) {
-        const double gap = arm.chain.prismatic[i] ? limit - at.q[i] : short_way(limit - at.q[i]);
+        const double gap = joint_way(arm.chain, i, at.q[i], limit);
         double step = gap / (std::fabs(at.tangent[i]) > 1e-9 ? at.tangent[i] : 1e-9);
         step = max(-0.1, min(0.1, step));
         for (int j = 0; j < arm.chain.n; ++j)
@@ -121,25 +172,11 @@ inline bool is_far(const Tracer& tracer, const double* q) {
 // Of the known points at limits the first that a step passed over: a joint may leave its limits and come back
 // within one step, or all the way round.
 inline int point_passed(const Tracer& tracer, const CurvePoint& from, const CurvePoint& to) {
-    const int n = tracer.arm->chain.n;
-    double way[ik::max_joints], length2 = 0, first = 2;
-    for (int i = 0; i < n; ++i) {
-        way[i] = to.q[i] - from.q[i];
-        length2 += way[i] * way[i];
-    }
+    double first = 2;
     int found = -1;
     for (int k = 0; k < tracer.points->count; ++k) {
-        const double* q = tracer.points->point[k].q;
-        double gap[ik::max_joints], along = 0, off = 0;
-        for (int i = 0; i < n; ++i) {
-            const double d = q[i] - from.q[i];
-            gap[i] = tracer.arm->chain.prismatic[i] ? d : short_way(d);
-            along += gap[i] * way[i];
-        }
-        const double part = along / length2;
-        if (!(part > 1e-6 && part < min(first, 1 + 1e-9))) continue;
-        for (int i = 0; i < n; ++i) off = max(off, std::fabs(gap[i] - part * way[i]));
-        if (off > 0.06 * std::sqrt(length2)) continue;
+        const double part = part_of_chord(tracer.arm->chain, from.q, to.q, tracer.points->point[k].q);
+        if (!(part > 1e-6 && part < first)) continue;
         first = part;
         found = k;
     }
@@ -159,153 +196,92 @@ inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
     return stop;
 }
 
+// The joint that stops the step from `at` to `next`, which then ends there; −1 where none does.
+inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint& next, int& side) {
+    const ik::Chain& chain = tracer.arm->chain;
+    const int stop = go_back_to_limit(tracer, next, side);
+    const int passed = point_passed(tracer, at, next);
+    if (passed < 0) return stop;
+    const ik::LimitPoint& point = tracer.points->point[passed];
+    for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_way(chain, i, at.q[i], point.q[i]);
+    put_on_curve(tracer, next);
+    orient(next, at.tangent, chain.n);
+    side = point.side;
+    return point.joint;
+}
+
+// The point of the curve over a part of a chord.
+inline CurvePoint point_over_chord(const Tracer& tracer, const CurvePoint& from, const CurvePoint& to,
+                                   double part) {
+    const int n = tracer.arm->chain.n;
+    CurvePoint out;
+    for (int i = 0; i < n; ++i) out.q[i] = from.q[i] + part * (to.q[i] - from.q[i]);
+    put_on_curve(tracer, out);
+    orient(out, from.tangent, n);
+    return out;
+}
+
+// A step in which the parameter turns twice ends between the two turns. True if it was such a step.
+inline bool stop_between_turns(const Tracer& tracer, const CurvePoint& at, CurvePoint& next) {
+    const int p = tracer.parameter;
+    const double sign = at.tangent[p] < 0 ? -1 : 1;
+    const double from = sign * at.tangent[p], to = sign * next.tangent[p];
+    if (!(to > 0 && sign * at.bend[p] < 0 && sign * next.bend[p] > 0)) return false;
+    double slope0 = sign * at.bend[p], part0 = 0, slope1 = sign * next.bend[p], part1 = 1;
+    for (int k = 0; k < 4; ++k) {
+        const double part = part0 + (part1 - part0) * slope0 / (slope0 - slope1);
+        const CurvePoint least = point_over_chord(tracer, at, next, part);
+        const double there = sign * least.tangent[p], slope = sign * least.bend[p];
+        if (there < 0) {
+            next = least;
+            return true;
+        }
+        if (there > 0.5 * min(from, to)) return false;
+        (slope < 0 ? slope0 : slope1) = slope;
+        (slope < 0 ? part0 : part1) = part;
+    }
+    return false;
+}
+
+// Where the parameter turns within a step, by Newton's method; by bisection if that leaves the step.
+inline CurvePoint turn_between(const Tracer& tracer, const CurvePoint& at, const CurvePoint& next) {
+    const ik::Redundant& arm = *tracer.arm;
+    const int p = tracer.parameter;
+    double low = 0, high = 1;
+    CurvePoint fold = point_over_chord(tracer, at, next, at.tangent[p] / (at.tangent[p] - next.tangent[p]));
+    if (settle_fold(arm.chain, arm.rank, tracer.goal, arm.length, p, 0.3, fold) &&
+        part_of_chord(arm.chain, at.q, next.q, fold.q) >= 0)
+        return fold;
+    for (int k = 0; k < 45; ++k) {
+        const double middle = 0.5 * (low + high);
+        fold = point_over_chord(tracer, at, next, middle);
+        (fold.tangent[p] * at.tangent[p] > 0 ? low : high) = middle;
+    }
+    return fold;
+}
+
 inline void remember(Tracer& tracer, const double* q, bool first) {
     Trail& trail = *tracer.trail;
     if (trail.count == Trail::room) {
         tracer.out->complete = false;
         return;
     }
-    trail.first_of_arc[trail.count] = first;
-    for (int i = 0; i < tracer.arm->chain.n; ++i) trail.q[trail.count][i] = q[i];
-    ++trail.count;
-}
-
-// Marks the known end of an arc.
-inline void use_point(Tracer& tracer, const double* q) {
-    for (int k = 0; k < tracer.points->count; ++k)
-        if (joint_gap(tracer.arm->chain, tracer.points->point[k].q, q) < 1e-6) tracer.trail->used[k] = true;
-}
-
-// A piece between two turns of the parameter, from either end of it.
-inline void add_piece(Tracer& tracer, const Critical& from, const Critical& to, const double* q) {
-    ik::Intervals& out = *tracer.out;
-    const bool rising = from.value <= to.value;
-    const Critical &low = rising ? from : to, &high = rising ? to : from;
-    if (high.value - low.value <= limit_slack) return;
-    if (out.count == ik::Intervals::room) {
-        out.complete = false;
-        return;
+    const int k = trail.count++, n = tracer.arm->chain.n;
+    double length2 = 0;
+    for (int i = 0; i < n; ++i) {
+        trail.q[k][i] = q[i];
+        if (!first) length2 += (q[i] - trail.q[k - 1][i]) * (q[i] - trail.q[k - 1][i]);
     }
-    ik::Interval& made = out.interval[out.count++];
-    made = {low.value, high.value, tracer.branches++, {low.end, high.end}, {low.side, high.side}, {}};
-    if (!tracer.arm->chain.prismatic[tracer.parameter]) {
-        const double home =
-            ik::is_stopped(*tracer.arm, tracer.parameter)
-                ? 0.5 * (tracer.arm->lower[tracer.parameter] + tracer.arm->upper[tracer.parameter])
-                : 0;
-        const double middle = 0.5 * (low.value + high.value);
-        const double turns = 2 * pi * std::round((middle - home) / (2 * pi));
-        made.lower -= turns;
-        made.upper -= turns;
-    }
-    for (int i = 0; i < tracer.arm->chain.n; ++i) made.q[i] = q[i];
+    trail.first_of_arc[k] = first;
+    trail.length[k] = std::sqrt(length2);
 }
 
-// Follows the curve from `at` (its tangent says which way) until a joint stops or the curve closes. `start`
-// says what the arc begins with.
-inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Critical start) {
-    constexpr int most_steps = 3000;
-    const ik::Redundant& arm = *tracer.arm;
-    const int n = arm.chain.n, p = tracer.parameter;
-    const CurvePoint origin = at;
-    const int first_piece = tracer.out->count;
-    double stride = 0.02, middle[ik::max_joints], home = 0, travel = 0;
-    for (int i = 0; i < n; ++i) middle[i] = at.q[i];
-    remember(tracer, at.q, true);
-    for (int k = 0; k < most_steps; ++k) {
-        CurvePoint next;
-        if (!step_along(tracer, at, stride, next)) return ArcEnd::lost;
-        int side = 0;
-        int stop = go_back_to_limit(tracer, next, side);
-        const int passed = point_passed(tracer, at, next);
-        if (passed >= 0) {
-            const ik::LimitPoint& point = tracer.points->point[passed];
-            for (int i = 0; i < n; ++i) {
-                const double gap = point.q[i] - at.q[i];
-                next.q[i] = at.q[i] + (arm.chain.prismatic[i] ? gap : short_way(gap));
-            }
-            put_on_curve(tracer, next);
-            orient(next, at.tangent, n);
-            stop = point.joint;
-            side = point.side;
-        }
-        if (at.tangent[p] * next.tangent[p] < 0) {
-            CurvePoint fold = at;
-            const double part = at.tangent[p] / (at.tangent[p] - next.tangent[p]);
-            for (int i = 0; i < n; ++i) fold.q[i] += part * (next.q[i] - at.q[i]);
-            if (settle_fold(arm.chain, arm.rank, tracer.goal, arm.length, p, 0.3, fold)) {
-                add_piece(tracer, start, {fold.q[p], ik::end_fold, 0}, middle);
-                start = {fold.q[p], ik::end_fold, 0};
-                for (int i = 0; i < n; ++i) middle[i] = fold.q[i];
-            }
-        } else {
-            for (int i = 0; i < n; ++i) middle[i] = at.q[i];
-        }
-        remember(tracer, next.q, false);
-        if (stop >= 0) {
-            use_point(tracer, next.q);
-            add_piece(tracer, start, {next.q[p], stop, side}, middle);
-            return ArcEnd::limit;
-        }
-        if (is_far(tracer, next.q)) {
-            add_piece(tracer, start, {next.q[p], ik::end_none, 0}, middle);
-            return ArcEnd::open;
-        }
-        travel += next.q[p] - at.q[p];
-        // Back at the origin, from where the arc may have started in the middle of a piece.
-        const double before = home;
-        home = 0;
-        for (int i = 0; i < n; ++i) {
-            const double gap = origin.q[i] - next.q[i];
-            home += (arm.chain.prismatic[i] ? gap : short_way(gap)) * next.tangent[i];
-        }
-        double away = 0;
-        for (int i = 0; i < n; ++i) {
-            const double gap = origin.q[i] - next.q[i];
-            away = max(away,
-                       std::fabs((arm.chain.prismatic[i] ? gap : short_way(gap)) - home * next.tangent[i]));
-        }
-        if (k > 2 && before > 0 && home <= 0 && home > -0.5 && away < 0.05 &&
-            dot_n(origin.tangent, next.tangent, n) > 0.5) {
-            const double value = next.q[p] + home * next.tangent[p];
-            if (tracer.out->count == first_piece) {
-                if (std::fabs(travel) < pi)
-                    return ArcEnd::closed;  // it rests, at the one value that it can have
-                add_piece(tracer, {-pi, ik::end_none, 0}, {pi, ik::end_none, 0}, middle);
-                return ArcEnd::closed;
-            }
-            ik::Interval& head = tracer.out->interval[first_piece];
-            // The first piece began at the origin: it reaches back to the last fold instead.
-            const double turns = 2 * pi * std::round((0.5 * (head.lower + head.upper) - value) / (2 * pi));
-            const double fold = start.value + turns;
-            const bool low = fold < 0.5 * (head.lower + head.upper);
-            (low ? head.lower : head.upper) = fold;
-            head.end[low ? 0 : 1] = ik::end_fold;
-            return ArcEnd::closed;
-        }
-        at = next;
-    }
-    return ArcEnd::lost;
-}
-
-// Whether a configuration lies on an arc that was followed: between two of its points.
-inline bool is_on_trail(const Tracer& tracer, const double* q) {
+// Whether a configuration lies on an arc that was followed, from trail point `first` on.
+inline bool is_on_trail(const Tracer& tracer, const double* q, int first = 0) {
     const Trail& trail = *tracer.trail;
-    const int n = tracer.arm->chain.n;
-    for (int k = 1; k < trail.count; ++k) {
-        if (trail.first_of_arc[k]) continue;
-        const double *a = trail.q[k - 1], *b = trail.q[k];
-        double along = 0, length2 = 0, gap[ik::max_joints], off = 0;
-        for (int i = 0; i < n; ++i) {
-            gap[i] = tracer.arm->chain.prismatic[i] ? q[i] - a[i] : short_way(q[i] - a[i]);
-            along += gap[i] * (b[i] - a[i]);
-            length2 += (b[i] - a[i]) * (b[i] - a[i]);
-        }
-        const double part = length2 > 0 ? along / length2 : 0;
-        if (part < -0.1 || part > 1.1) continue;
-        for (int i = 0; i < n; ++i) off = max(off, std::fabs(gap[i] - part * (b[i] - a[i])));
-        if (off < 0.03) return true;
-    }
+    for (int k = first + 1; k < trail.count; ++k)
+        if (!trail.first_of_arc[k] && part_of_chord(tracer.arm->chain, trail.q[k - 1], trail.q[k], q) >= 0)
+            return true;
     return false;
 }
 
