@@ -196,7 +196,7 @@ std::vector<FeasibleInterval> RedundantSolver::intervals(int parameter, const do
     Posed T = pose_of(goal);
     T.t = (1 / unit) * T.t;
     const LockedArm& locked = solver.lock({parameter});
-    const auto trail = std::make_unique<Trail>();
+    const auto trail = std::make_unique_for_overwrite<Trail>();
     const auto found = std::make_unique<Intervals>();
     kernels::ik_intervals(solver.state_->arm, locked, parameter, solver.state_->limit_arms(), T, *trail,
                           *found);

@@ -105,10 +105,24 @@ inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, d
     return count < 0 || count == within;
 }
 
+// A loop too small to be met at a value still draws Newton's method from far around.
+inline void trace_loops_by_descent(Tracer& tracer) {
+    constexpr int starts = 32, most_steps = 40;
+    const ik::Redundant& arm = *tracer.arm;
+    for (int k = 0; k < starts; ++k) {
+        CurvePoint at;
+        spread_configuration(k, arm.chain.n, at.q);
+        at.error = 1;
+        for (int step = 0; step < most_steps && at.error > 1e-9; ++step)
+            onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, at);
+        if (at.error <= 1e-9) trace_loop(tracer, at.q);
+    }
+}
+
 // They are met by the solutions at some values of the parameter; and of other joints, for a loop that hardly
 // moves one joint moves others. At the values of the parameter the intervals are also counted.
 inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms& arms, SweptRows* swept) {
-    constexpr int looks = loop_looks, other_looks = 8;
+    constexpr int looks = loop_looks, other_looks = 4;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
     double values[looks];
     for (int k = 0; k < looks; ++k)
@@ -120,6 +134,7 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms&
     for (int joint = 0; joint < tracer.arm->chain.n; ++joint)
         if (joint != tracer.parameter)
             trace_loops_at(tracer, arms.locked[joint], joint, joint == arms.freest ? looks : other_looks);
+    trace_loops_by_descent(tracer);
     for (int k = 0; k < looks && tracer.out->complete; ++k)
         tracer.out->complete = agrees_with_solutions(tracer, swept[k], values[k]);
 }

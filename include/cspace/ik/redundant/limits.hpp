@@ -61,9 +61,8 @@ inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
     typical_values(arm, at);
     out.freest = freest_joint(arm);
     for (int i = 0; i < arm.chain.n; ++i) {
-        out.locked[i] = arm.locked.n_held == 1 && arm.locked.held[0] == i
-                            ? arm.locked
-                            : lock_joints(arm.chain, &i, 1, at);
+        out.locked[i] = arm.locked.n_held == 1 && arm.locked.held[0] == i ? arm.locked
+                                                                          : lock_joints(arm.chain, &i, 1, at);
         for (int side = 0; side < 2 && !out.locked[i].at_ends; ++side) {
             if (!has_limit(arm, i, side)) continue;
             double there[ik::max_joints];
