@@ -132,6 +132,14 @@ def test_arcs_that_all_but_cross_are_told_apart(name, rng, skip):
         assert check_goal(robot, q, 60)
 
 
+def test_small_loops_are_found():
+    rizon4, sawyer = cs.load_robot("rizon4"), cs.load_robot("sawyer")
+    # A loop 4 mrad wide in the parameter, and one of 16 mrad.
+    q = np.array([-2.358051982539104, 0.48926494544944976, 1.1331512413172224, -0.2514944658733247])
+    assert check_goal(rizon4, np.append(q, [1.2556128300544835, 0.722042276807983, 0.5321135285151115]), 400)
+    assert check_goal(sawyer, sawyer.random_configuration(rng=700110), 400)
+
+
 @pytest.mark.parametrize("name", ["xarm7", "sawyer", "rizon4"])
 def test_a_whole_turn_more_changes_no_branch(name):
     robot = cs.load_robot(name)

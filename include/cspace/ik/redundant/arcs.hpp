@@ -105,13 +105,26 @@ inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, d
     return count < 0 || count == within;
 }
 
+// Configurations spread evenly over all joints: multiples of the powers of 1/g, g^(n+1) = g + 1, the golden
+// ratio of n dimensions (M. Roberts 2018).
+inline void spread_evenly(int k, int n, double* q) {
+    double g = 1.5;
+    for (int step = 0; step < 12; ++step) g = std::pow(1 + g, 1.0 / (n + 1));
+    double part = 1;
+    for (int i = 0; i < n; ++i) {
+        part /= g;
+        const double turns = 0.5 + (k + 1) * part;
+        q[i] = pi * (2 * (turns - std::floor(turns)) - 1);
+    }
+}
+
 // A loop too small to be met at a value still draws Newton's method from far around.
 inline void trace_loops_by_descent(Tracer& tracer) {
-    constexpr int starts = 32, most_steps = 40;
+    constexpr int starts = 48, most_steps = 60;
     const ik::Redundant& arm = *tracer.arm;
     for (int k = 0; k < starts; ++k) {
         CurvePoint at;
-        spread_configuration(k, arm.chain.n, at.q);
+        spread_evenly(k, arm.chain.n, at.q);
         at.error = 1;
         for (int step = 0; step < most_steps && at.error > 1e-9; ++step)
             onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, at);
