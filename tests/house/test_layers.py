@@ -13,7 +13,7 @@ from house import tree
 CPP_FILES = sorted(path for ending in ("*.hpp", "*.cpp") for path in (tree.ROOT / "include").rglob(ending))
 KERNEL_FILES = sorted((tree.ROOT / "src/kernels").glob("*.cpp"))
 BINDING_FILES = sorted((tree.ROOT / "src/bindings").glob("*.cpp"))
-# Rooms whose solvers are compiled in src/kernels and src/library, and the headers of plain data that bindings share.
+# Rooms whose solvers src/kernels and src/library compile, and the headers of plain data that bindings share.
 COMPILED_ROOMS = {"ik"}
 PLAIN_HEADERS = {"cspace/ik/branches.hpp", "cspace/ik/chain.hpp", "cspace/ik/solution.hpp"}
 
