@@ -49,8 +49,8 @@ nb::object outline(nb::handle robot) {
 
 double determinant(nb::handle robot, const std::vector<double>& goal, int formulation, double a0) {
     const ik::BuiltArm* arm = arm_of(robot.ptr());
-    if (!arm || goal.size() != 16)
-        throw nb::type_error("_ik_determinant takes a robot and the 16 numbers of a goal");
+    if (!arm || !ik::has_hidden_determinant(*arm) || goal.size() != 16)
+        throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
     return ik::hidden_determinant(*arm, goal.data(), formulation, a0);
 }
 

@@ -1,7 +1,6 @@
 #include "ik_description.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/goal.hpp"
@@ -164,7 +163,7 @@ Value loop_of(const GeneralArm& arm) {
     }
     Parts out;
     out("axes", Value(std::move(axes)))("points", Value(std::move(points)))("prismatic",
-                                                                            plan.chain.prismatic)(
+                                                                            list_of(plan.chain.prismatic, 6))(
         "tip", rows_of({plan.chain.tip.R, plan.length * plan.chain.tip.t}))("order", Value(std::move(order)))(
         "between", Value(std::move(between)))("first", rows_of(plan.frames.first))(
         "last", rows_of(plan.frames.last))("length", plan.length)("neighbours", arm.has_neighbours);
@@ -187,11 +186,13 @@ Value plan_outline(const BuiltArm& built) {
     return arm.is_general ? Value(Parts()("loop", loop_of(arm.general))) : Value();
 }
 
-double hidden_determinant(const BuiltArm& built, const double* goal, int number, double a0) {
+bool has_hidden_determinant(const BuiltArm& built) {
     const Arm& arm = *built.arm;
-    const GeneralPlan& plan = arm.general.plan;
-    if (!arm.is_general || arm.has_plan || plan.regular == 0 || plan.slides > 2)
-        throw std::invalid_argument("only a general arm with at most two prismatic joints has a determinant");
+    return arm.is_general && !arm.has_plan && arm.general.plan.regular > 0 && arm.general.plan.slides <= 2;
+}
+
+double hidden_determinant(const BuiltArm& built, const double* goal, int number, double a0) {
+    const GeneralPlan& plan = built.arm->general.plan;
     Posed T = read_goal(goal).T;
     T.t = (1 / plan.length) * T.t;
     const Loop loop = make_loop(plan.frames, plan.chain.prismatic, T, formulation(number));

@@ -15,8 +15,9 @@ std::pair<std::string, Value> plan_numbers(const BuiltArm& built);
 // {"form": …} of an arm with a closed form, {"loop": …} of a general one, else nothing.
 Value plan_outline(const BuiltArm& built);
 
-// f(a0) of one formulation of a general arm: its zeros are the hidden angles of the solutions. Throws
-// std::invalid_argument for other arms.
+// f(a0) of one formulation of a general arm with at most two prismatic joints: its zeros are the hidden
+// angles of the solutions.
+bool has_hidden_determinant(const BuiltArm& built);
 double hidden_determinant(const BuiltArm& built, const double* goal, int formulation, double a0);
 
 }  // namespace cspace::ik

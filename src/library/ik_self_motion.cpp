@@ -43,7 +43,7 @@ SelfMotionCurve follow_self_motion(const BuiltArm& built, const double* q, const
     const Held held = held_at(chain, q, whole_pose);
     SelfMotionCurve curve;
     double along[max_joints];
-    std::copy(direction, direction + chain.n, along);
+    for (int i = 0; i < chain.n; ++i) along[i] = direction[i];
     scale_prismatic(chain, 1 / held.length, along);
     const auto visit = [&](const double* at, const double* t) {
         curve.q.insert(curve.q.end(), at, at + chain.n);

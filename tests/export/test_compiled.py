@@ -38,12 +38,14 @@ def test_the_c_interface_links_as_c_and_answers_as_the_library(tmp_path):
     check(robot, compiled.c_program(robot.export("c"), tmp_path, compiled.cxx(), compiled.cc()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", arms.ASKED)
 def test_kinds_of_arms(name, tmp_path):
     robot = arms.arm(name)
     check(robot, compiled.cpp_program(robot.export("cpp"), tmp_path, compiled.cxx(), "-O1"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["ur5e"])
 @pytest.mark.parametrize("cxx", compiled.COMPILERS)
 def test_every_compiler_that_is_here(name, cxx, tmp_path):
@@ -57,6 +59,7 @@ def test_every_kind_in_c(name, tmp_path):
     check(robot, compiled.c_program(robot.export("c"), tmp_path, compiled.cxx(), compiled.cc()))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["rpr", "cobra600"])
 def test_joints_are_moved_into_their_limits_as_the_library_moves_them(name, tmp_path):
     robot, rng = cs.load_robot(name), np.random.default_rng(0)
@@ -79,6 +82,7 @@ def test_joints_are_moved_into_their_limits_as_the_library_moves_them(name, tmp_
     assert 20 < inside < 190
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["irb120"])
 @pytest.mark.parametrize("lanes", ["arrays", *["avx2"] * (_core.isa in ("avx2", "avx512"))])
 def test_other_lanes(name, lanes, tmp_path):
@@ -91,6 +95,7 @@ def test_other_lanes(name, lanes, tmp_path):
     check(robot, compiled.cpp_program(made, tmp_path, compiled.cxx(), *flags))
 
 
+@pytest.mark.slow
 def test_arms_share_a_program(tmp_path):
     """Two headers and the library's own in one file: no macro, name or include guard meets its like."""
     for name in ("ur5e", "irb120"):
@@ -114,6 +119,7 @@ def test_fast_math_is_refused(tmp_path):
     assert f"{made.name}: compile without -ffast-math" in done.stderr
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lang", ["cpp", "c"])
 def test_the_example_runs(lang, tmp_path):
     made = cs.load_robot("gen3_lite").export(lang, tmp_path / ("arm.hpp" if lang == "cpp" else "arm.h"))

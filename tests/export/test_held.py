@@ -40,6 +40,7 @@ def questions(robot, held, seed, count):
     return goals, values, regular
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "fixed", "lang"), CASES)
 def test_an_export_answers_as_the_library_with_these_joints_held(name, fixed, lang, tmp_path):
     robot = arms.arm(name)

@@ -35,6 +35,7 @@ RANK = {room: rank for rank, tier in enumerate(TIERS) for room in tier}
 OPTIONAL_IMPORTS = {
     "model": {"tomli", "tomllib", "xacro"},  # the latter is in the standard library from Python 3.11 on
     "cli": {"rich"},
+    "maps": {"PIL"},
     "plot": {"matplotlib", "PIL"},  # the latter comes with the former
     "lab": {"viser", "websockets"},
 }

@@ -106,6 +106,7 @@ def test_a_batch_is_its_single_calls(name):
         assert len(one.branch) == len(one)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_number_of_threads_changes_no_bit(name):
     robot = load(name)

@@ -46,6 +46,7 @@ def test_configurations_of_right_angles(name):
         assert angle_gap(batch.q[i, : batch.count[i]], q[i]).min() < 1e-2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("noise", [1e-16, 1e-14, 1e-12, 1e-10, 1e-8, 1e-6])
 @pytest.mark.parametrize("name", ["ur5e", "puma560", "kr6_r900", "z1", "romeo_left_leg", "al5d"])
 def test_noise_on_singular_poses(name, noise):

@@ -103,6 +103,7 @@ def arm_on_a_sphere(rng, word):
     return Robot(from_screws(axes, np.zeros((3, 3)), T_zero, joint_types=word))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("word", ["".join(w) for w in itertools.product("RP", repeat=3)] + ["sphere"])
 def test_each_curve_of_a_family_is_listed_once(word):
     rng = np.random.default_rng(len(word) + WORDS.index(word) if word in WORDS else 0)

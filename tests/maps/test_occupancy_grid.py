@@ -88,6 +88,7 @@ def inflated(blocked, limit, from_centers):
     return grown
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("clear", ["cells", "centers"])
 def test_inflation_equals_going_over_all_pairs(clear):
     rng = np.random.default_rng(2)

@@ -37,6 +37,7 @@ def test_every_planner_has_a_row():
     assert {row.planner for row in ROWS.values()} == set(PLANNERS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ROWS)
 def test_each_cell_is_what_is_claimed_or_has_a_note(name):
     row, told = ROWS[name], found(name)
@@ -47,6 +48,7 @@ def test_each_cell_is_what_is_claimed_or_has_a_note(name):
     assert cells.WRONG not in {finding.word for finding in told.values()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "navigate", "column", "word"),
     [

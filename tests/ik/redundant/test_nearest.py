@@ -138,6 +138,7 @@ def test_seeds_in_awkward_places(name):
             assert (inside | (np.abs(far.q[0] - turned) < np.pi + 1e-9)).all()
 
 
+@pytest.mark.slow
 def test_an_empty_answer_is_certified_only_where_it_is_proven():
     """Axes that meet but for a micrometre: five joints share the work of three, yet not quite."""
     rng = np.random.default_rng(5)

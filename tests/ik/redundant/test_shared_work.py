@@ -75,6 +75,7 @@ def partial_goals(T):
     yield {"position": p, "angle_to": ("z", np.arctan2(np.hypot(z[0], z[1]), z[2]))}
 
 
+@pytest.mark.slow
 @SETTINGS
 @given(words, st.sampled_from(SHAPES), seeds)
 @example("PRRRR", "parallel", 35865)  # the joint that is held rests along the self-motion

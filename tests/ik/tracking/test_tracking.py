@@ -21,6 +21,7 @@ def gap(a, b):
     return np.abs(a[:m] - b[:m]).max(initial=0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "seed"), list(zip(ARMS, SEEDS, strict=True)))
 def test_branches_are_those_of_all_solutions_of_a_fine_path_matched(name, seed):
     robot, rng, ended = cs.load_robot(name), np.random.default_rng(seed), 0

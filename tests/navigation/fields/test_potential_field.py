@@ -99,6 +99,7 @@ def swings(path):
     return int(np.sum((turns[1:] * turns[:-1] < 0) & (both > np.radians(20))))
 
 
+@pytest.mark.slow
 def test_along_walls_it_does_not_swing():
     rng = np.random.default_rng(2)
     for gains in ({}, {"rho_0": 0.1}, {"k_r": 1.0}, {"k_r": 1e-8}):

@@ -38,6 +38,7 @@ def cells_of(grid, route):
     return [grid.cell_of(point) for point in route.path]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", MAPS)
 def test_every_line_has_the_length_that_the_file_prints(name):
     grid = cs.OccupancyGrid.from_movingai(folder() / f"{name}.map")

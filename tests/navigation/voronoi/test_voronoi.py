@@ -114,6 +114,7 @@ def test_every_point_where_two_walls_are_nearest_lies_on_it(world):
     assert distance_to_lines(foot + low[:, None] * away, lines).max() < 1e-4
 
 
+@pytest.mark.slow
 def test_no_way_over_a_fine_grid_is_wider(world):
     left, low, right, high = world.bounds
     step = side_of(world) / 120

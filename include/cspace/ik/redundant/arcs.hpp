@@ -96,6 +96,7 @@ inline int count_intervals(const Tracer& tracer, double value) {
 inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, double value) {
     int within = 0;
     for (int j = 0; j < rows.count; ++j) {
+        if (is_far(tracer, rows.q[j])) return true;  // where no arc is followed
         if (is_within(*tracer.arm, rows.q[j], -1e-6))
             ++within;
         else if (is_within(*tracer.arm, rows.q[j], 1e-6))
