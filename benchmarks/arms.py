@@ -52,7 +52,7 @@ def load(name: str) -> Arm:
     if "-" in name:
         nominal, joint = name.rsplit("-", 1)
         arm = load(nominal)
-        return held(arm, int(joint) - 1, seeded(name).uniform(0.3, 1.5), name)
+        return locked(arm, int(joint) - 1, seeded(name).uniform(0.3, 1.5), name)
     import cspace as cs
 
     robot = cs.load_robot(name)
@@ -99,7 +99,7 @@ def disturbed(arm: Arm, size: float, rng: np.random.Generator, name: str) -> Arm
     return numbers(name, axes, points, arm.T_zero, arm.joint_types, arm.lower, arm.upper)
 
 
-def held(arm: Arm, joint: int, angle: float, name: str) -> Arm:
+def locked(arm: Arm, joint: int, angle: float, name: str) -> Arm:
     """The arm with a joint held at an angle: all that stands behind the joint is carried along by it."""
     T = motion(arm, joint, np.asarray(angle))
     axes, points = arm.axes.copy(), arm.points.copy()

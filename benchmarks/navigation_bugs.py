@@ -123,7 +123,7 @@ def measured(family, count):
                 route = cs.navigate(world, start, goal, planner=planner, **options)
                 passed = time.perf_counter() - begin
             row["calls"].append(1e6 * passed)
-            row["core"].append(1e6 * route.price.seconds)
+            row["core"].append(1e6 * route.stats.seconds)
             row["false"] += bool(route) != reachable or route.status == "undetermined"
             row["broken"] += not keeps_bound(route, perimeters)
             if route and (D := np.linalg.norm(route.goal - route.start)) > 0:

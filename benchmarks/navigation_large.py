@@ -66,7 +66,7 @@ def one(kind: str, planner: str) -> dict[str, Any]:
     begin = time.process_time()
     grid = cs.OccupancyGrid(blocked)
     built = time.process_time() - begin
-    held = memory() - before
+    locked = memory() - before
     rng = np.random.default_rng(3)
     asked = [ends(grid, rng) for _ in range(QUESTIONS)]
     Path("/proc/self/clear_refs").write_text("5")  # the most that there has been counts from here
@@ -77,9 +77,9 @@ def one(kind: str, planner: str) -> dict[str, Any]:
         route = cs.navigate(grid, start, goal, planner=planner)
         spent.append(time.process_time() - begin)
         statuses.append(route.status)
-        touched.append(route.price.nodes)
+        touched.append(route.stats.nodes)
     told = {"arm": kind, "what": f"{SIDE:,} × {SIDE:,} cells", "contender": f"cspace {planner}"}
-    told |= {"version": cs.__version__, "built_ms": 1e3 * built, "bytes_per_cell": held / SIDE**2}
+    told |= {"version": cs.__version__, "built_ms": 1e3 * built, "bytes_per_cell": locked / SIDE**2}
     told |= {
         "first_ms": 1e3 * spent[0],
         "ms": 1e3 * float(np.median(spent[1:])),

@@ -49,7 +49,7 @@ def main() -> None:
             for i, T in enumerate(data[f"{name}/T"]):
                 known, solved = data[f"{name}/Q"][i][: data[f"{name}/nsol"][i]], arm
                 if locked is not None:
-                    solved = arms.held(arm, locked, data[f"{name}/q_true"][i][locked], name)
+                    solved = arms.locked(arm, locked, data[f"{name}/q_true"][i][locked], name)
                     known = np.delete(known, locked, axis=1) if known.shape[1] > solved.dof else known
                 found += count(solved, T, known)
                 true += len(known)

@@ -57,10 +57,10 @@ def samples(arm: Arm, robot: Any, q: Array, T: Array) -> list[Question]:
         values = np.linspace(arm.lower[joint], arm.upper[joint], VALUES)
 
         def sweep(goal: Array, joint: int = joint, values: Array = values) -> Any:
-            return robot.ik(goal, fixed={joint: values}, threads=1)
+            return robot.ik(goal, locked={joint: values}, threads=1)
 
         def each(goals: Array, joint: int = joint) -> Any:
-            return robot.ik(goals, fixed={joint: q[:, joint]}, threads=1)
+            return robot.ik(goals, locked={joint: q[:, joint]}, threads=1)
 
         name = f"joint {joint + 1} held"
         found.append(listing(arm, f"{name}: {VALUES} values for a goal", sweep, list(T), VALUES))

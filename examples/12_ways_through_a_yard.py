@@ -21,7 +21,7 @@ def main() -> None:
     routes = [cs.navigate(world, start, goal, planner) for planner in cs.navigation.PLANNERS]
     for route in routes:
         ratio = route.length / shortest.length
-        print(f"{route.planner:20} {ratio:6.3f} × the shortest, {route.price.nodes} nodes")
+        print(f"{route.planner:20} {ratio:6.3f} × the shortest, {route.stats.nodes} nodes")
 
     # The court in the first shed has no door: the answer is no, and says why.
     inside = cs.navigate(world, start, (3.5, 3.5), "bug_2")

@@ -34,7 +34,7 @@ def main() -> None:
     # Among them: a search over poses. The car touches nothing on the way; arcs wider than the tightest
     # leave its steering something to correct with.
     route = nav.hybrid_a_star(park, gate, place, vehicle=car, radius=5.0)
-    print(route.reason, route.price)
+    print(route.reason, route.stats)
 
     # A controller that sees only the path drives it in a simulator that knows the park.
     run = nav.follow(route, "pure_pursuit", vehicle=car, world=park, speed=1.0, lookahead=1.5)

@@ -63,7 +63,7 @@ def options() -> str:
         if not planner.options:
             without.append(f"`{planner.name}`")
             continue
-        lines += [f"## {planner.name}", "", planner.line[0].upper() + planner.line[1:] + ".", ""]
+        lines += [f"## {planner.name}", "", planner.summary[0].upper() + planner.summary[1:] + ".", ""]
         lines += ["| option | type | default | unit | meaning |", "|---|---|---|---|---|"]
         for each in planner.options.values():
             default = "" if each.default is None else f"`{each.default}`"

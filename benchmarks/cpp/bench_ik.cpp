@@ -10,7 +10,7 @@
 #include "bench.hpp"
 #include "cspace/ik/branches.hpp"
 #include "cspace/ik/chain.hpp"
-#include "cspace/ik/complete.hpp"
+#include "cspace/ik/virtual_joints.hpp"
 #include "ik.hpp"
 
 using namespace cspace;
@@ -70,7 +70,7 @@ static void measure_arm(const NamedArm& arm) {
     const std::vector<double> goals = random_goals(arm.chain, n);
     std::vector<double> q(n * max_branches * 6);
     std::vector<std::int64_t> counts(n);
-    std::vector<ik::Quick> verdicts(n);
+    std::vector<ik::FastPath> verdicts(n);
     std::int8_t branch[max_branches];
     bench::measure(("ik " + arm.name).c_str(), n, 200, [&] {
         for (int k = 0; k < n; ++k) {

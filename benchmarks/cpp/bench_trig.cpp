@@ -5,7 +5,7 @@
 
 #include "bench.hpp"
 #include "cspace/math/trig.hpp"
-#include "kernels/trig.hpp"
+#include "kernels/math_trig.hpp"
 
 int main() {
     constexpr int n = 4096, repetitions = 400;

@@ -151,7 +151,7 @@ def four_cases():
         found = robot.ik(position=point)
         for q, color in zip(found.q, (BLUE, RED), strict=False):
             draw_arm(ax, robot, q, color=color)
-        if found.families:
+        if found.self_motions:
             for turn in np.linspace(0.3, 6.0, 12):
                 draw_arm(ax, robot, [turn, np.pi], color=BLUE, alpha=0.2)
         ax.plot(*point, "*", color=GREEN, ms=12, zorder=5)

@@ -22,7 +22,7 @@ def reached(robot, T, joint, n=2000):
     values = np.linspace(robot.limits.lower[joint], robot.limits.upper[joint], n)
     there = np.zeros((n, 8), dtype=bool)
     for row, value in zip(there, values, strict=True):
-        row[list(robot.ik(T, fixed={joint: value})._branch_numbers)] = True
+        row[list(robot.ik(T, locked={joint: value})._branch_numbers)] = True
     return values, there
 
 

@@ -39,13 +39,13 @@ def tracking() -> None:
             angles = branch.q[:, j] if branch else np.append(branch.q[:, j], branch.last[j])
             ax.plot(ends, np.degrees(angles), **style)
             if not branch:
-                held = branch.joint == robot.joint_names[j] or branch.why != "limit"
+                held = branch.joint == robot.joint_names[j] or branch.cause != "limit"
                 ax.plot(
                     branch.end,
                     np.degrees(branch.last[j]),
-                    MARKS[branch.why],
-                    color=RED if branch.why == "limit" else INK,
-                    mfc=(RED if branch.why == "limit" else INK) if held else "white",
+                    MARKS[branch.cause],
+                    color=RED if branch.cause == "limit" else INK,
+                    mfc=(RED if branch.cause == "limit" else INK) if held else "white",
                     ms=5,
                     zorder=4,
                 )

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "bindings.hpp"
-#include "chains.hpp"
+#include "ik_chains.hpp"
 #include "ik_shared.hpp"
 #include "kernels/ik_closed_form.hpp"
 #include "library/ik_arm.hpp"
@@ -14,7 +14,7 @@
 using namespace cspace;
 
 const char robot_ik_doc[] =
-    R"doc(ik($self, goal=None, *, position=None, rotation=None, direction=None, look_at=None, ray=None, angle_to=None, tool_axis='z', angle=None, near=None, fixed=None, swivel=None, samples=None, least_squares=False, threads=None)
+    R"doc(ik($self, goal=None, *, position=None, rotation=None, direction=None, look_at=None, ray=None, angle_to=None, tool_axis='z', angle=None, near=None, locked=None, swivel=None, samples=None, least_squares=False, threads=None)
 --
 
 Every configuration q with fk(q) = goal.
@@ -25,13 +25,13 @@ position (..., 3) [m], None for coordinates that do not matter, or (..., 2) for 
 the tool axis to it [rad]) or, in the plane, angle [rad]; look_at (3,), a point ahead on the tool axis; ray=(p,
 d), the line on which the tool axis lies. tool_axis: "x", "y", "z", "-z" or a direction in the tip. near (dof,)
 [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its values.
-fixed: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of the elbow of an arm with
+locked: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of the elbow of an arm with
 two spherical joints. samples: of an arm with one joint to spare, at how many of its values the branches are
 listed (16). least_squares: where nothing reaches the goal, answer with the configuration that misses it least.
 threads: of a batch, all cores unless given.
 
 Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,
-branch, families, freedom, derivative, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns
+branch, self_motions, freedom, derivative, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns
 SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Raises InputError for what is no goal,
 NoClosedFormError for an arm that this version does not solve.)doc";
 
@@ -45,12 +45,13 @@ PyObject* to_python(PyObject* robot, const double* goal, int dof, const ik::Solu
     for (int k = 0; k < found.count; ++k) {
         std::memcpy(made->q + k * dof, found.q[k], dof * sizeof(double));
         branches_of(made)[k] = found.branch[k];
-        families_of(made)[k] = found.family[k];
+        self_motions_of(made)[k] = found.self_motion[k];
     }
     return reinterpret_cast<PyObject*>(made);
 }
-PyObject* answer_slowly(PyObject* robot, const ik::BuiltArm& arm, const double* goal, const double* idle) {
-    return to_python(robot, goal, arm.dof, ik::solve_goal(arm, goal, idle));
+PyObject* answer_slowly(PyObject* robot, const ik::BuiltArm& arm, const double* goal,
+                        const double* unconstrained) {
+    return to_python(robot, goal, arm.dof, ik::solve_goal(arm, goal, unconstrained));
 }
 
 // The 16 numbers of a float64 4×4 array, in `copy` if they are not contiguous; null if it is something else.
@@ -73,9 +74,9 @@ PyObject* answer_single(PyObject* robot, const ik::BuiltArm& arm, const double* 
     double q[max_branches * 6];
     std::int8_t branch[max_branches];
     int count;
-    const ik::Quick quick = kernels::ik_one(*arm.arm, goal, q, branch, &count);
-    if (quick == ik::Quick::refused) return nullptr;
-    if (quick == ik::Quick::doubtful) return answer_slowly(robot, arm, goal, nullptr);
+    const ik::FastPath quick = kernels::ik_one(*arm.arm, goal, q, branch, &count);
+    if (quick == ik::FastPath::refused) return nullptr;
+    if (quick == ik::FastPath::doubtful) return answer_slowly(robot, arm, goal, nullptr);
     SolutionsObject* made =
         new_solutions(robot, goal, count, 6, count ? ik::Status::exact : ik::Status::unreachable);
     if (!made) return nullptr;
@@ -86,11 +87,11 @@ PyObject* answer_single(PyObject* robot, const ik::BuiltArm& arm, const double* 
 
 const char words[] = "cspace.ik.solve";
 
-// The answer where near= or fixed= is the one keyword beside one goal; null without an error for what is not
+// The answer where near= or locked= is the one keyword beside one goal; null without an error for what is not
 // answered here.
 PyObject* answer_keyword(PyObject* robot, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     const auto* self = reinterpret_cast<RobotObject*>(robot);
-    if ((!self->near && !self->held) || nargs != 1 || !kwnames || PyTuple_GET_SIZE(kwnames) != 1)
+    if ((!self->near && !self->locked) || nargs != 1 || !kwnames || PyTuple_GET_SIZE(kwnames) != 1)
         return nullptr;
     double copy[16];
     PyObject* name = PyTuple_GET_ITEM(kwnames, 0);
@@ -98,9 +99,9 @@ PyObject* answer_keyword(PyObject* robot, PyObject* const* args, Py_ssize_t narg
         const double* goal = self->near ? goal_in_place(args[0], copy) : nullptr;
         return goal ? ik_near(robot, goal, args[1]) : nullptr;
     }
-    if (PyUnicode_CompareWithASCIIString(name, "fixed") != 0) return nullptr;
-    const double* goal = self->held ? goal_in_place(args[0], copy) : nullptr;
-    return goal ? ik_held(robot, goal, args[1]) : nullptr;
+    if (PyUnicode_CompareWithASCIIString(name, "locked") != 0) return nullptr;
+    const double* goal = self->locked ? goal_in_place(args[0], copy) : nullptr;
+    return goal ? ik_locked(robot, goal, args[1]) : nullptr;
 }
 
 }  // namespace
@@ -146,20 +147,20 @@ PyObject* build(PyObject*, PyObject* args) {
     return PyLong_FromLong(room);
 }
 
-// _ik_careful(robot, goal (4, 4), idle (n,)) → solutions
+// _ik_near_singular(robot, goal (4, 4), unconstrained (n,)) → solutions
 PyObject* careful(PyObject*, PyObject* args) {
-    PyObject *robot, *goal, *idle;
-    if (!PyArg_ParseTuple(args, "OOO", &robot, &goal, &idle)) return nullptr;
+    PyObject *robot, *goal, *unconstrained;
+    if (!PyArg_ParseTuple(args, "OOO", &robot, &goal, &unconstrained)) return nullptr;
     const ik::BuiltArm* arm = arm_of(robot);
-    if (!arm || !arm->room || !is_doubles(goal, 16) || !is_doubles(idle, arm->dof)) {
+    if (!arm || !arm->room || !is_doubles(goal, 16) || !is_doubles(unconstrained, arm->dof)) {
         PyErr_SetString(PyExc_TypeError,
-                        "_ik_careful takes a robot with a solver and contiguous float64 arrays");
+                        "_ik_near_singular takes a robot with a solver and contiguous float64 arrays");
         return nullptr;
     }
-    return answer_slowly(robot, *arm, data_of(goal), data_of(idle));
+    return answer_slowly(robot, *arm, data_of(goal), data_of(unconstrained));
 }
 
-// _ik_miss(robot, goal (4, 4), stiffness) → (q, position error [m], rotation error [rad])
+// _ik_nearest_pose(robot, goal (4, 4), stiffness) → (q, position error [m], rotation error [rad])
 PyObject* miss(PyObject*, PyObject* args) {
     PyObject *robot, *goal;
     double stiffness;
@@ -167,7 +168,7 @@ PyObject* miss(PyObject*, PyObject* args) {
     const ik::BuiltArm* arm = arm_of(robot);
     if (!arm || !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError,
-                        "_ik_miss takes a robot with a solver and a contiguous float64 goal");
+                        "_ik_nearest_pose takes a robot with a solver and a contiguous float64 goal");
         return nullptr;
     }
     const ik::NearestMiss best = ik::nearest_to_goal(*arm, data_of(goal), stiffness);
@@ -178,14 +179,14 @@ PyObject* miss(PyObject*, PyObject* args) {
     return Py_BuildValue("Ndd", q, best.position, best.rotation);
 }
 
-// _ik_is_beyond(robot, goal (4, 4)) → whether the lengths and directions of its axes rule the goal out
+// _ik_exceeds_reach(robot, goal (4, 4)) → whether the lengths and directions of its axes rule the goal out
 PyObject* beyond(PyObject*, PyObject* args) {
     PyObject *robot, *goal;
     if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
     const ik::BuiltArm* arm = arm_of(robot);
     if (!arm || !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError,
-                        "_ik_is_beyond takes a robot with a solver and a contiguous float64 goal");
+                        "_ik_exceeds_reach takes a robot with a solver and a contiguous float64 goal");
         return nullptr;
     }
     return PyBool_FromLong(ik::is_ruled_out(*arm, data_of(goal)));
@@ -196,7 +197,7 @@ const ik::BuiltArm* position_arm(PyObject* args, const char* function, PyObject*
     PyObject* goal;
     if (!PyArg_ParseTuple(args, "OO", &robot, &goal)) return nullptr;
     const ik::BuiltArm* arm = arm_of(robot);
-    if (!arm || !arm->is_short || !is_doubles(goal, 3)) {
+    if (!arm || !arm->has_few_joints || !is_doubles(goal, 3)) {
         PyErr_Format(PyExc_TypeError, "%s takes an arm of up to three joints and a float64 point (3,)",
                      function);
         return nullptr;
@@ -218,11 +219,11 @@ PyObject* position(PyObject*, PyObject* args) {
     return to_python(robot, goal, arm->dof, ik::solve_point(*arm, p));
 }
 
-// _ik_position_miss(robot, p (3,)) → (q that comes nearest (n,), what is missing there [m])
+// _ik_nearest_position(robot, p (3,)) → (q that comes nearest (n,), what is missing there [m])
 PyObject* position_miss(PyObject*, PyObject* args) {
     PyObject* robot;
     Vec3d p;
-    const ik::BuiltArm* arm = position_arm(args, "_ik_position_miss", robot, p);
+    const ik::BuiltArm* arm = position_arm(args, "_ik_nearest_position", robot, p);
     if (!arm) return nullptr;
     const ik::NearestMiss best = ik::nearest_to_point(*arm, p);
     npy_intp n = arm->dof;
@@ -262,15 +263,17 @@ PyObject* geometry(PyObject*, PyObject* robot) {
 
 PyMethodDef functions[] = {
     {"_ik_build", build, METH_VARARGS, "Builds the solver of a robot from its screws at zero."},
-    {"_ik_careful", careful, METH_VARARGS, "Solves one goal by the careful path, free joints as given."},
-    {"_ik_is_beyond", beyond, METH_VARARGS, "Whether the axes of an arm alone rule a goal out."},
-    {"_ik_miss", miss, METH_VARARGS, "The configuration that comes nearest to a goal out of reach."},
+    {"_ik_near_singular", careful, METH_VARARGS,
+     "Solves one goal by the careful path, free joints as given."},
+    {"_ik_exceeds_reach", beyond, METH_VARARGS, "Whether the axes of an arm alone rule a goal out."},
+    {"_ik_nearest_pose", miss, METH_VARARGS, "The configuration that comes nearest to a goal out of reach."},
     {"_ik_follow", ik_follow, METH_VARARGS, "The family through a configuration, as a curve."},
     {"_ik_onto", ik_onto, METH_VARARGS, "Configurations brought onto the family through another one."},
     {"_ik_direction", ik_direction, METH_VARARGS,
      "The direction of the self-motion through a configuration."},
     {"_ik_position", position, METH_VARARGS, "Solves a position goal of an arm of up to three joints."},
-    {"_ik_position_miss", position_miss, METH_VARARGS, "The configuration that comes nearest to a position."},
+    {"_ik_nearest_position", position_miss, METH_VARARGS,
+     "The configuration that comes nearest to a position."},
     {"_ik_positions", ik_positions, METH_VARARGS, "Solves many position goals."},
     {"_ik_make", ik_make, METH_VARARGS, "A result from its parts."},
     {"_ik_serve_near", ik_serve_near, METH_VARARGS, "Answers near= of a robot from now on."},

@@ -19,9 +19,10 @@ bool read_batch(PyObject* args, const char* function, npy_intp numbers, Batch& b
         return false;
     const ik::BuiltArm* arm = arm_of(b.robot);
     const npy_intp n = PyArray_Check(b.count) ? PyArray_SIZE(reinterpret_cast<PyArrayObject*>(b.count)) : -1;
-    if (arm && arm->room && (numbers != 3 || arm->is_short) && n >= 0 && is_doubles(b.goals, numbers * n) &&
-        is_doubles(b.q, n * arm->room * arm->dof) && is_plain(b.count, NPY_INT64, n) &&
-        is_plain(b.status, NPY_UINT8, n) && is_writable(b.q) && is_writable(b.count) && is_writable(b.status))
+    if (arm && arm->room && (numbers != 3 || arm->has_few_joints) && n >= 0 &&
+        is_doubles(b.goals, numbers * n) && is_doubles(b.q, n * arm->room * arm->dof) &&
+        is_plain(b.count, NPY_INT64, n) && is_plain(b.status, NPY_UINT8, n) && is_writable(b.q) &&
+        is_writable(b.count) && is_writable(b.status))
         return true;
     PyErr_Format(PyExc_TypeError,
                  "%s takes a robot with a solver and contiguous arrays: float64, count int64, status uint8",

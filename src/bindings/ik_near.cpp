@@ -7,7 +7,7 @@
 
 #include "cspace/tolerances.hpp"
 #include "ik_shared.hpp"
-#include "library/ik_redundant.hpp"
+#include "library/ik_redundancy.hpp"
 
 using namespace cspace;
 
@@ -39,7 +39,7 @@ PyObject* one_row(PyObject* robot, const double* goal, const double* q, int n, i
     if (!made) return nullptr;
     std::copy(q, q + n, made->q);
     branches_of(made)[0] = std::int8_t(branch);
-    families_of(made)[0] = 0;
+    self_motions_of(made)[0] = 0;
     made->about = Py_XNewRef(about);
     return reinterpret_cast<PyObject*>(made);
 }

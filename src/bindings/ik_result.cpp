@@ -99,10 +99,11 @@ PyObject* get_branch_numbers(PyObject* self, void*) {
     for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyLong_FromLong(branches_of(s)[k]));
     return list;
 }
-PyObject* get_is_family(PyObject* self, void*) {
+PyObject* get_is_self_motion(PyObject* self, void*) {
     auto* s = reinterpret_cast<SolutionsObject*>(self);
     PyObject* list = PyTuple_New(s->count);
-    for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyBool_FromLong(families_of(s)[k]));
+    for (int k = 0; list && k < s->count; ++k)
+        PyTuple_SET_ITEM(list, k, PyBool_FromLong(self_motions_of(s)[k]));
     return list;
 }
 Py_ssize_t length(PyObject* self) { return reinterpret_cast<SolutionsObject*>(self)->count; }
@@ -118,7 +119,7 @@ PyGetSetDef attributes[] = {
      nullptr},
     {"_branch_numbers", get_branch_numbers, nullptr, "Which branch of the closed form each row comes from.",
      nullptr},
-    {"_is_family", get_is_family, nullptr, "Which rows stand for a family.", nullptr},
+    {"_is_self_motion", get_is_self_motion, nullptr, "Which rows stand for a family.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
                        {Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
@@ -145,10 +146,10 @@ int ik_add_result_type(PyObject* module) {
 
 // _ik_make(robot, goal (4, 4), status, q (k, dof), branches (k), families (k), note, about=None) → solutions
 PyObject* ik_make(PyObject*, PyObject* args) {
-    PyObject *robot, *goal, *q, *branches, *families, *note, *about = Py_None;
+    PyObject *robot, *goal, *q, *branches, *self_motions, *note, *about = Py_None;
     int status;
     if (!PyArg_ParseTuple(args, "OOiOO!O!O|O", &robot, &goal, &status, &q, &PyTuple_Type, &branches,
-                          &PyTuple_Type, &families, &note, &about))
+                          &PyTuple_Type, &self_motions, &note, &about))
         return nullptr;
     const Py_ssize_t k = PyTuple_GET_SIZE(branches);
     const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
@@ -157,7 +158,7 @@ PyObject* ik_make(PyObject*, PyObject* args) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes a robot and a status it knows");
         return nullptr;
     }
-    if (!shaped || k > 1 << 24 || PyTuple_GET_SIZE(families) != k || !is_doubles(q, k * dof) ||
+    if (!shaped || k > 1 << 24 || PyTuple_GET_SIZE(self_motions) != k || !is_doubles(q, k * dof) ||
         !is_doubles(goal, 16)) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes contiguous float64 arrays and tuples of one length");
         return nullptr;
@@ -169,7 +170,7 @@ PyObject* ik_make(PyObject*, PyObject* args) {
     std::memcpy(made->q, data_of(q), sizeof(double) * std::size_t(k * dof));
     for (Py_ssize_t i = 0; i < k; ++i) {
         branches_of(made)[i] = static_cast<std::int8_t>(PyLong_AsLong(PyTuple_GET_ITEM(branches, i)));
-        families_of(made)[i] = PyObject_IsTrue(PyTuple_GET_ITEM(families, i)) == 1;
+        self_motions_of(made)[i] = PyObject_IsTrue(PyTuple_GET_ITEM(self_motions, i)) == 1;
     }
     made->note = note == Py_None ? nullptr : Py_NewRef(note);
     made->about = about == Py_None ? nullptr : Py_NewRef(about);

@@ -19,7 +19,7 @@ inline const cspace::ik::BuiltArm* arm_of(PyObject* robot) {
 struct SolutionsObject {
     PyObject_VAR_HEAD PyObject* robot;
     PyObject* note;   // why rows are missing, where a filter removed them; or null
-    PyObject* about;  // of a goal that is no pose or leaves freedom: cspace.ik.about.About; or null
+    PyObject* about;  // of a goal that is no pose or leaves freedom: cspace.ik.context.About; or null
     double goal[16];
     int count, dof;
     cspace::ik::Status status;
@@ -29,7 +29,7 @@ struct SolutionsObject {
 inline std::int8_t* branches_of(SolutionsObject* s) {
     return reinterpret_cast<std::int8_t*>(s->q + std::ptrdiff_t(s->count) * s->dof);
 }
-inline std::int8_t* families_of(SolutionsObject* s) { return branches_of(s) + s->count; }
+inline std::int8_t* self_motions_of(SolutionsObject* s) { return branches_of(s) + s->count; }
 
 // A complete result without note whose rows are still to be written; null with an error set.
 SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, int dof,
@@ -50,7 +50,8 @@ inline bool is_writable(PyObject* array) {
     return PyArray_ISWRITEABLE(reinterpret_cast<PyArrayObject*>(array));
 }
 
-// --- near= and fixed= (ik_near.cpp, ik_held.cpp) -------------------------------------------------------
+// --- near= and locked= (ik_near.cpp, ik_locked_joints.cpp)
+// -------------------------------------------------------
 namespace cspace::ik {
 class RedundantSolver;
 struct LockedArm;
@@ -58,9 +59,9 @@ struct LockedArm;
 void ik_set_near(PyObject* robot, const cspace::ik::RedundantSolver* arm, PyObject* solver, PyObject* about);
 PyObject* ik_serve_near(PyObject*, PyObject* args);
 PyObject* ik_near(PyObject* robot, const double* goal, PyObject* seed);
-void ik_add_held(PyObject* robot, PyObject* solver, PyObject* names, PyObject* about,
-                 const std::vector<int>& held, const cspace::ik::LockedArm* locked);
-PyObject* ik_held(PyObject* robot, const double* goal, PyObject* fixed);
+void ik_add_locked(PyObject* robot, PyObject* solver, PyObject* names, PyObject* about,
+                   const std::vector<int>& locked_joint, const cspace::ik::LockedArm* locked);
+PyObject* ik_locked(PyObject* robot, const double* goal, PyObject* locked);
 
 // --- the functions of each file ------------------------------------------------------------------------
 // ik_result.cpp
@@ -70,7 +71,7 @@ PyObject* ik_results(PyObject*, PyObject* cls);
 // ik_batch.cpp
 PyObject* ik_many(PyObject*, PyObject* args);
 PyObject* ik_positions(PyObject*, PyObject* args);
-// ik_families.cpp
+// ik_self_motion.cpp
 PyObject* ik_direction(PyObject*, PyObject* args);
 PyObject* ik_follow(PyObject*, PyObject* args);
 PyObject* ik_onto(PyObject*, PyObject* args);

@@ -1,6 +1,6 @@
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "kernels/trig.hpp"
+#include "kernels/math_trig.hpp"
 
 namespace nb = nanobind;
 

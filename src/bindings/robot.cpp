@@ -40,7 +40,13 @@ static void name_method(const char* function, const char* method) {
     const char* said = text ? PyUnicode_AsUTF8(text) : nullptr;
     const std::size_t length = std::strlen(function);
     if (said && !std::strncmp(said, function, length) && !std::strncmp(said + length, "()", 2)) {
-        PyErr_Format(PyExc_TypeError, "%s%s", method, said + length);
+        PyObject* errors = PyImport_ImportModule("cspace.errors");  // which knows names that people bring
+        PyObject* error = errors ? PyObject_CallMethod(errors, "keyword_error", "N",
+                                                       PyUnicode_FromFormat("%s%s", method, said + length))
+                                 : nullptr;
+        if (error) PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error)), error);
+        Py_XDECREF(error);
+        Py_XDECREF(errors);
         Py_DECREF(type);
         Py_XDECREF(value);
         Py_XDECREF(traceback);
@@ -183,7 +189,7 @@ PyObject* create(PyTypeObject* type, PyObject*, PyObject*) {
     new (&robot->model) std::unique_ptr<const RobotModel>();
     new (&robot->ik) std::shared_ptr<void>();
     new (&robot->near) std::shared_ptr<void>();
-    new (&robot->held) std::shared_ptr<void>();
+    new (&robot->locked) std::shared_ptr<void>();
     robot->frame_index = nullptr;
     robot->tip = -1;
     robot->floating = false;
@@ -195,7 +201,7 @@ void destroy(PyObject* self) {
     Py_CLEAR(robot->frame_index);
     robot->ik.~shared_ptr();
     robot->near.~shared_ptr();
-    robot->held.~shared_ptr();
+    robot->locked.~shared_ptr();
     robot->model.~unique_ptr();
     type->tp_free(self);
     Py_DECREF(type);

@@ -19,7 +19,8 @@ struct RobotObject {
     std::shared_ptr<void>
         ik;  // the solver, built by the first call of ik; never replaced: threads may be in it
     std::shared_ptr<void> near;  // what near= needs (ik_near.cpp); likewise
-    std::shared_ptr<void> held;  // the plans of joints held by fixed= (ik_held.cpp); grows under the GIL
+    std::shared_ptr<void>
+        locked;  // the plans of joints held by locked= (ik_locked_joints.cpp); grows under the GIL
 };
 
 extern PyTypeObject* robot_type;  // RobotBase; null until the module is filled

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     )
     from cspace.maps import OccupancyGrid, PolygonWorld
     from cspace.model import Limits
-    from cspace.navigation import navigate
+    from cspace.navigation.navigate import navigate
     from cspace.robot import Robot
     from cspace.robots import load_robot
     from cspace.spatial import *  # noqa: F403

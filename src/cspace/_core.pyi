@@ -74,7 +74,7 @@ class RobotBase:
         Returns (T, J): T (..., 4, 4) as of fk, J (..., 6, dof) as of jacobian.
         """
 
-    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, fixed: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
+    def ik(self, goal: Any = None, *, position: Any = None, rotation: Any = None, direction: ArrayLike | None = None, look_at: ArrayLike | None = None, ray: Any = None, angle_to: Any = None, tool_axis: Any = "z", angle: ArrayLike | None = None, near: ArrayLike | None = None, locked: Any = None, swivel: ArrayLike | None = None, samples: int | None = None, least_squares: bool = False, threads: int | None = None) -> Any:
         """
         Every configuration q with fk(q) = goal.
 
@@ -84,13 +84,13 @@ class RobotBase:
         the tool axis to it [rad]) or, in the plane, angle [rad]; look_at (3,), a point ahead on the tool axis; ray=(p,
         d), the line on which the tool axis lies. tool_axis: "x", "y", "z", "-z" or a direction in the tip. near (dof,)
         [rad, m]: the answer is the one solution nearest to it, and joints that the pose leaves free take its values.
-        fixed: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of the elbow of an arm with
+        locked: joints held at given values, {"joint7": 0.3}, by name or number. swivel [rad]: of the elbow of an arm with
         two spherical joints. samples: of an arm with one joint to spare, at how many of its values the branches are
         listed (16). least_squares: where nothing reaches the goal, answer with the configuration that misses it least.
         threads: of a batch, all cores unless given.
 
         Returns Solutions for one goal: q (k, dof) with revolute joints in (-pi, pi], status, reason, complete, residual,
-        branch, families, freedom, derivative, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns
+        branch, self_motions, freedom, derivative, within(), nearest(), wrapped(); falsy if nothing reaches the goal. Returns
         SolutionsBatch for many: q (..., k_max, dof) padded with NaN, count (...). Raises InputError for what is no goal,
         NoClosedFormError for an arm that this version does not solve.
         """
@@ -161,7 +161,7 @@ class SolutionsBase:
     @property
     def _branch_numbers(self) -> tuple[int, ...]: ...
     @property
-    def _is_family(self) -> tuple[bool, ...]: ...
+    def _is_self_motion(self) -> tuple[bool, ...]: ...
     def __len__(self) -> int: ...
     def __bool__(self) -> bool: ...
 
@@ -176,14 +176,14 @@ class RedundantSolver:
         """
 
     @property
-    def held(self) -> list[int]:
+    def locked(self) -> list[int]:
         """The joints held unless others are named, ascending."""
 
     @property
-    def spare(self) -> int:
+    def redundancy_degree(self) -> int:
         """Joints beyond those that the tip needs to move as it can."""
 
-    def spare_with(self, held: Sequence[int]) -> int:
+    def redundancy_degree_with(self, locked: Sequence[int]) -> int:
         """How many dimensions stay free with joints held."""
 
     @property
@@ -195,26 +195,26 @@ class RedundantSolver:
         Answers near= of this robot from now on, for one goal without other keywords.
         """
 
-    def serve_held(self, robot: object, held: Sequence[int], about: object) -> None:
+    def serve_locked(self, robot: object, locked: Sequence[int], about: object) -> None:
         """
-        Answers fixed= with these joints from now on, for one goal without other keywords.
+        Answers locked= with these joints from now on, for one goal without other keywords.
         """
 
-    def room(self, held: Sequence[int]) -> int:
+    def room(self, locked: Sequence[int]) -> int:
         """Rows that the solutions of a goal may need."""
 
-    def solve(self, held: Sequence[int], at: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 4), order='C', device='cpu', writable=False)], idle: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], branch: Annotated[NDArray[numpy.int8], dict(shape=(None, None), order='C', device='cpu')], family: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], status: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')], threads: int) -> None:
+    def solve(self, locked: Sequence[int], at: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 4), order='C', device='cpu', writable=False)], unconstrained: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], branch: Annotated[NDArray[numpy.int8], dict(shape=(None, None), order='C', device='cpu')], self_motion: Annotated[NDArray[numpy.bool_], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')], status: Annotated[NDArray[numpy.uint8], dict(shape=(None,), order='C', device='cpu')], threads: int) -> None:
         """Every solution with joints held at their values."""
 
     def nearest(self, goals: Annotated[NDArray[numpy.float64], dict(shape=(None, 4, 4), order='C', device='cpu', writable=False)], seeds: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None), order='C', device='cpu')], found: Annotated[NDArray[numpy.bool_], dict(shape=(None,), order='C', device='cpu')], threads: int) -> None:
         """The nearest configuration to each seed."""
 
     def intervals(self, parameter: int, goal: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C', device='cpu', writable=False)]) -> tuple[list[tuple[float, float, int, int, int, int, int, list[float]]], bool]:
-        """The feasible intervals of one held joint."""
+        """The feasible intervals of one locked joint."""
 
     def sweep(self, parameter: int, goal: Annotated[NDArray[numpy.float64], dict(shape=(4, 4), order='C', device='cpu', writable=False)], at: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], values: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)], q: Annotated[NDArray[numpy.float64], dict(shape=(None, None, None), order='C', device='cpu')], branch: Annotated[NDArray[numpy.int8], dict(shape=(None, None), order='C', device='cpu')], count: Annotated[NDArray[numpy.int64], dict(shape=(None,), order='C', device='cpu')]) -> bool:
         """
-        Every solution at many values of one held joint; whether none is missing.
+        Every solution at many values of one locked joint; whether none is missing.
         """
 
 class SwivelSolver:
@@ -543,7 +543,7 @@ def _voronoi_bug_trace(*arguments: Any) -> Any: ...
 def _route_class(cls: type) -> None: ...
 def _route_make(*arguments: Any) -> Any: ...
 def _ik_build(*arguments: Any) -> bool: ...
-def _ik_careful(*arguments: Any) -> Any: ...
+def _ik_near_singular(*arguments: Any) -> Any: ...
 def _ik_geometry(robot: Any) -> Any: ...
 def _ik_plan(robot: Any) -> dict[str, Any]: ...
 def _ik_determinant(robot: Any, goal: list[float], formulation: int, a0: float) -> float: ...
@@ -553,10 +553,10 @@ def _ik_direction(*arguments: Any) -> NDArray[numpy.float64] | None: ...
 def _ik_follow(*arguments: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], int]: ...
 def _ik_numbers(robot: Any) -> tuple[str, dict[str, Any]]: ...
 def _ik_onto(*arguments: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]: ...
-def _ik_is_beyond(robot: Any, goal: NDArray[numpy.float64]) -> bool: ...
-def _ik_miss(*arguments: Any) -> tuple[NDArray[numpy.float64], float, float]: ...
+def _ik_exceeds_reach(robot: Any, goal: NDArray[numpy.float64]) -> bool: ...
+def _ik_nearest_pose(*arguments: Any) -> tuple[NDArray[numpy.float64], float, float]: ...
 def _ik_position(*arguments: Any) -> Any: ...
-def _ik_position_miss(*arguments: Any) -> tuple[NDArray[numpy.float64], float]: ...
+def _ik_nearest_position(*arguments: Any) -> tuple[NDArray[numpy.float64], float]: ...
 def _ik_positions(*arguments: Any) -> int: ...
 def _ik_results(cls: type) -> None: ...
 def _ik_serve_near(*arguments: Any) -> Any: ...

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from types import MappingProxyType
 from typing import Final
 
 __all__ = [
@@ -13,12 +14,29 @@ __all__ = [
     "MapError",
     "MissingExtraError",
     "UnknownNameError",
+    "attribute_error",
+    "keyword_error",
     "shown",
     "suggest",
 ]
 
 SHOWN: Final = (str, int, float)
 """What reads well in a message, whatever it is."""
+
+
+RENAMED: Final = MappingProxyType(
+    {
+        "asked": "goal_parts",
+        "families": "self_motions",
+        "fixed": "locked",
+        "line": "summary",
+        "missing": "out_of_reach",
+        "price": "stats",
+        "sees": "sensing",
+        "why": "cause",
+    }
+)
+"""Names that people may bring, and ours."""
 
 
 class CspaceError(Exception):
@@ -93,6 +111,24 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
     else:
         text += f"; {len(names)} {_plural(subject)} are known"
     return UnknownNameError(text)
+
+
+def keyword_error(text: str) -> TypeError:
+    """The error for "f() got an unexpected keyword argument 'name'": with our name for it, if there is
+    one."""
+    name = text.rpartition(" keyword argument ")[2].partition("'")[2].partition("'")[0]
+    if name not in RENAMED:
+        return TypeError(text)
+    return InputTypeError(f"unknown keyword {name!r}: use {RENAMED[name]}=")
+
+
+def attribute_error(owner: object, name: str) -> AttributeError:
+    """The error for an attribute that an object has not: with our name for it, if it has that."""
+    text = f"{type(owner).__name__!r} object has no attribute {name!r}"
+    known = {*dir(type(owner)), *getattr(type(owner), "__annotations__", ())}
+    if (ours := RENAMED.get(name)) in known:
+        text += f": use {ours}"
+    return AttributeError(text, name=name, obj=owner)
 
 
 def shown(value: object) -> str:

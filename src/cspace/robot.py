@@ -173,17 +173,18 @@ class Robot(RobotBase):
         path: str | os.PathLike[str] | None = None,
         *,
         name: str | None = None,
-        fixed: Any = None,
+        locked: Any = None,
     ) -> Export:
         """The inverse kinematics as source code that needs nothing of cspace, written to `path` if there is
         one; see export.export, which also names the errors.
 
         lang: "cpp", "c" or "python"; by the ending of path unless given. name: of the namespace in it.
-        fixed: joints whose values the caller of the code gives; of arms of more than six the solver's choice.
+        locked: joints whose values the caller of the code gives; of arms of more than six the solver's
+        choice.
         """
         from cspace.export import export
 
-        return export(self, lang, path, name=name, fixed=fixed)
+        return export(self, lang, path, name=name, locked=locked)
 
     def _whole(self) -> Description:
         """The description with the tool as a link on the tip and the mounting under a new root."""
@@ -213,17 +214,17 @@ class Robot(RobotBase):
         """
         return kinematics.screws(self._assembly, self.name)
 
-    def ik_plan(self, *, asked: Any = None, fixed: Any = None, tool_axis: Any = "z") -> IkPlan:
+    def ik_plan(self, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
         """How ik solves this arm: the geometry found, the steps, the equations with its numbers.
 
-        asked: for goals that ask for less than a pose, their keywords, such as ("position", "direction"), or
-        a dict with values. fixed: joints that will be held, with their values. The result prints, has
-        to_markdown(), to_latex() and residuals(q, T), and is false, with a reason, for an arm that nothing
-        solves; see cspace.ik.ik_plan.
+        goal_parts: for goals that ask for less than a pose, their keywords, such as ("position",
+        "direction"), or a dict with values. locked: joints that will be held, with their values. The result
+        prints, has to_markdown(), to_latex() and residuals(q, T), and is false, with a reason, for an arm
+        that nothing solves; see cspace.ik.ik_plan.
         """
         from cspace.ik.explain import ik_plan
 
-        return ik_plan(self, asked=asked, fixed=fixed, tool_axis=tool_axis)
+        return ik_plan(self, goal_parts=goal_parts, locked=locked, tool_axis=tool_axis)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:
         """The same robot with a tool on its tip; the new tip is the frame "tool", and it counts everywhere.
@@ -258,7 +259,7 @@ class Robot(RobotBase):
         goal: PoseLike | None = None,
         parameter: str | int | None = None,
         *,
-        fixed: Mapping[Any, float] | None = None,
+        locked: Mapping[Any, float] | None = None,
         **parts: Any,
     ) -> Redundancy:
         """Where a joint to spare may be while all keep their limits and reach a goal; see ik.redundancy.
@@ -267,7 +268,7 @@ class Robot(RobotBase):
         """
         from cspace.ik import redundancy
 
-        return redundancy(self, goal, parameter, fixed=fixed, **parts)
+        return redundancy(self, goal, parameter, locked=locked, **parts)
 
     def ik_numeric(self, goal: Any = None, start: Any = None, **options: Any) -> NumericSolution:
         """One configuration that reaches a goal (..., 4, 4), by descent from start (dof,) and further starts.

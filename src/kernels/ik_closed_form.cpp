@@ -1,7 +1,7 @@
 #include "ik_closed_form.hpp"
 
 #include "cspace/ik/arm.hpp"
-#include "cspace/ik/quick.hpp"
+#include "cspace/ik/fast_path.hpp"
 #include "cspace/math/stream.hpp"
 #include "once.hpp"
 
@@ -33,16 +33,16 @@ CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
 
 }  // namespace
 
-template ik::Quick solve_quickly(const ik::Plan&, const double*, double*, signed char*, int*);
+template ik::FastPath solve_quickly(const ik::Plan&, const double*, double*, signed char*, int*);
 template Branches<double> solve_closed_form(const ik::Plan&, const Posed&, const Care&);
 
-ik::Quick ik_one(const ik::Arm& arm, const double* T, double* q, std::int8_t* branch, int* count) {
+ik::FastPath ik_one(const ik::Arm& arm, const double* T, double* q, std::int8_t* branch, int* count) {
     if (arm.has_plan) return solve_quickly(arm.plan, T, q, branch, count);
-    return read_goal(T).is_pose ? ik::Quick::doubtful : ik::Quick::refused;
+    return read_goal(T).is_pose ? ik::FastPath::doubtful : ik::FastPath::refused;
 }
 
 void ik_many(const ik::Arm& arm, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
-             ik::Quick* quick) {
+             ik::FastPath* quick) {
     const ik::Plan& plan = arm.plan;
     const Care care = care_of(plan);
     const std::size_t row = std::size_t(room) * 6;
@@ -62,9 +62,9 @@ void ik_many(const ik::Arm& arm, const double* T, std::size_t n, int room, doubl
         }
         for (int l = 0; l < lanes; ++l) {
             count[first + l] = compact(branches_of_lane(b.ok, l), stage + row * l, room);
-            quick[first + l] = !lane(goal.is_pose, l) ? ik::Quick::refused
-                               : lane(b.doubt, l)     ? ik::Quick::doubtful
-                                                      : ik::Quick::settled;
+            quick[first + l] = !lane(goal.is_pose, l) ? ik::FastPath::refused
+                               : lane(b.doubt, l)     ? ik::FastPath::doubtful
+                                                      : ik::FastPath::settled;
         }
         write_out(q + row * first, stage, row * std::size_t(lanes), past_cache);
     }

@@ -1,4 +1,4 @@
-#include "cspace/ik/general/completion.hpp"
+#include "cspace/ik/general/virtual_joints.hpp"
 #include "once.hpp"
 
 namespace cspace::inline CSPACE_ISA {

@@ -1,5 +1,5 @@
-#include "cspace/ik/redundant/arcs.hpp"
-#include "ik_redundant.hpp"
+#include "cspace/ik/redundancy/arcs.hpp"
+#include "ik_redundancy.hpp"
 #include "once.hpp"
 
 namespace cspace::inline CSPACE_ISA {

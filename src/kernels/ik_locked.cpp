@@ -1,5 +1,5 @@
-#include "cspace/ik/redundant/limits.hpp"
-#include "ik_redundant.hpp"
+#include "cspace/ik/redundancy/limits.hpp"
+#include "ik_redundancy.hpp"
 #include "once.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -19,9 +19,9 @@ void ik_lock_joints(const ik::Redundant& arm, const int* joints, int count, ik::
     out = lock_joints(arm.chain, joints, count, typical);
 }
 
-void ik_locked(const ik::LockedArm& locked, const Posed& goal, const double* at, const double* idle,
+void ik_locked(const ik::LockedArm& locked, const Posed& goal, const double* at, const double* unconstrained,
                ik::Solutions& out) {
-    out = solve_locked(locked, goal, at, idle);
+    out = solve_locked(locked, goal, at, unconstrained);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

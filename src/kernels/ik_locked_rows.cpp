@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "cspace/ik/redundant/locked_arm.hpp"
+#include "cspace/ik/redundancy/locked_joints.hpp"
 #include "cspace/math/rows.hpp"
 #include "once.hpp"
 
@@ -15,8 +15,9 @@ void locked_goals(const ik::LockedArm& locked, const double* goals, const double
         const int count = rows - first < native_width ? int(rows - first) : native_width;
         V m[16], value[ik::max_joints];
         load_rows(goals + 16 * first, 16, count, 12, m);
-        for (int k = 0; k < locked.n_held; ++k)
-            load_rows(at + stride * first + locked.held[k], stride, count, 1, value + locked.held[k]);
+        for (int k = 0; k < locked.n_locked; ++k)
+            load_rows(at + stride * first + locked.locked_joint[k], stride, count, 1,
+                      value + locked.locked_joint[k]);
         const Pose<V> goal = {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}},
                               {m[3], m[7], m[11]}};
         const Pose<V> T = goal_between_ends(locked, goal, value);

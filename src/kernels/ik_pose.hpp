@@ -5,7 +5,7 @@
 
 namespace cspace::ik {
 struct Arm;
-struct Miss;
+struct NearestPose;
 struct PositionSolutions;
 }  // namespace cspace::ik
 
@@ -15,13 +15,13 @@ CSPACE_NARROW_KERNEL(void, ik_make_arm, (const cspace::ik::Chain& chain, cspace:
 // Every solution of a pose, by whatever the arm needs; idle: null, or values of the joints that the goal
 // leaves free.
 CSPACE_NARROW_KERNEL(void, ik_pose,
-                     (const cspace::ik::Arm& arm, const cspace::Posed& goal, const double* idle,
+                     (const cspace::ik::Arm& arm, const cspace::Posed& goal, const double* unconstrained,
                       cspace::ik::Solutions& out))
 
 // The configuration that comes nearest to a pose; weight: of a radian, in lengths of the arm.
 CSPACE_NARROW_KERNEL(void, ik_nearest_miss,
                      (const cspace::ik::Arm& arm, const cspace::Posed& goal, double weight,
-                      cspace::ik::Miss& out))
+                      cspace::ik::NearestPose& out))
 
 // Every configuration of up to three joints that brings the tip to a point, and the nearest one if there is
 // none.

@@ -52,13 +52,13 @@ std::size_t solve_slice(const BuiltArm& built, const GoalRows& rows, std::size_t
     const Arm& arm = *built.arm;
     const bool has_kernel = arm.has_plan && arm.plan.on_lanes && arm.plan.virtual_joints == 0;
     const std::size_t row = std::size_t(built.room * built.dof);
-    auto* quick = reinterpret_cast<Quick*>(rows.status);
+    auto* quick = reinterpret_cast<FastPath*>(rows.status);
     if (has_kernel)
         kernels::ik_many(arm, rows.goals + 16 * from, to - from, built.room, rows.q + row * from,
                          rows.count + from, quick + from);
     Solutions found;
     for (std::size_t i = from; i < to; ++i) {
-        if (has_kernel && quick[i] == Quick::settled) {
+        if (has_kernel && quick[i] == FastPath::settled) {
             rows.status[i] = static_cast<unsigned char>(rows.count[i] ? Status::exact : Status::unreachable);
             continue;
         }
@@ -101,8 +101,8 @@ std::size_t solve_on_threads(const BuiltArm& built, const GoalRows& rows, Slice 
 BuiltArm build_arm(const Chain& chain) {
     auto arm = std::make_shared<Arm>();
     kernels::ik_make_arm(chain, *arm);
-    const bool solvable = arm->has_plan || arm->is_short || arm->is_general;
-    return {arm, chain.n, solvable ? room_for(*arm) : 0, arm->is_short};
+    const bool solvable = arm->has_plan || arm->has_few_joints || arm->is_general;
+    return {arm, chain.n, solvable ? room_for(*arm) : 0, arm->has_few_joints};
 }
 
 ArmGeometry geometry_of(const BuiltArm& built) {
@@ -118,9 +118,9 @@ ArmGeometry geometry_of(const BuiltArm& built) {
             plan.form.length};
 }
 
-Solutions solve_goal(const BuiltArm& built, const double* goal, const double* idle) {
+Solutions solve_goal(const BuiltArm& built, const double* goal, const double* unconstrained) {
     Solutions found;
-    kernels::ik_pose(*built.arm, read_goal(goal).T, idle, found);
+    kernels::ik_pose(*built.arm, read_goal(goal).T, unconstrained, found);
     return found;
 }
 
@@ -128,7 +128,7 @@ Solutions solve_point(const BuiltArm& built, const Vec3d& goal) {
     const Chain& chain = built.arm->plan.chain;
     PositionSolutions found;
     kernels::ik_position(chain, goal, false, found);
-    return from_short(chain, found);
+    return from_few_joints(chain, found);
 }
 
 std::size_t solve_goals(const BuiltArm& built, const GoalRows& rows) {
@@ -139,7 +139,7 @@ std::size_t solve_points(const BuiltArm& built, const GoalRows& rows) {
 }
 
 NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness) {
-    Miss best;
+    NearestPose best;
     kernels::ik_nearest_miss(*built.arm, read_goal(goal).T, stiffness, best);
     NearestMiss out = {{}, best.position, best.rotation};
     std::copy(best.q, best.q + built.dof, out.q);
@@ -149,14 +149,14 @@ NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double st
 NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal) {
     PositionSolutions found;
     kernels::ik_position(built.arm->plan.chain, goal, true, found);
-    NearestMiss out = {{}, found.missing, 0};
+    NearestMiss out = {{}, found.out_of_reach, 0};
     const double* best = found.count ? found.q[0] : found.nearest;
     std::copy(best, best + built.dof, out.q);
     return out;
 }
 
 bool is_ruled_out(const BuiltArm& built, const double* goal) {
-    return is_beyond(built.arm->plan.chain, read_goal(goal).T, built.arm->plan.form.length);
+    return exceeds_reach(built.arm->plan.chain, read_goal(goal).T, built.arm->plan.form.length);
 }
 
 void turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper, const double* seed,
@@ -184,9 +184,9 @@ bool nearest_listed(const BuiltArm& built, const double* lower, const double* up
     const double* row = rows;
     const std::int8_t* number = branches;
     int stride = 6;
-    const Quick quick = kernels::ik_one(arm, goal, rows, branches, &count);
-    if (quick == Quick::refused) return false;
-    if (quick == Quick::doubtful) {
+    const FastPath quick = kernels::ik_one(arm, goal, rows, branches, &count);
+    if (quick == FastPath::refused) return false;
+    if (quick == FastPath::doubtful) {
         kernels::ik_pose(arm, read_goal(goal).T, seed, found);
         if (found.status != Status::exact || !found.complete) return false;
         row = found.q[0];

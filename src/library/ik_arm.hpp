@@ -15,8 +15,8 @@ struct Arm;
 struct BuiltArm {
     std::shared_ptr<const Arm> arm;
     int dof;
-    int room;       // rows that the solutions of a goal may need; 0 where nothing solves the arm
-    bool is_short;  // up to three joints: it answers points too
+    int room;             // rows that the solutions of a goal may need; 0 where nothing solves the arm
+    bool has_few_joints;  // up to three joints: it answers points too
 };
 BuiltArm build_arm(const Chain& chain);
 
@@ -31,7 +31,7 @@ struct ArmGeometry {
 };
 ArmGeometry geometry_of(const BuiltArm& built);
 
-Solutions solve_goal(const BuiltArm& built, const double* goal, const double* idle);
+Solutions solve_goal(const BuiltArm& built, const double* goal, const double* unconstrained);
 Solutions solve_point(const BuiltArm& built, const Vec3d& goal);
 
 // In a verdict as a number: solutions may be missing.

@@ -10,7 +10,7 @@ namespace cspace::ik {
 
 namespace {
 
-Held held_at(const Chain& chain, const double* q, bool whole_pose) {
+TipConstraint constraint_at(const Chain& chain, const double* q, bool whole_pose) {
     return {forward(chain, q), whole_pose, characteristic_length(chain)};
 }
 
@@ -24,14 +24,16 @@ void scale_prismatic(const Chain& chain, double factor, double* v) {
 
 bool self_motion_direction(const BuiltArm& built, const double* q, bool whole_pose, double* direction) {
     const Chain& chain = built.arm->plan.chain;
-    const Held held = held_at(chain, q, whole_pose);
+    const TipConstraint locked_joint = constraint_at(chain, q, whole_pose);
     PoseError error;
-    measure_held(chain, held, q, error);
+    measure_constrained(chain, locked_joint, q, error);
     const bool found =
-        whole_pose ? find_self_motion(chain, held.goal, held.length, q, error.jacobian, direction)
-                   : start_direction(chain, held, q, error.jacobian.v[weakest(error.jacobian)], direction);
+        whole_pose
+            ? find_self_motion(chain, locked_joint.goal, locked_joint.length, q, error.jacobian, direction)
+            : start_direction(chain, locked_joint, q, error.jacobian.v[weakest_direction(error.jacobian)],
+                              direction);
     if (!found) return false;
-    if (!whole_pose) scale_prismatic(chain, held.length, direction);
+    if (!whole_pose) scale_prismatic(chain, locked_joint.length, direction);
     const double size = std::sqrt(dot_n(direction, direction, chain.n));
     for (int i = 0; i < chain.n; ++i) direction[i] /= size;
     return true;
@@ -40,17 +42,17 @@ bool self_motion_direction(const BuiltArm& built, const double* q, bool whole_po
 SelfMotionCurve follow_self_motion(const BuiltArm& built, const double* q, const double* direction,
                                    bool whole_pose) {
     const Chain& chain = built.arm->plan.chain;
-    const Held held = held_at(chain, q, whole_pose);
+    const TipConstraint locked_joint = constraint_at(chain, q, whole_pose);
     SelfMotionCurve curve;
     double along[max_joints];
     for (int i = 0; i < chain.n; ++i) along[i] = direction[i];
-    scale_prismatic(chain, 1 / held.length, along);
+    scale_prismatic(chain, 1 / locked_joint.length, along);
     const auto visit = [&](const double* at, const double* t) {
         curve.q.insert(curve.q.end(), at, at + chain.n);
         curve.tangents.insert(curve.tangents.end(), t, t + chain.n);
-        scale_prismatic(chain, held.length, curve.tangents.data() + curve.tangents.size() - chain.n);
+        scale_prismatic(chain, locked_joint.length, curve.tangents.data() + curve.tangents.size() - chain.n);
     };
-    curve.end = int(follow_curve(chain, held, q, along, visit));
+    curve.end = int(follow_curve(chain, locked_joint, q, along, visit));
     return curve;
 }
 
@@ -58,17 +60,17 @@ void project_on_self_motion(const BuiltArm& built, const double* q, bool whole_p
                             double* tangents) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     const Chain& chain = built.arm->plan.chain;
-    const Held held = held_at(chain, q, whole_pose);
+    const TipConstraint locked_joint = constraint_at(chain, q, whole_pose);
     const int n = chain.n;
     for (int i = 0; i < k; ++i) {
         double *row = rows + i * n, *t = tangents + i * n, tangent[max_joints];
         PoseError error;
-        scale_prismatic(chain, 1 / held.length, t);
+        scale_prismatic(chain, 1 / locked_joint.length, t);
         const bool arrived =
-            onto_curve(chain, held, row, error) && tangent_at(chain, error.jacobian, t, tangent);
+            onto_curve(chain, locked_joint, row, error) && tangent_at(chain, error.jacobian, t, tangent);
         for (int j = 0; j < n; ++j) t[j] = arrived ? tangent[j] : none;
         if (!arrived) std::fill(row, row + n, none);
-        scale_prismatic(chain, held.length, t);
+        scale_prismatic(chain, locked_joint.length, t);
     }
 }
 

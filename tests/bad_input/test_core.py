@@ -69,10 +69,10 @@ def test_what_is_no_robot_is_refused(arm):
         for call, arguments in [
             (_core._ik_build, arrays),
             (_core._ik_single, (GOAL,)),
-            (_core._ik_careful, (GOAL, np.zeros(6))),
-            (_core._ik_miss, (GOAL, 1.0)),
+            (_core._ik_near_singular, (GOAL, np.zeros(6))),
+            (_core._ik_nearest_pose, (GOAL, 1.0)),
             (_core._ik_position, (np.zeros(3),)),
-            (_core._ik_position_miss, (np.zeros(3),)),
+            (_core._ik_nearest_position, (np.zeros(3),)),
             (_core._ik_positions, (np.zeros((1, 3)), *answers(1), 1)),
             (_core._ik_follow, (np.zeros(6), np.zeros(6), True)),
             (_core._ik_onto, (np.zeros(6), np.zeros((2, 6)), np.zeros((2, 6)), True)),
@@ -153,7 +153,7 @@ def test_answers_outlive_their_robot_and_can_be_copied_and_sent(arm):
         for twin in (copy.copy(found), copy.deepcopy(found), pickle.loads(pickle.dumps(found))):
             assert np.array_equal(twin.q, found.q)
             assert np.array_equal(twin.goal, found.goal)
-            assert twin.missing == found.missing
+            assert twin.out_of_reach == found.out_of_reach
             assert (twin.status, twin.reason, twin.branch) == (found.status, found.reason, found.branch)
     found = arm.ik(GOAL)
     del arm

@@ -70,9 +70,9 @@ def test_a_disc_too_large_has_no_room():
 def test_routes_are_copied_and_pickled(planner):
     route = cs.navigate(SHED, (1, 1), (9, 9), planner)
     for same in (copy.copy(route), copy.deepcopy(route), pickle.loads(pickle.dumps(route))):
-        assert (same.status, same.length, same.reason, same.price) == (
+        assert (same.status, same.length, same.reason, same.stats) == (
             *(route.status, route.length, route.reason),
-            route.price,
+            route.stats,
         )
         np.testing.assert_array_equal(same.path, route.path)
         assert len(same.trace) == len(route.trace)

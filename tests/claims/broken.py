@@ -20,7 +20,7 @@ class Told(SimpleNamespace):
 
 
 def told(route, **changed):
-    names = ("status", "path", "length", "price", "evidence", "world", "start", "goal")
+    names = ("status", "path", "length", "stats", "evidence", "world", "start", "goal")
     return Told(**({name: getattr(route, name) for name in names} | changed))
 
 
@@ -112,7 +112,7 @@ class Slow:
         route = cs.navigate(*question, **options)
         spent = float(route.world.rows * route.world.columns) ** self.power
         self.now += 1e-9 * spent
-        return told(route, price=route.price._replace(nodes=int(spent)))
+        return told(route, stats=route.stats._replace(nodes=int(spent)))
 
     def clock(self):
         return self.now

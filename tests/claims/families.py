@@ -14,7 +14,7 @@ from scipy.ndimage import label
 from scipy.sparse.csgraph import connected_components
 
 import cspace as cs
-from navigation.touching_worlds import slanted_touch
+from touching_worlds import slanted_touch
 from oracles.clearance import is_free, nearest, rings_of
 from oracles.grids import distances, graph
 from oracles.plane import shortest

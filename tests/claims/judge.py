@@ -44,7 +44,7 @@ def judge(row, question, route):
         record["reachable_on_cells"] = bool(np.isfinite(question.moves[0]))
     if route is None:
         return record | {"status": "refused"}
-    record |= {"status": route.status, "nodes": int(route.price.nodes), "fault": fault(route, question)}
+    record |= {"status": route.status, "nodes": int(route.stats.nodes), "fault": fault(route, question)}
     if route and not record["fault"] and not question.shut:
         record["ratio"] = route.length / question.length
         if row.world == "grid":

@@ -65,7 +65,7 @@ def measure(row, sizes=SIZES, seeds=SEEDS, navigate=cs.navigate, clock=time.proc
             if route is None:
                 continue
             n = asked.blocked.size if row.world == "grid" else asked.corners
-            points.append({"size": size, "n": int(n), "seconds": min(times), "nodes": int(route.price.nodes)})
+            points.append({"size": size, "n": int(n), "seconds": min(times), "nodes": int(route.stats.nodes)})
         if points and points[-1]["seconds"] > PATIENCE:
             break
     return points

@@ -117,9 +117,9 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "planners": [
             {
                 "name": TEXT,
-                "line": TEXT,
+                "summary": TEXT,
                 "world": TEXT,
-                "sees": TEXT,
+                "sensing": TEXT,
                 "options": [
                     {
                         "name": TEXT,
@@ -165,12 +165,12 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "angle_to": LIST_OR_NULL,
             "tool_axis": (list, str, type(None)),
         },
-        "fixed": dict,
+        "locked": dict,
         "swivel": NUMBER_OR_NULL,
         "status": TEXT,
         "complete": bool,
         "reason": TEXT,
-        "missing": NUMBER,
+        "out_of_reach": NUMBER,
         "freedom": [TEXT],
         "solutions": [
             {
@@ -197,7 +197,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
         "notes": [TEXT],
         "constants": dict,
         "matrices": dict,
-        "held": [TEXT],
+        "locked": [TEXT],
         "counted": TEXT,
         "calls": [TEXT],
         "other_ways": dict,

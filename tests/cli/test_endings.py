@@ -57,13 +57,13 @@ BAD_LINES = [
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to x 4", "expected 0 to π rad"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 1 --swivel 1", "--swivel goes with a full pose"),
     ("ik planar_2r --xy 0.4 0.1 --swivel 1", "--swivel goes with a full pose"),
-    ("ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 1 --fixed goal_turn=1", "goal_tool_turn_z"),
-    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --fixed elbow=1", "did you mean 'elbow_joint'?"),
-    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --fixed elbow_joint", "not of the form NAME=VALUE"),
-    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --fixed elbow_joint=w", "'w' is not a number"),
-    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --fixed elbow_joint=1 q3=2", "--fixed holds elbow_joint twice"),
+    ("ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 1 --locked goal_turn=1", "goal_tool_turn_z"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow=1", "did you mean 'elbow_joint'?"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow_joint", "not of the form NAME=VALUE"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow_joint=w", "'w' is not a number"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow_joint=1 q3=2", "--locked holds elbow_joint twice"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --swivel 1", "ur5e has no swivel"),
-    ("ik iiwa14 --xyz 0.4 0 0.3 --rpy 0 3 0 --swivel 1 --fixed q1=0", "--swivel goes with --near alone"),
+    ("ik iiwa14 --xyz 0.4 0 0.3 --rpy 0 3 0 --swivel 1 --locked q1=0", "--swivel goes with --near alone"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 3", "leave --samples out"),
     ("ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 0", "samples is 0, expected 1 to"),
     ("ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples many", "invalid int value: 'many'"),
@@ -71,7 +71,7 @@ BAD_LINES = [
         "ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 3 --near 0 0 0 0 0 0 0",
         "--samples and --near do not go",
     ),
-    ("ik ur5e --explain --fixed q2=1 --asked position", "--fixed goes with a full pose: leave --asked out"),
+    ("ik ur5e --explain --locked q2=1 --asked position", "--locked goes with a full pose: leave --asked out"),
     ("ik ur5e --explain --tool-axis x", "--tool-axis goes with --direction"),
     ("ik ur5e --explain --look-at 1 0 0", "leave --look-at out"),
     ("ik ur5e --explain --samples 3", "leave --samples out"),
@@ -117,15 +117,15 @@ BAD_FILES = [
     ("type.urdf", "<robot name='r'>\n<link name='a'/><link name='b'/>\n"
      "<joint name='j' type='revolvy'><parent link='a'/><child link='b'/></joint></robot>", ":3:"),
     ("cycle.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n"
-     "<joint name='j' type='fixed'><parent link='a'/><child link='b'/></joint>\n"
-     "<joint name='k' type='fixed'><parent link='b'/><child link='a'/></joint></robot>", "cycle.urdf"),
+     "<joint name='j' type='locked'><parent link='a'/><child link='b'/></joint>\n"
+     "<joint name='k' type='locked'><parent link='b'/><child link='a'/></joint></robot>", "cycle.urdf"),
     ("axis.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n"
      "<joint name='j' type='continuous'><parent link='a'/><child link='b'/><axis xyz='0 0 0'/></joint>\n"
      "</robot>", ":2:"),
     ("limits.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='j' type='revolute'>"
      "<parent link='a'/><child link='b'/><limit lower='1' upper='-1' effort='1' velocity='1'/></joint>\n"
      "</robot>", "upside down"),
-    ("nan.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='j' type='fixed'>"
+    ("nan.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='j' type='locked'>"
      "<parent link='a'/><child link='b'/><origin xyz='nan 0 0'/></joint></robot>", "nan"),
     ("recipe.urdf", "two eggs and some flour", "recipe.urdf"),
     ("empty.urdf", "", "empty.urdf"),

@@ -38,7 +38,7 @@ def test_json(tmp_path):
 
 
 def test_a_joint_is_named_or_numbered():
-    assert cspace("export panda --fixed q7").out == cspace("export panda --fixed panda_joint7").out
+    assert cspace("export panda --locked q7").out == cspace("export panda --locked panda_joint7").out
 
 
 def test_refusals(tmp_path):
@@ -49,7 +49,7 @@ def test_refusals(tmp_path):
     result = cspace("export ur5e -o", str(tmp_path / "nowhere" / "a.hpp"))
     assert result.code == 2
     assert "there is no folder" in result.err
-    result = cspace("export panda --fixed panda_join7 -o", str(tmp_path / "a.hpp"))
+    result = cspace("export panda --locked panda_join7 -o", str(tmp_path / "a.hpp"))
     assert result.code == 2
     assert "panda_joint7" in result.err
     for example in ("a.h", "a.cpp"):

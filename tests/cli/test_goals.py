@@ -1,4 +1,4 @@
-"""`cspace ik` asks what robot.ik can: parts of a pose, held joints, the swivel, samples, the nearest."""
+"""`cspace ik` asks what robot.ik can: parts of a pose, locked joints, the swivel, samples, the nearest."""
 
 from __future__ import annotations
 
@@ -75,8 +75,8 @@ def test_a_place_and_an_orientation_by_its_matrix_are_a_pose():
         ("ur5e --xyz 0.4 0.1 0.3 --angle-to z 150", "ur5e --xyz 0.4 0.1 0.3 --angle-to z 5pi/6"),
         ("ur5e --rpy 30 0 -45", "ur5e --rpy pi/6 0 -pi/4"),
         (
-            "panda --xyz 0.4 0.1 0.4 --rpy 180 0 0 --fixed panda_joint7=45",
-            "panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --fixed panda_joint7=pi/4",
+            "panda --xyz 0.4 0.1 0.4 --rpy 180 0 0 --locked panda_joint7=45",
+            "panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --locked panda_joint7=pi/4",
         ),
         (
             "iiwa14 --xyz 0.5 0.1 0.4 --rpy 180 0 0 --swivel -30",
@@ -95,27 +95,27 @@ def test_angles_of_goals_and_held_joints_are_typed_in_degrees(deg, rad):
 def test_a_slide_is_held_in_metres_whatever_the_angles_are_in():
     robot = cs.load_robot("stanford")
     words = " ".join(map(repr, robot.fk([0.1, 0.2, 0.3, 0.4, 0.5, 0.6]).ravel().tolist()))
-    found = cspace(f"ik stanford --deg --json --fixed q3=0.3 --matrix {words}").json
+    found = cspace(f"ik stanford --deg --json --locked q3=0.3 --matrix {words}").json
     assert found["solutions"]
-    assert found["fixed"] == {robot.joint_names[2]: 0.3}
+    assert found["locked"] == {robot.joint_names[2]: 0.3}
     assert all(row["q"][2] == 0.3 for row in found["solutions"])
 
 
 @pytest.mark.parametrize("word", ["panda_joint7", "q7"])
 def test_a_held_joint_stands_at_its_value_and_every_solution_of_the_others_is_listed(word):
-    found = cspace(f"ik panda {POSE} --fixed {word}=0.7 --limits keep --json").json
-    answer = cs.load_robot("panda").ik(T, fixed={"panda_joint7": 0.7})
+    found = cspace(f"ik panda {POSE} --locked {word}=0.7 --limits keep --json").json
+    answer = cs.load_robot("panda").ik(T, locked={"panda_joint7": 0.7})
     assert len(answer)
     np.testing.assert_allclose([row["q"] for row in found["solutions"]], answer.q, atol=1e-12)
-    assert found["fixed"] == {"panda_joint7": 0.7}
+    assert found["locked"] == {"panda_joint7": 0.7}
     assert found["freedom"] == []
 
 
 def test_two_joints_are_held_in_one_word_or_two():
-    one = cspace(f"ik panda {POSE} --fixed q7=0.7 q1=0.2 --json")
-    two = cspace(f"ik panda {POSE} --fixed q7=0.7 --fixed q1:=0.2 --json")
+    one = cspace(f"ik panda {POSE} --locked q7=0.7 q1=0.2 --json")
+    two = cspace(f"ik panda {POSE} --locked q7=0.7 --locked q1:=0.2 --json")
     assert (one.code, one.out) == (two.code, two.out)
-    assert one.json["fixed"] == {"panda_joint7": 0.7, "panda_joint1": 0.2}
+    assert one.json["locked"] == {"panda_joint7": 0.7, "panda_joint1": 0.2}
 
 
 def test_the_swivel_is_that_of_every_solution():
@@ -191,13 +191,13 @@ def test_pictures_of_every_kind_of_goal(line, tmp_path):
 
 
 def test_an_explanation_knows_the_joints_that_are_held():
-    result = cspace("ik panda --explain --fixed q4=-pi/2 --json")
+    result = cspace("ik panda --explain --locked q4=-pi/2 --json")
     assert result.code == 0, result.err
     schema.check(result.json, "cspace.ik_plan/1")
-    assert result.json["held"] == ["panda_joint4"]
+    assert result.json["locked"] == ["panda_joint4"]
     assert (
-        cspace("ik panda --explain --fixed q4=-90 --deg").out
-        == cspace("ik panda --explain --fixed q4=-pi/2").out
+        cspace("ik panda --explain --locked q4=-90 --deg").out
+        == cspace("ik panda --explain --locked q4=-pi/2").out
     )
     assert cspace("ik al5d --explain --asked look-at").out == cspace("ik al5d --explain --asked look_at").out
 
@@ -222,8 +222,8 @@ def test_numbers_may_stand_with_commas_between_them(verb):
             "ik iiwa14 --xyz 0.5 0.1 0.4 --rpy 180 0 0 --swivel 30",
         ),
         (
-            "ik panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --fixed q7=pi/4",
-            "ik panda --xyz 0.4 0.1 0.4 --rpy 180 0 0 --fixed q7=45",
+            "ik panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --locked q7=pi/4",
+            "ik panda --xyz 0.4 0.1 0.4 --rpy 180 0 0 --locked q7=45",
         ),
         (
             "ik puma560 --xyz 0.5 0 0.3 --rpy 0 pi 0 --near 0 0 pi/2 0 0 0",
@@ -261,8 +261,8 @@ def test_a_reason_names_the_option_that_answers():
 
 
 def test_values_of_held_joints_are_in_the_unit_that_was_asked_for():
-    line = "ik planar_3r --xy 2.45 0 --fixed joint_1=pi/2"
+    line = "ik planar_3r --xy 2.45 0 --locked joint_1=pi/2"
     assert cspace(line).out.endswith("nothing reaches the goal with joint_1 = 1.5708 rad\n")
     assert cspace(f"{line} --deg").out.endswith("nothing reaches the goal with joint_1 = 90 deg\n")
-    line = "ik scara --xyz 0.3 0.3 9 --rpy pi 0 0 --fixed joint_3=0.1 joint_4=-pi/6 --deg"
+    line = "ik scara --xyz 0.3 0.3 9 --rpy pi 0 0 --locked joint_3=0.1 joint_4=-pi/6 --deg"
     assert cspace(line).out.endswith("with joint_3 = 0.1 m, joint_4 = -30 deg\n")

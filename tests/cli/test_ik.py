@@ -95,7 +95,7 @@ def test_unreachable_says_by_how_much_and_exits_with_one(tmp_path):
     schema.check(found.json)
     assert found.json["solutions"] == []
     assert found.json["status"] == "unreachable"
-    assert 0.8 < found.json["missing"] < 1.8
+    assert 0.8 < found.json["out_of_reach"] < 1.8
     assert found.json["reason"] in result.out
     assert not picture.exists(), "nothing reached, nothing drawn"
 

@@ -84,7 +84,7 @@ def test_planners_and_their_options():
     check(document, "cspace.planners/1")
     assert [row["name"] for row in document["planners"]] == list(cs.navigation.PLANNERS)
     table = cspace("planners").out
-    assert all(row.line in table for row in cs.navigation.PLANNERS.values())
+    assert all(row.summary in table for row in cs.navigation.PLANNERS.values())
     told = cspace("planners rrt any_angle").out
     assert all(option.meaning in told for option in cs.navigation.PLANNERS["rrt"].options.values())
     assert "no options" in told

@@ -98,4 +98,4 @@ def test_every_point_of_a_spatial_arm_has_its_ways():
 def test_the_sheet_names_the_closed_form_of_a_short_arm(name):
     facts = cspace(f"info {name} --json").json
     assert facts["geometry"]["closed_form"]
-    assert facts["geometry"]["family"] == "short arm"
+    assert facts["geometry"]["family"] == "fewer than six joints"

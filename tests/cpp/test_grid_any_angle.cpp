@@ -133,6 +133,6 @@ TEST(many_ways_of_one_length) {
         const Point start{0.5, 0.5}, goal{size - 0.5, size - 0.5};
         const Route route = both.runs.solve(start, both.runs.settle(start), goal, both.runs.settle(goal));
         CHECK(route.status == Status::found);
-        CHECK(route.price.nodes < 2 * size * size);
+        CHECK(route.stats.nodes < 2 * size * size);
     }
 }

@@ -4,10 +4,10 @@
 
 #include "check.hpp"
 #include "cspace/ik/position/solve.hpp"
-#include "short_arms.hpp"
+#include "few_joints.hpp"
 
 using namespace cspace;
-using namespace short_arms;
+using namespace few_joints;
 
 namespace {
 
@@ -109,14 +109,14 @@ TEST(a_miss_is_the_smallest_there_is) {
             const ik::PositionSolutions s = solve_position(chain, goal);
             if (s.count) continue;
             ++misses;
-            CHECK(s.missing > 0);
-            CHECK_NEAR(norm(tip_of(chain, s.nearest) - goal), s.missing, 1e-13);
+            CHECK(s.out_of_reach > 0);
+            CHECK_NEAR(norm(tip_of(chain, s.nearest) - goal), s.out_of_reach, 1e-13);
             for (int start = 0; start < 4000; ++start) {
                 double q[3] = {};
                 random_joints(random, chain, q);
                 if (start >= 2000)
                     for (int i = 0; i < chain.n; ++i) q[i] = s.nearest[i] + 1e-3 * q[i];
-                if (norm(tip_of(chain, q) - goal) < s.missing - 1e-12) {
+                if (norm(tip_of(chain, q) - goal) < s.out_of_reach - 1e-12) {
                     CHECK(false);
                     break;
                 }
@@ -137,9 +137,9 @@ TEST(the_planar_two_link_arm_has_its_four_textbook_cases) {
     CHECK(solve_position(chain, {0.4, 0.3, 0}).count == 2);
     CHECK(solve_position(chain, {0, 0.8, 0}).count == 1);   // stretched
     CHECK(solve_position(chain, {0, -0.2, 0}).count == 1);  // folded
-    CHECK_NEAR(solve_position(chain, {0, 1.0, 0}).missing, 0.2, 1e-14);
-    CHECK_NEAR(solve_position(chain, {0.1, 0, 0}).missing, 0.1, 1e-14);
-    CHECK_NEAR(solve_position(chain, {0.4, 0.3, 0.7}).missing, 0.7, 1e-14);
+    CHECK_NEAR(solve_position(chain, {0, 1.0, 0}).out_of_reach, 0.2, 1e-14);
+    CHECK_NEAR(solve_position(chain, {0.1, 0, 0}).out_of_reach, 0.1, 1e-14);
+    CHECK_NEAR(solve_position(chain, {0.4, 0.3, 0.7}).out_of_reach, 0.7, 1e-14);
     arm(0.4, 0.4);
     const ik::PositionSolutions base = solve_position(chain, {0, 0, 0});
     CHECK(base.count == 1 && base.free[0]);

@@ -40,8 +40,8 @@ def test_an_arm_with_a_joint_held_moves_as_the_whole_arm_does_with_it_there(join
     arm = arms.load("iiwa14")
     q = configurations(arm, 20)
     q[:, joint] = 0.7
-    held = arms.held(arm, joint, 0.7, "held")
-    assert np.abs(chains.fk(held, np.delete(q, joint, axis=1)) - chains.fk(arm, q)).max() < 1e-13
+    locked = arms.locked(arm, joint, 0.7, "held")
+    assert np.abs(chains.fk(locked, np.delete(q, joint, axis=1)) - chains.fk(arm, q)).max() < 1e-13
 
 
 @pytest.mark.parametrize("name", ["jaco2", "stanford"])

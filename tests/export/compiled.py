@@ -23,7 +23,7 @@ class Answer:
     status: str
     complete: bool
     q: np.ndarray
-    family: np.ndarray
+    self_motion: np.ndarray
     T: np.ndarray
     J: np.ndarray
 
@@ -46,7 +46,7 @@ def cpp_program(made, folder: Path, cxx: str, *flags: str) -> Path:
     made.write(folder)
     (header,) = made.files
     program = folder / "program"
-    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DHELD={len(made.held)}", "-I", folder]
+    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DHELD={len(made.locked)}", "-I", folder]
     run([cxx, "-std=c++17", *STRICT, *flags, *words, HERE / "driver.cpp", "-o", program], folder)
     return program
 
@@ -56,7 +56,7 @@ def c_program(made, folder: Path, cxx: str, cc: str) -> Path:
     made.write(folder)
     header, source = made.files
     program = folder / "program"
-    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DHELD={len(made.held)}", "-I", folder]
+    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DHELD={len(made.locked)}", "-I", folder]
     run([cxx, "-std=c++17", "-O1", "-fno-exceptions", *STRICT, "-c", source, "-o", "arm.o"], folder)
     run([cc, "-std=c99", *STRICT, *words, HERE / "driver.c", "arm.o", "-lm", "-o", program], folder)
     return program
@@ -75,14 +75,14 @@ def ask(program: Path, goals: np.ndarray, dof: int) -> list[Answer]:
     data = np.int32(len(goals)).tobytes() + np.ascontiguousarray(goals).tobytes()
     done = subprocess.run([program], input=data, capture_output=True, timeout=300)
     assert done.returncode == 0, done.returncode
-    row = np.dtype([("q", "f8", dof), ("family", "i4"), ("T", "f8", (4, 4)), ("J", "f8", (6, dof))])
+    row = np.dtype([("q", "f8", dof), ("self_motion", "i4"), ("T", "f8", (4, 4)), ("J", "f8", (6, dof))])
     answers, at = [], 0
     for _ in goals:
         count, status, complete = np.frombuffer(done.stdout, "i4", 3, at)
         rows = np.frombuffer(done.stdout, row, count, at + 12)
         at += 12 + count * row.itemsize
         answers.append(
-            Answer(STATUS[status], bool(complete), rows["q"], rows["family"] != 0, rows["T"], rows["J"])
+            Answer(STATUS[status], bool(complete), rows["q"], rows["self_motion"] != 0, rows["T"], rows["J"])
         )
     assert at == len(done.stdout)
     return answers

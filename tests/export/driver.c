@@ -8,10 +8,10 @@
 #define JOIN(a, b) PASTE(a, b)
 #define NAME(word) JOIN(ARM, word)
 
-#ifndef HELD
-#define HELD 0
+#ifndef LOCKED
+#define LOCKED 0
 #endif
-#if HELD
+#if LOCKED
 #define ASK(goal, found) NAME(_ik)(goal, goal + 16, 0, found)
 #else
 #define ASK(goal, found) NAME(_ik)(goal, 0, found)
@@ -21,17 +21,17 @@ int main(void) {
     int n = 0, j, k;
     if (fread(&n, sizeof n, 1, stdin) != 1) return 2;
     for (k = 0; k < n; ++k) {
-        double goal[16 + HELD];
+        double goal[16 + LOCKED];
         NAME(_solutions) found;
         int head[3];
-        if (fread(goal, sizeof(double), 16 + HELD, stdin) != 16 + HELD) return 2;
+        if (fread(goal, sizeof(double), 16 + LOCKED, stdin) != 16 + LOCKED) return 2;
         head[0] = ASK(goal, &found);
         head[1] = (int)found.status;
         head[2] = found.complete;
         fwrite(head, sizeof(int), 3, stdout);
         for (j = 0; j < found.count; ++j) {
             double T[16], J[6 * NAME(_dof)];
-            const int family = found.family[j];
+            const int family = found.self_motion[j];
             NAME(_fk)(found.q[j], T);
             NAME(_jacobian)(found.q[j], J);
             fwrite(found.q[j], sizeof(double), NAME(_dof), stdout);

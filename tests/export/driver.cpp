@@ -1,5 +1,5 @@
-// Answers goals with an exported arm: reads their number and 16 doubles each, and HELD values of held joints,
-// writes per goal count, status,
+// Answers goals with an exported arm: reads their number and 16 doubles each, and LOCKED values of locked
+// joints, writes per goal count, status,
 // complete (int), the rows, their families (int), and the poses and Jacobians of the rows.
 #include HEADER
 
@@ -8,14 +8,14 @@
 
 namespace arm = ARM;
 
-#ifndef HELD
-#define HELD 0
+#ifndef LOCKED
+#define LOCKED 0
 #endif
-constexpr std::size_t stride = 16 + HELD;
+constexpr std::size_t stride = 16 + LOCKED;
 
 static arm::Solutions solutions(const double* goal) {
-#if HELD
-    static_assert(arm::held == HELD, "as many values as the arm holds joints");
+#if LOCKED
+    static_assert(arm::locked == LOCKED, "as many values as the arm holds joints");
     return arm::ik(goal, goal + 16);
 #else
     return arm::ik(goal);
@@ -40,7 +40,7 @@ int main() {
             double T[4][4], J[6 * arm::dof];
             arm::fk(found.q[j], T);
             arm::jacobian(found.q[j], J);
-            const int family = found.family[j];
+            const int family = found.self_motion[j];
             put(found.q[j], arm::dof);
             put(&family, 1);
             put(&T[0][0], 16);

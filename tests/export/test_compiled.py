@@ -10,7 +10,7 @@ import pytest
 
 import cspace as cs
 from cspace import _core
-from cspace.ik.windings import into_limits
+from cspace.ik.wrapping import into_limits
 from export import agree, arms, compiled
 
 

@@ -85,8 +85,8 @@ def test_every_arm_of_the_catalogue_is_a_module_on_its_own(name):
     assert "0BSD" in ast.get_docstring(tree)
     assert max(map(len, made.text.splitlines()), default=0) < 2000
     q = robot.random_configuration(rng=1, reach=0.3)
-    held = [q[robot.joint_names.index(joint)] for joint in made.held]
-    found = module_of(made.text).ik(robot.fk(q), *([held] if held else []))
+    locked = [q[robot.joint_names.index(joint)] for joint in made.locked]
+    found = module_of(made.text).ik(robot.fk(q), *([locked] if locked else []))
     assert agree.apart(q, found.q, robot.joint_types) < 1e-5
 
 

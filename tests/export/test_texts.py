@@ -48,9 +48,9 @@ def test_every_arm_of_the_catalogue(name):
 def test_a_file_holds_the_headers_of_its_solver_alone():
     """A closed form comes without the general solver, an arm of three joints without either."""
     words = {
-        "irb120": ({"place_wrist"}, {"eliminate", "solve_short_pose"}),
-        "gen3_lite": ({"eliminate"}, {"solve_short_pose", "solve_quickly"}),
-        "planar_2r": ({"solve_short_pose"}, {"eliminate", "place_wrist", "solve_carefully"}),
+        "irb120": ({"place_wrist"}, {"eliminate", "solve_few_joint_pose"}),
+        "gen3_lite": ({"eliminate"}, {"solve_few_joint_pose", "solve_quickly"}),
+        "planar_2r": ({"solve_few_joint_pose"}, {"eliminate", "place_wrist", "solve_carefully"}),
     }
     for name, (there, missing) in words.items():
         code = code_of(cs.load_robot(name).export("cpp").text)
@@ -119,7 +119,7 @@ def test_what_cannot_be_written_leaves_nothing_behind(tmp_path):
         robot.export("cpp", tmp_path)
     (tmp_path / "a.hpp").write_text("old")
     with pytest.raises(UnknownNameError):
-        robot.export("cpp", tmp_path / "a.hpp", fixed="elbow")
+        robot.export("cpp", tmp_path / "a.hpp", locked="elbow")
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("a.hpp", "old")]
 
 
@@ -161,7 +161,7 @@ def test_where_one_of_two_files_cannot_be_written_neither_is(tmp_path):
 
 def test_an_arm_without_joints_is_refused(tmp_path):
     link = '<link name="a"/><link name="b"/>'
-    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    joint = '<joint name="j" type="locked"><parent link="a"/><child link="b"/></joint>'
     (tmp_path / "still.urdf").write_text(f'<robot name="still">{link}{joint}</robot>')
     robot = cs.load_robot(tmp_path / "still.urdf")
     with pytest.raises(NoClosedFormError, match="no joint moves"):

@@ -39,7 +39,7 @@ def named(name):
 
 
 @pytest.mark.parametrize("name", [*SHORT, *MADE])
-def test_short_arms_have_names_that_differ_and_stay_next_door(name):
+def test_arms_of_few_joints_have_names_that_differ_and_stay_next_door(name):
     robot = named(name)
     rng = np.random.default_rng(1)
     seen = set()

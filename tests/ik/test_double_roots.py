@@ -77,7 +77,7 @@ def expect_folds(robot, rng, n):
         # Two solutions that are one are not many.
         assert np.count_nonzero(gaps < 1e-4) <= 2
         if found.status == "singular":
-            assert all(np.abs(in_lengths(robot, f.q) @ f.direction).max() < 1e-6 for f in found.families)
+            assert all(np.abs(in_lengths(robot, f.q) @ f.direction).max() < 1e-6 for f in found.self_motions)
         # Beside it there are two on one side, and on the other none.
         counts = []
         for way in (1e-6, -1e-6):

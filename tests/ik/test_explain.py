@@ -12,10 +12,10 @@ import cspace as cs
 from cspace import _core
 from cspace.errors import InputError, UnknownNameError
 from cspace.ik import ik_plan
-from cspace.ik.explain.asked import goal_asked
-from cspace.ik.explain.held import Split
+from cspace.ik.explain.goal_parts import goal_of_parts
+from cspace.ik.explain.locked_joints import Split
+from cspace.ik.goals.solve_partial import whole_arm
 from cspace.ik.prepare import prepare
-from cspace.ik.solve_partial import whole_arm
 from cspace.model import from_screws
 from cspace.robot import Robot
 from ik import geometries
@@ -30,18 +30,18 @@ def configurations(robot, rng, n=6):
     return rng.uniform(-1.5, 1.5, (n, robot.dof))
 
 
-def expect_true(robot, rng, held=None, **question):
+def expect_true(robot, rng, locked_at=None, **question):
     """The plan of an arm, after its equations were found to hold, and not to hold for other joint values.
 
-    held: values of held joints, by number. question: what ik_plan is asked.
+    held: values of locked joints, by number. question: what ik_plan is asked.
     """
     plan = ik_plan(robot, **question)
     assert plan, plan.reason
     q = configurations(robot, rng)
-    for joint, value in (held or {}).items():
+    for joint, value in (locked_at or {}).items():
         q[:, joint] = value
     T = robot.fk(q)
-    seen = _core._ik_geometry(solved_by_steps(robot, plan, held, question))
+    seen = _core._ik_geometry(solved_by_steps(robot, plan, locked_at, question))
     reach = max(1.0, np.abs(T[:, :3, 3]).max() / seen["length"])  # a square of it is off by 2 reach deviation
     allowed = 1e-11 + 2 * reach * (seen["deviation"] if seen["family"] >= 0 else 0.0)
     assert plan.residuals(q, T).shape == (6, len(plan.equations))
@@ -55,15 +55,15 @@ def expect_true(robot, rng, held=None, **question):
     return plan
 
 
-def solved_by_steps(robot, plan, held, question):
-    """The arm that the steps of a plan belong to: without held joints, with those of the goal."""
-    if "asked" in question:
-        robot = whole_arm(robot, goal_asked(question["asked"], question.get("tool_axis", "z")))
+def solved_by_steps(robot, plan, locked_at, question):
+    """The arm that the steps of a plan belong to: without locked joints, with those of the goal."""
+    if "goal_parts" in question:
+        robot = whole_arm(robot, goal_of_parts(question["goal_parts"], question.get("tool_axis", "z")))
         prepare(robot)
-    if not plan.held:
+    if not plan.locked:
         return robot
-    joints = tuple(robot.joint_names.index(name) for name in plan.held)
-    others = Split(robot, joints, {k: (held or {}).get(k, 0.0) for k in joints}).others()
+    joints = tuple(robot.joint_names.index(name) for name in plan.locked)
+    others = Split(robot, joints, {k: (locked_at or {}).get(k, 0.0) for k in joints}).others()
     prepare(others)
     return others
 
@@ -84,9 +84,9 @@ def test_every_arm_of_the_catalogue_is_explained(name):
     q = configurations(robot, np.random.default_rng(3), 20)
     goals = robot.fk(q)
     if len(robot.joint_names) > 6:
-        at = [{name: row[robot.joint_names.index(name)] for name in plan.held} for row in q]
-        found = [robot.ik(T, fixed=values) for T, values in zip(goals, at, strict=True)]
-        assert plan.held == robot.ik(goals[0]).freedom
+        at = [{name: row[robot.joint_names.index(name)] for name in plan.locked} for row in q]
+        found = [robot.ik(T, locked=values) for T, values in zip(goals, at, strict=True)]
+        assert plan.locked == robot.ik(goals[0]).freedom
     else:
         found = [robot.ik(T) for T in goals]
     assert max(map(len, found)) <= plan.branches
@@ -113,7 +113,7 @@ def test_arms_of_up_to_three_joints(kinds):
     tip = cs.pose(rng.normal(size=3), rpy=rng.normal(size=3))
     robot = Robot(from_screws(axes, rng.normal(size=(n, 3)), tip, joint_types=kinds))
     plan = expect_true(robot, rng)
-    assert plan.family == "short arm"
+    assert plan.family == "fewer than six joints"
     for q in configurations(robot, rng, 20):
         assert len(robot.ik(position=robot.fk(q)[:3, 3])) <= plan.branches
 
@@ -175,7 +175,7 @@ def test_an_arm_that_is_solved_through_its_neighbours_says_so():
     tip = cs.pose([0.3, 0.2, 0.5])
     robot = Robot(from_screws([y, z, x, y, x, z], points, tip, joint_types="RPRRRR"))
     plan = expect_true(robot, np.random.default_rng(4))
-    assert _core._ik_plan(robot)["loop"]["neighbours"]
+    assert _core._ik_plan(robot)["loop"]["perturbed_arms"]
     assert "Two neighbours of the arm" in plan.to_text()
     assert "neighbour" not in load("jaco2").ik_plan().to_text()
 
@@ -217,7 +217,7 @@ def test_an_arm_with_joints_to_spare_says_which_are_held_and_what_its_axes_share
     robot = Robot(from_screws(axes, points, cs.pose([1, 0, 0])))
     plan = robot.ik_plan()
     assert plan
-    assert plan.held == ("joint_1", "joint_6")
+    assert plan.locked == ("joint_1", "joint_6")
     assert "2 more than the tip has ways to move" in plan.to_text()
     assert plan.relations[0].words == "on one line"
     q = np.linspace(0.2, 0.8, 6)
@@ -237,7 +237,7 @@ def test_the_text_of_a_universal_robot():
 
 def test_the_wrist_of_a_puma_stands_where_its_axes_meet():
     robot = load("puma560")
-    (shoulder, wrist) = robot.ik_plan().still_points
+    (shoulder, wrist) = robot.ik_plan().invariant_points
     assert (shoulder.joints, wrist.joints) == ((1, 2), (4, 5, 6))
     p_tip = np.linalg.inv(robot.chain.T_zero) @ np.append(wrist.place, 1.0)
     q = np.random.default_rng(6).uniform(-3, 3, (20, 6))
@@ -277,22 +277,24 @@ def test_two_spherical_joints_are_explained_by_the_swivel_too(name):
 @pytest.mark.parametrize("joint", range(7))
 def test_any_joint_may_be_held_and_the_others_are_explained_at_its_value(joint):
     robot = load("panda")
-    plan = expect_true(robot, np.random.default_rng(joint), held={joint: 0.4}, fixed={joint: 0.4})
-    assert plan.held == (f"panda_joint{joint + 1}",)
+    plan = expect_true(robot, np.random.default_rng(joint), locked_at={joint: 0.4}, locked={joint: 0.4})
+    assert plan.locked == (f"panda_joint{joint + 1}",)
     assert ("numbers below are for" in plan.to_text()) == (0 < joint < 6)
     q = configurations(robot, np.random.default_rng(20 + joint))
     q[:, joint] = 0.4
-    assert max(len(robot.ik(T, fixed={joint: 0.4})) for T in robot.fk(q)) <= plan.branches
+    assert max(len(robot.ik(T, locked={joint: 0.4})) for T in robot.fk(q)) <= plan.branches
 
 
 def test_six_joints_with_one_held_are_an_arm_of_five():
-    plan = expect_true(load("ur5e"), np.random.default_rng(8), held={2: 1.1}, fixed={"elbow_joint": 1.1})
-    assert plan.family == "held"
+    plan = expect_true(
+        load("ur5e"), np.random.default_rng(8), locked_at={2: 1.1}, locked={"elbow_joint": 1.1}
+    )
+    assert plan.family == "locked"
     assert "Joints 1 to 5 of the steps are those that move" in plan.to_text()
 
 
 @pytest.mark.parametrize(
-    ("name", "asked"),
+    ("name", "goal_parts"),
     [
         ("ur5e", "position"),
         ("ur5e", ("position", "direction")),
@@ -306,37 +308,37 @@ def test_six_joints_with_one_held_are_an_arm_of_five():
         ("puma560", "direction"),
     ],
 )
-def test_goals_that_ask_for_less_are_explained_by_the_arm_that_they_make(name, asked):
+def test_goals_that_ask_for_less_are_explained_by_the_arm_that_they_make(name, goal_parts):
     robot = load(name)
-    plan = ik_plan(robot, asked=asked)
+    plan = ik_plan(robot, goal_parts=goal_parts)
     if not plan:
         assert "two of its joints do one's work" in plan.reason
         return
     if "numbers below are for" not in plan.to_text():  # a joint of the goal stands at a value
-        expect_true(robot, np.random.default_rng(9), asked=asked)
+        expect_true(robot, np.random.default_rng(9), goal_parts=goal_parts)
     for form in FORMS:
         assert "goal_" in getattr(plan, form)().replace("\\_", "_")
 
 
 def test_a_pose_or_a_plain_point_of_a_short_arm_needs_no_joints_of_the_goal():
-    assert ik_plan(load("ur5e"), asked="position+rotation").to_dict() == load("ur5e").ik_plan().to_dict()
-    assert "goal_" not in ik_plan(load("planar_3r"), asked="position").to_text()
+    assert ik_plan(load("ur5e"), goal_parts="position+rotation").to_dict() == load("ur5e").ik_plan().to_dict()
+    assert "goal_" not in ik_plan(load("planar_3r"), goal_parts="position").to_text()
 
 
 def test_questions_that_make_no_sense_are_refused():
     robot = load("ur5e")
     with pytest.raises(KeyError, match="did you mean 'position'"):
-        robot.ik_plan(asked="postion")
+        robot.ik_plan(goal_parts="postion")
     with pytest.raises(TypeError, match="make no goal"):
-        robot.ik_plan(asked=("rotation", "direction"))
-    with pytest.raises(TypeError, match="leave asked= out"):
-        robot.ik_plan(asked="position", fixed={0: 0.1})
+        robot.ik_plan(goal_parts=("rotation", "direction"))
+    with pytest.raises(TypeError, match="leave goal_parts= out"):
+        robot.ik_plan(goal_parts="position", locked={0: 0.1})
     with pytest.raises(TypeError, match="asked is a float"):
-        robot.ik_plan(asked=1.0)
+        robot.ik_plan(goal_parts=1.0)
     with pytest.raises(TypeError, match="one value per joint"):
-        robot.ik_plan(fixed={0: [0.1, 0.2]})
+        robot.ik_plan(locked={0: [0.1, 0.2]})
     with pytest.raises(KeyError, match="wrist"):
-        robot.ik_plan(fixed={"wrist": 0.1})
+        robot.ik_plan(locked={"wrist": 0.1})
 
 
 def test_what_is_no_robot_is_refused():
@@ -351,8 +353,8 @@ def test_residuals_take_configurations_and_poses():
     for bad_q, bad_T in ((q[:5], T), (q * np.nan, T), (q, np.eye(3)), (np.stack([q] * 2), np.stack([T] * 3))):
         with pytest.raises(InputError):
             plan.residuals(bad_q, bad_T)
-    drill = robot.ik_plan(asked=("position", "direction"))
+    drill = robot.ik_plan(goal_parts=("position", "direction"))
     with pytest.raises(InputError, match=r"expected \(..., 6\)"):
         drill.residuals(np.zeros(7), T)
     with pytest.raises(UnknownNameError, match="no part"):
-        robot.ik_plan(asked=(np.zeros(3),))
+        robot.ik_plan(goal_parts=(np.zeros(3),))

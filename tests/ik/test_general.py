@@ -136,7 +136,7 @@ def test_poses_out_of_reach_say_by_how_much():
         assert not found
         assert found.status == "unreachable"
         assert found.complete
-        assert far - 2 < found.missing < far + 1
+        assert far - 2 < found.out_of_reach < far + 1
 
 
 def test_near_gives_the_nearest_of_all():

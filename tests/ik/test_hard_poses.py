@@ -73,7 +73,7 @@ def test_goals_from_the_origin_to_infinity(name):
     assert (batch.count[-6:] == 0).all()
     for T in goals[-3:]:
         found = robot.ik(T)
-        assert found.missing == pytest.approx(np.linalg.norm(T[:3, 3]), rel=1e-3)
+        assert found.out_of_reach == pytest.approx(np.linalg.norm(T[:3, 3]), rel=1e-3)
         assert found.reason
 
 

@@ -91,13 +91,13 @@ def test_short_arms_with_freedom_come_as_near_as_they_can(robot):
 def test_a_family_has_a_member_nearest_to_each_seed(name, q):
     robot, rng = load(name), np.random.default_rng(7)
     T = robot.fk(np.array(q))
-    families = robot.ik(T).families
-    assert min(gap(robot, family.nearest(np.array(q)), q) for family in families) < 1e-6
-    for family in families:
+    self_motions = robot.ik(T).self_motions
+    assert min(gap(robot, self_motion.nearest(np.array(q)), q) for self_motion in self_motions) < 1e-6
+    for self_motion in self_motions:
         for seed in rng.uniform(-1, 1, (5, robot.dof)):
-            best = family.nearest(seed)
+            best = self_motion.nearest(seed)
             np.testing.assert_allclose(robot.fk(best), T, atol=1e-9)
-            others = family.sample(200)
+            others = self_motion.sample(200)
             d = np.linalg.norm((others - seed + np.pi) % (2 * np.pi) - np.pi, axis=1)
             here = np.linalg.norm((best - seed + np.pi) % (2 * np.pi) - np.pi)
             assert here <= d.min(initial=np.inf) + 1e-6

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.ik.windings import short_way
+from cspace.ik.wrapping import short_way
 from cspace.model import Limits
 from ik.arms import load
 

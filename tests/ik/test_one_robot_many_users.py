@@ -28,8 +28,15 @@ def goals_of(robot, n, seed=1):
 
 
 def summary(found):
-    families = tuple(f.direction.tobytes() for f in found.families)
-    return found.q.tobytes(), found.status, found.complete, found.reason, found.residual.tobytes(), families
+    self_motions = tuple(f.direction.tobytes() for f in found.self_motions)
+    return (
+        found.q.tobytes(),
+        found.status,
+        found.complete,
+        found.reason,
+        found.residual.tobytes(),
+        self_motions,
+    )
 
 
 def in_threads(work):

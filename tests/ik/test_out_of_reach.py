@@ -30,9 +30,9 @@ def expect_empty(robot, found):
     assert len(found) == 0
     assert found.status == "unreachable"
     assert found.q.shape == (0, robot.dof)
-    assert found.families == found.branch == ()
+    assert found.self_motions == found.branch == ()
     assert found.residual.shape == (0,)
-    assert found.missing > 0
+    assert found.out_of_reach > 0
     assert found.reason
 
 
@@ -68,7 +68,7 @@ def test_a_hair_out_of_reach(name):
                 expect_empty(robot, outside)
                 # The way back is one way; a shorter one may lead across. Beside a fold the descent that
                 # looks for it stops a little early.
-                assert 0 < outside.missing <= 1.001 * hair + 3e-7
+                assert 0 < outside.out_of_reach <= 1.001 * hair + 3e-7
 
 
 @pytest.mark.parametrize("lengths", [2.0, 30.0, 1e3, 1e6])
@@ -86,7 +86,7 @@ def test_far_out_of_reach(name, lengths):
         expect_empty(robot, found)
         assert found.complete
         if robot.dof == 6:  # what a string of the arm's length would lack, or more
-            assert (1 - 1e-9) * (away - reach) <= found.missing <= (1 + 1e-9) * (away + reach)
+            assert (1 - 1e-9) * (away - reach) <= found.out_of_reach <= (1 + 1e-9) * (away + reach)
         assert len(robot.ik(goal, least_squares=True)) == 1
 
 
@@ -101,7 +101,7 @@ def test_what_is_missing_grows_with_the_arm(name, factor):
         one, other = robot.ik(goal), like.robot.ik(like.to_goal(goal))
         expect_empty(robot, one)
         expect_empty(like.robot, other)
-        assert other.missing == pytest.approx(factor * one.missing, rel=1e-6)
+        assert other.out_of_reach == pytest.approx(factor * one.out_of_reach, rel=1e-6)
 
 
 @pytest.mark.parametrize("word", WORDS)

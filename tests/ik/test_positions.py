@@ -32,7 +32,7 @@ def test_a_batch_is_its_single_calls(name):
     assert batch.q.shape == (60, 8, robot.dof)
     assert batch.goal.shape == (60, 3)
     nearest = batch.nearest(np.zeros(robot.dof))
-    reasons, missing = batch.reason, batch.missing
+    reasons, missing = batch.reason, batch.out_of_reach
     for i, p in enumerate(points):
         single, one = robot.ik(position=p), batch[i]
         assert batch.count[i] == len(single) == len(one)
@@ -41,7 +41,7 @@ def test_a_batch_is_its_single_calls(name):
         assert np.isnan(batch.q[i, batch.count[i] :]).all()
         assert (one.branch, one.reason) == (single.branch, single.reason)
         assert reasons[i] == single.reason
-        assert missing[i] == single.missing
+        assert missing[i] == single.out_of_reach
         assert (missing[i] > 0) == (not single)
         assert np.array_equal(one.goal, p)
         if single:
@@ -78,7 +78,7 @@ def test_points_of_the_plane_are_lifted_to_it():
     assert np.array_equal(one.q, robot.ik(position=flat[2, 3]).q)
     r = np.linalg.norm(flat, axis=-1)
     assert np.array_equal(batch.reachable, r <= 2)
-    assert np.allclose(batch.missing, np.maximum(r - 2, 0), atol=1e-12)
+    assert np.allclose(batch.out_of_reach, np.maximum(r - 2, 0), atol=1e-12)
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])
@@ -95,7 +95,7 @@ def test_an_empty_batch_has_an_empty_answer(shape):
     robot = load("planar_2r")
     batch = robot.ik(position=np.zeros((*shape, 2)))
     assert batch.q.shape == (*shape, 8, 2)
-    assert batch.reason.shape == batch.missing.shape == batch.residual.shape[:-1] == shape
+    assert batch.reason.shape == batch.out_of_reach.shape == batch.residual.shape[:-1] == shape
 
 
 def test_filters_and_copies_keep_positions():
@@ -163,7 +163,7 @@ def test_a_joint_of_a_short_arm_is_held(joint):
     robot, q = load("planar_3r"), np.array([0.3, 0.5, 0.7])
     p = robot.fk(q)[:3, 3]
     for point in (p, p[:2]):
-        found = robot.ik(position=point, fixed={f"joint_{joint + 1}": q[joint]})
+        found = robot.ik(position=point, locked={f"joint_{joint + 1}": q[joint]})
         assert found.complete
         assert len(found) == 2
         assert np.abs(found.q[:, joint] - q[joint]).max() < 1e-12
@@ -178,7 +178,7 @@ def test_a_held_joint_that_leaves_the_others_free_is_no_error(joint):
     T_zero[0, 3] = 3.0
     points = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
     robot = Robot(from_screws([[0, 0, 1.0]] * 3, points, T_zero, joint_types="RRR"))
-    found = robot.ik(position=(0, 1, 0), fixed={joint: np.pi})
+    found = robot.ik(position=(0, 1, 0), locked={joint: np.pi})
     assert len(found) > 1
     assert not found.complete
     assert np.abs(robot.fk(found.q)[:, :3, 3] - [0, 1, 0]).max() < 1e-9
@@ -193,7 +193,7 @@ def test_one_of_two_parallel_slides_is_held(bounds):
     robot = Robot(from_screws(axes, points, T_zero, joint_types="PRP", **bounds))
     for q in np.random.default_rng(0).uniform(-1, 1, (20, 3)):
         x, y, _ = robot.fk(q)[:3, 3]
-        found = robot.ik(position=(x, y, None), fixed={"joint_1": q[0]})
+        found = robot.ik(position=(x, y, None), locked={"joint_1": q[0]})
         assert found
         assert np.abs(found.q[:, 0] - q[0]).max() < 1e-12
         assert np.abs(robot.fk(found.q)[:, :2, 3] - [x, y]).max() < 1e-9

@@ -19,10 +19,10 @@ UPRIGHT = {
 NAMES = ["crx10ia", "gen3_lite", "irb140", "jaco2", "m1013", "piper", "xarm6"]
 
 
-def goals(robot, held, rng, n):
+def goals(robot, locked, rng, n):
     """Poses at points within reach, the tool held so and turned about the first axis."""
     T = robot.fk(random_configurations(robot, rng, n))
-    T[:, :3, :3] = exp_so3(rng.uniform(-3, 3, (n, 1)) * [0, 0, 1]) @ UPRIGHT[held]
+    T[:, :3, :3] = exp_so3(rng.uniform(-3, 3, (n, 1)) * [0, 0, 1]) @ UPRIGHT[locked]
     return T
 
 
@@ -40,12 +40,12 @@ def reached_by_tilting(robot, goal, rng, tilts=2):
     return out
 
 
-@pytest.mark.parametrize("held", UPRIGHT)
+@pytest.mark.parametrize("locked", UPRIGHT)
 @pytest.mark.parametrize("name", NAMES)
-def test_certified_lists_hold_what_goals_beside_lead_to(name, held):
+def test_certified_lists_hold_what_goals_beside_lead_to(name, locked):
     robot, rng = load(name), np.random.default_rng(31)
     certified = reached = checked = 0
-    for goal in goals(robot, held, rng, 30):
+    for goal in goals(robot, locked, rng, 30):
         found = robot.ik(goal)
         reached += len(found) > 0
         certified += len(found) > 0 and found.complete

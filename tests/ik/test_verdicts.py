@@ -37,8 +37,8 @@ def test_an_unreachable_goal_is_false_and_says_by_how_much(name):
         assert found.status == "unreachable"
         assert found.q.shape == (0, robot.dof)
         assert found.residual.shape == (0,)
-        assert found.branch == found.families == ()
-        assert f"{found.missing:.4g} m" in found.reason
+        assert found.branch == found.self_motions == ()
+        assert f"{found.out_of_reach:.4g} m" in found.reason
         assert not found.within()
         assert not found.nearest(np.zeros(robot.dof))
 
@@ -59,7 +59,7 @@ def test_the_missing_distance_against_a_numeric_search(name):
             key=lambda r: r.cost,
         )
         distance = np.linalg.norm(best.fun[:3])
-        assert robot.ik(T).missing == pytest.approx(distance, rel=1e-4)
+        assert robot.ik(T).out_of_reach == pytest.approx(distance, rel=1e-4)
 
 
 @pytest.mark.parametrize("name", ["ur5e", "puma560", "kr6_r900"])
@@ -67,7 +67,7 @@ def test_the_missing_distance_grows_as_the_goal_goes_away(name):
     robot = load(name)
     T = robot.fk(np.array([0.4, -0.9, 0.8, 0.3, 0.7, -0.2]))
     way = np.array([0.6, 0.5, 0.4])
-    missing = [robot.ik(moved(T, step * way)).missing for step in (3.0, 4.0, 6.0, 10.0, 100.0)]
+    missing = [robot.ik(moved(T, step * way)).out_of_reach for step in (3.0, 4.0, 6.0, 10.0, 100.0)]
     assert (np.diff(missing) > 0).all()
     # Far away the arm is a point: every metre of the goal's way counts.
     assert missing[-1] - missing[-2] == pytest.approx(90 * np.linalg.norm(way), rel=1e-2)
@@ -84,7 +84,7 @@ def test_a_goal_a_hair_out_of_reach_is_missed_by_that_hair():
     for hair in (1e-3, 1e-5, 1e-7):
         found = robot.ik(moved(random_turn(T_zero, 3), [0, 0, hair]))
         assert not found
-        assert found.missing == pytest.approx(hair, rel=1e-3)
+        assert found.out_of_reach == pytest.approx(hair, rel=1e-3)
         assert robot.ik(moved(random_turn(T_zero, 3), [0, 0, -hair]))
 
 
@@ -172,23 +172,23 @@ def follow(robot, T, q, direction, stride):
     return back[0], left[0]
 
 
-def expect_families_are_real(robot, T, found):
+def expect_self_motions_are_real(robot, T, found):
     assert found.status == "singular"
-    assert found.families
+    assert found.self_motions
     assert "can move while the tip stays" in found.reason
-    for family in found.families:
-        assert np.linalg.norm(family.direction) == pytest.approx(1)
-        assert np.array_equal(family.q, found.q[family.row])
-        assert np.linalg.norm(robot.jacobian(family.q) @ family.direction) < 1e-6
-        assert family.joints == tuple(
-            n for n, d in zip(robot.joint_names, family.direction, strict=True) if abs(d) > 1e-6
+    for self_motion in found.self_motions:
+        assert np.linalg.norm(self_motion.direction) == pytest.approx(1)
+        assert np.array_equal(self_motion.q, found.q[self_motion.row])
+        assert np.linalg.norm(robot.jacobian(self_motion.q) @ self_motion.direction) < 1e-6
+        assert self_motion.joints == tuple(
+            n for n, d in zip(robot.joint_names, self_motion.direction, strict=True) if abs(d) > 1e-6
         )
         for step in (1e-3, 1e-4):
-            gap = np.abs(robot.fk(family.q + step * family.direction) - T).max()
+            gap = np.abs(robot.fk(self_motion.q + step * self_motion.direction) - T).max()
             assert gap < 10 * step**2 + 1e-9
-        moved_to, left = follow(robot, T, family.q, family.direction, 0.1)
+        moved_to, left = follow(robot, T, self_motion.q, self_motion.direction, 0.1)
         assert left < 1e-7
-        assert angle_gap(moved_to, family.q) > 0.03
+        assert angle_gap(moved_to, self_motion.q) > 0.03
 
 
 FREE = {
@@ -208,7 +208,7 @@ def test_a_pose_with_a_self_motion_is_singular_and_describes_it(case):
     robot = load(name)
     if np.linalg.svd(robot.jacobian(q), compute_uv=False)[-1] > 1e-9:
         pytest.fail(f"{case}: not singular, the test is wrong")
-    expect_families_are_real(robot, robot.fk(q), robot.ik(robot.fk(q)))
+    expect_self_motions_are_real(robot, robot.fk(q), robot.ik(robot.fk(q)))
 
 
 def test_a_wrist_above_axis_one_leaves_the_first_joint_free():
@@ -224,8 +224,11 @@ def test_a_wrist_above_axis_one_leaves_the_first_joint_free():
     q = np.array([0.4, lift, fold, 0.3, 0.6, -0.5])
     T = robot.fk(q)
     found = robot.ik(T)
-    expect_families_are_real(robot, T, found)
-    assert any("joint_1" in family.joints[0] or family.direction[0] != 0 for family in found.families)
+    expect_self_motions_are_real(robot, T, found)
+    assert any(
+        "joint_1" in self_motion.joints[0] or self_motion.direction[0] != 0
+        for self_motion in found.self_motions
+    )
     assert np.abs(found.q[:, 0]).max() < 1e-9  # free joints stand at zero
 
 
@@ -239,7 +242,7 @@ def test_a_stretched_arm_is_a_fold_and_no_family(name):
     assert np.linalg.svd(robot.jacobian(q), compute_uv=False)[-1] < 1e-7
     found = robot.ik(robot.fk(q))
     assert found.status == "exact"
-    assert found.families == ()
+    assert found.self_motions == ()
     assert angle_gap(found.q, q).min() < 1e-6
     assert found.residual.max() < 1e-9
 
@@ -275,7 +278,7 @@ def test_without_near_the_free_wrist_joint_stands_at_zero(name):
     q = np.array([0.3, -0.7, 0.9, 0.5, 0.0, 0.2])
     assert np.linalg.svd(robot.jacobian(q), compute_uv=False)[-1] < 1e-9
     found = robot.ik(robot.fk(q))
-    free = [family.q for family in found.families]
+    free = [self_motion.q for self_motion in found.self_motions]
     assert free
     assert min(abs(row[3]) for row in free) < 1e-9
 

@@ -63,8 +63,8 @@ def test_a_floating_joint_in_the_description_floats_the_base():
     assert robot.base == "body"
     assert robot.dof == 7
     assert robot.jacobian([0.3]).shape == (6, 7)
-    held = Robot(robot.description, base="body")
-    assert (held.floating, held.dof) == (False, 1)
+    locked = Robot(robot.description, base="body")
+    assert (locked.floating, locked.dof) == (False, 1)
     with pytest.raises(DescriptionError, match="floating"):
         Robot(robot.description, base="world", tip="arm")
 
@@ -206,13 +206,13 @@ def test_many_calls_leave_no_memory_and_no_references_behind():
 
     use(1000), misuse(20)
     gc.collect()
-    held = [sys.getrefcount(thing) for thing in (robot, q, name, bad, Robot)]
+    locked = [sys.getrefcount(thing) for thing in (robot, q, name, bad, Robot)]
     tracemalloc.start()
     use(20_000), misuse(100)
     gc.collect()
     size, _ = tracemalloc.get_traced_memory()
     tracemalloc.stop()
-    assert [sys.getrefcount(thing) for thing in (robot, q, name, bad, Robot)] == held
+    assert [sys.getrefcount(thing) for thing in (robot, q, name, bad, Robot)] == locked
     assert size < 100_000
 
 

@@ -152,7 +152,7 @@ def test_a_map_of_64_million_cells():
     for goal, length in (((250.5, 0.5), 250), ((7999.5, 0.5), 7999)):
         route = cs.navigate(grid, (0.5, 0.5), goal, planner="jump_point_search")
         assert route.length == length
-    assert cs.navigate(grid, (0.5, 0.5), (350.5, 90.5), planner="a_star").price.nodes < 1e5
+    assert cs.navigate(grid, (0.5, 0.5), (350.5, 90.5), planner="a_star").stats.nodes < 1e5
 
 
 def test_a_grid_takes_a_quarter_of_a_byte_per_cell():

@@ -13,7 +13,7 @@ import pytest
 import cspace as cs
 from cspace.errors import InputError, InputTypeError, MapError
 from cspace.maps import GeometryError
-from cspace.navigation.query import MOST_DERIVED
+from cspace.navigation.navigate import MOST_DERIVED
 
 BOX = [(4, 4), (6, 4), (6, 6), (4, 6)]
 BOUNDS = (0, 0, 10, 10)

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from navigation.touching_worlds import slanted_touch, triangle
+from touching_worlds import slanted_touch, triangle
 from oracles.plane import shortest
 
 SHORTEST: Final = ("any_angle", "visibility_graph")

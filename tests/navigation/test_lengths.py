@@ -24,7 +24,7 @@ def test_a_length_is_that_of_the_path_or_infinite(planner):
     assert not route
     if len(route.path):
         assert np.isclose(route.length, np.linalg.norm(np.diff(route.path, axis=0), axis=1).sum())
-        assert cs.navigation.PLANNERS[planner].sees != "map" or route.status == "local_minimum"
+        assert cs.navigation.PLANNERS[planner].sensing != "map" or route.status == "local_minimum"
     else:
         assert route.length == np.inf
-        assert cs.navigation.PLANNERS[planner].sees == "map"
+        assert cs.navigation.PLANNERS[planner].sensing == "map"

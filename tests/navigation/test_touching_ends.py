@@ -11,7 +11,7 @@ import pytest
 import cspace as cs
 from claims.families import Question
 from claims.judge import enters_wall
-from navigation.touching_worlds import diamond_on_border, slanted_touch
+from touching_worlds import diamond_on_border, slanted_touch
 from oracles.segments import enters
 
 PLANNERS: Final = [row.name for row in cs.navigation.PLANNERS.values() if row.world == "polygons"]

@@ -7,7 +7,7 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError
-from cspace.plot.ideas import shown_events
+from cspace.plot.planner_overlays import shown_events
 
 plt = pytest.importorskip("matplotlib.pyplot")
 

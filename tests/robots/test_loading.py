@@ -34,17 +34,17 @@ def test_base_and_tip_choose_the_chain():
 
 def test_a_base_that_floats_is_asked_for(tmp_path):
     path = tmp_path / "arm.urdf"
-    fixed = load_robot("ur5e")
-    fixed.to_urdf(path)
+    locked = load_robot("ur5e")
+    locked.to_urdf(path)
     q, T_world_base = np.linspace(-1, 1, 6), pose((1, 2, 3), rpy=(0.1, 0.2, 0.3))
     for robot in (
         load_robot("ur5e", floating=True),
         load_robot(path, floating=True),
         Robot.from_urdf(path, floating=True),
-        Robot.from_toml(fixed.to_toml(), floating=True),
+        Robot.from_toml(locked.to_toml(), floating=True),
     ):
         assert (robot.floating, robot.dof, len(robot.joint_names)) == (True, 12, 6)
-        expected = T_world_base @ fixed.fk(q)
+        expected = T_world_base @ locked.fk(q)
         np.testing.assert_allclose(robot.fk(q, T_world_base=T_world_base), expected, atol=1e-14)
     assert load_robot("ur5e", floating=False).dof == load_robot("ur5e").dof == 6
 

@@ -1,23 +1,23 @@
 // An arm ready to be asked: its plan, and the answers that need no instruction set of their own.
 #pragma once
 
-#include "cspace/ik/beyond.hpp"
-#include "cspace/ik/careful.hpp"
-#include "cspace/ik/complete.hpp"
-#include "cspace/ik/crossing_families.hpp"
 #include "cspace/ik/general/singular.hpp"
-#include "cspace/ik/miss.hpp"
+#include "cspace/ik/near_singular.hpp"
+#include "cspace/ik/nearest_pose.hpp"
 #include "cspace/ik/position/pose.hpp"
 #include "cspace/ik/position/solve.hpp"
+#include "cspace/ik/reach_bounds.hpp"
+#include "cspace/ik/self_motion/bifurcations.hpp"
+#include "cspace/ik/virtual_joints.hpp"
 
 namespace cspace::ik {
 
 struct Arm {
-    Plan plan;                // plan.chain is the arm, plan or no plan
-    GeneralArm general;       // of the others, and of arms whose closed form idealises them
-    bool has_plan = false;    // four to six revolute joints with a closed form
-    bool is_short = false;    // up to three joints of any kind, solved directly
-    bool is_general = false;  // up to six joints of any kind for which the closed form does not suffice
+    Plan plan;                    // plan.chain is the arm, plan or no plan
+    GeneralArm general;           // of the others, and of arms whose closed form idealises them
+    bool has_plan = false;        // four to six revolute joints with a closed form
+    bool has_few_joints = false;  // up to three joints of any kind, solved directly
+    bool is_general = false;      // up to six joints of any kind for which the closed form does not suffice
 };
 
 // How many rows the solutions of a goal may need.
@@ -31,9 +31,9 @@ namespace cspace::inline CSPACE_ISA {
 CSPACE_ONCE ik::Arm make_arm(const ik::Chain& chain, bool with_general = true) {
     ik::Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
-    arm.is_short = chain.n <= ik::max_position_joints;
+    arm.has_few_joints = chain.n <= ik::max_position_joints;
     if (!arm.has_plan) arm.plan.form.length = characteristic_length(chain);
-    if (!arm.has_plan && !arm.is_short && chain.n <= 6)
+    if (!arm.has_plan && !arm.has_few_joints && chain.n <= 6)
         arm.is_general = with_general && make_general_arm(chain, arm.general);
     // Behind a form that idealises visibly stands the arm itself; neighbours would idealise it once more.
     if (arm.has_plan && arm.plan.form.deviation > tolerance::visible_deviation && chain.n == 6) {
@@ -45,7 +45,7 @@ CSPACE_ONCE ik::Arm make_arm(const ik::Chain& chain, bool with_general = true) {
 
 // The solutions of a short arm for a position or a pose, in the common shape.
 template <class Found>
-ik::Solutions from_short(const ik::Chain& chain, const Found& found) {
+ik::Solutions from_few_joints(const ik::Chain& chain, const Found& found) {
     ik::Solutions out;
     out.count = found.count;
     out.status = found.count ? ik::Status::exact : ik::Status::unreachable;
@@ -55,19 +55,19 @@ ik::Solutions from_short(const ik::Chain& chain, const Found& found) {
             out.direction[k][i] = found.direction[k][i];
         }
         out.branch[k] = static_cast<signed char>(k);
-        out.family[k] = found.free[k];
+        out.self_motion[k] = found.free[k];
         if (found.free[k]) out.status = ik::Status::singular;
     }
     return out;
 }
 
 // Solutions of a short arm brought to the last digit.
-inline void refine_short(const ik::Chain& chain, const Posed& goal, double length, ik::Solutions& out) {
+inline void refine_few_joints(const ik::Chain& chain, const Posed& goal, double length, ik::Solutions& out) {
     for (int k = 0; k < out.count; ++k) {
         double q[ik::max_joints];
         for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i];
         PoseError error;
-        measure(chain, goal, length, q, error);
+        measure_error(chain, goal, length, q, error);
         if (size_of_error(error) <= tolerance::exact) continue;
         refine(chain, goal, length, q, error, 10);
         for (int i = 0; i < chain.n; ++i)
@@ -78,41 +78,41 @@ inline void refine_short(const ik::Chain& chain, const Posed& goal, double lengt
 // An arm whose closed form idealises it: by the elimination, and where that or the closed form is unsure by
 // both. Closer to a fold than the idealisation moves it the two may lack the same pair; elsewhere both lists
 // agree if they lack nothing.
-inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, const double* idle) {
+inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, const double* unconstrained) {
     const Posed goal_form = goal_in_form(arm.plan, goal);
-    ik::Solutions out = solve_general_carefully(arm.general, goal, idle);
+    ik::Solutions out = solve_general_carefully(arm.general, goal, unconstrained);
     if (!out.complete || solve_closed_form(arm.plan, goal_form, care_of(arm.plan)).doubt) {
         const int alone = out.count;
-        const ik::Solutions form = solve_carefully(arm.plan, goal, idle);
+        const ik::Solutions form = solve_carefully(arm.plan, goal, unconstrained);
         for (int k = 0; k < form.count; ++k) {
             double q[ik::max_joints];
             for (int i = 0; i < 6; ++i) q[i] = form.q[k][i];
-            admit(out, arm.plan.chain, goal, arm.plan.form.length, q, form.branch[k], 2);
+            accept_solution(out, arm.plan.chain, goal, arm.plan.form.length, q, form.branch[k], 2);
         }
         Care care;
         care.band = 2 * arm.plan.form.deviation;
         const bool agree = form.count == alone && alone % 2 == 0;
         const bool certain = out.complete || (agree && !solve_closed_form(arm.plan, goal_form, care).doubt);
         out.complete = certain && out.count == alone;
-        judge(out);
+        classify_solutions(out);
     }
     number_by_branches(arm.plan, goal, out);
     return out;
 }
 
 // By the closed form at goals beside this one, wherever virtual joints stand there.
-inline bool search_beside_form(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
-    const auto propose = [&](const Posed& beside, const auto& offer) {
+inline bool search_perturbed_goals_in_form(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
+    const auto propose = [&](const Posed& beside, const auto& add_candidate) {
         const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, beside), care_of(plan));
         for (int k = 0; k < max_branches; ++k) {
             if (!b.ok[k]) continue;
             double q[ik::max_joints] = {};
             for (int i = 0; i < 6; ++i)
                 if (plan.joint[i] >= 0) q[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
-            offer(q);
+            add_candidate(q);
         }
     };
-    return search_beside(plan.chain, goal, plan.form.length, propose, out);
+    return search_perturbed_goals(plan.chain, goal, plan.form.length, propose, out);
 }
 
 // Arms that can place their tip in every orientation are not asked for a proof that they cannot.
@@ -120,37 +120,38 @@ inline bool is_limited(const ik::Arm& arm) {
     return arm.plan.chain.n < 6 || (arm.is_general && arm.general.plan.slides > 0);
 }
 
-inline ik::Solutions solutions_and_families(const ik::Arm& arm, const Posed& goal, const double* idle) {
+inline ik::Solutions solutions_and_self_motions(const ik::Arm& arm, const Posed& goal,
+                                                const double* unconstrained) {
     constexpr int starts = 12;
     const ik::Chain& chain = arm.plan.chain;
     const double length = arm.plan.form.length;
-    if (is_limited(arm) && is_beyond(chain, goal, length)) return {};
+    if (is_limited(arm) && exceeds_reach(chain, goal, length)) return {};
     if (arm.is_general)
-        return arm.has_plan ? solve_both_ways(arm, goal, idle)
-                            : solve_general_carefully(arm.general, goal, idle);
+        return arm.has_plan ? solve_both_ways(arm, goal, unconstrained)
+                            : solve_general_carefully(arm.general, goal, unconstrained);
     if (arm.has_plan) {
-        ik::Solutions out = solve_carefully(arm.plan, goal, idle);
+        ik::Solutions out = solve_carefully(arm.plan, goal, unconstrained);
         // Where the completed arm is singular the arm itself need not be, and where a wrist is almost free
         // rounding may put a goal on the border out of reach.
         if ((arm.plan.virtual_joints == 0 && out.count > 0) ||
             !solve_closed_form(arm.plan, goal_in_form(arm.plan, goal), care_of(arm.plan)).doubt)
             return out;
-        if (search_beside_form(arm.plan, goal, out)) out.complete = false;
+        if (search_perturbed_goals_in_form(arm.plan, goal, out)) out.complete = false;
         if (out.count == 0) search_by_descent(chain, goal, length, 4 * starts, out);
         out.complete = out.complete && out.count > 0;
         return out;
     }
-    ik::Solutions out = from_short(chain, solve_short_pose(chain, goal));
+    ik::Solutions out = from_few_joints(chain, solve_few_joint_pose(chain, goal));
     if (out.count == 0) search_by_descent(chain, goal, length, starts, out);
-    refine_short(chain, goal, length, out);
+    refine_few_joints(chain, goal, length, out);
     return out;
 }
 
-CSPACE_ONCE ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* idle) {
+CSPACE_ONCE ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* unconstrained) {
     const ik::Chain& chain = arm.plan.chain;
-    ik::Solutions out = solutions_and_families(arm, goal, idle);
+    ik::Solutions out = solutions_and_self_motions(arm, goal, unconstrained);
     if (chain.n > ik::max_position_joints)
-        look_along(chain, goal, arm.plan.form.length, idle, room_for(arm), out);
+        look_along(chain, goal, arm.plan.form.length, unconstrained, room_for(arm), out);
     return out;
 }
 
@@ -158,14 +159,14 @@ CSPACE_ONCE ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, cons
 // keeps the orientation and gives the distance by which the goal is out of reach. Starts from the branches
 // cut off at their borders and from configurations spread over the joints; a large weight comes in by steps,
 // for the way along the orientations that it allows is narrow.
-CSPACE_ONCE ik::Miss nearest_miss(const ik::Arm& arm, const Posed& goal, double weight) {
+CSPACE_ONCE ik::NearestPose nearest_to_goal(const ik::Arm& arm, const Posed& goal, double weight) {
     const ik::Plan& plan = arm.plan;
     const int n = plan.chain.n;
     Care care;
     care.band = std::numeric_limits<double>::infinity();
     Branches<double> b{};
     if (arm.has_plan) b = solve_closed_form(plan, goal_in_form(plan, goal), care);
-    ik::Miss best;
+    ik::NearestPose best;
     best.cost = std::numeric_limits<double>::infinity();
     constexpr int spread = 16;
     for (int k = 0; k < max_branches + spread; ++k) {

@@ -35,7 +35,7 @@ inline void insert_sorted(ik::FreeSums& out, double sum, double rank) {
 // The sums at which the target, seen from joint 2 at (x, y) less Rz(sum) (x4, y4), is `reach` away: first a
 // little to either side of them, where the elbow bends, nearest to `idle` first, then the sums themselves.
 inline void add_ends(ik::FreeSums& out, const ik::ThreeParallel& arm, double x, double y, double reach,
-                     double idle, const Care& care) {
+                     double unconstrained, const Care& care) {
     const double a = 2 * (x * arm.x4 + y * arm.y4), b = 2 * (y * arm.x4 - x * arm.y4);
     const double r = x * x + y * y + arm.x4 * arm.x4 + arm.y4 * arm.y4 - reach * reach;
     const TwoAngles<double> ends = linear_equation<double>(a, b, r, arm.length * arm.length, care, {1, 0});
@@ -45,26 +45,28 @@ inline void add_ends(ik::FreeSums& out, const ik::ThreeParallel& arm, double x, 
     const double inside = min(0.02, 0.1 * min(gap, 2 * pi - gap));
     for (const double end : {one, other}) {
         for (const double sum : {end - inside, end + inside})
-            insert_sorted(out, sum, std::fabs(std::remainder(sum - idle, 2 * pi)));
-        insert_sorted(out, end, 4 + std::fabs(std::remainder(end - idle, 2 * pi)));
+            insert_sorted(out, sum, std::fabs(std::remainder(sum - unconstrained, 2 * pi)));
+        insert_sorted(out, end, 4 + std::fabs(std::remainder(end - unconstrained, 2 * pi)));
     }
 }
 
 // Behind shoulder solution i; the list is empty where nothing is free, or where the other shoulder is the
 // same.
-inline ik::FreeSums free_sums(const ik::ThreeParallel& arm, const Posed& goal, int i, double idle,
+inline ik::FreeSums free_sums(const ik::ThreeParallel& arm, const Posed& goal, int i, double unconstrained,
                               const Care& care) {
     ik::FreeSums out;
     const Vec3d& p = goal.t;
     const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
-    const TwoAngles<double> shoulder = linear_equation<double>(-p.y, p.x, k, arm.length, care, care.idle[0]);
+    const TwoAngles<double> shoulder =
+        linear_equation<double>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
     const Turn<double>& t1 = shoulder.root[i];
     const bool is_same = i == 1 && std::fabs(angle_of(t1 - shoulder.root[0])) < 1e-4;
     const Vec3d z = undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2));
     if (!shoulder.ok || is_same || z.x * z.x + z.y * z.y > care.free * care.free) return out;
     const double x = t1.c * p.x + t1.s * p.y - arm.a1;
     const double y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
-    for (const double reach : {arm.l2 + arm.l3, arm.l2 - arm.l3}) add_ends(out, arm, x, y, reach, idle, care);
+    for (const double reach : {arm.l2 + arm.l3, arm.l2 - arm.l3})
+        add_ends(out, arm, x, y, reach, unconstrained, care);
     return out;
 }
 

@@ -7,8 +7,8 @@
 
 #include "cspace/ik/branches.hpp"
 #include "cspace/ik/dh_form.hpp"
-#include "cspace/ik/steps.hpp"
-#include "cspace/ik/subproblems/two_turns.hpp"
+#include "cspace/ik/subproblems/two_angles.hpp"
+#include "cspace/ik/trig_steps.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
@@ -30,7 +30,7 @@ inline Turn<double> turn_about_z(const Mat3d& R) {
 inline void planar_three(const ik::DhForm& f, int j, const Posed& planar, const Care& care,
                          Branches<double>& out, int n) {
     const TwoLink<double> arm =
-        two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], f.length, care, care.idle[j]);
+        two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], f.length, care, care.unconstrained[j]);
     const Turn<double> all = turn_about_z(planar.R);
     for (int e = 0; e < 2; ++e) {
         const Turn<double> elbow = {arm.cos_elbow, e == 0 ? arm.sin_elbow : -arm.sin_elbow};
@@ -80,7 +80,7 @@ inline Branches<double> solve_middle_parallel(const ik::DhForm& f, const Posed& 
         const Posed five = link(f, 4, t5);
         const Posed rest = Posed{link(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * Posed{five.R, five.t};
         const Vec3d z = column(rest.R, 2), want = column(seen.R, 2);
-        const Turn<double> t234 = align(z.x, z.y, want.x, want.y, 1.0, care, care.idle[3]).t;
+        const Turn<double> t234 = align(z.x, z.y, want.x, want.y, 1.0, care, care.unconstrained[3]).t;
         const Posed turned = {rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
         const Turn<double> t6 = turn_about_z(transpose((turned * rest).R) * seen.R);
         planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, care, out, 2 * n);
@@ -117,7 +117,8 @@ inline Branches<double> solve_first_parallel(const ik::DhForm& f, const Posed& g
         const Vec3d k = row(to_four.R, 2);
         const double x = r.x * t6.c - r.y * t6.s, y = r.x * t6.s + r.y * t6.c;
         // (k.x, k.y) turned by −t5 is (x, y cos α5 − rz sin α5).
-        const Turn<double> t5 = align(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.idle[4]).t;
+        const Turn<double> t5 =
+            align(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.unconstrained[4]).t;
         const Posed rest =
             to_four * link(f, 4, t5) * Posed{rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
         planar_three(f, 0, goal * inverse(rest), care, out, 2 * n);

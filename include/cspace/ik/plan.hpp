@@ -52,7 +52,7 @@ inline ik::Chain with_agreeing_axes(ik::Chain chain, double* sign) {
     return chain;
 }
 
-inline ik::Family recognise(const ik::DhForm& f) {
+inline ik::Family recognise_family(const ik::DhForm& f) {
     if (f.degenerate) return ik::Family::none;
     const bool last_three_meet = f.meeting[3] && f.meeting[4] && f.d[4] == 0;
     if (last_three_meet && !(f.parallel[0] && f.parallel[1])) return ik::Family::spherical_wrist;
@@ -68,7 +68,7 @@ inline ik::Family recognise(const ik::DhForm& f) {
 inline bool plan_in_direction(ik::Plan& plan, const ik::Chain& arm, bool backwards) {
     const ik::Chain agreeing = with_agreeing_axes(backwards ? reversed(arm) : arm, plan.sign);
     plan.form = dh_form(agreeing);
-    plan.family = recognise(plan.form);
+    plan.family = recognise_family(plan.form);
     if (plan.family == ik::Family::none) return false;
     plan.reversed = backwards;
     if (plan.family == ik::Family::spherical_wrist) plan.wrist = make_spherical_wrist(plan.form);

@@ -39,8 +39,8 @@ inline Vec3d rotation_vector(const Mat3d& R) {
     return (angle / norm(axis)) * axis;
 }
 
-inline void measure(const ik::Chain& chain, const Posed& goal, double length, const double* q,
-                    PoseError& out) {
+inline void measure_error(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                          PoseError& out) {
     Posed T = identity_pose();
     Vec3d axis[ik::max_joints], point[ik::max_joints];
     for (int i = 0; i < chain.n; ++i) {
@@ -80,7 +80,7 @@ inline void damped_step(const PoseError& error, double damping, double* dq) {
     }
 }
 
-inline int weakest(const PoseSvd& J) {
+inline int weakest_direction(const PoseSvd& J) {
     int k = 0;
     for (int j = 1; j < J.columns; ++j)
         if (J.sigma[j] < J.sigma[k]) k = j;
@@ -95,7 +95,7 @@ inline double take_step(const ik::Chain& chain, const Posed& goal, double length
     for (int i = 0; i < chain.n; ++i) reach = max(reach, std::fabs(dq[i]));
     const double keep = reach > stride ? stride / reach : 1.0;
     for (int i = 0; i < chain.n; ++i) to[i] = from[i] + keep * dq[i];
-    measure(chain, goal, length, to, error);
+    measure_error(chain, goal, length, to, error);
     return size_of_error(error);
 }
 
@@ -107,7 +107,7 @@ inline bool newton(const ik::Chain& chain, const Posed& goal, double length, dou
     constexpr double settled = 1e-15, arrived = 1e-12;
     double best[ik::max_joints], at[ik::max_joints];
     for (int i = 0; i < chain.n; ++i) best[i] = at[i] = q[i];
-    measure(chain, goal, length, at, error);
+    measure_error(chain, goal, length, at, error);
     double least = min(size_of_error(error), 1.0);
     for (int step = 0; step < most_steps && least >= settled; ++step) {
         double dq[ik::max_joints];
@@ -146,13 +146,13 @@ inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double leng
     constexpr double narrow = 1e-2, settled = 1e-15, arrived = 1e-12;
     double at[ik::max_joints], size = 1;
     for (int i = 0; i < chain.n; ++i) at[i] = q[i];
-    measure(chain, goal, length, at, error);
+    measure_error(chain, goal, length, at, error);
     for (int step = 0; step < most_steps; ++step) {
         size = size_of_error(error);
         if (size < settled) break;
         PoseSvd& J = error.jacobian;
         decompose(J);
-        const int weak = weakest(J);
+        const int weak = weakest_direction(J);
         if (!(J.sigma[weak] < narrow) || J.sigma[weak] <= tolerance::free_joint) break;
         const double along = dot_n(J.us[weak], error.e, 6) / J.sigma[weak];
         const bool on_floor = size * size < 1.01 * along * along;
@@ -176,7 +176,7 @@ inline double descend(const ik::Chain& chain, const Posed& goal, double length, 
     constexpr double growth = 4;
     double damping = 0, grow = growth;
     int stalls = 0;
-    measure(chain, goal, length, q, error);
+    measure_error(chain, goal, length, q, error);
     double size = size_of_error(error);
     decompose(error.jacobian);
     for (int step = 0; step < most_steps && size > settled && stalls < 6; ++step) {
@@ -185,7 +185,7 @@ inline double descend(const ik::Chain& chain, const Posed& goal, double length, 
         damped_step(error, damping + size * size, dq);
         const double trial_size = take_step(chain, goal, length, q, dq, next, trial);
         const bool closer = trial_size < size, stalled = trial_size > 0.99 * size;
-        const double sigma = error.jacobian.sigma[weakest(error.jacobian)];
+        const double sigma = error.jacobian.sigma[weakest_direction(error.jacobian)];
         if (!closer && (size < noise || damping > 1e3)) break;
         if (closer) {
             for (int i = 0; i < chain.n; ++i) q[i] = next[i];

@@ -17,7 +17,7 @@ enum class Status : unsigned char {
 };
 
 // What the closed form alone says of a goal.
-enum class Quick : unsigned char {
+enum class FastPath : unsigned char {
     settled,   // the branches listed are all there are
     doubtful,  // the slow path has to decide
     refused,   // not a pose: a number that is not finite, a wrong last row, no rotation
@@ -30,7 +30,7 @@ struct Solutions {
     bool crowded = false;  // some solutions come close to each other: there may be families among them
     double q[max_solutions][max_arm];
     signed char branch[max_solutions];         // which of the closed form's branches
-    bool family[max_solutions];                // stands for a one-parameter family
+    bool self_motion[max_solutions];           // stands for a one-parameter family
     double direction[max_solutions][max_arm];  // of the family at q, unit; undefined where not a family
 };
 

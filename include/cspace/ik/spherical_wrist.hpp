@@ -2,9 +2,9 @@
 // (Pieper 1968). Up to 4 × 2 solutions.
 #pragma once
 
-#include "cspace/ik/any_three.hpp"
 #include "cspace/ik/branches.hpp"
 #include "cspace/ik/dh_form.hpp"
+#include "cspace/ik/pieper_quartic.hpp"
 
 namespace cspace::ik {
 
@@ -78,7 +78,7 @@ CSPACE_INLINE WristAngles<V> turn_wrist(const ik::SphericalWrist& arm, const Tur
         v = undo_joint(t2, arm.first.ca2, arm.first.sa2, v);
         seen[k] = undo_joint(t3, arm.ca3, arm.sa3, v);
     }
-    return wrist(arm.last, seen[0], seen[1], care, care.idle[3]);
+    return wrist(arm.last, seen[0], seen[1], care, care.unconstrained[3]);
 }
 
 // The angles of both wrist solutions behind one triple of the first three.

@@ -33,7 +33,7 @@ template <class V>
 CSPACE_INLINE void finish_in_plane(const ik::ThreeParallel& arm, const Turn<V>& t234, V x, V y,
                                    V* const out[2], mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
     const V u = x - (t234.c * arm.x4 - t234.s * arm.y4), v = y - (t234.s * arm.x4 + t234.c * arm.y4);
-    const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, arm.length, care, care.idle[1]);
+    const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, arm.length, care, care.unconstrained[1]);
     doubt = doubt || (ok && links.doubt);
     ok = ok && links.ok;
     const V elbow = atan2(links.sin_elbow, links.cos_elbow);
@@ -50,14 +50,14 @@ CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goa
     Branches<V> out;
     const Vec3<V>& p = goal.t;
     const V k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
-    const TwoAngles<V> shoulder = linear_equation<V>(-p.y, p.x, k, arm.length, care, care.idle[0]);
+    const TwoAngles<V> shoulder = linear_equation<V>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
     out.doubt = shoulder.doubt;
     for (int i = 0; i < 2; ++i) {
         const Turn<V>& t1 = shoulder.root[i];
         const V angle1 = angle_of(t1);
         const WristAngles<V> r =
             wrist(arm.last, undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2)),
-                  undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 0)), care, care.idle[3]);
+                  undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 0)), care, care.unconstrained[3]);
         out.doubt = out.doubt || (shoulder.ok && r.doubt);
         const V x = t1.c * p.x + t1.s * p.y - arm.a1;
         const V y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
@@ -82,7 +82,8 @@ CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goa
 CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& goal, const Care& care) {
     const Vec3d& p = goal.t;
     const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
-    const TwoAngles<double> shoulder = linear_equation<double>(-p.y, p.x, k, arm.length, care, care.idle[0]);
+    const TwoAngles<double> shoulder =
+        linear_equation<double>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
     const Turn<double> each[4] = {shoulder.root[0], shoulder.root[0], shoulder.root[1], shoulder.root[1]};
     const Turn<Four> t1 = side_by_side(each);
     const Mat3<Four> R = fill33<Four>(goal.R);
@@ -91,7 +92,7 @@ CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& g
     Four side = fill<Four>(1.0);
     set_lane(side, 1, -1.0);
     set_lane(side, 3, -1.0);
-    const WristSide<Four> r = wrist_side(arm.last, view, side * view.s5, care.idle[3]);
+    const WristSide<Four> r = wrist_side(arm.last, view, side * view.s5, care.unconstrained[3]);
     const Four x = t1.c * p.x + t1.s * p.y - arm.a1, y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
     Abreast out;
     const Mask<4> reached = shoulder.ok ? view.ok : fill<Four>(0.0) > 1.0;

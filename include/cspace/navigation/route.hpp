@@ -16,7 +16,7 @@ enum class Status : std::int8_t {
     local_minimum,  // the robot came to rest away from the goal
 };
 
-struct Price {
+struct Stats {
     std::int64_t nodes = 0;  // states expanded, or steps taken
     std::int64_t edges = 0;  // edges looked at
 };
@@ -25,7 +25,7 @@ struct Route {
     Status status = Status::undetermined;
     std::vector<Point> path;  // from start to goal; empty unless found, or as far as the robot came
     double length = std::numeric_limits<double>::infinity();
-    Price price;
+    Stats stats;
 };
 
 inline double length_of(const std::vector<Point>& path) {

@@ -6,16 +6,16 @@ import argparse
 from typing import TYPE_CHECKING
 
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.freedom import FREEDOM_WORDS, held_joints
+from cspace.cli.freedom import FREEDOM_WORDS, locked_joints
 from cspace.cli.goals import GOAL_WORDS, axis_of
 from cspace.cli.output import Output
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["add_explanation", "explain", "explanation_asked"]
+__all__ = ["add_explanation", "explain", "wants_explanation"]
 
-NOT_ASKED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
+NOT_EXPLAINED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
 """What belongs to a goal and its answer, and not to an explanation."""
 
 
@@ -24,7 +24,7 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
     group = parser.add_argument_group("explanation", "how the arm is solved, instead of an answer to a goal")
     group.add_argument("--explain", action="store_true", help="the geometry found, the steps, the equations")
     group.add_argument(
-        "--asked",
+        "--goal-parts",
         nargs="+",
         metavar="PART",
         help="for goals of parts: position, rotation, direction, look-at, ray, angle-to (alone or together)",
@@ -34,14 +34,14 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
     form.add_argument("--latex", action="store_true", help="as LaTeX, for a document with amsmath")
 
 
-def explanation_asked(args: argparse.Namespace) -> bool:
+def wants_explanation(args: argparse.Namespace) -> bool:
     """Whether an explanation is asked for; words of a goal beside it or its forms without it are refused."""
     if not args.explain:
-        for name in ("markdown", "latex", "asked"):
+        for name in ("markdown", "latex", "goal_parts"):
             if getattr(args, name):
                 raise UsageError(f"--{name} belongs to the explanation: add --explain")
         return False
-    for name in NOT_ASKED:
+    for name in NOT_EXPLAINED:
         if getattr(args, name) is not None:
             option = "--" + name.replace("_", "-")
             raise UsageError(f"--explain is about the arm, not about a goal: leave {option} out")
@@ -50,9 +50,9 @@ def explanation_asked(args: argparse.Namespace) -> bool:
 
 def explain(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     """Print the explanation; an arm that nothing solves is a negative answer, with what its axes share."""
-    fixed = None if args.fixed is None else held_joints(args, robot)
-    asked = None if args.asked is None else [part.replace("-", "_") for part in args.asked]
-    plan = robot.ik_plan(asked=asked, fixed=fixed, tool_axis=axis_of(args))
+    locked = None if args.locked is None else locked_joints(args, robot)
+    goal_parts = None if args.goal_parts is None else [part.replace("-", "_") for part in args.goal_parts]
+    plan = robot.ik_plan(goal_parts=goal_parts, locked=locked, tool_axis=axis_of(args))
     if out.as_json:
         out.document({"schema": "cspace.ik_plan/1", **plan.to_dict()})
     else:

@@ -12,10 +12,10 @@ from cspace.cli.robot import joint_called
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["FREEDOM_WORDS", "add_freedom", "held_joints", "options_of"]
+__all__ = ["FREEDOM_WORDS", "add_freedom", "locked_joints", "options_of"]
 
 FREEDOM_WORDS: Final = ("swivel", "samples", "near", "least_squares")
-"""The words of these that say nothing of how an arm is solved; held joints do."""
+"""The words of these that say nothing of how an arm is solved; locked joints do."""
 
 GOAL_JOINT: Final = "goal_"
 """How the names begin of what a goal leaves open."""
@@ -27,7 +27,7 @@ def add_freedom(parser: argparse.ArgumentParser) -> None:
         "freedom", "of arms with joints to spare, and of goals that leave something open"
     )
     group.add_argument(
-        "--fixed",
+        "--locked",
         nargs="+",
         action="extend",
         type=named_number,
@@ -56,8 +56,8 @@ def add_freedom(parser: argparse.ArgumentParser) -> None:
 def options_of(args: argparse.Namespace, robot: Robot) -> dict[str, Any]:
     """The keywords of robot.ik for what was typed, `near` apart."""
     options: dict[str, Any] = {}
-    if args.fixed is not None:
-        options["fixed"] = held_joints(args, robot)
+    if args.locked is not None:
+        options["locked"] = locked_joints(args, robot)
     if args.swivel is not None:
         options["swivel"] = radians(args.swivel, degrees=args.deg)
     for name in ("samples", "least_squares"):
@@ -66,14 +66,14 @@ def options_of(args: argparse.Namespace, robot: Robot) -> dict[str, Any]:
     return options
 
 
-def held_joints(args: argparse.Namespace, robot: Robot) -> dict[str, float]:
-    """The joints of --fixed by name, with their values [rad, m]."""
-    held: dict[str, float] = {}
-    for word, value in args.fixed:
+def locked_joints(args: argparse.Namespace, robot: Robot) -> dict[str, float]:
+    """The joints of --locked by name, with their values [rad, m]."""
+    locked: dict[str, float] = {}
+    for word, value in args.locked:
         of_goal = word.startswith(GOAL_JOINT)  # judged by the library, which knows what the goal leaves open
         name = word if of_goal else joint_called(word, robot)
-        if name in held:
-            raise UsageError(f"--fixed holds {name} twice; give each joint one value")
+        if name in locked:
+            raise UsageError(f"--locked holds {name} twice; give each joint one value")
         turns = "turn" in name if of_goal else robot.joint_types[robot.joint_names.index(name)] == "R"
-        held[name] = radians(value, degrees=args.deg) if turns else value
-    return held
+        locked[name] = radians(value, degrees=args.deg) if turns else value
+    return locked

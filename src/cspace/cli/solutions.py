@@ -36,7 +36,7 @@ class Rows:
     def __init__(
         self, robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str | Iterable[str]
     ) -> None:
-        from cspace.ik.windings import into_limits, short_way
+        from cspace.ik.wrapping import into_limits, short_way
 
         q = np.asarray(answer.q, dtype=np.float64)
         if check:  # each joint where its limits are, if a whole turn brings it there
@@ -81,12 +81,12 @@ def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[st
         "tip": robot.tip,
         "joints": list(robot.joint_names),
         "goal": goal.document(),
-        "fixed": options.get("fixed", {}),
+        "locked": options.get("locked", {}),
         "swivel": options.get("swivel"),
         "status": answer.status,
         "complete": answer.complete,
         "reason": answer.reason,
-        "missing": float(answer.missing),
+        "out_of_reach": float(answer.out_of_reach),
         "freedom": list(answer.freedom),
         "solutions": solutions,
     }

@@ -13,7 +13,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, shown
 from cspace.export.plain import in_ascii
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
-from cspace.ik.held import between_others, hold, joint_number, without_held
+from cspace.ik.locked_joints import between_others, joint_number, lock_joints, without_locked
 from cspace.ik.prepare import MAX_SETTLED, prepare
 
 __all__ = ["ExportedArm", "exported_arm"]
@@ -33,7 +33,7 @@ TAKEN = frozenset(
 METHODS = {
     "closed": "solved in closed form",
     "general": "solved by elimination to one joint's angle",
-    "short": "solved directly",
+    "few_joints": "solved directly",
     "any": "solved by a plan made when the program starts",
     "locked": "solved by a plan made for every value of a joint held between others",
 }
@@ -60,7 +60,7 @@ class ExportedArm:
     axes: Array
     points: Array
     T_zero: Array
-    held: tuple[int, ...] = ()
+    locked: tuple[int, ...] = ()
     moving: ExportedArm | None = None
     version: str = _core.__version__
 
@@ -72,32 +72,32 @@ class ExportedArm:
     @property
     def method(self) -> str:
         """How it is solved, as half a sentence."""
-        if not self.held:
+        if not self.locked:
             return METHODS[self.kind]
-        return f"{METHODS[self.kind]}, with {self.held_names} held"
+        return f"{METHODS[self.kind]}, with {self.locked_names} held"
 
     @property
-    def held_names(self) -> str:
-        """The held joints, for comments of any language."""
-        return ", ".join(re.sub(r"[^\w .:/-]|/(?=/)", "", in_ascii(self.joint_names[k])) for k in self.held)
+    def locked_names(self) -> str:
+        """The locked joints, for comments of any language."""
+        return ", ".join(re.sub(r"[^\w .:/-]|/(?=/)", "", in_ascii(self.joint_names[k])) for k in self.locked)
 
 
-def exported_arm(robot: Any, name: str | None, fixed: Any = None) -> ExportedArm:
-    """The robot as the exports see it. fixed: names or numbers of the joints whose values the caller gives.
+def exported_arm(robot: Any, name: str | None, locked: Any = None) -> ExportedArm:
+    """The robot as the exports see it. locked: names or numbers of the joints whose values the caller gives.
 
     Raises NoClosedFormError and InputError.
     """
     prepare(robot)
-    held = held_joints(robot, fixed)
-    if not held:
+    chosen = checked_locked_joints(robot, locked)
+    if not chosen:
         kind, plan = numbers_of(robot)
         return described(robot, name, kind, plan)
-    if between_others(len(robot.joint_names), held):
-        return described(robot, name, "locked", {}, held=held)
-    others = without_held(robot, dict.fromkeys(held, 0.0))
+    if between_others(len(robot.joint_names), chosen):
+        return described(robot, name, "locked", {}, locked=chosen)
+    others = without_locked(robot, dict.fromkeys(chosen, 0.0))
     prepare(others)
     kind, plan = numbers_of(others)
-    return described(robot, name, kind, plan, held=held, moving=described(others, "moving", kind, plan))
+    return described(robot, name, kind, plan, locked=chosen, moving=described(others, "moving", kind, plan))
 
 
 def numbers_of(robot: Any) -> tuple[str, dict[str, Any]]:
@@ -112,25 +112,25 @@ def vector(v: Array) -> dict[str, float]:
     return {axis: float(x) for axis, x in zip("xyz", v, strict=True)}
 
 
-def held_joints(robot: Any, fixed: Any) -> tuple[int, ...]:
+def checked_locked_joints(robot: Any, locked: Any) -> tuple[int, ...]:
     """The joints to hold, by number, ascending: those named, else the solver's own choice."""
     joints = len(robot.joint_names)
-    if fixed is None:
-        return () if robot._ik_direct else tuple(hold(robot, {}).solver.held)
-    if isinstance(fixed, (str, int)):
-        fixed = [fixed]
-    if isinstance(fixed, Mapping) or not isinstance(fixed, Iterable):
+    if locked is None:
+        return () if robot._ik_direct else tuple(lock_joints(robot, {}).solver.locked)
+    if isinstance(locked, (str, int)):
+        locked = [locked]
+    if isinstance(locked, Mapping) or not isinstance(locked, Iterable):
         raise InputTypeError(
-            f"fixed is a {type(fixed).__name__}, expected names of joints: each call gives their values"
+            f"locked is a {type(locked).__name__}, expected names of joints: each call gives their values"
         )
-    held = [joint_number(robot, key, "fixed") for key in fixed]
-    if len(set(held)) < len(held):
-        raise InputError("fixed names a joint twice")
-    if not 1 <= joints - len(held) <= MAX_SETTLED:
+    chosen = [joint_number(robot, key, "locked") for key in locked]
+    if len(set(chosen)) < len(chosen):
+        raise InputError("locked names a joint twice")
+    if not 1 <= joints - len(chosen) <= MAX_SETTLED:
         raise InputError(
-            f"fixed holds {len(held)} of {joints} joints; from 1 to {MAX_SETTLED} must be left to move"
+            f"locked holds {len(chosen)} of {joints} joints; from 1 to {MAX_SETTLED} must be left to move"
         )
-    return tuple(sorted(held))
+    return tuple(sorted(chosen))
 
 
 def described(
@@ -138,7 +138,7 @@ def described(
     name: str | None,
     kind: str,
     plan: dict[str, Any],
-    held: tuple[int, ...] = (),
+    locked: tuple[int, ...] = (),
     moving: ExportedArm | None = None,
 ) -> ExportedArm:
     """The words and numbers of an arm."""
@@ -149,7 +149,7 @@ def described(
         kind=kind,
         plan=plan,
         dof=len(chain.joint_types),
-        room=8 if kind == "short" else 16,
+        room=8 if kind == "few_joints" else 16,
         joint_names=tuple(robot.joint_names),
         joint_types=str(chain.joint_types),
         lower=[float(x) for x in robot.limits.lower],
@@ -157,7 +157,7 @@ def described(
         axes=chain.axes,
         points=chain.points,
         T_zero=chain.T_zero,
-        held=held,
+        locked=locked,
         moving=moving,
     )
 

@@ -29,7 +29,7 @@ def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
     code = Template(code).substitute(words, plan=initialiser(plan_of(arm)))
     if arm.moving:
         around = {**words, "solver": code, "plan": initialiser(chain_of(arm)), "moving_room": arm.moving.room}
-        code = filled("solve_held.hpp.in", around)
+        code = filled("solve_locked_joints.hpp.in", around)
     core = TABLES_AT_START * one_file + in_ascii(amalgamate(headers))
     solve = f"namespace cspace {{\n\n{code}\n}}  // namespace cspace\n"
     parts = [core, filled("types.hpp.in", words), solve, filled("interface.hpp.in", words)]
@@ -53,43 +53,54 @@ def words_of(arm: ExportedArm) -> dict[str, Any]:
         "lower": bounds(arm.lower),
         "upper": bounds(arm.upper),
         "on_limit": ON_LIMIT,
-        **words_of_held(arm),
+        **words_of_locked(arm),
     }
 
 
-HELD_WORDS = (
-    *("held_types", "held_types_c", "held_extern", "held_extern_c", "fixed_parameter", "fixed_argument"),
-    *("fixed_sample", "fixed_of_sample", "fixed_of_q", "fixed_words", "fixed_words_c"),
+LOCKED_WORDS = (
+    *(
+        "locked_types",
+        "locked_types_c",
+        "locked_extern",
+        "locked_extern_c",
+        "locked_parameter",
+        "locked_argument",
+    ),
+    *("locked_sample", "locked_of_sample", "locked_of_q", "locked_words", "locked_words_c"),
 )
 
 
-def words_of_held(arm: ExportedArm) -> dict[str, Any]:
+def words_of_locked(arm: ExportedArm) -> dict[str, Any]:
     """The words about joints whose values the caller gives; empty ones without such joints."""
-    if not arm.held:
-        return dict.fromkeys(HELD_WORDS, "")
-    count, numbers = len(arm.held), ", ".join(map(str, arm.held))
-    names = arm.held_names
-    moving = [k for k in range(arm.dof) if k not in arm.held]
+    if not arm.locked:
+        return dict.fromkeys(LOCKED_WORDS, "")
+    count, numbers = len(arm.locked), ", ".join(map(str, arm.locked))
+    names = arm.locked_names
+    moving = [k for k in range(arm.dof) if k not in arm.locked]
     return {
-        "held_count": count,
-        "held_joints": numbers,
+        "locked_count": count,
+        "locked_joints": numbers,
         "moving_count": len(moving),
         "moving_joints": ", ".join(map(str, moving)),
-        "held_types": (
-            f"inline constexpr int held = {count}, held_joints[held] = {{{numbers}}};  // {names}\n"
+        "locked_types": (
+            f"inline constexpr int locked_count = {count}, "
+            f"locked_joints[locked_count] = {{{numbers}}};  // {names}\n"
         ),
-        "held_types_c": f"enum {{ {arm.identifier}_held = {count} }}; /* {names} */\n",
-        "held_extern": f"extern const int {arm.identifier}_held_joints[{count}];\n",
-        "held_extern_c": f"const int {arm.identifier}_held_joints[{count}] = {{{numbers}}};\n",
-        "fixed_of_sample": f"    const double fixed[] = {{{', '.join(f'q[{k}]' for k in arm.held)}}};\n",
-        "fixed_parameter": "const double* fixed, ",
-        "fixed_argument": "fixed, ",
-        "fixed_sample": ", fixed",
-        "fixed_of_q": f", [{', '.join(f'q[{k}]' for k in arm.held)}]",
-        "fixed_words": (
-            f"// fixed: the values of the held joints ({names}), {count} in the order of held_joints.\n"
+        "locked_types_c": f"enum {{ {arm.identifier}_locked = {count} }}; /* {names} */\n",
+        "locked_extern": f"extern const int {arm.identifier}_locked_joints[{count}];\n",
+        "locked_extern_c": f"const int {arm.identifier}_locked_joints[{count}] = {{{numbers}}};\n",
+        "locked_of_sample": f"    const double locked_values[] = "
+        f"{{{', '.join(f'q[{k}]' for k in arm.locked)}}};\n",
+        "locked_parameter": "const double* locked_values, ",
+        "locked_argument": "locked_values, ",
+        "locked_sample": ", locked_values",
+        "locked_of_q": f", [{', '.join(f'q[{k}]' for k in arm.locked)}]",
+        "locked_words": (
+            f"// locked_values: the values of the locked joints ({names}), "
+            f"{count} in the order of locked_joints.\n"
         ),
-        "fixed_words_c": f"\n * fixed: the values of the held joints ({names}), {count} in this order.",
+        "locked_words_c": f"\n * locked_values: the values of the locked joints ({names}), "
+        f"{count} in this order.",
     }
 
 
@@ -114,17 +125,17 @@ def solver(arm: ExportedArm) -> tuple[list[str], str]:
     """Which headers of the core solve the arm, and the code that calls them."""
     headers = ["cspace/math/isa.hpp", "cspace/ik/goal.hpp", "cspace/ik/chain.hpp"]
     parts = ["refused", "given", f"solve_{arm.kind}"]
-    if arm.kind == "short":
+    if arm.kind == "few_joints":
         headers += ["cspace/ik/position/pose.hpp"]
         parts.remove("given")
     elif arm.kind == "general":
-        headers += ["cspace/ik/general/singular.hpp", "cspace/ik/crossing_families.hpp"]
+        headers += ["cspace/ik/general/singular.hpp", "cspace/ik/self_motion/bifurcations.hpp"]
     elif arm.kind == "closed":
         quick = arm.plan["on_lanes"] and not arm.plan["virtual_joints"]
-        headers += ["cspace/ik/crossing_families.hpp", *["cspace/ik/quick.hpp"] * quick]
-        parts.append("solve_closed_quick" if quick else "solve_closed_slow")
+        headers += ["cspace/ik/self_motion/bifurcations.hpp", *["cspace/ik/fast_path.hpp"] * quick]
+        parts.append("solve_closed_fast" if quick else "solve_closed_slow")
     elif arm.kind == "locked":
-        headers += ["cspace/ik/redundant/locked_arm.hpp"]
+        headers += ["cspace/ik/redundancy/locked_joints.hpp"]
         parts = ["solve_locked"]
     else:
         headers += ["cspace/ik/arm.hpp"]

@@ -43,14 +43,14 @@ class Export:
     method: str
     files: Mapping[str, str]
     example: str
-    held: tuple[str, ...] = ()
+    locked: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "files", MappingProxyType(dict(self.files)))
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What pickle makes it from again: a view that refuses changes cannot be pickled itself."""
-        values = (self.language, self.name, self.method, dict(self.files), self.example, self.held)
+        values = (self.language, self.name, self.method, dict(self.files), self.example, self.locked)
         return type(self), values
 
     @property
@@ -82,13 +82,13 @@ def export(
     path: str | os.PathLike[str] | None = None,
     *,
     name: str | None = None,
-    fixed: Any = None,
+    locked: Any = None,
 ) -> Export:
     """The inverse and forward kinematics of an arm as source code that needs nothing of cspace.
 
     lang: "cpp", "c" or "python"; by the ending of path unless given, else "cpp". path: where to write the
     (first) file. name: the namespace in it, or the prefix; made from the robot's name unless given.
-    fixed: joints, by name or number, whose values the caller of the code gives with each goal; of an arm of
+    locked: joints, by name or number, whose values the caller of the code gives with each goal; of an arm of
     more than six joints the solver's own choice unless given.
 
     Raises UnknownNameError for a language that is none, InputError for a name, a path or joints that cannot
@@ -97,7 +97,7 @@ def export(
     """
     target = None if path is None else PurePath(path_of(path))
     language = language_of(lang, target)
-    arm = exported_arm(robot, name, fixed)
+    arm = exported_arm(robot, name, locked)
     main = f"{arm.identifier}_ik{SUFFIXES[language]}" if target is None else target.name
     check_file_name(main, language)
     made = write_out(arm, language, main)
@@ -148,8 +148,8 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     words["object"] = PurePath(main).with_suffix(".o").name
     words["module"] = PurePath(main).stem
     example = filled(f"example{ending}.in", words)
-    held = tuple(arm.joint_names[k] for k in arm.held)
-    return Export(language, arm.identifier, method(arm, language), files, example, held)
+    chosen = tuple(arm.joint_names[k] for k in arm.locked)
+    return Export(language, arm.identifier, method(arm, language), files, example, chosen)
 
 
 def method(arm: ExportedArm, language: str) -> str:

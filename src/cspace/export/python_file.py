@@ -23,17 +23,17 @@ THREE_PARALLEL = 2
 # The modules of a method, in the order in which they are written down.
 CLOSED = ("base", "steps", "closed")
 METHODS = {
-    "wrist": (*CLOSED, "places", "with_wrist"),
+    "wrist": (*CLOSED, "places", "position_first"),
     "three_parallel": (*CLOSED, "three_parallel"),
-    "two_turns": (*CLOSED, "two_turns"),
-    "short": ("base", "short"),
+    "parallel_general": (*CLOSED, "parallel_general"),
+    "few_joints": ("base", "few_joints"),
 }
 
 
 def python_file(arm: ExportedArm) -> str:
     """The text of the file; NoClosedFormError for an arm without a closed form."""
     method = method_of(arm)
-    modules = [module_source(name) for name in (*METHODS[method], *["held"] * bool(arm.held))]
+    modules = [module_source(name) for name in (*METHODS[method], *["locked_joints"] * bool(arm.locked))]
     body = "\n\n".join(without_imports(source) for source in modules)
     words: dict[str, Any] = {
         "name": arm.identifier,
@@ -44,61 +44,65 @@ def python_file(arm: ExportedArm) -> str:
         "body": body,
         "arm": literal(numbers(arm.solved), 1),
         "free_turns": 'ARM["free_turns"] = free_turns\n' if method == "three_parallel" else "",
-        "branches": "None" if method == "short" else "branches",
+        "branches": "None" if method == "few_joints" else "branches",
         "joint_names": repr(list(arm.joint_names)),
         "lower": literal(np.array(arm.lower), 0),
         "upper": literal(np.array(arm.upper), 0),
         "on_limit": ON_LIMIT,
         "dof": arm.dof,
-        **python_words_of_held(arm),
+        **python_words_of_locked(arm),
     }
     return filled("module.py.in", words)
 
 
-def python_words_of_held(arm: ExportedArm) -> dict[str, str]:
+def python_words_of_locked(arm: ExportedArm) -> dict[str, str]:
     """The words about joints whose values the caller gives, and how the solver is called."""
-    solver = "solve_short" if arm.solved.kind == "short" else "solve_closed"
-    if not arm.held:
-        none = dict.fromkeys(("fixed_sample", "fixed_of_q", "fixed_parameter", "fixed_words", "held_arm"), "")
+    solver = "solve_few_joints" if arm.solved.kind == "few_joints" else "solve_closed"
+    if not arm.locked:
+        none = dict.fromkeys(
+            ("locked_sample", "locked_of_q", "locked_parameter", "locked_words", "locked_arm_source"), ""
+        )
         return {**none, "whole": "ARM", "solve": f"{solver}(ARM, goal, rest)"}
-    count, held = len(arm.held), list(arm.held)
-    lines = f"HELD = {held}  # {arm.held_names}\n"
+    count, chosen = len(arm.locked), list(arm.locked)
+    lines = f"LOCKED = {chosen}  # {arm.locked_names}\n"
     lines += f"WHOLE: dict[str, Any] = {literal(chain_numbers(arm), 1)}\n"
-    of_q = ", ".join(f"q[{k}]" for k in held)
+    of_q = ", ".join(f"q[{k}]" for k in chosen)
     return {
-        "fixed_sample": ", fixed",
-        "fixed_of_q": f", [{of_q}]",
-        "fixed_parameter": "fixed: npt.ArrayLike, ",
-        "fixed_words": f"    fixed ({count},): the values of the held joints, {arm.held_names}.\n",
-        "held_arm": lines,
+        "locked_sample": ", fixed",
+        "locked_of_q": f", [{of_q}]",
+        "locked_parameter": "locked: npt.ArrayLike, ",
+        "locked_words": f"    locked ({count},): the values of the locked joints, {arm.locked_names}.\n",
+        "locked_arm_source": lines,
         "whole": "WHOLE",
-        "solve": f"solve_held({solver}, ARM, WHOLE, HELD, values_of(fixed, {count}), goal, rest)",
+        "solve": f"solve_locked({solver}, ARM, WHOLE, LOCKED, values_of(fixed, {count}), goal, rest)",
     }
 
 
 def python_method(arm: ExportedArm) -> str:
     """How the file solves the arm, as half a sentence."""
-    how = "all solutions, directly" if arm.solved.kind == "short" else "all solutions in closed form"
-    return f"{how}, with {arm.held_names} held" if arm.held else how
+    how = "all solutions, directly" if arm.solved.kind == "few_joints" else "all solutions in closed form"
+    return f"{how}, with {arm.locked_names} held" if arm.locked else how
 
 
 def method_of(arm: ExportedArm) -> str:
     """Which of METHODS solves the arm; NoClosedFormError for an arm without a closed form."""
     solved = arm.solved
     if solved.kind == "closed":
-        return {WITH_WRIST: "wrist", THREE_PARALLEL: "three_parallel"}.get(solved.plan["family"], "two_turns")
-    if solved.kind == "short":
-        return "short"
-    held = f" with {arm.held_names} held" if arm.held else ""
+        return {WITH_WRIST: "wrist", THREE_PARALLEL: "three_parallel"}.get(
+            solved.plan["family"], "parallel_general"
+        )
+    if solved.kind == "few_joints":
+        return "few_joints"
+    chosen = f" with {arm.locked_names} held" if arm.locked else ""
     raise NoClosedFormError(
-        f"{arm.title}{held} has no closed form; a Python file holds a closed form; "
+        f"{arm.title}{chosen} has no closed form; a Python file holds a closed form; "
         "export it with lang='cpp' or lang='c'"
     )
 
 
 def numbers(arm: ExportedArm) -> dict[str, Any]:
     """What the file's functions know of the arm that they solve."""
-    if arm.kind == "short":
+    if arm.kind == "few_joints":
         return {**chain_numbers(arm), "length": size_of(arm)}
     plan = {key: arm.plan[key] for key in arm.plan if key not in ("chain", "polish", "on_lanes")}
     return {**chain_numbers(arm), "length": float(plan["form"]["length"]), "plan": plain(plan)}

@@ -2,9 +2,7 @@
 
 from cspace.ik import subproblems
 from cspace.ik.conditions import Condition, NoClosedFormError
-from cspace.ik.explain import IkPlan, Relation, Step, StillDirection, StillPoint, ik_plan
-from cspace.ik.families import Family
-from cspace.ik.feasible import redundancy
+from cspace.ik.explain import IkPlan, InvariantDirection, InvariantPoint, Relation, Step, ik_plan
 from cspace.ik.geometry import Geometry, geometry
 from cspace.ik.numeric import (
     CenterOfMassTask,
@@ -21,11 +19,13 @@ from cspace.ik.numeric import (
     resolved_rate,
     task_velocity,
 )
-from cspace.ik.redundancy import Interval, Redundancy
+from cspace.ik.redundancy.arm_angle import swivel
+from cspace.ik.redundancy.parameters import redundancy
+from cspace.ik.redundancy.result import Interval, Redundancy
+from cspace.ik.self_motion.self_motion import SelfMotion
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solve import inverse_kinematics
-from cspace.ik.swivel import swivel
 from cspace.ik.tracking import Branch, Track, track
 
 __all__ = [
@@ -33,10 +33,11 @@ __all__ = [
     "CenterOfMassTask",
     "Condition",
     "DirectionTask",
-    "Family",
     "Geometry",
     "IkPlan",
     "Interval",
+    "InvariantDirection",
+    "InvariantPoint",
     "NoClosedFormError",
     "NumericSolution",
     "PoseTask",
@@ -45,11 +46,10 @@ __all__ = [
     "Redundancy",
     "Relation",
     "SampledSolutions",
+    "SelfMotion",
     "Solutions",
     "SolutionsBatch",
     "Step",
-    "StillDirection",
-    "StillPoint",
     "TaskSolution",
     "Track",
     "geometry",

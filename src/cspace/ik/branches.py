@@ -24,7 +24,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.ik.placed import Placed, are_parallel, are_square, meeting_point, place
+from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point, place
 
 __all__ = ["branch_labels"]
 

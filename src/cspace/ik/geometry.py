@@ -76,7 +76,7 @@ def geometry(robot: Any) -> Geometry:
         return Geometry("general", "", False, 0.0, tested, f"{explain_missing_form(robot)}. {GENERAL}")
     if seen["family"] < 0:
         shared = FIRST_THREE.get(seen["first_three"], "up to three joints")
-        return Geometry("short arm", f"{robot.chain.joint_types}, {shared}", False, 0.0, tested)
+        return Geometry("fewer than six joints", f"{robot.chain.joint_types}, {shared}", False, 0.0, tested)
     family = FAMILIES[seen["family"]]
     detail = FIRST_THREE[seen["first_three"]] if seen["family"] == 1 else PARALLEL[seen["family"]]
     if seen["virtual_joints"]:
@@ -86,12 +86,12 @@ def geometry(robot: Any) -> Geometry:
 
 def redundant_geometry(robot: Any, tested: tuple[Condition, ...]) -> Geometry:
     """Of an arm with joints to spare: which of them are held, and how the others are solved."""
-    from cspace.ik.held import hold
+    from cspace.ik.locked_joints import lock_joints
 
-    solver = hold(robot, {}).solver
-    if not solver.held:
+    solver = lock_joints(robot, {}).solver
+    if not solver.locked:
         detail = "no closed form, and the general method finds no good condition: descents from many starts"
         return Geometry("redundant", detail, False, 0.0, tested)
-    names = ", ".join(robot.joint_names[k] for k in solver.held)
+    names = ", ".join(robot.joint_names[k] for k in solver.locked)
     method = "a closed form of the others" if solver.closed_form else "the general method for the others"
     return Geometry("redundant", f"{names} held, {method}", False, 0.0, tested)

@@ -7,10 +7,10 @@ from typing import Any, cast
 import numpy as np
 
 from cspace import _core
-from cspace.ik.about import About
-from cspace.ik.solutions import NEAREST, Solutions, nearest_miss, position_goal
-from cspace.ik.solve_partial import own_columns
-from cspace.ik.windings import wrap
+from cspace.ik.context import About
+from cspace.ik.goals.solve_partial import own_columns
+from cspace.ik.solutions import NEAREST, Solutions, nearest_to_goal, position_goal
+from cspace.ik.wrapping import wrap
 
 __all__ = ["least_squares_answer"]
 
@@ -20,10 +20,10 @@ def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
     if found._partial is not None:
         return least_squares_partial(robot, found)
     if goal.shape == (3,):
-        q, missing = _core._ik_position_miss(robot, goal)
+        q, missing = _core._ik_nearest_position(robot, goal)
         goal, text = position_goal(goal), f"{missing:.4g} m"
     else:
-        q, away, turned = _core._ik_miss(robot, goal, 1.0)
+        q, away, turned = _core._ik_nearest_pose(robot, goal, 1.0)
         text = f"{away:.4g} m and {np.degrees(turned):.4g}°"
     q = wrap(q, robot.joint_types)
     note = f"nothing reaches the goal; the nearest configuration misses it by {text}"
@@ -33,7 +33,7 @@ def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
 def least_squares_partial(robot: Any, found: Solutions) -> Solutions:
     """The nearest configuration of the longer arm, without the goal's joints."""
     about, goal = found._about, found._partial
-    q, _, miss = nearest_miss(found)
+    q, _, miss = nearest_to_goal(found)
     q = wrap(q, about.whole.joint_types)[None]
     note = f"nothing reaches {goal.text}; the nearest configuration misses it by {miss}"
     own = np.ascontiguousarray(q[:, own_columns(robot, goal)])

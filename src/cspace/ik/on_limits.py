@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.windings import Flags, into_limits, violations
+from cspace.ik.wrapping import Flags, into_limits, violations
 from cspace.model import Limits
 from cspace.tolerances import DOUBLE_SOLUTION, SAME_TIP
 
@@ -51,23 +51,23 @@ def settle_row(robot: Any, q: Array, limits: Limits, rows: slice) -> Array:
     Newton's method in the joints that are not on a limit.
     """
     bounds = robot.joint_types, limits.lower, limits.upper
-    T, x, held = robot.fk(q), q, np.zeros(len(q), dtype=bool)
+    T, x, locked = robot.fk(q), q, np.zeros(len(q), dtype=bool)
     for _ in range(STEPS):
-        x, held = onto_limits(x, held, *bounds)
+        x, locked = onto_limits(x, locked, *bounds)
         J = robot.jacobian(x)[rows]
         miss = displacement(robot.fk(x), T)[rows]
         size = max(1.0, float(np.abs(J).max()))
         if np.abs(miss).max() <= SAME_TIP * size and into_limits(x, *bounds, SAME_TIP)[1]:
             return x
         x = x.copy()
-        x[~held] += np.linalg.lstsq(J[:, ~held], miss, rcond=WEAK)[0]
+        x[~locked] += np.linalg.lstsq(J[:, ~locked], miss, rcond=WEAK)[0]
     return q
 
 
-def onto_limits(q: Array, held: Flags, kinds: str, lower: Array, upper: Array) -> tuple[Array, Flags]:
+def onto_limits(q: Array, locked: Flags, kinds: str, lower: Array, upper: Array) -> tuple[Array, Flags]:
     """q (dof,) with joints slightly beyond a limit set to it, and which joints are held there so far."""
     moved, _ = into_limits(q, kinds, lower, upper, DOUBLE_SOLUTION)
-    return moved, held | (moved == lower) | (moved == upper)
+    return moved, locked | (moved == lower) | (moved == upper)
 
 
 def displacement(T_from: Array, T_to: Array) -> Array:

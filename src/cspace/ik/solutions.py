@@ -9,14 +9,14 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError, InputTypeError, attribute_error
 from cspace.ik.branches import branch_labels
 from cspace.ik.derivative import derivative
-from cspace.ik.families import Family, family_at
-from cspace.ik.goals import one_configuration
+from cspace.ik.goals.given import one_configuration
 from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.prepare import prepare
-from cspace.ik.windings import all_windings, into_limits, nearest_winding, violations, wrap
+from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
+from cspace.ik.wrapping import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
 from cspace.tolerances import SLIGHT_MISS
 
@@ -87,7 +87,7 @@ class Solutions(_core.SolutionsBase):
         return pose_errors(self.robot, self.q, self.goal)
 
     @property
-    def asked(self) -> dict[str, Any]:
+    def goal_parts(self) -> dict[str, Any]:
         """What was asked, by keyword: {"position": p, "direction": d} and the like, or {"pose": T}. The goal
         itself is then one of the poses that meet it.
         """
@@ -124,17 +124,17 @@ class Solutions(_core.SolutionsBase):
         return branch_labels(self.robot, self.q, self._branch_numbers)
 
     @property
-    def missing(self) -> float:
+    def out_of_reach(self) -> float:
         """By how much the goal is out of reach [m]: the shortest way it would have to move, orientation
         kept.
         """
         if self._status != UNREACHABLE:
             return 0.0
         if self.goal.shape == (3,):
-            return float(_core._ik_position_miss(self.robot, self.goal)[1])
+            return float(_core._ik_nearest_position(self.robot, self.goal)[1])
         if self._partial is not None:
-            return nearest_miss(self, ORIENTATION_FIRST)[1]
-        return float(_core._ik_miss(self.robot, self.goal, ORIENTATION_FIRST)[1])
+            return nearest_to_goal(self, ORIENTATION_FIRST)[1]
+        return float(_core._ik_nearest_pose(self.robot, self.goal, ORIENTATION_FIRST)[1])
 
     @property
     def reason(self) -> str:
@@ -149,21 +149,26 @@ class Solutions(_core.SolutionsBase):
                 f"{len(self)} of the configurations that reach the goal, which leaves {named(self.freedom)}"
             )
         if self._status == SINGULAR:
-            moving = sorted({name for family in self.families for name in family.joints})
+            moving = sorted({name for self_motion in self.self_motions for name in self_motion.joints})
             is_pose = self.goal.shape == (4, 4) and self._partial is None
             cause = "the pose is singular" if is_pose else "the goal leaves freedom"
             text += f"; {cause}: {', '.join(moving)} can move while the tip stays"
         return text if self.complete else text + "; " + UNCERTIFIED
 
     @property
-    def families(self) -> tuple[Family, ...]:
+    def self_motions(self) -> tuple[SelfMotion, ...]:
         """The one-parameter families among the solutions, empty unless the pose is singular."""
-        rows = [row for row, is_family in enumerate(self._is_family) if is_family]
+        rows = [row for row, is_self_motion in enumerate(self._is_self_motion) if is_self_motion]
         if self._partial is not None:
             whole = self._about.whole
-            return tuple(family_at(whole, row, self._about.q[row], True) for row in rows)
+            return tuple(self_motion_at(whole, row, self._about.q[row], True) for row in rows)
         whole_pose = self.goal.shape == (4, 4)
-        return tuple(family_at(self.robot, row, self.q[row], whole_pose) for row in rows)
+        return tuple(self_motion_at(self.robot, row, self.q[row], whole_pose) for row in rows)
+
+    if not TYPE_CHECKING:  # which reports such names itself
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
 
     def __iter__(self) -> Iterator[Array]:
         return iter(self.q)
@@ -214,20 +219,20 @@ class Solutions(_core.SolutionsBase):
         row = int(np.argmin(distance))
         return self._take(np.array([row]), moved[[row]], None)
 
-    def _along_families(self, seed: Array) -> Solutions:
+    def _along_self_motions(self, seed: Array) -> Solutions:
         """The same solutions, families by their members nearest to a seed (dof,)."""
         q = self.q.copy()
-        for family in self.families:
-            q[family.row] = family.nearest(seed)
+        for self_motion in self.self_motions:
+            q[self_motion.row] = self_motion.nearest(seed)
         return self._take(np.arange(len(self)), q, self._note)
 
     def _with_member(self, seed: Array) -> Solutions:
         """The same solutions, the family that a seed (dof,) is a member of by that member."""
         q = self.q.copy()
-        for family in self.families:
-            member = family.nearest(seed)
+        for self_motion in self.self_motions:
+            member = self_motion.nearest(seed)
             if np.abs(member - seed).max() < SAME_MEMBER:
-                q[family.row] = member
+                q[self_motion.row] = member
         return self._take(np.arange(len(self)), q, self._note)
 
     def wrapped(self) -> Solutions:
@@ -250,21 +255,21 @@ class Solutions(_core.SolutionsBase):
 
     def _take(self, rows: Any, q: Array, note: str | None) -> Solutions:
         branches = tuple(self._branch_numbers[row] for row in rows)
-        families = tuple(self._is_family[row] for row in rows)
+        self_motions = tuple(self._is_self_motion[row] for row in rows)
         made = _core._ik_make(
             self.robot,
             self._goal_pose,
             self._verdict,
             np.ascontiguousarray(q, dtype=np.float64),
             branches,
-            families,
+            self_motions,
             note,
             None if self._about is None else self._about.take(rows),
         )
         return cast(Solutions, made)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        numbers = (self._branch_numbers, self._is_family, self._note, self._about)
+        numbers = (self._branch_numbers, self._is_self_motion, self._note, self._about)
         return again, (self.robot, self._goal_pose, self._verdict, self.q, *numbers)
 
     def __repr__(self) -> str:
@@ -330,29 +335,29 @@ def position_goal(p: Array) -> Array:
 def unreachable_reason(found: Solutions) -> str:
     name = found.robot.name
     if found._partial is not None:
-        q, _, miss = nearest_miss(found)
+        q, _, miss = nearest_to_goal(found)
         left = float(found._partial.residual(found.robot.fk(own_part(found, q))))
         return (
             f"{name} cannot reach {found._partial.text}: the nearest configuration misses it by {miss}"
-            + what_a_slight_miss_needs(left)
+            + hint_for_slight_miss(left)
         )
     if found.goal.shape == (3,):
-        return f"out of reach: the goal would have to move {found.missing:.4g} m for {name} to reach it"
-    _, missing, turned = _core._ik_miss(found.robot, found.goal, ORIENTATION_FIRST)
+        return f"out of reach: the goal would have to move {found.out_of_reach:.4g} m for {name} to reach it"
+    _, missing, turned = _core._ik_nearest_pose(found.robot, found.goal, ORIENTATION_FIRST)
     if turned > min(ORIENTATION_KEPT, missing):
         return (
             f"{name} ({found.robot.dof} joints) cannot take this orientation: the nearest configuration "
             f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"
-            + what_a_slight_miss_needs(max(turned, missing))
+            + hint_for_slight_miss(max(turned, missing))
         )
     short = "" if found.robot.dof >= POSE_ASKS else f" ({found.robot.dof} joints, where poses ask for 6)"
     return (
         f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
-        f"for {name}{short} to reach it" + (what_a_slight_miss_needs(missing) if short else "")
+        f"for {name}{short} to reach it" + (hint_for_slight_miss(missing) if short else "")
     )
 
 
-def what_a_slight_miss_needs(miss: float) -> str:
+def hint_for_slight_miss(miss: float) -> str:
     """What to ask where a goal that an arm of few joints was made for is missed by its rounding [m, rad]."""
     if miss > SLIGHT_MISS:
         return ""
@@ -365,7 +370,7 @@ def own_part(found: Solutions, q: Array) -> Array:
     return q[first : first + found.robot.dof]
 
 
-def nearest_miss(found: Solutions, radian: float = 1.0) -> tuple[Array, float, str]:
+def nearest_to_goal(found: Solutions, radian: float = 1.0) -> tuple[Array, float, str]:
     """Of a partial goal out of reach: the configuration of the longer arm that misses it least; by how far
     [m], and by how much in words. radian: how many metres one weighs where what is missed is compared.
     """
@@ -375,9 +380,12 @@ def nearest_miss(found: Solutions, radian: float = 1.0) -> tuple[Array, float, s
         distances, angles = goal.misses(found.robot.fk(own_part(found, q)))
         return float(max(distances, default=0.0) + radian * max(angles, default=0.0))
 
-    q = min((_core._ik_miss(whole, found.goal, weight)[0] for weight in (1.0, ORIENTATION_FIRST)), key=size)
+    q = min(
+        (_core._ik_nearest_pose(whole, found.goal, weight)[0] for weight in (1.0, ORIENTATION_FIRST)),
+        key=size,
+    )
     T = found.robot.fk(own_part(found, q))
-    return q, float(max(goal.misses(T)[0], default=0.0)), goal.miss_in_words(T)
+    return q, float(max(goal.misses(T)[0], default=0.0)), goal.distance_in_words(T)
 
 
 def limits_reason(found: Solutions, q: Array, limits: Limits) -> str:

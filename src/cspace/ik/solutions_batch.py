@@ -9,8 +9,8 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError
-from cspace.ik.about import About
+from cspace.errors import InputError, attribute_error
+from cspace.ik.context import About
 from cspace.ik.derivative import derivative
 from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.prepare import prepare
@@ -24,7 +24,7 @@ from cspace.ik.solutions import (
     pose_errors,
     position_goal,
 )
-from cspace.ik.windings import into_limits, nearest_winding, short_way, wrap
+from cspace.ik.wrapping import into_limits, nearest_winding, short_way, wrap
 from cspace.kinematics.batch import choice
 from cspace.tolerances import FARTHEST
 
@@ -40,7 +40,7 @@ class SolutionsBatch:
     q: (..., k_max, dof) [rad, m], the solutions of each goal first, NaN behind them. count: (...,)
     solutions per goal. goal: (..., 4, 4), or (..., 3) for positions. status: (...,) strings as of
     `Solutions`. freedom: what the goals leave free, as of `Solutions`. Index with one goal's index to get its
-    `Solutions`: batch[i].branch, batch[i].families.
+    `Solutions`: batch[i].branch, batch[i].self_motions.
     """
 
     def __init__(
@@ -60,6 +60,11 @@ class SolutionsBatch:
         self._verdict = verdict
         self._partial = partial  # solve_partial.Many, where the goals are no poses
         self.freedom = freedom
+
+    if not TYPE_CHECKING:  # which reports such names itself
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
 
     def __len__(self) -> int:
         return len(self.count)
@@ -118,11 +123,11 @@ class SolutionsBatch:
         return self._of_each("reason", np.dtype(object))
 
     @property
-    def missing(self) -> Array:
+    def out_of_reach(self) -> Array:
         """By how much each goal is out of reach [m], (...,), as of `Solutions`; made when read, by a search
         for each unreachable goal.
         """
-        return self._of_each("missing", np.dtype(float))
+        return self._of_each("out_of_reach", np.dtype(float))
 
     def _of_each(self, name: str, kind: np.dtype[Any]) -> npt.NDArray[Any]:
         out = np.empty(self.count.shape, dtype=kind)

@@ -12,8 +12,9 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
+from cspace.buffer_pool import pooled_array
 from cspace.errors import InputTypeError
-from cspace.ik.goals import (
+from cspace.ik.goals.given import (
     checked_poses,
     goal_array,
     is_far,
@@ -23,15 +24,14 @@ from cspace.ik.goals import (
     points_in_base,
     too_far,
 )
-from cspace.ik.held import by_name, fixed_values
+from cspace.ik.goals.partial import KEYWORDS, PartialGoal, check_tool_axis, is_open, partial_goal
+from cspace.ik.goals.solve_partial import met_by_open_joints, own_columns, solve_partial
 from cspace.ik.least_squares import least_squares_answer
-from cspace.ik.partial import KEYWORDS, PartialGoal, check_tool_axis, is_open, partial_goal
+from cspace.ik.locked_joints import by_name, locked_values
 from cspace.ik.prepare import check_chain, prepare
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.ik.solve_partial import met_by_open_joints, own_columns, solve_partial
 from cspace.kinematics.batch import check_robot, thread_count
-from cspace.spare import spare_array
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
 
@@ -49,7 +49,7 @@ class Wish:
     """Which of the solutions: the keywords of `inverse_kinematics` of these names."""
 
     near: Any
-    fixed: Any
+    locked: Any
     swivel: Any
     samples: Any
     least_squares: bool
@@ -58,7 +58,7 @@ class Wish:
     @property
     def holds(self) -> bool:
         """Whether something is held, or sampled at a number of values of one's own."""
-        return self.fixed is not None or self.samples is not None
+        return self.locked is not None or self.samples is not None
 
 
 def inverse_kinematics(
@@ -74,7 +74,7 @@ def inverse_kinematics(
     tool_axis: Any = "z",
     angle: Any = None,
     near: Any = None,
-    fixed: Any = None,
+    locked: Any = None,
     swivel: Any = None,
     samples: int | None = None,
     least_squares: bool = False,
@@ -91,7 +91,7 @@ def inverse_kinematics(
 
     near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
     singular pose leaves free take its values. Limits choose among a joint's whole turns, not among solutions,
-    and with joints to spare count for nothing. fixed: joints held at given values, by name or number,
+    and with joints to spare count for nothing. locked: joints held at given values, by name or number,
     {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with two spherical
     joints, the angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or many.
     samples: of an arm with one joint to spare, at how many of its values branches are listed (16 unless
@@ -100,7 +100,7 @@ def inverse_kinematics(
     answer does not depend on it.
 
     An arm with more than six joints, or some of which do the work of others, leaves freedom, which `freedom`
-    of the answer names. With fixed= for all joints to spare every solution of the others is listed; with
+    of the answer names. With locked= for all joints to spare every solution of the others is listed; with
     near= the nearest of all; else, with one joint to spare, all branches at values of it spread over its
     feasible intervals, and with more the configuration nearest to the middle of the limits.
 
@@ -112,7 +112,7 @@ def inverse_kinematics(
     workers = thread_count(threads, (1,)) or os.cpu_count() or 1
     if not isinstance(least_squares, (bool, np.bool_)):
         raise InputTypeError(f"least_squares must be True or False, got {type(least_squares).__name__}")
-    wish = Wish(near, fixed, swivel, samples, bool(least_squares), workers)
+    wish = Wish(near, locked, swivel, samples, bool(least_squares), workers)
     if angle is not None:
         goal, position = planar_poses(robot, goal, position, angle), None
     position = open_in_space(robot, position)
@@ -149,16 +149,16 @@ def answer_points(robot: Any, p: Array, wish: Wish) -> Answer:
     if p.ndim > 1:
         return chosen(robot, solve_positions(robot, p, wish.threads), wish)
     found = cast(Solutions, _core._ik_position(robot, p))
-    if wish.near is not None and found.families:
-        found = found._along_families(one_configuration(robot, wish.near, "near"))
+    if wish.near is not None and found.self_motions:
+        found = found._along_self_motions(one_configuration(robot, wish.near, "near"))
     return chosen(robot, found, wish)
 
 
 def answer_partial(robot: Any, goal: PartialGoal, wish: Wish) -> Answer:
     if wish.swivel is not None:
-        raise InputTypeError("swivel= goes with a full pose; hold joints with fixed=")
+        raise InputTypeError("swivel= goes with a full pose; lock joints with locked=")
     if wish.holds and goal.T.ndim > 2:
-        raise InputTypeError("fixed= and samples= go with one goal where parts of a pose are asked for")
+        raise InputTypeError("locked= and samples= go with one goal where parts of a pose are asked for")
     if wish.near is not None and goal.T.ndim > 2:
         count = int(np.prod(goal.T.shape[:-2]))
         raise InputTypeError(
@@ -187,7 +187,7 @@ def chosen(robot: Any, found: Answer, wish: Wish) -> Answer:
 
 
 def at_swivel(robot: Any, T: Array, wish: Wish) -> Answer:
-    from cspace.ik.swivel import solve_swivel
+    from cspace.ik.redundancy.arm_angle import solve_swivel
 
     if wish.holds or wish.least_squares:
         raise InputTypeError("swivel= goes with near= alone: it holds what is to spare")
@@ -195,9 +195,9 @@ def at_swivel(robot: Any, T: Array, wish: Wish) -> Answer:
 
 
 def redundant(robot: Any, T: Array, wish: Wish) -> Answer:
-    from cspace.ik.redundant import redundant_answer
+    from cspace.ik.redundancy.solve import redundant_answer
 
-    options = {"fixed": wish.fixed, "samples": wish.samples, "near": wish.near, "threads": wish.threads}
+    options = {"locked": wish.locked, "samples": wish.samples, "near": wish.near, "threads": wish.threads}
     found = redundant_answer(robot, checked_poses(T), **options)
     if isinstance(found, SolutionsBatch):
         if wish.least_squares:
@@ -207,8 +207,8 @@ def redundant(robot: Any, T: Array, wish: Wish) -> Answer:
 
 
 def closest(robot: Any, found: Solutions, wish: Wish) -> Solutions:
-    if wish.fixed:
-        raise InputTypeError("least_squares= does not go with fixed=: it moves every joint")
+    if wish.locked:
+        raise InputTypeError("least_squares= does not go with locked=: it moves every joint")
     return least_squares_answer(robot, found)
 
 
@@ -222,16 +222,16 @@ def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
     """The wish in terms of the arm with the joints that stand for what the goal leaves open: these begin
     where they bring the seed closest to the goal, and joints are held by name, for their numbers are others.
     """
-    from cspace.ik.redundant import to_spare
+    from cspace.ik.redundancy.solve import count_redundancy
 
-    fixed, near = wish.fixed, None
-    if isinstance(fixed, Mapping):
-        fixed = by_name(robot, fixed)
-    leaves_freedom = fixed is None or to_spare(whole, fixed_values(whole, fixed)) > 0
+    locked, near = wish.locked, None
+    if isinstance(locked, Mapping):
+        locked = by_name(robot, locked)
+    leaves_freedom = locked is None or count_redundancy(whole, locked_values(whole, locked)) > 0
     if wish.near is not None and leaves_freedom:  # else all are listed, and the nearest is picked among them
         seed = as_floats(wish.near, "near", last=(robot.dof,), largest=FARTHEST)
         near = met_by_open_joints(whole, own_columns(robot, goal), seed, goal.T)
-    return replace(wish, fixed=fixed, near=near, least_squares=False)
+    return replace(wish, locked=locked, near=near, least_squares=False)
 
 
 def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
@@ -245,8 +245,8 @@ def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
         raise too_far("goal", T[:3, 3])
     bounds = (np.ascontiguousarray(side) for side in (robot.limits.lower, robot.limits.upper))
     _core._ik_serve_near(robot, *bounds)
-    found = cast(Solutions, _core._ik_careful(robot, T, seed))
-    return found._with_member(seed) if found.families else found
+    found = cast(Solutions, _core._ik_near_singular(robot, T, seed))
+    return found._with_member(seed) if found.self_motions else found
 
 
 def solve_many(robot: Any, T: Array, workers: int) -> SolutionsBatch:
@@ -273,7 +273,7 @@ def solve_positions(robot: Any, p: Array, workers: int) -> SolutionsBatch:
 def room_for(robot: Any, leading: tuple[int, ...]) -> tuple[Array, Counts, Verdicts]:
     """Arrays for the answers to n goals: q (n, k_max, dof), count (n,), verdict (n,)."""
     n = int(np.prod(leading))
-    q = spare_array((n, robot._ik_room, robot.dof))
+    q = pooled_array((n, robot._ik_room, robot.dof))
     return q, np.empty(n, dtype=np.int64), np.empty(n, dtype=np.uint8)
 
 

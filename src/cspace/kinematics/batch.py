@@ -11,9 +11,9 @@ import numpy as np
 
 from cspace._core import RobotBase
 from cspace.arrays import Array, as_floats
+from cspace.buffer_pool import pooled_array
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.model import Chain, Limits
-from cspace.spare import spare_array
 from cspace.spatial import as_pose
 
 __all__ = ["Batch", "Machine", "frame_number", "output", "rows_of", "thread_count", "whole_number"]
@@ -153,7 +153,7 @@ def output(out: Any, shape: tuple[int, ...], subject: str = "out") -> Array:
     Raises InputTypeError unless out is a contiguous float64 array, InputError for another shape.
     """
     if out is None:
-        return spare_array(shape)
+        return pooled_array(shape)
     if not isinstance(out, np.ndarray) or out.dtype != np.float64:
         kind = f"an array of {out.dtype}" if isinstance(out, np.ndarray) else type(out).__name__
         raise InputTypeError(f"{subject} must be a float64 array to write into, got {kind}")

@@ -2,7 +2,8 @@
 
 from cspace.navigation.bugs import BugEvidence
 from cspace.navigation.cars import CarRoute, hybrid_a_star
-from cspace.navigation.cells import ApproximateCells, CellEvidence, Coverage, approximate_cells, coverage
+from cspace.navigation.cells import ApproximateCells, CellEvidence, approximate_cells
+from cspace.navigation.coverage import Coverage, coverage
 from cspace.navigation.curves import (
     Curve,
     Segment,
@@ -25,14 +26,15 @@ from cspace.navigation.fields import (
 )
 from cspace.navigation.following import CONTROLLERS, OUTCOMES, Car, Run, Unicycle, cast_rays, follow
 from cspace.navigation.grid import DStarLite
-from cspace.navigation.options import Option
+from cspace.navigation.navigate import World, navigate
 from cspace.navigation.planners import PLANNERS, Planner
-from cspace.navigation.query import World, navigate
-from cspace.navigation.roadmaps import VisibilityGraph, VoronoiDiagram, visibility_graph, voronoi_diagram
-from cspace.navigation.route import STATUSES, Price, Route
-from cspace.navigation.trace import Trace
+from cspace.navigation.route import STATUSES, Route, Stats
+from cspace.navigation.visibility import VisibilityGraph, visibility_graph
+from cspace.navigation.voronoi import VoronoiDiagram, voronoi_diagram
+from cspace.search.options import Option
+from cspace.search.trace import Trace
 
-__all__ = ["PLANNERS", "STATUSES", "Option", "Planner", "Price", "Route", "Trace", "World", "navigate"]
+__all__ = ["PLANNERS", "STATUSES", "Option", "Planner", "Route", "Stats", "Trace", "World", "navigate"]
 __all__ += ["BugEvidence"]
 __all__ += ["CarRoute", "hybrid_a_star"]
 __all__ += ["ApproximateCells", "CellEvidence", "Coverage", "approximate_cells", "coverage"]

@@ -9,12 +9,12 @@ from importlib import import_module
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, Final, Protocol, cast
 
-from cspace.errors import suggest
-from cspace.navigation.options import Option, options_of
+from cspace.errors import attribute_error, suggest
+from cspace.search.options import Option, options_of
 
 if TYPE_CHECKING:
     from cspace.maps import OccupancyGrid
-    from cspace.navigation.trace import Trace
+    from cspace.search.trace import Trace
 
 __all__ = ["PLANNERS", "Planner", "module_of", "planner_named"]
 
@@ -26,13 +26,18 @@ class Planner:
     name: str
     room: str
     """The folder of its file."""
-    line: str
+    summary: str
     world: str
     """Its own kind of world, "polygons" or "grid": one of the other kind is converted."""
-    sees: str
+    sensing: str
     """What it is shown: "map", or where it needs none, "contact" or "range"."""
     takes_cells: bool = False
     """Whether its file says, by takes_cells(grid), of which grids the cells serve it better than polygons."""
+
+    if not TYPE_CHECKING:  # which reports such names itself
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
 
     @property
     def options(self) -> Mapping[str, Option]:
@@ -71,15 +76,15 @@ _ROWS: Final[tuple[Planner, ...]] = (
     ),
     Planner(
         "visibility_graph",
-        "roadmaps",
+        "visibility",
         "the shortest path over corners that see each other",
         "polygons",
         "map",
     ),
-    Planner("voronoi", "roadmaps", "the widest way, along points as far from two walls", "polygons", "map"),
+    Planner("voronoi", "voronoi", "the widest way, along points as far from two walls", "polygons", "map"),
     Planner(
         "any_angle",
-        "cells",
+        "any_angle",
         "the shortest path, through convex polygons (Polyanya)",
         "polygons",
         "map",

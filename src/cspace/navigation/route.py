@@ -6,19 +6,20 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.errors import attribute_error
 from cspace.navigation.planners import module_of
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
 
 if TYPE_CHECKING:
-    from cspace.navigation.trace import Trace
+    from cspace.search.trace import Trace
 
-__all__ = ["STATUSES", "Price", "Route", "new_route"]
+__all__ = ["STATUSES", "Route", "Stats", "new_route"]
 
 STATUSES: Final = ("found", "unreachable", "undetermined", "local_minimum")
 """The verdicts, in the order of the compiled core."""
 
 
-class Price(NamedTuple):
+class Stats(NamedTuple):
     """What a search cost."""
 
     nodes: int
@@ -50,14 +51,14 @@ class Route(_core.RouteBase):
         if self and len(self.path) == 1:
             return "start and goal are the same point"
         said: str = getattr(self._evidence, "reason", None) or module_of(self.planner).reason(self)
-        if self.world.kind == "grid" and self._asked.kind == "polygons":
+        if self.world.kind == "grid" and self._given_world.kind == "polygons":
             said += f"; polygons became cells of {self.world.resolution:g} m"
         return said
 
     @property
-    def price(self) -> Price:
+    def stats(self) -> Stats:
         """Nodes, edges and seconds that the search took."""
-        return Price(*self._numbers)
+        return Stats(*self._numbers)
 
     @property
     def evidence(self) -> Any:
@@ -85,19 +86,24 @@ class Route(_core.RouteBase):
         It is that of the robot's centre: of a disc, `radius` less is left beside it.
         """
         if (least := self.__dict__.get("clearance")) is None:
-            least = self.__dict__["clearance"] = self._asked.path_clearance(self.path)
+            least = self.__dict__["clearance"] = self._given_world.path_clearance(self.path)
         return float(least)
 
     @property
-    def _asked(self) -> Any:
+    def _given_world(self) -> Any:
         """The world before it was grown by a radius, or converted."""
-        return self.__dict__.get("asked", self.world)
+        return self.__dict__.get("given_world", self.world)
+
+    if not TYPE_CHECKING:  # which reports such names itself
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What it was made from: copies and pickles are made from that again."""
         ends, found = (self.start, self.goal), (self.status, self.path, self.length)
-        made = (self.world, self.planner, self.options, ends, *found, self.price, self.evidence)
-        return new_route, made, {"asked": self._asked}
+        made = (self.world, self.planner, self.options, ends, *found, self.stats, self.evidence)
+        return new_route, made, {"given_world": self._given_world}
 
     def __repr__(self) -> str:
         if self:
@@ -116,11 +122,11 @@ def new_route(
     status: str,
     path: Array,
     length: float,
-    price: Price,
+    stats: Stats,
     evidence: Any = None,
 ) -> Route:
     """A route from what a planner found. path: (m, 2) [m]; ends: start and goal, (2,) each."""
     made: Route = _core._route_make(
-        world, planner, options, *ends, STATUSES.index(status), path, length, *price, evidence
+        world, planner, options, *ends, STATUSES.index(status), path, length, *stats, evidence
     )
     return made

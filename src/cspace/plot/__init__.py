@@ -7,11 +7,11 @@ Needs the extra `[plot]` (matplotlib), which is imported when a function is firs
 from __future__ import annotations
 
 from cspace.plot.arms import robot, solutions
-from cspace.plot.drives import coverage, drive
 from cspace.plot.fields import surface
 from cspace.plot.files import save
 from cspace.plot.frames import frames
 from cspace.plot.planar import manipulability, workspace
+from cspace.plot.vehicles import coverage, drive
 from cspace.plot.worlds import animation, route, routes, world
 
 __all__ = [

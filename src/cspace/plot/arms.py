@@ -9,11 +9,12 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.plot import colors, planar, stage
+from cspace.plot import colors, planar
 from cspace.plot.axes import space_axes
-from cspace.plot.scene import Group, artist_type, scene_of
+from cspace.plot.raytrace import stage
+from cspace.plot.raytrace.scene import Group, artist_type, scene_of
+from cspace.plot.raytrace.solids import Solid, capsule, cylinder
 from cspace.plot.skeleton import WIDTH, Skeleton, planar_basis, size_of, skeleton
-from cspace.plot.solids import Solid, capsule, cylinder
 
 __all__ = ["robot", "solutions"]
 
@@ -44,7 +45,7 @@ def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: 
     size = 0.14 * size_of(arm.chain.points, arm.chain.T_zero)
     link = np.array(colors.LINK if color is None else color, dtype=np.float64)[:3]
     frames = Group(stage.triads(np.stack([np.eye(4), drawn.T_tip]), size), shadow=False)
-    artists = put(axes, [Group(solids_of(drawn, link, np.array(colors.JOINT))), frames])
+    artists = draw_groups(axes, [Group(solids_of(drawn, link, np.array(colors.JOINT))), frames])
     return artists + stage.write_title(axes, title)
 
 
@@ -96,14 +97,14 @@ def solutions(
     groups.append(Group(solids_of(drawn[solid], np.array(colors.LINK), tints[solid])))
     size = size_of(arm.chain.points, arm.chain.T_zero)
     groups.append(Group(stage.triads(T_goal[None], 0.20 * size, thickness=0.045), shadow=False))
-    artists = put(axes, groups)
+    artists = draw_groups(axes, groups)
     artists += write_legend(axes, names, tints, solid)
     return artists + stage.write_title(axes, title)
 
 
 def within_limits(arm: Any, q: Array) -> Any:
     """Which of the configurations q (k, dof) are within the limits of the arm, after whole turns."""
-    from cspace.ik.windings import into_limits
+    from cspace.ik.wrapping import into_limits
 
     return into_limits(q, arm.chain.joint_types, arm.limits.lower, arm.limits.upper)[1]
 
@@ -158,7 +159,7 @@ def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:
         artist.scene.groups.append(Group([stand]))
 
 
-def put(ax: Any, groups: list[Group]) -> list[Any]:
+def draw_groups(ax: Any, groups: list[Group]) -> list[Any]:
     """Add groups of solids to the picture of the axes."""
     artist = scene_of(ax)
     artist.scene.groups += groups

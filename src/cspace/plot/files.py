@@ -7,7 +7,7 @@ from typing import Any
 
 from cspace.errors import InputError
 from cspace.files import whole_file
-from cspace.plot.films import write_gif
+from cspace.plot.animation import write_gif
 
 __all__ = ["save"]
 

@@ -9,9 +9,10 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import InputError
-from cspace.plot import colors, stage
+from cspace.plot import colors
 from cspace.plot.axes import space_axes
-from cspace.plot.scene import Group, scene_of
+from cspace.plot.raytrace import stage
+from cspace.plot.raytrace.scene import Group, scene_of
 from cspace.spatial import as_pose
 
 __all__ = ["frames"]

@@ -11,9 +11,9 @@ import numpy as np
 
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
+from cspace.plot.animation import Steps
 from cspace.plot.axes import flat_axes, need_matplotlib
-from cspace.plot.films import Steps
-from cspace.plot.ideas import draw_idea, replaced_at, shown_events
+from cspace.plot.planner_overlays import draw_idea, replaced_at, shown_events
 
 __all__ = ["animation", "route", "routes", "world"]
 
@@ -84,7 +84,7 @@ def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
     if not hasattr(route, "planner"):
         raise _wrong(route, "route", "a Route, as cs.navigate answers")
     axes = flat_axes(ax)
-    artists = _ground(axes, route.world, route._asked)
+    artists = _ground(axes, route.world, route._given_world)
     if idea:
         artists += draw_idea(axes, route)
     if len(route.path):
@@ -143,7 +143,7 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     from matplotlib.animation import FuncAnimation
     from matplotlib.collections import LineCollection
 
-    _ground(axes, route.world, route._asked)
+    _ground(axes, route.world, route._given_world)
     events = shown_events(route)
     until = replaced_at(events)
     only_grows = bool((until == len(events)).all())

@@ -23,8 +23,8 @@ def problem(rng, n, worst=1e4):
     lower, upper = -rng.exponential(size=n), rng.exponential(size=n)
     lower[rng.random(n) < 0.2] = -np.inf
     upper[rng.random(n) < 0.2] = np.inf
-    fixed = (rng.random(n) < 0.1) & np.isfinite(lower)
-    upper[fixed] = lower[fixed]
+    locked = (rng.random(n) < 0.1) & np.isfinite(lower)
+    upper[locked] = lower[locked]
     return H, H @ rng.normal(size=n) * 2, lower, upper
 
 

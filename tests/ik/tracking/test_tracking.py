@@ -44,9 +44,9 @@ def test_branches_are_those_of_all_solutions_of_a_fine_path_matched(name, seed):
             assert gap(branch.q, oracle[::80]) < 1e-6
             assert gap(branch.q, same.q[::80]) < 1e-8
             assert branch.end == pytest.approx(same.end / 80, abs=1e-5)
-            assert branch.why == same.why
+            assert branch.cause == same.cause
             assert pose_errors(robot, branch.q, fine[::80][: len(branch.q)]).max() < 1e-11
-            ended += branch.why != "end"
+            ended += branch.cause != "end"
     assert ended
 
 
@@ -74,7 +74,7 @@ def test_no_joint_moves_further_than_max_step(name):
             assert np.abs(np.diff(branch.q, axis=0)).max(initial=0.0) <= 0.05
             assert gap(branch.q, freely.q) < 1e-8
             if len(too_long):
-                assert branch.why == "jump"
+                assert branch.cause == "jump"
                 assert len(branch.q) == too_long[0] + 1
                 joint = robot.joint_names.index(branch.joint)
                 assert np.abs(freely.q[too_long[0] + 1] - branch.q[-1])[joint] > 0.05
@@ -103,7 +103,7 @@ def test_a_limit_is_met_where_the_joint_arrives():
     limits = cs.model.Limits(lower, upper)
     stopped = robot.track(path, q0, limits=limits)
     assert not stopped
-    assert stopped.why == ("limit",)
+    assert stopped.cause == ("limit",)
     assert stopped[0].joint == robot.joint_names[0]
     assert len(stopped.q) == 13
     assert 12 < stopped[0].end < 13
@@ -121,7 +121,7 @@ def test_a_start_beyond_its_limits_ends_at_once():
     upper = robot.limits.upper.copy()
     upper[1] = -0.6
     track = robot.track(robot.fk(q0)[None], q0, limits=cs.model.Limits(robot.limits.lower, upper))
-    assert track.why == ("limit",)
+    assert track.cause == ("limit",)
     assert track[0].joint == robot.joint_names[1]
     assert len(track.q) == 0
     assert track.reason.startswith("the branch ends before pose 0")
@@ -145,7 +145,7 @@ def test_a_branch_takes_the_turn_that_gets_it_farthest():
     angle = np.linspace(2.9, 3.7, 41)
     path = robot.fk(np.array([0.0, -1.2, 1.5, -0.8, 1.1, 0.4]) + np.outer(angle, [1, 0, 0, 0, 0, 0]))
     from_here = robot.track(path, [2.9, -1.2, 1.5, -0.8, 1.1, 0.4], limits=limits)
-    assert from_here.why == ("limit",)
+    assert from_here.cause == ("limit",)
     assert from_here[0].last[0] == pytest.approx(3.5, abs=1e-9)
     best = max(robot.track(path, limits=limits), key=lambda b: np.isclose(b.q[0, 1], -1.2, atol=1e-6))
     assert best
@@ -199,7 +199,7 @@ def test_a_path_that_misses_the_singular_wrist_turns_it_over():
     assert pose_errors(robot, freely.q, path).max() < 1e-10
     turned = np.abs(np.diff(freely.q, axis=0)).max()
     stopped = robot.track(path, q[0], max_step=0.5 * turned, limits=False)
-    assert stopped.why == ("jump",)
+    assert stopped.cause == ("jump",)
     assert stopped[0].joint in robot.joint_names[3::2]
 
 
@@ -217,8 +217,8 @@ def test_a_middle_out_of_reach_ends_every_branch_there():
     assert not robot.ik(middle)
     track = robot.track(path, limits=False)
     assert not track
-    assert "unreachable" in track.why
-    assert set(track.why) <= {"unreachable", "singularity"}
+    assert "unreachable" in track.cause
+    assert set(track.cause) <= {"unreachable", "singularity"}
     reachable = np.flatnonzero(robot.ik(path).count == 0)[0]
     assert reachable - 1 <= track.best.end <= reachable
     assert len(track.q) == reachable
@@ -267,7 +267,7 @@ def test_arms_of_few_joints_follow_poses_that_they_can_take(name):
     path[30:, :3, 3] += [0.0, 0.0, 0.01] if name == "planar_2r" else [0.01, 0.01, 0.0]
     if name != "scara":
         off = robot.track(path, q[0])
-        assert off.why == ("unreachable",)
+        assert off.cause == ("unreachable",)
         assert len(off.q) == 30
 
 

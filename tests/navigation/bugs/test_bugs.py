@@ -230,5 +230,5 @@ def test_a_walk_is_repeatable_and_shares_no_state():
     for _ in range(3):
         again = cs.navigate(world, (1, 5), (9, 5.5), planner="bug_1")
         assert np.array_equal(again.path, first.path)
-    assert first.price.nodes > 0
+    assert first.stats.nodes > 0
     assert first.options == {"hand": "left"}

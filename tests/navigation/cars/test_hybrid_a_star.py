@@ -93,7 +93,7 @@ def test_a_gap_too_narrow_for_any_disc_is_a_proof():
     assert "disc" in route.reason
     assert route.length == np.inf
     assert route.path.shape == (0, 2)
-    assert route.price.nodes == 0
+    assert route.stats.nodes == 0
 
 
 def test_a_gap_just_wide_enough_is_passed():

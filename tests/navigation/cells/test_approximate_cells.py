@@ -146,7 +146,7 @@ def test_the_squares_tile_the_world():
 def test_trace_and_evidence():
     route = ask(gate(5.2, 5.9), (1, 1), (15, 15), depth=2)
     assert {word for word, *_ in route.trace} == {"split", "free", "expand"}
-    assert len(route.trace.only("expand")) >= route.price.nodes > 0
+    assert len(route.trace.only("expand")) >= route.stats.nodes > 0
     assert route.evidence.depth > 2
     assert route.evidence.side == 16 / 2**route.evidence.depth
 
@@ -174,8 +174,8 @@ def test_a_tree_that_is_kept_answers_as_one_made_anew():
         routes = list(pool.map(lambda one: ask(world, one[0], one[1], **one[2]), asked * 2))
     for route, other in zip(routes, fresh * 2, strict=True):
         np.testing.assert_array_equal(route.path, other.path)
-        assert (route.status, route.evidence, route.price[:2]) == (
+        assert (route.status, route.evidence, route.stats[:2]) == (
             *(other.status, other.evidence),
-            other.price[:2],
+            other.stats[:2],
         )
     assert any(route.evidence.depth > route.options["depth"] for route in fresh)

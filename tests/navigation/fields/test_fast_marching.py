@@ -151,7 +151,7 @@ def test_the_trace_is_the_front():
     grid = cs.OccupancyGrid(np.zeros((9, 12), bool), 0.5)
     route = go(grid, (8, 11), (1, 1))
     trace = route.trace
-    assert len(trace) == route.price.nodes
+    assert len(trace) == route.stats.nodes
     assert (np.diff(trace.value) >= 0).all()
     assert np.array_equal(trace.end[0], route.goal)
     assert trace.value[-1] == route.evidence["time"]

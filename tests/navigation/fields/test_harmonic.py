@@ -121,7 +121,7 @@ def test_walls_that_divide_are_told_without_a_solution():
     assert route.evidence.cycles == 0
     assert "walls divide" in route.reason
     assert len(route.trace) == 0
-    assert route.price.seconds < 0.05
+    assert route.stats.seconds < 0.05
 
 
 @pytest.mark.skipif(not hasattr(signal, "setitimer"), reason="needs a timer that interrupts")

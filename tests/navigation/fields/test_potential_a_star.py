@@ -88,7 +88,7 @@ def test_without_gain_it_is_a_star(mode):
         over = so_far + np.hypot(*(np.indices(blocked.shape).reshape(2, -1) - np.array(goal)[:, None]))
         needed, allowed = np.sum(over < best - 1e-9), np.sum(np.isfinite(over) & (over <= best + 1e-9))
         for one in (route, plain):
-            assert needed <= one.price.nodes <= allowed
+            assert needed <= one.stats.nodes <= allowed
 
 
 def test_a_trap_costs_cells_but_no_completeness():
@@ -109,7 +109,7 @@ def test_the_trace_is_what_was_settled():
     grid = cs.OccupancyGrid(np.zeros((9, 9), bool), 0.5)
     route = go(grid, (1, 1), (7, 5))
     trace = route.trace
-    assert len(trace) == route.price.nodes
+    assert len(trace) == route.stats.nodes
     assert np.array_equal(trace.end[0], route.start)
     assert np.array_equal(trace.end[-1], route.goal)
     straight = np.hypot(*(trace.end - route.goal).T)

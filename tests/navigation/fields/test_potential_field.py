@@ -114,7 +114,7 @@ def test_along_walls_it_does_not_swing():
             route = go(walls, start, goal, rho_0=0.5, k_r=k_r)
             check(walls, route)
             assert swings(route.path) <= 2
-            assert route.price.edges < 5000
+            assert route.stats.edges < 5000
 
 
 def test_no_piece_of_the_way_climbs():

@@ -66,11 +66,11 @@ def test_mending_is_cheaper_than_a_fresh_search():
     blocked = rng.random((100, 100)) < 0.2
     blocked[0, 0] = blocked[99, 99] = False
     planner = DStarLite(cs.OccupancyGrid(blocked), (0.5, 0.5), (99.5, 99.5))
-    first = planner.route.price.nodes
+    first = planner.route.stats.nodes
     mended = []
     for _ in range(100):
         planner.set_blocked(rng.integers((0, 1), (99, 100)), True)
-        mended.append(planner.route.price.nodes)
+        mended.append(planner.route.stats.nodes)
     assert np.mean(mended) < first / 10
 
 
@@ -79,7 +79,7 @@ def test_it_is_a_planner_too():
     route = cs.navigate(grid, (0.5, 0.5), (2.5, 0.5), planner="d_star_lite")
     assert route
     assert route.length == 6
-    assert len(route.trace) == route.price.nodes
+    assert len(route.trace) == route.stats.nodes
     shut = cs.navigate(cs.OccupancyGrid([[0, 1, 0]]), (0.5, 0.5), (2.5, 0.5), planner="d_star_lite")
     assert shut.status == "unreachable"
     assert "no way leads to the goal" in shut.reason

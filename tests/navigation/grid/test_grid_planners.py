@@ -144,7 +144,7 @@ def test_focal_search_takes_few_cells_often(spread):
         blocked[56, 56] = False
         grid = cs.OccupancyGrid(blocked)
         route = cs.navigate(grid, (0.5, 0.5), (56.5, 56.5), "focal_search", bound=1.5, costs=costs)
-        assert route.price.nodes <= 2 * 62 * 62
+        assert route.stats.nodes <= 2 * 62 * 62
         assert route.status == ("unreachable" if shut else "found")
         if not shut:
             best = cs.navigate(grid, (0.5, 0.5), (56.5, 56.5), "dijkstra", costs=costs).evidence["cost"]
@@ -247,7 +247,7 @@ def test_jump_points_settle_none_that_a_star_would_not():
             assert way >= reached - 1e-9
             assert way + left(cell, goal, metric) <= route.length + 1e-9
         settled += len(trace)
-        by_a_star += cs.navigate(grid, *ends, planner="a_star", **moves).price.nodes
+        by_a_star += cs.navigate(grid, *ends, planner="a_star", **moves).stats.nodes
     assert settled < by_a_star
 
 
@@ -266,7 +266,7 @@ def test_traces_begin_at_the_start_and_end_at_the_goal():
         route = cs.navigate(grid, *ends, planner=name)
         assert np.array_equal(route.trace.end[0], ends[0])
         assert np.array_equal(route.trace.end[-1], ends[1])
-        assert len(route.trace) == route.price.nodes
+        assert len(route.trace) == route.stats.nodes
         assert route.trace is route.trace
 
 

@@ -3,10 +3,11 @@
 
 #include <initializer_list>
 
-#include "cspace/ik/evaluate.hpp"
+#include "cspace/ik/closed_form.hpp"
 #include "cspace/ik/general/isolate.hpp"
 #include "cspace/ik/general/loop.hpp"
 #include "cspace/ik/general/weak_direction.hpp"
+#include "cspace/ik/near_singular.hpp"
 #include "cspace/ik/polish.hpp"
 #include "cspace/math/rows.hpp"
 
@@ -25,7 +26,7 @@ struct Candidates {
 
 namespace cspace::inline CSPACE_ISA {
 
-inline void put(ik::Candidates& out, const double* q, bool close) {
+inline void append_candidate(ik::Candidates& out, const double* q, bool close) {
     if (out.count == ik::Candidates::room) return;
     for (int i = 0; i < 6; ++i) out.q[out.count][i] = q[i];
     out.close[out.count++] = close;
@@ -35,7 +36,7 @@ template <class V>
 inline void put_lane(ik::Candidates& out, const V* q, int k, bool close) {
     double row[6];
     for (int i = 0; i < 6; ++i) row[i] = lane(q[i], k);
-    put(out, row, close);
+    append_candidate(out, row, close);
 }
 
 // Newton's method on four candidates abreast, from number `first` on.
@@ -80,7 +81,7 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
     constexpr double wide = 1e-2, near = 1e-3;
     double here = -1;
     for (int k = 0; k < out.count;) {
-        const double gap = distance(chain, out.q[k], q);
+        const double gap = joint_distance(chain, out.q[k], q);
         if (gap < tolerance::same_solution) return;
         if (!(gap < wide)) {
             ++k;
@@ -99,38 +100,38 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
     const int n = out.count++;
     for (int i = 0; i < 6; ++i) out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
     out.branch[n] = static_cast<signed char>(n);
-    out.family[n] = false;
+    out.self_motion[n] = false;
 }
 
 // Beside a fold a solution has a twin: along the weakest direction v the error is σ t u + ½ κ t² u + …, which
 // vanishes again at t = −2 σ/κ. False where there is no fold (σ is more than `most`, κ less than `least`): a
 // family does not bend.
-inline bool find_twin(const ik::GeneralPlan& plan, const Posed& goal, const double* q, double* twin,
-                      double most = 0.1, double least = 1e-4) {
+inline bool find_near_double(const ik::GeneralPlan& plan, const Posed& goal, const double* q,
+                             double* near_double, double most = 0.1, double least = 1e-4) {
     PoseError error;
     const double length = 1.0;
-    measure(plan.chain, goal, length, q, error);
+    measure_error(plan.chain, goal, length, q, error);
     const WeakDirection weak = weak_direction(&error.jacobian.us[0]);
     if (weak.sigma > most) return false;
     constexpr double h = 1e-3;
     double bend = 2 * dot_n(weak.u, error.e, 6);
     for (const double way : {h, -h}) {
         PoseError moved;
-        for (int i = 0; i < 6; ++i) twin[i] = q[i] + way * weak.v[i];
-        measure(plan.chain, goal, length, twin, moved);
+        for (int i = 0; i < 6; ++i) near_double[i] = q[i] + way * weak.v[i];
+        measure_error(plan.chain, goal, length, near_double, moved);
         bend -= dot_n(weak.u, moved.e, 6);  // the error is goal less pose
     }
     bend /= h * h;
     const double t = -2 * weak.sigma / bend;
-    for (int i = 0; i < 6; ++i) twin[i] = q[i] + t * weak.v[i];
+    for (int i = 0; i < 6; ++i) near_double[i] = q[i] + t * weak.v[i];
     return std::fabs(t) < 0.5 && std::fabs(bend) > least;
 }
 // Whether a solution is its own twin, as far as rounding can tell: two in one.
 inline bool is_double(const ik::GeneralPlan& plan, const Posed& goal, const double* q) {
-    double twin[6];
-    if (!find_twin(plan, goal, q, twin)) return false;
-    return distance(plan.chain, q, twin) < 1e-3 &&
-           miss_between(plan.chain, goal, 1.0, q, twin) <= tolerance::halfway;
+    double near_double[6];
+    if (!find_near_double(plan, goal, q, near_double)) return false;
+    return joint_distance(plan.chain, q, near_double) < 1e-3 &&
+           miss_between(plan.chain, goal, 1.0, q, near_double) <= tolerance::halfway;
 }
 
 // Polishes the candidates from number `first` on.
@@ -142,12 +143,13 @@ inline void admit_candidates(const ik::GeneralPlan& plan, const Posed& goal, int
 }
 
 // The twins of solutions that stand beside others, or may.
-inline void admit_twins(const ik::GeneralPlan& plan, const Posed& goal, ik::Candidates& all,
-                        ik::Solutions& out) {
+inline void add_near_double_roots(const ik::GeneralPlan& plan, const Posed& goal, ik::Candidates& all,
+                                  ik::Solutions& out) {
     const int direct = all.count;
-    double twin[6];
+    double near_double[6];
     for (int k = 0; k < direct; ++k)
-        if (all.close[k] && all.settled[k] && find_twin(plan, goal, all.q[k], twin)) put(all, twin, false);
+        if (all.close[k] && all.settled[k] && find_near_double(plan, goal, all.q[k], near_double))
+            append_candidate(all, near_double, false);
     admit_candidates(plan, goal, direct, all, out);
 }
 
@@ -163,9 +165,9 @@ inline void refine_unsettled(const ik::GeneralPlan& plan, const Posed& goal, ik:
         if (!(left <= (out.count ? tolerance::exact : tolerance::reached))) continue;
         const int before = out.count;
         admit_polished(out, plan, goal, all.q[k]);
-        double twin[6];
-        if (all.close[k] && out.count > before && find_twin(plan, goal, all.q[k], twin))
-            put(all, twin, false);
+        double near_double[6];
+        if (all.close[k] && out.count > before && find_near_double(plan, goal, all.q[k], near_double))
+            append_candidate(all, near_double, false);
     }
     admit_candidates(plan, goal, direct, all, out);
 }

@@ -19,7 +19,7 @@ struct HiddenAngle {
 };
 // Noise hides how many there are; or there are none, but so nearly two that a slip of the equations, which
 // the signs do not show, may have hidden them; or they are there for every goal and lead nowhere.
-inline constexpr int unknown = 0, nearly_two = -1, ghost = -2;
+inline constexpr int unknown = 0, nearly_two = -1, spurious = -2;
 
 struct HiddenAngles {
     int count = 0;
@@ -67,7 +67,7 @@ inline void keep_if_crossed(ik::Pieces& pieces) {
     pieces.count += last.signs.most > 0;
 }
 
-inline void put(ik::HiddenAngles& out, const ik::HiddenAngle& root) {
+inline void append_hidden_angle(ik::HiddenAngles& out, const ik::HiddenAngle& root) {
     if (out.count == ik::max_roots)
         out.overflow = true;
     else
@@ -113,10 +113,10 @@ inline void close_roots(const Function& f, const ik::Arc& arc, const Variations&
     const int order = signs.most > 2 ? order_of_zero(f, vertex) : 0;
     out.evaluations += signs.most > 2;
     if (apart > 1e-2 * h && apart < 3 * h) {
-        put(out, {vertex - apart, h, 1, 0, order});
-        put(out, {vertex + apart, h, 1, 0, order});
+        append_hidden_angle(out, {vertex - apart, h, 1, 0, order});
+        append_hidden_angle(out, {vertex + apart, h, 1, 0, order});
     } else {
-        put(out, {vertex, h, signs.count >= 2 ? 2 : ik::unknown, 0, order});
+        append_hidden_angle(out, {vertex, h, signs.count >= 2 ? 2 : ik::unknown, 0, order});
     }
 }
 
@@ -129,7 +129,8 @@ inline void find_simple_roots(const ik::Pieces& simple, double last_step, ik::Hi
         for (int i = 0; i <= ik::degree; ++i)
             for (int k = 0; k < 4; ++k) set_lane(b[i], k, simple.piece[first + (k < lanes ? k : 0)].arc.b[i]);
         const V u = only_roots<ik::degree>(b, last_step);
-        for (int k = 0; k < lanes; ++k) put(out, {angle_at(simple.piece[first + k].arc, lane(u, k)), 0, 1});
+        for (int k = 0; k < lanes; ++k)
+            append_hidden_angle(out, {angle_at(simple.piece[first + k].arc, lane(u, k)), 0, 1});
     }
 }
 
@@ -154,13 +155,13 @@ inline void note_near_misses(const ik::Pieces& dips, ik::HiddenAngles& out) {
         const double slope = right - left, bend = left - 2 * middle + right;
         const double u = 0.5 - 0.25 * slope / bend, bottom = middle - 0.125 * slope * slope / bend;
         const bool inside = u > 0 && u < 1;
-        put(out, {angle_at(dip, inside ? u : 0.5), to - from, ik::nearly_two,
-                  std::fabs(inside ? bottom : middle)});
+        append_hidden_angle(out, {angle_at(dip, inside ? u : 0.5), to - from, ik::nearly_two,
+                                  std::fabs(inside ? bottom : middle)});
     }
 }
 
 // Both halves of an arc, as far as they may hold roots.
-inline void divide(const ik::SamplerTables& t, const ik::Arc& arc, ik::Pieces& pieces) {
+inline void divide_arc(const ik::SamplerTables& t, const ik::Arc& arc, ik::Pieces& pieces) {
     const double middle = 0.5 * (arc.from + arc.to);
     for (const bool upper : {false, true}) {
         ik::Arc& half = pieces.piece[pieces.count].arc;
@@ -242,7 +243,7 @@ inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) 
         if (signs.count >= 2 && width < near_miss && width >= 0.5 * near_miss &&
             dips.count < ik::Pieces::room)
             dips.piece[dips.count++] = piece;
-        divide(tables, arc, stack);
+        divide_arc(tables, arc, stack);
     }
     find_simple_roots(simple, last_step, out);
     note_near_misses(dips, out);

@@ -45,18 +45,18 @@ struct GeneralPlan {
     bool paired[formulations] = {};
     // Hidden angles where each has roots whatever the goal, and the arm nothing: how many, and which.
     static constexpr int most_ghosts = 4;
-    int ghosts[formulations] = {};
-    double ghost[formulations * most_ghosts] = {};
+    int spurious_roots[formulations] = {};
+    double spurious[formulations * most_ghosts] = {};
 };
 
-// The plan of an arm, and where it cannot serve alone those of two neighbours (neighbours.hpp).
+// The plan of an arm, and where it cannot serve alone those of two neighbours (perturbed_arms.hpp).
 struct GeneralArm {
     Chain chain;       // the arm as given, of up to six joints
-    GeneralPlan plan;  // virtual joints behind its own complete it to six (completion.hpp)
+    GeneralPlan plan;  // virtual joints behind its own complete it to six (virtual_joints.hpp)
     PositionFirst position_first;
-    GeneralPlan neighbour[2];
+    GeneralPlan perturbed[2];
     bool alone = false;  // without neighbours, asked for by who has another way
-    bool has_neighbours = false;
+    bool has_perturbed = false;
     // Every solution of a goal, by the code of the instruction set that the plan was made with.
     void (*solve)(const GeneralArm& arm, const Posed& goal, Solutions& out) = nullptr;
 };

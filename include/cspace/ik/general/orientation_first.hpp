@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
-#include "cspace/ik/general/three_turns.hpp"
+#include "cspace/ik/general/three_revolutes.hpp"
 #include "cspace/math/linear.hpp"
 
 namespace cspace {

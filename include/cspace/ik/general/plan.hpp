@@ -36,19 +36,20 @@ inline bool come_in_pairs(const ik::GeneralPlan& plan, const Posed& goal, const 
 
 // Looks across the folds that are very near: pairs there may hide behind one hidden angle. True if it found a
 // twin that had been missed.
-inline bool admit_hidden_twins(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& found) {
+inline bool add_hidden_near_doubles(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& found) {
     constexpr double very_near = 1e-4, hardly_bent = 1e-7;
     ik::Candidates start;
-    double twin[6];
+    double near_double[6];
     for (int k = 0; k < found.count; ++k)
-        if (find_twin(plan, goal, found.q[k], twin, very_near, hardly_bent)) put(start, twin, false);
+        if (find_near_double(plan, goal, found.q[k], near_double, very_near, hardly_bent))
+            append_candidate(start, near_double, false);
     const int before = found.count;
     admit_candidates(plan, goal, 0, start, found);
     return found.count > before;
 }
 
 // The formulations that a goal was put to.
-struct Asked {
+struct Tried {
     int count = 0, work = 0;
     int number[ik::formulations];
     ik::Certificate seen[ik::formulations];
@@ -56,35 +57,35 @@ struct Asked {
 
 // Whether what one of them announced is there; `sharing`: those count as well whose solutions share a hidden
 // angle.
-inline bool is_announced_by_one(const ik::GeneralPlan& plan, const Posed& goal, const Asked& asked,
+inline bool is_announced_by_one(const ik::GeneralPlan& plan, const Posed& goal, const Tried& tried_all,
                                 bool sharing, const ik::Solutions& found) {
     bool twice[ik::max_solutions];
     mark_doubles(plan, goal, found, twice);
-    for (int k = 0; k < asked.count; ++k) {
-        const ik::Certificate& seen = asked.seen[k];
+    for (int k = 0; k < tried_all.count; ++k) {
+        const ik::Certificate& seen = tried_all.seen[k];
         if (!seen.trusted || !all_matched(seen, found, twice)) continue;
-        if (sharing || !share_angles(seen, plan.chain, found, twice, plan.paired[asked.number[k]]))
+        if (sharing || !share_angles(seen, plan.chain, found, twice, plan.paired[tried_all.number[k]]))
             return true;
     }
     return false;
 }
 
-inline void ask_formulation(const ik::GeneralPlan& plan, const Posed& goal, int number, ik::Solutions& out,
-                            Asked& asked) {
-    ik::Certificate& seen = asked.seen[asked.count];
-    asked.number[asked.count++] = number;
+inline void try_formulation(const ik::GeneralPlan& plan, const Posed& goal, int number, ik::Solutions& out,
+                            Tried& tried_all) {
+    ik::Certificate& seen = tried_all.seen[tried_all.count];
+    tried_all.number[tried_all.count++] = number;
     seen = solve_formulation(plan, goal, number, out);
-    asked.work += seen.work;
+    tried_all.work += seen.work;
     out.crowded = out.crowded || seen.clusters > 0;
-    out.complete = seen.complete && !(seen.clusters > 0 && admit_hidden_twins(plan, goal, out));
+    out.complete = seen.complete && !(seen.clusters > 0 && add_hidden_near_doubles(plan, goal, out));
     seen.trusted = seen.trusted && (out.complete || !seen.complete);
 }
 
 // One formulation after the other until one of them certifies that nothing is missing; where none does, what
 // all of them found together may be what one of them announced. Where solutions share an angle others that
 // hide it are of no use.
-inline void ask_formulations(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out,
-                             Asked& asked) {
+inline void try_formulations(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out,
+                             Tried& tried_all) {
     constexpr int most_shared = 3;  // a goal special to so many joints is special to most
     out.crowded = false;
     if (plan.slides == 3) {
@@ -98,27 +99,28 @@ inline void ask_formulations(const ik::GeneralPlan& plan, const Posed& goal, ik:
     for (int k = 0; k < plan.regular && plan.slides < 3 && !out.complete && shared < most_shared; ++k) {
         const int joint = hidden_joint(formulation(plan.order[k]));
         if (shares[joint]) continue;
-        ask_formulation(plan, goal, plan.order[k], out, asked);
-        shares[joint] = asked.seen[asked.count - 1].shared;
+        try_formulation(plan, goal, plan.order[k], out, tried_all);
+        shares[joint] = tried_all.seen[tried_all.count - 1].shared;
         shared += shares[joint];
     }
-    if (asked.count > 0 && !out.complete) out.complete = is_announced_by_one(plan, goal, asked, false, out);
+    if (tried_all.count > 0 && !out.complete)
+        out.complete = is_announced_by_one(plan, goal, tried_all, false, out);
     out.complete = out.complete && come_in_pairs(plan, goal, out);
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
 }
 
 // Returns the work.
 inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
-    Asked asked;
-    ask_formulations(plan, goal, out, asked);
-    return asked.work;
+    Tried tried_all;
+    try_formulations(plan, goal, out, tried_all);
+    return tried_all.work;
 }
 
 inline constexpr double usual_sensitivity = 1e5, useless_sensitivity = 1e8;
 
 // By how much more than their own the relative errors of the six equations change the determinant: where an
 // arm is almost, but not quite, one for which a formulation vanishes, its values are rounding enlarged.
-inline double sensitivity(const ik::GeneralPlan& plan, const Posed& goal, int number) {
+inline double pose_sensitivity(const ik::GeneralPlan& plan, const Posed& goal, int number) {
     using V = Pack<4>;
     constexpr double slip = 1e-9;
     const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
@@ -153,7 +155,8 @@ inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int 
                             FormulationTrial& trial) {
     constexpr int first_look = 4, heavy = 400;
     for (int k = trial.poses; k < last; ++k) {
-        if (k < first_look) trial.sensitivity = max(trial.sensitivity, sensitivity(plan, goal[k], number));
+        if (k < first_look)
+            trial.sensitivity = max(trial.sensitivity, pose_sensitivity(plan, goal[k], number));
         if (!(trial.sensitivity < useless_sensitivity)) break;
         if (k == first_look && (trial.drowned == k || trial.work > heavy * k)) break;
         ik::Solutions out;
@@ -167,12 +170,12 @@ inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int 
 
 // Whether two of the joints do one's work, or would but for rounded axes: then every configuration is
 // singular and no list of solutions could be complete.
-inline bool has_joint_to_spare(const ik::Chain& chain) {
+inline bool is_redundant(const ik::Chain& chain) {
     for (int k = 0; k < 8; ++k) {
         double q[ik::max_joints];
         spread_configuration(k, 6, q);
         PoseError error;
-        measure(chain, forward(chain, q), 1, q, error);
+        measure_error(chain, forward(chain, q), 1, q, error);
         if (weak_direction(&error.jacobian.us[0]).sigma > tolerance::axis_relation) return false;
     }
     return true;
@@ -186,7 +189,7 @@ inline Posed own_pose(const ik::Chain& chain, int k) {
 }
 
 // A plan without formulations.
-inline void describe(const ik::Chain& chain, ik::GeneralPlan& plan) {
+inline void describe_formulation(const ik::Chain& chain, ik::GeneralPlan& plan) {
     plan = {};
     plan.chain = chain;
     plan.frames = loop_frames(chain);
@@ -199,7 +202,7 @@ inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations],
     int most[FormulationTrial::most_poses] = {};
     for (const FormulationTrial& t : trial)
         for (int k = 0; k < t.poses; ++k) most[k] = t.found[k] > most[k] ? t.found[k] : most[k];
-    double price[ik::formulations];
+    double cost[ik::formulations];
     plan.regular = 0;
     for (int number = 0; number < ik::formulations; ++number) {
         const FormulationTrial& t = trial[number];
@@ -209,9 +212,9 @@ inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations],
         int missed = 0;
         for (int k = 0; k < t.poses; ++k) missed += most[k] - t.found[k];
         const double slips = max(0.0, std::log10(t.sensitivity / usual_sensitivity));
-        price[number] = double(t.work + 100 * missed) / t.poses + 20 * slips;
+        cost[number] = double(t.work + 100 * missed) / t.poses + 20 * slips;
         int at = plan.regular++;
-        for (; at > 0 && price[plan.order[at - 1]] > price[number]; --at) plan.order[at] = plan.order[at - 1];
+        for (; at > 0 && cost[plan.order[at - 1]] > cost[number]; --at) plan.order[at] = plan.order[at - 1];
         plan.order[at] = number;
     }
 }
@@ -233,11 +236,11 @@ inline void find_ghosts(const Posed* goal, int number, ik::GeneralPlan& plan) {
             if (std::fabs(short_way(h.root[j].angle - root.angle)) < spread) return true;
         return false;
     };
-    int& ghosts = plan.ghosts[number];
-    for (int j = 0; j < hidden[0].count && ghosts < ik::GeneralPlan::most_ghosts; ++j) {
+    int& spurious_roots = plan.spurious_roots[number];
+    for (int j = 0; j < hidden[0].count && spurious_roots < ik::GeneralPlan::most_ghosts; ++j) {
         const ik::HiddenAngle& root = hidden[0].root[j];
         if (has(hidden[1], root) && has(hidden[2], root))
-            plan.ghost[number * ik::GeneralPlan::most_ghosts + ghosts++] = root.angle;
+            plan.spurious[number * ik::GeneralPlan::most_ghosts + spurious_roots++] = root.angle;
     }
 }
 
@@ -245,7 +248,7 @@ inline void find_ghosts(const Posed* goal, int number, ik::GeneralPlan& plan) {
 // them at great cost. All regular ones are ordered after a few poses, the best of them once more after many.
 inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
     constexpr int few = 6, best = 4;
-    describe(chain, plan);
+    describe_formulation(chain, plan);
     if (plan.slides > 3) return;
     if (plan.slides == 3) {
         plan.regular = is_regular(orientation_first(chain).turns);

@@ -4,7 +4,7 @@
 
 #include <initializer_list>
 
-#include "cspace/ik/general/three_turns.hpp"
+#include "cspace/ik/general/three_revolutes.hpp"
 #include "cspace/ik/position/solve.hpp"
 
 namespace cspace::ik {

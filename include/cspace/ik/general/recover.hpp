@@ -90,7 +90,7 @@ CSPACE_INLINE Pose<V> turned_about_z(const Pose<V>& T, const Turn<V>& t) {
 }
 // T Rz(a) or T Tz(a).
 template <class V>
-CSPACE_INLINE Pose<V> stepped(const Pose<V>& T, bool slides, const Step<V>& a) {
+CSPACE_INLINE Pose<V> stepped_angle(const Pose<V>& T, bool slides, const Step<V>& a) {
     return slides ? Pose<V>{T.R, T.t + a.slide * column(T.R, 2)} : turned_about_z(T, a.turn);
 }
 template <class V>
@@ -122,7 +122,7 @@ CSPACE_INLINE void close_loop(const ik::Loop& loop, const Pose<V>& X, const Turn
                               const Step<V>& a2, const Step<V>& a4, V* q) {
     const Pose<V> M3 = fill_pose<V>(inverse(loop.M[3])), M4 = fill_pose<V>(inverse(loop.M[4]));
     const Step<V> back = {{a4.turn.c, -a4.turn.s}, -a4.slide};
-    const Pose<V> Y = stepped(M4, loop.slides[4], back) * M3;  // X = Rz(−a5) Y Rz(−a3)
+    const Pose<V> Y = stepped_angle(M4, loop.slides[4], back) * M3;  // X = Rz(−a5) Y Rz(−a3)
     const Vec3<V> l = column(X.R, 2), w = column(Y.R, 2);
     const Turn<V> a5 = unit_turn(w.x * l.x + w.y * l.y + Y.t.x * X.t.x + Y.t.y * X.t.y,
                                  w.y * l.x - w.x * l.y + Y.t.y * X.t.x - Y.t.x * X.t.y);
@@ -153,8 +153,8 @@ CSPACE_INLINE void joints_from(const ik::Loop& loop, const Elimination& e, const
     const Step<V> a1 = step(loop.slides[1], half.c1, half.s1, o1);
     const Step<V> a2 = step(loop.slides[2], half.c2, half.s2, o2);
     Pose<V> X = turned_about_z(fill_pose<V>(loop.M[5]), a0) * fill_pose<V>(loop.M[0]);
-    X = stepped(X, loop.slides[1], a1) * fill_pose<V>(loop.M[1]);
-    X = stepped(X, loop.slides[2], a2) * fill_pose<V>(loop.M[2]);
+    X = stepped_angle(X, loop.slides[1], a1) * fill_pose<V>(loop.M[1]);
+    X = stepped_angle(X, loop.slides[2], a2) * fill_pose<V>(loop.M[2]);
     V part[6];
     parts_without_a5(e, X, part);
     if (e.a4_rank > 1e-6) {

@@ -1,23 +1,24 @@
 // General arms at poses that leave them freedom: which of the solutions stand for a family.
 #pragma once
 
-#include "cspace/ik/beside.hpp"
-#include "cspace/ik/general/completion.hpp"
-#include "cspace/ik/general/one_per_family.hpp"
-#include "cspace/ik/self_motion.hpp"
+#include "cspace/ik/general/representatives.hpp"
+#include "cspace/ik/general/virtual_joints.hpp"
+#include "cspace/ik/perturbed_goals.hpp"
+#include "cspace/ik/self_motion/self_motion.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
 // A family needs a direction in which the arm hardly moves its tip; only then is it worth a closer look.
-inline void mark_families(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+inline void mark_self_motions(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
     constexpr double hardly = 1e-6;
     for (int k = 0; k < out.count; ++k) {
         PoseError error;
-        measure(plan.chain, goal, 1, out.q[k], error);
+        measure_error(plan.chain, goal, 1, out.q[k], error);
         if (weak_direction(&error.jacobian.us[0]).sigma > hardly) continue;
         decompose(error.jacobian);
-        out.family[k] = find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);
-        if (out.family[k]) out.status = ik::Status::singular;
+        out.self_motion[k] =
+            find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);
+        if (out.self_motion[k]) out.status = ik::Status::singular;
     }
 }
 
@@ -33,7 +34,7 @@ inline void search_by_descent(const ik::Chain& chain, const Posed& goal, double 
         for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
         descend_to_solution(chain, goal, length, q, most_steps, out);
     }
-    judge(out);
+    classify_solutions(out);
 }
 
 // Slides in metres again, and directions of length one.
@@ -41,7 +42,7 @@ inline void in_metres(const ik::Chain& chain, double length, ik::Solutions& out)
     for (int k = 0; k < out.count; ++k) {
         for (int i = 0; i < chain.n; ++i)
             if (chain.prismatic[i]) out.q[k][i] *= length;
-        if (!out.family[k]) continue;
+        if (!out.self_motion[k]) continue;
         double* const d = out.direction[k];
         for (int i = 0; i < chain.n; ++i)
             if (chain.prismatic[i]) d[i] *= length;
@@ -61,7 +62,7 @@ inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed&
         double q[ik::max_joints], off = 0;
         for (int i = 0; i < 6; ++i) q[i] = six.q[k][i];
         for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(q[i]));
-        if (off < stray) admit(out, chain, goal, 1, q, out.count, 20);
+        if (off < stray) accept_solution(out, chain, goal, 1, q, out.count, 20);
     }
     return out;
 }
@@ -69,11 +70,11 @@ inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed&
 // What a second look may still find where the solver did not certify its list, or where slides, wrists and
 // virtual joints may hide a singular pose: from goals beside this one, and by descent. Lengths are over the
 // arm's.
-inline void look_beside(const ik::GeneralArm& arm, const ik::Chain& chain, const Posed& goal, bool certain,
-                        ik::Solutions& out) {
+inline void look_at_perturbed_goals(const ik::GeneralArm& arm, const ik::Chain& chain, const Posed& goal,
+                                    bool certain, ik::Solutions& out) {
     constexpr double hardly_off = 0.2;
     int there = 0;
-    const auto propose = [&](const Posed& beside, const auto& offer) {
+    const auto propose = [&](const Posed& beside, const auto& add_candidate) {
         ik::Solutions six;
         arm.solve(arm, beside, six);
         for (int k = 0; k < six.count; ++k) {
@@ -84,12 +85,12 @@ inline void look_beside(const ik::GeneralArm& arm, const ik::Chain& chain, const
                 q[i] = six.q[k][i];
                 turned[i] = chain.prismatic[i] ? 0 : q[i];
             }
-            offer(q);
+            add_candidate(q);
             // Slides that have become parallel run far away beside the goal.
-            if (arm.plan.slides > 0) offer(turned);
+            if (arm.plan.slides > 0) add_candidate(turned);
         }
     };
-    if (search_beside(chain, goal, 1, propose, out)) out.complete = false;
+    if (search_perturbed_goals(chain, goal, 1, propose, out)) out.complete = false;
     // Families attract whatever comes down near them.
     const int starts = out.count || certain ? 16 : 48;
     if (out.count == 0 || !certain) search_by_descent(chain, goal, 1, starts, out);
@@ -99,7 +100,7 @@ inline void look_beside(const ik::GeneralArm& arm, const ik::Chain& chain, const
 
 // goal and `idle`, the values that leading joints of families take (null: zero): in metres, as is the answer.
 inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Posed& goal_in_metres,
-                                             const double* idle = nullptr) {
+                                             const double* unconstrained = nullptr) {
     const double length = arm.plan.length;
     const Posed goal = {goal_in_metres.R, (1 / length) * goal_in_metres.t};
     ik::Chain chain = arm.plan.chain;
@@ -110,14 +111,16 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     if (completed) out = without_virtual_joints(chain, goal, out);
     // Of six turning joints a certified empty list is believed, unless goals beside this one had to say so.
     const bool may_hide = completed || arm.plan.slides > 0;
-    const bool empty = out.count == 0 && (may_hide || arm.has_neighbours || out.crowded);
-    if (!out.complete || empty || (!certain && may_hide)) look_beside(arm, chain, goal, certain, out);
-    if (!certain && !completed) mark_families(arm.plan, goal, out);
-    judge(out);
+    const bool empty = out.count == 0 && (may_hide || arm.has_perturbed || out.crowded);
+    if (!out.complete || empty || (!certain && may_hide))
+        look_at_perturbed_goals(arm, chain, goal, certain, out);
+    if (!certain && !completed) mark_self_motions(arm.plan, goal, out);
+    classify_solutions(out);
     if (out.status == ik::Status::singular) {
         double rest[ik::max_joints];
-        for (int i = 0; i < chain.n; ++i) rest[i] = idle ? idle[i] / (chain.prismatic[i] ? length : 1) : 0;
-        keep_one_per_family(chain, goal, rest, out);
+        for (int i = 0; i < chain.n; ++i)
+            rest[i] = unconstrained ? unconstrained[i] / (chain.prismatic[i] ? length : 1) : 0;
+        keep_one_per_self_motion(chain, goal, rest, out);
     }
     if (arm.plan.slides > 0) in_metres(chain, length, out);
     return out;

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 
-#include "cspace/ik/careful.hpp"
 #include "cspace/ik/general/candidates.hpp"
-#include "cspace/ik/general/close_pairs.hpp"
 #include "cspace/ik/general/isolate.hpp"
+#include "cspace/ik/general/near_double_roots.hpp"
 #include "cspace/ik/general/orientation_first.hpp"
-#include "cspace/ik/general/two_sheets.hpp"
+#include "cspace/ik/general/two_prismatic.hpp"
+#include "cspace/ik/near_singular.hpp"
 
 namespace cspace::ik {
 
@@ -86,7 +86,7 @@ inline void split_planes(const ik::Loop& loop, const Elimination& e, const doubl
 }
 
 // How many solutions a root announces. Where noise hides whether there is a pair of roots, it counts as one.
-inline int announced(const ik::HiddenAngle& root, double slip) {
+inline int announced_roots(const ik::HiddenAngle& root, double slip) {
     const bool hidden_pair =
         root.expected == ik::unknown || (root.expected == ik::nearly_two && root.depth < slip);
     return hidden_pair ? 2 : std::max(root.expected, 0);
@@ -99,8 +99,8 @@ inline int hidden_beside(const ik::Certificate& seen, const ik::HiddenAngle& roo
     for (int j = 0; j < seen.hidden.count; ++j) {
         const ik::HiddenAngle& other = seen.hidden.root[j];
         if (!(std::fabs(short_way(other.angle - root.angle)) < order_seen)) continue;
-        if (other.expected == ik::ghost) return 0;
-        shown += announced(other, seen.slip);
+        if (other.expected == ik::spurious) return 0;
+        shown += announced_roots(other, seen.slip);
     }
     return std::max(root.order - shown, 0) / 2 * 2;
 }
@@ -117,7 +117,7 @@ inline Around count_around(const ik::Certificate& seen, const ik::Solutions& fou
     for (int j = 0; j < seen.hidden.count; ++j) {
         const ik::HiddenAngle& root = seen.hidden.root[j];
         if (!is_near(root.angle)) continue;
-        out.expected += announced(root, seen.slip);
+        out.expected += announced_roots(root, seen.slip);
         if (root.order > 2) hidden = std::max(hidden, hidden_beside(seen, root));
     }
     out.expected += hidden;
@@ -176,7 +176,7 @@ inline bool share_angles(const ik::Certificate& seen, const ik::Chain& chain, co
             for (int j = 0; j < i; ++j) {
                 const double other = seen.sign * found.q[j][seen.joint];
                 if (std::fabs(short_way(own - other)) < within &&
-                    distance(chain, found.q[i], found.q[j]) > far)
+                    joint_distance(chain, found.q[i], found.q[j]) > far)
                     return true;
             }
         }
@@ -196,7 +196,7 @@ inline bool follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidde
     bool doubtful = false;
     for (int k = 0; k < hidden.count; ++k) {
         const AtHiddenAngle<double> at = at_hidden_angle(sheets, turn_by(hidden.root[k].angle));
-        const Turn<double> g = lack(at);
+        const Turn<double> g = position_residual(at);
         const double root = std::sqrt(max(at.inside, 0.0));
         const double there[2] = {std::fabs(g.c + root * g.s), std::fabs(g.c - root * g.s)};
         for (int side = 0; side < 2; ++side) {
@@ -204,7 +204,7 @@ inline bool follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidde
             double q[6];
             joints_on_sheet(sheets, at, side ? -1 : 1, q);
             const bool either = !(there[side] < clearly * there[1 - side]);
-            put(out, q, close[k] || either);
+            append_candidate(out, q, close[k] || either);
             doubtful |= either;
         }
     }
@@ -234,12 +234,12 @@ inline bool follow_angles(const ik::Loop& loop, const Elimination& e, const ik::
 
 // Of roots that are there for every goal no solutions are expected.
 inline void expect_no_ghosts(const ik::GeneralPlan& plan, int number, ik::HiddenAngles& hidden) {
-    const double* const ghost = plan.ghost + number * ik::GeneralPlan::most_ghosts;
+    const double* const spurious = plan.spurious + number * ik::GeneralPlan::most_ghosts;
     for (int k = 0; k < hidden.count; ++k) {
         ik::HiddenAngle& root = hidden.root[k];
         const double spread = root.order > 2 ? order_seen : as_isolated;  // of several on one place
-        for (int j = 0; j < plan.ghosts[number]; ++j)
-            if (std::fabs(short_way(root.angle - ghost[j])) < spread) root.expected = ik::ghost;
+        for (int j = 0; j < plan.spurious_roots[number]; ++j)
+            if (std::fabs(short_way(root.angle - spurious[j])) < spread) root.expected = ik::spurious;
     }
 }
 
@@ -265,7 +265,7 @@ inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const 
     folds |= follow(hidden, close, false, found);
     admit_candidates(plan, goal, 0, found, out);
     bool twice[ik::max_solutions] = {};
-    if (folds || !all_matched(seen, out, twice)) admit_twins(plan, goal, found, out);
+    if (folds || !all_matched(seen, out, twice)) add_near_double_roots(plan, goal, found, out);
     seen.work += found.count;
     bool all = all_matched(seen, out, twice);
     if (!all) {
@@ -328,9 +328,9 @@ inline bool solve_orientation_first(const ik::GeneralPlan& plan, const Posed& go
     constexpr double clear = 1e-9, flat = 1e-9;
     const TwoOrientations both = two_orientations(plan.chain, orientation_first(plan.chain), goal);
     ik::Candidates found;
-    for (int k = 0; k < both.count; ++k) put(found, both.q[k], both.inside < 1e-6);
+    for (int k = 0; k < both.count; ++k) append_candidate(found, both.q[k], both.inside < 1e-6);
     admit_candidates(plan, goal, 0, found, out);
-    admit_twins(plan, goal, found, out);
+    add_near_double_roots(plan, goal, found, out);
     refine_unsettled(plan, goal, found, out);
     return both.volume > flat && std::fabs(both.inside) > clear;
 }

@@ -22,7 +22,7 @@ struct BoxQp {
     // Working arrays.
     std::vector<double> factor, step, gradient;
     std::vector<int> loose;
-    std::vector<signed char> held;  // −1 at lower, 1 at upper, 0 in between
+    std::vector<signed char> active;  // −1 at lower, 1 at upper, 0 in between
 
     explicit BoxQp(int size)
         : n(size),
@@ -34,7 +34,7 @@ struct BoxQp {
           step(std::size_t(size)),
           gradient(std::size_t(size)),
           loose(std::size_t(size)),
-          held(std::size_t(size)) {}
+          active(std::size_t(size)) {}
 };
 
 namespace box_qp {
@@ -96,8 +96,8 @@ inline bool go(BoxQp& p, int m, double* x) {
     }
     if (first < 0) return true;
     const std::size_t i = std::size_t(p.loose[std::size_t(first)]);
-    p.held[i] = p.step[std::size_t(first)] < 0 ? -1 : 1;
-    x[i] = p.held[i] < 0 ? p.lower[i] : p.upper[i];
+    p.active[i] = p.step[std::size_t(first)] < 0 ? -1 : 1;
+    x[i] = p.active[i] < 0 ? p.lower[i] : p.upper[i];
     return false;
 }
 
@@ -107,7 +107,7 @@ inline int to_release(const BoxQp& p) {
     double most = 0;
     for (int i = 0; i < p.n; ++i) {
         const std::size_t k = std::size_t(i);
-        const double inward = p.held[k] * p.gradient[k];
+        const double inward = p.active[k] * p.gradient[k];
         if (p.lower[k] < p.upper[k] && inward > most) {
             most = inward;
             worst = i;
@@ -124,20 +124,20 @@ inline int solve(BoxQp& p, double* x) {
     for (int i = 0; i < p.n; ++i) {
         const std::size_t k = std::size_t(i);
         x[k] = std::clamp(x[k], p.lower[k], p.upper[k]);
-        p.held[k] = p.lower[k] == p.upper[k] ? -1 : 0;
+        p.active[k] = p.lower[k] == p.upper[k] ? -1 : 0;
     }
     const int most_steps = 50 * (p.n + 1);
     for (int step = 0; step < most_steps; ++step) {
         int m = 0;
         for (int i = 0; i < p.n; ++i)
-            if (!p.held[std::size_t(i)]) p.loose[std::size_t(m++)] = i;
+            if (!p.active[std::size_t(i)]) p.loose[std::size_t(m++)] = i;
         box_qp::find_gradient(p, x);
         if (!box_qp::find_step(p, m)) return -1;
         if (!box_qp::go(p, m, x)) continue;
         box_qp::find_gradient(p, x);
         const int released = box_qp::to_release(p);
         if (released < 0) return step + 1;
-        p.held[std::size_t(released)] = 0;
+        p.active[std::size_t(released)] = 0;
     }
     return -1;
 }

@@ -112,9 +112,9 @@ CSPACE_INLINE void next_trial(const ik::Path& path, const ik::Task& task, const 
         if (!task.limited) continue;
         V pull = zero;
         for (int r = 0; r < rows.m; ++r) pull = mul_add(d.at.J[r][j], d.at.e[r], pull);
-        const mask_of<V> held =
+        const mask_of<V> active =
             ((d.q[j] <= task.lower[j]) && (pull < 0.0)) || ((d.q[j] >= task.upper[j]) && (pull > 0.0));
-        loose[j] = select(held, zero, one);
+        loose[j] = select(active, zero, one);
     }
     V damping = 2.0 * d.mu * d.cost + 1e-30;
     if (task.method == ik::Method::newton) {

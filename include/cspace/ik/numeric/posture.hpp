@@ -51,7 +51,7 @@ inline double posture_cost(const SelfMotion& at, const double* q) {
 inline double size_of(const Gap<double>& gap, const ik::Path& path) {
     return max(gap.position / path.length, gap.rotation);
 }
-inline bool is_held(const ik::Task& task, const double* q, const double* move, int j) {
+inline bool is_at_limit(const ik::Task& task, const double* q, const double* move, int j) {
     return task.limited && ((q[j] <= task.lower[j] && move[j] < 0) || (q[j] >= task.upper[j] && move[j] > 0));
 }
 
@@ -74,7 +74,7 @@ inline void null_space_move(const SelfMotion& at, const double* q, const Gap<dou
         changed = false;
         for (int j = 0; j < n; ++j) {
             move[j] = loose[j] * (wanted[j] - back[j]) / root[j] * unit_of(*at.path, j);
-            if (loose[j] == 0 || !is_held(*at.task, q, move, j)) continue;
+            if (loose[j] == 0 || !is_at_limit(*at.task, q, move, j)) continue;
             loose[j] = 0;
             changed = true;
         }

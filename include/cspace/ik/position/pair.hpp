@@ -1,6 +1,6 @@
 // Two conditions f_i(q1) = g_i(q3), i = 0, 1, on the curves of the first and the last of three joints.
 //
-// Two circles: two_turns.hpp, a quartic. A circle and a line: eliminating the line's coordinate leaves a
+// Two circles: two_angles.hpp, a quartic. A circle and a line: eliminating the line's coordinate leaves a
 // trigonometric polynomial of degree two in the angle (one, if both conditions are linear). Two lines: a line
 // and a conic, or two lines. Conditions that are one: one_condition.hpp. The answers are candidates, to be
 // refined on the arm itself; where none is a solution, further candidates represent a family: the first joint

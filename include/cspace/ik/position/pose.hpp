@@ -42,7 +42,7 @@ struct PoseGap {
     }
 };
 
-namespace short_pose {
+namespace few_joint_pose {
 
 inline double rotation_between(const Mat3d& A, const Mat3d& B) {
     Vec3d sine = {0, 0, 0};
@@ -66,7 +66,7 @@ struct Search {
     const Posed& goal;
     PoseGap<n> gap;
     double size;
-    ik::ShortPoseSolutions& found;
+    ik::FewJointSolutions& found;
 
     // q in units of the chain; refined in units of its size.
     void propose(const double* q) {
@@ -75,7 +75,7 @@ struct Search {
         if (refine(gap, scaled) > gap.reached) return;
         Linearised<PoseGap<n>> at;
         if (linearise(gap, scaled, at) > gap.reached || opposed(scaled)) return;
-        keep(gap, scaled, found);
+        keep_distinct(gap, scaled, found);
     }
     // Half a turn away from the goal the sum of g × r vanishes too.
     bool opposed(const double* scaled) const {
@@ -122,7 +122,7 @@ void by_last_axis(const ik::Chain& chain, const Posed& G, double size, bool back
 }
 
 template <int n>
-void solve(const ik::Chain& chain, const Posed& T, ik::ShortPoseSolutions& found) {
+void solve(const ik::Chain& chain, const Posed& T, ik::FewJointSolutions& found) {
     const PositionScale scale = position_scale(chain, T.t);
     PoseGap<n> gap{tip_gap<n>(chain, T.t, scale), chain.tip.R, T.R, {}, scale.reached};
     for (int i = 0; i < n; ++i) gap.prismatic[i] = chain.prismatic[i];
@@ -148,14 +148,14 @@ void solve(const ik::Chain& chain, const Posed& T, ik::ShortPoseSolutions& found
     }
 }
 
-}  // namespace short_pose
+}  // namespace few_joint_pose
 
 // The tip of the chain (n ≤ 3) to T, in base.
-inline ik::ShortPoseSolutions solve_short_pose(const ik::Chain& chain, const Posed& T) {
-    ik::ShortPoseSolutions found;
-    if (chain.n == 1) short_pose::solve<1>(chain, T, found);
-    if (chain.n == 2) short_pose::solve<2>(chain, T, found);
-    if (chain.n == 3) short_pose::solve<3>(chain, T, found);
+inline ik::FewJointSolutions solve_few_joint_pose(const ik::Chain& chain, const Posed& T) {
+    ik::FewJointSolutions found;
+    if (chain.n == 1) few_joint_pose::solve<1>(chain, T, found);
+    if (chain.n == 2) few_joint_pose::solve<2>(chain, T, found);
+    if (chain.n == 3) few_joint_pose::solve<3>(chain, T, found);
     return found;
 }
 

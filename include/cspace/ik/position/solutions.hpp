@@ -18,12 +18,12 @@ struct PositionSolutions {
     bool close[max_position_solutions] = {};
     double direction[max_position_solutions][max_position_joints] = {};
     // Without a solution: the distance that is missing [m], and the joints that come nearest.
-    double missing = 0;
+    double out_of_reach = 0;
     double nearest[max_position_joints] = {};
 };
 
 // What a pose goal answers for such an arm.
-struct ShortPoseSolutions {
+struct FewJointSolutions {
     int count = 0;
     double q[max_position_solutions][max_position_joints] = {};
     double position_error[max_position_solutions] = {};  // [m]

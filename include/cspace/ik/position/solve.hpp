@@ -10,9 +10,9 @@
 
 #include <initializer_list>
 
-#include "cspace/ik/position/families.hpp"
 #include "cspace/ik/position/nearest.hpp"
 #include "cspace/ik/position/pair.hpp"
+#include "cspace/ik/position/self_motions.hpp"
 #include "cspace/ik/position/solutions.hpp"
 
 namespace cspace::inline CSPACE_ISA {
@@ -35,7 +35,7 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
 // Refines a candidate and keeps it if it reaches the goal.
 template <int n>
 void propose(const TipGap<n>& g, double* q, ik::PositionSolutions& found) {
-    if (refine(g, q) <= g.reached) keep(g, q, found);
+    if (refine(g, q) <= g.reached) keep_distinct(g, q, found);
 }
 
 inline void candidates(const TipGap<1>& g, ik::PositionSolutions& found) {
@@ -52,14 +52,14 @@ inline void candidates(const TipGap<2>& g, ik::PositionSolutions& found) {
         double q[2] = {joint_between(g, 0, at(curve, last), g.goal), last};
         propose(g, q, found);
     };
-    bool idle = true;
+    bool unconstrained = true;
     for (int i = 0; i < 2; ++i) {
         double last[2];
         const int n = pair::weight(f[i]) > tolerance::rounding ? pair::values(f[i], target[i].k, last) : 0;
         for (int j = 0; j < n; ++j) complete(last[j]);
-        idle = idle && n == 0;
+        unconstrained = unconstrained && n == 0;
     }
-    if (idle) complete(0);
+    if (unconstrained) complete(0);
 }
 // Joints 0 and 2 bring both points to the axis of joint 1, which is then free: it is turned away from where
 // the other two can move as well. False where they do not.
@@ -109,7 +109,7 @@ void solve(const ik::Chain& chain, const Vec3d& goal, bool measure_miss, ik::Pos
     const double size = scale.size;
     const TipGap<n> g = tip_gap<n>(chain, goal, scale);
     candidates(g, found);
-    if (found.count == 0 && measure_miss) found.missing = size * nearest_configuration(g, found.nearest);
+    if (found.count == 0 && measure_miss) found.out_of_reach = size * nearest_configuration(g, found.nearest);
     for (int i = 0; i < n; ++i) {
         if (!g.prismatic[i]) continue;
         found.nearest[i] *= size;

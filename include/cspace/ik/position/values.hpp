@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cspace/ik/position/curve.hpp"
-#include "cspace/ik/subproblems/two_turns.hpp"
+#include "cspace/ik/subproblems/two_angles.hpp"
 
 namespace cspace {
 

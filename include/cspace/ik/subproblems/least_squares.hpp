@@ -51,7 +51,7 @@ double descend(const System& system, Unknown* t) {
             Unknown aside[n];
             double sides[2][n];
             for (int side = 0; side < 2; ++side) {
-                for (int i = 0; i < n; ++i) aside[i] = i == j ? stepped(t[i], side ? h : -h) : t[i];
+                for (int i = 0; i < n; ++i) aside[i] = i == j ? step_angles(t[i], side ? h : -h) : t[i];
                 linearise(system, aside, at);
                 normal_equations(at, normal, sides[side]);
             }
@@ -60,7 +60,7 @@ double descend(const System& system, Unknown* t) {
         for (int i = 0; i < n; ++i) step[i] = down[i];
         const bool convex = solve_damped<n>(hessian, damping, step);
         Unknown next[n];
-        for (int i = 0; i < n; ++i) next[i] = stepped(t[i], step[i]), length += std::fabs(step[i]);
+        for (int i = 0; i < n; ++i) next[i] = step_angles(t[i], step[i]), length += std::fabs(step[i]);
         const double next_error = convex ? linearise(system, next, at) : error + 1;
         if (next_error > error * (1 + 4 * std::numeric_limits<double>::epsilon())) {
             damping = 4 * damping + 1e-3;

@@ -10,11 +10,11 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-inline Turn<double> stepped(const Turn<double>& t, double step) {
+inline Turn<double> step_angles(const Turn<double>& t, double step) {
     const double length = std::sqrt(1 + step * step);
     return t + Turn<double>{1 / length, step / length};
 }
-inline double stepped(double q, double step) { return q + step; }
+inline double step_angles(double q, double step) { return q + step; }
 inline double difference(const Turn<double>& a, const Turn<double>& b) { return (a - b).s; }
 inline double difference(double a, double b) { return a - b; }
 
@@ -86,7 +86,7 @@ double refine(const System& system, Unknown* t, int iterations = 30) {
             continue;
         }
         Unknown next[n];
-        for (int j = 0; j < n; ++j) next[j] = stepped(t[j], step[j]), length += std::fabs(step[j]);
+        for (int j = 0; j < n; ++j) next[j] = step_angles(t[j], step[j]), length += std::fabs(step[j]);
         const double next_error = linearise(system, next, ahead);
         if (next_error >= error) {
             if (length < 1e-10) break;
@@ -107,7 +107,7 @@ template <class System, class Unknown>
 bool continues_along(const System& system, const Unknown* t, const double* along, double zero) {
     constexpr double reach = 1e-3;
     Unknown start[System::angles], found[System::angles];
-    for (int j = 0; j < System::angles; ++j) found[j] = start[j] = stepped(t[j], reach * along[j]);
+    for (int j = 0; j < System::angles; ++j) found[j] = start[j] = step_angles(t[j], reach * along[j]);
     if (refine(system, found) > zero) return false;
     double drift = 0;
     for (int j = 0; j < System::angles; ++j) drift = std::hypot(drift, difference(found[j], start[j]));

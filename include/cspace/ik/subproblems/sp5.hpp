@@ -7,7 +7,7 @@
 //     k2·a = k2·b,   ‖a‖² = ‖b‖².
 // Both are linear in the cosines and sines of θ1 and θ3, since ‖x + Rot(k, θ) y‖² = ‖x‖² + ‖y‖² +
 // 2 xᵀ Rot(k, θ) y and by the proof of subproblem 4. Two such equations have at most four answers
-// (two_turns.hpp); θ2 follows from subproblem 1, and any θ2 serves where the meeting point is on its axis.
+// (two_angles.hpp); θ2 follows from subproblem 1, and any θ2 serves where the meeting point is on its axis.
 // Where no answer exists, the distance ‖a − Rot(k2, θ2) b‖ left by the best θ2 is the one between the points
 // (k2·a, ‖k2 × a‖) and (k2·b, ‖k2 × b‖) of the half plane; its least value over θ1 and θ3 is returned.
 //
@@ -16,7 +16,7 @@
 
 #include "cspace/ik/subproblems/least_squares.hpp"
 #include "cspace/ik/subproblems/sp1.hpp"
-#include "cspace/ik/subproblems/two_turns.hpp"
+#include "cspace/ik/subproblems/two_angles.hpp"
 
 namespace cspace {
 

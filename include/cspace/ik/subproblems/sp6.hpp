@@ -5,14 +5,14 @@
 //
 // Proof. By the proof of subproblem 4 each product hᵀ Rot(k, θ) p is (h·k)(k·p) + a cos θ + b sin θ with
 // a = (k × h)·(k × p) and b = h·(k × p). Both equations are linear in the cosines and sines of the two
-// angles, which two_turns.hpp solves: at most four answers. Where none exists, the pair of angles with the
+// angles, which two_angles.hpp solves: at most four answers. Where none exists, the pair of angles with the
 // smallest length of the residual vector is returned.
 //
 // Reference: Elias & Wen 2022, §3.6.
 #pragma once
 
 #include "cspace/ik/subproblems/least_squares.hpp"
-#include "cspace/ik/subproblems/two_turns.hpp"
+#include "cspace/ik/subproblems/two_angles.hpp"
 
 namespace cspace {
 

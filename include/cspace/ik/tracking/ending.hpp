@@ -66,7 +66,8 @@ inline Outside meet_limit(const ik::Track& t, ik::Walker& w) {
 }
 
 // Writes down where and why the branch of a walker ends.
-inline void finish(const ik::Track& t, const ik::Walker& w, ik::Fate fate, int joint, std::size_t reached) {
+inline void finish_branch(const ik::Track& t, const ik::Walker& w, ik::Fate fate, int joint,
+                          std::size_t reached) {
     const int n = t.path->n;
     t.fate[w.branch] = fate;
     t.joint[w.branch] = joint;

@@ -43,7 +43,7 @@ CSPACE_INLINE void load_trial(const ik::Track& t, const ik::Walker& w, int l, Tr
 }
 
 // A branch at its start, which is corrected to the first pose.
-inline void begin(const ik::Track& t, std::size_t branch, ik::Walker& w) {
+inline void begin_branch(const ik::Track& t, std::size_t branch, ik::Walker& w) {
     w.branch = branch;
     w.row = 0;
     w.u = w.du = 0;
@@ -61,33 +61,33 @@ inline void begin(const ik::Track& t, std::size_t branch, ik::Walker& w) {
 }
 
 // The branch stands on its next pose; true if that is the last one.
-inline bool arrive(const ik::Track& t, ik::Walker& w) {
+inline bool arrive_at_pose(const ik::Track& t, ik::Walker& w) {
     w.u = 0;
     w.rows_tried = false;
     w.tries = 0;
     copy_numbers(w.q, t.path->n, row_of(t, w, w.row));
     if (w.row + 1 < t.count) return false;
-    finish(t, w, ik::Fate::end, -1, t.count);
+    finish_branch(t, w, ik::Fate::end, -1, t.count);
     return true;
 }
 
 // Takes the trial as the place of the walker; true if the branch has ended.
-inline bool take(const ik::Track& t, ik::Walker& w) {
+inline bool take_step(const ik::Track& t, ik::Walker& w) {
     const int broken = run_to(t, w, w.trial);
     if (w.starts) {
         copy_numbers(w.trial, t.path->n, w.q);
-        if (broken >= 0) finish(t, w, ik::Fate::limit, broken, 0);
+        if (broken >= 0) finish_branch(t, w, ik::Fate::limit, broken, 0);
         w.starts = false;
-        return broken >= 0 || arrive(t, w);
+        return broken >= 0 || arrive_at_pose(t, w);
     }
     if (broken >= 0) {
         const Outside met = meet_limit(t, w);
-        finish(t, w, ik::Fate::limit, met.joint, w.row + 1);
+        finish_branch(t, w, ik::Fate::limit, met.joint, w.row + 1);
         return true;
     }
     const int far = too_far(t, w, w.trial);
     if (far >= 0) {
-        finish(t, w, ik::Fate::jump, far, w.row + 1);
+        finish_branch(t, w, ik::Fate::jump, far, w.row + 1);
         return true;
     }
     const bool row = to_a_row(w);
@@ -96,7 +96,7 @@ inline bool take(const ik::Track& t, ik::Walker& w) {
     w.reach *= 2;
     w.by_rows = false;
     w.row += row;
-    return row && arrive(t, w);
+    return row && arrive_at_pose(t, w);
 }
 
 // After a step that was not taken: a step read off the rows before, else one half as long.
@@ -113,26 +113,26 @@ inline void think_again(const ik::Track& t, ik::Walker& w) {
 // ended.
 inline bool go_on(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
     const std::size_t reached = w.row + !w.starts;
-    switch (judge(t, w, at)) {
+    switch (judge_step(t, w, at)) {
         case Verdict::again:
             return false;
         case Verdict::infeasible:
-            finish(t, w, ik::Fate::unreachable, -1, reached);
+            finish_branch(t, w, ik::Fate::unreachable, -1, reached);
             return true;
         case Verdict::failed:
             if (w.starts) {
-                finish(t, w, ik::Fate::singularity, -1, 0);
+                finish_branch(t, w, ik::Fate::singularity, -1, 0);
                 return true;
             }
             think_again(t, w);
             break;
         case Verdict::taken:
-            if (take(t, w)) return true;
+            if (take_step(t, w)) return true;
             copy_numbers(at.slope, t.path->n, w.slope);
             copy_numbers(at.bend, t.path->n, w.bend);
     }
     if (++w.tries < track::most_tries && plan(t, w)) return false;
-    finish(t, w, ik::Fate::singularity, -1, reached);
+    finish_branch(t, w, ik::Fate::singularity, -1, reached);
     t.fate[w.branch] = t.weakest[w.branch] < track::near_singular ? ik::Fate::singularity : ik::Fate::jump;
     return true;
 }
@@ -160,7 +160,7 @@ void follow_branches(const ik::Track& t) {
     std::size_t next = 0;
     for (int l = 0; l < lanes; ++l) {
         live[l] = next < t.branches;
-        begin(t, live[l] ? next++ : 0, walker[l]);
+        begin_branch(t, live[l] ? next++ : 0, walker[l]);
         load_trial(t, walker[l], l, at);
     }
     for (bool alive = true; alive;) {
@@ -172,7 +172,7 @@ void follow_branches(const ik::Track& t) {
             if (go_on(t, w, lane_of(at.motion, t.path->n, l))) {
                 live[l] = next < t.branches;
                 if (!live[l]) continue;
-                begin(t, next++, w);
+                begin_branch(t, next++, w);
             }
             load_trial(t, w, l, at);
             alive = true;

@@ -150,7 +150,7 @@ CSPACE_INLINE bool to_a_row(const ik::Walker& w) { return w.du == 1 - w.u; }
 enum class Verdict { again, taken, failed, infeasible };
 
 // Takes a correction of the trial and judges the step.
-inline Verdict judge(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
+inline Verdict judge_step(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
     const int n = t.path->n;
     double total = 0;
     for (int j = 0; j < n; ++j) {

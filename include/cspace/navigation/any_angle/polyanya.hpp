@@ -18,8 +18,8 @@
 #include "cspace/maps/convex_mesh.hpp"
 #include "cspace/math/predicates.hpp"
 #include "cspace/navigation/any_angle/vertex_table.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/route.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 
@@ -61,7 +61,7 @@ class IntervalSearch {
         }
         Route route;
         route.status = Status::unreachable;
-        route.price = price_;
+        route.stats = stats_;
         return route;
     }
 
@@ -105,7 +105,7 @@ class IntervalSearch {
     std::vector<Polygon> goals_;
     Point start_, goal_;
     bool is_inside_ = false;  // whether the start itself looks around, in a polygon that holds it
-    Price price_;
+    Stats stats_;
     Trace* trace_ = nullptr;
 
     static constexpr Index at_start = -2;
@@ -124,7 +124,7 @@ class IntervalSearch {
         nodes_.clear();
         free_.clear();
         queue_.clear();
-        start_ = start, goal_ = goal, goals_ = goals, price_ = {}, trace_ = trace;
+        start_ = start, goal_ = goal, goals_ = goals, stats_ = {}, trace_ = trace;
     }
     Route straight() const {
         Route route;
@@ -132,7 +132,7 @@ class IntervalSearch {
         route.path = {start_, goal_};
         if (start_ == goal_) route.path.pop_back();
         route.length = distance(start_, goal_);
-        route.price = price_;
+        route.stats = stats_;
         return route;
     }
 
@@ -207,7 +207,7 @@ class IntervalSearch {
     // The interval of the edge from a to b (a on the right) that the root sees between two lines becomes a
     // node.
     void push(Index root, double g, Line on_left, Line on_right, const Edge& edge) {
-        ++price_.edges;
+        ++stats_.edges;
         const Edge entered = mesh_.across(edge);
         if (!mesh_.leads_on(entered) && !is_goal(entered)) return;
         const Index a = mesh_.tail(edge), b = mesh_.head(edge);
@@ -237,7 +237,7 @@ class IntervalSearch {
 
     // What can be reached from the root of a node inside the polygon that it enters.
     void expand(const Node& from) {
-        ++price_.nodes;
+        ++stats_.nodes;
         if (trace_) {
             const auto [left, right] = interval(from);
             trace_->push_back({0, right, left, from.g + estimate(at(from.root), left, right)});
@@ -261,7 +261,7 @@ class IntervalSearch {
         });
     }
     void expand_start(const Polygon& p) {
-        ++price_.nodes;
+        ++stats_.nodes;
         Node from{};
         from.root = at_start;
         is_inside_ = true;
@@ -358,7 +358,7 @@ class IntervalSearch {
     Route finish(const Node& end) {
         Route route;
         route.status = Status::found;
-        route.price = price_;
+        route.stats = stats_;
         const Point r = at(end.root);
         const auto [left, right] = interval(end);
         route.path.push_back(goal_);

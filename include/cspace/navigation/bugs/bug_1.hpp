@@ -4,8 +4,8 @@
 // than the distance from start to goal and one and a half times the perimeters of the rings met.
 #pragma once
 
-#include "cspace/navigation/bugs/round.hpp"
-#include "cspace/navigation/bugs/trip.hpp"
+#include "cspace/navigation/bugs/boundary_tour.hpp"
+#include "cspace/navigation/bugs/walk_log.hpp"
 
 namespace cspace::navigation {
 

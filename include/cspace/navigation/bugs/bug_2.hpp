@@ -8,7 +8,7 @@
 // touch, on the other side of the same point, which a robot cannot pass but can walk around.
 #pragma once
 
-#include "cspace/navigation/bugs/trip.hpp"
+#include "cspace/navigation/bugs/walk_log.hpp"
 
 namespace cspace::navigation {
 

@@ -75,18 +75,18 @@ class ClearanceRobot : public RangeRobot {
         pass(b, log);
         for (Index joints = 0; joints <= 2 * s_.size() + 8; ++joints) {
             const Arc arc = next_arc(a, b, aim);
-            if (arc.why == Halt::corner) return end_in_corner(arc, a, log, look);
+            if (arc.cause == Halt::corner) return end_in_corner(arc, a, log, look);
             if (slide(arc.curve, arc.begin, arc.end, log, look)) return Halt::told;
-            if (arc.why == Halt::lost) return Halt::lost;
-            if (arc.why == Halt::meet) {
+            if (arc.cause == Halt::lost) return Halt::lost;
+            if (arc.cause == Halt::meet) {
                 Point p = arc.curve.at(arc.end);
                 feet_ = contacts_.around(p, a, b, arc.third);
                 return arrive(p, Halt::meet, log);
             }
-            if (arc.why != Halt::told) {
+            if (arc.cause != Halt::told) {
                 const Point p = arc.curve.at(arc.end);
                 feet_ = {contacts_.contact(a, p), contacts_.contact(b, p)};
-                return arrive(p, arc.why, log);
+                return arrive(p, arc.cause, log);
             }
             if (arc.turns_a) pass(a = site_after(s_, a), log);
             if (arc.turns_b) pass(b = site_before(s_, b), log);
@@ -151,7 +151,7 @@ class ClearanceRobot : public RangeRobot {
     struct Arc {
         voronoi::Bisector curve;
         double begin = 0, end = 0;
-        Halt why = Halt::told;  // told: a foot goes over to its next site
+        Halt cause = Halt::told;  // told: a foot goes over to its next site
         Index third = voronoi::none;
         bool turns_a = false, turns_b = false;
     };
@@ -164,16 +164,16 @@ class ClearanceRobot : public RangeRobot {
     static void note(Point p, Log& log) {
         if (log.path.empty() || log.path.back() != p) log.path.push_back(p);
     }
-    Halt arrive(Point p, Halt why, Log& log) {
+    Halt arrive(Point p, Halt cause, Log& log) {
         move_to(p);
         if (!log.path.empty()) log.path.back() = at_;  // as polished
         radius_ = s_.distance_to(feet_[0].site, p);
-        return finish(why, log);
+        return finish(cause, log);
     }
-    Halt finish(Halt why, Log& log) {
+    Halt finish(Halt cause, Log& log) {
         log.least = std::min(log.least, radius_);
         for (const Foot& foot : feet_) pass_ends(foot.site, log);
-        return why;
+        return cause;
     }
 
     Touch corner_at(Index e) const {
@@ -233,14 +233,14 @@ class ClearanceRobot : public RangeRobot {
         Arc arc;
         arc.curve = voronoi::bisector_of(s_, a, b, from);
         arc.begin = arc.curve.parameter(from);
-        arc.why = Halt::lost;
+        arc.cause = Halt::lost;
         arc.end = arc.begin;
         if (!std::isfinite(arc.begin) || !std::isfinite(squared_norm(arc.curve.p2))) return arc;
         const double end_a = leaves(arc.curve, arc.begin, forward_gate(s_, a), grain_),
                      end_b = leaves(arc.curve, arc.begin, backward_gate(s_, b), grain_);
         double end = std::min({end_a, end_b, arc.begin + 4 * s_.extent});
-        const auto offer = [&](double t, Halt why) {
-            if (t < end) end = t, arc.why = why;
+        const auto offer = [&](double t, Halt cause) {
+            if (t < end) end = t, arc.cause = cause;
         };
         offer(reaches_limit(arc), Halt::limit);
         if (aim.stops) offer(comes_to(arc, local(aim.goal)), Halt::goal);
@@ -249,8 +249,8 @@ class ClearanceRobot : public RangeRobot {
         arc.end = touch.at();
         arc.third = touch.site();
         if (arc.third != voronoi::none) {
-            arc.why = Halt::meet;
-        } else if (arc.why == Halt::lost) {
+            arc.cause = Halt::meet;
+        } else if (arc.cause == Halt::lost) {
             arc.turns_a = end_a <= arc.end;
             arc.turns_b = end_b <= arc.end;
             end_arc(arc, a, b);
@@ -260,17 +260,17 @@ class ClearanceRobot : public RangeRobot {
     // Of an arc that nothing else ends than its own sites.
     void end_arc(Arc& arc, Index a, Index b) const {
         if (s_.is_edge(a) && s_.is_edge(b) && s_.after(a) == b && s_.turn_at(b) == voronoi::Turn::corner) {
-            arc.why = Halt::corner;
+            arc.cause = Halt::corner;
             arc.end = arc.curve.parameter(s_.begin(b));
             return;
         }
         const Index corner = arc.turns_a ? voronoi::corner_after(s_, a) : voronoi::none,
                     other = arc.turns_b ? voronoi::corner_before(s_, b) : voronoi::none;
         if (corner != voronoi::none || other != voronoi::none) {
-            arc.why = Halt::meet;
+            arc.cause = Halt::meet;
             arc.third = corner != voronoi::none ? corner : other;
         } else if (arc.turns_a || arc.turns_b) {
-            arc.why = Halt::told;
+            arc.cause = Halt::told;
         }
     }
 
@@ -343,9 +343,9 @@ class ClearanceRobot : public RangeRobot {
         const voronoi::FirstMeeting met = voronoi::first_meeting(s_, tree_, grain_, way, keeps_, a, end);
         const Point goal = local(aim.goal);
         double stop = met.at;
-        Halt why = met.site == voronoi::none ? Halt::told : Halt::meet;
+        Halt cause = met.site == voronoi::none ? Halt::told : Halt::meet;
         const auto offer = [&](double t, Halt reason) {
-            if (t >= 0 && t < stop) stop = t, why = reason;
+            if (t >= 0 && t < stop) stop = t, cause = reason;
         };
         if (const double t = way.meets_point(0.5 * (keeps_ + range()), goal); aim.stops && std::isfinite(t))
             offer(t, Halt::goal);
@@ -362,9 +362,9 @@ class ClearanceRobot : public RangeRobot {
         const bool is_low =
             way.length(std::abs(nearest - low)) <= near && dot(goal - there, s_.towards(a, there)) < 0;
         const double far = distance(there, goal);
-        if (is_low && far < aim.nearer) stop = low, why = Halt::low;
+        if (is_low && far < aim.nearer) stop = low, cause = Halt::low;
         const int steps = std::clamp(int(std::ceil(way.length(stop) / (0.25 * keeps_))), 1, 10'000);
-        bool low_noted = !is_low || why == Halt::low;
+        bool low_noted = !is_low || cause == Halt::low;
         for (int i = 1; i <= steps; ++i) {
             const double t = i == steps ? stop : stop * i / steps;
             if (!low_noted && t >= low) {
@@ -381,11 +381,11 @@ class ClearanceRobot : public RangeRobot {
             return Halt::told;
         }
         rolled += way.length(stop);
-        if (why == Halt::told) return {};
+        if (cause == Halt::told) return {};
         const Point p = local(at_);
-        feet_ =
-            why == Halt::meet ? contacts_.ahead(p, a, met.site) : std::vector<Foot>{contacts_.contact(a, p)};
-        return finish(why, log);
+        feet_ = cause == Halt::meet ? contacts_.ahead(p, a, met.site)
+                                    : std::vector<Foot>{contacts_.contact(a, p)};
+        return finish(cause, log);
     }
 };
 

@@ -5,7 +5,7 @@
 #pragma once
 
 #include "cspace/navigation/bugs/contact_sensor.hpp"
-#include "cspace/navigation/bugs/flight.hpp"
+#include "cspace/navigation/bugs/ray_cast.hpp"
 
 namespace cspace::navigation {
 

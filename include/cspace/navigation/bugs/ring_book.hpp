@@ -4,7 +4,7 @@
 #include <map>
 #include <optional>
 
-#include "cspace/navigation/bugs/round.hpp"
+#include "cspace/navigation/bugs/boundary_tour.hpp"
 
 namespace cspace::navigation {
 

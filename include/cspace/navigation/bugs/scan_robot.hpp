@@ -262,13 +262,13 @@ class ScanRobot : public ContactRobot {
         place_ = was;
         return false;
     }
-    Halt halt(std::vector<Foot> feet, Halt why, Log& log) {
+    Halt halt(std::vector<Foot> feet, Halt cause, Log& log) {
         look();
         note(at_, log);
         feet_ = std::move(feet);
         clearance_ = scan_.least;
         log.least = std::min(log.least, clearance_);
-        return why;
+        return cause;
     }
     Halt end_branch(Log& log) {
         note(at_, log);

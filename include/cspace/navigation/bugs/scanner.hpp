@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cspace/navigation/bugs/walls.hpp"
-#include "cspace/navigation/sampling/draws.hpp"
+#include "cspace/search/draws.hpp"
 
 namespace cspace::navigation {
 

@@ -9,9 +9,9 @@
 
 #include <optional>
 
+#include "cspace/navigation/bugs/boundary_tour.hpp"
 #include "cspace/navigation/bugs/range_sensor.hpp"
-#include "cspace/navigation/bugs/round.hpp"
-#include "cspace/navigation/bugs/trip.hpp"
+#include "cspace/navigation/bugs/walk_log.hpp"
 
 namespace cspace::navigation {
 

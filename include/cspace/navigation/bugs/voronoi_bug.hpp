@@ -18,7 +18,7 @@
 #include "cspace/navigation/bugs/meet_graph.hpp"
 #include "cspace/navigation/bugs/ring_book.hpp"
 #include "cspace/navigation/bugs/scan_robot.hpp"
-#include "cspace/navigation/bugs/trip.hpp"
+#include "cspace/navigation/bugs/walk_log.hpp"
 
 namespace cspace::navigation {
 
@@ -157,7 +157,7 @@ class VoronoiBug {
 
     int add_meet(Halt came, bool rolled) {
         if (robot_.feet().size() > 2) trip_.meets.push_back(robot_.position());
-        ++trip_.route.price.nodes;
+        ++trip_.route.stats.nodes;
         return graph_.add(robot_.position(), robot_.clearance(), robot_.feet(), came, rolled, robot_.keeps(),
                           like_);
     }
@@ -182,7 +182,7 @@ class VoronoiBug {
         const auto looks = [&] { return look(); };
         const Halt end =
             rolls ? robot_.roll(right, aim, log, looks) : robot_.trace(right, left, aim, log, looks);
-        ++trip_.route.price.edges;
+        ++trip_.route.stats.edges;
         for (const Touch& corner : log.corners) rings_.add(corner);
         trip_.clearance = std::min(trip_.clearance, log.least);
         take(rolls ? Move::roll : Move::trace, log.path, log.least);

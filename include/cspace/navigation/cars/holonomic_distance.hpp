@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cspace/maps/grid_inflation.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/cars/car_world.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 

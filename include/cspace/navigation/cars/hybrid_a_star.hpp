@@ -30,7 +30,7 @@ struct CarRoute {
     Status status = Status::undetermined;
     HybridReason reason = HybridReason::exhausted;
     std::vector<Piece> pieces;  // in turning radii
-    Price price;
+    Stats stats;
 };
 
 class HybridAStar {
@@ -58,7 +58,7 @@ class HybridAStar {
         queue.push({left(nodes_[0].pose), 0, 0});
         best_[key(nodes_[0].pose)] = 0;
         const std::uint32_t last = best_first(*this, queue, effort);
-        route.price = {std::int64_t(effort.settled), edges_};
+        route.stats = {std::int64_t(effort.settled), edges_};
         route.reason = last == no_node ? HybridReason::exhausted
                        : arrives_      ? HybridReason::found
                                        : HybridReason::budget;
@@ -106,7 +106,7 @@ class HybridAStar {
         ++edges_;
         const Node from = nodes_[at];
         const CarPose pose = drive(from.pose, piece, set_.radius);
-        double cost = from.cost + price(piece);
+        double cost = from.cost + cost_of(piece);
         if (from.parent >= 0 && (from.piece.length < 0) != (piece.length < 0)) cost += set_.gear_cost;
         const std::uint64_t box = key(pose);
         const auto known = best_.find(box);
@@ -123,7 +123,7 @@ class HybridAStar {
         queue.push({cost + set_.weight * more, float(more), number});
     }
 
-    double price(const Piece& piece) const {
+    double cost_of(const Piece& piece) const {
         return std::fabs(piece.length) * set_.radius * (piece.length < 0 ? set_.reverse_cost : 1);
     }
 
@@ -169,7 +169,7 @@ class HybridAStar {
             pose.push_back(drive(pose.back(), pieces[k], set_.radius));
             const bool changes =
                 k + 1 < pieces.size() && (pieces[k].length < 0) != (pieces[k + 1].length < 0);
-            cost.push_back(cost.back() + price(pieces[k]) + (changes ? set_.gear_cost : 0));
+            cost.push_back(cost.back() + cost_of(pieces[k]) + (changes ? set_.gear_cost : 0));
         }
         std::vector<Piece> made;
         CarPose here = pose[0];
@@ -178,7 +178,7 @@ class HybridAStar {
             std::size_t to = pose.size() - 1;
             for (; to > at + 1; --to) {
                 way = curve(here, pose[to]);
-                if (price(way) < cost[to] - cost[at] - rounding && is_clear(here, way)) break;
+                if (cost_of(way) < cost[to] - cost[at] - rounding && is_clear(here, way)) break;
             }
             if (to == at + 1) {
                 way = Curve{};
@@ -190,10 +190,10 @@ class HybridAStar {
         }
         pieces = std::move(made);
     }
-    double price(const Curve& way) const {
+    double cost_of(const Curve& way) const {
         double sum = 0;
         for (int i = 0; i < way.count; ++i) {
-            sum += price(way.piece[i]);
+            sum += cost_of(way.piece[i]);
             if (i > 0 && (way.piece[i].length < 0) != (way.piece[i - 1].length < 0)) sum += set_.gear_cost;
         }
         return sum;

@@ -2,9 +2,9 @@
 // (Latombe 1991, section 5.3).
 #pragma once
 
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/cells/cell_stage.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 
@@ -47,7 +47,7 @@ class ApproximateCells {
             answer.route.length = 0;
         }
         while (answer.route.status != Status::found) {
-            answer.route.price.edges += std::int64_t(doors().size());
+            answer.route.stats.edges += std::int64_t(doors().size());
             tree().leaves_at(start, at_start_);
             tree().leaves_at(goal, at_goal_);
             if (search(start, goal, answer.route)) break;
@@ -219,7 +219,7 @@ class ApproximateCells {
         for (const maps::Index c : from.leaves) space.leave(c, from.at, 0, no_node, queue);
         Effort effort;
         const std::uint32_t reached = best_first(space, queue, effort);
-        route.price.nodes += std::int64_t(effort.settled);
+        route.stats.nodes += std::int64_t(effort.settled);
         if (reached == no_node) return false;
         route.path = {goal};
         const auto add = [&](Point p) {

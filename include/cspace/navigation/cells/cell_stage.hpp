@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "cspace/navigation/cells/quadtree.hpp"
-#include "cspace/navigation/last_made.hpp"
+#include "cspace/search/cache.hpp"
 
 namespace cspace::navigation {
 

@@ -3,10 +3,10 @@
 #pragma once
 
 #include "cspace/maps/polygon_world.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/cells/funnel.hpp"
 #include "cspace/navigation/cells/trapezoids.hpp"
 #include "cspace/navigation/route.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 
@@ -39,7 +39,7 @@ class ExactCells {
         const std::uint32_t last = best_first(open, queue, effort);
         Route route;
         route.status = Status::unreachable;
-        route.price = {std::int64_t(effort.settled), open.edges};
+        route.stats = {std::int64_t(effort.settled), open.edges};
         return last == no_node ? route : finish(route, open.state, Index(last), start, goal);
     }
 

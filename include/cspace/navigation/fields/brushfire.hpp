@@ -7,9 +7,9 @@
 #include <limits>
 #include <vector>
 
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/fields/diagram.hpp"
 #include "cspace/navigation/grid/search.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 

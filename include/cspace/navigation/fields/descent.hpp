@@ -45,7 +45,7 @@ class DescentRun {
         if (!leave_wall(inward)) return finish(Rest::wall);
         descent_.values = {here_.value, here_.value};
         if (descent_.route.path.size() == 1) descent_.values.pop_back();
-        while (descent_.route.price.edges < budget_) {
+        while (descent_.route.stats.edges < budget_) {
             if (arrives()) return finish(Rest::goal);
             if (!descend() && !fall_off()) return finish(name_of_rest());
         }
@@ -67,13 +67,13 @@ class DescentRun {
     double noise() const { return 1e-13 * std::abs(here_.value); }
 
     Potential::Look look(Point p) {
-        ++descent_.route.price.edges;
+        ++descent_.route.stats.edges;
         return potential_.look(p, std::min(2 * step_, 0.1 * scale()));
     }
     void go(Point to, const Potential::Look& seen) {
         at_ = to;
         here_ = seen;
-        ++descent_.route.price.nodes;
+        ++descent_.route.stats.nodes;
         descent_.route.path.push_back(to);
         descent_.values.push_back(seen.value);
     }

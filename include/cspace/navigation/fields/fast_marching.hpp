@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "cspace/maps/grid_frame.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/route.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 
@@ -205,7 +205,7 @@ inline MarchAnswer march(const maps::BitGrid& grid, const maps::GridFrame& frame
     Effort effort{0, 0, order};
     front.start(to, queue);
     const bool found = best_first(front, queue, effort) != no_node;
-    answer.route.price = {std::int64_t(effort.settled), std::int64_t(front.edges())};
+    answer.route.stats = {std::int64_t(effort.settled), std::int64_t(front.edges())};
     answer.route.status = found ? Status::found : Status::unreachable;
     if (!found) return answer;
     answer.time = front.time(grid.number(from));

@@ -61,7 +61,7 @@ class NavigationFunction {
         made.route.path = {start};
         made.values = {log_odds(start)};
         if (!(at == from)) note(made, from_model(at), potential_->value(at));
-        for (; made.route.price.nodes < limits_.steps; ++made.route.price.nodes) {
+        for (; made.route.stats.nodes < limits_.steps; ++made.route.stats.nodes) {
             const double left = distance(at, potential_->goal());
             if (left <= 1e-4 * discs_.clearance(potential_->goal()) &&
                 is_open(made.route.path.back(), goal_)) {
@@ -148,7 +148,7 @@ class NavigationFunction {
     bool go(Point& at, Point direction, double length, Descent& made) const {
         const double here = potential_->value(at);
         for (int halvings = 0; halvings < 40; ++halvings, length *= 0.5) {
-            ++made.route.price.edges;
+            ++made.route.stats.edges;
             const Point to = at + length * direction;
             if (!(discs_.clearance(to) > 0)) continue;
             const double value = potential_->value(to);

@@ -9,12 +9,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
 #include "cspace/navigation/grid/order.hpp"
 #include "cspace/navigation/grid/search.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 

@@ -12,11 +12,11 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
 #include "cspace/navigation/grid/order.hpp"
 #include "cspace/navigation/grid/steps.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 

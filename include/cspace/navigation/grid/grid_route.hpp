@@ -49,7 +49,7 @@ inline double length_of(const std::vector<maps::Cell>& cells) {
 // The route between two points in free cells, from what a search has found between the cells.
 inline void draw_route(const maps::GridFrame& frame, Point start, Point goal, const GridAnswer& answer,
                        Route& route) {
-    route.price = {std::int64_t(answer.effort.settled), std::int64_t(answer.effort.pushed)};
+    route.stats = {std::int64_t(answer.effort.settled), std::int64_t(answer.effort.pushed)};
     route.status = answer.found ? Status::found : Status::unreachable;
     route.path.clear();
     route.length = std::numeric_limits<double>::infinity();

@@ -7,8 +7,8 @@
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/navigation/grid/moves.hpp"
+#include "cspace/navigation/grid/neighbour_pruning.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
-#include "cspace/navigation/grid/onward.hpp"
 #include "cspace/navigation/grid/order.hpp"
 #include "cspace/navigation/grid/parents.hpp"
 

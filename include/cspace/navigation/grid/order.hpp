@@ -8,8 +8,8 @@
 #include <cstdlib>
 
 #include "cspace/maps/bit_grid.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/grid/steps.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 

@@ -9,14 +9,14 @@
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/maps/grid_parts.hpp"
-#include "cspace/navigation/best_first.hpp"
-#include "cspace/navigation/bucket_queue.hpp"
-#include "cspace/navigation/focal_queue.hpp"
 #include "cspace/navigation/grid/grid_search.hpp"
 #include "cspace/navigation/grid/jump_points.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
 #include "cspace/navigation/grid/order.hpp"
 #include "cspace/navigation/grid/parents.hpp"
+#include "cspace/search/best_first.hpp"
+#include "cspace/search/bucket_queue.hpp"
+#include "cspace/search/focal_queue.hpp"
 
 namespace cspace::navigation {
 

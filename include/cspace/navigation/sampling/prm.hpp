@@ -6,11 +6,11 @@
 
 #include <span>
 
-#include "cspace/navigation/best_first.hpp"
-#include "cspace/navigation/last_made.hpp"
-#include "cspace/navigation/sampling/buckets.hpp"
 #include "cspace/navigation/sampling/problem.hpp"
 #include "cspace/navigation/sampling/samples.hpp"
+#include "cspace/search/best_first.hpp"
+#include "cspace/search/cache.hpp"
+#include "cspace/search/nearest_neighbours.hpp"
 
 namespace cspace::navigation::sampling {
 
@@ -115,8 +115,8 @@ class RoadmapSearch {
         if (trace) record(*trace);
         search();
         answer_.samples = roadmap_.key().samples;
-        answer_.route.price.nodes = std::int64_t(roadmap_.size()) + 2;
-        answer_.route.price.edges = roadmap_.tested() + looks_;
+        answer_.route.stats.nodes = std::int64_t(roadmap_.size()) + 2;
+        answer_.route.stats.edges = roadmap_.tested() + looks_;
         return answer_;
     }
 

@@ -4,9 +4,9 @@
 // one (Gammell, Srinivasa & Barfoot 2014).
 #pragma once
 
-#include "cspace/navigation/sampling/buckets.hpp"
 #include "cspace/navigation/sampling/problem.hpp"
 #include "cspace/navigation/sampling/samples.hpp"
+#include "cspace/search/nearest_neighbours.hpp"
 
 namespace cspace::navigation::sampling {
 
@@ -37,7 +37,7 @@ class Tree {
             if (draw(drawn)) grow_towards(drawn.at);
         }
         Route& route = answer.route;
-        route.price = {std::int64_t(nodes_.size()), looks_};
+        route.stats = {std::int64_t(nodes_.size()), looks_};
         if (last_ < 0) return answer;
         route.status = Status::found;
         route.path.push_back(problem_.goal.at);

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "cspace/maps/polygon_world.hpp"
-#include "cspace/navigation/sampling/draws.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
+#include "cspace/search/draws.hpp"
 
 namespace cspace::navigation::sampling {
 

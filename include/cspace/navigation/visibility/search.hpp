@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "cspace/maps/polygon_world.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/navigation/visibility/graph.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
 
@@ -21,7 +21,7 @@ class VisibilitySearch {
     // Start and goal lie in one component of free space.
     Route solve(const maps::Settled& start, const maps::Settled& goal, Trace* trace = nullptr) {
         ++query_;
-        price_ = {};
+        stats_ = {};
         start_ = start.at, goal_ = goal.at;
         if (sees(start, goal)) return straight();
         for (const auto& edge : at_goal_) state_of(edge.to).to_goal = edge.length;
@@ -30,9 +30,9 @@ class VisibilitySearch {
         for (const auto& edge : at_start_) open.relax(edge.to, edge.length, none, queue_);
         Effort effort;
         const bool arrives = best_first(open, queue_, effort) != no_node;
-        price_.nodes = std::int64_t(effort.settled);
+        stats_.nodes = std::int64_t(effort.settled);
         if (arrives) return finish();
-        return Route{Status::unreachable, {}, std::numeric_limits<double>::infinity(), price_};
+        return Route{Status::unreachable, {}, std::numeric_limits<double>::infinity(), stats_};
     }
 
   private:
@@ -64,7 +64,7 @@ class VisibilitySearch {
         }
         void relax(Index n, double g, Index parent, PriorityQueue& queue) {
             State& s = search.state_of(n);
-            ++search.price_.edges;
+            ++search.stats_.edges;
             if (s.closed || g >= s.g) return;
             s.g = g;
             s.parent = parent;
@@ -80,7 +80,7 @@ class VisibilitySearch {
     PriorityQueue queue_;
     std::vector<VisibilityGraph::Edge> at_start_, at_goal_;
     Point start_, goal_;
-    Price price_;
+    Stats stats_;
 
     Point point(Index n) const { return n == none ? start_ : n == graph_.size() ? goal_ : graph_.point(n); }
     State& state_of(Index n) {
@@ -103,12 +103,12 @@ class VisibilitySearch {
         return seen;
     }
     Route straight() const {
-        Route route{Status::found, {start_}, distance(start_, goal_), price_};
+        Route route{Status::found, {start_}, distance(start_, goal_), stats_};
         if (!(start_ == goal_)) route.path.push_back(goal_);
         return route;
     }
     Route finish() {
-        Route route{Status::found, {goal_}, 0, price_};
+        Route route{Status::found, {goal_}, 0, stats_};
         for (Index n = graph_.size(); n != none;) {
             n = state_of(n).parent;
             if (!(point(n) == route.path.back())) route.path.push_back(point(n));

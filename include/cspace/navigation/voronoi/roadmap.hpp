@@ -11,10 +11,10 @@
 #include <memory>
 
 #include "cspace/maps/polygon_world.hpp"
-#include "cspace/navigation/best_first.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
 #include "cspace/navigation/voronoi/tracer.hpp"
+#include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation::voronoi {
 
@@ -220,15 +220,15 @@ struct Roadmap::Search {
     const Roadmap& map;
     const Landing& to;
     Wish wish;
-    Price& price;
+    Stats& stats;
     Trace* trace;
     std::vector<double> value;  // the length up to a vertex, or minus the least width
     std::vector<Stretch> came;  // by which stretch
     std::vector<Index> parent;
     std::vector<std::uint8_t> settled;
 
-    Search(const Roadmap& roadmap, const Landing& goal, Wish wanted, Price& cost, Trace* record)
-        : map(roadmap), to(goal), wish(wanted), price(cost), trace(record) {
+    Search(const Roadmap& roadmap, const Landing& goal, Wish wanted, Stats& cost, Trace* record)
+        : map(roadmap), to(goal), wish(wanted), stats(cost), trace(record) {
         const std::size_t n = map.diagram_.vertices.size() + 1;
         value.assign(n, std::numeric_limits<double>::infinity());
         came.resize(n);
@@ -241,7 +241,7 @@ struct Roadmap::Search {
     bool settle(std::uint32_t node) {
         if (settled[node]) return false;
         settled[node] = 1;
-        ++price.nodes;
+        ++stats.nodes;
         if (trace) record(Index(node));
         return true;
     }
@@ -254,7 +254,7 @@ struct Roadmap::Search {
     }
 
     void push(Index node, Index from, double before, const Stretch& s, PriorityQueue& queue) {
-        ++price.edges;
+        ++stats.edges;
         const Bisector& curve = map.arc(s.arc).curve;
         const double low = std::min(s.t0, s.t1), high = std::max(s.t0, s.t1);
         const double width = curve.least_radius(low, high);
@@ -287,7 +287,7 @@ struct Roadmap::Search {
 // The value of the goal as a width; the stretches of the way to it.
 inline double Roadmap::search(const Landing& from, const Landing& to, Wish wish,
                               std::vector<Stretch>* stretches, Way& way, Trace* trace) const {
-    Search space(*this, to, wish, way.route.price, trace);
+    Search space(*this, to, wish, way.route.stats, trace);
     PriorityQueue queue;
     Effort effort;
     space.leave(none, wish.widest ? -std::numeric_limits<double>::infinity() : 0, from.arc, from.t, queue);

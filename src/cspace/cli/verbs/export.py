@@ -20,7 +20,7 @@ __all__ = ["EXAMPLES", "arguments", "run"]
 EXAMPLES: Final = """
 cspace export ur5e --lang cpp -o ur5e_ik.hpp
 cspace export gen3_lite --lang c -o gen3_lite_ik.h --example main.c
-cspace export panda -o panda_ik.hpp --fixed panda_joint7
+cspace export panda -o panda_ik.hpp --locked panda_joint7
 cspace export arm.urdf --lang python --name my_arm > my_arm.py
 """
 
@@ -36,7 +36,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--name", help="the namespace, or the prefix; made from the robot's name unless given"
     )
     parser.add_argument(
-        "--fixed",
+        "--locked",
         nargs="+",
         metavar="JOINT",
         help="joints, or q7 for the seventh, whose values the caller of the code gives",
@@ -54,8 +54,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
         check_apart(args.lang, args.output, args.example)
     robot = load(args)
     need_chain(robot)
-    fixed = None if args.fixed is None else [joint_called(word, robot) for word in args.fixed]
-    made = robot.export(args.lang, args.output, name=args.name, fixed=fixed)
+    locked = None if args.locked is None else [joint_called(word, robot) for word in args.locked]
+    made = robot.export(args.lang, args.output, name=args.name, locked=locked)
     if args.output is None and len(made.files) > 1 and not out.as_json:
         raise UsageError(f"{made.language} needs {len(made.files)} files: say where with -o FILE")
     if args.example is not None:

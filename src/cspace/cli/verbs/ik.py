@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Final
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.explain import add_explanation, explain, explanation_asked
+from cspace.cli.explain import add_explanation, explain, wants_explanation
 from cspace.cli.files import check_writable
 from cspace.cli.freedom import add_freedom, options_of
 from cspace.cli.goals import Goal, add_goal, goal_of
@@ -29,15 +29,15 @@ EXAMPLES: Final = """
 cspace ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg
 cspace ik puma560 --xyz 0.5 0 0.3 --wxyz 0 1 0 0 --near 0 0 0 0 0 0 --plot puma.png
 cspace ik planar_2r --xy 0.6 0.3 --limits drop --json
-cspace ik panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --fixed panda_joint7=pi/4
+cspace ik panda --xyz 0.4 0.1 0.4 --rpy pi 0 0 --locked panda_joint7=pi/4
 cspace ik iiwa14 --xyz 0.5 0.1 0.4 --rpy 0 180 0 --swivel 30 --deg
 cspace ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 -1
 cspace ik ur5e --look-at 0.6 0.2 0 --near 0,-1.2,1.4,-0.8,0.7,0
 cspace ik ur5e --explain
-cspace ik so101 --explain --asked position direction --tool-axis x --markdown
+cspace ik so101 --explain --goal-parts position direction --tool-axis x --markdown
 """
 KEYWORDS: Final = re.compile(
-    r"\b(position|rotation|direction|look_at|ray|angle_to|angle|tool_axis|fixed|swivel|samples|near"
+    r"\b(position|rotation|direction|look_at|ray|angle_to|angle|tool_axis|locked|swivel|samples|near"
     r"|least_squares|asked)=(?=[^=]|$)"
 )
 """The keywords of robot.ik that are options here."""
@@ -68,7 +68,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     robot = load(args)
     need_chain(robot)
     try:
-        return explain(args, robot, out) if explanation_asked(args) else answer(args, robot, out)
+        return explain(args, robot, out) if wants_explanation(args) else answer(args, robot, out)
     except (InputError, InputTypeError) as error:
         raise UsageError(in_options(str(error))) from error
 

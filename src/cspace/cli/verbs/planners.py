@@ -38,9 +38,9 @@ def run(args: argparse.Namespace, out: Output) -> int:
         for row in rows:
             show_options(row, out)
     else:
-        table = Table(["planner", "world", "sees", "what it does"], left=frozenset(range(4)))
+        table = Table(["planner", "world", "sensing", "what it does"], left=frozenset(range(4)))
         for row in rows:
-            table.add(Cell(row.name, "bold"), row.world, row.sees, row.line)
+            table.add(Cell(row.name, "bold"), row.world, row.sensing, row.summary)
         out.table(table)
         out.hint(f"{len(rows)} planners; cspace planners NAME shows the options of one")
     return Exit.DONE
@@ -48,7 +48,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
 
 def show_options(row: Planner, out: Output) -> None:
     """A planner and a table of its options."""
-    out.heading(f"{row.name}: {row.line}")
+    out.heading(f"{row.name}: {row.summary}")
     if not row.options:
         out.line("no options")
         return
@@ -82,4 +82,10 @@ def document(row: Planner) -> dict[str, Any]:
         }
         for each in row.options.values()
     ]
-    return {"name": row.name, "line": row.line, "world": row.world, "sees": row.sees, "options": options}
+    return {
+        "name": row.name,
+        "summary": row.summary,
+        "world": row.world,
+        "sensing": row.sensing,
+        "options": options,
+    }

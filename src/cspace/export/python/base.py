@@ -11,12 +11,12 @@ import numpy.typing as npt
 __all__ = [
     "Array",
     "Solutions",
-    "admit",
-    "answer",
-    "gap",
+    "accept_candidate",
     "inverse",
     "joint_motion",
+    "make_answer",
     "pose_and_jacobian",
+    "pose_gap",
 ]
 
 Array = npt.NDArray[np.float64]
@@ -35,7 +35,7 @@ class Solutions:
 
     q: Array
     status: str
-    family: npt.NDArray[np.bool_]
+    self_motion: npt.NDArray[np.bool_]
     complete: bool
 
     def __len__(self) -> int:
@@ -96,7 +96,7 @@ def rotation_vector(R: Array) -> Array:
     return np.asarray(angle / np.linalg.norm(axis) * axis)
 
 
-def measure(arm: dict[str, Any], goal: Array, q: Array) -> tuple[Array, Array]:
+def measure_error(arm: dict[str, Any], goal: Array, q: Array) -> tuple[Array, Array]:
     """What the configuration misses the goal by (6,), and the Jacobian (6, dof); lengths over the arm's."""
     T, J = pose_and_jacobian(arm, q)
     e = np.concatenate([goal[:3, 3] - T[:3, 3], rotation_vector(goal[:3, :3] @ T[:3, :3].T)])
@@ -123,7 +123,7 @@ def refine(arm: dict[str, Any], goal: Array, q: Array, steps: int = 60) -> tuple
     """A candidate made a solution, or brought near one: Newton's method, then damped least squares."""
     best, least, at = q, np.inf, q
     for _ in range(16):
-        e, J = measure(arm, goal, at)
+        e, J = measure_error(arm, goal, at)
         size = float(np.linalg.norm(e))
         if size < least:
             best, least = at, size
@@ -139,13 +139,13 @@ def refine(arm: dict[str, Any], goal: Array, q: Array, steps: int = 60) -> tuple
 
 def descend(arm: dict[str, Any], goal: Array, q: Array, steps: int) -> tuple[Array, float]:
     """Levenberg-Marquardt (Levenberg 1944, Marquardt 1963)."""
-    e, J = measure(arm, goal, q)
+    e, J = measure_error(arm, goal, q)
     size, damping, stalls = float(np.linalg.norm(e)), 0.0, 0
     for _ in range(steps):
         if size < 1e-15 or stalls > 5:
             break
         trial = q + units(arm) * step_towards(e, J, damping)
-        e_trial, J_trial = measure(arm, goal, trial)
+        e_trial, J_trial = measure_error(arm, goal, trial)
         left = float(np.linalg.norm(e_trial))
         if left < size:
             stalls = stalls + 1 if left > 0.99 * size else 0
@@ -163,7 +163,7 @@ def wrapped(arm: dict[str, Any], q: Array) -> Array:
     return np.where(arm["slides"], q, np.pi - np.mod(np.pi - q, 2 * np.pi))
 
 
-def gap(arm: dict[str, Any], a: Array, b: Array) -> float:
+def pose_gap(arm: dict[str, Any], a: Array, b: Array) -> float:
     """The largest difference of a joint, angles the short way round, slides over the arm's length."""
     away = np.where(arm["slides"], (a - b) / arm["length"], np.mod(a - b + np.pi, 2 * np.pi) - np.pi)
     return float(np.abs(away).max())
@@ -182,9 +182,9 @@ def moves_freely(arm: dict[str, Any], goal: Array, q: Array, direction: Array) -
     return True
 
 
-def is_family(arm: dict[str, Any], goal: Array, q: Array) -> bool:
+def is_self_motion(arm: dict[str, Any], goal: Array, q: Array) -> bool:
     """Whether joints can move at q while the tip stays: the null space proposes, a stride decides."""
-    _, s, Vt = np.linalg.svd(measure(arm, goal, q)[1])
+    _, s, Vt = np.linalg.svd(measure_error(arm, goal, q)[1])
     null = list(Vt[np.concatenate([s, np.zeros(len(q) - len(s))]) < 1e-7])
     for a in range(len(null)):
         for b in range(a + 1, len(null)):
@@ -193,34 +193,36 @@ def is_family(arm: dict[str, Any], goal: Array, q: Array) -> bool:
     return any(moves_freely(arm, goal, q, direction) for direction in null[:40])
 
 
-def blur(arm: dict[str, Any], goal: Array, q: Array) -> float:
+def noise_level(arm: dict[str, Any], goal: Array, q: Array) -> float:
     """How far rounding may move a configuration along its weakest direction."""
-    e, J = measure(arm, goal, q)
+    e, J = measure_error(arm, goal, q)
     weakest = float(np.linalg.svd(J, compute_uv=False)[-1])
     return 10 * max(float(np.linalg.norm(e)), 1e-15) / max(weakest, 1e-9)
 
 
-def admit(arm: dict[str, Any], goal: Array, found: list[Array], candidate: Array, steps: int = 60) -> bool:
+def accept_candidate(
+    arm: dict[str, Any], goal: Array, found: list[Array], candidate: Array, steps: int = 60
+) -> bool:
     """Add what the candidate leads to, unless it is no solution or there already."""
     q, left = refine(arm, goal, candidate, steps)
     if not left <= REACHED:
         return False
-    near = blur(arm, goal, q)
+    near = noise_level(arm, goal, q)
     for other in found:
-        away = gap(arm, other, q)
+        away = pose_gap(arm, other, q)
         if away < SAME:
             return False
-        if away < near or (away < 1e-3 and away < blur(arm, goal, other)):
+        if away < near or (away < 1e-3 and away < noise_level(arm, goal, other)):
             halfway = other + np.where(arm["slides"], q - other, wrapped(arm, q - other)) / 2
-            if np.linalg.norm(measure(arm, goal, halfway)[0]) < 2e-14:
+            if np.linalg.norm(measure_error(arm, goal, halfway)[0]) < 2e-14:
                 return False
     found.append(wrapped(arm, q))
     return True
 
 
-def answer(arm: dict[str, Any], goal: Array, found: list[Array], complete: bool = True) -> Solutions:
+def make_answer(arm: dict[str, Any], goal: Array, found: list[Array], complete: bool = True) -> Solutions:
     """The solutions with what is to be said of them."""
     q = np.array(found).reshape(len(found), len(arm["axes"]))
-    family = np.array([is_family(arm, goal, row) for row in q], dtype=bool)
-    status = "singular" if family.any() else "exact" if len(q) else "unreachable"
-    return Solutions(q, status, family, complete)
+    self_motion = np.array([is_self_motion(arm, goal, row) for row in q], dtype=bool)
+    status = "singular" if self_motion.any() else "exact" if len(q) else "unreachable"
+    return Solutions(q, status, self_motion, complete)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from cspace.export.python.base import Array, Solutions, admit, answer, gap, inverse
-from cspace.export.python.steps import Care
+from cspace.export.python.base import Array, Solutions, accept_candidate, inverse, make_answer, pose_gap
+from cspace.export.python.trig_steps import Care
 
 __all__ = ["solve_closed"]
 
@@ -37,9 +37,9 @@ def candidates(arm: dict[str, Any], T: Array, care: Care, stray: float) -> list[
     return found
 
 
-def idle_turns(plan: dict[str, Any], idle: Array) -> list[complex]:
+def unconstrained_turns(plan: dict[str, Any], unconstrained: Array) -> list[complex]:
     """What the turns of the form are where the joints have the values that they take when free."""
-    t = [plan["form"]["offset"][i] + plan["sign"][i] * (idle[j] if j >= 0 else 0.0)
+    t = [plan["form"]["offset"][i] + plan["sign"][i] * (unconstrained[j] if j >= 0 else 0.0)
          for i, j in enumerate(plan["joint"])]  # fmt: skip
     if plan["family"] == 2:
         t[3] += t[1] + t[2]  # three parallel axes leave their sum free
@@ -50,15 +50,15 @@ def sweep(arm: dict[str, Any], T: Array, care: Care, found: list[Array]) -> None
     """Starts with each joint of the form turned around: where it is free, solutions lie along a family."""
     plain = candidates(arm, T, care, np.pi)
     for i in range(6):
-        turned = replace(care, idle=list(care.idle))
-        turned.idle[i] *= complex(np.exp(2.4j))
+        turned = replace(care, unconstrained=list(care.unconstrained))
+        turned.unconstrained[i] *= complex(np.exp(2.4j))
         moved = candidates(arm, T, turned, np.pi)
         if len(moved) == len(plain) and np.allclose(moved, plain, atol=1e-3):
             continue
         for k in range(1, 16):
-            turned.idle[i] = care.idle[i] * complex(np.exp(2j * np.pi * k / 16))
+            turned.unconstrained[i] = care.unconstrained[i] * complex(np.exp(2j * np.pi * k / 16))
             for q in candidates(arm, T, turned, np.pi):
-                admit(arm, T, found, q, 20)
+                accept_candidate(arm, T, found, q, 20)
 
 
 def turn_free_wrist(arm: dict[str, Any], T: Array, care: Care, found: list[Array]) -> None:
@@ -68,30 +68,30 @@ def turn_free_wrist(arm: dict[str, Any], T: Array, care: Care, found: list[Array
         here = replace(care, shoulder=shoulder)
         known = len(found)
         for q in candidates(arm, T, here, 1e-3):
-            if any(gap(arm, q, other) < 1e-6 for other in found):
+            if any(pose_gap(arm, q, other) < 1e-6 for other in found):
                 known = -1
         for turn in arm["free_turns"](arm["plan"], goal_in_form(arm["plan"], T), here) if known >= 0 else []:
-            here.idle = [*care.idle[:3], turn, *care.idle[4:]]
-            if any([admit(arm, T, found, q) for q in candidates(arm, T, here, 1e-3)]):
+            here.unconstrained = [*care.unconstrained[:3], turn, *care.unconstrained[4:]]
+            if any([accept_candidate(arm, T, found, q) for q in candidates(arm, T, here, 1e-3)]):
                 break
 
 
-def solve_closed(arm: dict[str, Any], T: Array, idle: Array) -> Solutions:
+def solve_closed(arm: dict[str, Any], T: Array, unconstrained: Array) -> Solutions:
     """Every branch, refined on the true arm; joints that the pose leaves free at their idle values."""
     plan = arm["plan"]
     slack = 4 * plan["form"]["deviation"]
-    care = Care(max(1e-10, slack), 0.0, max(1e-12, slack), idle_turns(plan, idle))
+    care = Care(max(1e-10, slack), 0.0, max(1e-12, slack), unconstrained_turns(plan, unconstrained))
     stray = 0.1 if plan["idealised"] else 1e-3
     found: list[Array] = []
     for spread in (0.0, slack) if plan["idealised"] else (0.0,):
         care.spread = spread
         for q in candidates(arm, T, care, stray):
-            admit(arm, T, found, q)
+            accept_candidate(arm, T, found, q)
     if plan["idealised"] and plan["virtual_joints"] and not found:
         for q in candidates(arm, T, replace(care, band=float(np.sqrt(care.band))), np.pi):
-            admit(arm, T, found, q)
+            accept_candidate(arm, T, found, q)
     if plan["idealised"] or plan["virtual_joints"]:
         sweep(arm, T, care, found)
     if "free_turns" in arm:
         turn_free_wrist(arm, T, care, found)
-    return answer(arm, T, found)
+    return make_answer(arm, T, found)

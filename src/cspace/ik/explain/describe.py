@@ -9,6 +9,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import NoClosedFormError, arm_length, common_point, explain_missing_form
+from cspace.ik.explain.few_joints import few_joint_steps, few_joint_values
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form
 from cspace.ik.explain.general import Loop
@@ -16,8 +17,7 @@ from cspace.ik.explain.parallel import first_parallel_steps, middle_parallel_ste
 from cspace.ik.explain.placed_wrist import orientation_steps, placed_wrist_steps
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
-from cspace.ik.explain.short import short_steps, short_values
-from cspace.ik.explain.survey import relations, still_directions, still_points
+from cspace.ik.explain.survey import invariant_directions, invariant_points, relations
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
 from cspace.ik.geometry import FIRST_THREE
 from cspace.ik.prepare import prepare
@@ -48,8 +48,8 @@ def survey_of(robot: Any) -> dict[str, Any]:
         "joints": tuple(chain.joint_names),
         "length": length,
         "relations": relations(chain, length),
-        "still_points": still_points(chain, length),
-        "still_directions": still_directions(chain, length),
+        "invariant_points": invariant_points(chain, length),
+        "invariant_directions": invariant_directions(chain, length),
     }
 
 
@@ -68,7 +68,7 @@ def settled_plan(robot: Any, common: dict[str, Any], numbers: tuple[int, ...] | 
         return form_plan(Form.of(seen, inside["form"]), seen, common, numbers)
     if "loop" in inside:
         return general_plan(Loop.of(inside["loop"]), common)
-    return short_plan(chain, common)
+    return few_joint_plan(chain, common)
 
 
 def refused_plan(common: dict[str, Any], reason: str) -> IkPlan:
@@ -169,8 +169,8 @@ def general_plan(loop: Loop, common: dict[str, Any]) -> IkPlan:
         return wrist_plan(loop, common, notes)
     if loop.slides == 3:
         return slides_plan(loop, common, notes)
-    if loop.neighbours or not loop.order:
-        return neighbour_plan(loop, common, notes)
+    if loop.perturbed_arms or not loop.order:
+        return perturbed_plan(loop, common, notes)
     steps, count = loop.steps(), len(loop.order)
     notes += [
         loop_note(loop),
@@ -201,13 +201,13 @@ def loop_note(loop: Loop) -> str:
     )
 
 
-def neighbour_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
+def perturbed_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
     """An arm that is solved through arms beside it."""
     most = 8 if loop.slides == 2 else 16
     step = Step(
         "The loop",
         most,
-        "neighbours",
+        "perturbed_arms",
         "Every solution of a neighbour leads to one of the arm by Newton's method; what one neighbour "
         "loses beside a fold the other one keeps.",
         (loop.chain_equation(),),
@@ -284,9 +284,9 @@ def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
     )
 
 
-def short_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
+def few_joint_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
     """Arms of up to three joints."""
-    steps = short_steps(chain)
+    steps = few_joint_steps(chain)
     turning = chain.joint_types.count("R")
     notes = [
         "$p$ is where the tip has to be, in the base; $t_i$ is the angle of a turning joint, $q_i$ the "
@@ -305,11 +305,11 @@ def short_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
         )
 
     def values(q: Array, T: Array) -> dict[str, Any]:
-        return short_values(chain, q, T)
+        return few_joint_values(chain, q, T)
 
     return IkPlan(
         **common,
-        family="short arm",
+        family="fewer than six joints",
         tables={"Joints at zero": Screws.of(chain).table(common["joints"])},
         summary=f"an arm of {len(chain.joint_types)} joint{'s' if len(chain.joint_types) > 1 else ''} "
         f"({chain.joint_types}), solved directly.",

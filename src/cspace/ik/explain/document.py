@@ -81,11 +81,11 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
         ]
         head = ("axes", "joints", "angle [°]", "distance [m]", "relation")
         out += [page.Heading("Neighbouring axes"), page.Rows(head, rows)]
-    for point in plan.still_points:
+    for point in plan.invariant_points:
         meet = f"meet in a point, ({vector(point.place)}) m at zero{missed(point.miss, 'm')}"
         words = f"Axes {listed(point.joints)} {meet}: their joints leave it where it is."
         out.append(page.Paragraph(words))
-    for each in plan.still_directions:
+    for each in plan.invariant_directions:
         parallel = f"are parallel to ({vector(each.direction)}) at zero{missed(each.miss, 'rad')}"
         still = "their joints change neither heights along it nor angles with it."
         out.append(page.Paragraph(f"Axes {listed(each.joints)} {parallel}: {still}"))
@@ -184,18 +184,18 @@ def document(plan: Findings) -> dict[str, Any]:
         ],
         "points": [
             {"place": list(map(float, each.place)), "joints": list(each.joints), "miss": each.miss}
-            for each in plan.still_points
+            for each in plan.invariant_points
         ],
         "directions": [
             {"direction": list(map(float, each.direction)), "joints": list(each.joints), "miss": each.miss}
-            for each in plan.still_directions
+            for each in plan.invariant_directions
         ],
         "notes": [page.plain_sentence(note) for note in plan.notes],
         "constants": dict(plan.constants),
         "matrices": {name: np.asarray(T).tolist() for name, T in plan.matrices.items()},
         "steps": [step_document(plan, step) for step in plan.steps],
         "calls": [page.plain_sentence(call) for call in plan.calls],
-        "held": list(plan.held),
+        "locked": list(plan.locked),
         "counted": plan.counted.strip(),
         "other_ways": {
             name: [step_document(plan, step) for step in steps] for name, steps in plan.other_ways.items()

@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.ik.explain import page
-from cspace.ik.explain.survey import Relation, StillDirection, StillPoint
+from cspace.ik.explain.survey import InvariantDirection, InvariantPoint, Relation
 from cspace.math import Equation, MatrixEquation
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
@@ -39,12 +39,14 @@ class Step:
 class Findings:
     """How `robot.ik` solves an arm, as data; false if it does not.
 
-    robot: its name; joints: their names. family: the geometry that is used, "general", "short arm" or "none".
+    robot: its name; joints: their names. family: the geometry that is used, "general", "fewer than six
+    joints" or "none".
     summary: the method in a sentence. branches: how many solutions a goal has at most. reason: why nothing
-    solves the arm, else "". relations, still_points, still_directions: the geometry found. notes: sentences
-    about signs, frames and goals. tables: named rows of numbers that the equations refer to. matrices: named
-    displacements (4, 4). constants: numbers of the symbols that belong to the arm. steps: what is done. held:
-    the joints that are parameters. counted: whose solutions `branches` counts, where that needs saying.
+    solves the arm, else "". relations, invariant_points, invariant_directions: the geometry found. notes:
+    sentences about signs, frames and goals. tables: named rows of numbers that the equations refer to.
+    matrices: named displacements (4, 4). constants: numbers of the symbols that belong to the arm. steps:
+    what is done. held: the joints that are parameters. counted: whose solutions `branches` counts, where that
+    needs saying.
     calls: how the functions that
     ask for solutions use the steps. other_ways: further ways to a solution, by name, each with its steps.
     """
@@ -56,14 +58,14 @@ class Findings:
     branches: int
     reason: str = ""
     relations: tuple[Relation, ...] = ()
-    still_points: tuple[StillPoint, ...] = ()
-    still_directions: tuple[StillDirection, ...] = ()
+    invariant_points: tuple[InvariantPoint, ...] = ()
+    invariant_directions: tuple[InvariantDirection, ...] = ()
     notes: tuple[str, ...] = ()
     tables: Mapping[str, page.Rows] = field(default_factory=dict)
     matrices: Mapping[str, Array] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()
-    held: tuple[str, ...] = ()
+    locked: tuple[str, ...] = ()
     counted: str = ""
     calls: tuple[str, ...] = ()
     other_ways: Mapping[str, tuple[Step, ...]] = field(default_factory=dict)

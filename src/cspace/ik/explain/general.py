@@ -35,7 +35,7 @@ class Loop:
     last: Array
     length: float
     order: tuple[tuple[int, tuple[int, ...], bool], ...]
-    neighbours: bool
+    perturbed_arms: bool
     wrist: bool | None
 
     @classmethod
@@ -46,7 +46,7 @@ class Loop:
         kinds = "".join("P" if slides else "R" for slides in loop["prismatic"])
         six = Screws(kinds, np.array(loop["axes"]), np.array(loop["points"]), np.array(loop["tip"]))
         ends = np.array(loop["first"]), np.array(loop["last"])
-        return cls(six, links, *ends, loop["length"], order, loop["neighbours"], loop.get("wrist"))
+        return cls(six, links, *ends, loop["length"], order, loop["perturbed_arms"], loop.get("wrist"))
 
     @property
     def slides(self) -> int:
@@ -81,7 +81,7 @@ class Loop:
                     "tip to base" if backwards else "base to tip",
                 )
             )
-        return Rows(("asked", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows)
+        return Rows(("order", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows)
 
     def steps(self) -> list[Step]:
         """The steps of the formulation that is asked first."""

@@ -7,9 +7,9 @@ from __future__ import annotations
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.ik.explain.few_joints import few_joint_steps
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import Screws, Vector, dotted, numbers, symbols, turned
-from cspace.ik.explain.short import short_steps
 from cspace.math import Equation, MatrixEquation, TrigPolynomial
 
 __all__ = ["orientation_steps", "placed_wrist_steps"]
@@ -33,7 +33,7 @@ def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
     T_zero = np.eye(4)
     T_zero[:3, 3] = centre
     first = Screws(arm.joint_types[:3], arm.axes[:3], arm.points[:3], T_zero)
-    place = short_steps(first, symbols("w"))
+    place = few_joint_steps(first, symbols("w"))
     where = Step("$w$", 1, "", "The goal fixes where the centre of the wrist has to be.", wanted)
     return [where, *place, *three_turns(arm, (3, 4, 5), before=(0, 1, 2))]
 

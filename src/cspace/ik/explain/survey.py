@@ -12,7 +12,14 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import angle_between, common_point
 
-__all__ = ["Relation", "StillDirection", "StillPoint", "relations", "still_directions", "still_points"]
+__all__ = [
+    "InvariantDirection",
+    "InvariantPoint",
+    "Relation",
+    "invariant_directions",
+    "invariant_points",
+    "relations",
+]
 
 
 @dataclass(frozen=True)
@@ -40,7 +47,7 @@ class Relation:
 
 
 @dataclass(frozen=True, eq=False)
-class StillPoint:
+class InvariantPoint:
     """A point that some joints leave alone: their axes meet in it. place: (3,) in the base at zero [m].
 
     joints: their numbers from 1. miss: how far the axes pass it at most [m].
@@ -52,7 +59,7 @@ class StillPoint:
 
 
 @dataclass(frozen=True, eq=False)
-class StillDirection:
+class InvariantDirection:
     """A direction that some joints leave alone: their axes are parallel to it. direction: (3,) at zero.
 
     joints: their numbers from 1. miss: the largest angle between an axis and it [rad].
@@ -86,7 +93,7 @@ def relations(chain: Any, length: float) -> tuple[Relation, ...]:
     return tuple(out)
 
 
-def still_points(chain: Any, length: float) -> tuple[StillPoint, ...]:
+def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
     """Where neighbouring axes meet: three in a point, or two that no such three hold."""
     pairs = [each.joints for each in relations(chain, length) if each.meet and not each.parallel]
     threes = [
@@ -101,11 +108,11 @@ def still_points(chain: Any, length: float) -> tuple[StillPoint, ...]:
     for joints in groups:
         some = slice(joints[0] - 1, joints[-1])
         place, miss = common_point(chain.axes[some], chain.points[some])
-        out.append(StillPoint(place, joints, miss))
+        out.append(InvariantPoint(place, joints, miss))
     return tuple(out)
 
 
-def still_directions(chain: Any, length: float) -> tuple[StillDirection, ...]:
+def invariant_directions(chain: Any, length: float) -> tuple[InvariantDirection, ...]:
     """Runs of neighbouring parallel axes of turning joints."""
     runs: list[list[int]] = []
     for each in relations(chain, length):
@@ -120,5 +127,5 @@ def still_directions(chain: Any, length: float) -> tuple[StillDirection, ...]:
     for run in runs:
         n = chain.axes[run[0] - 1]
         miss = max(angle_between(n, chain.axes[joint - 1]) for joint in run)
-        out.append(StillDirection(np.asarray(n), tuple(run), miss))
+        out.append(InvariantDirection(np.asarray(n), tuple(run), miss))
     return tuple(out)

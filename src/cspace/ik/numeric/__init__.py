@@ -1,8 +1,8 @@
 """Numeric differential kinematics: descents to a pose, velocities, several tasks at once; for every robot."""
 
 from cspace.ik.numeric.descend import METHODS, ik_many_starts, ik_numeric
-from cspace.ik.numeric.rate import resolved_rate
-from cspace.ik.numeric.serve import TaskSolution, ik_tasks, task_velocity
+from cspace.ik.numeric.multi_task import TaskSolution, ik_tasks, task_velocity
+from cspace.ik.numeric.resolved_rate import resolved_rate
 from cspace.ik.numeric.solution import NumericSolution, SampledSolutions
 from cspace.ik.numeric.tasks import CenterOfMassTask, DirectionTask, PoseTask, PositionTask, PostureTask
 

@@ -10,7 +10,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, as_generator
 from cspace.errors import InputError
-from cspace.ik.numeric.question import ask, further_starts, middle
+from cspace.ik.numeric.problem import ask, further_starts, middle
 from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
 from cspace.kinematics.batch import choice, thread_count, whole_number
 from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE

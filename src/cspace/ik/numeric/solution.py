@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.ik.windings import nearest_winding
+from cspace.ik.wrapping import nearest_winding
 
 __all__ = ["NumericSolution", "SampledSolutions"]
 
@@ -93,14 +93,16 @@ class NumericSolution:
         tried = "one start" if self._starts == 1 else f"{self._starts} starts"
         how = "a local minimum" if self._whole(4) == STALLED else "where the iterations ran out"
         text = f"not reached from {tried}: the best of them ends {left} away, at {how}"
-        held = self._at_limits()
-        return text + (f", with {', '.join(held)} at a limit" if held else "") + "; this proves nothing"
+        at_limit = self._at_limits()
+        return (
+            text + (f", with {', '.join(at_limit)} at a limit" if at_limit else "") + "; this proves nothing"
+        )
 
     def _at_limits(self) -> list[str]:
         if not self._limits.size:
             return []
         at = (self.q <= self._limits[0]) | (self.q >= self._limits[1])
-        return [name for name, held in zip(self.robot.joint_names, at, strict=True) if held]
+        return [name for name, at_limit in zip(self.robot.joint_names, at, strict=True) if at_limit]
 
     def __repr__(self) -> str:
         return f"<NumericSolution of {self.robot.name}: {self.reason}>"

@@ -9,7 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.ik.numeric.question import positive
+from cspace.ik.numeric.problem import positive
 from cspace.spatial.checks import PoseLike, one_pose
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.errors import attribute_error
 from cspace.ik.branches import branch_labels
 
 __all__ = ["Branch", "Track"]
@@ -21,24 +22,29 @@ class Branch:
 
     q (m, dof) [rad, m]: the configurations at the m poses it reaches, each angle continuous from pose to
     pose. end: where it ends, 12.25 being a quarter of the way from pose 12 to pose 13 and n − 1 the last.
-    why: "end", "limit", "singularity", "jump" or "unreachable"; joint: the one that ended it, for a limit and
-    a jump. last (dof,): the configuration there. singular_value: the least one of the Jacobian there, lengths
-    over the arm's. cost: of q. Truthy if it reaches every pose.
+    cause: "end", "limit", "singularity", "jump" or "unreachable"; joint: the one that ended it, for a limit
+    and a jump. last (dof,): the configuration there. singular_value: the least one of the Jacobian there,
+    lengths over the arm's. cost: of q. Truthy if it reaches every pose.
     """
 
     robot: Any
     poses: Array
     q: Array
     end: float
-    why: str
+    cause: str
     joint: str | None
     last: Array
     singular_value: float
     cost: float
     number: int = -1
 
+    if not TYPE_CHECKING:  # which reports such names itself
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
+
     def __bool__(self) -> bool:
-        return self.why == "end"
+        return self.cause == "end"
 
     def __len__(self) -> int:
         return len(self.q)
@@ -58,11 +64,11 @@ class Branch:
         return f"ends {where(self.end, len(self.q))}: {self._cause()}"
 
     def _cause(self) -> str:
-        if self.why == "limit":
+        if self.cause == "limit":
             return f"{self.joint} would leave its limits"
-        if self.why == "unreachable":
+        if self.cause == "unreachable":
             return "no configuration reaches what follows"
-        if self.why == "singularity":
+        if self.cause == "singularity":
             joints = self.robot.singularity(self.last).joints
             lost = f" ({', '.join(joints)} are dependent)" if len(joints) < len(self.last) else ""
             return f"the arm is singular{lost} and cannot go on"
@@ -93,6 +99,11 @@ class Track:
         self.complete, self._note = complete, note
         self.best = min(branches, key=_order) if branches else None
 
+    if not TYPE_CHECKING:  # which reports such names itself
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
+
     def __bool__(self) -> bool:
         return bool(self.best)
 
@@ -121,9 +132,9 @@ class Track:
         return np.array([branch.end for branch in self.branches])
 
     @property
-    def why(self) -> tuple[str, ...]:
+    def cause(self) -> tuple[str, ...]:
         """Why each branch ends: "end", "limit", "singularity", "jump" or "unreachable"."""
-        return tuple(branch.why for branch in self.branches)
+        return tuple(branch.cause for branch in self.branches)
 
     @property
     def reason(self) -> str:

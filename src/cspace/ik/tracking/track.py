@@ -13,11 +13,11 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.numeric import ik_numeric
-from cspace.ik.numeric.question import Question, ask, middle
+from cspace.ik.numeric.problem import Question, ask, middle
 from cspace.ik.solutions import pose_errors
 from cspace.ik.solve import inverse_kinematics
 from cspace.ik.tracking.result import Branch, Track
-from cspace.ik.windings import turning
+from cspace.ik.wrapping import turning
 from cspace.kinematics.batch import choice
 from cspace.spatial import interpolate_decoupled
 from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
@@ -70,21 +70,21 @@ def track(
     """
     question = ask(robot, poses, None, None, None, limits, NUMERIC_TOLERANCE)
     T = path_of(question.goals)
-    price = cost_of(robot, cost)
+    cost_function = cost_of(robot, cost)
     bounds = np.stack([*open_bounds(robot, question), strides(robot, max_step)])
     starts, numbers, complete, note = starts_of(robot, question, T, start)
-    whole_turns = start is None and not to_spare(robot, question)
+    whole_turns = start is None and not is_redundant(robot, question)
     b, n = len(starts), len(robot.joint_names)
     q, last, info = np.empty((b, len(T), n)), np.empty((b, n)), np.empty((b, 5))
     _core._ik_track(robot, question.frame, T, starts, bounds, whole_turns, q, last, info)
     branches = []
     for k, (reached, end, fate, joint, sigma) in enumerate(info.tolist()):
-        rows, why = q[k, : int(reached)], FATES[int(fate)]
-        if why == "singularity" and len(rows) and is_out_of_reach(robot, question, T, end):
-            why = "unreachable"
+        rows, cause = q[k, : int(reached)], FATES[int(fate)]
+        if cause == "singularity" and len(rows) and is_out_of_reach(robot, question, T, end):
+            cause = "unreachable"
         who = robot.joint_names[int(joint)] if joint >= 0 else None
-        paid = price(rows) if len(rows) else np.inf
-        branches.append(Branch(robot, T, rows, end, why, who, last[k], sigma, paid, numbers[k]))
+        paid = cost_function(rows) if len(rows) else np.inf
+        branches.append(Branch(robot, T, rows, end, cause, who, last[k], sigma, paid, numbers[k]))
     return Track(robot, T, tuple(branches), complete, note)
 
 
@@ -125,7 +125,7 @@ def strides(robot: Any, max_step: Any) -> Array:
     return np.asarray(steps)
 
 
-def to_spare(robot: Any, question: Question) -> bool:
+def is_redundant(robot: Any, question: Question) -> bool:
     """Whether more than six joints move the tip."""
     return bool(_core._ik_moving(robot, question.frame) > SIX)
 
@@ -138,19 +138,19 @@ def starts_of(robot: Any, question: Question, T: Array, start: Any) -> Starts:
         if seed.ndim != 1:
             raise InputError(f"start has shape {seed.shape}, expected ({n},): one configuration")
         return nearest_start(robot, question, first, seed)
-    if to_spare(robot, question):
+    if is_redundant(robot, question):
         q, numbers, complete, note = nearest_start(robot, question, first, middle(robot, question.limits))
         return q, numbers, complete, note or "; it begins nearest the middle of the limits"
     s: Any = inverse_kinematics(robot, first)
     note = "" if s else f"the first pose is not reached: {s.reason}"
-    return np.ascontiguousarray(s.q), s._branch_numbers, s.complete and not s.families, note
+    return np.ascontiguousarray(s.q), s._branch_numbers, s.complete and not s.self_motions, note
 
 
 def nearest_start(robot: Any, question: Question, first: Array, seed: Array) -> Starts:
     """The solution of the first pose nearest to a configuration: itself, if it is one."""
     if pose_errors(robot, seed, first) <= NUMERIC_TOLERANCE:
         return np.ascontiguousarray(seed)[None], (-1,), False, ""
-    if to_spare(robot, question):  # near= looks past limits, a descent keeps them
+    if is_redundant(robot, question):  # near= looks past limits, a descent keeps them
         d = ik_numeric(robot, first, seed, rest=seed, limits=limits_of(robot, question))
         if d:
             return np.ascontiguousarray(d.q)[None], (-1,), False, ""
@@ -172,7 +172,7 @@ def limits_of(robot: Any, question: Question) -> Any:
 
 def is_out_of_reach(robot: Any, question: Question, T: Array, end: float) -> bool:
     """Whether nothing reaches the path just beyond an end."""
-    if to_spare(robot, question):
+    if is_redundant(robot, question):
         return False
     k = min(int(end), len(T) - 2)
     beyond = interpolate_decoupled(T[k], T[k + 1], min(end - k + TRACK_BEYOND, 1.0))
@@ -194,7 +194,7 @@ def answer_of(cost: Callable[[Array], Any], q: Array) -> Any:
         ) from error
 
 
-def price_of(value: Any) -> float:
+def number_of_cost(value: Any) -> float:
     """What a caller's function of the configurations answers, as one number; inf rules a branch out."""
     number = as_floats(value, "the answer of cost=", finite=False)
     if number.ndim or np.isnan(number):
@@ -206,7 +206,7 @@ def price_of(value: Any) -> float:
 def cost_of(robot: Any, cost: Cost) -> Callable[[Array], float]:
     """The price of a branch q (m, dof)."""
     if callable(cost):
-        return lambda q: price_of(answer_of(cost, q))
+        return lambda q: number_of_cost(answer_of(cost, q))
     word = choice(cost, "cost", COSTS)
     if word == "length":
         return lambda q: float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())

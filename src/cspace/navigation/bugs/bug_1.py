@@ -12,7 +12,7 @@ from typing import Any
 
 from cspace.navigation.bugs.walk import BUG_1, hand_of, reason, search, traced
 from cspace.navigation.route import Route
-from cspace.navigation.trace import Trace
+from cspace.search.trace import Trace
 
 __all__ = ["plan", "reason", "trace"]
 
@@ -22,7 +22,7 @@ def plan(world: Any, start: Any, goal: Any, *, hand: str = "left") -> Route:
 
     hand: the one it keeps on the wall, "left" or "right".
 
-    route.path is the walk even where no way exists; route.evidence is a BugEvidence; route.price counts
+    route.path is the walk even where no way exists; route.evidence is a BugEvidence; route.stats counts
     the pieces of wall and the straight lines followed.
     """
     return search(world, start, goal, "bug_1", {"hand": hand}, BUG_1, hand_of(hand))

@@ -15,7 +15,7 @@ from cspace.arrays import as_floats
 from cspace.errors import InputError
 from cspace.navigation.bugs.walk import EITHER, TANGENT_BUG, hand_of, reason, search, traced
 from cspace.navigation.route import Route
-from cspace.navigation.trace import Trace
+from cspace.search.trace import Trace
 
 __all__ = ["plan", "reason", "trace"]
 

@@ -28,8 +28,8 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.navigation.route import Route
 from cspace.navigation.sampling.problem import seed_of
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 from cspace.tolerances import SCAN_NOISE
 
 __all__ = ["VoronoiBugEvidence", "plan", "reason", "trace"]
@@ -72,7 +72,7 @@ def plan(
     rng: seed, Generator or None, drawn from where there is noise; `route.options` keeps the seed.
 
     The robot keeps just within its range from walls that it follows. route.path is the walk even where no way
-    exists; route.evidence is a VoronoiBugEvidence; route.price counts meet points and branches. Raises
+    exists; route.evidence is a VoronoiBugEvidence; route.stats counts meet points and branches. Raises
     InputError on a range that is not positive and on noise that is negative or too much. The status is
     "undetermined" where rounding hides how branches hang together, and with noise where the goal has not been
     seen.

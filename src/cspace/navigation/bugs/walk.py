@@ -14,8 +14,8 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import suggest
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route

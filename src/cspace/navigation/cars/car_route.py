@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.navigation.curves import Curve
-from cspace.navigation.route import Price
+from cspace.navigation.route import Stats
 
 __all__ = ["CarRoute"]
 
@@ -30,7 +30,7 @@ class CarRoute:
     """The answer of hybrid A*; truthy if a way was found.
 
     curve: the way as segments, None without one. start, goal (3,): x, y [m] and theta [rad]. status: "found",
-    "unreachable" (proven) or "undetermined". price: poses settled, pieces tried, seconds.
+    "unreachable" (proven) or "undetermined". stats: poses settled, pieces tried, seconds.
     """
 
     grid: Any
@@ -39,8 +39,8 @@ class CarRoute:
     goal: Array
     curve: Curve | None
     status: str
-    price: Price
-    _why: int
+    stats: Stats
+    _cause: int
 
     def __bool__(self) -> bool:
         return self.curve is not None
@@ -66,7 +66,7 @@ class CarRoute:
     def reason(self) -> str:
         """The verdict in a sentence."""
         if self.curve is None:
-            return REASONS[self._why]
+            return REASONS[self._cause]
         k = len(self.curve.cusps)
         gears = f"{k} change{'' if k == 1 else 's'} of direction" if k else "one direction"
         return f"found, {self.length:.6g} m in {gears}"

@@ -12,7 +12,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.navigation.cars.car_route import CarRoute
 from cspace.navigation.curves import Curve
 from cspace.navigation.following.vehicles import Car
-from cspace.navigation.route import STATUSES, Price
+from cspace.navigation.route import STATUSES, Stats
 from cspace.tolerances import LARGEST_NUMBER
 
 __all__ = ["hybrid_a_star"]
@@ -70,9 +70,9 @@ def hybrid_a_star(
     settings = np.array([turning, *lattice, *ends])
     body = np.array(car._footprint)
     a, b = (clear_pose(grid, body, pose, name) for pose, name in ((start, "start"), (goal, "goal")))
-    status, why, pieces, *price = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)
+    status, cause, pieces, *stats = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)
     curve = Curve(a, b, turning, tuple(pieces)) if status == 0 else None
-    return CarRoute(grid, car, a, b, curve, STATUSES[status], Price(*price), why)
+    return CarRoute(grid, car, a, b, curve, STATUSES[status], Stats(*stats), cause)
 
 
 def number(value: Any, name: str, least: float) -> float:

@@ -18,9 +18,9 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
 from cspace.navigation.worlds import need_polygons
+from cspace.search.trace import Trace
 from cspace.tolerances import QUADTREE_CELLS, QUADTREE_DEPTH, UNIFORM_DEPTH
 
 if TYPE_CHECKING:

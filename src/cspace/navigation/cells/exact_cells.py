@@ -18,8 +18,8 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 
 if TYPE_CHECKING:
     from cspace.maps import PolygonWorld

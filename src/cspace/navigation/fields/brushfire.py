@@ -22,7 +22,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputTypeError, suggest
 from cspace.navigation.grid.search import checked_ends
-from cspace.navigation.trace import Trace
+from cspace.search.trace import Trace
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route

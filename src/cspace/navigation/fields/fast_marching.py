@@ -17,8 +17,8 @@ from cspace.arrays import Array
 from cspace.errors import InputTypeError
 from cspace.navigation.fields.potential_a_star import clearance_field, number_of
 from cspace.navigation.grid.search import checked_ends
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route
@@ -62,7 +62,7 @@ def arrival_times(grid: Any, goal: ArrayLike, *, slow_within: float = 0.0) -> Ar
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
     if not route:
-        cells = counted(route.price.nodes, "cell")
+        cells = counted(route.stats.nodes, "cell")
         return f"no way leads to the goal: its front has come to {cells} and no farther"
     return f"went down the times of a front that takes {route.evidence['time']:.6g} m to the start"
 

@@ -21,9 +21,9 @@ from cspace.arrays import Array
 from cspace.errors import InputTypeError
 from cspace.navigation.fields.potential_a_star import clearance_field
 from cspace.navigation.grid.search import checked_ends
-from cspace.navigation.route import Price, new_route
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.route import Stats, new_route
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_RESIDUAL
 
 if TYPE_CHECKING:
@@ -62,9 +62,9 @@ def plan(world: Any, start: Any, goal: Any) -> Route:
     ends = checked_ends(world, start, goal)
     began = time.perf_counter()
     if _core._walls_divide(world, *ends):
-        price = Price(0, 0, time.perf_counter() - began)
+        stats = Stats(0, 0, time.perf_counter() - began)
         return new_route(
-            world, "harmonic", {}, ends, "unreachable", np.empty((0, 2)), np.inf, price, UNSOLVED
+            world, "harmonic", {}, ends, "unreachable", np.empty((0, 2)), np.inf, stats, UNSOLVED
         )
     field = _field(world, ends[1])
     seconds = time.perf_counter() - began
@@ -94,7 +94,7 @@ def reason(route: Route) -> str:
     if evidence == UNSOLVED:
         return "no way leads to the goal: walls divide it from the start, as is known without the potential"
     if route.status == "unreachable":
-        cells = counted(route.price.nodes, "cell")
+        cells = counted(route.stats.nodes, "cell")
         return f"no way leads to the goal: the start is not among the {cells} connected with it"
     solved = f"solved to a share of {evidence.residual:.2g} in {counted(evidence.cycles, 'cycle')}"
     if not route:

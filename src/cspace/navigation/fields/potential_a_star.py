@@ -23,7 +23,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.grid.search import CORNERS, checked_ends
 from cspace.navigation.grid.search import reason as reason
-from cspace.navigation.trace import Trace
+from cspace.search.trace import Trace
 
 if TYPE_CHECKING:
     from cspace.navigation.route import Route

@@ -18,8 +18,8 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import PolygonWorld
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 from cspace.tolerances import DESCENT_LOOKS, LEAST_REACH
 
 if TYPE_CHECKING:

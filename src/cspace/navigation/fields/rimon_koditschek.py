@@ -22,9 +22,9 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.maps import PolygonWorld
-from cspace.navigation.route import Price, new_route
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.route import Stats, new_route
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 from cspace.tolerances import FARTHEST_POINT, NAVIGATION_SQUARES, NAVIGATION_STEPS, ON_WALL
 
 if TYPE_CHECKING:
@@ -145,15 +145,15 @@ def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Ro
     function, fault = _kept(world, ends[1], power)
     seconds = time.perf_counter() - began
     if function is None:
-        price, evidence = Price(0, 0, seconds), NavigationEvidence(None, 0, fault)
+        stats, evidence = Stats(0, 0, seconds), NavigationEvidence(None, 0, fault)
         if np.array_equal(*ends):
             return new_route(
-                world, "rimon_koditschek", options, ends, "found", ends[0][None], 0.0, price, evidence
+                world, "rimon_koditschek", options, ends, "found", ends[0][None], 0.0, stats, evidence
             )
         apart = not set(world._core.components_at(*ends[0])) & set(world._core.components_at(*ends[1]))
         status = "unreachable" if apart else "undetermined"
         return new_route(
-            world, "rimon_koditschek", options, ends, status, np.empty((0, 2)), np.inf, price, evidence
+            world, "rimon_koditschek", options, ends, status, np.empty((0, 2)), np.inf, stats, evidence
         )
     options["kappa"] = function.kappa
     made: Route = function._core.route(

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from cspace.navigation.grid.search import BEST_FIRST, Settings, over_costs, reason, search, traced
 from cspace.navigation.route import Route
-from cspace.navigation.trace import Trace
+from cspace.search.trace import Trace
 
 __all__ = ["plan", "reason", "trace"]
 

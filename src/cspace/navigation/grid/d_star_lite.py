@@ -16,9 +16,9 @@ from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid
 from cspace.maps.occupancy_grid import outside
 from cspace.navigation.grid.search import METRICS, WORDS, checked_ends, metric_of
-from cspace.navigation.route import STATUSES, Price, Route, new_route
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.route import STATUSES, Route, Stats, new_route
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 
 __all__ = ["DStarLite", "plan", "reason", "trace"]
 
@@ -94,7 +94,7 @@ class DStarLite:
     def route(self) -> Route:
         """The shortest way from where the robot is; unreachable also while its cell or the goal's is blocked.
 
-        route.price says what mending took, not what the whole search has. route.world is the grid given
+        route.stats says what mending took, not what the whole search has. route.world is the grid given
         first.
         """
         with self._busy:
@@ -113,9 +113,9 @@ class DStarLite:
     def _replanned(self) -> Route:
         began = time.perf_counter()
         status, path, length, nodes, edges, self._settled = self._core.replan()
-        price = Price(nodes, edges, time.perf_counter() - began)
+        stats = Stats(nodes, edges, time.perf_counter() - began)
         ends, options = self._ends, self._options
-        return new_route(self._grid, "d_star_lite", options, ends, STATUSES[status], path, length, price)
+        return new_route(self._grid, "d_star_lite", options, ends, STATUSES[status], path, length, stats)
 
     def __repr__(self) -> str:
         (x0, y0), (x1, y1) = self._ends
@@ -144,7 +144,7 @@ def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: 
 
 def reason(route: Route) -> str:
     """The verdict in a sentence."""
-    cells = route.price.nodes
+    cells = route.stats.nodes
     if route:
         return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"
     return f"no way leads to the goal, as is known after settling {counted(cells, 'cell')} more"

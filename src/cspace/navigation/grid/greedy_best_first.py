@@ -7,7 +7,7 @@ from typing import Any
 
 from cspace.navigation.grid.search import BEST_FIRST, Settings, metric_of, reason, search, traced
 from cspace.navigation.route import Route
-from cspace.navigation.trace import Trace
+from cspace.search.trace import Trace
 
 __all__ = ["plan", "reason", "trace"]
 

@@ -16,8 +16,8 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.maps import OccupancyGrid
 from cspace.navigation.route import Route
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted
+from cspace.navigation.text import counted
+from cspace.search.trace import Trace
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -122,7 +122,7 @@ def checked_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
 
 def reason(route: Route) -> str:
     """The verdict of a planner of this family, in a sentence."""
-    cells = route.price.nodes
+    cells = route.stats.nodes
     if route:
         return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"
     if route.evidence is not None:

@@ -17,7 +17,7 @@ from cspace.navigation.grid.search import (
     traced,
 )
 from cspace.navigation.route import Route
-from cspace.navigation.trace import Trace
+from cspace.search.trace import Trace
 
 __all__ = ["plan", "reason", "trace"]
 

@@ -10,8 +10,8 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import as_floats, as_generator
 from cspace.errors import InputError, InputTypeError
-from cspace.navigation.trace import Trace
-from cspace.navigation.words import counted, divided
+from cspace.navigation.text import counted, divided
+from cspace.search.trace import Trace
 from cspace.tolerances import SAMPLE_STEP
 
 if TYPE_CHECKING:

@@ -1,0 +1,139 @@
+// One solution for each family: those found on one curve are one, and stand where its leading joint is at an
+// agreed value.
+#pragma once
+
+#include "cspace/ik/near_singular.hpp"
+#include "cspace/ik/self_motion/continuation.hpp"
+
+namespace cspace::ik {
+
+// The member of a family at which its leading joint, the first that moves clearly, comes nearest to a value.
+struct Representative {
+    int joint = -1;
+    double value = 0;
+    double gap = 1e300;
+    double q[max_joints] = {}, direction[max_joints] = {};
+    double before[max_joints] = {};  // the member visited before, on the way `way`
+    int way = -1;
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline int leading_joint(const double* direction, int n) {
+    constexpr double clearly = 0.1;
+    for (int i = 0; i < n; ++i)
+        if (std::fabs(direction[i]) > clearly) return i;
+    return 0;
+}
+
+inline double from_value(const ik::Chain& chain, const ik::Representative& r, const double* q) {
+    const double d = q[r.joint] - r.value;
+    return chain.prismatic[r.joint] ? d : short_way(d);
+}
+
+inline void offer_member(const ik::Chain& chain, ik::Representative& r, const double* q, const double* t) {
+    const double gap = std::fabs(from_value(chain, r, q));
+    if (!(gap < r.gap)) return;
+    r.gap = gap;
+    for (int i = 0; i < chain.n; ++i) {
+        r.q[i] = q[i];
+        r.direction[i] = t[i];
+    }
+}
+
+// Between two members beside each other the leading joint passes its value: the member that has it, by the
+// secant.
+inline void offer_between(const ik::Chain& chain, const ik::TipConstraint& constraint, ik::Representative& r,
+                          const double* a, const double* b, const double* t) {
+    double low = from_value(chain, r, a), high = from_value(chain, r, b), q[ik::max_joints],
+           left[ik::max_joints];
+    if (!(low * high < 0) || std::fabs(high - low) > 1) return;
+    double right[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) left[i] = a[i], right[i] = b[i];
+    for (int step = 0; step < 30; ++step) {
+        const double part = low / (low - high);
+        PoseError at;
+        for (int i = 0; i < chain.n; ++i) q[i] = left[i] + part * (right[i] - left[i]);
+        if (!onto_curve(chain, constraint, q, at)) return;
+        const double here = from_value(chain, r, q);
+        offer_member(chain, r, q, t);
+        if (std::fabs(here) < 1e-15) return;
+        const bool below = (here < 0) == (low < 0);
+        (below ? low : high) = here;
+        for (int i = 0; i < chain.n; ++i) (below ? left : right)[i] = q[i];
+    }
+}
+
+// The next member on a way along the family.
+inline void offer_next(const ik::Chain& chain, const ik::TipConstraint& constraint, ik::Representative& r,
+                       int way, const double* q, const double* t) {
+    offer_member(chain, r, q, t);
+    if (way == r.way) offer_between(chain, constraint, r, r.before, q, t);
+    r.way = way;
+    for (int i = 0; i < chain.n; ++i) r.before[i] = q[i];
+}
+
+// Whether a solution lies on the piece of the curve around q, of about a step's length.
+inline bool lies_near(const ik::Chain& chain, double length, const double* q, const double* t,
+                      const double* other) {
+    constexpr double reach = 0.06, narrow = 0.05;
+    double gap[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i)
+        gap[i] = chain.prismatic[i] ? (other[i] - q[i]) / length : short_way(other[i] - q[i]);
+    const double along = dot_n(gap, t, chain.n), size2 = dot_n(gap, gap, chain.n);
+    return size2 < reach * reach && size2 - along * along < narrow * narrow * size2 + 1e-12;
+}
+
+// Whether families cross at q: there it has more directions than one.
+inline bool is_crossing(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q) {
+    constexpr double close = 1e-6;
+    PoseError at;
+    measure_constrained(chain, constraint, q, at);
+    int free = 0;
+    for (int i = 0; i < chain.n; ++i) free += at.jacobian.sigma[i] < close;
+    return free > 1;
+}
+
+// `idle`: the values that leading joints take, zero if null; but where families cross none is taken to the
+// crossing, which would not tell which of them is meant. Lengths are over the arm's.
+inline void keep_one_per_self_motion(const ik::Chain& chain, const Posed& goal, const double* unconstrained,
+                                     ik::Solutions& out) {
+    const ik::TipConstraint constraint = {goal, true, 1};
+    int steps_left = 4000;  // of all curves together
+    bool dropped[ik::max_solutions] = {};
+    for (int k = 0; k < out.count; ++k) {
+        if (!out.self_motion[k] || dropped[k] || steps_left <= 0) continue;
+        ik::Representative r;
+        r.joint = leading_joint(out.direction[k], chain.n);
+        r.value = unconstrained ? unconstrained[r.joint] : 0;
+        double start[ik::max_joints], along[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
+        follow_self_motion(
+            chain, constraint, start, along, steps_left, [&](int way, const double* q, const double* t) {
+                offer_next(chain, constraint, r, way, q, t);
+                for (int m = k + 1; m < out.count; ++m)
+                    dropped[m] = dropped[m] ||
+                                 (out.self_motion[m] && lies_near(chain, constraint.length, q, t, out.q[m]));
+            });
+        if (is_crossing(chain, constraint, r.q) && !is_crossing(chain, constraint, start)) continue;
+        for (int i = 0; i < chain.n; ++i) {
+            out.q[k][i] = chain.prismatic[i] ? r.q[i] : wrap_once(short_way(r.q[i]));
+            out.direction[k][i] = r.direction[i];
+        }
+    }
+    int kept = 0;
+    for (int k = 0; k < out.count; ++k) {
+        if (dropped[k]) continue;
+        for (int i = 0; i < chain.n; ++i) {
+            out.q[kept][i] = out.q[k][i];
+            out.direction[kept][i] = out.direction[k][i];
+        }
+        out.branch[kept] = static_cast<signed char>(kept);
+        out.self_motion[kept++] = out.self_motion[k];
+    }
+    out.count = kept;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,147 @@
+// Arms of fewer than six joints: virtual joints behind the last complete them to six. A pose that the arm
+// reaches is one that the completed arm reaches with its virtual joints at zero.
+#pragma once
+
+#include <algorithm>
+
+#include "cspace/ik/general/perturbed_arms.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+inline constexpr double regular_enough = 1e-3;  // singular value of a completed Jacobian
+
+// How well a completed arm is conditioned where its virtual joints are zero: the median over some
+// configurations of the smallest singular value.
+inline double completed_conditioning(const ik::Chain& six, int joints) {
+    constexpr int trials = 5;
+    double sigma[trials];
+    for (int k = 0; k < trials; ++k) {
+        double q[ik::max_joints];
+        spread_configuration(k, 6, q);
+        for (int i = joints; i < 6; ++i) q[i] = 0;
+        PoseError error;
+        measure_error(six, six.tip, 1, q, error);
+        sigma[k] = weak_direction(&error.jacobian.us[0]).sigma;
+        for (int j = k; j > 0 && sigma[j - 1] > sigma[j]; --j) {
+            const double kept = sigma[j];
+            sigma[j] = sigma[j - 1];
+            sigma[j - 1] = kept;
+        }
+    }
+    return sigma[trials / 2];
+}
+
+// The chain with virtual joints, the first `slides` of which slide, in directions without a pattern.
+inline ik::Chain with_virtual_joints(const ik::Chain& chain, int slides, int choice) {
+    ik::Chain six = chain;
+    six.n = 6;
+    for (int i = chain.n; i < 6; ++i) {
+        const Vec3d direction = pattern_vector(7 * choice + 2 * i),
+                    beside = pattern_vector(7 * choice + 2 * i + 1);
+        six.axis[i] = (1 / norm(direction)) * direction;
+        six.point[i] = chain.tip.t + 0.5 * beside;
+        six.prismatic[i] = i - chain.n < slides;
+    }
+    return six;
+}
+
+// A wrist made of the turning joints at one end and virtual ones square to them.
+inline bool with_virtual_wrist(const ik::Chain& chain, ik::Chain& best) {
+    if (chain.n < 4) return false;
+    const Vec3d& last = chain.axis[chain.n - 1];
+    ik::Chain six = chain;
+    six.n = 6;
+    Vec3d centre = chain.point[chain.n - 1] + dot(chain.tip.t - chain.point[chain.n - 1], last) * last;
+    if (chain.n == 5) {
+        const Vec3d n = cross(chain.axis[3], last), gap = chain.point[4] - chain.point[3];
+        if (!(dot(n, n) > 1e-6)) return false;
+        centre = chain.point[3] + (dot(cross(gap, last), n) / dot(n, n)) * chain.axis[3];
+    }
+    const Vec3d x = any_perpendicular(last);
+    for (int i = chain.n; i < 6; ++i) {
+        six.axis[i] = i == 5 ? cross(last, x) : x;
+        six.point[i] = centre;
+        six.prismatic[i] = false;
+    }
+    if (chain.n == 5) six.axis[5] = cross(chain.axis[3], last);
+    six.axis[5] = (1 / norm(six.axis[5])) * six.axis[5];
+    if (!position_first(six).serves || !(completed_conditioning(six, chain.n) > regular_enough)) return false;
+    best = six;
+    return true;
+}
+
+// The more of six joints slide, up to three, the simpler their equations. Returns whether any choice makes
+// the arm regular; its lengths are over its own.
+inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
+    constexpr int choices = 12;
+    if (with_virtual_wrist(chain, best)) return true;
+    int sliding = 0;
+    for (int i = 0; i < chain.n; ++i) sliding += chain.prismatic[i];
+    for (int slides = std::min(6 - chain.n, 3 - sliding); slides >= 0; --slides) {
+        double most = regular_enough;
+        for (int choice = 0; choice < choices; ++choice) {
+            const ik::Chain six = with_virtual_joints(chain, slides, choice);
+            const double sigma = completed_conditioning(six, chain.n);
+            if (sigma > most) {
+                most = sigma;
+                best = six;
+            }
+        }
+        if (most > regular_enough) return true;
+    }
+    return false;
+}
+
+// The solver of an arm of up to six joints none of which is to spare; false for others. `arm.alone` says
+// whether it has to do without neighbours.
+CSPACE_ONCE bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
+    const bool alone = arm.alone;
+    arm = {};
+    arm.alone = alone;
+    arm.chain = chain;
+    arm.solve = &solve_general;
+    const double length = characteristic_length(chain);
+    ik::Chain six = in_units_of(length, chain);
+    if (chain.n > 6 || (chain.n < 6 && !complete_arm(in_units_of(length, chain), six))) return false;
+    arm.plan.chain = six;
+    if (is_redundant(six)) return false;
+    arm.position_first = position_first(six);
+    if (arm.position_first.serves)
+        describe_formulation(six, arm.plan);
+    else
+        make_general_plan(six, arm.plan);
+    arm.plan.length = length;
+    if (arm.position_first.serves) return true;
+    if (!alone && !serves_in_some_order(arm.plan)) make_perturbed_arms(arm);
+    return arm.plan.regular > 0 || arm.has_perturbed;
+}
+
+// The same arm with other numbers, say with another value of a joint that is held: the choices that were made
+// for `typical` (virtual joints, formulations and their order) stay, for to make them takes a thousand times
+// as long as to use them.
+CSPACE_ONCE bool renumber_general_arm(const ik::GeneralArm& typical, const ik::Chain& chain,
+                                      ik::GeneralArm& arm) {
+    arm = typical;
+    arm.chain = chain;
+    const double length = characteristic_length(chain);
+    ik::Chain six = typical.plan.chain;
+    const ik::Chain own = in_units_of(length, chain);
+    for (int i = 0; i < chain.n; ++i) {
+        six.axis[i] = own.axis[i];
+        six.point[i] = own.point[i];
+    }
+    six.tip = own.tip;
+    arm.plan.length = length;
+    arm.plan.chain = six;
+    arm.plan.frames = loop_frames(six);
+    forget_spurious_roots(arm.plan);
+    arm.position_first = position_first(six);
+    for (int k = 0; k < 2 && arm.has_perturbed; ++k) {
+        arm.perturbed[k].chain = perturb_chain(six, k ? -disturbance : disturbance);
+        arm.perturbed[k].frames = loop_frames(arm.perturbed[k].chain);
+        forget_spurious_roots(arm.perturbed[k]);
+    }
+    return !is_redundant(six);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,252 @@
+// The second look at a pose that the closed form alone cannot settle: two solutions about to merge, a joint
+// that the pose leaves free, or an arm whose geometry the form idealises. Every candidate is refined on the
+// true chain, judged by its residual, told from its twins by the conditioning, and tested for self-motion.
+#pragma once
+
+#include "cspace/ik/closed_form.hpp"
+#include "cspace/ik/free_wrist.hpp"
+#include "cspace/ik/refine.hpp"
+#include "cspace/ik/self_motion/self_motion.hpp"
+#include "cspace/ik/solution.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// The verdict on a list of solutions.
+inline void classify_solutions(ik::Solutions& out) {
+    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    for (int k = 0; k < out.count; ++k)
+        if (out.self_motion[k]) out.status = ik::Status::singular;
+}
+
+// The largest difference of a joint between two configurations, angles the short way round; slides that are
+// far out are known only relative to how far.
+inline double joint_distance(const ik::Chain& chain, const double* a, const double* b) {
+    double worst = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        const double d = a[i] - b[i];
+        worst = max(worst, std::fabs(chain.prismatic[i] ? d / max(1.0, std::fabs(a[i])) : short_way(d)));
+    }
+    return worst;
+}
+
+inline double miss_of(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
+    PoseError error;
+    measure_error(chain, goal, length, q, error);
+    return size_of_error(error);
+}
+
+// The miss between two configurations: halfway, on the floor of the valley that leads from one to the other.
+// Where solutions are about to merge it rises between them; of one solution that stands there twice it does
+// not.
+inline double miss_between(const ik::Chain& chain, const Posed& goal, double length, const double* a,
+                           const double* b) {
+    double q[ik::max_joints], dq[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) {
+        const double step = b[i] - a[i];
+        q[i] = a[i] + 0.5 * (chain.prismatic[i] ? step : std::remainder(step, 2 * pi));
+    }
+    PoseError error;
+    measure_error(chain, goal, length, q, error);
+    double least = size_of_error(error);
+    for (int step = 0; step < 2; ++step) {
+        decompose(error.jacobian);
+        step_to_floor(error, weakest_direction(error.jacobian), dq);
+        least = min(least, take_step(chain, goal, length, q, dq, q, error));
+    }
+    return least;
+}
+
+// Whether two configurations a gap apart, the worse of which misses the goal by `left`, stand for one
+// solution. Those within what rounding leaves of them, `near`, are given the benefit of the doubt.
+inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, const double* a,
+                    const double* b, double gap, double near, double left) {
+    constexpr double wide = 1e-2, rounding = 1e-15;
+    if (!(gap < max(near, wide))) return false;
+    return miss_between(chain, goal, length, a, b) <= max(left, gap < near ? tolerance::halfway : rounding);
+}
+
+// Adds q to the solutions unless it is no solution or already there.
+CSPACE_ONCE void accept_solution(ik::Solutions& out, const ik::Chain& chain, const Posed& goal, double length,
+                                 double* q, int branch, int most_steps) {
+    PoseError error;
+    const double size = refine(chain, goal, length, q, error, most_steps);
+    if (!(size <= tolerance::reached) || out.count == ik::max_solutions) return;
+    const int weak = weakest_direction(error.jacobian);
+    const double conditioning = max(error.jacobian.sigma[weak], 1e-9);
+    const double near = 10 * max(size, 1e-15) / conditioning;
+    for (int k = 0; k < out.count; ++k) {
+        const double gap = joint_distance(chain, out.q[k], q);
+        if (gap < tolerance::same_solution) return;
+        if (are_one(chain, goal, length, out.q[k], q, gap, near, size)) return;
+    }
+    const int n = out.count++;
+    for (int i = 0; i < chain.n; ++i)
+        out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
+    out.branch[n] = static_cast<signed char>(branch);
+    out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
+}
+
+// Which of the plan's branches to try, how far virtual joints may be off zero [rad], and how many steps a
+// candidate gets.
+struct Search {
+    int first = 0, last = max_branches;
+    double stray = 1e-3;
+    int most_steps = 60;  // of the refinement
+};
+
+// The plan's branches for one choice of idle joints, as configurations of the chain.
+inline void closed_form_candidates(const ik::Plan& plan, const Posed& goal_form, const Care& care,
+                                   ik::Solutions& out, const Posed& goal, const Search& search = {}) {
+    const Branches<double> b = solve_closed_form(plan, goal_form, care);
+    for (int k = search.first; k < search.last; ++k) {
+        if (!b.ok[k]) continue;
+        double q[ik::max_joints] = {};
+        bool real = true;
+        for (int i = 0; i < 6; ++i) {
+            const double angle = joint_angle(plan, i, b.t[k][i]);
+            if (plan.joint[i] >= 0)
+                q[plan.joint[i]] = angle;
+            else
+                real = real && std::fabs(angle) <= search.stray;
+        }
+        if (!real) continue;
+        accept_solution(out, plan.chain, goal, plan.form.length, q, k, search.most_steps);
+    }
+}
+
+// The angles t_i that free joints take, from the chain's joints; the free sum of three parallel joints is
+// theirs.
+inline void set_unconstrained(const ik::Plan& plan, const double* unconstrained, Care& care, double* t) {
+    for (int i = 0; i < 6; ++i) {
+        const double q = plan.joint[i] >= 0 && unconstrained ? unconstrained[plan.joint[i]] : 0.0;
+        t[i] = plan.sign[i] * q + plan.form.offset[i];
+    }
+    if (plan.family == ik::Family::three_parallel) t[3] += t[1] + t[2];
+    for (int i = 0; i < 6; ++i) care.unconstrained[i] = {std::cos(t[i]), std::sin(t[i])};
+}
+
+// Whether the branches depend on the angle that joint i takes when it is free.
+inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
+    const Branches<double> b = solve_closed_form(plan, goal_form, care);
+    Care other = care;
+    other.unconstrained[i] = {std::cos(t + 2.4), std::sin(t + 2.4)};
+    const Branches<double> moved = solve_closed_form(plan, goal_form, other);
+    for (int k = 0; k < max_branches; ++k) {
+        if (b.ok[k] != moved.ok[k]) return true;
+        for (int j = 0; j < 6 && b.ok[k]; ++j)
+            if (std::fabs(std::remainder(b.t[k][j] - moved.t[k][j], 2 * pi)) > 1e-3) return true;
+    }
+    return false;
+}
+
+// Where the form's joint is free but the arm's is not (it is idealised, or completed by virtual joints), the
+// solutions lie somewhere along the family: start from angles all around.
+inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, const Care& care, const double* t,
+                              ik::Solutions& out, const Posed& goal) {
+    constexpr int turns = 16;
+    for (int i = 0; i < 6; ++i) {
+        if (!is_free(plan, goal_form, care, t[i], i)) continue;
+        for (int k = 1; k < turns; ++k) {
+            Care turned = care;
+            const double angle = t[i] + k * (2 * pi / turns);
+            turned.unconstrained[i] = {std::cos(angle), std::sin(angle)};
+            closed_form_candidates(plan, goal_form, turned, out, goal, {0, max_branches, pi, 20});
+        }
+    }
+}
+
+// Near a singularity of the completed arm that the arm itself does not have, the error of the idealised form
+// grows to its square root: start from branches that far beside the goal.
+inline void try_perturbed_goals(const ik::Plan& plan, const Posed& goal_form, Care care, ik::Solutions& out,
+                                const Posed& goal) {
+    care.band = std::sqrt(care.band);
+    if (solve_closed_form(plan, goal_form, care).doubt)
+        closed_form_candidates(plan, goal_form, care, out, goal, {0, max_branches, pi});
+}
+
+// Where the wrist of three parallel axes is free and its idle turn carries the goal out of the planar arm's
+// reach, the nearest turn that does not.
+inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care care, double unconstrained,
+                            ik::Solutions& out, const Posed& goal) {
+    care.free =
+        max(care.free, 1e-6);  // behind two shoulders that merge, the wrist is seen through their error
+    constexpr int half = max_branches / 2;
+    for (int i = 0; i < 2; ++i) {
+        bool found = false;
+        for (int k = 0; k < out.count; ++k) found = found || out.branch[k] / half == i;
+        if (found) continue;
+        const ik::FreeSums sums = free_sums(plan.parallel, goal_form, i, unconstrained, care);
+        const int before = out.count;
+        for (int k = 0; k < sums.count && out.count == before; ++k) {
+            care.unconstrained[3] = {std::cos(sums.sum[k]), std::sin(sums.sum[k])};
+            closed_form_candidates(plan, goal_form, care, out, goal, {half * i, half * (i + 1)});
+        }
+    }
+}
+
+// Solutions that were found otherwise get the number of the branch next to them, each branch once and the
+// nearest pairs first; those without one get numbers beyond the branches.
+inline void number_by_branches(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
+    Care care = care_of(plan);
+    care.spread = 4 * plan.form.deviation;
+    const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, goal), care);
+    const auto gap = [&](int m, int k) {
+        double worst = 0;
+        for (int i = 0; i < 6; ++i)
+            worst =
+                max(worst, std::fabs(short_way(out.q[m][plan.joint[i]] - joint_angle(plan, i, b.t[k][i]))));
+        return worst;
+    };
+    bool used[max_branches] = {};
+    for (int m = 0; m < out.count; ++m) out.branch[m] = -1;
+    for (int round = 0; round < out.count; ++round) {
+        int solution = -1, branch = -1;
+        double least = std::numeric_limits<double>::infinity();
+        for (int m = 0; m < out.count; ++m)
+            for (int k = 0; k < max_branches && out.branch[m] < 0; ++k)
+                if (b.ok[k] && !used[k] && gap(m, k) < least) least = gap(m, k), solution = m, branch = k;
+        if (solution < 0) break;
+        out.branch[solution] = static_cast<signed char>(branch);
+        used[branch] = true;
+    }
+    int beyond = max_branches;
+    for (int m = 0; m < out.count; ++m)
+        if (out.branch[m] < 0) out.branch[m] = static_cast<signed char>(beyond++);
+}
+
+// Adds the solutions that are not in `out` yet; `idle`: the angles of the chain's joints that free joints
+// take.
+inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const double* unconstrained,
+                            ik::Solutions& out) {
+    Care care = care_of(plan);
+    const double slack = 4 * plan.form.deviation;
+    care.free = max(tolerance::free_joint, slack);
+    double t[6];
+    set_unconstrained(plan, unconstrained, care, t);
+    const Posed goal_form = goal_in_form(plan, goal);
+    // Near singularities of the completed arm an idealised form leaves virtual joints far from zero.
+    const Search search = {0, max_branches, plan.idealised ? 0.1 : 1e-3};
+    closed_form_candidates(plan, goal_form, care, out, goal, search);
+    if (plan.idealised) {
+        care.spread = slack;
+        closed_form_candidates(plan, goal_form, care, out, goal, search);
+    }
+    if (plan.idealised && plan.virtual_joints && out.count == 0)
+        try_perturbed_goals(plan, goal_form, care, out, goal);
+    if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
+    if (plan.family == ik::Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
+    classify_solutions(out);
+    out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
+    // Merging pairs of the true arm may lie where the form has none.
+    if (plan.form.deviation > tolerance::visible_deviation &&
+        solve_closed_form(plan, goal_form, care_of(plan)).doubt)
+        out.complete = false;
+}
+
+inline ik::Solutions solve_carefully(const ik::Plan& plan, const Posed& goal, const double* unconstrained) {
+    ik::Solutions out;
+    solve_carefully(plan, goal, unconstrained, out);
+    return out;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

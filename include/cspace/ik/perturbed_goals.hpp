@@ -1,0 +1,47 @@
+// Where a pose is singular a solver may lose solutions that its neighbours keep: goals a little beside it, to
+// all sides, are regular, and from their solutions Newton's method leads back.
+#pragma once
+
+#include "cspace/ik/near_singular.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+inline constexpr int perturbed_goals = 12;
+
+// The k-th goal beside this one: some directions without a pattern, both ways, near and nearer.
+inline Posed perturbed_goal(const Posed& goal, double length, int k) {
+    double d[ik::max_joints];
+    spread_configuration(k / 4, 6, d);
+    const double size = (k % 2 ? -1 : 1) * (k % 4 < 2 ? 1e-2 : 1e-3) / pi;
+    const Vec3d away = size * length * Vec3d{d[0], d[1], d[2]}, turn = size * Vec3d{d[3], d[4], d[5]};
+    const double angle = norm(turn);
+    return {rotation_about((1 / angle) * turn, std::cos(angle), std::sin(angle)) * goal.R, goal.t + away};
+}
+
+// Comes down from q; a new solution is admitted. Beside solutions a valley that almost reaches the goal is
+// none of them.
+inline void descend_to_solution(const ik::Chain& chain, const Posed& goal, double length, double* q,
+                                int steps, ik::Solutions& out) {
+    if (out.count == ik::max_solutions) return;
+    PoseError error;
+    const double left = refine(chain, goal, length, q, error, steps);
+    if (left <= (out.count ? tolerance::exact : tolerance::reached))
+        accept_solution(out, chain, goal, length, q, out.count, 2);
+}
+
+// propose(goal, add_candidate): calls add_candidate(q) for every solution of a goal, as a configuration of
+// the chain. Returns whether there was anything new.
+template <class Propose>
+inline bool search_perturbed_goals(const ik::Chain& chain, const Posed& goal, double length,
+                                   const Propose& propose, ik::Solutions& out) {
+    constexpr int most_steps = 40;
+    const int before = out.count;
+    const auto add_candidate = [&](double* q) {
+        descend_to_solution(chain, goal, length, q, most_steps, out);
+    };
+    for (int k = 0; k < perturbed_goals; ++k) propose(perturbed_goal(goal, length, k), add_candidate);
+    classify_solutions(out);
+    return out.count > before;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,199 @@
+// Arms with two spherical joints and one joint between them (S-R-S), by the swivel of their elbow
+// (Shimizu et al. 2008).
+//
+// S: where axes 1, 2, 3 meet; W: where axes 5, 6, 7 meet; E: the elbow, the point of axis 4 nearest to S. The
+// goal fixes W, its distance from S fixes q4, and E is left on a circle about the line from S to W. The
+// swivel is the angle about that line, from S to W, from the half-plane through axis 1's direction to the one
+// through E. Where S → W lies along axis 1 the direction is replaced by the one of `beside`.
+#pragma once
+
+#include <initializer_list>
+
+#include "cspace/ik/chain.hpp"
+#include "cspace/ik/trig_steps.hpp"
+#include "cspace/math/linear.hpp"
+
+namespace cspace::ik {
+
+struct SwivelArm {
+    bool serves = false;
+    Chain chain;
+    Vec3d shoulder, elbow, wrist;  // S, E, W at zero, in base
+    Vec3d tip_to_wrist;            // W in the tip
+    Vec3d reference, beside;       // directions that the swivel is measured from
+    double length = 1;             // [m]
+};
+
+inline constexpr int swivel_branches = 8;
+
+}  // namespace cspace::ik
+
+namespace cspace {
+
+template <class V>
+struct SwivelSolutions {
+    V q[ik::swivel_branches][7];
+    mask_of<V> ok[ik::swivel_branches];
+};
+
+// The angles of three axes through a point for a rotation: two ways.
+template <class V>
+struct SphericalTurns {
+    Turn<V> turn[2][3];
+    mask_of<V> ok;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// The point nearest to three axes, and how far the farthest of them passes by it.
+inline Vec3d meeting_of(const ik::Chain& chain, int first, double& away) {
+    double A[3][3] = {}, b[3] = {};
+    for (int i = first; i < first + 3; ++i) {
+        const Vec3d &h = chain.axis[i], &p = chain.point[i];
+        const double direction[3] = {h.x, h.y, h.z}, point[3] = {p.x, p.y, p.z};
+        for (int r = 0; r < 3; ++r)
+            for (int c = 0; c < 3; ++c) {
+                const double entry = (r == c) - direction[r] * direction[c];
+                A[r][c] += entry;
+                b[r] += entry * point[c];
+            }
+    }
+    solve(A, b);
+    const Vec3d meeting = {b[0], b[1], b[2]};
+    away = 0;
+    for (int i = first; i < first + 3; ++i)
+        away = max(away, norm(cross(meeting - chain.point[i], chain.axis[i])));
+    return meeting;
+}
+
+// `serves` where the axes meet to rounding: a swivel of an arm that only almost is one is not exact.
+inline ik::SwivelArm make_swivel_arm(const ik::Chain& chain) {
+    constexpr double meets = 1e-12, crosses = 1e-3;
+    ik::SwivelArm arm;
+    arm.chain = chain;
+    if (chain.n != 7) return arm;
+    for (int i = 0; i < 7; ++i)
+        if (chain.prismatic[i]) return arm;
+    arm.length = characteristic_length(chain);
+    double off[2];
+    arm.shoulder = meeting_of(chain, 0, off[0]);
+    arm.wrist = meeting_of(chain, 4, off[1]);
+    const Vec3d& h4 = chain.axis[3];
+    arm.elbow = chain.point[3] + dot(arm.shoulder - chain.point[3], h4) * h4;
+    arm.tip_to_wrist = inverse(chain.tip) * arm.wrist;
+    arm.reference = chain.axis[0];
+    arm.beside = any_perpendicular(chain.axis[0]);
+    bool turns = true;  // both joints are spherical, and the elbow changes the distance
+    for (const int i : {0, 1, 4, 5}) turns = turns && norm(cross(chain.axis[i], chain.axis[i + 1])) > crosses;
+    const Vec3d upper = arm.shoulder - arm.elbow, fore = arm.wrist - arm.elbow;
+    const bool bends = norm(upper) > crosses * arm.length && norm(cross(fore, h4)) > crosses * arm.length;
+    arm.serves = turns && bends && off[0] <= meets * arm.length && off[1] <= meets * arm.length;
+    return arm;
+}
+
+// R = e^{h1 q1} e^{h2 q2} e^{h3 q3}: h1 · R h3 fixes q2, R h3 fixes q1, and what is left is the turn about
+// h3.
+template <class V>
+CSPACE_INLINE SphericalTurns<V> three_turns(const Vec3d* axis, const Mat3<V>& R) {
+    const Care care;
+    const Vec3<V> h1 = fill3<V>(axis[0]), h2 = fill3<V>(axis[1]), h3 = fill3<V>(axis[2]);
+    const Vec3d along = dot(axis[1], axis[2]) * axis[1];  // of h3, what q2 leaves alone
+    const Vec3d lean = axis[2] - along, turned = cross(axis[1], axis[2]);
+    const Vec3<V> goal = R * h3;
+    const TwoAngles<V> middle = linear_equation<V>(fill<V>(dot(axis[0], lean)), fill<V>(dot(axis[0], turned)),
+                                                   dot(h1, goal) - dot(axis[0], along), 1.0, care, {1, 0});
+    SphericalTurns<V> out;
+    out.ok = middle.ok;
+    const Vec3d across = any_perpendicular(axis[2]);
+    for (int k = 0; k < 2; ++k) {
+        const Vec3<V> seen = rotate(h2, middle.root[k], h3);
+        // Square to h1, `seen` is turned into `goal`.
+        const Vec3<V> a = seen - dot(seen, h1) * h1, b = goal - dot(goal, h1) * h1;
+        const V size2 = max(dot(a, a), fill<V>(1e-300));
+        const V inverse = 1.0 / size2;
+        const mask_of<V> is_free = size2 <= care.free * care.free;
+        const Turn<V> first =
+            choose(is_free, {1, 0}, Turn<V>{dot(a, b) * inverse, dot(h1, cross(a, b)) * inverse});
+        Vec3<V> x = R * fill3<V>(across);
+        x = rotate(h2, Turn<V>{middle.root[k].c, -middle.root[k].s},
+                   rotate(h1, Turn<V>{first.c, -first.s}, x));
+        const Turn<V> last = {dot(x, fill3<V>(across)), dot(x, fill3<V>(cross(axis[2], across)))};
+        out.turn[k][0] = first;
+        out.turn[k][1] = middle.root[k];
+        out.turn[k][2] = last;
+    }
+    return out;
+}
+
+// The frame (n, u, n × u) with n along w and u towards e.
+template <class V>
+CSPACE_INLINE Mat3<V> frame_towards(const Vec3<V>& w, const Vec3<V>& e) {
+    const Vec3<V> n = (1.0 / norm(w)) * w;
+    const Vec3<V> off = e - dot(e, n) * n;
+    const Vec3<V> u = (1.0 / max(norm(off), fill<V>(1e-300))) * off;
+    return from_columns(n, u, cross(n, u));
+}
+
+// Where the elbow's half-plane would be at swivel zero: square to w, towards the reference.
+inline Vec3d swivel_zero(const ik::SwivelArm& arm, const Vec3d& w) {
+    constexpr double along = 1e-9;
+    const Vec3d n = (1 / norm(w)) * w;
+    Vec3d r = arm.reference - dot(arm.reference, n) * n;
+    if (norm(r) < along) r = arm.beside - dot(arm.beside, n) * n;
+    return (1 / norm(r)) * r;
+}
+
+// All solutions of a goal at swivels on lanes. Branch 4 i + 2 j + k: elbow, shoulder, wrist.
+template <class V>
+CSPACE_NOINLINE void solve_swivel(const ik::SwivelArm& arm, const Posed& goal, V swivel,
+                                  SwivelSolutions<V>& out) {
+    const ik::Chain& chain = arm.chain;
+    const Vec3d W = goal * arm.tip_to_wrist, w = W - arm.shoulder;
+    const Vec3d &h4 = chain.axis[3], fore = arm.wrist - arm.elbow, upper = arm.elbow - arm.shoulder;
+    // |upper + e^{h4 q4} fore|² = |w|²
+    const Vec3d along = dot(h4, fore) * h4, lean = fore - along;
+    const double r = 0.5 * (dot(w, w) - dot(upper, upper) - dot(fore, fore)) - dot(upper, along);
+    const TwoAngles<double> bend = linear_equation<double>(dot(upper, lean), dot(upper, cross(h4, fore)), r,
+                                                           arm.length * arm.length, Care{}, {1, 0});
+    const bool reaches = bend.ok && norm(w) > 1e-12 * arm.length;
+    const Vec3d zero = reaches ? swivel_zero(arm, w) : Vec3d{1, 0, 0};
+    const Vec3d n = reaches ? (1 / norm(w)) * w : Vec3d{0, 0, 1};
+    const Turn<V> psi = turn_by(swivel);
+    const Vec3<V> towards = rotate(fill3<V>(n), psi, fill3<V>(zero));
+    const Mat3<V> there = from_columns(fill3<V>(n), towards, cross(fill3<V>(n), towards));
+    const Mat3d goal_R = goal.R * transpose(chain.tip.R);
+    for (int i = 0; i < 2; ++i) {
+        const Vec3d bent = rotate(h4, bend.root[i], fore);
+        const Mat3d here = frame_towards(upper + bent, upper);
+        const Mat3<V> R03 = there * fill33<V>(transpose(here));
+        const Mat3d R34 = rotation_about(h4, bend.root[i].c, bend.root[i].s);
+        const Mat3<V> R47 = fill33<V>(transpose(R34)) * transpose(R03) * fill33<V>(goal_R);
+        const SphericalTurns<V> first = three_turns(&chain.axis[0], R03),
+                                last = three_turns(&chain.axis[4], R47);
+        for (int j = 0; j < 2; ++j)
+            for (int k = 0; k < 2; ++k) {
+                const int b = 4 * i + 2 * j + k;
+                out.ok[b] = first.ok && last.ok && (fill<V>(reaches ? 1.0 : 0.0) > 0.0);
+                for (int m = 0; m < 3; ++m) {
+                    out.q[b][m] = angle_of(first.turn[j][m]);
+                    out.q[b][4 + m] = angle_of(last.turn[k][m]);
+                }
+                out.q[b][3] = fill<V>(angle_of(bend.root[i]));
+            }
+    }
+}
+
+// The swivel of a configuration.
+inline double swivel_of(const ik::SwivelArm& arm, const double* q) {
+    Posed T = identity_pose();
+    for (int i = 0; i < 3; ++i) T = T * joint_motion(arm.chain, i, q[i]);
+    const Vec3d E = T * arm.elbow;
+    T = T * joint_motion(arm.chain, 3, q[3]);
+    const Vec3d w = T * arm.wrist - arm.shoulder, e = E - arm.shoulder;
+    const Vec3d n = (1 / norm(w)) * w, zero = swivel_zero(arm, w);
+    return std::atan2(dot(n, cross(zero, e)), dot(zero, e));
+}
+
+}  // namespace cspace::inline CSPACE_ISA

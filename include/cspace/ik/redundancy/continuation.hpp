@@ -1,0 +1,288 @@
+// Steps along the self-motion, as long as one arc of it can be told from every other (Allgower & Georg 1990,
+// chapter 6), and what a step passes over: limits of joints and turning points of the parameter.
+#pragma once
+
+#include "cspace/ik/redundancy/curve.hpp"
+#include "cspace/ik/redundancy/feasible_intervals.hpp"
+
+namespace cspace {
+
+inline constexpr int loop_looks = 24;  // values of the parameter at which loops are looked for
+
+// All points stepped on, and the solutions met at some values.
+struct Trail {
+    static constexpr int room = 12000;
+    int count = 0;
+    bool first_of_arc[room];
+    double q[room][ik::max_joints], length[room];  // of the chord that ends there
+    bool used[ik::LimitPoints::room];              // limit points that an arc started or ended in
+    SweptRows swept[loop_looks];
+};
+
+struct Tracer {
+    const ik::Redundant* arm;
+    const ik::LimitPoints* points;
+    Posed goal;
+    int parameter;
+    Trail* trail;
+    ik::Intervals* out;
+    double far;  // how far slides without limits are followed; 0 if there are none
+    int branches = 0;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+inline void put_on_curve(const Tracer& tracer, CurvePoint& at) {
+    constexpr double settled = 1e-9;  // the step taken after it is Newton's: it squares the error
+    for (int k = 0; k < 5; ++k) {
+        onto_curve(tracer.arm->chain, tracer.arm->rank, tracer.goal, tracer.arm->length, at);
+        if (at.error < settled) break;
+    }
+}
+inline void orient_tangent(CurvePoint& at, const double* along, int n) {
+    if (dot_n(at.tangent, along, n) >= 0) return;
+    for (int i = 0; i < n; ++i) at.tangent[i] = -at.tangent[i];
+}
+
+// The way from one value of a joint to another, turning joints the short way round.
+inline double joint_way(const ik::Chain& chain, int i, double from, double to) {
+    return chain.prismatic[i] ? to - from : short_way(to - from);
+}
+
+// Where a solution stands on the chord of a step, 0 to 1; −1 off it. Chords bend by less than the width of
+// the tube, and no other arc enters it: see step_along.
+inline double part_of_chord(const ik::Chain& chain, const double* from, const double* to, const double* q) {
+    constexpr double tube = 0.06;
+    double way[ik::max_joints], gap[ik::max_joints], length2 = 0, along = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        way[i] = to[i] - from[i];
+        length2 += way[i] * way[i];
+    }
+    const double off = tube * std::sqrt(length2);
+    for (int i = 0; i < chain.n; ++i) {
+        gap[i] = joint_way(chain, i, from[i], q[i]);
+        if (std::fabs(gap[i]) > std::fabs(way[i]) + off) return -1;
+        along += gap[i] * way[i];
+    }
+    const double part = along / length2;
+    if (!(part >= -1e-9 && part <= 1 + 1e-9)) return -1;
+    for (int i = 0; i < chain.n; ++i)
+        if (std::fabs(gap[i] - part * way[i]) > off) return -1;
+    return max(0.0, part);
+}
+
+// How far a step may lead: a turning joint by 0.25 rad, slides in proportion where the curve goes far.
+inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
+    constexpr double longest = 0.25, steps_across = 64;
+    if (!(tracer.far > 0)) return longest;
+    const double slide = max(longest, tracer.far / steps_across);
+    double most = 0;
+    for (int i = 0; i < tracer.arm->chain.n; ++i)
+        most = max(most, std::fabs(from.tangent[i]) / (tracer.arm->chain.prismatic[i] ? slide : longest));
+    return 1 / most;
+}
+
+// A step of length `stride`; true if it followed the curve closely.
+inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride, double most_off,
+                     CurvePoint& to) {
+    const int n = tracer.arm->chain.n;
+    double guess[ik::max_joints], off = 0;
+    for (int i = 0; i < n; ++i)
+        to.q[i] = guess[i] = from.q[i] + stride * from.tangent[i] + 0.5 * stride * stride * from.bend[i];
+    put_on_curve(tracer, to);
+    orient_tangent(to, from.tangent, n);
+    for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
+    return to.error < 1e-9 && off < most_off * stride && dot_n(to.tangent, from.tangent, n) > 0.95;
+}
+
+// One step; shortened until the curve was followed closely and the Jacobian changed little, so that two arcs
+// which all but cross are told apart. Where they do cross the step leads straight on, to the far side.
+// False where the curve cannot be followed.
+inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& stride, CurvePoint& to) {
+    constexpr double shortest = 1e-7, crossing = 1e-5, most_change = 0.5;
+    const int n = tracer.arm->chain.n;
+    const double bend = std::sqrt(dot_n(from.bend, from.bend, n));
+    stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + 1e-3));
+    bool crosses = false;
+    while (stride > shortest) {
+        if (!try_step(tracer, from, stride, 0.1, to)) {
+            stride *= 0.5;
+            continue;
+        }
+        const double change = min(jacobian_change(from, to, n), jacobian_change(to, from, n));
+        if (change < most_change) return true;
+        if (!crosses && stride < crossing) {
+            crosses = true;
+            if (try_step(tracer, from, 10 * crossing, 0.01, to)) {
+                stride = 10 * crossing;
+                return true;
+            }
+        }
+        stride *= max(0.25, 0.8 * most_change / change);
+    }
+    return false;
+}
+
+// The joint that has left its limits at `to`, or −1; and which side of them.
+inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slack, int& side) {
+    const ik::Redundant& arm = *tracer.arm;
+    int worst = -1;
+    double most = slack;
+    for (int i = 0; i < arm.chain.n; ++i) {
+        const double over = excess(arm, i, to.q[i]);
+        if (!(over > most)) continue;
+        most = over;
+        worst = i;
+    }
+    if (worst < 0) return -1;
+    const double q = to.q[worst];
+    side = std::fabs(joint_way(arm.chain, worst, arm.upper[worst], q)) <
+           std::fabs(joint_way(arm.chain, worst, arm.lower[worst], q));
+    return worst;
+}
+
+// Moves `at` along the curve to where joint i stands at its limit.
+inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) {
+    const ik::Redundant& arm = *tracer.arm;
+    const double limit = limit_of(arm, i, side);
+    double along[ik::max_joints];
+    for (int j = 0; j < arm.chain.n; ++j) along[j] = at.tangent[j];
+    for (int k = 0; k < 12; ++k) {
+        const double gap = joint_way(arm.chain, i, at.q[i], limit);
+        double step = gap / (std::fabs(at.tangent[i]) > 1e-9 ? at.tangent[i] : 1e-9);
+        step = max(-0.1, min(0.1, step));
+        for (int j = 0; j < arm.chain.n; ++j)
+            at.q[j] += step * at.tangent[j] + 0.5 * step * step * at.bend[j];
+        put_on_curve(tracer, at);
+        orient_tangent(at, along, arm.chain.n);
+        if (std::fabs(gap) < 1e-13) return;
+    }
+}
+
+// Whether a slide without limits has gone as far as it is followed.
+inline bool is_far(const Tracer& tracer, const double* q) {
+    bool far = false;
+    for (int i = 0; i < tracer.arm->chain.n && tracer.far > 0; ++i)
+        far = far || (tracer.arm->chain.prismatic[i] && std::fabs(q[i]) > tracer.far);
+    return far;
+}
+
+// Of the known points at limits the first that a step passed over: a joint may leave its limits and come back
+// within one step, or all the way round.
+inline int point_passed(const Tracer& tracer, const CurvePoint& from, const CurvePoint& to) {
+    double first = 2;
+    int found = -1;
+    for (int k = 0; k < tracer.points->count; ++k) {
+        const double part = part_of_chord(tracer.arm->chain, from.q, to.q, tracer.points->point[k].q);
+        if (!(part > 1e-6 && part < first)) continue;
+        first = part;
+        found = k;
+    }
+    return found;
+}
+
+// Where a step has left the limits, back to the first of them that it crossed; the joint that stops there.
+inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
+    int stop = stopped_joint(tracer, at, 1e-12, side);
+    for (int k = 0, next = stop; next >= 0 && k < 4; ++k) {
+        stop = next;
+        settle_limit(tracer, stop, side, at);
+        int other_side = side;
+        next = stopped_joint(tracer, at, limit_slack, other_side);
+        if (next >= 0) side = other_side;
+    }
+    return stop;
+}
+
+// The joint that stops the step from `at` to `next`, which then ends there; −1 where none does.
+inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint& next, int& side) {
+    const ik::Chain& chain = tracer.arm->chain;
+    const int stop = go_back_to_limit(tracer, next, side);
+    const int passed = point_passed(tracer, at, next);
+    if (passed < 0) return stop;
+    const ik::LimitPoint& point = tracer.points->point[passed];
+    for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_way(chain, i, at.q[i], point.q[i]);
+    put_on_curve(tracer, next);
+    orient_tangent(next, at.tangent, chain.n);
+    side = point.side;
+    return point.joint;
+}
+
+// The point of the curve over a part of a chord.
+inline CurvePoint point_over_chord(const Tracer& tracer, const CurvePoint& from, const CurvePoint& to,
+                                   double part) {
+    const int n = tracer.arm->chain.n;
+    CurvePoint out;
+    for (int i = 0; i < n; ++i) out.q[i] = from.q[i] + part * (to.q[i] - from.q[i]);
+    put_on_curve(tracer, out);
+    orient_tangent(out, from.tangent, n);
+    return out;
+}
+
+// A step in which the parameter turns twice ends between the two turns. True if it was such a step.
+inline bool stop_between_turns(const Tracer& tracer, const CurvePoint& at, CurvePoint& next) {
+    const int p = tracer.parameter;
+    const double sign = at.tangent[p] < 0 ? -1 : 1;
+    const double from = sign * at.tangent[p], to = sign * next.tangent[p];
+    if (!(to > 0 && sign * at.bend[p] < 0 && sign * next.bend[p] > 0)) return false;
+    double slope0 = sign * at.bend[p], part0 = 0, slope1 = sign * next.bend[p], part1 = 1;
+    for (int k = 0; k < 4; ++k) {
+        const double part = part0 + (part1 - part0) * slope0 / (slope0 - slope1);
+        const CurvePoint least = point_over_chord(tracer, at, next, part);
+        const double there = sign * least.tangent[p], slope = sign * least.bend[p];
+        if (there < 0) {
+            next = least;
+            return true;
+        }
+        if (there > 0.5 * min(from, to)) return false;
+        (slope < 0 ? slope0 : slope1) = slope;
+        (slope < 0 ? part0 : part1) = part;
+    }
+    return false;
+}
+
+// Where the parameter turns within a step, by Newton's method; by bisection if that leaves the step.
+inline CurvePoint turn_between(const Tracer& tracer, const CurvePoint& at, const CurvePoint& next) {
+    const ik::Redundant& arm = *tracer.arm;
+    const int p = tracer.parameter;
+    double low = 0, high = 1;
+    CurvePoint fold = point_over_chord(tracer, at, next, at.tangent[p] / (at.tangent[p] - next.tangent[p]));
+    if (settle_fold(arm.chain, arm.rank, tracer.goal, arm.length, p, 0.3, fold) &&
+        part_of_chord(arm.chain, at.q, next.q, fold.q) >= 0)
+        return fold;
+    for (int k = 0; k < 45; ++k) {
+        const double middle = 0.5 * (low + high);
+        fold = point_over_chord(tracer, at, next, middle);
+        (fold.tangent[p] * at.tangent[p] > 0 ? low : high) = middle;
+    }
+    return fold;
+}
+
+inline void record_point(Tracer& tracer, const double* q, bool first) {
+    Trail& trail = *tracer.trail;
+    if (trail.count == Trail::room) {
+        tracer.out->complete = false;
+        return;
+    }
+    const int k = trail.count++, n = tracer.arm->chain.n;
+    double length2 = 0;
+    for (int i = 0; i < n; ++i) {
+        trail.q[k][i] = q[i];
+        if (!first) length2 += (q[i] - trail.q[k - 1][i]) * (q[i] - trail.q[k - 1][i]);
+    }
+    trail.first_of_arc[k] = first;
+    trail.length[k] = std::sqrt(length2);
+}
+
+// Whether a configuration lies on an arc that was followed, from trail point `first` on.
+inline bool is_on_trail(const Tracer& tracer, const double* q, int first = 0) {
+    const Trail& trail = *tracer.trail;
+    for (int k = first + 1; k < trail.count; ++k)
+        if (!trail.first_of_arc[k] && part_of_chord(tracer.arm->chain, trail.q[k - 1], trail.q[k], q) >= 0)
+            return true;
+    return false;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

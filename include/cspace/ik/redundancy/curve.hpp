@@ -1,0 +1,91 @@
+// With one joint to spare the manifold of a goal is a curve: its tangent and curvature, steps back onto it,
+// and the places where one joint turns back (a fold).
+#pragma once
+
+#include "cspace/ik/redundancy/tip_jacobian.hpp"
+
+namespace cspace {
+
+// A point of the curve of n = chain.n joints: q(s) = q + tangent s + ½ bend s² + …
+struct CurvePoint {
+    double q[ik::max_joints], tangent[ik::max_joints], bend[ik::max_joints];
+    double error;  // what is left of the goal [rad, m over the arm's length]
+    TipMotion<double> motion;
+    SplitJacobian<double> split;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// One Newton step from q back onto the curve, and what is known at q before it.
+CSPACE_ONCE void onto_curve(const ik::Chain& chain, int rank, const Posed& goal, double length,
+                            CurvePoint& at) {
+    TipMotion<double>& motion = at.motion;
+    SplitJacobian<double>& split = at.split;
+    const int n = chain.n;
+    double step[ik::max_joints];
+    tip_motion<0>(chain, goal, length, at.q, motion);
+    split_jacobian<0>(motion, n, rank, split);
+    free_direction<0>(split, n, 0, at.tangent);
+    // The pose's second derivative along the tangent; what bends the curve takes it back.
+    Vec3d linear = {0, 0, 0}, angular = {0, 0, 0}, turned = {0, 0, 0};
+    for (int j = 0; j < n; ++j) {
+        const double* c = motion.column[j];
+        const double t = at.tangent[j];
+        const Vec3d v = {c[0], c[1], c[2]}, h = {c[3], c[4], c[5]};
+        linear = linear + t * cross(2 * turned + t * h, v);
+        angular = angular + t * cross(turned, h);
+        turned = turned + t * h;
+    }
+    const double back[6] = {-linear.x, -linear.y, -linear.z, -angular.x, -angular.y, -angular.z};
+    shortest_step<0>(split, n, back, at.bend);
+    shortest_step<0>(split, n, motion.error, step);
+    at.error = 0;
+    for (int k = 0; k < 6; ++k) at.error = max(at.error, std::fabs(motion.error[k]));
+    double largest = 0;
+    for (int i = 0; i < n; ++i) largest = max(largest, std::fabs(step[i]));
+    const double keep = largest > 0.3 ? 0.3 / largest : 1;
+    for (int i = 0; i < n; ++i) at.q[i] += keep * step[i];
+}
+
+// ‖J⁺ (J′ − J)‖, J the Jacobian at `at` and J′ at `other`. Where it stays below 1 on a convex set, every
+// solution in that set lies on one arc: the part of it along the tangent tells two solutions apart.
+inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int n) {
+    const SplitJacobian<double>& split = at.split;
+    double square = 0, y[6];
+    for (int i = 0; i < n; ++i)
+        for (int k = 0; k < split.rank; ++k) {
+            const int c = split.chosen[k];
+            y[k] = other.motion.column[i][c] - at.motion.column[i][c];
+            for (int j = 0; j < k; ++j) y[k] -= split.upper[j][k] * y[j];
+            y[k] /= away_from_zero(split.upper[k][k]);
+            square += y[k] * y[k];
+        }
+    return std::sqrt(square);
+}
+
+// Walks q along the curve to where joint p turns back: Newton's method on the p-th part of the tangent. False
+// if that leads farther than `reach` away or nowhere.
+inline bool settle_fold(const ik::Chain& chain, int rank, const Posed& goal, double length, int p,
+                        double reach, CurvePoint& at) {
+    double start[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) start[i] = at.q[i];
+    for (int k = 0; k < 20; ++k) {
+        onto_curve(chain, rank, goal, length, at);
+        const double slope = at.bend[p];
+        double step = std::fabs(slope) > 1e-9 ? -at.tangent[p] / slope : 1;
+        const bool settled = std::fabs(step) < 1e-10 && at.error < 1e-10;
+        step = max(-0.1, min(0.1, step));
+        double away = 0;
+        for (int i = 0; i < chain.n; ++i) {
+            at.q[i] += step * at.tangent[i] + 0.5 * step * step * at.bend[i];
+            away = max(away, std::fabs(at.q[i] - start[i]));
+        }
+        if (!(away < reach)) return false;
+        if (settled) return true;
+    }
+    return false;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,115 @@
+// Where the self-motion meets the limits of the joints: each joint is locked at each of its limits in turn,
+// and the six joints that remain are solved. Every solution is a point of the boundary, exactly.
+#pragma once
+
+#include "cspace/ik/redundancy/redundant_arm.hpp"
+
+namespace cspace::ik {
+
+// The arms with one joint locked, for arms with one joint to spare; built when intervals are first asked for.
+struct LimitArms {
+    LockedArm locked[max_joints];
+    Arm at_limit[max_joints][2];  // where the joint stands between others: its arm at lower and upper limit
+    int freest = -1;              // of the joints that nothing stops the one that self-motions move most
+};
+
+// A configuration with one joint at a limit and the others within theirs.
+struct LimitPoint {
+    int joint, side;  // 0 lower, 1 upper
+    double q[max_joints];
+};
+struct LimitPoints {
+    static constexpr int room = 192;
+    int count = 0;
+    bool complete = true;
+    LimitPoint point[room];
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline double limit_of(const ik::Redundant& arm, int joint, int side) {
+    return side ? arm.upper[joint] : arm.lower[joint];
+}
+inline bool has_limit(const ik::Redundant& arm, int joint, int side) {
+    return ik::is_stopped(arm, joint) && std::isfinite(limit_of(arm, joint, side));
+}
+
+// Of the joints that nothing stops the one that self-motions move most; −1 where each can be stopped.
+inline int freest_joint(const ik::Redundant& arm) {
+    constexpr int looks = 8;
+    double moves[ik::max_joints] = {};
+    for (int look = 0; look < looks; ++look) {
+        double q[ik::max_joints];
+        spread_configuration(look, arm.chain.n, q);
+        PoseError at;
+        measure_error(arm.chain, arm.chain.tip, arm.length, q, at);
+        decompose(at.jacobian);
+        const double* const along = at.jacobian.v[weakest_direction(at.jacobian)];
+        for (int i = 0; i < arm.chain.n; ++i) moves[i] += std::fabs(along[i]);
+    }
+    int best = -1;
+    for (int i = 0; i < arm.chain.n; ++i)
+        if (!ik::is_stopped(arm, i) && (best < 0 || moves[i] > moves[best])) best = i;
+    return best;
+}
+
+// out: as ik::LimitArms{}; it is large and lives where the caller puts it.
+inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
+    double at[ik::max_joints];
+    typical_values(arm, at);
+    out.freest = freest_joint(arm);
+    for (int i = 0; i < arm.chain.n; ++i) {
+        out.locked[i] = arm.locked.n_locked == 1 && arm.locked.locked_joint[0] == i
+                            ? arm.locked
+                            : lock_joints(arm.chain, &i, 1, at);
+        for (int side = 0; side < 2 && !out.locked[i].at_ends; ++side) {
+            if (!has_limit(arm, i, side)) continue;
+            double there[ik::max_joints];
+            there[i] = limit_of(arm, i, side);
+            out.at_limit[i][side] = arm_at(out.locked[i], there);
+        }
+    }
+}
+
+// Whether the joints but one are within limits.
+inline bool others_within(const ik::Redundant& arm, const double* q, int joint, double slack) {
+    for (int i = 0; i < arm.chain.n; ++i)
+        if (i != joint && excess(arm, i, q[i]) > slack) return false;
+    return true;
+}
+
+inline constexpr double limit_slack = 1e-9;  // [rad or m] what rounding may put outside
+
+// Joint `except` is left out (−1: none).
+inline void find_limit_points(const ik::Redundant& arm, const ik::LimitArms& arms, const Posed& goal,
+                              int except, ik::LimitPoints& out) {
+    double at[ik::max_joints] = {};
+    for (int joint = 0; joint < arm.chain.n; ++joint) {
+        if (joint == except) continue;
+        for (int side = 0; side < 2; ++side) {
+            if (!has_limit(arm, joint, side)) continue;
+            at[joint] = limit_of(arm, joint, side);
+            const ik::LockedArm& locked = arms.locked[joint];
+            const ik::Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[joint][side];
+            // Six joints with one to spare among them: the joint rests there along every self-motion, and no
+            // branch crosses its limit.
+            if (!is_solvable(rest)) continue;
+            const ik::Solutions found =
+                solve_arm_quickly(rest, locked.at_ends ? goal_between_ends(locked, goal, at) : goal);
+            out.complete = out.complete && found.complete;
+            for (int j = 0; j < found.count; ++j) {
+                ik::LimitPoint point{joint, side, {}};
+                whole_row(locked, at, found.q[j], point.q);
+                if (!others_within(arm, point.q, joint, limit_slack)) continue;
+                if (out.count == ik::LimitPoints::room)
+                    out.complete = false;
+                else
+                    out.point[out.count++] = point;
+            }
+        }
+    }
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,167 @@
+// An arm with some of its joints held still, so that those which move can be solved. Held joints at either
+// end of the chain only move the goal; one held between others changes a link.
+#pragma once
+
+#include "cspace/ik/arm.hpp"
+#include "cspace/ik/fast_path.hpp"
+
+namespace cspace::ik {
+
+inline constexpr int max_moving = 6;
+
+struct LockedArm {
+    Chain whole;
+    int locked_joint[max_joints], moving[max_joints];
+    int n_locked = 0, n_moving = 0;
+    bool at_ends = true;  // the joints that move follow one another
+    Arm arm;              // of those that move; the held ones at zero, or at typical values if not at_ends
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline bool is_solvable(const ik::Arm& arm) { return arm.has_plan || arm.has_few_joints || arm.is_general; }
+
+// The chain of the joints that move. `at`: the value of every joint that is held, by its number in the whole
+// chain.
+inline ik::Chain locked_chain(const ik::LockedArm& locked, const double* at) {
+    const ik::Chain& whole = locked.whole;
+    ik::Chain out;
+    Posed before = identity_pose();
+    int next = 0;
+    for (int i = 0; i < whole.n; ++i) {
+        if (next < locked.n_locked && locked.locked_joint[next] == i) {
+            before = before * joint_motion(whole, i, at[i]);
+            ++next;
+            continue;
+        }
+        out.axis[out.n] = before.R * whole.axis[i];
+        out.point[out.n] = before * whole.point[i];
+        out.prismatic[out.n++] = whole.prismatic[i];
+    }
+    out.tip = before * whole.tip;
+    return out;
+}
+
+// held: the numbers of the joints to hold, ascending; typical: a value for each joint of the chain at which
+// nothing special is expected.
+CSPACE_ONCE ik::LockedArm lock_joints(const ik::Chain& whole, const int* locked_joint, int n_locked,
+                                      const double* typical, bool with_general = true) {
+    ik::LockedArm out;
+    out.whole = whole;
+    out.n_locked = n_locked;
+    for (int k = 0; k < n_locked; ++k) out.locked_joint[k] = locked_joint[k];
+    for (int i = 0, k = 0; i < whole.n; ++i) {
+        if (k < n_locked && locked_joint[k] == i)
+            ++k;
+        else
+            out.moving[out.n_moving++] = i;
+    }
+    if (out.n_moving > ik::max_moving || out.n_moving == 0) return out;
+    out.at_ends = out.moving[out.n_moving - 1] - out.moving[0] == out.n_moving - 1;
+    const double zero[ik::max_joints] = {};
+    out.arm = make_arm(locked_chain(out, out.at_ends ? zero : typical), with_general);
+    return out;
+}
+
+// The displacement of joint i by −q.
+template <class V>
+CSPACE_INLINE Pose<V> joint_undone(const ik::Chain& chain, int i, const V& q) {
+    const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
+    if (chain.prismatic[i]) return {fill33<V>(identity_pose().R), -q * h};
+    V s, c;
+    sincos(-q, s, c);
+    const Mat3<V> R = rotation_about(h, c, s);
+    return {R, p - R * p};
+}
+// The goal for an arm whose held joints stand at its ends: those before the others move the base, those
+// behind them the tip.
+template <class V>
+CSPACE_INLINE Pose<V> goal_between_ends(const ik::LockedArm& locked, const Pose<V>& goal, const V* at) {
+    const ik::Chain& whole = locked.whole;
+    const Posed& tip = whole.tip;
+    Pose<V> out = goal;
+    int last = locked.n_locked;
+    for (int k = 0; k < locked.n_locked && locked.locked_joint[k] < locked.moving[0]; ++k)
+        out = joint_undone(whole, locked.locked_joint[k], at[locked.locked_joint[k]]) * out;
+    if (last == 0 || locked.locked_joint[last - 1] < locked.moving[0]) return out;
+    out = out * fill_pose<V>(inverse(tip));
+    for (; last > 0 && locked.locked_joint[last - 1] > locked.moving[0]; --last)
+        out = out * joint_undone(whole, locked.locked_joint[last - 1], at[locked.locked_joint[last - 1]]);
+    return out * fill_pose<V>(tip);
+}
+
+// The arm with joints held between others at these values. A general one keeps the order of formulations of
+// its typical values: to rank them takes a thousand times as long as to use them.
+inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
+    const ik::Chain chain = locked_chain(locked, at);
+    if (!locked.arm.is_general) return make_arm(chain);
+    ik::Arm arm;
+    arm.has_plan = make_plan(arm.plan, chain);
+    if (arm.has_plan && !arm.plan.idealised) return arm;
+    arm.plan.form.length = characteristic_length(chain);
+    arm.is_general = renumber_general_arm(locked.arm.general, chain, arm.general);
+    return arm;
+}
+
+// Members of what may be a family of an arm that nothing else solves: by descent from configurations all over
+// the joints.
+inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal) {
+    constexpr int starts = 48;
+    ik::Solutions out;
+    out.complete = false;
+    const double length = characteristic_length(chain);
+    for (int k = 0; k < starts && out.count < ik::max_solutions; ++k) {
+        double q[ik::max_joints];
+        spread_configuration(k, chain.n, q);
+        accept_solution(out, chain, goal, length, q, out.count, 60);
+    }
+    classify_solutions(out);
+    return out;
+}
+
+// By the closed form alone where it is sure of itself.
+CSPACE_ONCE ik::Solutions solve_arm_quickly(const ik::Arm& arm, const Posed& goal) {
+    ik::Solutions out;
+    if (arm.has_plan) {
+        double T[16] = {0, 0, 0, goal.t.x, 0, 0, 0, goal.t.y, 0, 0, 0, goal.t.z, 0, 0, 0, 1},
+               q[max_branches * 6];
+        for (int i = 0; i < 3; ++i)
+            for (int j = 0; j < 3; ++j) T[4 * i + j] = goal.R.m[i][j];
+        if (solve_quickly(arm.plan, T, q, out.branch, &out.count) == ik::FastPath::settled) {
+            out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+            for (int k = 0; k < out.count; ++k) {
+                for (int i = 0; i < 6; ++i) out.q[k][i] = q[6 * k + i];
+                out.self_motion[k] = false;
+            }
+            return out;
+        }
+        out.count = 0;
+    }
+    return solve_pose(arm, goal, nullptr);
+}
+
+inline ik::Solutions solve_arm(const ik::Arm& arm, const Posed& goal, const double* unconstrained) {
+    if (!unconstrained && arm.has_plan) return solve_arm_quickly(arm, goal);
+    return is_solvable(arm) ? solve_pose(arm, goal, unconstrained) : solve_by_descent(arm.plan.chain, goal);
+}
+
+// Every solution for the joints that move, the others at their values `at`; idle (null, or of the whole
+// chain): what joints take that the goal leaves free.
+CSPACE_ONCE ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed& goal, const double* at,
+                                       const double* unconstrained) {
+    double rest[ik::max_joints] = {};
+    for (int k = 0; unconstrained && k < locked.n_moving; ++k) rest[k] = unconstrained[locked.moving[k]];
+    if (locked.at_ends)
+        return solve_arm(locked.arm, goal_between_ends(locked, goal, at), unconstrained ? rest : nullptr);
+    return solve_arm(arm_at(locked, at), goal, unconstrained ? rest : nullptr);
+}
+
+// A row of the joints that move, together with the held ones.
+inline void whole_row(const ik::LockedArm& locked, const double* at, const double* row, double* q) {
+    for (int k = 0; k < locked.n_locked; ++k) q[locked.locked_joint[k]] = at[locked.locked_joint[k]];
+    for (int k = 0; k < locked.n_moving; ++k) q[locked.moving[k]] = row[k];
+}
+
+}  // namespace cspace::inline CSPACE_ISA

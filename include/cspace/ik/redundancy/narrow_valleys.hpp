@@ -1,0 +1,180 @@
+// Samples of a curve of configurations, closer where it runs fast: towards folds like the roots of
+// Chebyshev's polynomials, which keeps their steps even; and between two samples no point is nearer to the
+// seed than half of what their distances exceed the way between them (a bound as in branch and bound), so
+// only pairs that could hide a nearer point are divided.
+#pragma once
+
+#include "cspace/ik/redundancy/turning_points.hpp"
+
+namespace cspace {
+
+// Branches stand side by side, so that they are compared on lanes.
+struct CurveSample {
+    double value;
+    unsigned there;  // which branches; the others are zero
+    double q[ik::max_joints][max_branches];
+    double distance[max_branches];
+    int next;  // in the order of values, or −1
+};
+struct CurveSamples {
+    static constexpr int room = 192;
+    int count = 0;
+    CurveSample sample[room];
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+// The sum of the squares of what joints differ by, on four branches; difference(i): of joint i.
+template <class Difference>
+CSPACE_INLINE Pack<4> squared_way(const ik::Redundant& arm, const Difference& difference) {
+    Pack<4> sum = fill<Pack<4>>(0.0);
+    for (int i = 0; i < arm.chain.n; ++i) {
+        const Pack<4> gap = difference(i), way = arm.chain.prismatic[i] ? gap : short_way(gap);
+        sum = mul_add(arm.weight[i] * way, way, sum);
+    }
+    return sum;
+}
+
+// Whether a branch may come nearer than `best` between two neighbours.
+inline bool may_hide(const ik::Redundant& arm, const CurveSample& a, const CurveSample& b, double best) {
+    using V = Pack<4>;
+    constexpr double least_gap = 1e-4, detour = 1.2, short_way_between = 0.15;
+    if (!(b.value - a.value > least_gap)) return false;
+    unsigned hidden = 0;
+    for (int k = 0; k < max_branches; k += 4) {
+        const V way =
+            detour * sqrt(squared_way(arm, [&](int i) { return load<V>(a.q[i] + k) - load<V>(b.q[i] + k); }));
+        const V sum = load<V>(a.distance + k) + load<V>(b.distance + k);
+        hidden |= bits_of(way > short_way_between && sum - way < 2 * best) << k;
+    }
+    return (hidden & a.there & b.there) != 0;
+}
+
+inline void measure_sample(const ik::Redundant& arm, const double* seed, CurveSample& at) {
+    using V = Pack<4>;
+    for (int k = 0; k < max_branches; k += 4) {
+        const V square = squared_way(arm, [&](int i) { return load<V>(at.q[i] + k) - seed[i]; });
+        store(at.distance + k, sqrt(square));
+    }
+}
+
+// Adds the samples at some values, with their distances from the seed. after[k]: the sample that value k
+// follows.
+inline void add_samples(const ik::Redundant& arm, const Sweep& sweep, const double* values, const int* after,
+                        int n, const double* seed, CurveSamples& all) {
+    sweep_values(sweep, values, n, [&](int k, const SweptRows& rows) {
+        const int at = all.count++;
+        CurveSample& made = all.sample[at];
+        made.value = values[k];
+        made.there = 0;
+        for (int i = 0; i < arm.chain.n; ++i)
+            for (int b = 0; b < max_branches; ++b) made.q[i][b] = 0;
+        for (int j = 0; j < rows.count; ++j) {
+            const int b = rows.branch[j];
+            if (b < 0 || b >= max_branches) continue;
+            made.there |= 1u << b;
+            for (int i = 0; i < arm.chain.n; ++i) made.q[i][b] = rows.q[j][i];
+        }
+        measure_sample(arm, seed, made);
+        made.next = -1;
+        if (after && after[k] >= 0) {
+            made.next = all.sample[after[k]].next;
+            all.sample[after[k]].next = at;
+        } else if (at > 0) {
+            all.sample[at - 1].next = at;
+        }
+    });
+}
+
+// Divides until nothing nearer than `best` (or than the nearest sample) can hide.
+inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double best, const double* seed,
+                           CurveSamples& all) {
+    constexpr int most_rounds = 10;
+    for (int round = 0; round < most_rounds; ++round) {
+        double values[CurveSamples::room];
+        int after[CurveSamples::room], n = 0;
+        for (int k = 0; k < all.count; ++k)
+            for (int b = 0; b < max_branches; ++b)
+                if (all.sample[k].there >> b & 1) best = min(best, all.sample[k].distance[b]);
+        for (int k = 0; k < all.count && all.count + n < CurveSamples::room; ++k) {
+            const CurveSample& a = all.sample[k];
+            if (a.next < 0 || !may_hide(arm, a, all.sample[a.next], best)) continue;
+            values[n] = 0.5 * (a.value + all.sample[a.next].value);
+            after[n++] = k;
+        }
+        if (n == 0) return;
+        add_samples(arm, sweep, values, after, n, seed, all);
+    }
+}
+
+// Whether q lies on the way from sample a to sample b of a branch.
+inline bool lies_between(const ik::Chain& chain, const CurveSample& a, const CurveSample& b, int branch,
+                         const double* q) {
+    double along = 0, length2 = 0, off2 = 0, gap[ik::max_joints], way[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) {
+        const bool slides = chain.prismatic[i];
+        const double from = a.q[i][branch], to = b.q[i][branch];
+        gap[i] = slides ? q[i] - from : short_way(q[i] - from);
+        way[i] = slides ? to - from : short_way(to - from);
+        along += gap[i] * way[i];
+        length2 += way[i] * way[i];
+    }
+    const double part = length2 > 0 ? along / length2 : 0;
+    if (part < -0.1 || part > 1.1) return false;
+    for (int i = 0; i < chain.n; ++i) off2 += (gap[i] - part * way[i]) * (gap[i] - part * way[i]);
+    return off2 < 1e-3 * length2;
+}
+
+// Calls visit(q, distance) for the lowest samples: those below their neighbours of the same branch, unless
+// `found` lies beside them.
+template <class Visit>
+inline void lowest_samples(const ik::Chain& chain, const CurveSamples& all, const double* found,
+                           const Visit& visit) {
+    const CurveSample* before = nullptr;
+    for (int k = all.count ? 0 : -1; k >= 0;) {
+        const CurveSample& at = all.sample[k];
+        const CurveSample* beside[2] = {before, at.next >= 0 ? &all.sample[at.next] : nullptr};
+        for (int b = 0; b < max_branches; ++b) {
+            bool wanted = at.there >> b & 1;
+            for (const CurveSample* other : beside)
+                wanted =
+                    wanted && (!other || !(other->there >> b & 1) || at.distance[b] <= other->distance[b]);
+            for (const CurveSample* other : beside)
+                wanted = wanted && !(found && other && other->there >> b & 1 &&
+                                     lies_between(chain, at, *other, b, found));
+            if (!wanted) continue;
+            double q[ik::max_joints];
+            for (int i = 0; i < chain.n; ++i) q[i] = at.q[i][b];
+            visit(q, at.distance[b]);
+        }
+        before = &at;
+        k = at.next;
+    }
+}
+
+// Whether the branches change between neighbours, or there are none.
+inline bool has_changes(const CurveSamples& all) {
+    for (int k = 0; k < all.count; ++k)
+        if (all.sample[k].there != all.sample[0].there || !all.sample[k].there) return true;
+    return false;
+}
+
+// Values between the folds around a window of the circle, ascending; returns how many.
+inline int values_between_folds(const FoldValues& folds, double middle, double half, double* values,
+                                int room) {
+    constexpr int each = 8;
+    double fold[FoldValues::room + 1];
+    const int n = sort_folds(folds, middle - pi, fold);
+    int count = 0;
+    for (int k = 0; k < n && count + each <= room; ++k) {
+        const double from = fold[k], to = fold[k + 1];
+        if (to - from < 1e-9 || to < middle - half || from > middle + half) continue;
+        for (int j = 0; j < each; ++j)
+            values[count++] = from + 0.5 * (to - from) * (1 - std::cos(pi * (j + 0.5) / each));
+    }
+    return count;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,131 @@
+// The configuration on the manifold of a goal that lies nearest to a seed: Newton's method on the distance
+// and the goal together (sequential quadratic programming with exact second derivatives; Nocedal & Wright
+// 2006, chapter 18). Converges quadratically from a start in the right valley.
+#pragma once
+
+#include "cspace/ik/redundancy/tip_jacobian.hpp"
+#include "cspace/math/turn.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// q − seed, turning joints the short way round.
+template <int N = 0, class V>
+CSPACE_INLINE void from_seed(const ik::Chain& chain, const double* seed, const double* weight, const V* q,
+                             V* gap) {
+    const int n = size_or<N>(chain.n);
+    for (int i = 0; i < n; ++i) {
+        const V difference = q[i] - fill<V>(seed[i]);
+        gap[i] = weight[i] * (chain.prismatic[i] ? difference : short_way(difference));
+    }
+}
+
+// H d for the Hessian of the Lagrangian ½ Σ w (q − seed)² − λ · pose(q). The pose's second derivative by q_i
+// and q_j, i ≤ j, is [axis i × column j; ½ axis i × axis j].
+template <int N, class V>
+CSPACE_INLINE void lagrangian_times(const ik::Chain& chain, const TipMotion<V>& motion, const double* weight,
+                                    const V* lambda, const V* d, V* out) {
+    const int n = size_or<N>(chain.n);
+    const Vec3<V> force = {lambda[0], lambda[1], lambda[2]};
+    const Vec3<V> moment = {0.5 * lambda[3], 0.5 * lambda[4], 0.5 * lambda[5]};
+    // force · (h_i × v_j) = v_j · (force × h_i), so that one running sum serves the rows above and one those
+    // below.
+    const V zero = fill<V>(0.0);
+    Vec3<V> lever[ik::max_joints], twist[ik::max_joints], turned = {zero, zero, zero}, twisted = turned;
+    for (int j = 0; j < n; ++j) {
+        const V* c = motion.column[j];
+        const Vec3<V> v = {c[0], c[1], c[2]}, h = {c[3], c[4], c[5]};
+        lever[j] = cross(force, h);
+        twist[j] = cross(moment, h);
+        out[j] = weight[j] * d[j] - dot(v, turned) - dot(h, twisted);
+        turned = turned + d[j] * lever[j];
+        twisted = twisted + d[j] * twist[j];
+    }
+    Vec3<V> linear = {zero, zero, zero}, angular = linear;
+    for (int i = n - 1; i >= 0; --i) {
+        const V* c = motion.column[i];
+        const Vec3<V> v = {c[0], c[1], c[2]}, h = {c[3], c[4], c[5]};
+        linear = linear + d[i] * v;
+        out[i] = out[i] - dot(linear, lever[i]) - dot(angular, twist[i]);
+        angular = angular + d[i] * h;
+    }
+}
+
+inline constexpr int max_free = ik::max_joints - 1;
+
+// Solves H x = b for the leading k × k of a symmetric H, by Cholesky's factors; false in lanes where H is not
+// well positive.
+template <class V>
+CSPACE_INLINE mask_of<V> solve_positive(V (&H)[max_free][max_free], int k, V* x) {
+    mask_of<V> good = fill<V>(1.0) > 0.0;
+    for (int i = 0; i < k; ++i) {
+        for (int j = 0; j <= i; ++j) {
+            V rest = H[i][j];
+            for (int m = 0; m < j; ++m) rest = rest - H[i][m] * H[j][m];
+            if (i != j) {
+                H[i][j] = rest / H[j][j];
+                continue;
+            }
+            const mask_of<V> positive = rest > 0.05;
+            good = good && positive;
+            H[i][i] = sqrt(select(positive, rest, fill<V>(1.0)));
+        }
+        for (int m = 0; m < i; ++m) x[i] = x[i] - H[i][m] * x[m];
+        x[i] = x[i] / H[i][i];
+    }
+    for (int i = k - 1; i >= 0; --i) {
+        for (int m = i + 1; m < k; ++m) x[i] = x[i] - H[m][i] * x[m];
+        x[i] = x[i] / H[i][i];
+    }
+    return good;
+}
+
+// One step of q towards the nearest point; returns the largest change of a joint asked for. motion, lambda:
+// what was found before the step, and its multipliers.
+template <int N, class V>
+CSPACE_NOINLINE V step_to_nearest(const ik::Chain& chain, int rank, const Pose<V>& goal, double length,
+                                  const double* seed, const double* weight, V* q, TipMotion<V>& motion,
+                                  V (&lambda)[6]) {
+    constexpr double stride = 0.4;
+    constexpr int room = N ? N : ik::max_joints, most_free = N ? N - 6 : max_free;
+    const int n = size_or<N>(chain.n), free = N ? N - 6 : n - rank;
+    SplitJacobian<V> split;
+    tip_motion<N>(chain, goal, length, q, motion);
+    split_jacobian<N>(motion, n, rank, split);
+    V gap[room], step[room], bent[room], along[most_free][room];
+    V newton[max_free], plain[max_free], H[max_free][max_free], G[max_free][max_free];
+    from_seed<N>(chain, seed, weight, q, gap);
+    multipliers<N>(split, n, gap, lambda);
+    shortest_step<N>(split, n, motion.error, step);
+    for (int k = 0; k < free; ++k) {
+        free_direction<N>(split, n, k, along[k]);
+        lagrangian_times<N>(chain, motion, weight, lambda, along[k], bent);
+        newton[k] = plain[k] = fill<V>(0.0);
+        for (int i = 0; i < n; ++i) {
+            newton[k] = newton[k] - along[k][i] * gap[i] - bent[i] * step[i];
+            plain[k] = plain[k] - along[k][i] * (gap[i] + weight[i] * step[i]);
+        }
+        for (int m = 0; m <= k; ++m) {
+            H[k][m] = G[k][m] = fill<V>(0.0);
+            for (int i = 0; i < n; ++i) {
+                H[k][m] = mul_add(along[m][i], bent[i], H[k][m]);
+                G[k][m] = mul_add(weight[i] * along[m][i], along[k][i], G[k][m]);
+            }
+        }
+        G[k][k] = G[k][k] + 0.06;  // joints that do not count leave directions undecided
+    }
+    const mask_of<V> curved = solve_positive(H, free, newton);
+    if (!all(curved)) {
+        solve_positive(G, free, plain);
+        for (int k = 0; k < free; ++k) newton[k] = select(curved, newton[k], plain[k]);
+    }
+    V largest = fill<V>(0.0);
+    for (int i = 0; i < n; ++i) {
+        for (int k = 0; k < free; ++k) step[i] = mul_add(newton[k], along[k][i], step[i]);
+        largest = max(largest, abs(step[i]));
+    }
+    const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
+    for (int i = 0; i < n; ++i) q[i] = mul_add(keep, step[i], q[i]);
+    return largest;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,296 @@
+// A configuration that Newton's method found close to a seed, and the proof that none is nearer.
+//
+// The goal is met where the frames of the two halves of the arm agree: where f(q) = 0 for the difference of
+// their points and half the sum of the cross products of their axes. Let a be such a q, d = |a − s| its
+// distance from the seed s, and the way from s to a square to all that keeps f: a − s = Jᵀ λ. In place of f's
+// last three the nine differences of the frames' entries serve, weighted with λ; the weighted sum φ is zero
+// at every solution b, has the gradient Jᵀ λ at a, and no derivative that couples the halves. So with x = b −
+// a
+//   0 = φ(b) − φ(a) = (a − s) · x + ½ xᵀ φ″ x + third order,
+//   |b − s|² = d² + 2 (a − s) · x + |x|² ≥ d² + xᵀ (1 − φ″) x − third |x|³ / 3.
+// A nearer b would have |x| ≤ 2 d: where 1 − φ″ − ⅔ d · third is positive definite there is none, on no
+// branch.
+#pragma once
+
+#include "cspace/ik/redundancy/nearest.hpp"
+#include "cspace/ik/redundancy/split_chain.hpp"
+#include "cspace/tolerances.hpp"
+
+namespace cspace {
+
+// What the two halves of an arm do at a configuration, one on each lane; the joints as in ik::Halves.
+struct HalvesMotion {
+    using V = Pack<2>;
+    Vec3<V> axis[ik::Halves::longest], linear[ik::Halves::longest];  // of each joint, at the middle
+    double error[6];                                                 // what is missing between the frames
+    double aligned;  // trace of the rotation between them: 3 at the goal
+};
+
+// L D Lᵀ of 1 − φ″, a block for each half.
+struct HalvesFactor {
+    using V = Pack<2>;
+    V below[ik::Halves::longest][ik::Halves::longest], inverse[ik::Halves::longest];
+};
+
+// A configuration on the way to the nearest one; joints as in ik::Halves.
+struct HalvesPoint {
+    using V = Pack<2>;
+    V q[ik::Halves::longest], gap[ik::Halves::longest];  // gap: from the seed
+    double lambda[6] = {};
+    V bent[ik::Halves::longest][ik::Halves::longest];  // 1 − φ″ before the last step
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+template <int n, class V>
+CSPACE_INLINE Vec3<V> load_vector(const double (&values)[n][2]) {
+    return {load<V>(values[0]), load<V>(values[1]), load<V>(values[2])};
+}
+template <class V>
+CSPACE_INLINE Mat3<V> load_matrix(const double (&values)[9][2]) {
+    Mat3<V> out;
+    for (int j = 0; j < 9; ++j) out.m[j / 3][j % 3] = load<V>(values[j]);
+    return out;
+}
+
+template <class V>
+CSPACE_INLINE Vec3d vector_of_half(const Vec3<V>& a, int half) {
+    return {lane(a.x, half), lane(a.y, half), lane(a.z, half)};
+}
+
+// 1 for the half that moves with its joints, −1 for the one that moves against them.
+template <class V>
+CSPACE_INLINE V there_and_back() {
+    V out = fill<V>(1.0);
+    set_lane(out, 1, -1.0);
+    return out;
+}
+
+// Sines and cosines of all joints, two packs of four angles.
+template <class V>
+CSPACE_INLINE void turns_of(const ik::Halves& arm, const V* q, V* s, V* c) {
+    double angle[8], sine[8], cosine[8];
+    for (int k = 0; k < 4; ++k) store(angle + 2 * k, load<V>(arm.turning[k]) * q[k]);
+    for (int k = 0; k < 8; k += 4) {
+        Pack<4> four[2];
+        sincos(load<Pack<4>>(angle + k), four[0], four[1]);
+        store(sine + k, four[0]);
+        store(cosine + k, four[1]);
+    }
+    for (int k = 0; k < 4; ++k) {
+        s[k] = there_and_back<V>() * load<V>(sine + 2 * k);
+        c[k] = load<V>(cosine + 2 * k);
+    }
+}
+
+CSPACE_INLINE void move_halves(const ik::Halves& arm, const Posed& goal, double per_length, const Pack<2>* q,
+                               HalvesMotion& out) {
+    using V = Pack<2>;
+    V s[4], c[4];
+    turns_of(arm, q, s, c);
+    Pose<V> T = fill_pose<V>(identity_pose());
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) set_lane(T.R.m[i][j], 1, goal.R.m[i][j]);
+    set_lane(T.t.x, 1, per_length * goal.t.x);
+    set_lane(T.t.y, 1, per_length * goal.t.y);
+    set_lane(T.t.z, 1, per_length * goal.t.z);
+    Vec3<V> point[4];
+    for (int k = 0; k < 4; ++k) {
+        T.t = T * load_vector<3, V>(arm.at[k]);
+        T.R = T.R * load_matrix<V>(arm.frame[k]);
+        const Vec3<V> x = column(T.R, 0), y = column(T.R, 1), z = column(T.R, 2);
+        out.axis[k] = z;
+        if (arm.slides) T.t = T.t + (there_and_back<V>() * load<V>(arm.sliding[k]) * q[k]) * z;
+        point[k] = T.t;
+        T.R = from_columns(c[k] * x + s[k] * y, c[k] * y - s[k] * x, z);
+    }
+    const Vec3<V> middle = T * load_vector<3, V>(arm.middle);
+    const Mat3<V> meeting = T.R * load_matrix<V>(arm.meeting);
+    for (int k = 0; k < 4; ++k) {
+        const V turning = load<V>(arm.turning[k]);
+        out.linear[k] = turning * cross(out.axis[k], middle - point[k]);
+        if (arm.slides) out.linear[k] = out.linear[k] + load<V>(arm.sliding[k]) * out.axis[k];
+        out.axis[k] = turning * out.axis[k];
+    }
+    const Vec3d gap = vector_of_half(middle, 1) - vector_of_half(middle, 0);
+    Vec3d turn = {0, 0, 0};
+    out.aligned = 0;
+    for (int j = 0; j < 3; ++j) {
+        const Vec3d here = vector_of_half(column(meeting, j), 0),
+                    there = vector_of_half(column(meeting, j), 1);
+        turn = turn + 0.5 * cross(here, there);
+        out.aligned += dot(here, there);
+    }
+    const double error[6] = {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
+    for (int j = 0; j < 6; ++j) out.error[j] = error[j];
+}
+
+// 1 − φ″ for the weights lambda. The entry of joints a ≤ b of a half, a the one farther from the middle, is
+// force · (axis a × linear b) + ½ moment · (axis a × axis b), and the other way round for the half that moves
+// against its joints.
+CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda, Pack<2> (&bent)[4][4]) {
+    using V = Pack<2>;
+    const V way = there_and_back<V>();
+    const Vec3<V> force = {lambda[0] * way, lambda[1] * way, lambda[2] * way};
+    const V half = 0.5 * way;
+    const Vec3<V> moment = {lambda[3] * half, lambda[4] * half, lambda[5] * half};
+    for (int a = 0; a < 4; ++a) {
+        const Vec3<V> lever = cross(force, motion.axis[a]), twist = cross(moment, motion.axis[a]);
+        bent[a][a] = 1.0 - dot(lever, motion.linear[a]);
+        for (int b = a + 1; b < 4; ++b)
+            bent[b][a] = -dot(lever, motion.linear[b]) - dot(twist, motion.axis[b]);
+    }
+}
+
+// L D Lᵀ of bent − less on the diagonal; false unless it is positive definite by `margin`.
+CSPACE_INLINE bool factor_halves(const Pack<2> (&bent)[4][4], double less, double margin, HalvesFactor& out) {
+    using V = Pack<2>;
+    V least = fill<V>(1.0);
+    for (int b = 0; b < 4; ++b) {
+        V row[4];
+        V pivot = bent[b][b] - less;
+        for (int a = 0; a < b; ++a) {
+            row[a] = bent[b][a];
+            for (int m = 0; m < a; ++m) row[a] = row[a] - row[m] * out.below[a][m];
+            out.below[b][a] = row[a] * out.inverse[a];
+            pivot = pivot - row[a] * out.below[b][a];
+        }
+        least = min(least, pivot);
+        out.inverse[b] = 1.0 / pivot;
+    }
+    return all(least > margin);
+}
+
+// Solves S x = b by L D Lᵀ; false unless S is positive definite.
+CSPACE_INLINE bool solve_six(double (&S)[6][6], double* x) {
+    double inverse[6];
+    bool positive = true;
+    for (int k = 0; k < 6; ++k) {
+        positive = positive && S[k][k] > 0;
+        inverse[k] = 1 / S[k][k];
+        for (int i = k + 1; i < 6; ++i) {
+            const double part = S[i][k] * inverse[k];
+            for (int j = i; j < 6; ++j) S[j][i] -= part * S[j][k];
+            x[i] -= part * x[k];
+        }
+    }
+    for (int k = 5; k >= 0; --k) {
+        for (int j = k + 1; j < 6; ++j) x[k] -= S[j][k] * x[j];
+        x[k] *= inverse[k];
+    }
+    return positive;
+}
+
+// One step of Newton's method for the nearest point and its weights; returns the largest change of a joint
+// asked for, and NaN where there is no such step.
+CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
+    using V = Pack<2>;
+    constexpr double flat = 0.05;
+    HalvesFactor factor;
+    bend_halves(motion, at.lambda, at.bent);
+    if (!factor_halves(at.bent, 0, flat, factor)) {
+        for (int b = 0; b < 4; ++b)
+            for (int a = 0; a <= b; ++a) at.bent[b][a] = fill<V>(a == b);
+        factor_halves(at.bent, 0, flat, factor);
+    }
+    // With y = L⁻¹ [Jᵀ, gap]: J (1 − φ″)⁻¹ Jᵀ λ = error + J (1 − φ″)⁻¹ gap.
+    V y[4][7], sum[6][7];
+    for (int b = 0; b < 4; ++b) {
+        const Vec3<V>&v = motion.linear[b], &h = motion.axis[b];
+        const V row[7] = {v.x, v.y, v.z, h.x, h.y, h.z, at.gap[b]};
+        for (int k = 0; k < 7; ++k) {
+            y[b][k] = row[k];
+            for (int a = 0; a < b; ++a) y[b][k] = y[b][k] - factor.below[b][a] * y[a][k];
+        }
+        for (int k = 0; k < 6; ++k) {
+            const V scaled = factor.inverse[b] * y[b][k];
+            for (int j = k; j < 7; ++j)
+                sum[k][j] = b ? mul_add(scaled, y[b][j], sum[k][j]) : scaled * y[b][j];
+        }
+    }
+    double S[6][6];
+    for (int k = 0; k < 6; ++k) {
+        for (int j = k; j < 6; ++j) S[j][k] = lane(sum[k][j], 0) + lane(sum[k][j], 1);
+        at.lambda[k] = motion.error[k] + lane(sum[k][6], 0) + lane(sum[k][6], 1);
+    }
+    if (!solve_six(S, at.lambda)) return std::numeric_limits<double>::quiet_NaN();
+    V step[4], largest = fill<V>(0.0);
+    for (int b = 3; b >= 0; --b) {
+        V along = -y[b][6];
+        for (int k = 0; k < 6; ++k) along = mul_add(y[b][k], fill<V>(at.lambda[k]), along);
+        step[b] = along * factor.inverse[b];
+        for (int m = b + 1; m < 4; ++m) step[b] = step[b] - factor.below[m][b] * step[m];
+        largest = max(largest, abs(step[b]));
+        at.q[b] = at.q[b] + step[b];
+        at.gap[b] = at.gap[b] + step[b];
+    }
+    return max(lane(largest, 0), lane(largest, 1));
+}
+
+// Whether nothing is nearer to the seed than the point found. Third derivatives: see halves_at; a slide may
+// be as far out as at the seed and beyond.
+CSPACE_INLINE bool is_proven_nearest(const ik::Halves& arm, const HalvesPoint& at) {
+    using V = Pack<2>;
+    constexpr double margin = 0.02;  // what the last step, and rounding, may change
+    V square = fill<V>(0.0);
+    for (int k = 0; k < 4; ++k) square = mul_add(at.gap[k], at.gap[k], square);
+    const double distance = std::sqrt(lane(square, 0) + lane(square, 1));
+    const double* l = at.lambda;
+    const double force = norm(Vec3d{l[0], l[1], l[2]}), moment = norm(Vec3d{l[3], l[4], l[5]});
+    V reach = load<V>(arm.reach);
+    for (int k = 0; k < 4 && arm.slides; ++k)
+        reach = reach + load<V>(arm.slid[k]) * (abs(at.q[k]) + 2 * distance);
+    const V third = force * reach + moment * load<V>(arm.turn);
+    const double most = max(lane(third, 0), lane(third, 1));
+    HalvesFactor factor;
+    return factor_halves(at.bent, most * distance * (2.0 / 3.0) + margin, 0, factor);
+}
+
+CSPACE_INLINE void put_joints(const ik::Halves& arm, const HalvesPoint& at, double* q) {
+    for (int k = 0; k < 4; ++k)
+        for (int half = 0; half < 2; ++half)
+            if (arm.joint[k][half] >= 0) q[arm.joint[k][half]] = lane(at.q[k], half);
+}
+CSPACE_INLINE double missing_between(const HalvesMotion& motion) {
+    double most = 0;
+    for (const double e : motion.error) most = max(most, std::fabs(e));
+    return most;
+}
+
+// Newton's method from a seed close to the manifold, and the proof; false where either fails. All joints must
+// count alike.
+CSPACE_INLINE bool nearest_by_proof(const ik::Halves& arm, const Posed& goal, double length,
+                                    const double* seed, double* q) {
+    using V = Pack<2>;
+    constexpr double close = 0.25, settled = 1e-6, left = 1e-10, there = 1e-14;
+    constexpr int most_steps = 7;
+    HalvesPoint at;
+    for (int k = 0; k < 4; ++k) {
+        at.gap[k] = at.q[k] = fill<V>(0.0);
+        for (int half = 0; half < 2; ++half)
+            if (arm.joint[k][half] >= 0) set_lane(at.q[k], half, seed[arm.joint[k][half]]);
+    }
+    HalvesMotion motion;
+    bool done = false;
+    double before = 1;
+    for (int k = 0; k < most_steps && !done; ++k) {
+        move_halves(arm, goal, 1 / length, at.q, motion);
+        if (!(motion.aligned > 2)) return false;
+        if (k == 0 && missing_between(motion) < there) {
+            put_joints(arm, at, q);  // the seed itself
+            return true;
+        }
+        const double largest = step_halves(motion, at);
+        if (!(largest < close)) return false;
+        done = largest <= settled && largest * largest <= left * before;  // each step is less of the last one
+        before = largest;
+    }
+    if (!done || !is_proven_nearest(arm, at)) return false;
+    move_halves(arm, goal, 1 / length, at.q, motion);
+    put_joints(arm, at, q);
+    return missing_between(motion) < tolerance::reached && motion.aligned > 2;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,267 @@
+// The nearest configuration of the whole manifold: coarse samples over the held joints propose, Newton's
+// method on the distance settles. A joint that counts cannot be farther away than the best found so far,
+// which narrows the search from a seed close by to a few samples.
+#pragma once
+
+#include "cspace/ik/redundancy/narrow_valleys.hpp"
+#include "cspace/ik/redundancy/nearest_proof.hpp"
+#include "cspace/ik/redundancy/turning_points.hpp"
+
+namespace cspace {
+
+// The best starts so far, by their distance from the seed.
+struct Starts {
+    static constexpr int room = 12;
+    int count = 0;
+    double q[room][ik::max_joints];
+    double distance[room];
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+inline double distance_from_seed(const ik::Redundant& arm, const double* seed, const double* q) {
+    double gap[ik::max_joints], sum = 0;
+    from_seed(arm.chain, seed, arm.weight, q, gap);
+    for (int i = 0; i < arm.chain.n; ++i) sum += gap[i] * gap[i];
+    return std::sqrt(sum);
+}
+
+// Adds a start, in place of the worst where there is no room.
+inline void add_start(const ik::Redundant& arm, Starts& starts, const double* q, double distance) {
+    int at = starts.count;
+    if (at == Starts::room) {
+        at = 0;
+        for (int k = 1; k < Starts::room; ++k)
+            if (starts.distance[k] > starts.distance[at]) at = k;
+        if (distance >= starts.distance[at]) return;
+    } else {
+        ++starts.count;
+    }
+    for (int i = 0; i < arm.chain.n; ++i) starts.q[at][i] = q[i];
+    starts.distance[at] = distance;
+}
+
+// Keeps a start unless it is worse than all, or shares the valley of a better one.
+inline void keep_start(const ik::Redundant& arm, Starts& starts, const double* q, double distance) {
+    constexpr double valley = 0.4;
+    if (!is_allowed(arm, q)) return;
+    for (int k = 0; k < starts.count; ++k) {
+        if (joint_gap(arm.chain, starts.q[k], q) > valley) continue;
+        if (distance >= starts.distance[k]) return;
+        for (int i = 0; i < arm.chain.n; ++i) starts.q[k][i] = q[i];
+        starts.distance[k] = distance;
+        return;
+    }
+    add_start(arm, starts, q, distance);
+}
+
+inline constexpr double settled_step = 1e-6;  // squared it is the error that Newton's method leaves
+inline constexpr int most_nearest_steps = 25;
+
+// What Newton's method has settled on so far.
+struct Nearest {
+    double distance = std::numeric_limits<double>::infinity();
+    double q[ik::max_joints];
+};
+
+// Newton's method on starts abreast, as many as V has lanes; the best that settles is kept. rank: of the
+// Jacobian along what they lead to.
+template <int N, class V>
+inline void settle_abreast(const ik::Redundant& arm, int rank, const Posed& goal, const double* seed,
+                           const double* const* starts, int count, Nearest& best) {
+    V q[ik::max_joints], step = fill<V>(1.0);
+    for (int i = 0; i < arm.chain.n; ++i)
+        for (int l = 0; l < Lanes<V>::count; ++l) set_lane(q[i], l, starts[l < count ? l : 0][i]);
+    const Pose<V> goals = fill_pose<V>(goal);
+    TipMotion<V> motion;
+    V lambda[6];
+    for (int k = 0; k < most_nearest_steps && any(step > settled_step); ++k)
+        step = step_to_nearest<N>(arm.chain, rank, goals, arm.length, seed, arm.weight, q, motion, lambda);
+    tip_motion<N>(arm.chain, goals, arm.length, q, motion);
+    double row[ik::max_joints];
+    for (int l = 0; l < count; ++l) {
+        double error = 0;
+        for (const V& e : motion.error) error = max(error, std::fabs(lane(e, l)));
+        if (!(lane(step, l) <= settled_step) || !(error < tolerance::reached) ||
+            !(lane(motion.aligned, l) > 2))
+            continue;
+        for (int i = 0; i < arm.chain.n; ++i) row[i] = lane(q[i], l);
+        if (!is_allowed(arm, row)) continue;
+        const double distance = distance_from_seed(arm, seed, row);
+        if (!(distance < best.distance)) continue;
+        best.distance = distance;
+        for (int i = 0; i < arm.chain.n; ++i) best.q[i] = row[i];
+    }
+}
+
+// Abreast where the rank is full: which coordinates of a pose say most differs from start to start.
+inline void settle_all(const ik::Redundant& arm, const Posed& goal, const double* seed,
+                       const double* const* starts, int count, Nearest& best) {
+    const bool full = arm.rank == 6;
+    const int lanes = full ? 4 : 1;
+    const auto settle = !full              ? settle_abreast<0, double>
+                        : arm.chain.n == 7 ? settle_abreast<7, Pack<4>>
+                                           : settle_abreast<0, Pack<4>>;
+    for (int first = 0; first < count; first += lanes)
+        settle(arm, arm.rank, goal, seed, starts + first, min(lanes, count - first), best);
+}
+
+// The starts from which a valley may lead below the best one; `also`: one more, on the manifold or not.
+inline void settle_starts(const ik::Redundant& arm, const Posed& goal, const double* seed,
+                          const Starts& starts, const double* also, Nearest& best) {
+    const double* chosen[Starts::room + 1];
+    int count = 0;
+    double nearest = best.distance;
+    if (also) chosen[count++] = also;
+    for (int k = 0; k < starts.count; ++k) nearest = min(nearest, starts.distance[k]);
+    for (int k = 0; k < starts.count; ++k)
+        if (starts.distance[k] <= 1.5 * nearest + 0.2) chosen[count++] = starts.q[k];
+    settle_all(arm, goal, seed, chosen, count, best);
+}
+
+// From the seed and from two places beside it along the curve, about as far off as the curve is from the
+// seed: beside a singularity it doubles back. Returns how far off.
+inline double settle_around(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
+    const int n = arm.chain.n;
+    TipMotion<double> motion;
+    SplitJacobian<double> split;
+    double step[ik::max_joints], along[ik::max_joints], beside[3][ik::max_joints];
+    tip_motion<0>(arm.chain, goal, arm.length, seed, motion);
+    split_jacobian<0>(motion, n, arm.rank, split);
+    shortest_step<0>(split, n, motion.error, step);
+    free_direction<0>(split, n, 0, along);
+    const double off = std::sqrt(dot_n(step, step, n)), far = min(0.5, 1.5 * off);
+    const double* starts[4] = {seed, beside[0], beside[1], beside[2]};
+    for (int k = 0; k < 3; ++k)
+        for (int i = 0; i < n; ++i)
+            beside[k][i] = seed[i] + (k == 0 ? far : k == 1 ? -far : 2 * far) * along[i];
+    settle_all(arm, goal, seed, starts, 4, best);
+    return off;
+}
+
+// The lowest samples of a curve whose closed form runs on lanes, within a window of the parameter.
+inline void sample_window(const ik::Redundant& arm, const Sweep& sweep, const double* seed,
+                          const double* values, int count, double window, const Nearest& best,
+                          Starts& starts) {
+    CurveSamples samples;
+    add_samples(arm, sweep, values, nullptr, count, seed, samples);
+    if (has_changes(samples)) {
+        const FoldValues folds = fold_values(arm, sweep);
+        double between[CurveSamples::room];
+        const double at = seed[sweep.parameter];
+        const int n = values_between_folds(folds, at, window, between, CurveSamples::room - 64);
+        if (n > 0) {
+            samples.count = 0;
+            add_samples(arm, sweep, between, nullptr, n, seed, samples);
+        }
+    }
+    divide_samples(arm, sweep, best.distance, seed, samples);
+    lowest_samples(arm.chain, samples, std::isfinite(best.distance) ? best.q : nullptr,
+                   [&](const double* q, double d) { add_start(arm, starts, q, d); });
+}
+
+// One joint to spare: from the seed itself, then from its values around the seed as far as the best solution
+// leaves room.
+inline void nearest_of_curve(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
+    constexpr double spacing = 0.1;
+    constexpr int most = 64;
+    const int p = arm.locked.locked_joint[0];
+    const bool slides = arm.chain.prismatic[p];
+    const Domain domain = domain_of(arm, p, goal);
+    const double far = slides ? max(domain.upper - seed[p], seed[p] - domain.lower) : pi;
+    const double off = settle_around(arm, goal, seed, best);
+    const double window = arm.weight[p] > 0 ? min(best.distance, far) : far;
+    const Sweep sweep = make_sweep(arm.locked, p, goal, seed);
+    const double unit = slides ? 2 * far / most : spacing;
+    const int count = int(max(4.0, min(double(most), std::ceil(2 * window / unit))));
+    double values[most];
+    for (int k = 0; k < count; ++k) values[k] = seed[p] + window * ((2 * k + 1.0) / count - 1);
+    Starts starts;
+    if (sweep.on_lanes && !slides) {
+        sample_window(arm, sweep, seed, values, count, window, best, starts);
+    } else {
+        sweep_values(sweep, values, count, [&](int, const SweptRows& rows) {
+            for (int k = 0; k < rows.count; ++k)
+                keep_start(arm, starts, rows.q[k], distance_from_seed(arm, seed, rows.q[k]));
+        });
+    }
+    settle_starts(arm, goal, seed, starts, nullptr, best);
+    // Close by there is more than a curve where the tip cannot move as it should: axes in line, say.
+    if (best.distance > 3 * off) settle_abreast<0, double>(arm, arm.rank - 1, goal, seed, &seed, 1, best);
+}
+
+// More joints to spare: the held ones at the seed, and spread around it ever farther.
+inline void nearest_of_surface(const ik::Redundant& arm, const Posed& goal, const double* seed,
+                               Nearest& best) {
+    constexpr int most = 48;
+    const ik::LockedArm& locked = arm.locked;
+    Starts starts;
+    double at[ik::max_joints], row[ik::max_joints], spread[ik::max_joints];
+    for (int k = 0; k < most; ++k) {
+        spread_configuration(k, arm.chain.n, spread);
+        for (int i = 0; i < arm.chain.n; ++i) {
+            const double reach = arm.chain.prismatic[i] ? arm.length / pi : 1;
+            const double part = arm.weight[i] > 0 ? k / (most - 1.0) : (k > 0);
+            at[i] = seed[i] + part * reach * spread[i];
+        }
+        const ik::Solutions found = solve_locked(locked, goal, at, seed);
+        for (int j = 0; j < found.count; ++j) {
+            whole_row(locked, at, found.q[j], row);
+            keep_start(arm, starts, row, distance_from_seed(arm, seed, row));
+        }
+        if (k >= 12 && starts.count == Starts::room) break;
+    }
+    settle_starts(arm, goal, seed, starts, seed, best);
+}
+
+// By descent from configurations spread around the seed, where no value of the held joints led anywhere.
+inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, const double* seed,
+                               Nearest& best) {
+    constexpr int most = 32;
+    constexpr double on_floor = 1e-5;
+    Starts starts;
+    double q[ik::max_joints];
+    for (int k = 0; k < most; ++k) {
+        spread_configuration(k, arm.chain.n, q);
+        for (int i = 0; i < arm.chain.n; ++i)
+            q[i] = seed[i] + (arm.chain.prismatic[i] ? arm.length / pi : k / (most - 1.0)) * q[i];
+        PoseError error;
+        double left = refine(arm.chain, goal, arm.length, q, error);
+        // On the floor of a valley that rounded axes have made: from there Newton's method goes along it.
+        if (left > tolerance::reached && left < on_floor)
+            left = refine(arm.chain, goal, arm.length, q, error);
+        if (left <= tolerance::reached) keep_start(arm, starts, q, distance_from_seed(arm, seed, q));
+    }
+    settle_starts(arm, goal, seed, starts, nullptr, best);
+    for (int k = 0; k < starts.count; ++k) {  // at least a solution, where Newton's method did not settle
+        if (!(starts.distance[k] < best.distance) || !is_allowed(arm, starts.q[k])) continue;
+        best.distance = starts.distance[k];
+        for (int i = 0; i < arm.chain.n; ++i) best.q[i] = starts.q[k][i];
+    }
+}
+
+// False where nothing reaches the goal. q: turning joints in (−π, π].
+inline bool nearest_configuration(const ik::Redundant& arm, const Posed& goal, const double* seed,
+                                  double* q) {
+    if (arm.halves.exist && nearest_by_proof(arm.halves, goal, arm.length, seed, q)) {
+        for (int i = 0; i < arm.chain.n; ++i)
+            if (!arm.chain.prismatic[i]) q[i] = wrap_once(short_way(q[i]));
+        return true;
+    }
+    Nearest best;
+    if (rank_of(arm.locked.arm) > 0 && arm.redundancy_degree > 0) {
+        if (arm.redundancy_degree == 1)
+            nearest_of_curve(arm, goal, seed, best);
+        else
+            nearest_of_surface(arm, goal, seed, best);
+    }
+    if (!std::isfinite(best.distance)) nearest_by_descent(arm, goal, seed, best);
+    if (!std::isfinite(best.distance)) return false;
+    for (int i = 0; i < arm.chain.n; ++i)
+        q[i] = arm.chain.prismatic[i] ? best.q[i] : wrap_once(short_way(best.q[i]));
+    return true;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,225 @@
+// Families that cross those already found: along a curve of configurations that keep the tip, the arm may
+// come to one from which it can leave another way (a wrist that straightens while the shoulder turns).
+#pragma once
+
+#include "cspace/ik/general/representatives.hpp"
+#include "cspace/ik/near_singular.hpp"
+#include "cspace/ik/self_motion/continuation.hpp"
+#include "cspace/ik/self_motion/self_motion.hpp"
+
+namespace cspace::ik {
+
+// What was seen of the hold on all directions but the family's own while one curve was followed.
+struct CurveMargin {
+    static constexpr int most = 6;
+    int crossings = 0;
+    double crossing[most][max_joints] = {}, along[most][max_joints] = {};
+    bool wide = false;   // more than one freedom all along
+    bool whole = false;  // followed to its ends, with room for all crossings
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+// The least singular value but for the family's own.
+inline double margin_at(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q) {
+    PoseError at;
+    measure_constrained(chain, constraint, q, at);
+    double least = 1e300, second = 1e300;
+    for (int i = 0; i < chain.n; ++i) {
+        const double s = at.jacobian.sigma[i];
+        if (s < least)
+            second = least, least = s;
+        else if (s < second)
+            second = s;
+    }
+    return second;
+}
+
+// Whether the family only rolls a spherical wrist or shoulder that the other three joints hold by its centre:
+// then nothing crosses it.
+inline bool only_rolls(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+                       const double* direction) {
+    constexpr double moving = 1e-9, firm = 1e-3, together = 1e-9;
+    if (chain.n != 6) return false;
+    int first = 6, last = -1;
+    for (int i = 0; i < 6; ++i)
+        if (std::fabs(direction[i]) > moving) first = last < 0 ? i : first, last = i;
+    if (last - first != 2 || std::fabs(direction[first + 1]) > moving || (first != 0 && first != 3))
+        return false;
+    Vec3d axis[6], point[6];
+    Posed T = identity_pose();
+    for (int i = 0; i < 6; ++i) {
+        if (chain.prismatic[i]) return false;
+        axis[i] = T.R * chain.axis[i];
+        point[i] = T * chain.point[i];
+        T = T * joint_motion(chain, i, q[i]);
+    }
+    const Vec3d &a = axis[first], &b = axis[first + 1];
+    const CommonNormal normal = common_normal(a, point[first], b, point[first + 1], false, point[first]);
+    const Vec3d centre = normal.from;
+    for (int i = first; i <= last; ++i)
+        if (norm(cross(axis[i], centre - point[i])) > together * constraint.length) return false;
+    const int other = 3 - first;
+    const auto lever = [&](int i) { return cross(axis[i], centre - point[i]); };
+    const double volume = dot(lever(other), cross(lever(other + 1), lever(other + 2)));
+    return norm(cross(a, b)) > firm &&
+           std::fabs(volume) > firm * constraint.length * constraint.length * constraint.length;
+}
+
+// Follows the family through q and notes where other curves cross it.
+inline ik::CurveMargin follow_margin(const ik::Chain& chain, const ik::TipConstraint& constraint,
+                                     const double* q, const double* direction, int& steps_left) {
+    constexpr double crossed = 1e-3, free = 1e-6, far_enough = 0.3;
+    ik::CurveMargin out;
+    double before[ik::max_joints] = {}, along[ik::max_joints] = {}, margin[2] = {0, 0};
+    double loose = 0;  // how far it ran with more than one freedom
+    int seen = 0, last_way = 0;
+    bool fits = true;
+    const auto visit = [&](int way, const double* at, const double* t) {
+        const double here = margin_at(chain, constraint, at);
+        if (way != last_way) seen = 0;
+        const bool least = seen > 1 && margin[1] < crossed && margin[1] <= margin[0] && margin[1] < here;
+        fits = fits && !(least && out.crossings == ik::CurveMargin::most);
+        if (least && fits) {
+            for (int i = 0; i < chain.n; ++i) {
+                out.crossing[out.crossings][i] = before[i];
+                out.along[out.crossings][i] = along[i];
+            }
+            ++out.crossings;
+        }
+        if (seen > 0 && here < free && margin[1] < free) loose += joint_distance(chain, at, before);
+        for (int i = 0; i < chain.n; ++i) before[i] = at[i], along[i] = t[i];
+        margin[0] = margin[1], margin[1] = here;
+        last_way = way;
+        ++seen;
+    };
+    out.whole = follow_self_motion(chain, constraint, q, direction, steps_left, visit) && fits;
+    out.wide = loose > far_enough;
+    return out;
+}
+
+// Directions of joints per unit of the curve's own coordinates, slides over the arm's length, and back.
+inline void in_lengths(const ik::Chain& chain, double length, const double* direction, double* out) {
+    double size2 = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        out[i] = direction[i] / unit_of(chain, i, length);
+        size2 += out[i] * out[i];
+    }
+    for (int i = 0; i < chain.n; ++i) out[i] /= std::sqrt(size2);
+}
+
+// Adds the family through q unless it passes one that is listed, by the member whose leading joint stands at
+// its value in `idle` (null: zero). A curve that was not followed to its ends, or finds no row to spare,
+// leaves the list without a certificate.
+inline void add_self_motion(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+                            const double* direction, const double* unconstrained, int room, int& steps_left,
+                            ik::Solutions& out) {
+    bool met = false;
+    ik::Representative r;
+    r.joint = leading_joint(direction, chain.n);
+    r.value = unconstrained ? unconstrained[r.joint] : 0;
+    const auto visit = [&](int way, const double* at, const double* t) {
+        offer_next(chain, constraint, r, way, at, t);
+        for (int m = 0; m < out.count; ++m)
+            met = met || (out.self_motion[m] && lies_near(chain, constraint.length, at, t, out.q[m]));
+    };
+    const bool whole = follow_self_motion(chain, constraint, q, direction, steps_left, visit);
+    out.complete = out.complete && (met || (whole && out.count < room));
+    if (met || out.count >= room) return;
+    const bool crosses = is_crossing(chain, constraint, r.q);
+    const double* const member = crosses ? q : r.q;
+    const int n = out.count++;
+    for (int i = 0; i < chain.n; ++i)
+        out.q[n][i] = chain.prismatic[i] ? member[i] : wrap_once(short_way(member[i]));
+    in_lengths(chain, 1 / constraint.length, crosses ? direction : r.direction, out.direction[n]);
+    out.branch[n] = static_cast<signed char>(max_branches + n);
+    out.self_motion[n] = true;
+}
+
+// The direction in which a crossing is free, square to `along`; false if there is none. Of more than one,
+// that which the null vector farthest from `along` has.
+inline bool direction_across(const ik::Chain& chain, const PoseSvd& J, const double* along, double* across) {
+    constexpr double hardly_constrained = 2e-3, clear = 1e-3;
+    double farthest = clear;
+    for (int j = 0; j < J.columns; ++j) {
+        if (J.sigma[j] > hardly_constrained) continue;
+        const double part = dot_n(J.v[j], along, chain.n);
+        double rest[ik::max_joints], size2 = 0;
+        for (int i = 0; i < chain.n; ++i) {
+            rest[i] = J.v[j][i] - part * along[i];
+            size2 += rest[i] * rest[i];
+        }
+        if (!(std::sqrt(size2) > farthest)) continue;
+        farthest = std::sqrt(size2);
+        for (int i = 0; i < chain.n; ++i) across[i] = rest[i] / farthest;
+    }
+    return farthest > clear;
+}
+
+// Adds the curves that leave a crossing another way than `along`, seen a stride from it.
+inline void leave_crossing(const ik::Chain& chain, const ik::TipConstraint& constraint,
+                           const double* crossing, const double* along, const double* unconstrained, int room,
+                           int& steps_left, ik::Solutions& out) {
+    constexpr double stride = 0.1, same_line = 0.95, led_back = 0.5 * stride;
+    constexpr int around = 24, most_ways = 4;
+    PoseError at;
+    measure_constrained(chain, constraint, crossing, at);
+    double across[ik::max_joints], gone[most_ways][ik::max_joints];
+    if (!direction_across(chain, at.jacobian, along, across)) return;
+    int ways = 1;
+    for (int i = 0; i < chain.n; ++i) gone[0][i] = along[i];
+    for (int m = 1; m < around && ways < most_ways; ++m) {
+        const double c = std::cos(pi * m / around), s = std::sin(pi * m / around);
+        double q[ik::max_joints], t[ik::max_joints], *const way = gone[ways];
+        for (int i = 0; i < chain.n; ++i)
+            q[i] =
+                crossing[i] + stride * unit_of(chain, i, constraint.length) * (c * along[i] + s * across[i]);
+        PoseError there;
+        if (!onto_curve(chain, constraint, q, there)) continue;
+        for (int i = 0; i < chain.n; ++i)
+            way[i] = (q[i] - crossing[i]) / unit_of(chain, i, constraint.length);
+        const double went = std::sqrt(dot_n(way, way, chain.n));
+        if (!(went > led_back)) continue;
+        bool known = false;
+        for (int i = 0; i < chain.n; ++i) way[i] /= went;
+        for (int k = 0; k < ways; ++k) known = known || std::fabs(dot_n(way, gone[k], chain.n)) > same_line;
+        if (known || !tangent_at(chain, there.jacobian, way, t)) continue;
+        ++ways;
+        add_self_motion(chain, constraint, q, t, unconstrained, room, steps_left, out);
+    }
+}
+
+// Adds the families that cross those listed, as far as there is room for rows. Where there is more than one
+// freedom all along a family a curve does not say all: such a list is not certified.
+inline void add_bifurcations(const ik::Chain& chain, const Posed& goal, double length,
+                             const double* unconstrained, int room, ik::Solutions& out) {
+    const ik::TipConstraint constraint = {goal, true, length};
+    int steps_left = 8000;  // of all curves together: some 50 ms
+    for (int k = 0; k < out.count; ++k) {
+        if (!out.self_motion[k] || only_rolls(chain, constraint, out.q[k], out.direction[k])) continue;
+        double q[ik::max_joints], direction[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i];
+        in_lengths(chain, length, out.direction[k], direction);
+        const ik::CurveMargin seen = follow_margin(chain, constraint, q, direction, steps_left);
+        out.complete = out.complete && seen.whole && !seen.wide;
+        if (seen.wide) continue;
+        if (is_crossing(chain, constraint, q))
+            leave_crossing(chain, constraint, q, direction, unconstrained, room, steps_left, out);
+        for (int c = 0; c < seen.crossings; ++c)
+            leave_crossing(chain, constraint, seen.crossing[c], seen.along[c], unconstrained, room,
+                           steps_left, out);
+    }
+}
+
+// What is left to say of the solutions of a goal once they are found: the families that cross, and valleys
+// that rounding leaves.
+inline void look_along(const ik::Chain& chain, const Posed& goal, double length, const double* unconstrained,
+                       int room, ik::Solutions& out) {
+    if (out.status == ik::Status::singular) add_bifurcations(chain, goal, length, unconstrained, room, out);
+    for (int k = 0; k < out.count && out.crowded && out.complete; ++k)
+        out.complete = out.self_motion[k] || !lies_in_valley(chain, goal, length, out.q[k]);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

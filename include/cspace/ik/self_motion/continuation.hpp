@@ -1,0 +1,263 @@
+// The curve of configurations that a family runs through: the tip (or its position alone) stays where it is
+// at the start. Steps along the tangent, each followed by Newton steps back onto the curve (Allgower & Georg
+// 1990, chapter 6).
+#pragma once
+
+#include <algorithm>
+
+#include "cspace/ik/refine.hpp"
+
+namespace cspace::ik {
+
+// What stays put.
+struct TipConstraint {
+    Posed goal;
+    bool whole_pose;
+    double length;  // of the arm [m]; sliding joints count in it
+};
+
+enum class CurveEnd {
+    closed,  // the curve came back to its start, up to whole turns
+    far,     // a slide went as far as far_away lengths of the arm: it goes on for ever
+    lost,    // no step succeeded any more
+};
+
+inline constexpr double far_away = 1000;
+inline constexpr int most_curve_steps = 4000;
+
+}  // namespace cspace::ik
+
+namespace cspace::inline CSPACE_ISA {
+
+inline double unit_of(const ik::Chain& chain, int i, double length) {
+    return chain.prismatic[i] ? length : 1;
+}
+
+// The error at q and its decomposed Jacobian, joints in their units.
+inline double measure_constrained(const ik::Chain& chain, const ik::TipConstraint& constraint,
+                                  const double* q, PoseError& at) {
+    measure_error(chain, constraint.goal, constraint.length, q, at);
+    if (!constraint.whole_pose)
+        for (int k = 3; k < 6; ++k) at.e[k] = 0;
+    for (int i = 0; i < chain.n; ++i)
+        for (int k = 0; k < 6; ++k)
+            at.jacobian.us[i][k] *=
+                !constraint.whole_pose && k >= 3 ? 0 : unit_of(chain, i, constraint.length);
+    decompose(at.jacobian);
+    return size_of_error(at);
+}
+
+// A singular value below this is a direction that moves nothing.
+inline constexpr double still = 1e-7;
+
+// The direction of the curve at a point: the part of `along` that moves nothing, unit. False if there is
+// none.
+inline bool tangent_at(const ik::Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
+    for (int i = 0; i < chain.n; ++i) tangent[i] = 0;
+    for (int j = 0; j < J.columns; ++j) {
+        if (J.sigma[j] > still) continue;
+        const double part = dot_n(J.v[j], along, chain.n);
+        for (int i = 0; i < chain.n; ++i) tangent[i] += part * J.v[j][i];
+    }
+    const double size2 = dot_n(tangent, tangent, chain.n);
+    if (!(size2 > 1e-4)) return false;
+    for (int i = 0; i < chain.n; ++i) tangent[i] /= std::sqrt(size2);
+    return true;
+}
+
+// The least of the other singular values: it vanishes where two curves cross.
+inline double margin_on_curve(const PoseSvd& J) {
+    double least_margin = 1;
+    for (int j = 0; j < J.columns; ++j)
+        if (J.sigma[j] > still) least_margin = min(least_margin, J.sigma[j]);
+    return least_margin;
+}
+
+// How long a step may be: a longer one could change to another curve. Towards a crossing the hold falls about
+// in proportion to the distance; beside a curve that stays close a step strays by its square.
+struct Room {
+    double slope = 1;  // of the hold, the steepest of late
+
+    double after(double margin, double last_margin, double step) {
+        constexpr double forget = 0.8;
+        slope = max(forget * slope, std::fabs(margin - last_margin) / step);
+        return here(margin);
+    }
+    double here(double margin) const {
+        constexpr double least = 1e-5;
+        return max(0.5 * min(std::sqrt(margin), margin / slope), least);
+    }
+};
+
+// The shortest change of the joints, in their units, that undoes the error; none along the curve.
+inline void shortest_step(const PoseError& at, double* dq) {
+    const PoseSvd& J = at.jacobian;
+    for (int i = 0; i < J.columns; ++i) dq[i] = 0;
+    for (int j = 0; j < J.columns; ++j) {
+        if (J.sigma[j] <= still) continue;
+        const double along = dot_n(J.us[j], at.e, 6) / (J.sigma[j] * J.sigma[j]);
+        for (int i = 0; i < J.columns; ++i) dq[i] += along * J.v[j][i];
+    }
+}
+
+// Brings q onto the curve by the shortest steps; true if the tip is where it is held. `at` belongs to q.
+inline bool onto_curve(const ik::Chain& chain, const ik::TipConstraint& constraint, double* q,
+                       PoseError& at) {
+    constexpr int most_steps = 12;
+    constexpr double settled = 1e-15;
+    double size = measure_constrained(chain, constraint, q, at);
+    for (int step = 0; step < most_steps && size > settled; ++step) {
+        double dq[ik::max_joints], next[ik::max_joints];
+        PoseError trial;
+        shortest_step(at, dq);
+        for (int i = 0; i < chain.n; ++i) next[i] = q[i] + unit_of(chain, i, constraint.length) * dq[i];
+        const double left = measure_constrained(chain, constraint, next, trial);
+        if (!(left < size)) break;
+        for (int i = 0; i < chain.n; ++i) q[i] = next[i];
+        at = trial;
+        size = left;
+    }
+    // An arm whose axes are parallel to ten digits only has its families to ten digits only.
+    return size <= tolerance::reached;
+}
+
+// One step of length h from q along its tangent. False if the curve bends too much for it.
+inline bool step_along(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+                       const double* tangent, double h, double* next, double* next_tangent, double* margin) {
+    constexpr double least_cosine = 0.995, largest_return = 0.1;
+    PoseError at;
+    for (int i = 0; i < chain.n; ++i) next[i] = q[i] + h * unit_of(chain, i, constraint.length) * tangent[i];
+    if (!onto_curve(chain, constraint, next, at) || !tangent_at(chain, at.jacobian, tangent, next_tangent))
+        return false;
+    double back2 = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        const double moved = (next[i] - q[i]) / unit_of(chain, i, constraint.length) - h * tangent[i];
+        back2 += moved * moved;
+    }
+    *margin = margin_on_curve(at.jacobian);
+    return back2 <= largest_return * largest_return * h * h &&
+           dot_n(tangent, next_tangent, chain.n) >= least_cosine;
+}
+
+// Whether the start lies ahead of q within a step, the curve passing it as it left it; `lift` is then the
+// start by the turns that bring it there.
+inline bool start_is_next(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+                          const double* tangent, const double* start, const double* start_tangent, double h,
+                          double* lift) {
+    double gap[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) {
+        const double raw = start[i] - q[i];
+        const double d = chain.prismatic[i] ? raw : std::remainder(raw, 2 * pi);
+        lift[i] = q[i] + d;
+        gap[i] = d / unit_of(chain, i, constraint.length);
+    }
+    const double ahead = dot_n(gap, tangent, chain.n), size2 = dot_n(gap, gap, chain.n);
+    return ahead >= 0 && size2 <= h * h && ahead * ahead >= 0.9 * size2 &&
+           dot_n(tangent, start_tangent, chain.n) > 0.9;
+}
+
+inline double first_step(const PoseSvd& J) { return min(1e-3, 0.2 * Room{}.here(margin_on_curve(J))); }
+
+// The tangent at a configuration, from a guess. Where curves cross, the null space holds more directions than
+// theirs: a short step along each of many is brought back, and the way it then has gone that is nearest to
+// the guess is taken. False if no curve leaves from there.
+inline bool start_direction(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+                            const double* guess, double* tangent) {
+    constexpr int around = 48;
+    const int n = chain.n;
+    PoseError at;
+    measure_constrained(chain, constraint, q, at);
+    const double h = first_step(at.jacobian);
+    double next[ik::max_joints], beyond[ik::max_joints], margin, best = -1;
+    if (tangent_at(chain, at.jacobian, guess, tangent) &&
+        step_along(chain, constraint, q, tangent, h, next, beyond, &margin))
+        return true;
+    for (int a = 0; a < n; ++a)
+        for (int b = a + 1; b < n; ++b)
+            for (int m = 0; m < around; ++m) {
+                if (at.jacobian.sigma[a] > still || at.jacobian.sigma[b] > still) break;
+                const double c = std::cos(2 * pi * m / around), s = std::sin(2 * pi * m / around);
+                double way[ik::max_joints], trial[ik::max_joints];
+                for (int i = 0; i < n; ++i)
+                    next[i] = q[i] + h * unit_of(chain, i, constraint.length) *
+                                         (c * at.jacobian.v[a][i] + s * at.jacobian.v[b][i]);
+                PoseError there;
+                if (!onto_curve(chain, constraint, next, there)) continue;
+                for (int i = 0; i < n; ++i)
+                    way[i] = (next[i] - q[i]) / (h * unit_of(chain, i, constraint.length));
+                if (!(dot_n(way, way, n) > 0.25) || !tangent_at(chain, at.jacobian, way, trial) ||
+                    !step_along(chain, constraint, q, trial, h, next, beyond, &margin))
+                    continue;
+                const double agrees = dot_n(trial, guess, n);
+                if (agrees <= best) continue;
+                best = agrees;
+                for (int i = 0; i < n; ++i) tangent[i] = trial[i];
+            }
+    return best > -1;
+}
+
+// Follows the curve from `start` along `direction` (in joint units), telling `visit` every configuration and
+// the tangent there, the start first; where the curve closes, the start comes last again, its angles unwound.
+template <class Visit>
+ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* start,
+                          const double* direction, Visit&& visit, int most_steps = ik::most_curve_steps) {
+    constexpr double longest = 0.05, shortest = 1e-7;
+    const int n = chain.n;
+    double q[ik::max_joints] = {}, t[ik::max_joints] = {}, first[ik::max_joints] = {};
+    PoseError at;
+    measure_constrained(chain, constraint, start, at);
+    const bool leaves = start_direction(chain, constraint, start, direction, first);
+    for (int i = 0; i < n; ++i) q[i] = start[i], t[i] = leaves ? first[i] : direction[i];
+    visit(q, t);
+    if (!leaves) return ik::CurveEnd::lost;
+    double h = first_step(at.jacobian), margin = margin_on_curve(at.jacobian);
+    Room room;
+    for (int step = 0; step < most_steps; ++step) {
+        double next[ik::max_joints] = {}, next_t[ik::max_joints] = {};
+        if (step > 2 && start_is_next(chain, constraint, q, t, start, first, 1.5 * h, next)) {
+            visit(next, first);
+            return ik::CurveEnd::closed;
+        }
+        const double last_margin = margin;
+        while (!step_along(chain, constraint, q, t, h, next, next_t, &margin))
+            if ((h *= 0.5) < shortest) return ik::CurveEnd::lost;
+        double turning = 0, away = 0;
+        for (int i = 0; i < n; ++i) {
+            q[i] = next[i], t[i] = next_t[i];
+            if (chain.prismatic[i])
+                away = max(away, std::fabs(q[i] - start[i]) / constraint.length);
+            else
+                turning = max(turning, std::fabs(t[i]));
+        }
+        visit(q, t);
+        if (away > ik::far_away) return ik::CurveEnd::far;
+        const double longest_here = min(room.after(margin, last_margin, h), longest);
+        h = turning > 1e-9 ? min(1.5 * h, longest_here) : 2 * h;  // slides alone run along a line
+    }
+    return ik::CurveEnd::lost;
+}
+
+// The whole of a family: both ways from q, or once around where it closes. Tells `visit` which way (0 or 1),
+// every configuration and the tangent there; each takes one of the steps that are left. False if the curve
+// was lost, or the steps used up, before its end.
+template <class Visit>
+bool follow_self_motion(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+                        const double* direction, int& steps_left, Visit&& visit) {
+    constexpr int most_steps = 1000;
+    bool whole = true;
+    for (int way = 0; way < 2; ++way) {
+        double along[ik::max_joints];
+        for (int i = 0; i < chain.n; ++i) along[i] = (way ? -1 : 1) * direction[i];
+        const auto count = [&](const double* at, const double* tangent) {
+            --steps_left;
+            visit(way, at, tangent);
+        };
+        const int most = std::clamp(steps_left, 0, most_steps);
+        const ik::CurveEnd end = follow_curve(chain, constraint, q, along, count, most);
+        if (end == ik::CurveEnd::closed) return true;
+        whole = whole && end == ik::CurveEnd::far;
+    }
+    return whole;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,180 @@
+// Whether an arm can move at a configuration while its tip stays: the null space of the Jacobian proposes,
+// a stride along it decides.
+#pragma once
+
+#include <initializer_list>
+
+#include "cspace/ik/general/weak_direction.hpp"
+#include "cspace/ik/self_motion/continuation.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// Steps that a stride may take to come back to the goal: along a family it needs three, beside one (a fold
+// on top of a family) the error halves in each.
+inline constexpr int steps_back = 30;
+
+// A stride from q and back to the goal: of the way, the part that was kept; 0 if the goal is then missed by
+// more than `most`. `floor`: by steps that leave directions alone which move next to nothing, as rounded axes
+// leave them.
+inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                             const double* direction, double stride, bool floor, double most) {
+    double moved[ik::max_joints] = {}, along = 0;
+    for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * direction[i];
+    PoseError error;
+    if (floor)
+        onto_curve(chain, {goal, true, length}, moved, error);
+    else
+        refine(chain, goal, length, moved, error, steps_back);
+    for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
+    return size_of_error(error) <= most ? along / stride : 0;
+}
+
+// Whether the arm can move along `direction` with its tip at rest: it goes a stride that way and comes back
+// to the goal. In a family it has moved by about the stride, whatever the stride; at a fold it slides back,
+// or over to a neighbouring solution, whose distance is one and the same.
+inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                         const double* direction) {
+    // What may be missed along a family, and where rounded axes leave a valley instead of one.
+    constexpr double exactly = 1e-12, nearly = 1e-11;
+    PoseError at;
+    measure_error(chain, goal, length, q, at);
+    const double on_floor = max(nearly, 2 * size_of_error(at));
+    for (const double stride : {0.02, 0.05}) {
+        bool moved_on = false;
+        for (const bool floor : {false, true})
+            for (const double way : {stride, -stride}) {
+                if (moved_on) break;
+                const double kept =
+                    kept_of_stride(chain, goal, length, q, direction, way, floor, floor ? on_floor : exactly);
+                moved_on = 0.8 < kept && kept < 1.25;
+            }
+        if (!moved_on) return false;
+    }
+    return true;
+}
+
+// Whether a family too small for such strides runs through q: it comes round to where it began.
+inline bool runs_round(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                       const double* direction) {
+    constexpr double least = 1e-3;
+    constexpr int most_steps = 400;
+    double farthest = 0;
+    const auto visit = [&](const double* at, const double*) {
+        for (int i = 0; i < chain.n; ++i) farthest = max(farthest, std::fabs(at[i] - q[i]));
+    };
+    const ik::TipConstraint constraint = {goal, true, length};
+    return follow_curve(chain, constraint, q, direction, visit, most_steps) == ik::CurveEnd::closed &&
+           farthest > least;
+}
+
+// Whether q lies in a valley along which the goal counts as reached all the way, although no family runs
+// there: rounded axes leave such valleys, and any of their configurations may be the one that was meant.
+inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
+    constexpr double hardly = 1e-7, stride = 0.02, next_to_nothing = 1e-10;
+    PoseError at;
+    measure_error(chain, goal, length, q, at);
+    if (chain.n == 6 && weak_direction(&at.jacobian.us[0]).sigma > hardly) return false;
+    decompose(at.jacobian);
+    const int weak = weakest_direction(at.jacobian);
+    if (at.jacobian.sigma[weak] > hardly) return false;
+    for (const double way : {stride, -stride}) {
+        const double* const v = at.jacobian.v[weak];
+        const double kept = kept_of_stride(chain, goal, length, q, v, way, true, next_to_nothing);
+        if (0.8 < kept && kept < 1.25) return true;
+    }
+    return false;
+}
+
+// The part of v in the span of the orthonormal vectors basis[0 … k), made unit.
+inline bool project(const double* const* basis, int k, int n, double* v) {
+    double out[ik::max_joints] = {};
+    for (int j = 0; j < k; ++j) {
+        const double along = dot_n(basis[j], v, n);
+        for (int i = 0; i < n; ++i) out[i] += along * basis[j][i];
+    }
+    const double size = std::sqrt(dot_n(out, out, n));
+    for (int i = 0; i < n; ++i) v[i] = size > 0 ? out[i] / size : 0;
+    return size > 0;
+}
+
+// Where a stride along `trial` leads, as a direction of the null space; false if it leads back.
+inline bool led_away(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                     const double* const* basis, int k, double* trial) {
+    constexpr double stride = 0.03;
+    double moved[ik::max_joints];
+    for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * trial[i];
+    PoseError error;
+    if (refine(chain, goal, length, moved, error, steps_back) > 1e-12) return false;
+    double away = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        trial[i] = moved[i] - q[i];
+        away += trial[i] * trial[i];
+    }
+    return away > 0.25 * stride * stride && project(basis, k, chain.n, trial);
+}
+
+// The vectors of a null space of dimension 2 or 3 that leave one or two joints alone: families of real arms
+// move few joints (a wrist rolling against the forearm), and lie among these where the null space holds more
+// than the family. basis[0 … k): orthonormal, length n.
+struct SparseDirections {
+    int count = 0;
+    double d[2 + ik::max_joints * ik::max_joints][ik::max_joints];
+};
+inline SparseDirections sparse_directions(const double* const* basis, int k, int n) {
+    SparseDirections out;
+    for (int i = 0; i < n; ++i)
+        for (int j = k == 2 ? n - 1 : i + 1; j < n; ++j) {
+            // The weights that cancel joint i (and j).
+            const double a = basis[0][i], b = basis[1][i], c = k == 2 ? 0 : basis[2][i];
+            const double e = k == 2 ? 0 : basis[0][j], f = k == 2 ? 0 : basis[1][j],
+                         g = k == 2 ? 1 : basis[2][j];
+            const double w[3] = {b * g - c * f, c * e - a * g, a * f - b * e};
+            double* const d = out.d[out.count];
+            double size2 = 0;
+            for (int m = 0; m < n; ++m) {
+                d[m] = w[0] * basis[0][m] + w[1] * basis[1][m] + (k == 2 ? 0 : w[2] * basis[2][m]);
+                size2 += d[m] * d[m];
+            }
+            if (size2 < 1e-8) continue;
+            for (int m = 0; m < n; ++m) d[m] /= std::sqrt(size2);
+            ++out.count;
+        }
+    return out;
+}
+
+// Looks for a self-motion at q, whose decomposed Jacobian is J; on success `direction` is its unit velocity.
+// Where freedom is lost twice or more (an elbow stretched over a wrist), the null space has more dimensions
+// than the motion: its sparse directions are tried, then some all around it.
+CSPACE_ONCE bool find_self_motion(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+                                  const PoseSvd& J, double* direction) {
+    constexpr double lost = 1e-7;
+    const double* basis[ik::max_joints];
+    int k = 0;
+    for (int j = 0; j < J.columns; ++j)
+        if (J.sigma[j] < lost) basis[k++] = J.v[j];
+    if (k == 0) return false;
+    const auto accept = [&](const double* d) {
+        if (!moves_freely(chain, goal, length, q, d) && !(k == 1 && runs_round(chain, goal, length, q, d)))
+            return false;
+        for (int i = 0; i < chain.n; ++i) direction[i] = d[i];
+        return true;
+    };
+    if (k == 1) return accept(basis[0]);
+    if (k <= 3) {
+        const SparseDirections sparse = sparse_directions(basis, k, chain.n);
+        for (int m = 0; m < sparse.count; ++m)
+            if (accept(sparse.d[m])) return true;
+    }
+    constexpr int around = 6;
+    for (int a = 0; a < k; ++a)
+        for (int b = a + 1; b < k; ++b)
+            for (int m = 0; m < around; ++m) {
+                const double c = std::cos(pi * m / around), s = std::sin(pi * m / around);
+                double trial[ik::max_joints];
+                for (int i = 0; i < chain.n; ++i) trial[i] = c * basis[a][i] + s * basis[b][i];
+                if (led_away(chain, goal, length, q, basis, k, trial) && accept(trial)) return true;
+            }
+    return false;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

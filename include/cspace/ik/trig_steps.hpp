@@ -1,0 +1,206 @@
+// The steps that the closed forms share, over a scalar V: one angle from a linear equation, two from a planar
+// two-link arm, three from an orientation. Each says where it has a solution (`ok`) and where the answer
+// needs care (`doubt`): two solutions about to merge, or an angle that the pose does not fix.
+#pragma once
+
+#include "cspace/math/turn.hpp"
+#include "cspace/tolerances.hpp"
+
+namespace cspace {
+
+// What a careful second look changes: how wide the band is in which two solutions may merge, how far merging
+// solutions are held apart, below which size a lever counts as zero and its joint as free, and the angles t_i
+// (as cosine and sine) that joints take when the pose leaves them free.
+struct Care {
+    double band = tolerance::fold_band;
+    double spread = 0;
+    double free = tolerance::free_joint;
+    Turn<double> unconstrained[6] = {{1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}, {1, 0}};
+};
+
+template <class V>
+struct TwoAngles {
+    Turn<V> root[2];
+    mask_of<V> ok, doubt;
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+template <class V>
+CSPACE_INLINE Turn<V> choose(mask_of<V> m, const Turn<double>& yes, const Turn<V>& no) {
+    return {select(m, fill<V>(yes.c), no.c), select(m, fill<V>(yes.s), no.s)};
+}
+// The rotation that takes the plane vector (x, y) to (u, v), both of squared length n2.
+template <class V>
+struct Aligned {
+    Turn<V> t;
+    mask_of<V> doubt;
+};
+template <class V>
+CSPACE_INLINE Aligned<V> align(V x, V y, V u, V v, double unit, const Care& care,
+                               const Turn<double>& unconstrained) {
+    const V n2 = u * u + v * v;
+    const mask_of<V> is_free = n2 <= care.free * care.free * unit * unit;
+    const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
+    const Turn<V> t = {(x * u + y * v) * scale, (x * v - y * u) * scale};
+    return {choose(is_free, unconstrained, t), n2 <= care.band * unit * unit};
+}
+// sqrt(x) with x cut off below at floor ≥ 0.
+template <class V>
+CSPACE_INLINE V root_above(V x, V floor) {
+    return sqrt(max(x, floor));
+}
+
+// a cos t + b sin t = r: none, one (doubt) or two angles. `unit` is the size that a and b have when they are
+// not accidentally small.
+template <class V>
+CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Care& care,
+                                           const Turn<double>& unconstrained) {
+    const V n2 = a * a + b * b;
+    const V room = n2 - r * r;
+    const double unit2 = unit * unit;
+    const mask_of<V> is_free = n2 <= care.free * care.free * unit2;
+    const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
+    const V h = root_above(room, care.spread * n2);
+    TwoAngles<V> out;
+    out.root[0] = {(a * r - b * h) * scale, (b * r + a * h) * scale};
+    out.root[1] = {(a * r + b * h) * scale, (b * r - a * h) * scale};
+    for (auto& t : out.root) t = choose(is_free, unconstrained, t);
+    // A short lever feels an error of r more: the band is one of lengths of the arm, not of the lever.
+    const V band = care.band * (n2 + unit2);
+    out.ok = (room >= -band) || (is_free && (abs(r) <= tolerance::reached * unit));
+    out.doubt = (out.ok && (room <= band)) || (n2 <= band);
+    return out;
+}
+
+// A planar arm of links l1, l2 reaching (x, y): γ is the angle at the elbow, ± for its two sides.
+template <class V>
+struct TwoLink {
+    V cos_elbow, sin_elbow;  // of +γ
+    Turn<V> first[2];        // first joint for +γ and −γ
+    mask_of<V> ok, doubt;
+};
+template <class V>
+CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, double unit, const Care& care,
+                                  const Turn<double>& unconstrained) {
+    const V r2 = x * x + y * y;
+    const double product = 2 * l1 * l2, size2 = (l1 + l2) * (l1 + l2);
+    const V room_out = (size2 - r2) * (1 / product);                 // 1 − cos γ
+    const V room_in = (r2 - (l1 - l2) * (l1 - l2)) * (1 / product);  // 1 + cos γ
+    TwoLink<V> out;
+    out.cos_elbow = 0.5 * (room_in - room_out);
+    out.sin_elbow = root_above(room_out * room_in, fill<V>(care.spread));
+    const V along = l1 + l2 * out.cos_elbow, across = l2 * out.sin_elbow;
+    const mask_of<V> is_free = r2 <= care.free * care.free * size2;
+    const V scale = 1.0 / select(is_free, fill<V>(1.0), r2);
+    out.first[0] = {(x * along + y * across) * scale, (y * along - x * across) * scale};
+    out.first[1] = {(x * along - y * across) * scale, (y * along + x * across) * scale};
+    for (auto& t : out.first) t = choose(is_free, unconstrained, t);
+    const V least = min(room_out, room_in);
+    const double band = care.band * (size2 + unit * unit) / product;
+    out.ok = least >= -band;
+    out.doubt = out.ok && ((least <= band) || (r2 <= band * size2));
+    return out;
+}
+
+// M = Rz(t4) Rx(α4) Rz(t5) Rx(α5) Rz(t6), given the last and first column of M: two solutions, ±t5.
+struct Wrist {
+    double ca4, sa4, ca5, sa5;
+    double c_sum, s_sum, c_diff, s_diff;  // of α4 + α5 and α4 − α5
+    double inv;                           // 1 / (sin α4 sin α5)
+    bool right_angled;                    // both twists ±90°: the second solution is (t4 + π, −t5, t6 + π)
+};
+inline Wrist make_wrist(double ca4, double sa4, double ca5, double sa5) {
+    const bool square = std::fabs(ca4) < 1e-15 && std::fabs(ca5) < 1e-15;
+    return {ca4,
+            sa4,
+            ca5,
+            sa5,
+            ca4 * ca5 - sa4 * sa5,
+            sa4 * ca5 + ca4 * sa5,
+            ca4 * ca5 + sa4 * sa5,
+            sa4 * ca5 - ca4 * sa5,
+            1 / (sa4 * sa5),
+            square};
+}
+template <class V>
+struct WristAngles {
+    Turn<V> t4[2], t5[2], t6[2];
+    mask_of<V> ok, doubt;
+};
+
+// cos a − cos b from the cosines, or from the sines where both are small and the cosines would cancel.
+template <class V>
+CSPACE_INLINE V cosine_gap(V ca, V sa2, double cb, double sb) {
+    const V total = ca + cb;
+    const V by_sines = (sb * sb - sa2) / select(abs(total) > 0.5, total, fill<V>(1.0));
+    return select(abs(total) > 0.5, by_sines, ca - cb);
+}
+
+// What both solutions share: cos t5 and |sin t5|, and the third and first column of M.
+template <class V>
+struct WristView {
+    Vec3<V> z, x;
+    V c5, s5, inverse_rho2;
+    mask_of<V> ok, doubt, t4_is_free;
+};
+template <class V>
+CSPACE_INLINE WristView<V> look_at_wrist(const Wrist& w, const Vec3<V>& z, const Vec3<V>& x,
+                                         const Care& care) {
+    WristView<V> view;
+    view.z = z;
+    view.x = x;
+    const V rho2 = z.x * z.x + z.y * z.y;
+    // 1 − cos t5 and 1 + cos t5, each without cancellation near zero (spherical law of cosines).
+    const V low = cosine_gap(z.z, rho2, w.c_sum, w.s_sum) * w.inv;
+    const V high = -cosine_gap(z.z, rho2, w.c_diff, w.s_diff) * w.inv;
+    const V least = min(low, high);
+    view.c5 = 0.5 * (high - low);
+    view.s5 = root_above(low * high, fill<V>(care.spread));
+    view.t4_is_free = rho2 <= care.free * care.free;
+    view.inverse_rho2 = 1.0 / select(view.t4_is_free, fill<V>(1.0), rho2);
+    const double band = care.band * (1 + std::fabs(w.inv));
+    view.ok = least >= -band;
+    view.doubt = view.ok && ((least <= band) || (rho2 <= band));
+    return view;
+}
+
+template <class V>
+struct WristSide {
+    Turn<V> t4, t5, t6;
+};
+// The solution with sin t5 = s.
+template <class V>
+CSPACE_INLINE WristSide<V> wrist_side(const Wrist& w, const WristView<V>& view, V s,
+                                      const Turn<double>& unconstrained) {
+    const Vec3<V>&z = view.z, &x = view.x;
+    // z = Rz(t4) (p, q, ·) fixes t4.
+    const V p = w.sa5 * s, q = -w.ca4 * w.sa5 * view.c5 - w.sa4 * w.ca5;
+    const Turn<V> turned = {(z.x * p + z.y * q) * view.inverse_rho2, (z.y * p - z.x * q) * view.inverse_rho2};
+    const Turn<V> t4 = choose(view.t4_is_free, unconstrained, turned);
+    // The first column of Rz(t4) Rx(α4) Rz(t5) Rx(α5) and the second, against x, fix t6.
+    const V y1 = t4.c * x.x + t4.s * x.y, y2 = t4.c * x.y - t4.s * x.x;
+    const V along = w.ca4 * y2 + w.sa4 * x.z, across = w.ca4 * x.z - w.sa4 * y2;
+    return {
+        t4, {view.c5, s}, {view.c5 * y1 + s * along, w.ca5 * (view.c5 * along - s * y1) + w.sa5 * across}};
+}
+
+template <class V>
+CSPACE_INLINE WristAngles<V> wrist(const Wrist& w, const Vec3<V>& z, const Vec3<V>& x, const Care& care,
+                                   const Turn<double>& unconstrained) {
+    const WristView<V> view = look_at_wrist(w, z, x, care);
+    const WristSide<V> up = wrist_side(w, view, view.s5, unconstrained),
+                       down = wrist_side(w, view, -view.s5, unconstrained);
+    return {{up.t4, down.t4}, {up.t5, down.t5}, {up.t6, down.t6}, view.ok, view.doubt};
+}
+
+// Brings an angle that is off by at most one turn back into (−π, π].
+template <class V>
+CSPACE_INLINE V wrap_once(V t) {
+    t = select(t > pi, t - 2 * pi, t);
+    return select(t <= fill<V>(-pi), t + 2 * pi, t);
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,135 @@
+// Arms of four and five joints: virtual joints complete them to six, in a place where a closed form appears.
+// A pose that the arm reaches is one that the completed arm reaches with its virtual joints at zero.
+#pragma once
+
+#include <initializer_list>
+
+#include "cspace/ik/plan.hpp"
+#include "cspace/ik/refine.hpp"
+
+namespace cspace {
+
+struct Axis {
+    Vec3d direction, point;
+};
+struct AxisChoices {
+    static constexpr int most = 40;
+    int count = 0;
+    Axis axis[most];
+};
+
+}  // namespace cspace
+
+namespace cspace::inline CSPACE_ISA {
+
+inline void add_axis_choice(AxisChoices& choices, const Vec3d& direction, const Vec3d& point) {
+    const double size = norm(direction);
+    if (size > 0.1 && choices.count < AxisChoices::most)
+        choices.axis[choices.count++] = {(1 / size) * direction, point};
+}
+
+// Directions worth trying at a point on axis h whose neighbour is k.
+inline void offer_at(AxisChoices& choices, const Vec3d& point, const Vec3d& h, const Vec3d& k) {
+    add_axis_choice(choices, cross(h, k), point);
+    add_axis_choice(choices, any_perpendicular(h), point);
+    add_axis_choice(choices, cross(h, any_perpendicular(h)), point);
+    add_axis_choice(choices, k, point);
+}
+
+// Axes that could stand between joints at − 1 and `at`: through the points where the neighbours meet their
+// own neighbours, square to them or along them.
+inline AxisChoices axes_to_insert(const ik::Chain& c, int at) {
+    AxisChoices choices;
+    for (const int side : {-1, 1}) {
+        const int near = side < 0 ? at - 1 : at, far = near + side;
+        if (near < 0 || near >= c.n) continue;
+        if (far < 0 || far >= c.n) {
+            offer_at(choices, c.point[near], c.axis[near], any_perpendicular(c.axis[near]));
+            continue;
+        }
+        const bool is_parallel = norm(cross(c.axis[near], c.axis[far])) < tolerance::axis_relation;
+        const CommonNormal normal =
+            common_normal(c.axis[near], c.point[near], c.axis[far], c.point[far], is_parallel, c.point[near]);
+        offer_at(choices, normal.from, c.axis[near], c.axis[far]);
+        if (normal.a > 0) offer_at(choices, normal.to, c.axis[near], c.axis[far]);
+    }
+    if (at == c.n) add_axis_choice(choices, any_perpendicular(c.axis[c.n - 1]), c.tip.t);
+    return choices;
+}
+
+inline ik::Chain with_axis(const ik::Chain& c, int at, const Axis& axis) {
+    ik::Chain longer = c;
+    for (int i = c.n; i > at; --i) {
+        longer.axis[i] = c.axis[i - 1];
+        longer.point[i] = c.point[i - 1];
+    }
+    longer.axis[at] = axis.direction;
+    longer.point[at] = axis.point;
+    longer.n = c.n + 1;
+    return longer;
+}
+
+// The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some configurations
+// without a pattern; virtual joints stay at zero.
+inline double completed_conditioning(const ik::Chain& chain, const int* source, double length, int k) {
+    double q[6];
+    spread_configuration(k, chain.n, q);
+    for (int i = 0; i < chain.n; ++i)
+        if (source[i] < 0) q[i] = 0;
+    PoseError error;
+    measure_error(chain, chain.tip, length, q, error);
+    decompose(error.jacobian);
+    return error.jacobian.sigma[weakest_direction(error.jacobian)];
+}
+
+// Whether the completed arm is regular where its virtual joints are zero: only there its branches are the
+// arm's.
+inline bool is_regular(const ik::Chain& six, const int* source, double length) {
+    int regular = 0;
+    constexpr int trials = 5;
+    for (int k = 0; k < trials; ++k) regular += completed_conditioning(six, source, length, k) > 1e-3;
+    return 2 * regular > trials;
+}
+
+// Whether an arm has a joint to spare (two wrists, a wrist on axis 3, four parallel axes): each of its poses
+// is singular, to within `blind`, and so are those of every arm that it is completed to.
+inline bool is_always_singular(const ik::Chain& chain, const int* source, double length, double blind) {
+    for (int k = 0; k < 8; ++k)
+        if (completed_conditioning(chain, source, length, k) > blind) return false;
+    return true;
+}
+
+// `source[i]`: the arm's joint behind joint i of c, or −1 for one put in before.
+inline bool complete(ik::Plan& plan, const ik::Chain& c, const int* source) {
+    if (c.n == 6) return is_regular(c, source, characteristic_length(c)) && plan_six(plan, c, source);
+    for (int at = c.n; at >= 0; --at) {
+        const AxisChoices choices = axes_to_insert(c, at);
+        int longer_source[6];
+        for (int i = 0; i <= c.n; ++i) longer_source[i] = i < at ? source[i] : i == at ? -1 : source[i - 1];
+        for (int k = 0; k < choices.count; ++k)
+            if (complete(plan, with_axis(c, at, choices.axis[k]), longer_source)) return true;
+    }
+    return false;
+}
+
+// The plan of an arm of four to six revolute joints.
+CSPACE_ONCE bool make_plan(ik::Plan& plan, const ik::Chain& chain) {
+    plan.chain = chain;
+    plan.family = ik::Family::none;
+    if (chain.n < 4 || chain.n > 6) return false;
+    for (int i = 0; i < chain.n; ++i)
+        if (chain.prismatic[i]) return false;
+    const int source[6] = {0, 1, 2, 3, 4, 5};
+    plan.virtual_joints = 6 - chain.n;
+    constexpr double rounding = tolerance::always_singular;
+    if (chain.n < 6)
+        return !is_always_singular(chain, source, characteristic_length(chain), rounding) &&
+               complete(plan, chain, source);
+    if (plan_six(plan, chain, source) &&
+        !is_always_singular(chain, source, plan.form.length, max(rounding, 10 * plan.form.deviation)))
+        return true;
+    plan.family = ik::Family::none;
+    return false;
+}
+
+}  // namespace cspace::inline CSPACE_ISA

@@ -1,0 +1,52 @@
+"""Memory of earlier batches, taken again when nobody holds it: fresh pages cost as much as computing."""
+
+from __future__ import annotations
+
+import sys
+import threading
+
+import numpy as np
+
+from cspace.arrays import Array
+
+__all__ = ["pooled_array"]
+
+SMALLEST, LARGEST = 1 << 16, 1 << 26
+"""Sizes worth keeping [bytes]: below, the allocator is fast; LARGEST bounds what is kept in all."""
+LINE = 64
+"""Bytes of a cache line."""
+
+_lock = threading.Lock()
+_blocks: list[Array] = []
+
+
+def _holders(blocks: list[Array], i: int) -> int:
+    """How many references to a block there are, as this very function counts them."""
+    return sys.getrefcount(blocks[i])
+
+
+_UNUSED = _holders([np.empty(1)], 0)
+"""What `_holders` says of a block that nobody but its list holds."""
+
+
+def _aligned(block: Array, shape: tuple[int, ...], size: int) -> Array:
+    """The part of a block that begins with a cache line."""
+    start = -(block.ctypes.data // 8) % (LINE // 8)
+    return block[start : start + size].reshape(shape)
+
+
+def pooled_array(shape: tuple[int, ...]) -> Array:
+    """An uninitialised float64 array of shape (...), in the memory of one that has gone, if any."""
+    size = int(np.prod(shape))
+    if not SMALLEST <= 8 * size <= LARGEST:
+        return np.empty(shape)
+    needed = size + LINE // 8
+    with _lock:
+        for i in range(len(_blocks)):
+            if _holders(_blocks, i) == _UNUSED and needed <= _blocks[i].size <= 4 * needed:
+                return _aligned(_blocks[i], shape, size)
+        made = np.empty(needed)
+        _blocks.append(made)
+        while sum(block.nbytes for block in _blocks) > LARGEST:
+            del _blocks[0]
+        return _aligned(made, shape, size)

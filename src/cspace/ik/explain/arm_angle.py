@@ -1,0 +1,176 @@
+"""Seven joints with a spherical shoulder and a spherical wrist, by the swivel of the elbow: the steps of
+include/cspace/ik/redundancy/arm_angle.hpp.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.conditions import common_point
+from cspace.ik.explain.findings import Step
+from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, numbers, turned, vector
+from cspace.ik.redundancy.arm_angle import swivel
+from cspace.math import Equation, TrigPolynomial
+
+__all__ = ["swivel_steps", "swivel_values"]
+
+SHOULDER, ELBOW, WRIST = (0, 1, 2), 3, (4, 5, 6)
+
+
+def points_of(chain: Any) -> tuple[Array, Array, Array]:
+    """S, E, W at zero, (3,) each [m]."""
+    S = common_point(chain.axes[:3], chain.points[:3])[0]
+    W = common_point(chain.axes[4:], chain.points[4:])[0]
+    h = chain.axes[ELBOW]
+    E = chain.points[ELBOW] + ((S - chain.points[ELBOW]) @ h) * h
+    return S, E, W
+
+
+def swivel_steps(chain: Any) -> tuple[Step, ...]:
+    """Wrist, elbow, the plane of the arm, then both spherical joints."""
+    S, E, W = points_of(chain)
+    in_tip = np.linalg.inv(chain.T_zero) @ np.append(W, 1.0)
+    entries = [[TrigPolynomial.symbol(f"r_{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)]
+    to_wrist = []
+    for k, axis in enumerate("xyz"):
+        offset = sum((float(in_tip[j]) * entries[k][j] for j in range(3)), TrigPolynomial())
+        to_wrist.append(
+            Equation.definition(f"l_{axis}", TrigPolynomial.symbol(f"p_{axis}") + offset - float(S[k]), "m")
+        )
+    l = [TrigPolynomial.symbol(f"l_{axis}") for axis in "xyz"]
+    bent = turned(chain, ELBOW, numbers(W - E))
+    square = sum((each * each for each in l), TrigPolynomial())
+    reach = 2.0 * dotted(E - S, bent) + float((E - S) @ (E - S) + (W - E) @ (W - E))
+    return (
+        Step(
+            "$l$",
+            1,
+            "",
+            f"The shoulder S = ({vector(S)}) m, where axes 1, 2 and 3 meet, stays where it is; the wrist W, "
+            "where axes 5, 6 and 7 meet, stands still in the tip, so the goal fixes it. $l$ leads from S to "
+            "W.",
+            tuple(to_wrist),
+        ),
+        Step(
+            "$t_4$",
+            2,
+            "subproblem 3",
+            "Joints 1 to 3 and 5 to 7 do not change the distance from S to W. With the elbow E, the point of "
+            f"axis 4 nearest to S, ({vector(E)}) m at zero, it depends on $t_4$ alone. The $t_i$ are the "
+            "joints' own angles here.",
+            (Equation(square, reach, unit="m²"),),
+        ),
+        Step(
+            "$K$",
+            1,
+            "given",
+            "The triangle S, E, W is rigid now and may turn about $l$: that is the freedom. `swivel=` gives "
+            "it: the angle about $l$ from the half-plane through the direction of axis 1 to the one through "
+            "E. $K$, the rotation of joints 1 to 3, takes the triangle to its place.",
+        ),
+        *ball_steps(chain, SHOULDER, "k", "K", "$K$ is made by joints 1 to 3."),
+        *ball_steps(
+            chain,
+            WRIST,
+            "m",
+            "M",
+            "$M$, what $K$ and joint 4 leave of the orientation of the goal, is made by joints 5 to 7.",
+        ),
+    )
+
+
+def ball_steps(
+    chain: Any, joints: tuple[int, int, int], name: str, matrix: str, words: str
+) -> tuple[Step, ...]:
+    """Three axes through a point make a rotation whose entries are symbols."""
+    i, j, k = joints
+    h = chain.axes
+    entries = [[TrigPolynomial.symbol(f"{name}_{a}{b}") for b in (1, 2, 3)] for a in (1, 2, 3)]
+
+    def times(v: Array, *, back: bool = False) -> Vector:
+        rows = zip(*entries, strict=True) if back else iter(entries)
+        return [sum((float(v[n]) * row[n] for n in range(3)), TrigPolynomial()) for row in rows]
+
+    middle = turned(chain, j, numbers(h[k]))
+    onto = turned(chain, i, middle)
+    last = turned(chain, k, turned(chain, j, numbers(h[i]), back=True), back=True)
+    ahead, behind = times(h[k]), times(h[i], back=True)
+    first = Equation(dotted(h[i], ahead), dotted(h[i], middle))
+    return (
+        Step(
+            f"$t_{j + 1}$",
+            2,
+            "subproblem 4",
+            f"{words} The angle between axis {i + 1} and where it takes axis {k + 1} depends on $t_{j + 1}$ "
+            "alone.",
+            (first,),
+        ),
+        Step(
+            f"$t_{i + 1}$",
+            1,
+            "subproblem 1",
+            f"Where ${matrix}$ takes axis {k + 1}.",
+            equal(ahead, onto, but=first),
+        ),
+        Step(
+            f"$t_{k + 1}$",
+            1,
+            "subproblem 1",
+            f"Where ${matrix}^T$ takes axis {i + 1}.",
+            equal(behind, last, but=first),
+        ),
+    )
+
+
+def equal(left: Vector, right: Vector, *, but: Equation) -> tuple[Equation, ...]:
+    """The equations of two vectors, without those that say nothing, or the same as another."""
+    pairs = (Equation(a, b) for a, b in zip(left, right, strict=True))
+    said = (TrigPolynomial(), but.left - but.right, but.right - but.left)
+    return tuple(each for each in pairs if each.left - each.right not in said)
+
+
+def swivel_values(robot: Any, q: Array, T: Array) -> dict[str, Any]:
+    """The numbers of angles, goal, K and M; K from the swivel, not from the joints that make it.
+
+    Where the wrist lies on axis 1 there is no half-plane to measure from, and the numbers are NaN.
+    """
+    chain = robot.chain
+    S, E, W = points_of(chain)
+    in_tip = np.linalg.inv(chain.T_zero) @ np.append(W, 1.0)
+    l = (T @ in_tip)[..., :3] - S
+    R4 = about(chain.axes[ELBOW], q[..., ELBOW])
+    bent = E - S + R4 @ (W - E)
+    here = frame_towards(bent, np.broadcast_to(E - S, bent.shape))
+    K = frame_at(chain.axes[0], l, swivel(robot, q)) @ np.swapaxes(here, -1, -2)
+    M = np.swapaxes(K @ R4, -1, -2) @ T[..., :3, :3] @ chain.T_zero[:3, :3].T
+    out = joint_values(chain.joint_types, q) | goal_values(T)
+    for name, R in (("k", K), ("m", M)):
+        out |= {f"{name}_{i + 1}{j + 1}": R[..., i, j] for i in range(3) for j in range(3)}
+    return out
+
+
+def about(h: Array, angle: Array) -> Array:
+    """Rotations (..., 3, 3) about a unit vector."""
+    x, y, z = h
+    C = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
+    return np.asarray(np.eye(3) + s * C + (1 - c) * (C @ C))
+
+
+def frame_towards(along: Array, e: Array) -> Array:
+    """Frames (..., 3, 3): the first axis along a vector, the second towards e."""
+    n = along / np.linalg.norm(along, axis=-1, keepdims=True)
+    u = e - np.sum(e * n, axis=-1, keepdims=True) * n
+    u = u / np.linalg.norm(u, axis=-1, keepdims=True)
+    return np.stack([n, u, np.cross(n, u)], axis=-1)
+
+
+def frame_at(reference: Array, l: Array, psi: Array) -> Array:
+    """The frame along l whose second axis stands at a swivel."""
+    zero = frame_towards(l, np.broadcast_to(reference, l.shape))
+    c, s = np.cos(psi), np.sin(psi)
+    u = c[..., None] * zero[..., 1] + s[..., None] * zero[..., 2]
+    return np.stack([zero[..., 0], u, np.cross(zero[..., 0], u)], axis=-1)

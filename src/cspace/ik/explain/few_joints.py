@@ -1,0 +1,78 @@
+"""Arms of up to three joints, turning or sliding: the steps of include/cspace/ik/position/."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.ik.explain.findings import Step
+from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, moved, numbers, symbols
+from cspace.math import Equation, TrigPolynomial
+
+__all__ = ["few_joint_steps", "few_joint_values"]
+
+WAYS = {1: 1, 2: 2, 3: 4}
+"""How many configurations bring the tip of an arm of so many joints to a point."""
+
+
+def few_joint_values(chain: Any, q: Array, T: Array) -> dict[str, Any]:
+    """The numbers of the joints and of the goal."""
+    return joint_values(chain.joint_types, q) | goal_values(T)
+
+
+def kept(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
+    """The two functions of a point that joint i does not change, and their units."""
+    h, o = chain.axes[i], chain.points[i]
+    d = [x[k] - float(o[k]) for k in range(3)]
+    if chain.joint_types[i] == "R":
+        return [(dotted(h, d), "m"), (sum((part * part for part in d), TrigPolynomial()), "m²")]
+    across = np.cross(h, np.eye(3)[int(np.argmin(np.abs(h)))])
+    across /= np.linalg.norm(across)
+    return [(dotted(across, d), "m"), (dotted(np.cross(h, across), d), "m")]
+
+
+def equal(f: list[tuple[TrigPolynomial, str]], g: list[tuple[TrigPolynomial, str]]) -> tuple[Equation, ...]:
+    """Equations between what a joint keeps on both sides, those that say nothing left out."""
+    pairs = [Equation(x, y, unit=unit) for (x, unit), (y, _) in zip(f, g, strict=True)]
+    return tuple(each for each in pairs if (each.left - each.right).terms)
+
+
+def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
+    """How the tip comes to a point, p unless given."""
+    kinds, n = chain.joint_types, len(chain.joint_types)
+    goal, tip = symbols("p") if goal is None else goal, numbers(chain.T_zero[:3, 3])
+    if n == 1:
+        return [last_step(chain, 0, tip, goal)]
+    middle = 0 if n == 2 else 1
+    behind = moved(chain, n - 1, tip)
+    before = goal if n == 2 else moved(chain, 0, goal, back=True)
+    names = [f"${'t' if kinds[k] == 'R' else 'q'}_{k + 1}$" for k in ((1,) if n == 2 else (0, 2))]
+    what = (
+        "its height along the axis and its distance from a point of the axis"
+        if kinds[middle] == "R"
+        else "its two coordinates across the slide"
+    )
+    first = Step(
+        " and ".join(names),
+        WAYS[n],
+        "subproblem 5" if kinds == "RRR" else "",
+        f"Joint {middle + 1} takes one point into another exactly if it keeps what it cannot change: {what}.",
+        equal(kept(chain, middle, before), kept(chain, middle, behind)),
+    )
+    return [first, last_step(chain, middle, behind, before)]
+
+
+def last_step(chain: Any, i: int, x: Vector, y: Vector) -> Step:
+    """Joint i takes x to y."""
+    turning = chain.joint_types[i] == "R"
+    carried = moved(chain, i, x)
+    equations = (Equation(carried[k], y[k], unit="m") for k in range(3))
+    return Step(
+        f"$t_{i + 1}$" if turning else f"$q_{i + 1}$",
+        1,
+        "subproblem 1" if turning else "",
+        f"Joint {i + 1} {'turns' if turning else 'slides'} one point into the other.",
+        tuple(each for each in equations if (each.left - each.right).terms),
+    )

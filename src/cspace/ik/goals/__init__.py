@@ -1,0 +1,1 @@
+"""Goals of inverse kinematics: poses, points, and partial goals."""

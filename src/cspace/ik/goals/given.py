@@ -1,0 +1,115 @@
+"""Goals as callers give them, checked and laid out as arrays: poses, points, points with an angle."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from cspace.arrays import Array, as_floats, leading_axes
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.goals.partial import is_open
+from cspace.ik.wrapping import turning
+from cspace.spatial import as_pose
+from cspace.tolerances import FARTHEST
+
+__all__ = [
+    "checked_poses",
+    "goal_array",
+    "is_far",
+    "one_configuration",
+    "open_in_space",
+    "planar_poses",
+    "points_in_base",
+    "too_far",
+]
+
+
+def goal_array(goal: Any) -> Array:
+    """The goals as contiguous float64; a plain batch goes on unchecked, for the core checks every goal
+    itself.
+    """
+    if type(goal) is np.ndarray and goal.dtype == np.float64 and goal.ndim > 2 and goal.shape[-2:] == (4, 4):
+        return np.require(goal, requirements=["C", "A"])
+    return np.require(as_pose(goal, "goal"), requirements=["C", "A"])
+
+
+def checked_poses(T: Array) -> Array:
+    """Poses that may have come unchecked, none of them too far away."""
+    T = as_pose(T, "goal")
+    if len(beyond := np.argwhere(is_far(T[..., :3, 3]))):
+        index = tuple(map(int, beyond[0]))
+        raise too_far(f"goal {index}" if index else "goal", T[index][:3, 3])
+    return T
+
+
+def points_in_base(robot: Any, position: Any) -> Array:
+    """Points in the base (..., 3); points of the plane (..., 2) are lifted to the height that a planar arm
+    keeps.
+    """
+    p = as_floats(position, "position")
+    if p.ndim > 0 and p.shape[-1] == 2:
+        p = lifted(robot, p)
+    if p.ndim == 0 or p.shape[-1] != 3:
+        raise InputError(
+            f"position has shape {p.shape}, expected (..., 3), or (..., 2) for an arm in the plane"
+        )
+    if p.ndim == 1 and is_far(p):
+        raise too_far("position", p)
+    return np.ascontiguousarray(p)
+
+
+def open_in_space(robot: Any, position: Any) -> Any:
+    """A point of the plane with one coordinate open (None), in space; every other position as it is."""
+    if not is_open(position) or len(position) != 2:
+        return position
+    if all(v is None for v in position):
+        return (None, None, None)
+    return (*position, float(lifted(robot, np.zeros(2))[2]))
+
+
+def planar_poses(robot: Any, goal: Any, position: Any, angle: Any) -> Array:
+    """Poses of an arm in the plane from points (..., 2) and angles (...) of the tip's x axis."""
+    if goal is not None or position is None:
+        raise InputTypeError("angle= goes with position=(x, y), the place of the tip of an arm in the plane")
+    p = as_floats(position, "position", last=(2,), largest=FARTHEST)
+    T_zero = robot.chain.T_zero
+    turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
+    p = lifted(robot, p)
+    T = np.zeros((*leading_axes(position=p.shape[:-1], angle=turn.shape), 4, 4))
+    T[..., 0, 0] = T[..., 1, 1] = np.cos(turn)
+    T[..., 1, 0] = np.sin(turn)
+    T[..., 0, 1] = -T[..., 1, 0]
+    T[..., 2, 2] = T[..., 3, 3] = 1.0
+    T[..., :3, :3] = T[..., :3, :3] @ T_zero[:3, :3]
+    T[..., :3, 3] = p
+    return T
+
+
+def lifted(robot: Any, p: Array) -> Array:
+    """Points (..., 2) of the plane z = constant in which an arm keeps its tip, as points (..., 3)."""
+    chain = robot.chain
+    along_z = np.abs(chain.axes[:, 2])
+    in_plane = np.where(turning(chain.joint_types), along_z > 1 - 1e-12, along_z < 1e-6)
+    if not in_plane.all():
+        raise InputError(
+            f"position has shape {p.shape}, but {robot.name} does not move in a plane z = constant"
+        )
+    return np.concatenate([p, np.full((*p.shape[:-1], 1), chain.T_zero[2, 3])], axis=-1)
+
+
+def one_configuration(robot: Any, value: Any, subject: str) -> Array:
+    """One configuration (dof,), contiguous."""
+    q = as_floats(value, subject, last=(robot.dof,), largest=FARTHEST)
+    if q.ndim != 1:
+        raise InputError(f"{subject} has shape {q.shape}, expected ({robot.dof},): one configuration")
+    return np.ascontiguousarray(q)
+
+
+def is_far(p: Array) -> Any:
+    """Whether points (..., 3) lie too far away, (...); sums that no float64 holds are not formed."""
+    return np.minimum(np.abs(p), 2 * FARTHEST).sum(axis=-1) > FARTHEST
+
+
+def too_far(subject: str, p: Array) -> InputError:
+    return InputError(f"{subject} lies at {p.tolist()} m; goals up to {FARTHEST:g} m away make sense")

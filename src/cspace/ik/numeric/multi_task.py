@@ -1,0 +1,216 @@
+"""Several tasks at once: the velocities that serve them best, and the configuration at the end."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats, as_generator
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.numeric.problem import bounds_of, further_starts, middle, positive
+from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
+from cspace.kinematics.batch import check_robot, frame_number, whole_number
+from cspace.spatial.checks import one_pose
+from cspace.tolerances import FARTHEST, SERVED, SETTLED
+
+__all__ = ["TaskSolution", "ik_tasks", "task_velocity"]
+
+NO_SPEED = np.empty(0)
+MOST_STARTS = 1_000_000
+
+
+class TaskSolution:
+    """The configuration that serves several tasks best, as far as steps from the start can tell.
+
+    q (n,) [rad, m], inside the limits. T_world_base (4, 4): of a floating base where it ends, else as given.
+    tasks: as given. position_error, rotation_error (k,) [m, rad]: of each task, zero for postures.
+    settled: whether no step serves better. iterations: how many steps it took from its start. Truthy if
+    every task but postures is within the tolerance.
+    """
+
+    def __init__(
+        self,
+        robot: Any,
+        q: Array,
+        T_world_base: Array,
+        tasks: tuple[Task, ...],
+        errors: Array,
+        settled: bool,
+        iterations: int,
+        tolerance: float,
+    ) -> None:
+        self.robot, self.q, self.T_world_base, self.tasks = robot, q, T_world_base, tasks
+        self.position_error, self.rotation_error = errors[:, 0], errors[:, 1]
+        self.settled, self.iterations = settled, iterations
+        self.success = bool((errors <= tolerance).all())
+
+    def __bool__(self) -> bool:
+        return self.success
+
+    @property
+    def reason(self) -> str:
+        """What became of the tasks in a sentence."""
+        if self.success:
+            return f"all tasks are done after {self.iterations} steps"
+        worst = int(np.argmax(np.maximum(self.position_error, self.rotation_error)))
+        kind = type(self.tasks[worst]).__name__
+        left = f"{self.position_error[worst]:.3g} m and {np.degrees(self.rotation_error[worst]):.3g}°"
+        how = "no step nearby serves better" if self.settled else "the steps ran out"
+        return f"task {worst} ({kind}) is left {left} away; {how}, after {self.iterations} steps"
+
+    def __repr__(self) -> str:
+        return f"<TaskSolution of {self.robot.name}: {self.reason}>"
+
+
+def task_velocity(
+    robot: Any,
+    q: Any,
+    tasks: Task | Iterable[Task],
+    dt: float,
+    *,
+    limits: Any = True,
+    velocity: Any = True,
+    damping: float = 1e-6,
+    T_world_base: Any = None,
+) -> Array:
+    """The joint velocities that serve several weighted tasks best in the next step, inside the limits.
+
+    min ½ Σ |W (J q̇ dt − gain · e)|² + ½ damping |q̇ dt|² over q̇, with q + q̇ dt in the limits and |q̇| in
+    those of the velocities: a small quadratic program, solved exactly.
+
+    q (n,) [rad, m]. tasks: PoseTask, PositionTask, DirectionTask, CenterOfMassTask, PostureTask, on frames of
+    any branch. dt [s]. limits: of the joints: True for the robot's own, False for none, or Limits; from
+    outside them q̇ leads back. velocity: True for the robot's own limits, False for none, or (n,) [rad/s,
+    m/s]. damping: how much motion costs. T_world_base (4, 4): where the base is.
+
+    Returns q̇ (dof,) [rad/s, m/s]; of a floating base its twist [v; ω] in the world first.
+    Raises InputError for wrong shapes, NaN, no task or a dt that is not positive; UnknownNameError for a
+    frame that is not there.
+
+    Kanoun, Lamiraux and Wieber 2011 (inequalities); Nocedal and Wright 2006, section 16.5.
+    """
+    check_robot(robot)
+    n = len(robot.joint_names)
+    rows, postures, _ = _packed(robot, tasks)
+    at = _configuration(robot, q, "q")
+    base = _base(T_world_base)
+    qd, errors = np.empty(robot.dof), np.empty((len(rows), 2))
+    step, cost = positive(dt, "dt"), positive(damping, "damping")
+    speed = _speeds(robot, velocity, n)
+    if not _core._task_velocity(
+        robot, rows, postures, at, base, bounds_of(robot, limits), speed, step, cost, qd, errors
+    ):
+        raise InputError("the tasks and their weights are too large or too small for the arithmetic")
+    return qd
+
+
+def ik_tasks(
+    robot: Any,
+    tasks: Task | Iterable[Task],
+    start: Any = None,
+    *,
+    limits: Any = True,
+    starts: int = 16,
+    max_iterations: int = 500,
+    tolerance: float = SERVED,
+    rng: int | np.random.Generator | None = None,
+    T_world_base: Any = None,
+) -> TaskSolution:
+    """The configuration that serves several weighted tasks best, from a start: arms, trees, floating bases.
+
+    min ½ Σ |W e(q)|² with q in the limits, by Levenberg–Marquardt steps that are quadratic programs.
+
+    tasks, limits: as in task_velocity; the gains do not count. start (n,): the middle of the limits unless
+    given. starts: how many to try at most until all tasks are done; the further ones are spread evenly over
+    the limits, or drawn from rng. tolerance [m, rad]: up to which error a task is done. T_world_base (4, 4):
+    where the base is, or, if it floats, where it starts.
+
+    Returns TaskSolution: q (n,), T_world_base, the error of each task, reason; truthy if all but postures
+    are done. Weights compromise: beside a PostureTask of weight w others miss by about w².
+    Raises as task_velocity does.
+    """
+    check_robot(robot)
+    rows, postures, listed = _packed(robot, tasks)
+    rows[:, 2], postures[:, -1] = 1.0, 1.0
+    bounds = bounds_of(robot, limits)
+    first = middle(robot, bounds) if start is None else _configuration(robot, start, "start")
+    base = _base(T_world_base)
+    number = whole_number(starts, "starts", 1, MOST_STARTS)
+    steps = whole_number(max_iterations, "max_iterations", 0, 1_000_000)
+    done = positive(tolerance, "tolerance")
+    rng = None if rng is None else as_generator(rng)
+    kept = [not isinstance(task, PostureTask) for task in listed]
+
+    def descend(begin: Array) -> tuple[float, TaskSolution]:
+        q = np.clip(begin, bounds[0], bounds[1]) if bounds.size else begin.copy()
+        T, errors, every = base.copy(), np.empty((len(rows), 2)), np.zeros((len(listed), 2))
+        used, settled, cost = _core._task_serve(robot, rows, postures, q, T, bounds, steps, SETTLED, errors)
+        every[kept] = errors
+        return cost, TaskSolution(robot, q, T, listed, every, settled, used, done)
+
+    best_cost, best = descend(first)
+    if not best and number > 1:
+        for begin in further_starts(robot, bounds, rows[:, 3:19].reshape(-1, 4, 4), number - 1, rng):
+            cost, found = descend(begin)
+            if found or cost < best_cost:
+                best_cost, best = cost, found
+            if found:
+                break
+    return best
+
+
+def _packed(robot: Any, tasks: Task | Iterable[Task]) -> tuple[Array, Array, tuple[Task, ...]]:
+    """The tasks as rows for the core: frames (k, TASK_WIDTH), and postures (k, 2 n + 1)."""
+    listed = tuple(tasks) if isinstance(tasks, Iterable) else (tasks,)
+    n = len(robot.joint_names)
+    rows: list[Array] = []
+    postures: list[Array] = []
+    for task in listed:
+        row = getattr(task, "_row", None)
+        if row is None:
+            raise InputTypeError(f"tasks hold a {type(task).__name__}; PoseTask, PostureTask … are tasks")
+        if isinstance(task, PostureTask):
+            if row.size != 2 * n + 1:
+                raise InputError(f"a PostureTask holds {(row.size - 1) // 2} joints, {robot.name} has {n}")
+            postures.append(row)
+            continue
+        if isinstance(task, CenterOfMassTask):
+            if robot.mass == 0.0:
+                raise InputError(f"no link of {robot.name} has a mass, so a CenterOfMassTask has no meaning")
+        else:
+            row = row.copy()
+            row[1] = frame_number(robot, task.frame)
+        rows.append(row)
+    if not listed:
+        raise InputError("there are no tasks; give one, or several in a list: PoseTask, PostureTask …")
+    return (
+        np.array(rows).reshape(len(rows), TASK_WIDTH),
+        np.array(postures).reshape(len(postures), 2 * n + 1),
+        listed,
+    )
+
+
+def _configuration(robot: Any, value: Any, subject: str) -> Array:
+    n = len(robot.joint_names)
+    q = as_floats(value, subject, last=(n,), largest=FARTHEST)
+    if q.ndim != 1:
+        raise InputError(f"{subject} has shape {q.shape}, expected one configuration ({n},)")
+    return np.ascontiguousarray(q)
+
+
+def _base(T_world_base: Any) -> Array:
+    return np.eye(4) if T_world_base is None else one_pose(T_world_base, "T_world_base")
+
+
+def _speeds(robot: Any, velocity: Any, n: int) -> Array:
+    """The largest speeds (n,), or (0,) for none."""
+    if velocity is False:
+        return NO_SPEED
+    given = robot.limits.velocity if velocity is True else velocity
+    speeds = as_floats(given, "velocity", last=(n,), finite=False)
+    if speeds.ndim != 1 or not (speeds >= 0).all():
+        raise InputError(f"velocity must be ({n},) speeds, 0 or more, one per joint of {robot.name}")
+    return np.ascontiguousarray(speeds)

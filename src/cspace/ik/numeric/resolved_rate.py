@@ -1,0 +1,107 @@
+"""Resolved rate: the joint velocities that move a frame as wanted."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError
+from cspace.kinematics.batch import thread_count
+from cspace.kinematics.jacobian import jacobian
+from cspace.tolerances import FARTHEST, WEAK_DIRECTION
+
+__all__ = ["resolved_rate"]
+
+MOST_JOINTS = 128
+
+
+def resolved_rate(
+    robot: Any,
+    q: Any,
+    twist: Any,
+    *,
+    frame: str | None = None,
+    point: Any = None,
+    expressed_in: str = "base",
+    damping: float | None = None,
+    null_space: Any = None,
+    velocity: Any = False,
+    T_world_base: Any = None,
+    threads: int | None = None,
+) -> Array:
+    """The least joint velocities that give a frame, or a point of it, a twist.
+
+    q̇ = Jᵀ (J Jᵀ + λ² I)⁻¹ t + N q̇₀, with N the projection onto the null space of J.
+
+    q (..., n) [rad, m], twist t (..., 6): [v; ω] [m/s, rad/s]. frame, point (..., 3), expressed_in,
+    T_world_base (..., 4, 4): as in jacobian. damping λ: None damps weak directions alone: where a singular
+    value σ of J is below ε = 0.01 its gain is σ/ε² in place of 1/σ, so near a singularity the robot slows
+    down along what it cannot do, and elsewhere the twist is met exactly; 0 gives the pseudo-inverse.
+    null_space q̇₀ (..., dof): wished besides, without moving the frame. velocity: True for the robot's
+    limits, or (dof,) [rad/s, m/s]: where they would be exceeded the motion in the null space gives way, then
+    all joints slow down alike, so the direction of the twist stays.
+
+    Returns q̇ (..., dof) [rad/s, m/s].
+    Raises InputError for wrong shapes, NaN or a negative damping; UnknownNameError for an unknown frame.
+
+    Whitney 1969; Liégeois 1977; Nakamura and Hanafusa 1986; Wampler 1986; Maciejewski and Klein 1988.
+    """
+    J = jacobian(robot, q, frame, point=point, expressed_in=expressed_in, T_world_base=T_world_base)
+    dof = robot.dof
+    if dof > MOST_JOINTS:
+        raise InputError(f"{robot.name} has {dof} velocities; resolved_rate takes up to {MOST_JOINTS}")
+    wanted = as_floats(twist, "twist", last=(6,), largest=FARTHEST)
+    wish = None if null_space is None else as_floats(null_space, "null_space", last=(dof,), largest=FARTHEST)
+    try:
+        lead = np.broadcast_shapes(J.shape[:-2], wanted.shape[:-1], () if wish is None else wish.shape[:-1])
+    except ValueError:
+        raise InputError(
+            f"the leading axes of q {J.shape[:-2]}, twist {wanted.shape} and null_space do not fit together"
+        ) from None
+
+    number = math.prod(lead)
+
+    def rows(array: Array, own: int) -> Array:
+        last = array.shape[array.ndim - own :]
+        if array.shape == lead + last:
+            return np.ascontiguousarray(array.reshape(number, *last))
+        return np.ascontiguousarray(np.broadcast_to(array, lead + last).reshape(number, *last))
+
+    workers = thread_count(threads, lead)
+    qd = np.empty((number, dof))
+    _core._resolved_rate(
+        rows(J, 2),
+        rows(wanted, 1),
+        np.empty((0, dof)) if wish is None else rows(wish, 1),
+        _speeds(robot, velocity),
+        -1.0 if damping is None else _damping(damping),
+        WEAK_DIRECTION,
+        workers,
+        qd,
+    )
+    return qd.reshape(*lead, dof)
+
+
+def _damping(value: Any) -> float:
+    """One number, 0 or more."""
+    number = as_floats(value, "damping", largest=FARTHEST)
+    if number.ndim or number < 0:
+        raise InputError(f"damping is {value!r}; it must be one number, 0 or more")
+    return float(number)
+
+
+def _speeds(robot: Any, velocity: Any) -> Array:
+    """The largest speeds (dof,), those of a floating base unlimited; (0,) for none."""
+    if velocity is False:
+        return np.empty(0)
+    n = robot.limits.velocity.size
+    speeds = as_floats(
+        robot.limits.velocity if velocity is True else velocity, "velocity", last=(n,), finite=False
+    )
+    if speeds.ndim != 1 or not (speeds >= 0).all():
+        raise InputError(f"velocity must be ({n},) speeds, 0 or more, one per joint of {robot.name}")
+    return np.concatenate([np.full(robot.dof - n, np.inf), speeds])

@@ -1,0 +1,1 @@
+"""Redundancy: locked joints, self-motion, feasible intervals and the arm angle."""

@@ -1,0 +1,74 @@
+"""Where a joint to spare may be, for a pose or for parts of one."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
+
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.goals.partial import KEYWORDS, PartialGoal, check_tool_axis, partial_goal
+from cspace.ik.goals.solve_partial import own_columns, whole_arm
+from cspace.ik.locked_joints import by_name, joint_number
+from cspace.ik.prepare import prepare
+from cspace.ik.redundancy.feasible_intervals import redundancy_of_pose
+from cspace.ik.redundancy.result import Redundancy
+from cspace.spatial.checks import one_pose
+
+__all__ = ["redundancy"]
+
+
+def redundancy(
+    robot: Any,
+    goal: Any = None,
+    parameter: str | int | None = None,
+    *,
+    locked: Mapping[Any, float] | None = None,
+    tool_axis: Any = "z",
+    **parts: Any,
+) -> Redundancy:
+    """For which values of a joint to spare a goal can be reached within all limits, branch by branch.
+
+    The ends are where another joint reaches a limit (it is locked there, and the others are solved) and where
+    branches fold: the determinant of the others' Jacobian vanishes. goal (4, 4): T_base_tip; or parts of it
+    by keyword, one goal, as `robot.ik` takes them: position, rotation, direction, look_at, ray, angle_to,
+    tool_axis. parameter: the joint, by name or number, one of those that a partial goal adds, or "swivel" of
+    an arm with two spherical joints; the solver's own choice unless given (`ik(goal).freedom` names it).
+    locked: values of other joints [rad, m], so that one is left to spare.
+
+    Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a joint to spare
+    or with more than one, and for a joint that the goal settles.
+    For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
+    """
+    given = {name: value for name, value in parts.items() if value is not None}
+    unknown = sorted(given.keys() - set(KEYWORDS))
+    if unknown:
+        raise InputTypeError(f"redundancy has no keyword {unknown[0]!r}; of a goal it takes {list(KEYWORDS)}")
+    check_tool_axis(tool_axis, given)
+    if (goal is None) == (not given):
+        raise InputTypeError("redundancy needs one goal: a pose, or parts of it by name, such as position=p")
+    if given:
+        return redundancy_of_parts(robot, partial_goal(given, tool_axis), parameter, locked)
+    prepare(robot)
+    T = one_pose(goal, "goal")
+    if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in robot.joint_names:
+        from cspace.ik.redundancy.arm_angle_intervals import swivel_intervals
+
+        if locked is not None:
+            raise InputTypeError("the swivel is what seven joints leave free: locked= does not go with it")
+        return swivel_intervals(robot, T)
+    return redundancy_of_pose(robot, T, parameter, locked)
+
+
+def redundancy_of_parts(robot: Any, goal: PartialGoal, parameter: Any, locked: Any) -> Redundancy:
+    """That of the arm with the joints which stand for what the goal leaves open."""
+    if goal.T.ndim != 2:
+        raise InputError(f"the goal has shape {goal.T.shape[:-2]}, expected one goal: ask in a loop")
+    whole, own = whole_arm(robot, goal), own_columns(robot, goal)
+    prepare(whole)
+    named = parameter is None or isinstance(parameter, str)
+    joint = parameter if named else robot.joint_names[joint_number(robot, parameter, "parameter")]
+    values = by_name(robot, locked) if isinstance(locked, Mapping) else locked
+    found = redundancy_of_pose(whole, goal.T, joint, values)
+    rows = tuple(replace(interval, q=interval.q[own]) for interval in found)
+    return replace(found, robot=robot, intervals=rows)

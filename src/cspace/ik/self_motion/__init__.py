@@ -1,0 +1,1 @@
+"""Self-motions: the joints move, the tip stays."""

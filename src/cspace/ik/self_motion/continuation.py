@@ -1,0 +1,264 @@
+"""The curve that a family runs along, and the part of it that joint limits leave.
+
+A curve that closes is periodic once its angles are unwound: after one time around it stands `shift` further,
+a whole turn or several for joints that went round, nothing for the others. Its points are named by their arc
+length s from q, over as many times around as the limits leave.
+
+Source: E. L. Allgower and K. Georg, Numerical Continuation Methods, 1990, for the curve itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.ik.prepare import prepare
+from cspace.ik.wrapping import into_limits, short_way, turning
+
+__all__ = ["Arc", "arc_through", "nearest_member"]
+
+CLOSED, FAR = 0, 1
+TURN = 2 * np.pi
+HALVINGS = 50
+AT_REST = 1e-9
+"""Change [rad or m] of a joint that rests along a family: rounding of the steps back onto the curve."""
+MOST_TURNS = 1000
+"""Times around after which a joint counts as turning for ever."""
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """points (m, dof) along the curve, s (m,) their arc length from q, tangents (m, dof); shift (dof,) what
+    one time around adds, None for a curve that does not close. q (dof,): where it was traced from.
+    """
+
+    robot: Any
+    whole_pose: bool
+    q: Array
+    points: Array
+    tangents: Array
+    s: Array
+    shift: Array | None
+
+    @property
+    def length(self) -> float:
+        return float(self.s[-1])
+
+    def beside(self, k: int) -> tuple[float, float]:
+        """The arc lengths of the points before and after point k; a closed curve goes on where it began."""
+        before, last = k - 1, len(self.s) - 1
+        if self.shift is None:
+            return float(self.s[max(before, 0)]), float(self.s[min(k + 1, last)])
+        low = self.s[before] if k > 0 else self.s[last - 1] - self.length
+        high = self.s[k + 1] if k < last else self.s[1] + self.length
+        return float(low), float(high)
+
+    def at(self, s: Array) -> Array:
+        """Configurations at these arc lengths (k,), (k, dof)."""
+        around = np.floor(s / self.length) if self.shift is not None else np.zeros_like(s)
+        inner = s - around * self.length
+        i = np.clip(np.searchsorted(self.s, inner) - 1, 0, len(self.s) - 2)
+        step = self.s[i + 1] - self.s[i]
+        part = np.where(step > 0, (inner - self.s[i]) / np.where(step > 0, step, 1.0), 0.0)
+        chord = self.points[i] + part[:, None] * (self.points[i + 1] - self.points[i])
+        exact, _ = onto(self.robot, self.q, chord, self.tangents[i], self.whole_pose)
+        exact = np.where(np.isnan(exact), self.points[i], exact)  # a corner too sharp for its chord
+        return exact if self.shift is None else exact + around[:, None] * self.shift
+
+
+@dataclass(frozen=True, eq=False)
+class Arc:
+    """The part of a curve from arc length first to last, infinite where nothing stops it; is_loop: the whole
+    of a closed curve, once around.
+    """
+
+    curve: Curve
+    first: float
+    last: float
+    is_loop: bool
+
+    def bounds(self) -> Array:
+        """The least and the largest value of each joint, (dof, 2)."""
+        curve = self.curve
+        shift = np.zeros(curve.points.shape[1]) if curve.shift is None else curve.shift
+        points = self.turning_points()
+        low, high = points.min(axis=0), points.max(axis=0)
+        rests = high - low < AT_REST
+        low, high = np.where(rests, curve.q, low), np.where(rests, curve.q, high)
+        for end, way in ((self.first, -1), (self.last, 1)):
+            if np.isfinite(end):
+                continue
+            drift = way * (shift if curve.shift is not None else outward(curve, way))
+            low, high = np.where(drift < 0, -np.inf, low), np.where(drift > 0, np.inf, high)
+        if self.is_loop:
+            round_about = (shift != 0) | (high - low >= TURN)
+            round_about &= turning(curve.robot.joint_types)
+            low, high = np.where(round_about, -np.pi, low), np.where(round_about, np.pi, high)
+        return np.stack([low, high], axis=1)
+
+    def turning_points(self) -> Array:
+        """Points among which every joint has its extremes: the curve's own in the outermost times around,
+        and both ends.
+        """
+        curve, kept = self.curve, []
+        if curve.shift is None:
+            inside = (curve.s >= self.first) & (curve.s <= self.last)
+            kept.append(curve.points[inside])
+        else:
+            ends = [np.floor(end / curve.length) for end in (self.first, self.last) if np.isfinite(end)]
+            for around in {float(e + k) for e in [*ends, 0.0] for k in (-1, 0, 1)}:
+                s = curve.s + around * curve.length
+                inside = (s >= self.first) & (s <= self.last)
+                kept.append(curve.points[inside] + around * curve.shift)
+        for end in (self.first, self.last):
+            if np.isfinite(end) and not self.is_loop:
+                kept.append(curve.at(np.array([end])))
+        return np.concatenate(kept)
+
+    def sample(self, n: int) -> Array:
+        return self.curve.at(np.linspace(self.first, self.last, n, endpoint=not self.is_loop))
+
+
+def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc | None:
+    """The part of the family through q within the robot's limits; None where q itself breaks them."""
+    prepare(robot)  # a robot out of a pickle comes without its solver
+    lower, upper = robot.limits.lower, robot.limits.upper
+    moved, fits = into_limits(q[None], robot.joint_types, lower, upper)
+    if not fits[0]:
+        return None
+    curve, ends = trace(robot, np.ascontiguousarray(moved[0]), direction, whole_pose)
+    last = stop(curve, lower, upper, 1, ends[1])
+    first = stop(curve, lower, upper, -1, ends[0])
+    if curve.shift is not None and np.isinf([first, last]).all():
+        return Arc(curve, 0.0, curve.length, True)
+    return Arc(curve, first, last, False)
+
+
+def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, seed: Array) -> Array:
+    """The configuration (dof,) of the family through q that is nearest to a seed, limits aside, each turning
+    joint by the turn that brings it closest.
+    """
+    prepare(robot)
+    rounds, parts = 9, 33
+    curve, _ = trace(robot, np.ascontiguousarray(q), direction, whole_pose)
+    low, high = curve.beside(int(np.argmin(distances(robot, curve.points, seed))))
+    for _ in range(rounds):  # each narrows the piece between two points sixteenfold
+        s = np.linspace(low, high, parts)
+        points = curve.at(s)
+        k = int(np.argmin(distances(robot, points, seed)))
+        low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
+    turns = np.where(turning(robot.joint_types), np.round((points[k] - seed) / TURN), 0.0)
+    return np.asarray(points[k] - TURN * turns)
+
+
+def distances(robot: Any, points: Array, seed: Array) -> Array:
+    """How far configurations (k, dof) are from a seed, turning joints the short way round, (k,)."""
+    return np.asarray(np.linalg.norm(short_way(points - seed, robot.joint_types), axis=1))
+
+
+def trace(robot: Any, q: Array, direction: Array, whole_pose: bool) -> tuple[Curve, tuple[int, int]]:
+    """The curve through q, with the extremes of every joint among its points, and how it ends either way."""
+    ahead, along, end = _core._ik_follow(robot, q, np.ascontiguousarray(direction), whole_pose)
+    start, ends, shift = 0, (end, end), None
+    if end == CLOSED:
+        shift = np.where(turning(robot.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0)
+    else:
+        behind, back, other = _core._ik_follow(robot, q, -np.ascontiguousarray(direction), whole_pose)
+        start, ends = len(behind) - 1, (other, end)
+        ahead = np.concatenate([behind[:0:-1], ahead])
+        along = np.concatenate([-back[:0:-1], along])
+    points, tangents, start = with_extremes(robot, q, ahead, along, start, whole_pose)
+    steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
+    s = np.concatenate([[0.0], np.cumsum(steps)])
+    return Curve(robot, whole_pose, q, points, tangents, s - s[start], shift), ends
+
+
+def with_extremes(
+    robot: Any, q: Array, points: Array, tangents: Array, start: int, whole_pose: bool
+) -> tuple[Array, Array, int]:
+    """The points of a curve and, between them, those where a joint turns back: its tangent changes sign."""
+    turning = np.abs(tangents).max(axis=0) > AT_REST
+    where, joint = np.nonzero((tangents[:-1] * tangents[1:] < 0) & turning)
+    if len(where) == 0:
+        return points, tangents, start
+    low, high = np.zeros(len(where)), np.ones(len(where))
+    before, step = points[where], points[where + 1] - points[where]
+    sign = np.sign(tangents[where, joint])
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        exact, t = onto(robot, q, before + middle[:, None] * step, tangents[where], whole_pose)
+        same = np.sign(t[np.arange(len(where)), joint]) == sign
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    order = np.lexsort((low, where))
+    at = where[order] + 1
+    return (
+        np.insert(points, at, exact[order], axis=0),
+        np.insert(tangents, at, t[order], axis=0),
+        start + int(np.count_nonzero(where < start)),
+    )
+
+
+def stop(curve: Curve, lower: Array, upper: Array, way: int, end: int) -> float:
+    """The arc length at which the curve, followed from q forward (way 1) or back (−1), meets a limit;
+    infinite where it meets none, the end of the curve where it was lost.
+    """
+    points, s = (curve.points, curve.s) if way > 0 else (curve.points[::-1], curve.s[::-1])
+    around = 0
+    if curve.shift is None:
+        keep = way * s >= 0
+        points, s = points[keep], s[keep]
+    else:
+        if way < 0:
+            points, s = points - curve.shift, s - curve.length
+        around = times_around(points, way * curve.shift, lower, upper)
+        if around >= MOST_TURNS:
+            return way * np.inf
+        points, s = points + way * around * curve.shift, s + way * around * curve.length
+    # Joints at rest stay where the limits hold them, whatever rounding says.
+    moving = np.ptp(curve.points, axis=0) > AT_REST
+    outside = (((points < lower) | (points > upper)) & moving).any(axis=1)
+    outside[0] = False  # q itself, or a point that the time around before has passed
+    if not outside.any():
+        return way * np.inf if curve.shift is not None or end == FAR else float(s[-1])
+    i = int(np.argmax(outside))
+    return crossing(curve, float(s[i - 1]), float(s[i]), (lower, upper, moving))
+
+
+def times_around(points: Array, shift: Array, lower: Array, upper: Array) -> int:
+    """How many times the curve can be gone around before a limit is met, MOST_TURNS at most."""
+    moving = np.ptp(points, axis=0) > AT_REST
+    if (((points < lower) | (points > upper)) & moving).any():
+        return 0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        room = np.where(shift > 0, upper - points.max(axis=0), points.min(axis=0) - lower) / np.abs(shift)
+    least = np.where(shift != 0, room, np.inf).min()
+    return int(min(np.floor(least) + 1, MOST_TURNS))
+
+
+def crossing(curve: Curve, inside: float, outside: float, limits: tuple[Array, Array, Any]) -> float:
+    """The last arc length, between these two, at which the curve is within limits."""
+    lower, upper, moving = limits
+    for _ in range(HALVINGS):
+        middle = 0.5 * (inside + outside)
+        q = curve.at(np.array([middle]))[0]
+        broken = (((q < lower) | (q > upper)) & moving).any()
+        inside, outside = (inside, middle) if broken else (middle, outside)
+    return inside
+
+
+def outward(curve: Curve, way: int) -> npt.NDArray[np.float64]:
+    """The way slides go at an end of a curve that runs on for ever; zero for joints that rest."""
+    t = curve.tangents[-1 if way > 0 else 0]
+    return np.where(np.abs(t) > AT_REST, t, 0.0)
+
+
+def onto(robot: Any, q: Array, near: Array, along: Array, whole_pose: bool) -> tuple[Array, Array]:
+    """Rows of joints brought onto the curve through q, and the tangents there."""
+    prepare(robot)  # a copy of the family's robot has no solver yet
+    rows = [np.ascontiguousarray(value) for value in (q, near, along)]
+    return _core._ik_onto(robot, *rows, whole_pose)

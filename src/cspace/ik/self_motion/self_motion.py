@@ -1,0 +1,104 @@
+"""One-parameter families of configurations: the joints move, the tip stays."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.errors import InputError, InputTypeError
+from cspace.ik.redundancy.result import MOST_SAMPLES
+from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
+from cspace.ik.wrapping import wrap
+
+__all__ = ["SelfMotion", "self_motion_at"]
+
+MOVING = 1e-6
+"""Smallest entry of a unit direction [rad or m] that is motion: what a joint at rest has is rounding."""
+
+
+@dataclass(frozen=True, eq=False)
+class SelfMotion:
+    """A one-parameter family of configurations: the joints move, the tip stays.
+
+    row: the solution that stands for it. q: that configuration (dof,). direction: the unit joint velocity
+    (dof,) along the family at q. joints: the names of the joints that move at q. bounds: how far each of them
+    goes; sample(n): configurations along the way.
+    """
+
+    row: int
+    q: Array
+    direction: Array
+    joints: tuple[str, ...]
+    _robot: Any = field(repr=False)
+    _whole_pose: bool = field(repr=False)
+
+    @cached_property
+    def _arc(self) -> Arc | None:
+        return arc_through(self._robot, self.q, self.direction, self._whole_pose)
+
+    @property
+    def bounds(self) -> Array:
+        """The least and the largest value of each joint along the family, (dof, 2) [rad, m].
+
+        The family is the curve of configurations through q that keep the tip where it is (for a position
+        goal: keep its position), followed from q both ways until a joint of the robot meets a limit or the
+        curve closes. A joint that goes all the way round a curve without limits has bounds −π and π; one that
+        is stopped on one side only, or a slide that nothing stops, has an infinite bound on the other. A
+        joint that rests has twice its value. Angles are those of q, after whole turns into the limits,
+        counted on without a jump, so that bounds may lie beyond ±π.
+
+        NaN where q breaks the limits whatever turn is taken: ik(..., near=q) picks another representative.
+        Where more freedom is left than one, the curve is the one that goes on straight from `direction`; it
+        need not close, and is then followed for 4000 steps of 0.05 rad at most, and no further than to where
+        families cross within rounding.
+        Computed when first read, by steps along the tangent and back onto the curve (Allgower and Georg
+        1990); extremes and limits are met to rounding.
+        """
+        if self._arc is None:
+            return np.full((len(self.q), 2), np.nan)
+        return self._arc.bounds()
+
+    def sample(self, n: int) -> Array:
+        """n configurations along the family, (n, dof) [rad, m], evenly spread, each keeping the tip.
+
+        From one end of the part within limits to the other, both included; of a closed curve without limits
+        from q once around, joints that go all the way round in (−π, π]. No rows where q breaks the limits
+        (see bounds). Raises InputError where the family has no end, naming the joint, and for n below 1.
+        """
+        if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
+            raise InputTypeError(f"n is a {type(n).__name__}, expected a number of configurations")
+        if not 1 <= n <= MOST_SAMPLES:
+            raise InputError(f"n is {n}, expected 1 to {MOST_SAMPLES} configurations")
+        if self._arc is None:
+            return np.empty((0, len(self.q)))
+        endless = np.flatnonzero(np.isinf(self.bounds).any(axis=1))
+        if len(endless):
+            name = self._robot.joint_names[int(endless[0])]
+            raise InputError(f"the family has no end, {name} moves on for ever: give the robot limits")
+        q = self._arc.sample(int(n))
+        goes_round = self._arc.is_loop & (np.ptp(self.bounds, axis=1) >= 2 * np.pi)
+        return np.where(goes_round, wrap(q, self._robot.joint_types), q)
+
+    def nearest(self, q: Array) -> Array:
+        """The configuration of the family that is nearest to q (dof,), (dof,) [rad, m].
+
+        Limits aside; each turning joint by the turn that brings it closest.
+        """
+        return nearest_member(self._robot, self.q, self.direction, self._whole_pose, q)
+
+
+def self_motion_at(robot: Any, row: int, q: Array, whole_pose: bool) -> SelfMotion:
+    """The family through q: the joint velocity keeping the tip's twist, or the tip's velocity, at zero."""
+    rows = 6 if whole_pose else 3
+    found = _core._ik_direction(robot, np.ascontiguousarray(q), whole_pose)
+    direction = np.linalg.svd(robot.jacobian(q)[:rows])[2][-1] if found is None else found
+    direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
+    moving = np.abs(direction) > MOVING
+    names = tuple(itertools.compress(robot.joint_names, moving))
+    return SelfMotion(row, q, np.where(moving, direction, 0.0), names, robot, whole_pose)

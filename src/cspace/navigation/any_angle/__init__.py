@@ -1,0 +1,1 @@
+"""Shortest paths at any angle through convex polygons and over cells."""

@@ -1,0 +1,119 @@
+"""From start to goal through a world, by any planner."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import TYPE_CHECKING, Any, Final, TypeAlias
+
+from numpy.typing import ArrayLike
+
+from cspace.arrays import one_number
+from cspace.errors import InputError, InputTypeError
+from cspace.maps import OccupancyGrid, PolygonWorld
+from cspace.navigation.planners import Planner, module_of, planner_named
+from cspace.search.options import check_options
+
+if TYPE_CHECKING:
+    from cspace.navigation.route import Route
+
+__all__ = ["World", "navigate"]
+
+NO_RADIUS: Final = 0.0
+"""The robot is a point."""
+MOST_DERIVED: Final = 8
+"""Worlds grown by a radius or converted that are kept with a world: making one takes milliseconds."""
+
+World: TypeAlias = PolygonWorld | OccupancyGrid
+"""Every kind of world that `navigate` takes: each has a `kind`, "polygons" or "grid", and can be inflated."""
+
+
+def navigate(
+    world: World,
+    start: ArrayLike,
+    goal: ArrayLike,
+    planner: str = "any_angle",
+    *,
+    radius: float = NO_RADIUS,
+    resolution: float | None = None,
+    **options: Any,
+) -> Route:
+    """The way of a robot from start to goal, as a planner finds it.
+
+    world: a PolygonWorld or an OccupancyGrid; a planner of the other kind gets it converted. resolution [m]:
+    the side of the cells that polygons become for planners over cells, which `route.reason` tells; by default
+    about 1/200 of the longer side of the bounds, as `PolygonWorld.to_grid` chooses it. start, goal: (2,) [m].
+    planner: a name of `cs.navigation.PLANNERS`. radius [m] of the robot: 0 for a point, else obstacles are
+    grown by it first. options: those of the planner. The Route is truthy if a path was found, and says why
+    where not; where start and goal are the same point its path is that point, (1, 2).
+    Raises UnknownNameError on an unknown planner, InputTypeError on an unknown option or no world, InputError
+    on points that are not finite, outside the bounds or inside an obstacle.
+    """
+    row = planner_named(planner)
+    plan = module_of(planner).plan
+    kind = getattr(world, "kind", None)
+    given = world
+    if kind != row.world or radius is not NO_RADIUS or resolution is not None:
+        world = _prepared(world, kind, row, radius, resolution)
+    if options:
+        check_options(planner, row.options, options)
+    try:
+        if world is not given and isinstance(given, PolygonWorld) and isinstance(world, PolygonWorld):
+            from cspace.navigation.disc_robot import plan_disc
+
+            route = plan_disc(given, world, float(radius), planner, (start, goal), options)
+        else:
+            route = plan(world, start, goal, **options)
+    except InputError as error:
+        if not str(error).startswith(("start (", "goal (")):
+            raise
+        raise InputError(f"{error}{_made_of(given, world, radius)}") from None
+    if world is not given:
+        vars(route)["given_world"] = given
+    return route
+
+
+def _made_of(given: World, world: World, radius: float) -> str:
+    """What was done to the world in which an end is not free."""
+    said = f"; obstacles are grown by the robot's radius, {radius:g} m" if radius else ""
+    if given.kind == "polygons" and isinstance(world, OccupancyGrid):
+        said += f"; polygons became cells of {world.resolution:g} m, give a smaller resolution="
+    return said
+
+
+def _prepared(world: World, kind: str | None, row: Planner, radius: float, resolution: float | None) -> World:
+    """The world grown by the robot's radius and of the kind that the planner works in."""
+    if kind not in {"polygons", "grid"}:
+        raise InputTypeError(
+            f"world must be a PolygonWorld or an OccupancyGrid, got an object of type {type(world).__name__}"
+        )
+    if radius is NO_RADIUS and resolution is None:
+        ready: World | None = vars(world).get("_derived", {}).get((row.world, row.takes_cells))
+        if ready is not None:
+            return ready
+    if (grown := one_number(radius, "radius")) < 0:
+        raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
+    if grown:
+        world = _derived(world, ("grown", grown), lambda: world.inflate(grown))
+    side = None if resolution is None else one_number(resolution, "resolution")
+    if side is not None and side <= 0:
+        raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
+    if kind == "grid" and side is not None:
+        raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
+    if kind == row.world:
+        return world
+    if isinstance(world, OccupancyGrid):
+        if row.takes_cells and module_of(row.name).takes_cells(world):
+            return world
+        polygons = _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
+        return _derived(world, (row.world, row.takes_cells), lambda: polygons)
+    return _derived(world, ("grid", side), lambda: world.to_grid(side))
+
+
+def _derived(world: World, key: Hashable, make: Callable[[], World]) -> World:
+    """What was made from a world, kept with it for the next question."""
+    kept: dict[Hashable, World] = vars(world).setdefault("_derived", {})
+    if key not in kept:
+        if len(kept) >= MOST_DERIVED:
+            kept.pop(next(iter(kept)))
+        kept[key] = make()
+    return kept[key]

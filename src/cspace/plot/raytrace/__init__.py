@@ -1,0 +1,1 @@
+"""Solids drawn by casting rays: shapes, lights and shadows."""

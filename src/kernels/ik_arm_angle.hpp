@@ -1,0 +1,9 @@
+#pragma once
+
+#include "cspace/ik/redundancy/arm_angle.hpp"
+#include "dispatch.hpp"
+
+// All solutions of a goal at n swivels: q (n, 8, 7), NaN in rows without a solution.
+CSPACE_NARROW_KERNEL(void, swivel_solutions,
+                     (const cspace::ik::SwivelArm& arm, const cspace::Posed& goal, const double* swivels,
+                      int n, double* q))

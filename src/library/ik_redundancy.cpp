@@ -1,0 +1,251 @@
+#include "ik_redundancy.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <mutex>
+#include <stdexcept>
+
+#include "cspace/ik/goal.hpp"
+#include "cspace/ik/redundancy/arcs.hpp"
+#include "cspace/math/threads.hpp"
+#include "ik_arm.hpp"
+#include "kernels/ik_closed_form.hpp"
+#include "kernels/ik_locked_rows.hpp"
+#include "kernels/ik_redundancy.hpp"
+
+namespace cspace::ik {
+
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+
+Posed pose_of(const double* m) { return read_goal(m).T; }
+
+// The unit of length in which curves along prismatic joints are followed [m]: a power of two, which rounds
+// nothing; 1 for arms about that long and for those without prismatic joints.
+double unit_of(const Redundant& arm) {
+    bool slides = false;
+    for (int i = 0; i < arm.chain.n; ++i) slides |= arm.chain.prismatic[i];
+    const bool usual = arm.length > 0.25 && arm.length < 4;
+    return slides && !usual ? std::exp2(std::round(std::log2(arm.length))) : 1.0;
+}
+
+// Goals of joints that follow one another, by the closed form on lanes.
+struct LaneRows {
+    static constexpr std::size_t most = 64;
+    double T[most][16], q[most][max_branches * 6];
+    std::int64_t count[most];
+    FastPath quick[most];
+
+    void solve(const LockedArm& locked, const double* goals, const double* at, std::size_t stride,
+               std::size_t rows) {
+        kernels::locked_goals(locked, goals, at, stride, rows, T[0]);
+        kernels::ik_many(locked.arm, T[0], rows, max_branches, q[0], count, quick);
+    }
+};
+
+}  // namespace
+
+struct RedundantSolver::State {
+    Redundant arm;
+    double unit;  // [m]
+    std::mutex mutex;
+    std::unique_ptr<RedundantSolver> scaled;  // the same arm with lengths in its unit
+    std::map<std::vector<int>, std::unique_ptr<LockedArm>> plans;
+    std::unique_ptr<LimitArms> limits;
+
+    RedundantSolver& in_its_unit() {
+        const std::lock_guard<std::mutex> guard(mutex);
+        if (!scaled) {
+            Chain chain = arm.chain;
+            double lower[max_joints], upper[max_joints];
+            for (int i = 0; i < chain.n; ++i) {
+                const double size = chain.prismatic[i] ? unit : 1;
+                chain.point[i] = (1 / unit) * chain.point[i];
+                lower[i] = arm.lower[i] / size;
+                upper[i] = arm.upper[i] / size;
+            }
+            chain.tip.t = (1 / unit) * chain.tip.t;
+            scaled = std::make_unique<RedundantSolver>(chain, lower, upper, arm.weight);
+        }
+        return *scaled;
+    }
+    const LimitArms& limit_arms() {
+        const std::lock_guard<std::mutex> guard(mutex);
+        if (!limits) {
+            auto made = std::make_unique<LimitArms>();
+            kernels::ik_make_limit_arms(arm, *made);
+            limits = std::move(made);
+        }
+        return *limits;
+    }
+};
+
+RedundantSolver::RedundantSolver(const Chain& chain, const double* lower, const double* upper,
+                                 const double* weight)
+    : state_(std::make_unique<State>()) {
+    kernels::ik_make_redundant(chain, lower, upper, weight, state_->arm);
+    state_->unit = unit_of(state_->arm);
+}
+RedundantSolver::RedundantSolver(RedundantSolver&&) noexcept = default;
+RedundantSolver::~RedundantSolver() = default;
+
+const Chain& RedundantSolver::chain() const { return state_->arm.chain; }
+int RedundantSolver::redundant_joints() const { return state_->arm.redundancy_degree; }
+bool RedundantSolver::has_closed_form() const { return rank_of(state_->arm.locked.arm) > 1; }
+std::vector<int> RedundantSolver::default_locked() const {
+    const LockedArm& locked = state_->arm.locked;
+    return {locked.locked_joint, locked.locked_joint + locked.n_locked};
+}
+
+int RedundantSolver::redundant_with(const std::vector<int>& locked) const {
+    unsigned bits = 0;
+    for (const int joint : locked) {
+        if (joint < 0 || joint >= chain().n) throw std::invalid_argument("locked joints belong to the arm");
+        bits |= 1u << joint;
+    }
+    return redundancy_degree_with(state_->arm, bits);
+}
+
+const LockedArm& RedundantSolver::lock(const std::vector<int>& joints) {
+    const int n = chain().n, moving = n - int(joints.size());
+    const bool ascending =
+        std::adjacent_find(joints.begin(), joints.end(), std::greater_equal<>()) == joints.end();
+    if (!ascending || (!joints.empty() && (joints.front() < 0 || joints.back() >= n)) || moving < 1 ||
+        moving > max_moving)
+        throw std::invalid_argument("locked joints must ascend and leave one to six to move");
+    const std::lock_guard<std::mutex> guard(state_->mutex);
+    const LockedArm& usual = state_->arm.locked;
+    if (usual.n_moving > 0 &&
+        std::equal(joints.begin(), joints.end(), usual.locked_joint, usual.locked_joint + usual.n_locked))
+        return usual;
+    auto& slot = state_->plans[joints];
+    if (!slot) {
+        slot = std::make_unique<LockedArm>();
+        kernels::ik_lock_joints(state_->arm, joints.data(), int(joints.size()), *slot);
+    }
+    return *slot;
+}
+
+int RedundantSolver::room_for(const LockedArm& locked) const {
+    return locked.at_ends ? ik::room_for(locked.arm) : max_solutions;
+}
+
+void RedundantSolver::solve(const LockedArm& locked, const Rows& rows) const {
+    const std::size_t n = std::size_t(chain().n), stride = rows.at_each ? n : 0;
+    const bool on_lanes = rows.n > 1 && !rows.unconstrained && locked.at_ends && rank_of(locked.arm) == 3 &&
+                          rows.room >= max_branches;
+    over_rows(rows.n, rows.threads, 1, 64, [&](std::size_t from, std::size_t to) {
+        Solutions found;
+        const auto lanes = on_lanes ? std::make_unique_for_overwrite<LaneRows>() : nullptr;
+        for (std::size_t i = from; i < to; ++i) {
+            const double* values = rows.at + stride * i;
+            double* q = rows.q + rows.room * n * i;
+            const std::size_t in = (i - from) % LaneRows::most;
+            if (lanes && in == 0)
+                lanes->solve(locked, rows.goals + 16 * i, values, stride, std::min(to - i, LaneRows::most));
+            if (lanes && lanes->quick[in] == FastPath::settled) {
+                kernels::locked_rows(locked, values, lanes->q[in], lanes->count[in], rows.room, q);
+                rows.count[i] = lanes->count[in];
+                rows.status[i] = std::uint8_t(lanes->count[in] ? Status::exact : Status::unreachable);
+                continue;
+            }
+            kernels::ik_locked(locked, pose_of(rows.goals + 16 * i), values, rows.unconstrained, found);
+            std::fill(q, q + rows.room * n, none);
+            const int count = std::min(found.count, int(rows.room));
+            for (int k = 0; k < count; ++k) {
+                whole_row(locked, values, found.q[k], q + n * std::size_t(k));
+                rows.branch[rows.room * i + std::size_t(k)] = found.branch[k];
+                rows.self_motion[rows.room * i + std::size_t(k)] = found.self_motion[k];
+            }
+            rows.count[i] = count;
+            rows.status[i] = std::uint8_t(int(found.status) + (found.complete ? 0 : incomplete));
+        }
+        return true;
+    });
+}
+
+void RedundantSolver::find_nearest(const double* goals, std::size_t n, const double* seeds, bool seed_each,
+                                   double* q, bool* found, int threads) const {
+    const std::size_t dof = std::size_t(chain().n);
+    over_rows(n, threads, 1, 16, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            double* const row = q + dof * i;
+            found[i] = kernels::ik_nearest(state_->arm, pose_of(goals + 16 * i),
+                                           seeds + (seed_each ? dof * i : 0), row);
+            if (!found[i]) std::fill(row, row + dof, none);
+        }
+        return true;
+    });
+}
+
+bool RedundantSolver::find_nearest_turned(const double* goal, const double* seed, double* q) const {
+    const Redundant& arm = state_->arm;
+    const ReadGoal<double> read = read_goal(goal);
+    if (!read.is_pose || !kernels::ik_nearest(arm, read.T, seed, q)) return false;
+    turn_to_seed(arm.chain.prismatic, arm.chain.n, arm.lower, arm.upper, seed, q);
+    return true;
+}
+
+std::vector<FeasibleInterval> RedundantSolver::intervals(int parameter, const double* goal, bool& complete) {
+    if (redundant_joints() != 1 || parameter < 0 || parameter >= chain().n)
+        throw std::invalid_argument("intervals are those of a joint of an arm with one redundant joint");
+    const double unit = state_->unit;
+    RedundantSolver& solver = unit == 1 ? *this : state_->in_its_unit();
+    Posed T = pose_of(goal);
+    T.t = (1 / unit) * T.t;
+    const LockedArm& locked = solver.lock({parameter});
+    const auto trail = std::make_unique_for_overwrite<Trail>();
+    const auto found = std::make_unique<Intervals>();
+    kernels::ik_intervals(solver.state_->arm, locked, parameter, solver.state_->limit_arms(), T, *trail,
+                          *found);
+    const auto in_metres = [&](int joint, double q) { return chain().prismatic[joint] ? unit * q : q; };
+    std::vector<FeasibleInterval> out;
+    for (int k = 0; k < found->count; ++k) {
+        const Interval& i = found->interval[k];
+        std::vector<double> q(i.q, i.q + chain().n);
+        for (int j = 0; j < chain().n; ++j) q[std::size_t(j)] = in_metres(j, i.q[j]);
+        out.push_back({in_metres(parameter, i.lower),
+                       in_metres(parameter, i.upper),
+                       i.branch,
+                       {i.end[0], i.end[1]},
+                       {i.side[0], i.side[1]},
+                       std::move(q)});
+    }
+    complete = found->complete;
+    return out;
+}
+
+bool RedundantSolver::sweep(int parameter, const double* goal, const double* at, const double* values,
+                            std::size_t m, double* q, std::int8_t* branch, std::int64_t* count) {
+    if (redundant_joints() != 1 || parameter < 0 || parameter >= chain().n)
+        throw std::invalid_argument("a sweep is that of a joint of an arm with one redundant joint");
+    const std::size_t n = std::size_t(chain().n);
+    constexpr std::size_t room = max_solutions;
+    std::vector<SweptRows> rows(m);
+    kernels::ik_sweep(lock({parameter}), parameter, pose_of(goal), at, values, int(m), rows.data());
+    bool complete = true;
+    std::fill(q, q + m * room * n, none);
+    for (std::size_t i = 0; i < m; ++i) {
+        complete = complete && rows[i].complete;
+        count[i] = rows[i].count;
+        for (int k = 0; k < rows[i].count; ++k) {
+            std::copy(rows[i].q[k], rows[i].q[k] + n, q + (room * i + std::size_t(k)) * n);
+            branch[room * i + std::size_t(k)] = std::int8_t(rows[i].branch[k]);
+        }
+    }
+    return complete;
+}
+
+bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, Solutions& found,
+                       double* q) {
+    const ReadGoal<double> read = read_goal(goal);
+    if (!read.is_pose) return false;
+    kernels::ik_locked(locked, read.T, at, nullptr, found);
+    for (int k = 0; k < found.count; ++k) whole_row(locked, at, found.q[k], q + locked.whole.n * k);
+    return found.count > 0;
+}
+
+}  // namespace cspace::ik

@@ -1,0 +1,84 @@
+// Arms with redundant joints: what the bindings call. The solver keeps, for every set of joints that was
+// locked, the plan of those that move.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "cspace/ik/solution.hpp"
+
+namespace cspace::ik {
+
+struct LockedArm;
+
+// One feasible interval of a locked joint: what ends it at either side (a joint, or −1 nothing, −2 a fold),
+// which limit of that joint, and a configuration in its middle.
+struct FeasibleInterval {
+    double lower, upper;
+    int branch;
+    int end[2], side[2];
+    std::vector<double> q;
+};
+
+class RedundantSolver {
+  public:
+    // Limits and weights of distances per joint.
+    RedundantSolver(const Chain& chain, const double* lower, const double* upper, const double* weight);
+    RedundantSolver(RedundantSolver&&) noexcept;
+    ~RedundantSolver();
+
+    const Chain& chain() const;
+    int redundant_joints() const;  // beyond those that the tip needs to move as it can
+    std::vector<int> default_locked() const;
+    bool has_closed_form() const;  // of the joints that move by default
+    int redundant_with(const std::vector<int>& locked) const;
+
+    // The plan with these joints locked, built when first needed. Throws std::invalid_argument unless they
+    // ascend and leave one to six to move.
+    const LockedArm& lock(const std::vector<int>& joints);
+    int room_for(const LockedArm& locked) const;
+
+    // Goals (n, 16) with the locked joints at their values: `at` (n, dof), or one row for all; q (n, room,
+    // dof).
+    struct Rows {
+        const double* goals;
+        std::size_t n;
+        const double* at;
+        bool at_each;
+        const double* unconstrained;
+        std::size_t room;
+        double* q;
+        std::int8_t* branch;
+        bool* self_motion;
+        std::int64_t* count;
+        std::uint8_t* status;
+        int threads;
+    };
+    void solve(const LockedArm& locked, const Rows& rows) const;
+
+    // The nearest configuration to each seed; seeds (n, dof), or one row for all.
+    void find_nearest(const double* goals, std::size_t n, const double* seeds, bool seed_each, double* q,
+                      bool* found, int threads) const;
+    // The same for one goal, by multiples of 2π as close to the seed as the limits allow.
+    bool find_nearest_turned(const double* goal, const double* seed, double* q) const;
+
+    // The feasible intervals of one locked joint, and whether none is missing.
+    std::vector<FeasibleInterval> intervals(int parameter, const double* goal, bool& complete);
+
+    // All solutions at m values of one locked joint: q (m, max_solutions, dof). Whether none is missing.
+    bool sweep(int parameter, const double* goal, const double* at, const double* values, std::size_t m,
+               double* q, std::int8_t* branch, std::int64_t* count);
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
+
+// One goal with the locked joints at their values `at` (dof,); q (max_solutions, dof). False where the goal
+// is no pose or nothing reaches it.
+bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, Solutions& found,
+                       double* q);
+
+}  // namespace cspace::ik

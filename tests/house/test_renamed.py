@@ -1,0 +1,50 @@
+"""A name of other libraries, or of yesterday, gets an error that says ours."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import cspace as cs
+from cspace import errors
+
+
+def test_an_old_keyword_names_the_new_one():
+    robot = cs.load_robot("panda")
+    with pytest.raises(errors.InputTypeError, match=r"^unknown keyword 'fixed': use locked=$"):
+        robot.ik(np.eye(4), fixed={"panda_joint7": 0.3})
+    with pytest.raises(TypeError, match=r"^ik\(\) got an unexpected keyword argument 'fixd'"):
+        robot.ik(np.eye(4), fixd=0)
+
+
+def answers():
+    robot = cs.load_robot("ur5e")
+    q = np.full(6, 0.3)
+    found, batch = robot.ik(robot.fk(q)), robot.ik(robot.fk(np.stack([q, q])))
+    route = cs.navigate(cs.PolygonWorld([], (0, 0, 4, 4)), (1, 1), (3, 3))
+    track = robot.track(robot.fk(np.linspace(q, q + 0.1, 4)), start=q)
+    planner = cs.navigation.PLANNERS["a_star"]
+    return [
+        *((found, old, new) for old, new in (("families", "self_motions"), ("missing", "out_of_reach"))),
+        (found, "asked", "goal_parts"),
+        (batch, "missing", "out_of_reach"),
+        (route, "price", "stats"),
+        (track, "why", "cause"),
+        (track[0], "why", "cause"),
+        (planner, "line", "summary"),
+        (planner, "sees", "sensing"),
+    ]
+
+
+def test_an_old_attribute_names_the_new_one():
+    for owner, old, new in answers():
+        getattr(owner, new)
+        with pytest.raises(AttributeError, match=f"no attribute '{old}': use {new}$"):
+            getattr(owner, old)
+        with pytest.raises(AttributeError, match=r"no attribute 'colour'$"):
+            _ = owner.colour
+        assert not hasattr(owner, "colour")
+
+
+def test_names_say_each_what_is_meant():
+    assert not set(errors.RENAMED) & set(errors.RENAMED.values())

@@ -1,0 +1,72 @@
+"""A room is a word of the field: its C++ folder, its bindings, its Python package, its tests and its page of
+the docs share it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from house import tree
+
+HEADERS = tree.ROOT / "include/cspace"
+COMPILED = sorted([*(tree.ROOT / "src/bindings").glob("*.?pp"), *(tree.ROOT / "src/kernels").glob("*.?pp")])
+
+CPP_ALONE = {"ik/general", "ik/position"}
+"""Folders of headers that no Python file stands for: the plan of an arm chooses among them."""
+PYTHON_ALONE = {"ik/explain", "ik/goals", "model/mjcf"}
+"""Packages of words: files, names and sentences, with no loop of their own."""
+NO_ROOM = {"module", "bindings", "arrays", "numpy_api", "dispatch", "once"}
+"""What all bindings or all kernels share."""
+PAGES = {"model": "robots"}
+"""Pages that speak of two rooms."""
+NO_PAGE = {"math", "search"}
+"""What the rooms above are made of."""
+
+
+def folders(root: Path) -> set[str]:
+    """The folders below a folder that hold files of the project, with their paths from there."""
+    files = [path for ending in ("*.hpp", "*.py") for path in root.rglob(ending)]
+    return {str(path.parent.relative_to(root)) for path in files} - {"."}
+
+
+def rooms(root: Path) -> set[str]:
+    return {path for path in folders(root) if "/" not in path}
+
+
+def is_python(path: str) -> bool:
+    """Whether a sub-room has a package, or is small enough for one file."""
+    return (tree.PACKAGE / path).is_dir() or (tree.PACKAGE / f"{path}.py").is_file()
+
+
+def test_every_room_of_the_core_has_a_package():
+    assert rooms(HEADERS) <= rooms(tree.PACKAGE)
+
+
+def test_rooms_in_both_languages_have_the_same_rooms_inside():
+    both = rooms(HEADERS) & rooms(tree.PACKAGE)
+    cpp = {path for path in folders(HEADERS) if path.split("/")[0] in both and "/" in path}
+    python = {path for path in folders(tree.PACKAGE) if path.split("/")[0] in both and "/" in path}
+    assert {path for path in cpp if not is_python(path)} == CPP_ALONE
+    assert python - cpp == PYTHON_ALONE
+
+
+@pytest.mark.parametrize("room", sorted(rooms(tree.PACKAGE)))
+def test_every_room_has_tests_and_a_page(room):
+    assert list((tree.ROOT / "tests" / room).rglob("test_*.py")), f"no tests/{room}"
+    if room not in NO_PAGE:
+        page = f"docs/{PAGES.get(room, room)}.md"
+        assert (tree.ROOT / page).is_file(), f"no {page}"
+
+
+def test_folders_of_tests_are_rooms():
+    for room in rooms(tree.PACKAGE):
+        for path in folders(tree.ROOT / "tests" / room):
+            inside = f"{room}/{path}"
+            assert is_python(inside) or (HEADERS / inside).is_dir(), f"tests/{inside} is no room"
+
+
+@pytest.mark.parametrize("path", COMPILED, ids=lambda path: f"{path.parent.name}/{path.name}")
+def test_compiled_files_are_named_by_their_room(path):
+    known = {room for room in tree.RANK if not room.startswith("_")} | rooms(HEADERS)
+    assert path.stem in NO_ROOM or path.stem.split("_")[0] in known, "begin the name with that of a room"
