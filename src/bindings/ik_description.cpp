@@ -58,7 +58,7 @@ double determinant(nb::handle robot, const std::vector<double>& goal, int formul
 
 void bind_ik_description(nb::module_& m) {
     m.def("_ik_numbers", &numbers, "robot"_a,
-          "How a robot is solved (closed, general, short, any) and the numbers of its plan.");
+          "How a robot is solved (closed, general, few_joints, any) and the numbers of its plan.");
     m.def("_ik_plan", &outline, "robot"_a, "What the solver of a robot rests on.");
     m.def("_ik_determinant", &determinant, "robot"_a, "goal"_a, "formulation"_a, "a0"_a,
           "The determinant of a general arm at one hidden angle.");

@@ -105,7 +105,7 @@ Value numbers(const LoopFrames& f) { return Parts()("between", f.between)("first
 Value numbers(const GeneralPlan& p) {
     return Parts()("chain", p.chain)("length", p.length)("slides", p.slides)("frames", p.frames)(
         "order", list_of(p.order, p.regular))("regular", p.regular)("sensitivity", p.sensitivity)(
-        "paired", p.paired)("spurious_roots", p.spurious_roots)("ghost", p.spurious);
+        "paired", p.paired)("spurious_roots", p.spurious_roots)("spurious", p.spurious);
 }
 Value numbers(const ThreeTurns& t) { return Parts()("h", t.h)("a", t.a)("b", t.b)("constant", t.constant); }
 Value numbers(const PositionFirst& p) {
@@ -166,7 +166,7 @@ Value loop_of(const GeneralArm& arm) {
                                                                             list_of(plan.chain.prismatic, 6))(
         "tip", rows_of({plan.chain.tip.R, plan.length * plan.chain.tip.t}))("order", Value(std::move(order)))(
         "between", Value(std::move(between)))("first", rows_of(plan.frames.first))(
-        "last", rows_of(plan.frames.last))("length", plan.length)("neighbours", arm.has_perturbed);
+        "last", rows_of(plan.frames.last))("length", plan.length)("perturbed_arms", arm.has_perturbed);
     if (arm.position_first.serves) out("wrist", arm.position_first.backwards);
     return out;
 }
@@ -177,7 +177,7 @@ std::pair<std::string, Value> plan_numbers(const BuiltArm& built) {
     const Arm& arm = *built.arm;
     if (arm.has_plan) return {"closed", numbers(arm.plan)};
     if (arm.is_general) return {"general", numbers(arm.general)};
-    return {arm.has_few_joints ? "short" : "any", numbers(arm.plan.chain)};
+    return {arm.has_few_joints ? "few_joints" : "any", numbers(arm.plan.chain)};
 }
 
 Value plan_outline(const BuiltArm& built) {

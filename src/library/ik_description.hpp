@@ -9,7 +9,7 @@
 
 namespace cspace::ik {
 
-// Which solver serves the arm ("closed", "general", "short", "any") and every number of its plan.
+// Which solver serves the arm ("closed", "general", "few_joints", "any") and every number of its plan.
 std::pair<std::string, Value> plan_numbers(const BuiltArm& built);
 
 // {"form": …} of an arm with a closed form, {"loop": …} of a general one, else nothing.

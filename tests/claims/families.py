@@ -14,10 +14,10 @@ from scipy.ndimage import label
 from scipy.sparse.csgraph import connected_components
 
 import cspace as cs
-from touching_worlds import slanted_touch
 from oracles.clearance import is_free, nearest, rings_of
 from oracles.grids import distances, graph
 from oracles.plane import shortest
+from touching_worlds import slanted_touch
 
 STEP = 0.1
 

@@ -71,7 +71,10 @@ BAD_LINES = [
         "ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 3 --near 0 0 0 0 0 0 0",
         "--samples and --near do not go",
     ),
-    ("ik ur5e --explain --locked q2=1 --asked position", "--locked goes with a full pose: leave --asked out"),
+    (
+        "ik ur5e --explain --locked q2=1 --goal-parts position",
+        "--locked goes with a full pose: leave --goal-parts out",
+    ),
     ("ik ur5e --explain --tool-axis x", "--tool-axis goes with --direction"),
     ("ik ur5e --explain --look-at 1 0 0", "leave --look-at out"),
     ("ik ur5e --explain --samples 3", "leave --samples out"),

@@ -199,7 +199,10 @@ def test_an_explanation_knows_the_joints_that_are_held():
         cspace("ik panda --explain --locked q4=-90 --deg").out
         == cspace("ik panda --explain --locked q4=-pi/2").out
     )
-    assert cspace("ik al5d --explain --asked look-at").out == cspace("ik al5d --explain --asked look_at").out
+    assert (
+        cspace("ik al5d --explain --goal-parts look-at").out
+        == cspace("ik al5d --explain --goal-parts look_at").out
+    )
 
 
 @pytest.mark.parametrize("verb", ["fk", "jacobian"])

@@ -265,11 +265,11 @@ def test_explanations_in_every_form(robot):
 
 
 def test_goals_that_ask_for_less_are_explained():
-    result = cspace("ik al5d --explain --asked position direction --tool-axis x --json")
+    result = cspace("ik al5d --explain --goal-parts position direction --tool-axis x --json")
     assert result.code == 0
     schema.check(result.json, "cspace.ik_plan/1")
     assert "goal_tool_turn_x" in result.json["joints"]
-    assert cspace("ik al5d --explain --asked positon").code == 2
+    assert cspace("ik al5d --explain --goal-parts positon").code == 2
 
 
 def test_an_explanation_of_an_arm_that_nothing_solves_is_a_negative_answer():
@@ -286,7 +286,7 @@ def test_an_explanation_of_an_arm_that_nothing_solves_is_a_negative_answer():
         ("ik ur5e --explain --xyz 1 0 0", "leave --xyz out"),
         ("ik ur5e --explain --plot a.png", "leave --plot out"),
         ("ik ur5e --xyz 1 0 0 --latex", "add --explain"),
-        ("ik ur5e --xyz 1 0 0 --asked position", "add --explain"),
+        ("ik ur5e --xyz 1 0 0 --goal-parts position", "add --explain"),
     ],
 )
 def test_goals_and_explanations_do_not_mix(line, words):

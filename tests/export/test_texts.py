@@ -161,7 +161,7 @@ def test_where_one_of_two_files_cannot_be_written_neither_is(tmp_path):
 
 def test_an_arm_without_joints_is_refused(tmp_path):
     link = '<link name="a"/><link name="b"/>'
-    joint = '<joint name="j" type="locked"><parent link="a"/><child link="b"/></joint>'
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
     (tmp_path / "still.urdf").write_text(f'<robot name="still">{link}{joint}</robot>')
     robot = cs.load_robot(tmp_path / "still.urdf")
     with pytest.raises(NoClosedFormError, match="no joint moves"):

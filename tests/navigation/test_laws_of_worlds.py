@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from touching_worlds import slanted_touch, triangle
 from oracles.plane import shortest
+from touching_worlds import slanted_touch, triangle
 
 SHORTEST: Final = ("any_angle", "visibility_graph")
 CERTAIN: Final = (*SHORTEST, "exact_cells", "bug_1", "bug_2", "tangent_bug")

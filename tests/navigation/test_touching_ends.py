@@ -11,8 +11,8 @@ import pytest
 import cspace as cs
 from claims.families import Question
 from claims.judge import enters_wall
-from touching_worlds import diamond_on_border, slanted_touch
 from oracles.segments import enters
+from touching_worlds import diamond_on_border, slanted_touch
 
 PLANNERS: Final = [row.name for row in cs.navigation.PLANNERS.values() if row.world == "polygons"]
 DRAWN: Final = {"prm": 100, "rrt": 100, "rrt_star": 100}

@@ -21,9 +21,9 @@ WITH_WRIST = 1
 THREE_PARALLEL = 2
 
 # The modules of a method, in the order in which they are written down.
-CLOSED = ("base", "steps", "closed")
+CLOSED = ("base", "trig_steps", "closed")
 METHODS = {
-    "wrist": (*CLOSED, "places", "position_first"),
+    "wrist": (*CLOSED, "pieper_position", "position_first"),
     "three_parallel": (*CLOSED, "three_parallel"),
     "parallel_general": (*CLOSED, "parallel_general"),
     "few_joints": ("base", "few_joints"),
@@ -68,13 +68,13 @@ def python_words_of_locked(arm: ExportedArm) -> dict[str, str]:
     lines += f"WHOLE: dict[str, Any] = {literal(chain_numbers(arm), 1)}\n"
     of_q = ", ".join(f"q[{k}]" for k in chosen)
     return {
-        "locked_sample": ", fixed",
+        "locked_sample": ", locked",
         "locked_of_q": f", [{of_q}]",
         "locked_parameter": "locked: npt.ArrayLike, ",
         "locked_words": f"    locked ({count},): the values of the locked joints, {arm.locked_names}.\n",
         "locked_arm_source": lines,
         "whole": "WHOLE",
-        "solve": f"solve_locked({solver}, ARM, WHOLE, LOCKED, values_of(fixed, {count}), goal, rest)",
+        "solve": f"solve_locked({solver}, ARM, WHOLE, LOCKED, values_of(locked, {count}), goal, rest)",
     }
 
 

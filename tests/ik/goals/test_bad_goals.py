@@ -220,7 +220,7 @@ def test_a_joint_that_mimics_another_is_refused():
 
 
 def test_a_fixed_joint_in_the_chain_leaves_an_arm_of_five():
-    robot = Robot(chain_with("locked"))
+    robot = Robot(chain_with("fixed"))
     q = random_q(np.random.default_rng(1), 5)
     assert np.abs(robot.ik(robot.fk(q), near=q).q[0] - q).max() < 1e-9
 

@@ -38,7 +38,7 @@ cspace ik so101 --explain --goal-parts position direction --tool-axis x --markdo
 """
 KEYWORDS: Final = re.compile(
     r"\b(position|rotation|direction|look_at|ray|angle_to|angle|tool_axis|locked|swivel|samples|near"
-    r"|least_squares|asked)=(?=[^=]|$)"
+    r"|least_squares|goal_parts)=(?=[^=]|$)"
 )
 """The keywords of robot.ik that are options here."""
 

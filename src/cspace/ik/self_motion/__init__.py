@@ -1,1 +1,3 @@
 """Self-motions: the joints move, the tip stays."""
+
+__all__: list[str] = []
