@@ -26,7 +26,7 @@ static void expect_every_generator_found(Class kind, bool backwards) {
             CHECK(s.status == ik::Status::exact);
             double nearest = 10;
             for (int k = 0; k < s.count; ++k) {
-                nearest = min(nearest, distance(arm, s.q[k], q));
+                nearest = min(nearest, joint_distance(arm, s.q[k], q));
                 worst = max(worst, pose_difference(forward(arm, s.q[k]), goal, plan.form.length));
             }
             missed += nearest > 1e-7;
@@ -70,7 +70,7 @@ static void expect_shorter_arms_solved(Class kind, int left_out, int joints) {
             const ik::Solutions s = solve_carefully(plan, goal, nullptr);
             double nearest = 10;
             for (int k = 0; k < s.count; ++k) {
-                nearest = min(nearest, distance(arm, s.q[k], q));
+                nearest = min(nearest, joint_distance(arm, s.q[k], q));
                 worst = max(worst, pose_difference(forward(arm, s.q[k]), goal, plan.form.length));
             }
             missed += nearest > 1e-7;

@@ -35,7 +35,7 @@ static void ask(const ik::Chain& chain, int poses, arms::Rng& rng, Tally& tally)
         const ik::Solutions s = solve_pose(arm, goal, nullptr);
         double nearest = 10;
         for (int k = 0; k < s.count; ++k) {
-            nearest = min(nearest, distance(chain, s.q[k], q));
+            nearest = min(nearest, joint_distance(chain, s.q[k], q));
             tally.worst = max(tally.worst, pose_difference(forward(chain, s.q[k]), goal, length));
         }
         tally.missed += nearest > 1e-6;
@@ -87,7 +87,7 @@ static ik::Chain grid_arm(int n, int slides, arms::Rng& rng) {
 
 static double smallest_singular_value(const ik::Chain& chain, const Posed& goal, const double* q) {
     PoseError error;
-    measure(chain, goal, 1, q, error);
+    measure_error(chain, goal, 1, q, error);
     decompose(error.jacobian);
     double least = 10;
     for (int i = 0; i < chain.n; ++i) least = min(least, error.jacobian.sigma[i]);
@@ -116,7 +116,7 @@ TEST(a_certified_list_holds_what_the_reversed_arm_finds_at_quarter_turns) {
                 for (int i = 0; i < n && k >= 0; ++i) q[i] = reversed.q[k][n - 1 - i];
                 if (smallest_singular_value(chain, goal, q) < 1e-2) continue;
                 double nearest = 10;
-                for (int j = 0; j < found.count; ++j) nearest = min(nearest, distance(chain, found.q[j], q));
+                for (int j = 0; j < found.count; ++j) nearest = min(nearest, joint_distance(chain, found.q[j], q));
                 lacking += nearest > 1e-6;
                 ++compared;
             }

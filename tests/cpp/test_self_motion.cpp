@@ -29,7 +29,7 @@ TEST(three_links_on_a_point_swing_as_a_four_bar_linkage) {
     // The direction that leaves the tip alone: across both rows of the Jacobian.
     PoseError at;
     measure_constrained(chain, constraint, q, at);
-    const double* along = at.jacobian.v[weakest(at.jacobian)];
+    const double* along = at.jacobian.v[weakest_direction(at.jacobian)];
     double low = q[0], high = q[0], last[3] = {}, worst = 0;
     int steps = 0;
     const ik::CurveEnd end = follow_curve(chain, constraint, q, along, [&](const double* p, const double* t) {
