@@ -8,10 +8,8 @@
 #include <vector>
 
 #include "bench.hpp"
-#include "cspace/ik/branches.hpp"
-#include "cspace/ik/chain.hpp"
-#include "cspace/ik/virtual_joints.hpp"
-#include "ik.hpp"
+#include "cspace/ik/arm.hpp"
+#include "kernels/ik_closed_form.hpp"
 
 using namespace cspace;
 
@@ -61,8 +59,8 @@ static std::vector<double> random_goals(const ik::Chain& chain, int count) {
 }
 
 static void measure_arm(const NamedArm& arm) {
-    static ik::Plan plan;
-    if (!make_plan(plan, arm.chain)) {
+    const ik::Arm solver = make_arm(arm.chain);
+    if (!solver.has_plan) {
         std::fprintf(stderr, "%s has no closed form\n", arm.name.c_str());
         return;
     }
@@ -75,12 +73,12 @@ static void measure_arm(const NamedArm& arm) {
     bench::measure(("ik " + arm.name).c_str(), n, 200, [&] {
         for (int k = 0; k < n; ++k) {
             int count = 0;
-            kernels::ik_one(plan, &goals[16 * k], q.data(), branch, &count);
+            kernels::ik_one(solver, &goals[16 * k], q.data(), branch, &count);
             bench::keep(q[0]);
         }
     });
     bench::measure(("ik batch " + arm.name).c_str(), n, 200, [&] {
-        kernels::ik_many(plan, goals.data(), n, q.data(), counts.data(), verdicts.data());
+        kernels::ik_many(solver, goals.data(), n, q.data(), counts.data(), verdicts.data());
     });
 }
 
