@@ -116,7 +116,8 @@ TEST(a_certified_list_holds_what_the_reversed_arm_finds_at_quarter_turns) {
                 for (int i = 0; i < n && k >= 0; ++i) q[i] = reversed.q[k][n - 1 - i];
                 if (smallest_singular_value(chain, goal, q) < 1e-2) continue;
                 double nearest = 10;
-                for (int j = 0; j < found.count; ++j) nearest = min(nearest, joint_distance(chain, found.q[j], q));
+                for (int j = 0; j < found.count; ++j)
+                    nearest = min(nearest, joint_distance(chain, found.q[j], q));
                 lacking += nearest > 1e-6;
                 ++compared;
             }

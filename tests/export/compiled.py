@@ -46,7 +46,7 @@ def cpp_program(made, folder: Path, cxx: str, *flags: str) -> Path:
     made.write(folder)
     (header,) = made.files
     program = folder / "program"
-    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DHELD={len(made.locked)}", "-I", folder]
+    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DLOCKED={len(made.locked)}", "-I", folder]
     run([cxx, "-std=c++17", *STRICT, *flags, *words, HERE / "driver.cpp", "-o", program], folder)
     return program
 
@@ -56,7 +56,7 @@ def c_program(made, folder: Path, cxx: str, cc: str) -> Path:
     made.write(folder)
     header, source = made.files
     program = folder / "program"
-    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DHELD={len(made.locked)}", "-I", folder]
+    words = [f'-DHEADER="{header}"', f"-DARM={made.name}", f"-DLOCKED={len(made.locked)}", "-I", folder]
     run([cxx, "-std=c++17", "-O1", "-fno-exceptions", *STRICT, "-c", source, "-o", "arm.o"], folder)
     run([cc, "-std=c99", *STRICT, *words, HERE / "driver.c", "arm.o", "-lm", "-o", program], folder)
     return program

@@ -34,7 +34,11 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
     const Vec3<V> dp = (1 / length) * (goal.t - tip);
     // Half the sum of the cross products of the axes is the rotation that is missing, to first order.
     Vec3<V> w = 0.5 * cross(column(Q, 0), column(goal.R, 0));
-    for (int k = 1; k < 3; ++k) w = w + 0.5 * cross(column(Q, k), column(goal.R, k));
+    V agreement = dot(column(Q, 0), column(goal.R, 0));  // 1 + 2 cos of the missing rotation's angle
+    for (int k = 1; k < 3; ++k) {
+        w = w + 0.5 * cross(column(Q, k), column(goal.R, k));
+        agreement = agreement + dot(column(Q, k), column(goal.R, k));
+    }
     V A[6][6], b[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
     for (int i = 0; i < 6; ++i) {
         const bool slides = chain.prismatic[i];
@@ -48,7 +52,9 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
     for (int i = 0; i < 6; ++i) largest = max(largest, abs(b[i]));
     const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
     for (int i = 0; i < 6; ++i) q[i] = mul_add(chain.prismatic[i] ? length * keep : keep, b[i], q[i]);
-    return largest;
+    // Half a turn off, the sum of cross products vanishes as at the goal: nothing beyond a right angle has
+    // settled.
+    return select(agreement < 1.0, max(largest, fill<V>(1.0)), largest);
 }
 
 // True where q, a candidate near a solution, has become one.
