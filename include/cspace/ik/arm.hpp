@@ -1,4 +1,4 @@
-// An arm ready to be asked: its plan, and the answers that need no instruction set of their own.
+// A solver for one arm: its plan, and the functions that are independent of the instruction set.
 #pragma once
 
 #include "cspace/ik/general/singular.hpp"
@@ -20,7 +20,7 @@ struct Arm {
     bool is_general = false;      // up to six joints of any kind for which the closed form does not suffice
 };
 
-// How many rows the solutions of a goal may need.
+// Maximum number of solutions of a goal.
 inline int room_for(const Arm& arm) { return arm.is_general ? max_solutions : max_branches; }
 
 }  // namespace cspace::ik
@@ -43,7 +43,7 @@ CSPACE_ONCE ik::Arm make_arm(const ik::Chain& chain, bool with_general = true) {
     return arm;
 }
 
-// The solutions of a short arm for a position or a pose, in the common shape.
+// The solutions of an arm with fewer than six joints for a position or a pose, in the common format.
 template <class Found>
 ik::Solutions from_few_joints(const ik::Chain& chain, const Found& found) {
     ik::Solutions out;
@@ -61,7 +61,7 @@ ik::Solutions from_few_joints(const ik::Chain& chain, const Found& found) {
     return out;
 }
 
-// Solutions of a short arm brought to the last digit.
+// Refines the solutions of an arm with few joints to rounding.
 inline void refine_few_joints(const ik::Chain& chain, const Posed& goal, double length, ik::Solutions& out) {
     for (int k = 0; k < out.count; ++k) {
         double q[ik::max_joints];
@@ -75,9 +75,9 @@ inline void refine_few_joints(const ik::Chain& chain, const Posed& goal, double 
     }
 }
 
-// An arm whose closed form idealises it: by the elimination, and where that or the closed form is unsure by
-// both. Closer to a fold than the idealisation moves it the two may lack the same pair; elsewhere both lists
-// agree if they lack nothing.
+// Solves an arm whose closed form idealises it: by elimination, and by both methods where elimination or the
+// closed form is uncertain. Closer to a fold than the idealisation moves it, both methods may miss the same
+// pair. Elsewhere both lists agree if they are complete.
 inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, const double* unconstrained) {
     const Posed goal_form = goal_in_form(arm.plan, goal);
     ik::Solutions out = solve_general_carefully(arm.general, goal, unconstrained);
@@ -100,7 +100,7 @@ inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, cons
     return out;
 }
 
-// By the closed form at goals beside this one, wherever virtual joints stand there.
+// By the closed form at perturbed goals near this one, if they leave the virtual joints in place.
 inline bool search_perturbed_goals_in_form(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
     const auto propose = [&](const Posed& beside, const auto& add_candidate) {
         const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, beside), care_of(plan));
@@ -115,7 +115,7 @@ inline bool search_perturbed_goals_in_form(const ik::Plan& plan, const Posed& go
     return search_perturbed_goals(plan.chain, goal, plan.form.length, propose, out);
 }
 
-// Arms that can place their tip in every orientation are not asked for a proof that they cannot.
+// Arms that can place their tip in every orientation need no reach test.
 inline bool is_limited(const ik::Arm& arm) {
     return arm.plan.chain.n < 6 || (arm.is_general && arm.general.plan.slides > 0);
 }
@@ -155,10 +155,10 @@ CSPACE_ONCE ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, cons
     return out;
 }
 
-// Minimises (‖Δp‖ / length)² + (weight · angle)²: weight 1 weighs a radian like the arm's length, a large one
-// keeps the orientation and gives the distance by which the goal is out of reach. Starts from the branches
-// cut off at their borders and from configurations spread over the joints; a large weight comes in by steps,
-// for the way along the orientations that it allows is narrow.
+// Minimises (‖Δp‖ / length)² + (weight · angle)². Weight 1 makes one radian equal to the size of the arm. A
+// large weight keeps the orientation, and the result is the distance by which the goal is out of reach.
+// Starts are the branches clipped at their boundaries, and configurations spread over the joints. A large
+// weight is increased in steps, because the set of configurations with the required orientation is narrow.
 CSPACE_ONCE ik::NearestPose nearest_to_goal(const ik::Arm& arm, const Posed& goal, double weight) {
     const ik::Plan& plan = arm.plan;
     const int n = plan.chain.n;

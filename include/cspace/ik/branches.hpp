@@ -1,4 +1,4 @@
-// What a closed form of six joints yields: up to eight candidates, each with every joint's angle.
+// Results of a closed form for six joints: up to eight candidates, each with the angles of all joints.
 #pragma once
 
 #include "cspace/math/lanes.hpp"
@@ -7,8 +7,8 @@ namespace cspace {
 
 inline constexpr int max_branches = 8;
 
-// The angles t_i of the Denavit–Hartenberg form, in (−π, π] up to one turn. `doubt` marks the poses (lanes)
-// that the careful path has to look at again.
+// The angles t_i of the Denavit–Hartenberg form, in (−π, π] up to a multiple of 2π. `doubt` marks the poses
+// (lanes) that the careful solver must check again.
 template <class V>
 struct Branches {
     V t[max_branches][6];
@@ -16,7 +16,7 @@ struct Branches {
     mask_of<V> doubt;
 };
 
-// The same of one goal, its branches side by side: branch 2 k + i is lane k of t[i].
+// The same for one goal, with its branches on lanes: branch 2 k + i is lane k of t[i].
 struct Abreast {
     Pack<4> t[2][6];
     Mask<4> ok[2];

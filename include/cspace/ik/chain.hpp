@@ -1,4 +1,4 @@
-// A serial arm as its joint axes at zero: what inverse kinematics is built from.
+// Serial chain: the joint axes of an arm at zero, from which the inverse kinematics solvers are built.
 #pragma once
 
 #include "cspace/math/trig.hpp"
@@ -38,7 +38,7 @@ inline Posed forward(const ik::Chain& chain, const double* q) {
     return T * chain.tip;
 }
 
-// The same arm read from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.
+// The same arm from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.
 inline ik::Chain reversed(const ik::Chain& chain) {
     const Posed T_tip_base = inverse(chain.tip);
     ik::Chain back;
@@ -53,7 +53,8 @@ inline ik::Chain reversed(const ik::Chain& chain) {
     return back;
 }
 
-// A length typical of the arm [m]: the longest step from axis to axis or to the tip, or 1 if all meet.
+// A characteristic length of the arm [m]: the largest distance between consecutive axes or to the tip, or 1
+// if all intersect.
 inline double characteristic_length(const ik::Chain& chain) {
     double longest = 0;
     for (int i = 0; i < chain.n; ++i) {

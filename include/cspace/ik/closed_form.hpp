@@ -1,4 +1,4 @@
-// A plan at work: from the goal T_base_tip to the joint angles of every branch, on lanes.
+// Evaluation of a closed form: from the goal T_base_tip to the joint angles of every branch, on lanes.
 #pragma once
 
 #include "cspace/ik/parallel_general.hpp"
@@ -6,7 +6,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// The goal as the closed form sees it.
+// The goal in the frames of the closed form.
 template <class V>
 CSPACE_INLINE Pose<V> goal_in_form(const ik::Plan& plan, const Pose<V>& T_base_tip) {
     const Pose<V> goal = plan.reversed ? inverse(T_base_tip) : T_base_tip;
@@ -35,19 +35,19 @@ CSPACE_INLINE Branches<V> closed_form(const ik::Plan& plan, const Pose<V>& goal,
     }
 }
 
-// One goal on one lane, for the slow paths.
+// One goal on one lane, for the careful solvers.
 CSPACE_ONCE Branches<double> solve_closed_form(const ik::Plan& plan, const Posed& goal, const Care& care) {
     return closed_form(plan, goal, care);
 }
 
-// How far from a fold the closed form may be trusted: an idealised geometry shifts the folds.
+// The distance from a fold at which the closed form is reliable: an idealised geometry shifts the folds.
 inline Care care_of(const ik::Plan& plan) {
     Care care;
     care.band = max(tolerance::fold_band, 4 * plan.form.deviation);
     return care;
 }
 
-// One goal, for the families that have a kernel.
+// One goal, for the types of arm that have a kernel.
 CSPACE_INLINE Abreast closed_form_abreast(const ik::Plan& plan, const Posed& goal, const Care& care) {
     using Kind = ik::FirstThree;
     if (plan.family == ik::Family::three_parallel) return solve_abreast(plan.parallel, goal, care);
@@ -65,7 +65,7 @@ CSPACE_INLINE Abreast closed_form_abreast(const ik::Plan& plan, const Posed& goa
     }
 }
 
-// From an angle of the form to the joint's own, in (−π, π].
+// Converts an angle of the form to that of the joint, in (−π, π].
 template <class V>
 CSPACE_INLINE V joint_angle(const ik::Plan& plan, int i, V t) {
     return wrap_once(plan.sign[i] * t - plan.sign[i] * plan.form.offset[i]);

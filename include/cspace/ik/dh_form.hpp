@@ -1,7 +1,7 @@
 // Six revolute joints in standard Denavit–Hartenberg form, the shape in which the closed forms are written:
 //   T_base_tip = base · Π_i Rz(t_i) Tz(d_i) Tx(a_i) Rx(α_i) · tool,   t_i = q_i + offset_i,
 // with d_1 = d_6 = a_6 = α_6 = 0 (moved into base and tool) and d_i = 0 where axes i−1 and i are parallel.
-// Relations that hold within tolerance::axis_relation are made exact; `deviation` says what that changed.
+// Relations that hold within tolerance::axis_relation are made exact; `deviation` is the resulting change.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -30,7 +30,7 @@ struct CommonNormal {
     double a;        // distance between the feet [m]
 };
 
-// `start` is the point on axis i that the foot takes when the axes are parallel.
+// `start` is the point on axis i that becomes the foot if the axes are parallel.
 inline CommonNormal common_normal(const Vec3d& z1, const Vec3d& p1, const Vec3d& z2, const Vec3d& p2,
                                   bool is_parallel, const Vec3d& start) {
     if (is_parallel) {
@@ -73,7 +73,7 @@ inline Posed dh_forward(const ik::DhForm& f, const double* q) {
     return T * f.tool;
 }
 
-// Largest entry of the difference of two poses, translations over `length`.
+// Largest entry of the difference of two poses, translations divided by `length`.
 inline double pose_difference(const Posed& A, const Posed& B, double length) {
     double worst = norm(A.t - B.t) / length;
     for (int i = 0; i < 3; ++i)
@@ -81,7 +81,8 @@ inline double pose_difference(const Posed& A, const Posed& B, double length) {
     return worst;
 }
 
-// Joints spread over the circle without a pattern, for measuring what no special configuration may hide.
+// Generic configurations, spread over the circle without a pattern, so that measurements do not depend on a
+// special configuration.
 inline void spread_configuration(int k, int n, double* q) {
     for (int i = 0; i < n; ++i) {
         const double turns = 0.5 + (k + 1) * 0.6180339887498949 * (i + 1) + 0.7548776662466927 * i * i;

@@ -1,4 +1,5 @@
-// One goal by the closed form alone, its branches abreast: what most goals need, and the word for the others.
+// Fast path for one goal: the closed form alone, with its branches on lanes. It solves most goals, and
+// reports those that need the careful solver.
 #pragma once
 
 #include "cspace/ik/closed_form.hpp"
@@ -9,7 +10,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// Corrects angles on the true chain; false where that did not settle.
+// Refines angles on the true chain; false if this did not converge.
 template <class W>
 CSPACE_INLINE mask_of<W> polished_angles(const ik::Plan& plan, const Pose<W>& goal, W* q) {
     const mask_of<W> settled = polish(plan.chain, goal, plan.form.length, q);
@@ -17,7 +18,7 @@ CSPACE_INLINE mask_of<W> polished_angles(const ik::Plan& plan, const Pose<W>& go
     return settled;
 }
 
-// T: 16 numbers, row by row; q takes up to max_branches rows of 6 and branch their numbers.
+// T: 16 numbers, row-major. q receives up to max_branches rows of 6, and branch their numbers.
 CSPACE_ONCE ik::FastPath solve_quickly(const ik::Plan& plan, const double* T, double* q, signed char* branch,
                                        int* count) {
     const ReadGoal<double> goal = read_goal(T);

@@ -1,6 +1,6 @@
-// Three parallel axes with axis 6 parallel to them: the sum t2 + t3 + t4 is free, and moves the point that
-// the planar arm of joints 2 and 3 has to reach around a circle. The sums at which it can be reached are
-// arcs; their ends solve a linear equation in the cosine and sine of the sum.
+// Three parallel axes with axis 6 parallel to them (wrist singularity). The sum t2 + t3 + t4 is then free. It
+// moves the point that the planar arm of joints 2 and 3 must reach on a circle. The sums for which the point
+// is in reach form arcs. The ends of the arcs solve a linear equation in the cosine and sine of the sum.
 #pragma once
 
 #include <initializer_list>
@@ -9,7 +9,7 @@
 
 namespace cspace::ik {
 
-// Sums worth trying, the best first.
+// Candidate sums, the best first.
 struct FreeSums {
     static constexpr int most = 12;
     int count = 0;
@@ -32,8 +32,9 @@ inline void insert_sorted(ik::FreeSums& out, double sum, double rank) {
     out.rank[at] = rank;
 }
 
-// The sums at which the target, seen from joint 2 at (x, y) less Rz(sum) (x4, y4), is `reach` away: first a
-// little to either side of them, where the elbow bends, nearest to `idle` first, then the sums themselves.
+// The sums at which the target, seen from joint 2 at (x, y) less Rz(sum) (x4, y4), is at distance `reach`.
+// First come values slightly to either side of them, where the elbow is bent, those nearest to
+// `unconstrained` first; then the sums themselves.
 inline void add_ends(ik::FreeSums& out, const ik::ThreeParallel& arm, double x, double y, double reach,
                      double unconstrained, const Care& care) {
     const double a = 2 * (x * arm.x4 + y * arm.y4), b = 2 * (y * arm.x4 - x * arm.y4);
@@ -50,8 +51,8 @@ inline void add_ends(ik::FreeSums& out, const ik::ThreeParallel& arm, double x, 
     }
 }
 
-// Behind shoulder solution i; the list is empty where nothing is free, or where the other shoulder is the
-// same.
+// For shoulder solution i. The list is empty where nothing is free, or where the other shoulder solution is
+// the same.
 inline ik::FreeSums free_sums(const ik::ThreeParallel& arm, const Posed& goal, int i, double unconstrained,
                               const Care& care) {
     ik::FreeSums out;

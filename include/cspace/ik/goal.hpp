@@ -1,4 +1,4 @@
-// Goals as they come from outside: 4×4 matrices that should be poses.
+// Validation of goals: 4×4 matrices that should be poses.
 #pragma once
 
 #include "cspace/math/vec.hpp"
@@ -30,7 +30,7 @@ CSPACE_INLINE Mat3<V> straightened(const Mat3<V>& R) {
     return out;
 }
 
-// Checks a pose and takes rounding out of its rotation. m: its 16 entries, row by row.
+// Checks a pose and orthonormalises its rotation within rounding. m: its 16 entries, row-major.
 template <class V>
 CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     ReadGoal<V> out;

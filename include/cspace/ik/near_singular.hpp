@@ -1,6 +1,7 @@
-// The second look at a pose that the closed form alone cannot settle: two solutions about to merge, a joint
-// that the pose leaves free, or an arm whose geometry the form idealises. Every candidate is refined on the
-// true chain, judged by its residual, told from its twins by the conditioning, and tested for self-motion.
+// Solutions near singular poses: the careful solver for a pose that the closed form alone cannot settle. Two
+// solutions may be about to merge, a joint may be free at this pose, or the form may idealise the arm. Every
+// candidate is refined on the true chain and classified by its residual. Near-double roots are distinguished
+// by the conditioning, and each solution is tested for self-motion.
 #pragma once
 
 #include "cspace/ik/closed_form.hpp"
@@ -11,15 +12,15 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// The verdict on a list of solutions.
+// Sets the status of a list of solutions.
 inline void classify_solutions(ik::Solutions& out) {
     out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
     for (int k = 0; k < out.count; ++k)
         if (out.self_motion[k]) out.status = ik::Status::singular;
 }
 
-// The largest difference of a joint between two configurations, angles the short way round; slides that are
-// far out are known only relative to how far.
+// The largest joint difference between two configurations, angles by the shorter way. Prismatic joints far
+// from zero are known only to a relative accuracy.
 inline double joint_distance(const ik::Chain& chain, const double* a, const double* b) {
     double worst = 0;
     for (int i = 0; i < chain.n; ++i) {
@@ -35,8 +36,8 @@ inline double miss_of(const ik::Chain& chain, const Posed& goal, double length, 
     return size_of_error(error);
 }
 
-// The miss between two configurations: halfway, on the floor of the valley that leads from one to the other.
-// Where solutions are about to merge it rises between them; of one solution that stands there twice it does
+// The error between two configurations: at their midpoint, on the floor of the valley between them. Between
+// two solutions that are about to merge it is larger than at them; between two copies of one solution it is
 // not.
 inline double miss_between(const ik::Chain& chain, const Posed& goal, double length, const double* a,
                            const double* b) {
@@ -56,8 +57,8 @@ inline double miss_between(const ik::Chain& chain, const Posed& goal, double len
     return least;
 }
 
-// Whether two configurations a gap apart, the worse of which misses the goal by `left`, stand for one
-// solution. Those within what rounding leaves of them, `near`, are given the benefit of the doubt.
+// Whether two configurations are the same solution, given their distance and the larger error `left` of the
+// two. Those within `near`, the uncertainty from rounding, count as distinct only with evidence.
 inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, const double* a,
                     const double* b, double gap, double near, double left) {
     constexpr double wide = 1e-2, rounding = 1e-15;
@@ -65,7 +66,7 @@ inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, co
     return miss_between(chain, goal, length, a, b) <= max(left, gap < near ? tolerance::halfway : rounding);
 }
 
-// Adds q to the solutions unless it is no solution or already there.
+// Adds q to the solutions unless it is not a solution or is already listed.
 CSPACE_ONCE void accept_solution(ik::Solutions& out, const ik::Chain& chain, const Posed& goal, double length,
                                  double* q, int branch, int most_steps) {
     PoseError error;
@@ -86,15 +87,15 @@ CSPACE_ONCE void accept_solution(ik::Solutions& out, const ik::Chain& chain, con
     out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
 }
 
-// Which of the plan's branches to try, how far virtual joints may be off zero [rad], and how many steps a
-// candidate gets.
+// The branches of the plan to try, the tolerated values of virtual joints [rad], and the number of steps per
+// candidate.
 struct Search {
     int first = 0, last = max_branches;
     double stray = 1e-3;
     int most_steps = 60;  // of the refinement
 };
 
-// The plan's branches for one choice of idle joints, as configurations of the chain.
+// The branches of the plan for one choice of unconstrained joints, as configurations of the chain.
 inline void closed_form_candidates(const ik::Plan& plan, const Posed& goal_form, const Care& care,
                                    ik::Solutions& out, const Posed& goal, const Search& search = {}) {
     const Branches<double> b = solve_closed_form(plan, goal_form, care);
@@ -114,8 +115,8 @@ inline void closed_form_candidates(const ik::Plan& plan, const Posed& goal_form,
     }
 }
 
-// The angles t_i that free joints take, from the chain's joints; the free sum of three parallel joints is
-// theirs.
+// The angles t_i of unconstrained joints, from the joints of the chain. The free sum of three parallel joints
+// is the sum of their values.
 inline void set_unconstrained(const ik::Plan& plan, const double* unconstrained, Care& care, double* t) {
     for (int i = 0; i < 6; ++i) {
         const double q = plan.joint[i] >= 0 && unconstrained ? unconstrained[plan.joint[i]] : 0.0;
@@ -125,7 +126,7 @@ inline void set_unconstrained(const ik::Plan& plan, const double* unconstrained,
     for (int i = 0; i < 6; ++i) care.unconstrained[i] = {std::cos(t[i]), std::sin(t[i])};
 }
 
-// Whether the branches depend on the angle that joint i takes when it is free.
+// Whether the branches depend on the angle of joint i when it is free.
 inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
     const Branches<double> b = solve_closed_form(plan, goal_form, care);
     Care other = care;
@@ -139,8 +140,9 @@ inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& ca
     return false;
 }
 
-// Where the form's joint is free but the arm's is not (it is idealised, or completed by virtual joints), the
-// solutions lie somewhere along the family: start from angles all around.
+// Where a joint of the form is free but the joint of the arm is not (the form idealises the arm, or has
+// virtual joints), the solutions lie somewhere on the self-motion of the form. Starts are angles on the full
+// circle.
 inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, const Care& care, const double* t,
                               ik::Solutions& out, const Posed& goal) {
     constexpr int turns = 16;
@@ -156,7 +158,7 @@ inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, cons
 }
 
 // Near a singularity of the completed arm that the arm itself does not have, the error of the idealised form
-// grows to its square root: start from branches that far beside the goal.
+// grows to its square root. Starts are the branches of goals at that distance.
 inline void try_perturbed_goals(const ik::Plan& plan, const Posed& goal_form, Care care, ik::Solutions& out,
                                 const Posed& goal) {
     care.band = std::sqrt(care.band);
@@ -164,8 +166,8 @@ inline void try_perturbed_goals(const ik::Plan& plan, const Posed& goal_form, Ca
         closed_form_candidates(plan, goal_form, care, out, goal, {0, max_branches, pi});
 }
 
-// Where the wrist of three parallel axes is free and its idle turn carries the goal out of the planar arm's
-// reach, the nearest turn that does not.
+// If the wrist of three parallel axes is free and its preferred angle puts the goal out of reach of the
+// planar arm: the nearest angle that does not.
 inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care care, double unconstrained,
                             ik::Solutions& out, const Posed& goal) {
     care.free =
@@ -184,8 +186,8 @@ inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care c
     }
 }
 
-// Solutions that were found otherwise get the number of the branch next to them, each branch once and the
-// nearest pairs first; those without one get numbers beyond the branches.
+// Solutions found by other methods get the number of the nearest branch. Each branch is used once, the
+// nearest pairs first. The others get numbers beyond the branches.
 inline void number_by_branches(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
     Care care = care_of(plan);
     care.spread = 4 * plan.form.deviation;
@@ -214,8 +216,8 @@ inline void number_by_branches(const ik::Plan& plan, const Posed& goal, ik::Solu
         if (out.branch[m] < 0) out.branch[m] = static_cast<signed char>(beyond++);
 }
 
-// Adds the solutions that are not in `out` yet; `idle`: the angles of the chain's joints that free joints
-// take.
+// Adds the solutions that are not in `out` yet. `unconstrained`: the values of the chain's joints that are
+// free at the goal.
 inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const double* unconstrained,
                             ik::Solutions& out) {
     Care care = care_of(plan);

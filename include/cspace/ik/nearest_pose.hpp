@@ -1,5 +1,6 @@
-// The configuration that comes nearest to a goal, reached or not. Gauss–Newton steps crawl where the error
-// left is large; Newton's method with the curvature of the tip's position does not (Dennis & Schnabel 1983).
+// The configuration nearest to a goal, reachable or not. Gauss–Newton converges slowly where the remaining
+// error is large. Newton's method with the second derivative of the tip position does not (Dennis & Schnabel
+// 1983).
 #pragma once
 
 #include "cspace/ik/refine.hpp"
@@ -17,7 +18,7 @@ struct NearestPose {
 
 namespace cspace {
 
-// Gradient and Hessian of the cost; symmetric, stored in full.
+// Gradient and Hessian of the cost. The Hessian is symmetric and stored in full.
 struct Quadratic {
     int n;
     double gradient[ik::max_joints];
@@ -33,8 +34,8 @@ inline double cost_of(const PoseError& error, double weight) {
     return 0.5 * (dot_n(e, e, 3) + weight * weight * dot_n(e + 3, e + 3, 3));
 }
 
-// From a measured error, its Jacobian not yet decomposed. The position's second derivative by q_i and q_j,
-// i ≤ j, is axis i × column j.
+// From a pose error whose Jacobian is not yet decomposed. The second derivative of the position by q_i and
+// q_j, i ≤ j, is axis i × column j.
 inline Quadratic quadratic_model(const PoseError& error, double weight) {
     Quadratic out;
     const PoseSvd& J = error.jacobian;
@@ -54,7 +55,7 @@ inline Quadratic quadratic_model(const PoseError& error, double weight) {
     return out;
 }
 
-// Solves (H + damping) x = −gradient by Cholesky's factors; false if the matrix is not positive definite.
+// Solves (H + damping) x = −gradient by Cholesky factorisation; false if the matrix is not positive definite.
 inline bool solve_damped(const Quadratic& m, double damping, double* x) {
     double L[ik::max_joints][ik::max_joints];
     for (int i = 0; i < m.n; ++i) {
@@ -72,7 +73,7 @@ inline bool solve_damped(const Quadratic& m, double damping, double* x) {
     return true;
 }
 
-// Walks q downhill to a local minimum of the cost; `error` belongs to q on return.
+// Descends from q to a local minimum of the cost; `error` belongs to q on return.
 inline double minimise(const ik::Chain& chain, const Posed& goal, double length, double weight, double* q,
                        PoseError& error) {
     constexpr int most_steps = 60;

@@ -1,8 +1,8 @@
-// Arms with three parallel axes and no other help: two equations, each linear in the cosines and sines of two
-// angles (subproblem 6), a direction and a planar two-link arm. Up to 4 × 2 solutions.
+// Arms with three parallel axes and no other special geometry: two equations, each linear in the cosines and
+// sines of two angles (subproblem 6), a direction and a planar two-link arm. Up to 4 × 2 solutions.
 //
-// The parallel axes keep one direction n and one height: nothing they do changes n·(position) and n·(a
-// direction). Written for both ends of the remaining joints, these are the two equations.
+// Rotations about the parallel axes with direction n leave n·(position) and n·(a direction) invariant.
+// Written for both ends of the remaining joints, these are the two equations.
 #pragma once
 
 #include "cspace/ik/branches.hpp"
@@ -25,8 +25,8 @@ inline Turn<double> turn_about_z(const Mat3d& R) {
     return r > 0 ? Turn<double>{R.m[0][0] / r, R.m[1][0] / r} : Turn<double>{1, 0};
 }
 
-// `planar` = Rz(t_j) Tx(a_j) Rz(t_k) Tx(a_k) Rz(t_l), the displacement that the parallel joints j, k, l have
-// to make: both elbows, written into rows n and n + 1.
+// `planar` = Rz(t_j) Tx(a_j) Rz(t_k) Tx(a_k) Rz(t_l), the displacement required of the parallel joints j, k,
+// l. Both elbow solutions are written into rows n and n + 1.
 inline void planar_three(const ik::DhForm& f, int j, const Posed& planar, const Care& care,
                          Branches<double>& out, int n) {
     const TwoLink<double> arm =
@@ -56,7 +56,8 @@ inline TwoTurns both_angles(TwoTurnEquations e) {
     return solve_two_turns(e);
 }
 
-// Axes 2, 3, 4 parallel, axes 5 and 6 apart: the height of axis 6 and its slope against n fix t1 and t5.
+// Axes 2, 3, 4 parallel, axes 5 and 6 separate: the height of axis 6 and its slope relative to n determine t1
+// and t5.
 inline Branches<double> solve_middle_parallel(const ik::DhForm& f, const Posed& goal, const Care& care) {
     Branches<double> out{};
     out.doubt = true;
@@ -93,7 +94,7 @@ inline Branches<double> solve_middle_parallel(const ik::DhForm& f, const Posed& 
     return out;
 }
 
-// Axes 1, 2, 3 parallel: the slope of n against axis 5 and the height of the goal fix t4 and t6.
+// Axes 1, 2, 3 parallel: the slope of n relative to axis 5 and the height of the goal determine t4 and t6.
 inline Branches<double> solve_first_parallel(const ik::DhForm& f, const Posed& goal, const Care& care) {
     Branches<double> out{};
     out.doubt = true;

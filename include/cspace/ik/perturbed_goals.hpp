@@ -1,5 +1,5 @@
-// Where a pose is singular a solver may lose solutions that its neighbours keep: goals a little beside it, to
-// all sides, are regular, and from their solutions Newton's method leads back.
+// Perturbed goals: at a singular pose a solver may lose solutions. Goals slightly displaced from it in
+// several directions are regular, and Newton's method leads from their solutions back to the goal.
 #pragma once
 
 #include "cspace/ik/near_singular.hpp"
@@ -8,7 +8,7 @@ namespace cspace::inline CSPACE_ISA {
 
 inline constexpr int perturbed_goals = 12;
 
-// The k-th goal beside this one: some directions without a pattern, both ways, near and nearer.
+// The k-th perturbed goal: generic directions, both senses, decreasing distances.
 inline Posed perturbed_goal(const Posed& goal, double length, int k) {
     double d[ik::max_joints];
     spread_configuration(k / 4, 6, d);
@@ -18,8 +18,8 @@ inline Posed perturbed_goal(const Posed& goal, double length, int k) {
     return {rotation_about((1 / angle) * turn, std::cos(angle), std::sin(angle)) * goal.R, goal.t + away};
 }
 
-// Comes down from q; a new solution is admitted. Beside solutions a valley that almost reaches the goal is
-// none of them.
+// Descends from q and adds the result if it is a new solution. Near solutions, a valley that almost reaches
+// the goal does not count.
 inline void descend_to_solution(const ik::Chain& chain, const Posed& goal, double length, double* q,
                                 int steps, ik::Solutions& out) {
     if (out.count == ik::max_solutions) return;
@@ -29,8 +29,8 @@ inline void descend_to_solution(const ik::Chain& chain, const Posed& goal, doubl
         accept_solution(out, chain, goal, length, q, out.count, 2);
 }
 
-// propose(goal, add_candidate): calls add_candidate(q) for every solution of a goal, as a configuration of
-// the chain. Returns whether there was anything new.
+// propose(goal, add_candidate) calls add_candidate(q) for every solution of a goal, as a configuration of the
+// chain. Returns whether a new solution was found.
 template <class Propose>
 inline bool search_perturbed_goals(const ik::Chain& chain, const Posed& goal, double length,
                                    const Propose& propose, ik::Solutions& out) {

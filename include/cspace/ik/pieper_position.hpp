@@ -1,6 +1,6 @@
-// The first three joints of an arm bring a point w, fixed behind joint 3, to p:
+// Position problem of the first three joints: they move a point w, fixed behind joint 3, to p:
 //   p = Rz(t1) Tx(a1) Rx(α1) · Rz(t2) Tz(d2) Tx(a2) Rx(α2) · Rz(t3) w        (Pieper 1968)
-// Five cases by what the three axes share; each gives up to four triples of angles.
+// Five cases by the geometry of the three axes; each gives up to four triples of angles.
 #pragma once
 
 #include "cspace/ik/trig_steps.hpp"
@@ -39,7 +39,7 @@ struct Triples {
 
 namespace cspace::inline CSPACE_ISA {
 
-// Axes 2 ∥ 3: the height of p over their plane fixes t1, a planar two-link arm t2 and t3.
+// Axes 2 ∥ 3: the height of p over their plane determines t1, a planar two-link arm t2 and t3.
 template <class V>
 CSPACE_INLINE Triples<V> last_parallel(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
@@ -73,7 +73,8 @@ CSPACE_INLINE Vec3<V> behind_joint_two(const ik::ThreeJoints& g, const Turn<V>& 
     return {x + g.a2, g.ca2 * y - g.sa2 * g.w.z, g.sa2 * y + (g.ca2 * g.w.z + g.d2)};
 }
 
-// Axes 1 and 2 meet: the distance of p from their point fixes t3, its height along axis 1 t2, its bearing t1.
+// Axes 1 and 2 intersect: the distance of p from their intersection determines t3, its height along axis 1
+// t2, its bearing t1.
 template <class V>
 CSPACE_INLINE Triples<V> first_meet(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
@@ -102,8 +103,8 @@ CSPACE_INLINE Triples<V> first_meet(const ik::ThreeJoints& g, const Vec3<V>& p, 
     return out;
 }
 
-// Axes 2 and 3 meet: the distance of p from their point fixes t1, then a height along axis 2 t3, a bearing
-// t2.
+// Axes 2 and 3 intersect: the distance of p from their intersection determines t1, then a height along axis 2
+// t3, a bearing t2.
 template <class V>
 CSPACE_INLINE Triples<V> last_meet(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
@@ -135,7 +136,7 @@ CSPACE_INLINE Triples<V> last_meet(const ik::ThreeJoints& g, const Vec3<V>& p, c
     return out;
 }
 
-// Axes 1 ∥ 2: the height of p fixes t3, its distance from axis 1 fixes t2, its bearing t1.
+// Axes 1 ∥ 2: the height of p determines t3, its distance from axis 1 t2, its bearing t1.
 template <class V>
 CSPACE_INLINE Triples<V> first_parallel(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;

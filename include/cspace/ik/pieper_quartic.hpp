@@ -1,4 +1,4 @@
-// The first three joints when their axes share nothing: Pieper's quartic (1968).
+// The first three joints with axes in general position: Pieper's quartic (1968).
 //
 // With v = (a2, 0, d2) + Rx(α2) Rz(t3) w, the distance of p from joint 1 and its height along axis 1 give
 //     X = c2 vx − s2 vy = (|p|² − a1² − |v|²) / (2 a1),   Y = s2 vx + c2 vy = (pz − cos α1 vz) / sin α1,
@@ -22,7 +22,7 @@ namespace cspace::inline CSPACE_ISA {
 inline TrigPolynomial square(const LinearInTurn& f) { return product(f.k, f.c, f.s, f.k, f.c, f.s); }
 inline TrigPolynomial negative(const TrigPolynomial& f) { return {-f.a0, -f.a1, -f.b1, -f.a2, -f.b2}; }
 
-// The part of X and Y that the pose does not change; p adds |p|²/(2 a1) to X.k and pz/sin α1 to Y.k.
+// The part of X and Y that does not depend on the pose; p adds |p|²/(2 a1) to X.k and pz/sin α1 to Y.k.
 inline LinearInTurn pieper_x(const ik::ThreeJoints& g) {
     const double fixed = g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w) + 2 * g.d2 * g.ca2 * g.w.z;
     return {-(g.a1 * g.a1 + fixed) / (2 * g.a1), -(g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y) / g.a1,

@@ -1,4 +1,4 @@
-// Which closed form serves an arm of six revolute joints, found from its axes alone.
+// Selects the closed form for an arm of six revolute joints, from its axes alone.
 #pragma once
 
 #include <initializer_list>
@@ -17,8 +17,8 @@ enum class Family {
     first_parallel,   // axes 1, 2, 3 are parallel
 };
 
-// The solver's joints are those of the chain, possibly read from the tip, with some axes turned round so that
-// parallel axes point the same way, and possibly with virtual joints put in to complete the arm to six.
+// The solver's joints are those of the chain, possibly from tip to base. Some axes may be reversed so that
+// parallel axes have the same direction, and virtual joints may be inserted to complete the arm to six.
 struct Plan {
     Family family = Family::none;
     bool reversed = false;
@@ -39,7 +39,7 @@ struct Plan {
 
 namespace cspace::inline CSPACE_ISA {
 
-// Turns axes round so that neighbouring parallel axes agree in direction.
+// Reverses axes so that adjacent parallel axes have the same direction.
 inline ik::Chain with_agreeing_axes(ik::Chain chain, double* sign) {
     sign[0] = 1;
     for (int i = 1; i < chain.n; ++i) {
@@ -64,7 +64,7 @@ inline ik::Family recognise_family(const ik::DhForm& f) {
     return ik::Family::none;
 }
 
-// Tries the six joints of `arm` in one direction; `plan.joint` must already say where they come from.
+// Tries the six joints of `arm` in one direction; `plan.joint` must already contain their sources.
 inline bool plan_in_direction(ik::Plan& plan, const ik::Chain& arm, bool backwards) {
     const ik::Chain agreeing = with_agreeing_axes(backwards ? reversed(arm) : arm, plan.sign);
     plan.form = dh_form(agreeing);

@@ -1,5 +1,5 @@
-// Two Newton steps on the true chain, on lanes: what the closed form of an idealised or ill-conditioned
-// geometry leaves is taken out. The second step says whether the first has done its work.
+// Two Newton steps on the true chain, on lanes. They remove the error of a closed form for an idealised or
+// ill-conditioned geometry. The second step shows whether the first has converged.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -8,8 +8,8 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// One step of q (n = 6) towards the goal, cut where a joint would turn by more than `stride` [rad]; returns
-// the largest change of a joint asked for. Slides count over `length`.
+// One step of q (n = 6) to the goal, shortened if a joint would rotate by more than `stride` [rad]. Returns
+// the largest joint change of the full step. Prismatic joints are divided by `length`.
 template <class V>
 CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, double length, V* q,
                               double stride = 1e300) {
@@ -57,7 +57,7 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
     return select(agreement < 1.0, max(largest, fill<V>(1.0)), largest);
 }
 
-// True where q, a candidate near a solution, has become one.
+// True if q, a candidate near a solution, has converged to it.
 template <class V>
 CSPACE_INLINE mask_of<V> polish(const ik::Chain& chain, const Pose<V>& goal, double length, V* q) {
     const V first = newton_step(chain, goal, length, q);

@@ -1,5 +1,5 @@
-// Goals that no configuration meets, told before any search: by the directions that the turning axes can give
-// each other, and by the lengths between them.
+// Unreachable goals, detected before any search: from the directions that the revolute axes can reach, and
+// from the lengths between the axes.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -11,19 +11,19 @@ inline double angle_between(const Vec3d& a, const Vec3d& b) {
     return 2 * std::atan2(norm(a - b), norm(a + b));
 }
 
-// The angles that two directions can make, from the first axis to one that a chain of turns carries.
+// The range of angles between two directions, from the first axis to one moved by a chain of rotations.
 struct AngleRange {
     double low = 0, high = 0;
 };
 
-// The same for the next axis, which turns about the present one at an angle `arc` from it.
+// The same for the next axis, which rotates about the present one at an angle `arc` from it.
 inline AngleRange behind_turn(const AngleRange& range, double arc) {
     const auto gap = [&](double angle) { return max(max(range.low - angle, angle - range.high), 0.0); };
     return {gap(arc), pi - gap(pi - arc)};
 }
 
-// Whether the turns cannot give the last turning axis its direction. `motion`: of the tip from its pose at
-// zero.
+// Whether the rotations cannot give the last revolute axis its direction. `motion`: of the tip from its pose
+// at zero.
 inline bool is_turned_too_far(const ik::Chain& chain, const Posed& motion) {
     int first = -1, last = -1;
     AngleRange range;
@@ -41,8 +41,8 @@ inline bool is_turned_too_far(const ik::Chain& chain, const Posed& motion) {
     return angle < range.low - tolerance::beyond || angle > range.high + tolerance::beyond;
 }
 
-// A direction along which all slides of a chain move, whatever its turns do; none (false) if there is no
-// such.
+// A direction along which all prismatic joints of a chain move, whatever its rotations are; false if there is
+// none.
 inline bool slides_keep_direction(const ik::Chain& chain, Vec3d& along) {
     along = {0, 0, 0};
     const auto is_along = [&](const Vec3d& h) { return norm(cross(along, h)) < tolerance::rounding; };
@@ -54,8 +54,8 @@ inline bool slides_keep_direction(const ik::Chain& chain, Vec3d& along) {
     return true;
 }
 
-// Whether the last turning axis is to be farther from the first than the links between them are long, seen
-// along the slides.
+// Whether the required distance of the last revolute axis from the first exceeds the total length of the
+// links between them, seen along the prismatic joints.
 inline bool is_out_of_reach(const ik::Chain& chain, const Posed& motion, double length) {
     Vec3d along;
     if (!slides_keep_direction(chain, along)) return false;
@@ -79,7 +79,7 @@ inline bool is_out_of_reach(const ik::Chain& chain, const Posed& motion, double 
     return across(asked) > links + tolerance::beyond * (length + norm(asked));
 }
 
-// Whether no configuration meets the goal, limits aside; false says nothing.
+// Whether no configuration reaches the goal, regardless of limits. False is no statement.
 inline bool exceeds_reach(const ik::Chain& chain, const Posed& goal, double length) {
     const Posed motion = goal * inverse(chain.tip);
     return is_turned_too_far(chain, motion) || is_out_of_reach(chain, motion, length);

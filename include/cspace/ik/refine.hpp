@@ -1,5 +1,5 @@
-// From a candidate to a solution on the true chain: damped least squares on the pose error (Levenberg 1944,
-// Nakamura & Hanafusa 1986), and what the Jacobian says there about conditioning and freedom.
+// Refinement of a candidate to a solution on the true chain: damped least squares on the pose error
+// (Levenberg 1944, Nakamura & Hanafusa 1986), and conditioning and null space from the Jacobian there.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -10,8 +10,8 @@ namespace cspace {
 
 using PoseSvd = SmallSvd<6, ik::max_joints>;
 
-// The error of a configuration against a goal: twist [Δp/length; rotation vector], and the Jacobian of the
-// tip in the same units.
+// The error of a configuration relative to a goal: twist [Δp/length; rotation vector], and the Jacobian of
+// the tip in the same units.
 struct PoseError {
     double e[6];
     double position;  // [m]
@@ -23,7 +23,7 @@ struct PoseError {
 
 namespace cspace::inline CSPACE_ISA {
 
-// The rotation vector of R; |R − I| small or not, half turns included.
+// The rotation vector of R for any |R − I|, rotations by π included.
 inline Vec3d rotation_vector(const Mat3d& R) {
     const Vec3d w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]),
                      0.5 * (R.m[1][0] - R.m[0][1])};
@@ -67,8 +67,8 @@ inline void measure_error(const ik::Chain& chain, const Posed& goal, double leng
 
 inline double size_of_error(const PoseError& error) { return std::sqrt(dot_n(error.e, error.e, 6)); }
 
-// The damped least-squares step from a decomposed Jacobian. Along a direction that does not move the tip at
-// all it stays put: what is left of the error there is rounding, and would send joints along their family.
+// The damped least-squares step from a decomposed Jacobian. The step has no component in the null space: the
+// remaining error there is rounding, and would move joints along their self-motion.
 inline void damped_step(const PoseError& error, double damping, double* dq) {
     const PoseSvd& J = error.jacobian;
     for (int i = 0; i < J.columns; ++i) dq[i] = 0;
@@ -87,7 +87,7 @@ inline int weakest_direction(const PoseSvd& J) {
     return k;
 }
 
-// Applies a step, cut to a stride; returns the error it leaves.
+// Applies a step, shortened to a stride; returns the remaining error.
 inline double take_step(const ik::Chain& chain, const Posed& goal, double length, const double* from,
                         const double* dq, double* to, PoseError& error) {
     constexpr double stride = 0.3;
@@ -99,9 +99,9 @@ inline double take_step(const ik::Chain& chain, const Posed& goal, double length
     return size_of_error(error);
 }
 
-// Newton's method, which may leave the valley of small errors on its way: beside a singularity the solution
-// lies further along it than any descent would walk. True if it arrived; q is then a solution, else
-// untouched.
+// Newton's method. It may leave the valley of small errors on its way: near a singularity the solution can
+// lie farther along the valley than any descent would go. True if it converged; q is then a solution, else
+// unchanged.
 inline bool newton(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
     constexpr int most_steps = 16;
     constexpr double settled = 1e-15, arrived = 1e-12;
@@ -126,7 +126,7 @@ inline bool newton(const ik::Chain& chain, const Posed& goal, double length, dou
     return true;
 }
 
-// Newton's step but for its part along the weakest direction: down to the floor of the valley, not along it.
+// Newton's step without its component along the weakest direction: to the floor of the valley, not along it.
 inline void step_to_floor(const PoseError& error, int weak, double* dq) {
     const PoseSvd& J = error.jacobian;
     for (int i = 0; i < J.columns; ++i) dq[i] = 0;
@@ -137,9 +137,9 @@ inline void step_to_floor(const PoseError& error, int weak, double* dq) {
     }
 }
 
-// On the floor of a valley that hardly rises Newton's steps leave it sideways by more than the floor has to
-// say: here they alternate, down to the floor and along it. For six joints; true if it arrived, q is then a
-// solution, else untouched.
+// In a valley with an almost flat floor, Newton's steps along the floor leave it sideways by more than the
+// error on the floor. Here steps to the floor and along it alternate. For six joints; true if it converged, q
+// is then a solution, else unchanged.
 inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double length, double* q,
                           PoseError& error) {
     constexpr int most_steps = 96;
@@ -166,10 +166,11 @@ inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double leng
     return true;
 }
 
-// Walks q to the nearest configuration that meets the goal, or that misses it least nearby, by damped least
-// squares; returns the error left. On return `error` belongs to q and its Jacobian is decomposed. The square
-// of the error damps enough to come down to a family fast (Yamashita & Fukushima 2001); more damping starts
-// at the square of the smallest singular value, where it begins to hold the weakest direction back.
+// Moves q to the nearest configuration that reaches the goal, or to a local minimum of the error, by damped
+// least squares; returns the remaining error. On return `error` belongs to q and its Jacobian is decomposed.
+// Damping by the square of the error converges fast to a self-motion (Yamashita & Fukushima 2001). Larger
+// damping starts at the square of the smallest singular value, where it begins to restrain the weakest
+// direction.
 inline double descend(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
                       int most_steps) {
     constexpr double settled = 1e-15, noise = 1e-13;
@@ -206,7 +207,7 @@ inline double descend(const ik::Chain& chain, const Posed& goal, double length, 
     return size;
 }
 
-// A candidate made a solution, or as near to one as descent brings it.
+// Refines a candidate to a solution, or as near to one as descent leads.
 inline double refine(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
                      int most_steps = 60) {
     const bool arrived = newton(chain, goal, length, q, error) ||

@@ -1,4 +1,4 @@
-// What inverse kinematics answers for one goal.
+// Result of inverse kinematics for one goal.
 #pragma once
 
 #include "cspace/ik/branches.hpp"
@@ -16,7 +16,7 @@ enum class Status : unsigned char {
     nearest,      // nothing meets the goal; the least-squares answer, because it was asked for
 };
 
-// What the closed form alone says of a goal.
+// The result of the closed form alone for a goal.
 enum class FastPath : unsigned char {
     settled,   // the branches listed are all there are
     doubtful,  // the slow path has to decide

@@ -1,5 +1,5 @@
-// Arms whose last three axes meet in a point: the first three joints place it, the last three turn about it
-// (Pieper 1968). Up to 4 × 2 solutions.
+// Arms with a spherical wrist: the last three axes intersect in a point. The first three joints position this
+// point, the last three orient the tool (Pieper 1968). Up to 4 × 2 solutions.
 #pragma once
 
 #include "cspace/ik/branches.hpp"
@@ -67,7 +67,7 @@ CSPACE_INLINE Triples<V> place_wrist(const ik::ThreeJoints& g, const Vec3<V>& p,
     if constexpr (kind == ik::FirstThree::general) return any_three(g, p, care);
 }
 
-// The orientation behind the first three joints, as seen by the wrist.
+// The orientation behind the first three joints, in the frame of the wrist.
 template <class V>
 CSPACE_INLINE WristAngles<V> turn_wrist(const ik::SphericalWrist& arm, const Turn<V>& t1, const Turn<V>& t2,
                                         const Turn<V>& t3, const Mat3<V>& R, const Care& care) {
@@ -81,7 +81,7 @@ CSPACE_INLINE WristAngles<V> turn_wrist(const ik::SphericalWrist& arm, const Tur
     return wrist(arm.last, seen[0], seen[1], care, care.unconstrained[3]);
 }
 
-// The angles of both wrist solutions behind one triple of the first three.
+// The angles of both wrist solutions for one triple of the first three joints.
 template <class V>
 CSPACE_INLINE void write_wrist(const Wrist& w, const WristAngles<V>& r, V* flip_up, V* flip_down) {
     flip_up[3] = angle_of(r.t4[0]);

@@ -1,7 +1,7 @@
-// Arms whose axes 2, 3 and 4 are parallel and whose axes 5 and 6 meet (the UR class, its reverse, and
-// others): the height of the wrist over the plane of the parallel axes fixes t1; what the plane sees of the
-// orientation is a wrist of angles (t2 + t3 + t4, t5, t6); a planar two-link arm does the rest (Hawkins
-// 2013). Up to 2 × 2 × 2 solutions.
+// Arms whose axes 2, 3 and 4 are parallel and whose axes 5 and 6 intersect (the UR class, its reverse, and
+// others; Hawkins 2013). The height of the wrist over the plane normal to the parallel axes determines t1.
+// The orientation then determines the angles (t2 + t3 + t4, t5, t6), as in a wrist. A planar two-link arm
+// determines the rest. Up to 2 × 2 × 2 solutions.
 #pragma once
 
 #include "cspace/ik/branches.hpp"
@@ -28,7 +28,7 @@ inline ik::ThreeParallel make_three_parallel(const ik::DhForm& f) {
             f.a[2], f.a[3],  -f.sa[3] * f.d[4], make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]), f.length};
 }
 
-// One shoulder and one wrist solution completed by the planar arm: both elbows.
+// Completes one shoulder and one wrist solution by the planar arm: both elbow solutions.
 template <class V>
 CSPACE_INLINE void finish_in_plane(const ik::ThreeParallel& arm, const Turn<V>& t234, V x, V y,
                                    V* const out[2], mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
@@ -78,7 +78,8 @@ CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goa
     return out;
 }
 
-// One goal: lanes are (shoulder, wrist) = (0, 0), (0, 1), (1, 0), (1, 1), and the elbow tells t[0] from t[1].
+// One goal: the lanes are (shoulder, wrist) = (0, 0), (0, 1), (1, 0), (1, 1); t[0] and t[1] differ in the
+// elbow.
 CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& goal, const Care& care) {
     const Vec3d& p = goal.t;
     const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);

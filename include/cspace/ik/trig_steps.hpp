@@ -1,6 +1,7 @@
-// The steps that the closed forms share, over a scalar V: one angle from a linear equation, two from a planar
-// two-link arm, three from an orientation. Each says where it has a solution (`ok`) and where the answer
-// needs care (`doubt`): two solutions about to merge, or an angle that the pose does not fix.
+// Trigonometric equations shared by the closed forms, over a scalar V: one angle from a linear equation, two
+// from a planar two-link arm, three from an orientation. Each reports where it has a solution (`ok`) and
+// where the result needs a check (`doubt`): two solutions are about to merge, or the pose leaves an angle
+// free.
 #pragma once
 
 #include "cspace/math/turn.hpp"
@@ -8,9 +9,9 @@
 
 namespace cspace {
 
-// What a careful second look changes: how wide the band is in which two solutions may merge, how far merging
-// solutions are held apart, below which size a lever counts as zero and its joint as free, and the angles t_i
-// (as cosine and sine) that joints take when the pose leaves them free.
+// Settings of the careful solver: the width of the band in which two solutions may merge, the distance kept
+// between merging solutions, the size below which a lever arm counts as zero and its joint as free, and the
+// angles t_i (as cosine and sine) of joints that the pose leaves free.
 struct Care {
     double band = tolerance::fold_band;
     double spread = 0;
@@ -47,14 +48,13 @@ CSPACE_INLINE Aligned<V> align(V x, V y, V u, V v, double unit, const Care& care
     const Turn<V> t = {(x * u + y * v) * scale, (x * v - y * u) * scale};
     return {choose(is_free, unconstrained, t), n2 <= care.band * unit * unit};
 }
-// sqrt(x) with x cut off below at floor ≥ 0.
+// sqrt(x) with x clipped below at floor ≥ 0.
 template <class V>
 CSPACE_INLINE V root_above(V x, V floor) {
     return sqrt(max(x, floor));
 }
 
-// a cos t + b sin t = r: none, one (doubt) or two angles. `unit` is the size that a and b have when they are
-// not accidentally small.
+// a cos t + b sin t = r: none, one (doubt) or two angles. `unit` is the typical size of a and b.
 template <class V>
 CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Care& care,
                                            const Turn<double>& unconstrained) {
@@ -139,7 +139,7 @@ CSPACE_INLINE V cosine_gap(V ca, V sa2, double cb, double sb) {
     return select(abs(total) > 0.5, by_sines, ca - cb);
 }
 
-// What both solutions share: cos t5 and |sin t5|, and the third and first column of M.
+// Quantities common to both solutions: cos t5 and |sin t5|, and the third and first column of M.
 template <class V>
 struct WristView {
     Vec3<V> z, x;

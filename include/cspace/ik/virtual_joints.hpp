@@ -1,5 +1,6 @@
-// Arms of four and five joints: virtual joints complete them to six, in a place where a closed form appears.
-// A pose that the arm reaches is one that the completed arm reaches with its virtual joints at zero.
+// Virtual joints for arms of four and five joints: they complete the arm to six, at a place where the
+// completed arm has a closed form. A pose that the arm reaches is one that the completed arm reaches with its
+// virtual joints at zero.
 #pragma once
 
 #include <initializer_list>
@@ -28,7 +29,7 @@ inline void add_axis_choice(AxisChoices& choices, const Vec3d& direction, const 
         choices.axis[choices.count++] = {(1 / size) * direction, point};
 }
 
-// Directions worth trying at a point on axis h whose neighbour is k.
+// Candidate directions at a point on axis h whose adjacent axis is k.
 inline void offer_at(AxisChoices& choices, const Vec3d& point, const Vec3d& h, const Vec3d& k) {
     add_axis_choice(choices, cross(h, k), point);
     add_axis_choice(choices, any_perpendicular(h), point);
@@ -36,8 +37,8 @@ inline void offer_at(AxisChoices& choices, const Vec3d& point, const Vec3d& h, c
     add_axis_choice(choices, k, point);
 }
 
-// Axes that could stand between joints at − 1 and `at`: through the points where the neighbours meet their
-// own neighbours, square to them or along them.
+// Candidate axes between joints at − 1 and `at`: through the points where the adjacent axes intersect their
+// own neighbours, perpendicular to them or along them.
 inline AxisChoices axes_to_insert(const ik::Chain& c, int at) {
     AxisChoices choices;
     for (const int side : {-1, 1}) {
@@ -69,8 +70,8 @@ inline ik::Chain with_axis(const ik::Chain& c, int at, const Axis& axis) {
     return longer;
 }
 
-// The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some configurations
-// without a pattern; virtual joints stay at zero.
+// The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some generic
+// configurations; virtual joints stay at zero.
 inline double completed_conditioning(const ik::Chain& chain, const int* source, double length, int k) {
     double q[6];
     spread_configuration(k, chain.n, q);
@@ -82,8 +83,8 @@ inline double completed_conditioning(const ik::Chain& chain, const int* source, 
     return error.jacobian.sigma[weakest_direction(error.jacobian)];
 }
 
-// Whether the completed arm is regular where its virtual joints are zero: only there its branches are the
-// arm's.
+// Whether the completed arm is regular where its virtual joints are zero. Only then do its branches coincide
+// with those of the arm.
 inline bool is_regular(const ik::Chain& six, const int* source, double length) {
     int regular = 0;
     constexpr int trials = 5;
@@ -91,15 +92,15 @@ inline bool is_regular(const ik::Chain& six, const int* source, double length) {
     return 2 * regular > trials;
 }
 
-// Whether an arm has a joint to spare (two wrists, a wrist on axis 3, four parallel axes): each of its poses
-// is singular, to within `blind`, and so are those of every arm that it is completed to.
+// Whether an arm has a redundant joint (two wrists, a wrist on axis 3, four parallel axes). Then each of its
+// poses is singular, to within `blind`, and so are those of every completed arm.
 inline bool is_always_singular(const ik::Chain& chain, const int* source, double length, double blind) {
     for (int k = 0; k < 8; ++k)
         if (completed_conditioning(chain, source, length, k) > blind) return false;
     return true;
 }
 
-// `source[i]`: the arm's joint behind joint i of c, or −1 for one put in before.
+// `source[i]`: the joint of the arm that is joint i of the completed arm, or −1 for a virtual joint.
 inline bool complete(ik::Plan& plan, const ik::Chain& c, const int* source) {
     if (c.n == 6) return is_regular(c, source, characteristic_length(c)) && plan_six(plan, c, source);
     for (int at = c.n; at >= 0; --at) {

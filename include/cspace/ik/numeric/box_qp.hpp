@@ -1,9 +1,9 @@
 // A small convex quadratic program in a box: min ½ xᵀ H x − gᵀ x with lower ≤ x ≤ upper, H positive definite.
 //
-// The primal active-set method (Nocedal & Wright 2006, section 16.5): the unknowns that are not held at a
-// bound go to their minimum until one of them meets a bound and is held too; at the minimum one whose
-// gradient points inward is released. In a box the multiplier of a bound is the gradient itself and bounds
-// never depend on each other, so the method ends after finitely many steps, at rounding.
+// The primal active-set method (Nocedal & Wright 2006, section 16.5): the free unknowns step towards their
+// minimum until one of them meets a bound and becomes active. At the minimum an active unknown whose gradient
+// points inward is released. In a box the multiplier of a bound is the gradient itself, and the bounds are
+// linearly independent. The method therefore ends after finitely many steps, exact to rounding.
 //
 // Not for kernels: it uses the standard library.
 #pragma once
@@ -49,8 +49,8 @@ inline void find_gradient(BoxQp& p, const double* x) {
     }
 }
 
-// The step of the m loose unknowns to their minimum, by Cholesky's factors; false if H is not positive
-// definite there.
+// The step of the m free unknowns to their minimum, by Cholesky factorisation; false if H is not positive
+// definite on them.
 inline bool find_step(BoxQp& p, int m) {
     const std::size_t n = std::size_t(p.n);
     double *L = p.factor.data(), *d = p.step.data();
@@ -75,8 +75,8 @@ inline bool find_step(BoxQp& p, int m) {
     return true;
 }
 
-// Moves x by the step of the loose unknowns, up to the first bound, whose unknown is held from then on; true
-// if the whole step was taken.
+// Moves x by the step of the free unknowns, up to the first bound, which becomes active. Returns true if the
+// full step was taken.
 inline bool go(BoxQp& p, int m, double* x) {
     double share = 1;
     int first = -1;
@@ -101,7 +101,7 @@ inline bool go(BoxQp& p, int m, double* x) {
     return false;
 }
 
-// The held unknown whose gradient points inward most, −1 if there is none.
+// The active unknown whose gradient points inward most, −1 if there is none.
 inline int to_release(const BoxQp& p) {
     int worst = -1;
     double most = 0;
@@ -118,8 +118,8 @@ inline int to_release(const BoxQp& p) {
 
 }  // namespace box_qp
 
-// x: where to begin, cut to the box first; the solution on return. Returns the number of steps, or −1 if H is
-// not positive definite or holds NaN.
+// x: the start, which is clipped to the box first; the solution on return. Returns the number of steps, or −1
+// if H is not positive definite or contains NaN.
 inline int solve(BoxQp& p, double* x) {
     for (int i = 0; i < p.n; ++i) {
         const std::size_t k = std::size_t(i);

@@ -1,11 +1,11 @@
-// Many descents side by side, one per lane: Newton's method and Levenberg–Marquardt on the pose error, inside
-// limits where there are any. A lane that has ended takes the next start at once, and no lane sees what the
-// others do: the result of a start is the same in whatever company it is computed.
+// Levenberg–Marquardt descent for many starts in parallel, one per lane: Newton's method and damped least
+// squares on the pose error, within joint limits if there are any. A lane that has finished takes the next
+// start at once. Lanes are independent: the result of a start does not depend on the other starts.
 //
-// The damping follows the error, λ = μ |e|², with μ lowered by steps that gain and raised by steps that do
-// not (Yamashita & Fukushima 2001; Fan 2006): quadratic convergence even where the Jacobian has no full rank.
-// Limits are kept by projection: a coordinate at its limit that the gradient pushes outward is held, the
-// others step, and the result is cut to the box (Bertsekas 1982).
+// The damping follows the error, λ = μ |e|². Successful steps decrease μ, and unsuccessful steps increase it
+// (Yamashita & Fukushima 2001; Fan 2006). Convergence is quadratic even where the Jacobian is rank-deficient.
+// Limits are enforced by projection: a coordinate at its limit that the gradient pushes outward stays fixed,
+// the others step, and the result is clipped to the box (Bertsekas 1982).
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@
 
 namespace cspace {
 
-// Items k = 0 … count − 1: item k is row `pick[k]`, or k where pick is null. A stride is in values per row, 0
-// where all rows share one.
+// Items k = 0 … count − 1: item k is row `pick[k]`, or k where pick is null. A stride is the number of values
+// per row, and 0 where all rows share one.
 struct DescentRows {
     const ik::Path* path;
     const ik::Task* task;
@@ -55,17 +55,18 @@ inline constexpr double first_mu = 0.1, least_mu = 1e-7, largest_mu = 1e7;
 inline constexpr double gained = 0.5, lost = 4.0;
 inline constexpr double stride =
     2.0;  // largest change of a coordinate in one step [rad, lengths of the path]
-// A step that leaves this much of the cost gains nothing; after so many of them in a row the descent ends.
+// A step that leaves more than this fraction of the cost makes no progress. After several such steps in a row
+// the descent ends.
 inline constexpr double nothing = 0.97;
 inline constexpr double patience = 5.0;
-// An error this small is rounding [rad, m over the length]: more steps cannot help.
+// An error this small is rounding [rad, m over the length]: further steps cannot reduce it.
 inline constexpr double rounding = 1e-14;
-// Newton's normal equations get this much of their trace, so that a singular Jacobian gives a long step and
-// not an endless one.
+// Relative regularisation of Newton's normal equations, as a fraction of their trace. It bounds the step at a
+// singular Jacobian.
 inline constexpr double newton_floor = 1e-15;
 }  // namespace descent
 
-// Takes what the trial brought: where it is better (or must be taken), the trial becomes the place.
+// Evaluates the trial. It becomes the current iterate if it is better, or if it must be accepted.
 template <class V>
 CSPACE_INLINE void take_trial(const ik::Path& path, const Rows& rows, bool always, Descent<V>& d) {
     V cost = fill<V>(0.0);
@@ -88,8 +89,8 @@ CSPACE_INLINE void take_trial(const ik::Path& path, const Rows& rows, bool alway
     d.fresh = fill<V>(0.0);
 }
 
-// The lanes that have ended. A descent that is within the tolerance goes on as long as it gains much: the
-// last steps cost little and take the error down to rounding.
+// The lanes that have finished. A descent within the tolerance continues while it makes good progress: the
+// last steps cost little and reduce the error to rounding.
 template <class V>
 CSPACE_INLINE mask_of<V> ended(const ik::Path& path, const ik::Task& task, Descent<V>& d) {
     const V gap = max(d.at.position, d.at.rotation);
@@ -134,7 +135,7 @@ CSPACE_INLINE void next_trial(const ik::Path& path, const ik::Task& task, const 
     }
 }
 
-// Puts row `row` into lane l.
+// Loads row `row` into lane l.
 template <class V>
 void begin_lane(const DescentRows& rows, std::size_t row, int l, Descent<V>& d) {
     const Posed goal = read_goal(rows.goals + row * rows.goal_stride).T;

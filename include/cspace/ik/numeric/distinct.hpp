@@ -1,4 +1,4 @@
-// The different solutions among the ends of many descents.
+// Distinct solutions among the results of many descents.
 //
 // Not for kernels: it uses the standard library.
 #pragma once
@@ -6,9 +6,9 @@
 #include "cspace/ik/numeric/search.hpp"
 
 namespace cspace::numeric {
-// Two ends are one solution if no coordinate differs by more than `same` [rad, lengths of the path], or by
-// `close` where the configuration halfway between reaches the goal too: at a double root descents end
-// scattered by the square root of the error that is left.
+// Two results are the same solution if no coordinate differs by more than `same` [rad, lengths of the path].
+// They are also the same if none differs by more than `close` and their midpoint reaches the goal. At a
+// double root, results scatter by the square root of the remaining error.
 inline constexpr double same = 1e-6, close = 1e-3;
 }  // namespace cspace::numeric
 
@@ -30,9 +30,9 @@ inline bool is_one_solution(const ik::Path& path, const ik::Task& task, const Ro
     return std::fmax(gap.position, gap.rotation) <= task.tolerance;
 }
 
-// Picks the rows of results that reach the goal and differ, in the order in which they were found. `wanted`
-// (n,) says near which angles each is given. Returns how many; q (rows, n) takes them, hits (rows,) by how
-// many descents each was found.
+// Selects the rows of results that reach the goal and are distinct, in the order in which they were found.
+// Angles are given modulo 2π near `wanted` (n,). Returns their number; q (rows, n) receives them, and hits
+// (rows,) the number of descents that found each.
 inline std::size_t pick_distinct(const ik::Path& path, const ik::Task& task, const double* goal,
                                  const double* wanted, const DescentResults& results, double* q,
                                  double* residual, std::int64_t* hits) {

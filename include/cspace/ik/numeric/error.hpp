@@ -1,15 +1,15 @@
-// The error of configurations against goals and its derivative, on lanes.
+// Pose error of configurations relative to goals, and its derivative, on lanes.
 //
 // With T = T_goal_tip(q) = (R, t) the error is e = −[t; log R] in the axes of the goal. A twist [v; ω] of the
 // tip changes log R by J_l⁻¹(log R) ω (Chirikjian 2012, section 10.8). For equal weights the factor may be
-// left out: J_lᵀ log R = log R, so the gradient of |log R|² is the same without it.
+// omitted: J_lᵀ log R = log R, so the gradient of |log R|² does not change.
 #pragma once
 
 #include "cspace/ik/numeric/task.hpp"
 
 namespace cspace {
 
-// The counted rows of the error, lengths over that of the path, times their weights.
+// The rows of the error with nonzero weight, lengths divided by that of the path, times their weights.
 struct Rows {
     int m = 0;           // how many count
     int row[6];          // which of [t; rotation vector]
@@ -41,7 +41,7 @@ inline Rows rows_of(const ik::Task& task) {
     return rows;
 }
 
-// The rotation vector of R, half turns included.
+// The rotation vector of R, rotations by π included.
 template <class V>
 CSPACE_INLINE Vec3<V> log_of(const Mat3<V>& R) {
     Vec3<V> w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]), 0.5 * (R.m[1][0] - R.m[0][1])};
@@ -67,7 +67,7 @@ CSPACE_INLINE Vec3<V> log_of(const Mat3<V>& R) {
     return {select(half, axis.x, w.x), select(half, axis.y, w.y), select(half, axis.z, w.z)};
 }
 
-// What turns ω into the rate of the rotation vector w: J_l⁻¹(w) ω = ω − ½ w × ω + k w × (w × ω).
+// Maps ω to the rate of the rotation vector w: J_l⁻¹(w) ω = ω − ½ w × ω + k w × (w × ω).
 template <class V>
 struct LogRate {
     Vec3<V> w;
@@ -90,7 +90,7 @@ CSPACE_INLINE Vec3<V> operator*(const LogRate<V>& rate, const Vec3<V>& omega) {
     return omega - 0.5 * across + rate.k * cross(rate.w, across);
 }
 
-// T_goal_first: the frame of the first joint in the goal.
+// T_goal_first: the frame of the first joint relative to the goal.
 template <class V>
 CSPACE_INLINE void measure_gap(const ik::Path& path, const Rows& rows, const Pose<V>& T_goal_first,
                                const V* q, Gap<V>& out) {

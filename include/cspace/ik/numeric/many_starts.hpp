@@ -1,13 +1,13 @@
-// Descents from many starts to one goal: a sample of its solutions, which may lack some.
+// Multi-start descent to one goal: a sample of its solutions, not necessarily complete.
 #pragma once
 
 #include "cspace/ik/numeric/descent.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
-// One descent per start. T: T_base_tip (4, 4). starts, q (count, chain.n); residual (count,) is the larger of
-// position error [m] and angle [rad] that is left. Starts that reach the goal are left at rounding, others
-// at a local minimum; nothing is wrapped or compared. The same start gives the same q in any company.
+// One descent per start. T: T_base_tip (4, 4). starts, q (count, chain.n). residual (count,): the larger of
+// the remaining position error [m] and angle [rad]. Starts that reach the goal end at rounding, others at a
+// local minimum. Nothing is wrapped or compared. The result q of a start does not depend on the other starts.
 template <class V>
 void descend_from_starts(const ik::Chain& chain, const double* T, const double* starts, std::size_t count,
                          double* q, double* residual) {

@@ -1,4 +1,4 @@
-// The configuration that serves several tasks best: Levenberg–Marquardt steps, each a quadratic program in
+// Inverse kinematics with several weighted tasks: Levenberg–Marquardt steps, each a quadratic program within
 // the limits.
 //
 // Not for kernels: it uses the standard library.
@@ -27,7 +27,7 @@ inline constexpr double stride = 1.0;   // largest change of a joint, or of the 
 
 namespace cspace::inline CSPACE_ISA {
 
-// The box of the next step: limits, and the stride.
+// The bounds of the next step: joint limits and the maximum stride.
 inline void bound_step(const TaskProblem& problem, const TaskPlace& at, BoxQp& qp) {
     const std::size_t first = problem.floating ? 6 : 0;
     for (std::size_t j = 0; j < std::size_t(qp.n); ++j) {
@@ -39,9 +39,9 @@ inline void bound_step(const TaskProblem& problem, const TaskPlace& at, BoxQp& q
     }
 }
 
-// A step against a soft posture leaves a curved valley, whose floor is where the frames are served: the place
-// after the step is brought back there by the least step that serves the frames alone (a second-order
-// correction; Nocedal & Wright 2006, section 18.3).
+// Second-order correction after a step (Nocedal & Wright 2006, section 18.3). A soft posture task makes a
+// curved valley, on whose floor the frame tasks are satisfied. The shortest step for the frame tasks alone
+// returns to the floor.
 inline void back_to_the_valley(const TaskProblem& problem, TaskWork& work, BoxQp& qp, double* step,
                                TaskPlace& there, TaskPlace& spare) {
     bound_step(problem, there, qp);
@@ -51,7 +51,7 @@ inline void back_to_the_valley(const TaskProblem& problem, TaskWork& work, BoxQp
     if (spare.cost < there.cost) std::swap(there, spare);
 }
 
-// From at.q (inside the limits) and at.T_world_base to where the tasks are served best nearby.
+// Minimises the task error locally, from at.q (within the limits) and at.T_world_base.
 inline Served serve(const TaskProblem& problem, const ServeSettings& settings, TaskPlace& at) {
     TaskWork work = task_work(problem);
     BoxQp qp(dof_of(problem));

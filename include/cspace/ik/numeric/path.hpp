@@ -1,5 +1,5 @@
-// The joints between a base and a frame, as numeric methods follow them: any kinds of joints, each driven by
-// one of up to sixteen coordinates.
+// The kinematic path between a base and a frame for numeric methods: joints of any type, each driven by one
+// of up to sixteen coordinates.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -23,13 +23,13 @@ struct Path {
 
 namespace cspace::inline CSPACE_ISA {
 
-// The view that cspace/kinematics follows.
+// The view that cspace/kinematics evaluates.
 CSPACE_INLINE Chain view_of(const ik::Path& path) {
     return {path.joint, path.joints, path.n, false, path.T_base_first, path.cos_last, path.sin_last};
 }
 
-// The longest distance from axis to axis, or from an axis to the tip, with every coordinate at zero; 1 if all
-// meet.
+// The largest distance between consecutive axes, or from an axis to the tip, with every coordinate at zero; 1
+// if all intersect.
 inline double length_of(const ik::Path& path) {
     double q[ik::max_joints] = {}, s[ik::max_path + 3], c[ik::max_path + 3];
     Vec3d point[ik::max_path + 1], axis[ik::max_path];
@@ -57,7 +57,7 @@ inline Mat3d turned_to(const Vec3d& z) {
     return from_columns(x, cross(z, x), z);
 }
 
-// The path of an arm given by its axes; joint i is coordinate i.
+// The path of an arm given by its joint axes; joint i is coordinate i.
 inline ik::Path path_of(const ik::Chain& chain) {
     ik::Path path;
     path.joints = path.n = chain.n;

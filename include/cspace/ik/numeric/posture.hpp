@@ -1,8 +1,8 @@
-// Self-motion towards a preferred posture: the configuration that reaches the goal and comes nearest to it.
+// Self-motion to a preferred posture: the configuration that reaches the goal and is nearest to the posture.
 //
-// min ½ Σ wⱼ (qⱼ − restⱼ)² with e(q) = 0 and q in its limits. A step goes along the null space of the
-// Jacobian, the projected gradient of Liégeois (1977), and is brought back onto the goal by Newton's method;
-// it is halved until it gains.
+// min ½ Σ wⱼ (qⱼ − restⱼ)² with e(q) = 0 and q in its limits. A step follows the projected gradient in the
+// null space of the Jacobian (Liégeois 1977). Newton's method then returns to the goal. The step is halved
+// until it reduces the cost.
 #pragma once
 
 #include "cspace/ik/numeric/step.hpp"
@@ -29,7 +29,7 @@ inline constexpr double stride = 0.5;     // of a step [rad, lengths of the path
 inline constexpr double damping = 1e-14;  // keeps a singular Jacobian from overflowing
 }  // namespace posture
 
-// A robot at work on one goal.
+// A robot and its goal.
 struct SelfMotion {
     const ik::Path* path;
     const ik::Task* task;
@@ -55,7 +55,7 @@ inline bool is_at_limit(const ik::Task& task, const double* q, const double* mov
     return task.limited && ((q[j] <= task.lower[j] && move[j] < 0) || (q[j] >= task.upper[j] && move[j] > 0));
 }
 
-// The move along the null space that lowers the cost most, coordinates at limits that it pushes outward held.
+// The null-space direction of steepest descent. Coordinates at limits that it pushes outward stay fixed.
 inline void null_space_move(const SelfMotion& at, const double* q, const Gap<double>& gap, double* move) {
     const int n = at.path->n, m = at.rows.m;
     double scaled[6][ik::max_joints], root[ik::max_joints], loose[ik::max_joints];
@@ -81,7 +81,7 @@ inline void null_space_move(const SelfMotion& at, const double* q, const Gap<dou
     }
 }
 
-// The largest share of a move, up to 1, that keeps every coordinate in its limits.
+// The largest fraction of a move, up to 1, that keeps every coordinate within its limits.
 inline double share_inside(const SelfMotion& at, const double* q, const double* move) {
     double share = 1;
     for (int j = 0; j < at.path->n && at.task->limited; ++j) {
@@ -91,7 +91,7 @@ inline double share_inside(const SelfMotion& at, const double* q, const double* 
     return max(share, 0.0);
 }
 
-// Adds `share` of a move to q, coordinates in their limits.
+// Adds `share` of a move to q, with coordinates clipped to their limits.
 inline void add_move(const SelfMotion& at, const double* q, const double* move, double share, double* to) {
     for (int j = 0; j < at.path->n; ++j) {
         to[j] = q[j] + share * move[j];
@@ -103,7 +103,7 @@ inline void add_move(const SelfMotion& at, const double* q, const double* move, 
     }
 }
 
-// Brings q back onto the goal, coordinates at limits held there; true if it is there. `gap` belongs to q on
+// Returns q to the goal; coordinates at limits stay there. True if it converged. `gap` belongs to q on
 // return.
 inline bool back_onto_goal(const SelfMotion& at, double good_enough, double* q, Gap<double>& gap) {
     const int n = at.path->n;
@@ -120,8 +120,8 @@ inline bool back_onto_goal(const SelfMotion& at, double good_enough, double* q, 
     return false;
 }
 
-// How far along its move the next step should go, from what the last one did to the move (Barzilai & Borwein
-// 1988): the move is the negative gradient on the goal, in the metric of the weights.
+// Step length along the next move, from the change of the move in the last step (Barzilai & Borwein 1988).
+// The move is the negative gradient on the goal, in the metric of the weights.
 struct Pace {
     double q[ik::max_joints], move[ik::max_joints];
     bool known = false;
@@ -140,7 +140,8 @@ inline double next_pace(const SelfMotion& at, const double* q, const double* mov
     return min(max(pace, posture::slowest), posture::fastest);
 }
 
-// Moves q, which reaches the goal, to the posture nearest to rest that does so too; returns the error there.
+// Moves q, which reaches the goal, to the posture on the goal that is nearest to rest; returns the error
+// there.
 inline Gap<double> settle_posture(const ik::Path& path, const ik::Task& task, const ik::Posture& wish,
                                   const Posed& T_base_tip, double* q) {
     const SelfMotion at = {&path, &task, &wish, rows_of(task), inverse(T_base_tip) * path.T_base_first};

@@ -1,9 +1,9 @@
-// Resolved motion rate (Whitney 1969): the joint velocities that give a frame a twist, damped where the
-// Jacobian is weak.
+// Resolved-rate control (Whitney 1969): the joint velocities that give a frame a twist, damped where the
+// Jacobian is nearly singular.
 //
 // With J = Σ σᵢ aᵢ uᵢᵀ the velocity is q̇ = Σ f(σᵢ) uᵢ (aᵢᵀ t). f = σ/(σ² + λ²) for a damping λ (Nakamura &
-// Hanafusa 1986; Wampler 1986); without one f = σ / max(σ, ε)², exact down to ε and fading to zero below it,
-// so that no direction is ever amplified by more than 1/ε.
+// Hanafusa 1986; Wampler 1986); Without damping f = σ / max(σ, ε)². It is exact for σ ≥ ε and tends to zero
+// below ε, so no direction is amplified by more than 1/ε.
 #pragma once
 
 #include "cspace/math/small_svd.hpp"
@@ -25,7 +25,8 @@ using RateSvd = SmallSvd<max_rate_columns, 6>;
 
 namespace cspace::inline CSPACE_ISA {
 
-// The largest share of `extra`, up to 1, that keeps base + share · extra within ±most; 0 if base is outside.
+// The largest fraction of `extra`, up to 1, that keeps base + share · extra within ±most; 0 if base is
+// outside.
 inline double share_within(const double* base, const double* extra, const double* most, int n) {
     double share = 1;
     for (int j = 0; j < n; ++j) {
@@ -36,7 +37,8 @@ inline double share_within(const double* base, const double* extra, const double
     return share;
 }
 
-// The inverse of a symmetric positive definite 6×6 matrix by Cholesky's factors; false if it is not one.
+// The inverse of a symmetric positive definite 6×6 matrix by Cholesky factorisation; false if it is not
+// positive definite.
 inline bool invert_positive(const double (&M)[6][6], double (&inverse)[6][6]) {
     double L[6][6], K[6][6] = {};  // K = L⁻¹
     for (int i = 0; i < 6; ++i) {
@@ -69,8 +71,8 @@ inline void add_transposed(const double* J, int dof, const double (&A)[6][6], co
     }
 }
 
-// The rate and the projected wish where every singular value of J is surely above ε: 1/σ² is at most the norm
-// of (J Jᵀ)⁻¹. False elsewhere.
+// The joint rate and the projected null-space velocity where every singular value of J is certainly above ε:
+// 1/σ² is at most the norm of (J Jᵀ)⁻¹. False elsewhere.
 inline bool regular_rate(const double* J, int dof, const double* twist, const RateSettings& settings,
                          double* qd, double* extra) {
     double M[6][6], inverse[6][6], square = 0;
@@ -91,7 +93,7 @@ inline bool regular_rate(const double* J, int dof, const double* twist, const Ra
     return true;
 }
 
-// The same anywhere, from the singular values.
+// The same for any J, from its singular values.
 inline void singular_rate(const double* J, int dof, const double* twist, const RateSettings& settings,
                           RateSvd& svd, double* qd, double* extra) {
     svd.rows = dof;
@@ -111,9 +113,9 @@ inline void singular_rate(const double* J, int dof, const double* twist, const R
     }
 }
 
-// J (6, dof), twist (6,) and the wish (dof,) of the null space, or null; qd (dof,) takes the velocities.
-// Where they would be too fast, the motion in the null space gives way first, then the twist is slowed down
-// as a whole.
+// J (6, dof), twist (6,), and the desired null-space velocity wish (dof,), or null. qd (dof,) receives the
+// velocities. Where they would exceed the limits, the null-space motion is reduced first, then the whole
+// twist is scaled down.
 inline void resolved_rate(const double* J, int dof, const double* twist, const double* wish,
                           const RateSettings& settings, RateSvd& svd, double* qd) {
     double extra[max_rate_columns];

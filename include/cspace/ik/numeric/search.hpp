@@ -1,6 +1,7 @@
-// From goals to answers: a first start, then further ones until one of them reaches the goal.
+// Multi-start search for a solution of each goal: the first start, then further starts until one reaches the
+// goal.
 //
-// Not for kernels: it uses the standard library and is given the kernel that descends.
+// Not for kernels: it uses the standard library and takes the descent kernel as an argument.
 #pragma once
 
 #include <algorithm>
@@ -25,8 +26,8 @@ struct Search {
     const ik::Posture* posture;  // or null
 };
 
-// What is known of a goal at the end; the configuration is that of the first start that reached it, or of the
-// one that came nearest.
+// The result for a goal. The configuration is that of the first start that reached the goal, or else of the
+// start with the smallest error.
 struct Found {
     double position, rotation;  // errors left [m, rad]
     std::int32_t steps;         // of the descent that ended there
@@ -63,7 +64,7 @@ struct DescentResults {
     }
 };
 
-// Moves the coordinates that turn by whole turns to where they are nearest to `wanted`, inside the limits.
+// Moves revolute coordinates by multiples of 2π to the values nearest to `wanted`, within the limits.
 inline void nearest_turns(const ik::Path& path, const ik::Task& task, const double* wanted, double* q) {
     for (int j = 0; j < path.n; ++j) {
         // A coordinate that drives several joints, or one through a ratio, has another period.
@@ -87,7 +88,7 @@ inline void nearest_turns(const ik::Path& path, const ik::Task& task, const doub
 
 namespace searching {
 
-// The rows of goals begin to end; each pass takes those that failed so far to the next start.
+// The rows of goals begin to end. Each pass tries the next start for the goals that have failed so far.
 inline DescentResults passes(const Search& search, std::size_t begin, std::size_t end, Descend descend,
                              std::vector<std::int32_t>& start) {
     const std::size_t n = std::size_t(search.path.n);
@@ -119,7 +120,7 @@ inline DescentResults passes(const Search& search, std::size_t begin, std::size_
     return results;
 }
 
-// One goal: all its starts side by side.
+// One goal: all its starts in parallel.
 inline DescentResults side_by_side(const Search& search, std::size_t goal, Descend descend,
                                    std::size_t& best) {
     const std::size_t n = std::size_t(search.path.n), count = 1 + search.n_more;
@@ -144,7 +145,7 @@ inline DescentResults side_by_side(const Search& search, std::size_t goal, Desce
     return results;
 }
 
-// The answer to a goal from the row that a descent wrote.
+// The result of a goal from the row that a descent wrote.
 inline Found finish(const Search& search, std::size_t goal, const DescentResults& results, std::size_t row,
                     std::int32_t start, double* q) {
     const ik::Path& path = search.path;
@@ -163,8 +164,8 @@ inline Found finish(const Search& search, std::size_t goal, const DescentResults
 
 }  // namespace searching
 
-// The goals begin to end: q (count, n) and found (count,) take their answers. A goal is answered alike alone
-// and among others.
+// The goals begin to end: q (count, n) and found (count,) receive the results. The result of a goal does not
+// depend on the other goals.
 inline void search_goals(const Search& search, std::size_t begin, std::size_t end, Descend descend, double* q,
                          Found* found) {
     const std::size_t n = std::size_t(search.path.n), side_by_side_up_to = 3;

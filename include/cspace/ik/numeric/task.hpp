@@ -1,5 +1,4 @@
-// What a numeric method is asked: which parts of the pose error count, how well they have to vanish, and how
-// long to try.
+// The task of a numeric method: the weights of the pose error, its tolerances, and the limit of iterations.
 #pragma once
 
 #include "cspace/ik/numeric/path.hpp"

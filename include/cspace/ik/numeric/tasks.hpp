@@ -1,8 +1,8 @@
-// Several weighted tasks on several frames at once: the velocities, or the configuration, that serve all of
-// them best inside the limits.
+// Several weighted tasks on several frames: the velocities, or the configuration, with the smallest weighted
+// error within the limits.
 //
-// Each task has an error e(q), its Jacobian J = −∂e/∂q, and weights: the step Δq minimises
-// ½ Σ |W (J Δq − gain · e)|² + ½ λ |Δq|² in the box that limits leave (a quadratic program, box_qp.hpp).
+// Each task has an error e(q), its Jacobian J = −∂e/∂q, and weights: the step Δq minimises ½ Σ |W (J Δq −
+// gain · e)|² + ½ λ |Δq|² within the bounds of the limits (a quadratic program, box_qp.hpp).
 //
 // Not for kernels: it uses the standard library.
 #pragma once
@@ -25,13 +25,13 @@ struct FrameTask {
     Posed target;      // position, centre of mass: its t; direction: its t, a unit vector in the base
     Vec3d point;       // position: a point of the frame; direction: a unit vector of the frame
 };
-// Coordinates drawn to their places.
+// Coordinates with preferred values.
 struct PostureTask {
     const double* q;       // (n,)
     const double* weight;  // (n,)
     double gain;
 };
-// How far a task is from its target: lengths of the parts that count.
+// The error of a task: lengths of its weighted parts.
 struct TaskError {
     double position, rotation;  // [m, rad]
 };
@@ -45,7 +45,7 @@ struct TaskProblem {
     const double* upper;
 };
 
-// A configuration, and what the tasks see there.
+// A configuration, and the errors and Jacobians of the tasks there.
 struct TaskPlace {
     std::vector<double> q;  // (n,)
     Posed T_world_base;
@@ -83,7 +83,7 @@ inline TaskWork task_work(const TaskProblem& problem) {
     return work;
 }
 
-// The pose of a frame; work.J takes the Jacobian of the point p of it, rows [v; ω] in the world.
+// The pose of a frame. work.J receives the Jacobian of its point p, rows [v; ω] in the world.
 inline Posed measure_frame(const TaskProblem& problem, const TaskPlace& at, int frame, const Vec3d& p,
                            TaskWork& work) {
     const Chain& chain = problem.model->chain(frame);
@@ -97,7 +97,7 @@ inline Posed measure_frame(const TaskProblem& problem, const TaskPlace& at, int 
     return T;
 }
 
-// The centre of mass; the first three rows of work.J take its Jacobian.
+// The centre of mass. The first three rows of work.J receive its Jacobian.
 inline Vec3d measure_center(const TaskProblem& problem, const TaskPlace& at, TaskWork& work) {
     const Tree tree = problem.model->tree();
     const int dof = dof_of(problem), first = problem.floating ? 6 : 0;
@@ -109,8 +109,8 @@ inline Vec3d measure_center(const TaskProblem& problem, const TaskPlace& at, Tas
     return center;
 }
 
-// Adds the rows `from` to `from + 2` of the Jacobian, turned into the axes of Q, with their error and
-// weights. Returns the length of the counted part of the error.
+// Adds the rows `from` to `from + 2` of the Jacobian, rotated into the axes of Q, with their error and
+// weights. Returns the length of the weighted part of the error.
 inline double add_rows(const Mat3d& Q, const Vec3d& error, const double* weight, double gain, int from,
                        const TaskWork& work, int dof, TaskPlace& at) {
     double counted = 0;
@@ -135,7 +135,7 @@ inline double add_rows(const Mat3d& Q, const Vec3d& error, const double* weight,
     return std::sqrt(counted);
 }
 
-// The rotation vector that takes the unit vector a to d the short way.
+// The rotation vector that takes the unit vector a to d by the shortest rotation.
 inline Vec3d turn_between(const Vec3d& a, const Vec3d& d) {
     const Vec3d across = cross(a, d);
     const double s = norm(across), c = dot(a, d);
@@ -182,7 +182,7 @@ inline TaskError add_task(const TaskProblem& problem, const FrameTask& task, Tas
     }
 }
 
-// What the tasks see at at.q and at.T_world_base.
+// Evaluates the tasks at at.q and at.T_world_base.
 inline void look(const TaskProblem& problem, TaskWork& work, TaskPlace& at) {
     const std::size_t dof = std::size_t(dof_of(problem)), first = problem.floating ? 6 : 0;
     at.cost = 0;
@@ -203,8 +203,8 @@ inline void look(const TaskProblem& problem, TaskWork& work, TaskPlace& at) {
     }
 }
 
-// The step (dof,) that serves the tasks best, postures among them or not, in the box given by qp.lower and
-// qp.upper; false where the numbers are not finite.
+// The step (dof,) that minimises the task error, with or without posture tasks, in the box given by qp.lower
+// and qp.upper. False where the numbers are not finite.
 inline bool best_step(const TaskPlace& at, double damping, bool postures, BoxQp& qp, double* step) {
     qp.H = at.H;
     qp.g = at.g;
@@ -216,7 +216,7 @@ inline bool best_step(const TaskPlace& at, double damping, bool postures, BoxQp&
     return solve(qp, step) >= 0;
 }
 
-// The place after a step; the base turns and moves in the world.
+// The state after a step. The base rotates and translates in the world.
 inline void move_by(const TaskProblem& problem, const TaskPlace& from, const double* step, TaskPlace& to) {
     const std::size_t first = problem.floating ? 6 : 0;
     to.q = from.q;

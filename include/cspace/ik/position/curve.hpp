@@ -1,8 +1,8 @@
 // The path of a point moved by one joint: a circle, or a line.
 //
-// A revolute joint takes x to C + cos q A + sin q B with C on its axis, A across it and B = h × A; a
-// prismatic one to x + q h. On such a path a height n·x is linear, and a squared distance ‖x − o‖² is linear
-// for the circle and quadratic for the line.
+// A revolute joint moves x to C + cos q A + sin q B with C on its axis, A perpendicular to it, and B = h × A.
+// A prismatic joint moves x to x + q h. On such a path a height n·x is linear, and a squared distance ‖x −
+// o‖² is linear for the circle and quadratic for the line.
 #pragma once
 
 #include "cspace/math/turn.hpp"
@@ -23,7 +23,7 @@ struct OnCurve {
 
 namespace cspace::inline CSPACE_ISA {
 
-// direction +1: x moved by the joint, −1: by its inverse.
+// direction +1: x is moved by the joint, −1: by its inverse.
 inline Curve curve_of(bool prismatic, const Vec3d& axis, const Vec3d& point, const Vec3d& x,
                       double direction) {
     if (prismatic) return {true, x, direction * axis, {0, 0, 0}};

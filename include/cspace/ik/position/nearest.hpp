@@ -1,8 +1,8 @@
-// The configuration of a short arm that brings its tip nearest to a point out of reach.
+// The configuration of an arm with up to three joints whose tip is nearest to a point out of reach.
 //
-// The distance is smallest where its gradient vanishes. A sweep over two joints finds the valleys, Newton's
-// method their bottoms: over the revolute ones, while the prismatic follow by linear least squares, or over
-// the outer two of three revolute ones, while the middle one follows by subproblem 1.
+// The gradient of the distance vanishes there. A sweep over two joints locates the valleys, and Newton's
+// method finds their minima. The revolute joints are swept, and the prismatic joints follow by linear least
+// squares. Of three revolute joints the outer two are swept, and the middle one follows by subproblem 1.
 #pragma once
 
 #include "cspace/ik/position/tip_gap.hpp"
@@ -11,7 +11,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// The value of a joint that takes `from` to `to`, or as near as it comes.
+// The value of a joint that moves `from` to `to`, or as near to it as possible.
 template <int n>
 double joint_between(const TipGap<n>& g, int joint, const Vec3d& from, const Vec3d& to) {
     if (g.prismatic[joint]) return dot(g.axis[joint], to - from);
@@ -29,7 +29,7 @@ namespace nearest {
 
 inline constexpr int steps = 24;
 
-// The joints that are swept: all revolute ones, the middle one of three left out.
+// The joints that are swept: all revolute joints, except the middle one of three.
 template <int n>
 int swept_joints(const TipGap<n>& g, int* swept) {
     int revolute = 0, count = 0;
@@ -38,7 +38,7 @@ int swept_joints(const TipGap<n>& g, int* swept) {
         if (!g.prismatic[i] && (revolute < 3 || i != 1)) swept[count++] = i;
     return count;
 }
-// The prismatic joints minimise the gap while the others are held: one linear least-squares step is exact.
+// The prismatic joints minimise the gap while the others are fixed: one linear least-squares step is exact.
 template <int n>
 void slide(const TipGap<n>& g, double* q) {
     Linearised<TipGap<n>> at;
@@ -51,7 +51,7 @@ void slide(const TipGap<n>& g, double* q) {
     for (int j = 0; j < n; ++j)
         if (g.prismatic[j]) q[j] += step[j];
 }
-// The joints that are not swept follow; the gap that is left.
+// Computes the joints that are not swept; returns the remaining gap.
 template <int n>
 double follow(const TipGap<n>& g, int dimension, double* q) {
     bool slides = false;

@@ -1,10 +1,11 @@
-// Where the two conditions on q1 and q3 are one, f(q1) = g(q3): one pair (q1, q3) on each of its curves.
+// Degenerate pair of conditions: the two conditions on q1 and q3 are equivalent to one, f(q1) = g(q3). One
+// pair (q1, q3) is returned for each curve of solutions.
 //
-// Both sides rise and fall once, over a circle between two extremes, along a line above one or without end.
-// If the values of one side lie within those of the other, its joint is free to take any value and the other
-// follows on either slope: two curves (or one, where there is a single slope). If they only overlap, both
-// joints turn back where a side ends, and the curve is one: that of a four-bar whose links satisfy Grashof's
-// condition in the first case and do not in the second (Grashof 1883).
+// On a circle each side is monotonic between its minimum and its maximum. On a line a side has one extremum
+// or none. If the range of one side lies within the range of the other, its joint can take any value. The
+// other joint follows on either slope: two curves (or one curve, if there is a single slope). If the ranges
+// only overlap, both joints reverse where a range ends, and there is one curve. These are the curves of a
+// four-bar linkage: the first case satisfies Grashof's condition, the second does not (Grashof 1883).
 #pragma once
 
 #include "cspace/ik/position/values.hpp"
@@ -16,7 +17,7 @@ namespace pair {
 struct Range {
     double least, most;
 };
-// Whether a side has an end: over a circle it has two, over a line one or none; a side that rests has none.
+// Whether a side has an extremum. On a circle it has two, on a line one or none; a constant side has none.
 inline bool has_end(const OnCurve& f) {
     return (f.line ? f.square : std::hypot(f.a, f.b)) > tolerance::rounding;
 }
@@ -29,8 +30,8 @@ inline Range range(const OnCurve& f) {
     if (!has_end(f)) return {-without_end, without_end};
     return {f.k - f.a * f.a / (4 * f.square), without_end};
 }
-// Where ends nearly touch, curves nearly cross, and who follows one of them may change to another: they are
-// told apart as if they did.
+// Where ends nearly coincide, curves nearly cross, and a continuation may switch between them. They are
+// distinguished as if they crossed.
 inline bool is_within(const Range& inner, const Range& outer) {
     constexpr double nearly = 1e-8;
     return inner.least >= outer.least - nearly && inner.most <= outer.most + nearly;
@@ -39,11 +40,11 @@ inline bool holds(const Range& r, double value) {
     return value >= r.least - tolerance::rounding && value <= r.most + tolerance::rounding;
 }
 
-// The values of a joint from where the side of its condition rises: its greatest value, or its least.
+// The joint value at the extremum of its side: the maximum, or the minimum.
 inline double at_most(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(f.b, f.a); }
 inline double at_least(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(-f.b, -f.a); }
 
-// Whether conditions f_i = g_i are one; `k` is then the number of the one that says something.
+// Whether the conditions f_i = g_i are equivalent to one; `k` is then the number of the non-trivial one.
 inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
     double v[2][7], size[2] = {0, 0}, both = 0;
     for (int i = 0; i < 2; ++i) {
@@ -62,8 +63,8 @@ inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
            weight(f[k]) + weight(g[k]) > tolerance::rounding;
 }
 
-// Where an end of f is an end of g, two curves cross there, or one crosses itself: both joints move, either
-// slope of one with either slope of the other.
+// Where an extremum of f coincides with an extremum of g, two curves cross, or one curve crosses itself. Both
+// joints move, and either slope of one combines with either slope of the other.
 struct Touching {
     bool most, least;
 };
@@ -72,7 +73,7 @@ inline Touching touching(const Range& f, const Range& g) {
     return {same(f.most, g.most), same(f.least, g.least)};
 }
 
-// Whether a joint stands near an end of its side, where curves may cross or nearly do.
+// Whether a joint is near an extremum of its side, where curves may cross or nearly cross.
 inline bool is_near_end(const OnCurve& f, double q) {
     constexpr double near = 0.3;
     const double way = q - at_most(f);
@@ -84,8 +85,9 @@ inline double away_from_ends(const OnCurve& f) {
     return at_most(f) + (f.line ? line_away : 0.5 * pi);
 }
 
-// One pair per curve of f(q1) = g(q3), no crossing of two: a joint that is free at 0, or a quarter of a turn
-// from an end; else the first at 0, or the last at 0, or both sides halfway between the ends of their curve.
+// One pair per curve of f(q1) = g(q3), away from crossings of two curves. An unconstrained joint is at 0, or
+// at π/2 from an extremum. Otherwise the first joint is at 0, or the last joint is at 0, or both sides are
+// halfway between the ends of their curve.
 inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& found) {
     const Range of_f = range(f), of_g = range(g);
     const Touching ends = touching(of_f, of_g);

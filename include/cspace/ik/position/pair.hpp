@@ -2,10 +2,10 @@
 //
 // Two circles: two_angles.hpp, a quartic. A circle and a line: eliminating the line's coordinate leaves a
 // trigonometric polynomial of degree two in the angle (one, if both conditions are linear). Two lines: a line
-// and a conic, or two lines. Conditions that are one: one_condition.hpp. The answers are candidates, to be
-// refined on the arm itself; where none is a solution, further candidates represent a family: the first joint
-// at zero where the last can follow, else the last at zero, else either where it comes nearest to the middle
-// joint.
+// and a conic, or two lines. Conditions that are one: one_condition.hpp. The results are candidates, which
+// are then refined on the arm itself. If none is a solution, further candidates represent a self-motion. The
+// first joint is at zero if the last can follow; otherwise the last is at zero; otherwise either is where it
+// is nearest to the middle joint.
 #pragma once
 
 #include "cspace/ik/position/one_condition.hpp"

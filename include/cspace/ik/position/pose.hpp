@@ -1,11 +1,12 @@
-// Every configuration of an arm of one, two or three joints that brings its tip to a pose.
+// Inverse kinematics of arms with one, two or three joints for a pose: every solution.
 //
-// The pose asks for the motion G = T tip⁻¹ of the base frame. A revolute joint at the end of the chain leaves
-// the points of its own axis where they are, so the other joints alone must bring each of them, x, to G x: a
-// position goal of one joint less, and the last angle follows from the rotation that remains. Two points of
-// the axis are tried, as one of them may lie on a neighbouring axis. A revolute joint at the beginning is the
-// end of the arm read backwards. Arms with at most one revolute joint: its angle is that of G, the slides
-// follow linearly. All candidates are refined on position and rotation together and kept if they meet both.
+// The pose determines the motion G = T tip⁻¹ of the base frame. A revolute joint at the end of the chain
+// leaves the points of its own axis fixed. The other joints alone must therefore move each of these points x
+// to G x. This is a position goal with one joint less, and the last angle follows from the remaining
+// rotation. Two points of the axis are tried, because one of them may lie on an adjacent axis. A revolute
+// joint at the beginning is the end of the reversed arm. In arms with at most one revolute joint, its angle
+// is that of G, and the prismatic joints follow linearly. All candidates are refined on position and rotation
+// together, and kept if they satisfy both.
 #pragma once
 
 #include <initializer_list>
@@ -14,7 +15,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// The gap of pose: that of the tip, and half the sum of g × r over the axes g of the goal and r of the tip,
+// The pose gap: the gap of the tip, and half the sum of g × r over the axes g of the goal and r of the tip,
 // which is the rotation vector between them to first order.
 template <int n>
 struct PoseGap {
@@ -85,7 +86,7 @@ struct Search {
     }
 };
 
-// Joint angles for at most one revolute joint: its own from G, the slides by least squares.
+// Joint values for at most one revolute joint: its own from G, the prismatic joints by least squares.
 template <int n>
 void by_slides(Search<n>& search, const Posed& G) {
     double q[n] = {};
@@ -97,7 +98,7 @@ void by_slides(Search<n>& search, const Posed& G) {
     search.propose(q);
 }
 
-// The last joint is revolute: the others bring points of its axis to their place.
+// The last joint is revolute: the others move points of its axis to their goals.
 template <int n>
 void by_last_axis(const ik::Chain& chain, const Posed& G, double size, bool backwards, Search<n>& search) {
     ik::Chain others = chain;
@@ -150,7 +151,7 @@ void solve(const ik::Chain& chain, const Posed& T, ik::FewJointSolutions& found)
 
 }  // namespace few_joint_pose
 
-// The tip of the chain (n ≤ 3) to T, in base.
+// Moves the tip of the chain (n ≤ 3) to T, in base coordinates.
 inline ik::FewJointSolutions solve_few_joint_pose(const ik::Chain& chain, const Posed& T) {
     ik::FewJointSolutions found;
     if (chain.n == 1) few_joint_pose::solve<1>(chain, T, found);

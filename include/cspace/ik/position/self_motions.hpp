@@ -1,4 +1,4 @@
-// Solutions of a small system of joints: which are the same, and which belong to a family.
+// Solutions of a small system of joints: which are equal, and which belong to a self-motion.
 //
 // A System is as in refine.hpp, over joints as numbers, with `prismatic[i]` and the residual `reached` that
 // counts as zero.
@@ -9,7 +9,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// Whether joints a and b are the same configuration, angles counted modulo a turn.
+// Whether joints a and b are the same configuration, with angles modulo 2π.
 template <class System>
 bool same_joints(const System& g, const double* a, const double* b) {
     for (int i = 0; i < System::angles; ++i) {
@@ -42,8 +42,8 @@ void eigenvectors(double (*a)[n], double (*v)[n]) {
             }
 }
 
-// No eigenvalue of a positive matrix is below its determinant divided by the other eigenvalues, each at most
-// n times the largest diagonal entry: a cheap way to say that nothing is singular here.
+// Cheap test for regularity: no eigenvalue of a positive matrix is below its determinant divided by the other
+// eigenvalues, each at most n times the largest diagonal entry.
 template <int n>
 bool surely_regular(const double (*a)[n], double largest) {
     double determinant = a[0][0];
@@ -58,8 +58,8 @@ bool surely_regular(const double (*a)[n], double largest) {
            largest > tolerance::sure_candidate;
 }
 
-// Whether the solution q is one of a family; its direction, of length one, is written to `along`. close:
-// whether some motion there moves nothing but for rounding.
+// Whether the solution q belongs to a self-motion. Its unit direction is written to `along`. close: whether
+// some motion there changes the residual by rounding only.
 template <class System>
 bool is_free(const System& g, const double* q, double* along, bool& close) {
     constexpr int n = System::angles;
@@ -86,7 +86,7 @@ bool is_free(const System& g, const double* q, double* along, bool& close) {
     return false;
 }
 
-// Keeps the refined solution q of a system if it is new.
+// Appends the refined solution q of a system if it is new.
 template <class System, class Solutions>
 void keep_distinct(const System& g, double* q, Solutions& found) {
     constexpr int n = System::angles;

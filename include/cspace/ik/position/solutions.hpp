@@ -1,4 +1,4 @@
-// What a goal answers for an arm of up to three joints.
+// Results of inverse kinematics for an arm with up to three joints.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -7,7 +7,7 @@ namespace cspace::ik {
 
 inline constexpr int max_position_joints = 3, max_position_solutions = 8;
 
-// What a position goal answers.
+// The result of a position goal.
 struct PositionSolutions {
     int count = 0;
     double q[max_position_solutions][max_position_joints] = {};
@@ -22,7 +22,7 @@ struct PositionSolutions {
     double nearest[max_position_joints] = {};
 };
 
-// What a pose goal answers for such an arm.
+// The result of a pose goal for such an arm.
 struct FewJointSolutions {
     int count = 0;
     double q[max_position_solutions][max_position_joints] = {};

@@ -1,11 +1,11 @@
-// Every configuration of an arm of one, two or three joints that brings its tip to a point.
+// Inverse kinematics of arms with one, two or three joints for a position: every solution.
 //
-// Three joints: e^{ξ2 q2} (e^{ξ3 q3} tip) = e^{−ξ1 q1} goal. Joint 2 turns one point into another exactly
-// when both have the same height along its axis and the same distance from a point of it; it slides one into
-// the other when both have the same two coordinates across it. Either way two conditions are left for q1 and
-// q3 (pair.hpp), and q2 follows. Two joints: the same with goal itself in place of e^{−ξ1 q1} goal, two
-// conditions for one joint, of which each gives candidates. Candidates are refined on the arm and kept if
-// they reach the goal.
+// Three joints: e^{ξ2 q2} (e^{ξ3 q3} tip) = e^{−ξ1 q1} goal. A revolute joint 2 can rotate one point into
+// another exactly when both have the same height along its axis and the same distance from a point of it. A
+// prismatic joint 2 can translate one into the other when both have the same two coordinates perpendicular to
+// it. Either way two conditions remain for q1 and q3 (pair.hpp), and q2 follows. Two joints: the same with
+// goal itself in place of e^{−ξ1 q1} goal. These are two conditions for one joint, and each gives candidates.
+// Candidates are refined on the arm, and kept if they reach the goal.
 #pragma once
 
 #include <initializer_list>
@@ -19,7 +19,7 @@ namespace cspace::inline CSPACE_ISA {
 
 namespace position {
 
-// The two functions of a point on a curve that a joint cannot change.
+// The two functions of a point that a joint leaves invariant.
 template <int n>
 void invariants(const TipGap<n>& g, int joint, const Curve& curve, OnCurve f[2]) {
     const Vec3d &h = g.axis[joint], &o = g.point[joint];
@@ -32,7 +32,7 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
     return curve_of(g.prismatic[joint], g.axis[joint], g.point[joint], x, direction);
 }
 
-// Refines a candidate and keeps it if it reaches the goal.
+// Refines a candidate and appends it if it reaches the goal.
 template <int n>
 void propose(const TipGap<n>& g, double* q, ik::PositionSolutions& found) {
     if (refine(g, q) <= g.reached) keep_distinct(g, q, found);
@@ -61,8 +61,8 @@ inline void candidates(const TipGap<2>& g, ik::PositionSolutions& found) {
     }
     if (unconstrained) complete(0);
 }
-// Joints 0 and 2 bring both points to the axis of joint 1, which is then free: it is turned away from where
-// the other two can move as well. False where they do not.
+// Joints 0 and 2 bring both points to the axis of joint 1, which is then unconstrained. It is rotated away
+// from values at which the other two can move as well. False where they cannot.
 inline bool free_the_middle(const TipGap<3>& g, const Vec3d& behind, const Vec3d& before, double* q) {
     const auto is_on_axis = [&](const Vec3d& x) {
         return norm(cross(g.axis[1], x - g.point[1])) <= tolerance::same_turns;
@@ -120,8 +120,8 @@ void solve(const ik::Chain& chain, const Vec3d& goal, bool measure_miss, ik::Pos
 
 }  // namespace position
 
-// The tip of the chain (n ≤ 3) to p, in base. Without a solution, what is missing: a search that costs fifty
-// times the solution, so it is left out where nobody asks.
+// Moves the tip of the chain (n ≤ 3) to p, in base coordinates. Without a solution, the nearest configuration
+// is computed on request only, because that search costs fifty times the solution.
 inline ik::PositionSolutions solve_position(const ik::Chain& chain, const Vec3d& p,
                                             bool measure_miss = true) {
     ik::PositionSolutions found;

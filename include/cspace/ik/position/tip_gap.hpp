@@ -1,4 +1,4 @@
-// The gap between the tip of a short arm and a goal, as a function of its joints.
+// The gap between the tip of an arm with up to three joints and a goal, as a function of its joints.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -6,7 +6,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// Lengths, and with them prismatic joints, in units of the arm's size.
+// Lengths, and with them prismatic joints, are in units of the size of the arm.
 template <int n>
 struct TipGap {
     static constexpr int angles = n, equations = 3;
@@ -42,8 +42,8 @@ inline Vec3d foot_of_tip(const ik::Chain& chain, int i) {
     const Vec3d r = chain.tip.t - chain.point[i];
     return chain.point[i] + dot(r, chain.axis[i]) * chain.axis[i];
 }
-// The size of the problem [m], and the gap, relative to it, up to which the goal counts as reached: where
-// coordinates are large against the arm, it is their rounding that decides.
+// The size of the problem [m], and the relative gap up to which the goal counts as reached. Where coordinates
+// are large compared with the arm, their rounding determines it.
 struct PositionScale {
     double size, reached;
 };
@@ -57,7 +57,7 @@ inline PositionScale position_scale(const ik::Chain& chain, const Vec3d& goal) {
     if (size == 0) size = 1;
     return {size, std::fmax(tolerance::exact, tolerance::rounding * far / size)};
 }
-// The origin is moved to the tip at zero, so that an arm far from its base keeps its digits.
+// Moves the origin to the tip at zero, so that an arm far from its base loses no digits.
 template <int n>
 TipGap<n> tip_gap(const ik::Chain& chain, const Vec3d& goal, const PositionScale& scale) {
     TipGap<n> g;

@@ -1,4 +1,4 @@
-// Values of the first and the last of three joints that a condition on both allows.
+// Values of the first and the last of three joints that satisfy one condition on both.
 #pragma once
 
 #include "cspace/ik/position/curve.hpp"
@@ -27,7 +27,8 @@ inline void add(PairCandidates& found, double first, double last) {
 
 namespace pair {
 
-// The q with f(q) = target on a line: at most two; the vertex stands in where a parabola falls short.
+// The q with f(q) = target on a line: at most two. If a parabola does not reach the target, its vertex is
+// returned.
 inline int values_on_line(const OnCurve& f, double target, double* q) {
     const double k = f.k - target;
     if (std::fabs(f.square) <= tolerance::rounding) {

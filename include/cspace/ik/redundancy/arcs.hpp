@@ -1,5 +1,5 @@
-// All feasible arcs of the self-motion. Every arc that ends does so at a limit, and all those ends are known
-// beforehand; arcs that close are met by the solutions at some values.
+// All feasible arcs of the self-motion of a redundant arm. An open arc ends at a joint limit, and all points
+// at limits are computed first. Closed arcs are found from the solutions at sampled joint values.
 #pragma once
 
 #include "cspace/ik/redundancy/follow.hpp"
@@ -31,7 +31,7 @@ inline void trace_from_limits(Tracer& tracer) {
     }
 }
 
-// The turns of two ways from one point, as one way.
+// Joins the turning points of two curves traced from one point in opposite directions.
 inline Turns joined_turns(const Tracer& tracer, const Turns& back, const Turns& on) {
     Turns out;
     for (int k = back.count - 1; k >= 0; --k)
@@ -41,8 +41,8 @@ inline Turns joined_turns(const Tracer& tracer, const Turns& back, const Turns& 
     return out;
 }
 
-// Arcs that close within all limits, or go on for ever along a slide that has none: a configuration of one of
-// them.
+// Traces one arc from a configuration: an arc that is closed within all limits, or one that is unbounded
+// along a prismatic joint without limits.
 inline void trace_loop(Tracer& tracer, const double* q) {
     const int n = tracer.arm->chain.n, first = tracer.trail->count;
     if (!is_within(*tracer.arm, q, -limit_slack) || is_far(tracer, q) || is_on_trail(tracer, q)) return;
@@ -64,7 +64,8 @@ inline void trace_loop(Tracer& tracer, const double* q) {
     add_pieces(tracer, joined_turns(tracer, back, turns));
     if (end != ArcEnd::open || other != ArcEnd::open) tracer.out->complete = false;
 }
-// The solutions at some values of a joint; of one that the goal settles there are none.
+// Traces the arcs through the solutions at sampled values of a joint. A joint whose value the goal determines
+// has no samples.
 inline void trace_loops_at(Tracer& tracer, const ik::LockedArm& locked, int joint, int looks) {
     if (!is_solvable(locked.arm)) return;
     const Domain domain = domain_of(*tracer.arm, joint, tracer.goal);
@@ -78,7 +79,7 @@ inline void trace_loops_at(Tracer& tracer, const ik::LockedArm& locked, int join
         }
     }
 }
-// How many intervals hold a value, whole turns aside; −1 where it lies too near to the end of one to tell.
+// Number of intervals that contain a value modulo 2π; −1 where the value is too close to an end to decide.
 inline int count_intervals(const Tracer& tracer, double value) {
     constexpr double near_end = 1e-4;
     int count = 0;
@@ -92,7 +93,7 @@ inline int count_intervals(const Tracer& tracer, double value) {
     }
     return count;
 }
-// Whether as many intervals hold a value as solutions there keep their limits.
+// Whether the number of intervals at a value equals the number of solutions there that satisfy their limits.
 inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, double value) {
     int within = 0;
     for (int j = 0; j < rows.count; ++j) {
@@ -106,8 +107,8 @@ inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, d
     return count < 0 || count == within;
 }
 
-// Configurations spread evenly over all joints: multiples of the powers of 1/g, g^(n+1) = g + 1, the golden
-// ratio of n dimensions (M. Roberts 2018).
+// Configurations evenly distributed over all joints: multiples of the powers of 1/g with g^(n+1) = g + 1, the
+// golden ratio of n dimensions (M. Roberts 2018).
 inline void spread_evenly(int k, int n, double* q) {
     double g = 1.5;
     for (int step = 0; step < 12; ++step) g = std::pow(1 + g, 1.0 / (n + 1));
@@ -119,7 +120,8 @@ inline void spread_evenly(int k, int n, double* q) {
     }
 }
 
-// A loop too small to be met at a value still draws Newton's method from far around.
+// Finds small loops by Newton's method. Sampled values may miss a small loop, but its basin of attraction is
+// large.
 inline void trace_loops_by_descent(Tracer& tracer) {
     constexpr int starts = 48, most_steps = 60;
     const ik::Redundant& arm = *tracer.arm;
@@ -133,8 +135,9 @@ inline void trace_loops_by_descent(Tracer& tracer) {
     }
 }
 
-// They are met by the solutions at some values of the parameter; and of other joints, for a loop that hardly
-// moves one joint moves others. At the values of the parameter the intervals are also counted.
+// Traces the closed arcs from the solutions at sampled values of the parameter. Other joints are sampled too,
+// because a loop that hardly moves one joint moves others. At the sampled values of the parameter the
+// intervals are counted as a check.
 inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms& arms, SweptRows* swept) {
     constexpr int looks = loop_looks, other_looks = 4;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
@@ -153,7 +156,7 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms&
         tracer.out->complete = agrees_with_solutions(tracer, swept[k], values[k]);
 }
 
-// The intervals of joint `parameter`, held by `locked`; trail: working memory.
+// The intervals of joint `parameter`, which `locked` locks. trail: working memory.
 inline void intervals_by_arcs(const ik::Redundant& arm, const ik::LockedArm& locked, int parameter,
                               const ik::LimitArms& arms, const Posed& goal, Trail& trail,
                               ik::Intervals& out) {

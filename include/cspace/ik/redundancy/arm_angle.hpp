@@ -1,10 +1,11 @@
-// Arms with two spherical joints and one joint between them (S-R-S), by the swivel of their elbow
-// (Shimizu et al. 2008).
+// Arm angle (swivel) of S-R-S arms: inverse kinematics of arms with two spherical joints and one revolute
+// joint between them (Shimizu et al. 2008).
 //
-// S: where axes 1, 2, 3 meet; W: where axes 5, 6, 7 meet; E: the elbow, the point of axis 4 nearest to S. The
-// goal fixes W, its distance from S fixes q4, and E is left on a circle about the line from S to W. The
-// swivel is the angle about that line, from S to W, from the half-plane through axis 1's direction to the one
-// through E. Where S → W lies along axis 1 the direction is replaced by the one of `beside`.
+// S is the intersection of axes 1, 2, 3. W is the intersection of axes 5, 6, 7. The elbow E is the point of
+// axis 4 nearest to S. The goal fixes W, and the distance from S to W fixes q4. E can still move on a circle
+// about the line from S to W. The swivel is the angle about that line, directed from S to W, from the
+// half-plane through the direction of axis 1 to the half-plane through E. Where S → W is parallel to axis 1,
+// `beside` replaces that direction.
 #pragma once
 
 #include <initializer_list>
@@ -36,7 +37,7 @@ struct SwivelSolutions {
     mask_of<V> ok[ik::swivel_branches];
 };
 
-// The angles of three axes through a point for a rotation: two ways.
+// Angles of three concurrent axes for a given rotation: two solutions.
 template <class V>
 struct SphericalTurns {
     Turn<V> turn[2][3];
@@ -47,7 +48,7 @@ struct SphericalTurns {
 
 namespace cspace::inline CSPACE_ISA {
 
-// The point nearest to three axes, and how far the farthest of them passes by it.
+// The point nearest to three axes. away: the largest distance of an axis from it.
 inline Vec3d meeting_of(const ik::Chain& chain, int first, double& away) {
     double A[3][3] = {}, b[3] = {};
     for (int i = first; i < first + 3; ++i) {
@@ -68,7 +69,8 @@ inline Vec3d meeting_of(const ik::Chain& chain, int first, double& away) {
     return meeting;
 }
 
-// `serves` where the axes meet to rounding: a swivel of an arm that only almost is one is not exact.
+// Sets `serves` where the axes meet to rounding. On an arm that is only approximately S-R-S a swivel is not
+// exact.
 inline ik::SwivelArm make_swivel_arm(const ik::Chain& chain) {
     constexpr double meets = 1e-12, crosses = 1e-3;
     ik::SwivelArm arm;
@@ -93,8 +95,8 @@ inline ik::SwivelArm make_swivel_arm(const ik::Chain& chain) {
     return arm;
 }
 
-// R = e^{h1 q1} e^{h2 q2} e^{h3 q3}: h1 · R h3 fixes q2, R h3 fixes q1, and what is left is the turn about
-// h3.
+// R = e^{h1 q1} e^{h2 q2} e^{h3 q3}: h1 · R h3 determines q2, R h3 determines q1, and the remaining rotation
+// about h3 determines q3.
 template <class V>
 CSPACE_INLINE SphericalTurns<V> three_turns(const Vec3d* axis, const Mat3<V>& R) {
     const Care care;
@@ -127,7 +129,7 @@ CSPACE_INLINE SphericalTurns<V> three_turns(const Vec3d* axis, const Mat3<V>& R)
     return out;
 }
 
-// The frame (n, u, n × u) with n along w and u towards e.
+// The frame (n, u, n × u) with n along w and u in the direction of e.
 template <class V>
 CSPACE_INLINE Mat3<V> frame_towards(const Vec3<V>& w, const Vec3<V>& e) {
     const Vec3<V> n = (1.0 / norm(w)) * w;
@@ -136,7 +138,7 @@ CSPACE_INLINE Mat3<V> frame_towards(const Vec3<V>& w, const Vec3<V>& e) {
     return from_columns(n, u, cross(n, u));
 }
 
-// Where the elbow's half-plane would be at swivel zero: square to w, towards the reference.
+// Direction of the elbow's half-plane at swivel zero: perpendicular to w, on the side of the reference.
 inline Vec3d swivel_zero(const ik::SwivelArm& arm, const Vec3d& w) {
     constexpr double along = 1e-9;
     const Vec3d n = (1 / norm(w)) * w;
@@ -145,7 +147,8 @@ inline Vec3d swivel_zero(const ik::SwivelArm& arm, const Vec3d& w) {
     return (1 / norm(r)) * r;
 }
 
-// All solutions of a goal at swivels on lanes. Branch 4 i + 2 j + k: elbow, shoulder, wrist.
+// All solutions of a goal at given swivels, one swivel per lane. Branch 4 i + 2 j + k: elbow, shoulder,
+// wrist.
 template <class V>
 CSPACE_NOINLINE void solve_swivel(const ik::SwivelArm& arm, const Posed& goal, V swivel,
                                   SwivelSolutions<V>& out) {

@@ -1,5 +1,5 @@
-// Which joints do the work of others: the rank of an arm's Jacobian where nothing special happens, and sets
-// of joints that alone have that rank.
+// Independent joints: the generic rank of the Jacobian, and sets of joints whose columns alone have that
+// rank.
 #pragma once
 
 #include "cspace/ik/near_singular.hpp"
@@ -7,7 +7,7 @@
 
 namespace cspace {
 
-// Joints whose columns are independent of each other.
+// Joints with linearly independent columns.
 struct Basis {
     int rank = 0;
     unsigned joints = 0;   // one bit each
@@ -18,7 +18,7 @@ struct Basis {
 
 namespace cspace::inline CSPACE_ISA {
 
-// What is left of a column when the parts along unit columns are taken out, twice against rounding.
+// Orthogonalises a column against unit columns, twice because of rounding; returns the norm of the remainder.
 inline double rest_of_column(const double (*unit)[6], int count, double* column) {
     for (int pass = 0; pass < 2; ++pass)
         for (int k = 0; k < count; ++k) {
@@ -28,8 +28,8 @@ inline double rest_of_column(const double (*unit)[6], int count, double* column)
     return std::sqrt(dot_n(column, column, 6));
 }
 
-// Takes joints in a given order, each unless those taken before span its column: first those that add much,
-// then those that add anything.
+// Selects joints in a given order. A joint is skipped if the joints before it span its column. The first pass
+// takes columns with a large remainder, the second any others that are independent.
 inline Basis basis_at(const PoseError& at, const int* order, int count) {
     constexpr double much = 1e-2;
     Basis out;
@@ -49,8 +49,8 @@ inline Basis basis_at(const PoseError& at, const int* order, int count) {
     return out;
 }
 
-// The same where it matters: at the one of some configurations without a pattern that tells most apart.
-// Lengths count over `length`, the arm's own.
+// A basis at a generic configuration: of several sample configurations, the one with the best-separated
+// columns. Lengths are divided by `length`, the size of the arm.
 inline Basis basis_of(const ik::Chain& chain, double length, const int* order, int count) {
     constexpr int looks = 8;
     Basis best;

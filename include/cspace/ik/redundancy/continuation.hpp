@@ -1,5 +1,6 @@
-// Steps along the self-motion, as long as one arc of it can be told from every other (Allgower & Georg 1990,
-// chapter 6), and what a step passes over: limits of joints and turning points of the parameter.
+// Numerical continuation of the self-motion: steps along one arc, short enough that no other arc is confused
+// with it (Allgower & Georg 1990, chapter 6). Detects the joint limits and the turning points of the
+// parameter that a step passes.
 #pragma once
 
 #include "cspace/ik/redundancy/curve.hpp"
@@ -9,7 +10,7 @@ namespace cspace {
 
 inline constexpr int loop_looks = 24;  // values of the parameter at which loops are looked for
 
-// All points stepped on, and the solutions met at some values.
+// All points of the traced curve, and the solutions at sampled values.
 struct Trail {
     static constexpr int room = 12000;
     int count = 0;
@@ -46,13 +47,13 @@ inline void orient_tangent(CurvePoint& at, const double* along, int n) {
     for (int i = 0; i < n; ++i) at.tangent[i] = -at.tangent[i];
 }
 
-// The way from one value of a joint to another, turning joints the short way round.
+// The displacement from one value of a joint to another, by the shorter way for revolute joints.
 inline double joint_way(const ik::Chain& chain, int i, double from, double to) {
     return chain.prismatic[i] ? to - from : short_way(to - from);
 }
 
-// Where a solution stands on the chord of a step, 0 to 1; −1 off it. Chords bend by less than the width of
-// the tube, and no other arc enters it: see step_along.
+// Position of a solution on the chord of a step, from 0 to 1; −1 if it is off the chord. A chord deviates
+// from the curve by less than the width of the tube, and no other arc enters the tube: see step_along.
 inline double part_of_chord(const ik::Chain& chain, const double* from, const double* to, const double* q) {
     constexpr double tube = 0.06;
     double way[ik::max_joints], gap[ik::max_joints], length2 = 0, along = 0;
@@ -73,7 +74,8 @@ inline double part_of_chord(const ik::Chain& chain, const double* from, const do
     return max(0.0, part);
 }
 
-// How far a step may lead: a turning joint by 0.25 rad, slides in proportion where the curve goes far.
+// Upper bound of a step: 0.25 rad for revolute joints, in proportion for prismatic joints where the curve is
+// long.
 inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
     constexpr double longest = 0.25, steps_across = 64;
     if (!(tracer.far > 0)) return longest;
@@ -84,7 +86,7 @@ inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
     return 1 / most;
 }
 
-// A step of length `stride`; true if it followed the curve closely.
+// Tries a step of length `stride`. Returns true if it stayed close to the curve.
 inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride, double most_off,
                      CurvePoint& to) {
     const int n = tracer.arm->chain.n;
@@ -97,9 +99,9 @@ inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride
     return to.error < 1e-9 && off < most_off * stride && dot_n(to.tangent, from.tangent, n) > 0.95;
 }
 
-// One step; shortened until the curve was followed closely and the Jacobian changed little, so that two arcs
-// which all but cross are told apart. Where they do cross the step leads straight on, to the far side.
-// False where the curve cannot be followed.
+// One step. It is shortened until it stays close to the curve and the Jacobian changes little, so that two
+// arcs that nearly cross are distinguished. At a crossing the step continues straight to the far side.
+// Returns false where the curve cannot be followed.
 inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& stride, CurvePoint& to) {
     constexpr double shortest = 1e-7, crossing = 1e-5, most_change = 0.5;
     const int n = tracer.arm->chain.n;
@@ -125,7 +127,7 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& str
     return false;
 }
 
-// The joint that has left its limits at `to`, or −1; and which side of them.
+// The joint that violates its limits at `to`, or −1. side: which limit.
 inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slack, int& side) {
     const ik::Redundant& arm = *tracer.arm;
     int worst = -1;
@@ -143,7 +145,7 @@ inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slac
     return worst;
 }
 
-// Moves `at` along the curve to where joint i stands at its limit.
+// Moves `at` along the curve to the point where joint i is at its limit.
 inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) {
     const ik::Redundant& arm = *tracer.arm;
     const double limit = limit_of(arm, i, side);
@@ -161,7 +163,7 @@ inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) 
     }
 }
 
-// Whether a slide without limits has gone as far as it is followed.
+// Whether a prismatic joint without limits has reached the bound up to which the curve is followed.
 inline bool is_far(const Tracer& tracer, const double* q) {
     bool far = false;
     for (int i = 0; i < tracer.arm->chain.n && tracer.far > 0; ++i)
@@ -169,8 +171,8 @@ inline bool is_far(const Tracer& tracer, const double* q) {
     return far;
 }
 
-// Of the known points at limits the first that a step passed over: a joint may leave its limits and come back
-// within one step, or all the way round.
+// The first of the known points at limits that a step passed. Within one step a joint may leave its limits
+// and return, or make a full revolution.
 inline int point_passed(const Tracer& tracer, const CurvePoint& from, const CurvePoint& to) {
     double first = 2;
     int found = -1;
@@ -183,7 +185,8 @@ inline int point_passed(const Tracer& tracer, const CurvePoint& from, const Curv
     return found;
 }
 
-// Where a step has left the limits, back to the first of them that it crossed; the joint that stops there.
+// Where a step has left the limits, goes back to the first limit that it crossed. Returns the joint that
+// stops there.
 inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
     int stop = stopped_joint(tracer, at, 1e-12, side);
     for (int k = 0, next = stop; next >= 0 && k < 4; ++k) {
@@ -196,7 +199,7 @@ inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
     return stop;
 }
 
-// The joint that stops the step from `at` to `next`, which then ends there; −1 where none does.
+// The joint that stops the step from `at` to `next`, which then ends there; −1 if none does.
 inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint& next, int& side) {
     const ik::Chain& chain = tracer.arm->chain;
     const int stop = go_back_to_limit(tracer, next, side);
@@ -210,7 +213,7 @@ inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint&
     return point.joint;
 }
 
-// The point of the curve over a part of a chord.
+// The point of the curve above a fraction of a chord.
 inline CurvePoint point_over_chord(const Tracer& tracer, const CurvePoint& from, const CurvePoint& to,
                                    double part) {
     const int n = tracer.arm->chain.n;
@@ -221,7 +224,8 @@ inline CurvePoint point_over_chord(const Tracer& tracer, const CurvePoint& from,
     return out;
 }
 
-// A step in which the parameter turns twice ends between the two turns. True if it was such a step.
+// If the parameter turns twice within a step, ends the step between the two turning points. Returns true in
+// this case.
 inline bool stop_between_turns(const Tracer& tracer, const CurvePoint& at, CurvePoint& next) {
     const int p = tracer.parameter;
     const double sign = at.tangent[p] < 0 ? -1 : 1;
@@ -243,7 +247,8 @@ inline bool stop_between_turns(const Tracer& tracer, const CurvePoint& at, Curve
     return false;
 }
 
-// Where the parameter turns within a step, by Newton's method; by bisection if that leaves the step.
+// The turning point of the parameter within a step, by Newton's method; by bisection if Newton's method
+// leaves the step.
 inline CurvePoint turn_between(const Tracer& tracer, const CurvePoint& at, const CurvePoint& next) {
     const ik::Redundant& arm = *tracer.arm;
     const int p = tracer.parameter;
@@ -276,7 +281,7 @@ inline void record_point(Tracer& tracer, const double* q, bool first) {
     trail.length[k] = std::sqrt(length2);
 }
 
-// Whether a configuration lies on an arc that was followed, from trail point `first` on.
+// Whether a configuration lies on a traced arc, from trail point `first` on.
 inline bool is_on_trail(const Tracer& tracer, const double* q, int first = 0) {
     const Trail& trail = *tracer.trail;
     for (int k = first + 1; k < trail.count; ++k)

@@ -1,5 +1,5 @@
-// With one joint to spare the manifold of a goal is a curve: its tangent and curvature, steps back onto it,
-// and the places where one joint turns back (a fold).
+// The self-motion curve of an arm with one redundant joint: tangent, curvature, Newton's method back onto the
+// curve, and the folds, where a joint reverses its direction.
 #pragma once
 
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
@@ -18,7 +18,7 @@ struct CurvePoint {
 
 namespace cspace::inline CSPACE_ISA {
 
-// One Newton step from q back onto the curve, and what is known at q before it.
+// One Newton step from q back onto the curve, and the quantities of the curve at q before the step.
 CSPACE_ONCE void onto_curve(const ik::Chain& chain, int rank, const Posed& goal, double length,
                             CurvePoint& at) {
     TipMotion<double>& motion = at.motion;
@@ -49,8 +49,8 @@ CSPACE_ONCE void onto_curve(const ik::Chain& chain, int rank, const Posed& goal,
     for (int i = 0; i < n; ++i) at.q[i] += keep * step[i];
 }
 
-// ‖J⁺ (J′ − J)‖, J the Jacobian at `at` and J′ at `other`. Where it stays below 1 on a convex set, every
-// solution in that set lies on one arc: the part of it along the tangent tells two solutions apart.
+// ‖J⁺ (J′ − J)‖ for the Jacobian J at `at` and J′ at `other`. If it is below 1 on a convex set, every
+// solution in that set lies on one arc. Two solutions then differ in their component along the tangent.
 inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int n) {
     const SplitJacobian<double>& split = at.split;
     double square = 0, y[6];
@@ -65,8 +65,8 @@ inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int
     return std::sqrt(square);
 }
 
-// Walks q along the curve to where joint p turns back: Newton's method on the p-th part of the tangent. False
-// if that leads farther than `reach` away or nowhere.
+// Moves q along the curve to the fold of joint p, by Newton's method on component p of the tangent. Returns
+// false if it leads farther than `reach` away or does not converge.
 inline bool settle_fold(const ik::Chain& chain, int rank, const Posed& goal, double length, int p,
                         double reach, CurvePoint& at) {
     double start[ik::max_joints];

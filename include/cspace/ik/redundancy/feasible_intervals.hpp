@@ -1,6 +1,6 @@
-// The feasible intervals of a held joint: for which of its values each branch of the six others exists and
-// keeps its limits. All values where that can change are known, limits reached and folds; between two of them
-// one value decides.
+// Feasible intervals of a locked joint: the values for which each branch of the six other joints exists and
+// satisfies its limits. A branch changes only at known critical values: points at limits, and folds. Between
+// two critical values one sample decides.
 #pragma once
 
 #include "cspace/ik/redundancy/limits.hpp"
@@ -8,7 +8,7 @@
 
 namespace cspace::ik {
 
-// What ends an interval, beside a joint's number: nothing (it goes all the way round), or a fold.
+// What ends an interval, if not a joint: nothing (the interval is the full circle), or a fold.
 inline constexpr int end_none = -1, end_fold = -2;
 
 struct Interval {
@@ -29,7 +29,7 @@ struct Intervals {
 
 namespace cspace {
 
-// A value of the parameter where something changes.
+// A value of the parameter at which a branch may change.
 struct Critical {
     double value;
     int end, side;
@@ -41,13 +41,14 @@ struct CriticalValues {
     Critical at[room];
 };
 
-// One value in a cell between two critical ones: which branches are there, and which keep their limits.
+// A sample in a cell between two critical values: the branches that exist, and those that satisfy their
+// limits.
 struct CellView {
     unsigned there = 0, within = 0;
     double q[max_branches][ik::max_joints];
 };
 
-// Values looked at while a change was searched for: other branches change in the same places.
+// Samples taken during the search for one change. Other branches change at the same values.
 struct Looks {
     static constexpr int room = 64;
     int count = 0;
@@ -59,7 +60,7 @@ struct Looks {
 
 namespace cspace::inline CSPACE_ISA {
 
-// The value itself, or shifted by whole turns to the domain or just above it.
+// The value itself, or the value plus a multiple of 2π that lies in the domain or just above it.
 inline double into_domain(const Domain& domain, bool slides, double value) {
     if (slides) return value;
     const double turns = std::floor((value - domain.lower) * (1 / (2 * pi)));
@@ -95,7 +96,7 @@ inline const CellView& look_at(const ik::Redundant& arm, const Sweep& sweep, Loo
     return looks.view[at];
 }
 
-// Where a branch changes between two values that differ in it, by bisection; and why.
+// By bisection, the value at which a branch changes between two values with different results, and the cause.
 inline Critical bisected(const ik::Redundant& arm, const Sweep& sweep, Looks& looks, int branch, double in,
                          double out) {
     constexpr double found_to = 1e-13;
@@ -119,7 +120,7 @@ inline Critical bisected(const ik::Redundant& arm, const Sweep& sweep, Looks& lo
     return {in, cause, side, branch};
 }
 
-// Everything that is known while the cells are walked through from below.
+// The state while the cells are visited in ascending order.
 struct Walk {
     const ik::Redundant* arm;
     const Sweep* sweep;
@@ -133,8 +134,8 @@ struct Walk {
     double fuzz;  // how far apart changes may lie that count as one place
 };
 
-// Why a branch is feasible on one side of a boundary alone, and where exactly. turn: what was added to the
-// boundary to come round a circle.
+// The cause for which a branch is feasible on one side of a boundary only, and the exact value. turn: the
+// multiple of 2π added to the boundary on a circle.
 inline Critical end_between(const Walk& walk, int branch, const CellView& out, double in_at, double out_at,
                             double boundary, double turn = 0) {
     const bool vanishes = !(out.there >> branch & 1);
@@ -168,7 +169,7 @@ inline void close_interval(Walk& walk, int branch, const Critical& end) {
     walk.open[branch] = -1;
 }
 
-// From the cell before, over `boundary`, into the next.
+// Crosses `boundary` from the previous cell to the next.
 inline void cross_boundary(Walk& walk, const CellView& next, double next_at, double boundary) {
     for (int b = 0; b < max_branches; ++b) {
         const bool was = walk.before.within >> b & 1, is = next.within >> b & 1;
@@ -182,7 +183,7 @@ inline void cross_boundary(Walk& walk, const CellView& next, double next_at, dou
     walk.before_at = next_at;
 }
 
-// On a circle the last cell leads back to the first.
+// On a circle the last cell is followed by the first.
 inline void close_circle(Walk& walk, double boundary) {
     constexpr double turn = 2 * pi;
     ik::Intervals& out = *walk.out;
@@ -217,7 +218,7 @@ inline void close_circle(Walk& walk, double boundary) {
     out.count = kept;
 }
 
-// To which branch each point at a limit belongs.
+// Assigns each point at a limit to its branch.
 inline void name_branches(const Sweep& sweep, const ik::LimitPoints& points, int* branch) {
     double values[ik::LimitPoints::room];
     for (int k = 0; k < points.count; ++k) values[k] = points.point[k].q[sweep.parameter];
@@ -233,7 +234,7 @@ inline void name_branches(const Sweep& sweep, const ik::LimitPoints& points, int
     });
 }
 
-// The values where something may change, each once per cause, in order.
+// The values at which a branch may change, in ascending order, once per cause.
 inline void collect_critical(const ik::Redundant& arm, const Sweep& sweep, const Domain& domain,
                              const ik::LimitPoints& points, const FoldValues& folds, CriticalValues& out) {
     const int p = sweep.parameter;
@@ -254,7 +255,7 @@ inline void collect_critical(const ik::Redundant& arm, const Sweep& sweep, const
     insert_sorted(out, {domain.upper, p, 1, -1});
 }
 
-// For one held joint at an end of the chain and a closed form whose folds are known.
+// For one locked joint at an end of the chain and a closed form with known folds.
 inline void walk_cells(const ik::Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
                        const Domain& domain, ik::Intervals& out) {
     // Where two branches all but meet, nothing can be told from a value in between.
@@ -292,7 +293,7 @@ inline void walk_cells(const ik::Redundant& arm, const Sweep& sweep, const Criti
     for (int b = 0; b < max_branches; ++b) close_interval(walk, b, {boundary[n - 1], sweep.parameter, 1, b});
 }
 
-// Intervals that rounding at their ends made.
+// Removes empty intervals that rounding produces at interval ends.
 inline void drop_empty(ik::Intervals& out) {
     int kept = 0;
     for (int k = 0; k < out.count; ++k)
@@ -301,7 +302,8 @@ inline void drop_empty(ik::Intervals& out) {
     out.count = kept;
 }
 
-// True if the arm is one of those; the intervals are then complete as far as `out.complete` says.
+// Returns true if this method applies to the arm. `out.complete` then states whether the intervals are
+// complete.
 inline bool intervals_by_cells(const ik::Redundant& arm, const ik::LimitArms& arms, const Posed& goal,
                                ik::Intervals& out) {
     if (arm.redundancy_degree != 1) return false;

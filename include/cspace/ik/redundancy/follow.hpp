@@ -1,5 +1,5 @@
-// An arc of the self-motion, followed until a joint stops or the curve closes, and its pieces between turns
-// of the parameter.
+// Tracing an arc of the self-motion until a joint stops or the curve closes, and dividing it at the turning
+// points of the parameter.
 #pragma once
 
 #include "cspace/ik/redundancy/continuation.hpp"
@@ -8,7 +8,7 @@ namespace cspace {
 
 enum class ArcEnd { limit, known_limit, closed, open, lost };
 
-// The turns of the parameter along an arc, and its end; values are not wrapped.
+// The turning points of the parameter along an arc, and its end. Values are not wrapped.
 struct Turns {
     static constexpr int room = 96;
     int count = 0;
@@ -32,8 +32,9 @@ inline bool add_turn(const Tracer& tracer, Turns& turns, double value, int end, 
     return true;
 }
 
-// Marks the known points where the curve comes in through a limit along the tangent of `at` (sense 1) or goes
-// out (sense −1): one, or several in a corner of the limits. True if one of them was not marked before.
+// Marks the known points at limits where the curve enters the limits along the tangent of `at` (sense 1) or
+// leaves them (sense −1). At a corner of the limits these are several points. Returns true if one of them was
+// not marked before.
 inline bool use_points(Tracer& tracer, const CurvePoint& at, double sense) {
     bool fresh = false;
     for (int k = 0; k < tracer.points->count; ++k) {
@@ -46,7 +47,7 @@ inline bool use_points(Tracer& tracer, const CurvePoint& at, double sense) {
     return fresh;
 }
 
-// Follows the curve from `at`; its tangent says which way.
+// Traces the curve from `at` in the direction of its tangent.
 inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
     constexpr int most_steps = 5000;
     const ik::Redundant& arm = *tracer.arm;
@@ -104,8 +105,8 @@ inline void add_interval(Tracer& tracer, const Critical& low, const Critical& hi
     made.upper -= turns;
 }
 
-// A piece between two turns of the parameter, from either end of it; cut where it goes round more than once,
-// for there it is as many branches.
+// Adds a piece between two turning points of the parameter, from either end. A piece of more than one
+// revolution is divided, because each revolution is one branch.
 inline void add_piece(Tracer& tracer, const Critical& from, const Critical& to, const double* q) {
     const bool rising = from.value <= to.value;
     const Critical &low = rising ? from : to, &high = rising ? to : from;
@@ -126,7 +127,7 @@ inline void add_pieces(Tracer& tracer, const Turns& turns) {
     for (int k = 0; k + 1 < turns.count; ++k)
         add_piece(tracer, turn_at(turns, k), turn_at(turns, k + 1), turns.q[k + 1]);
 }
-// start: the parameter where the arc was entered.
+// start: the parameter at which tracing began.
 inline void add_closed_pieces(Tracer& tracer, const Turns& turns, double start, const double* q) {
     const double shift = turns.closing - start;
     if (turns.count) {

@@ -1,12 +1,13 @@
-// Where the self-motion meets the limits of the joints: each joint is locked at each of its limits in turn,
-// and the six joints that remain are solved. Every solution is a point of the boundary, exactly.
+// Intersections of the self-motion with the joint limits. Each joint is locked at each of its limits in turn,
+// and the remaining six joints are solved. Every solution is an exact point of the boundary.
 #pragma once
 
 #include "cspace/ik/redundancy/redundant_arm.hpp"
 
 namespace cspace::ik {
 
-// The arms with one joint locked, for arms with one joint to spare; built when intervals are first asked for.
+// The arms with one joint locked, for arms with one redundant joint. They are built when intervals are first
+// requested.
 struct LimitArms {
     LockedArm locked[max_joints];
     Arm at_limit[max_joints][2];  // where the joint stands between others: its arm at lower and upper limit
@@ -36,7 +37,7 @@ inline bool has_limit(const ik::Redundant& arm, int joint, int side) {
     return ik::is_stopped(arm, joint) && std::isfinite(limit_of(arm, joint, side));
 }
 
-// Of the joints that nothing stops the one that self-motions move most; −1 where each can be stopped.
+// Of the joints without a stop, the one that the self-motion moves most; −1 if every joint can be stopped.
 inline int freest_joint(const ik::Redundant& arm) {
     constexpr int looks = 8;
     double moves[ik::max_joints] = {};
@@ -55,7 +56,7 @@ inline int freest_joint(const ik::Redundant& arm) {
     return best;
 }
 
-// out: as ik::LimitArms{}; it is large and lives where the caller puts it.
+// out: as ik::LimitArms{}. It is large, so the caller provides the memory.
 inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
     double at[ik::max_joints];
     typical_values(arm, at);
@@ -73,7 +74,7 @@ inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
     }
 }
 
-// Whether the joints but one are within limits.
+// Whether all joints except one are within their limits.
 inline bool others_within(const ik::Redundant& arm, const double* q, int joint, double slack) {
     for (int i = 0; i < arm.chain.n; ++i)
         if (i != joint && excess(arm, i, q[i]) > slack) return false;

@@ -1,5 +1,5 @@
-// An arm with some of its joints held still, so that those which move can be solved. Held joints at either
-// end of the chain only move the goal; one held between others changes a link.
+// Locking joints of an arm so that the other joints can be solved. Locked joints at either end of the chain
+// only move the goal. A locked joint between moving joints changes a link.
 #pragma once
 
 #include "cspace/ik/arm.hpp"
@@ -23,8 +23,7 @@ namespace cspace::inline CSPACE_ISA {
 
 inline bool is_solvable(const ik::Arm& arm) { return arm.has_plan || arm.has_few_joints || arm.is_general; }
 
-// The chain of the joints that move. `at`: the value of every joint that is held, by its number in the whole
-// chain.
+// The chain of the moving joints. `at`: the value of every locked joint, by its number in the whole chain.
 inline ik::Chain locked_chain(const ik::LockedArm& locked, const double* at) {
     const ik::Chain& whole = locked.whole;
     ik::Chain out;
@@ -44,8 +43,8 @@ inline ik::Chain locked_chain(const ik::LockedArm& locked, const double* at) {
     return out;
 }
 
-// held: the numbers of the joints to hold, ascending; typical: a value for each joint of the chain at which
-// nothing special is expected.
+// locked_joint: the numbers of the joints to lock, ascending. typical: a generic value for each joint of the
+// chain.
 CSPACE_ONCE ik::LockedArm lock_joints(const ik::Chain& whole, const int* locked_joint, int n_locked,
                                       const double* typical, bool with_general = true) {
     ik::LockedArm out;
@@ -75,8 +74,8 @@ CSPACE_INLINE Pose<V> joint_undone(const ik::Chain& chain, int i, const V& q) {
     const Mat3<V> R = rotation_about(h, c, s);
     return {R, p - R * p};
 }
-// The goal for an arm whose held joints stand at its ends: those before the others move the base, those
-// behind them the tip.
+// The goal of an arm whose locked joints are at its ends. Locked joints at the front move the base, those at
+// the back move the tip.
 template <class V>
 CSPACE_INLINE Pose<V> goal_between_ends(const ik::LockedArm& locked, const Pose<V>& goal, const V* at) {
     const ik::Chain& whole = locked.whole;
@@ -92,8 +91,8 @@ CSPACE_INLINE Pose<V> goal_between_ends(const ik::LockedArm& locked, const Pose<
     return out * fill_pose<V>(tip);
 }
 
-// The arm with joints held between others at these values. A general one keeps the order of formulations of
-// its typical values: to rank them takes a thousand times as long as to use them.
+// The arm with the inner locked joints at these values. A general arm keeps the order of formulations of its
+// typical values, because ranking them takes a thousand times as long as using them.
 inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
     const ik::Chain chain = locked_chain(locked, at);
     if (!locked.arm.is_general) return make_arm(chain);
@@ -105,8 +104,8 @@ inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
     return arm;
 }
 
-// Members of what may be a family of an arm that nothing else solves: by descent from configurations all over
-// the joints.
+// Solutions of an arm without another solver, by descent from configurations over all joints. They may be
+// members of a self-motion.
 inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal) {
     constexpr int starts = 48;
     ik::Solutions out;
@@ -121,7 +120,7 @@ inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal)
     return out;
 }
 
-// By the closed form alone where it is sure of itself.
+// By the closed form alone where it certifies its result.
 CSPACE_ONCE ik::Solutions solve_arm_quickly(const ik::Arm& arm, const Posed& goal) {
     ik::Solutions out;
     if (arm.has_plan) {
@@ -147,8 +146,8 @@ inline ik::Solutions solve_arm(const ik::Arm& arm, const Posed& goal, const doub
     return is_solvable(arm) ? solve_pose(arm, goal, unconstrained) : solve_by_descent(arm.plan.chain, goal);
 }
 
-// Every solution for the joints that move, the others at their values `at`; idle (null, or of the whole
-// chain): what joints take that the goal leaves free.
+// Every solution of the moving joints, with the locked joints at their values `at`. unconstrained (null, or
+// of the whole chain): the values of joints that the goal leaves free.
 CSPACE_ONCE ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed& goal, const double* at,
                                        const double* unconstrained) {
     double rest[ik::max_joints] = {};
@@ -158,7 +157,7 @@ CSPACE_ONCE ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed&
     return solve_arm(arm_at(locked, at), goal, unconstrained ? rest : nullptr);
 }
 
-// A row of the joints that move, together with the held ones.
+// A row of the whole chain from the moving joints and the locked joints.
 inline void whole_row(const ik::LockedArm& locked, const double* at, const double* row, double* q) {
     for (int k = 0; k < locked.n_locked; ++k) q[locked.locked_joint[k]] = at[locked.locked_joint[k]];
     for (int k = 0; k < locked.n_moving; ++k) q[locked.moving[k]] = row[k];

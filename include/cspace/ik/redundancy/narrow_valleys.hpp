@@ -1,14 +1,15 @@
-// Samples of a curve of configurations, closer where it runs fast: towards folds like the roots of
-// Chebyshev's polynomials, which keeps their steps even; and between two samples no point is nearer to the
-// seed than half of what their distances exceed the way between them (a bound as in branch and bound), so
-// only pairs that could hide a nearer point are divided.
+// Adaptive sampling of a self-motion curve, for its point nearest to a seed. Samples are denser where the
+// curve is fast: near folds they are placed like Chebyshev nodes, which keeps the steps even. Between two
+// samples the distance to the seed has a lower bound, so only pairs that could contain a nearer point are
+// divided (branch and bound). The bound is half the amount by which the sum of their two distances exceeds
+// the distance between the samples.
 #pragma once
 
 #include "cspace/ik/redundancy/turning_points.hpp"
 
 namespace cspace {
 
-// Branches stand side by side, so that they are compared on lanes.
+// The values of all branches are adjacent in memory, so that they are compared on lanes.
 struct CurveSample {
     double value;
     unsigned there;  // which branches; the others are zero
@@ -26,7 +27,7 @@ struct CurveSamples {
 
 namespace cspace::inline CSPACE_ISA {
 
-// The sum of the squares of what joints differ by, on four branches; difference(i): of joint i.
+// The sum of the squared joint differences, on four branches. difference(i): of joint i.
 template <class Difference>
 CSPACE_INLINE Pack<4> squared_way(const ik::Redundant& arm, const Difference& difference) {
     Pack<4> sum = fill<Pack<4>>(0.0);
@@ -37,7 +38,7 @@ CSPACE_INLINE Pack<4> squared_way(const ik::Redundant& arm, const Difference& di
     return sum;
 }
 
-// Whether a branch may come nearer than `best` between two neighbours.
+// Whether a branch may come nearer than `best` between two adjacent samples.
 inline bool may_hide(const ik::Redundant& arm, const CurveSample& a, const CurveSample& b, double best) {
     using V = Pack<4>;
     constexpr double least_gap = 1e-4, detour = 1.2, short_way_between = 0.15;
@@ -60,7 +61,7 @@ inline void measure_sample(const ik::Redundant& arm, const double* seed, CurveSa
     }
 }
 
-// Adds the samples at some values, with their distances from the seed. after[k]: the sample that value k
+// Adds samples at given values, with their distances from the seed. after[k]: the sample that value k
 // follows.
 inline void add_samples(const ik::Redundant& arm, const Sweep& sweep, const double* values, const int* after,
                         int n, const double* seed, CurveSamples& all) {
@@ -88,7 +89,7 @@ inline void add_samples(const ik::Redundant& arm, const Sweep& sweep, const doub
     });
 }
 
-// Divides until nothing nearer than `best` (or than the nearest sample) can hide.
+// Divides until no pair can contain a point nearer than `best` (or than the nearest sample).
 inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double best, const double* seed,
                            CurveSamples& all) {
     constexpr int most_rounds = 10;
@@ -109,7 +110,7 @@ inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double 
     }
 }
 
-// Whether q lies on the way from sample a to sample b of a branch.
+// Whether q lies between samples a and b of a branch.
 inline bool lies_between(const ik::Chain& chain, const CurveSample& a, const CurveSample& b, int branch,
                          const double* q) {
     double along = 0, length2 = 0, off2 = 0, gap[ik::max_joints], way[ik::max_joints];
@@ -127,8 +128,8 @@ inline bool lies_between(const ik::Chain& chain, const CurveSample& a, const Cur
     return off2 < 1e-3 * length2;
 }
 
-// Calls visit(q, distance) for the lowest samples: those below their neighbours of the same branch, unless
-// `found` lies beside them.
+// Calls visit(q, distance) for the local minima: samples below the adjacent samples of their branch, unless
+// `found` is close to them.
 template <class Visit>
 inline void lowest_samples(const ik::Chain& chain, const CurveSamples& all, const double* found,
                            const Visit& visit) {
@@ -154,14 +155,14 @@ inline void lowest_samples(const ik::Chain& chain, const CurveSamples& all, cons
     }
 }
 
-// Whether the branches change between neighbours, or there are none.
+// Whether the set of branches differs between adjacent samples, or is empty.
 inline bool has_changes(const CurveSamples& all) {
     for (int k = 0; k < all.count; ++k)
         if (all.sample[k].there != all.sample[0].there || !all.sample[k].there) return true;
     return false;
 }
 
-// Values between the folds around a window of the circle, ascending; returns how many.
+// Values between the folds within a window of the circle, ascending; returns their number.
 inline int values_between_folds(const FoldValues& folds, double middle, double half, double* values,
                                 int room) {
     constexpr int each = 8;

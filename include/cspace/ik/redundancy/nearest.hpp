@@ -1,6 +1,6 @@
-// The configuration on the manifold of a goal that lies nearest to a seed: Newton's method on the distance
-// and the goal together (sequential quadratic programming with exact second derivatives; Nocedal & Wright
-// 2006, chapter 18). Converges quadratically from a start in the right valley.
+// The configuration of the self-motion manifold that is nearest to a seed: sequential quadratic programming
+// with exact second derivatives (Nocedal & Wright 2006, chapter 18). It converges quadratically from a start
+// in the basin of the minimum.
 #pragma once
 
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
@@ -8,7 +8,7 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// q − seed, turning joints the short way round.
+// q − seed, by the shorter way for revolute joints.
 template <int N = 0, class V>
 CSPACE_INLINE void from_seed(const ik::Chain& chain, const double* seed, const double* weight, const V* q,
                              V* gap) {
@@ -52,8 +52,8 @@ CSPACE_INLINE void lagrangian_times(const ik::Chain& chain, const TipMotion<V>& 
 
 inline constexpr int max_free = ik::max_joints - 1;
 
-// Solves H x = b for the leading k × k of a symmetric H, by Cholesky's factors; false in lanes where H is not
-// well positive.
+// Solves H x = b for the leading k × k block of a symmetric H by Cholesky factorisation. False in lanes where
+// H is not clearly positive definite.
 template <class V>
 CSPACE_INLINE mask_of<V> solve_positive(V (&H)[max_free][max_free], int k, V* x) {
     mask_of<V> good = fill<V>(1.0) > 0.0;
@@ -79,8 +79,8 @@ CSPACE_INLINE mask_of<V> solve_positive(V (&H)[max_free][max_free], int k, V* x)
     return good;
 }
 
-// One step of q towards the nearest point; returns the largest change of a joint asked for. motion, lambda:
-// what was found before the step, and its multipliers.
+// One step of q to the nearest point. Returns the largest joint change of the full step. motion, lambda: the
+// split Jacobian before the step, and its multipliers.
 template <int N, class V>
 CSPACE_NOINLINE V step_to_nearest(const ik::Chain& chain, int rank, const Pose<V>& goal, double length,
                                   const double* seed, const double* weight, V* q, TipMotion<V>& motion,

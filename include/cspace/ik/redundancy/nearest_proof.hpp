@@ -1,15 +1,15 @@
-// A configuration that Newton's method found close to a seed, and the proof that none is nearer.
+// The nearest configuration to a seed, by Newton's method, with a proof that no other solution is nearer.
 //
-// The goal is met where the frames of the two halves of the arm agree: where f(q) = 0 for the difference of
-// their points and half the sum of the cross products of their axes. Let a be such a q, d = |a − s| its
-// distance from the seed s, and the way from s to a square to all that keeps f: a − s = Jᵀ λ. In place of f's
-// last three the nine differences of the frames' entries serve, weighted with λ; the weighted sum φ is zero
-// at every solution b, has the gradient Jᵀ λ at a, and no derivative that couples the halves. So with x = b −
-// a
+// The goal is met where the frames of the two halves of the arm agree: f(q) = 0, where f contains the
+// difference of their origins and half the sum of the cross products of their axes. Let a be such a q, d = |a
+// − s| its distance from the seed s. The vector a − s is normal to the manifold: a − s = Jᵀ λ. The last three
+// components of f are replaced by the nine differences of the entries of the frames, weighted with λ. The
+// weighted sum φ is zero at every solution b, has the gradient Jᵀ λ at a, and has no mixed derivatives
+// between the halves. So with x = b − a
 //   0 = φ(b) − φ(a) = (a − s) · x + ½ xᵀ φ″ x + third order,
 //   |b − s|² = d² + 2 (a − s) · x + |x|² ≥ d² + xᵀ (1 − φ″) x − third |x|³ / 3.
-// A nearer b would have |x| ≤ 2 d: where 1 − φ″ − ⅔ d · third is positive definite there is none, on no
-// branch.
+// A nearer b would satisfy |x| ≤ 2 d. Where 1 − φ″ − ⅔ d · third is positive definite, no such b exists on
+// any branch.
 #pragma once
 
 #include "cspace/ik/redundancy/nearest.hpp"
@@ -18,7 +18,7 @@
 
 namespace cspace {
 
-// What the two halves of an arm do at a configuration, one on each lane; the joints as in ik::Halves.
+// The kinematics of the two halves of an arm at a configuration, one half per lane; joints as in ik::Halves.
 struct HalvesMotion {
     using V = Pack<2>;
     Vec3<V> axis[ik::Halves::longest], linear[ik::Halves::longest];  // of each joint, at the middle
@@ -26,13 +26,13 @@ struct HalvesMotion {
     double aligned;  // trace of the rotation between them: 3 at the goal
 };
 
-// L D Lᵀ of 1 − φ″, a block for each half.
+// L D Lᵀ factors of 1 − φ″, one block per half.
 struct HalvesFactor {
     using V = Pack<2>;
     V below[ik::Halves::longest][ik::Halves::longest], inverse[ik::Halves::longest];
 };
 
-// A configuration on the way to the nearest one; joints as in ik::Halves.
+// An iterate of Newton's method; joints as in ik::Halves.
 struct HalvesPoint {
     using V = Pack<2>;
     V q[ik::Halves::longest], gap[ik::Halves::longest];  // gap: from the seed
@@ -60,7 +60,7 @@ CSPACE_INLINE Vec3d vector_of_half(const Vec3<V>& a, int half) {
     return {lane(a.x, half), lane(a.y, half), lane(a.z, half)};
 }
 
-// 1 for the half that moves with its joints, −1 for the one that moves against them.
+// 1 for the half that moves with its joints, −1 for the half that moves against them.
 template <class V>
 CSPACE_INLINE V there_and_back() {
     V out = fill<V>(1.0);
@@ -68,7 +68,7 @@ CSPACE_INLINE V there_and_back() {
     return out;
 }
 
-// Sines and cosines of all joints, two packs of four angles.
+// Sines and cosines of all joints, in two packs of four angles.
 template <class V>
 CSPACE_INLINE void turns_of(const ik::Halves& arm, const V* q, V* s, V* c) {
     double angle[8], sine[8], cosine[8];
@@ -127,9 +127,9 @@ CSPACE_INLINE void move_halves(const ik::Halves& arm, const Posed& goal, double 
     for (int j = 0; j < 6; ++j) out.error[j] = error[j];
 }
 
-// 1 − φ″ for the weights lambda. The entry of joints a ≤ b of a half, a the one farther from the middle, is
-// force · (axis a × linear b) + ½ moment · (axis a × axis b), and the other way round for the half that moves
-// against its joints.
+// 1 − φ″ for the weights lambda. The entry of joints a ≤ b of a half, with a the one farther from the middle,
+// is force · (axis a × linear b) + ½ moment · (axis a × axis b). For the half that moves against its joints a
+// and b are exchanged.
 CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda, Pack<2> (&bent)[4][4]) {
     using V = Pack<2>;
     const V way = there_and_back<V>();
@@ -144,7 +144,7 @@ CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda,
     }
 }
 
-// L D Lᵀ of bent − less on the diagonal; false unless it is positive definite by `margin`.
+// L D Lᵀ factors of `bent` minus `less` on the diagonal; false unless it is positive definite by `margin`.
 CSPACE_INLINE bool factor_halves(const Pack<2> (&bent)[4][4], double less, double margin, HalvesFactor& out) {
     using V = Pack<2>;
     V least = fill<V>(1.0);
@@ -163,7 +163,7 @@ CSPACE_INLINE bool factor_halves(const Pack<2> (&bent)[4][4], double less, doubl
     return all(least > margin);
 }
 
-// Solves S x = b by L D Lᵀ; false unless S is positive definite.
+// Solves S x = b by L D Lᵀ factorisation; false unless S is positive definite.
 CSPACE_INLINE bool solve_six(double (&S)[6][6], double* x) {
     double inverse[6];
     bool positive = true;
@@ -183,8 +183,8 @@ CSPACE_INLINE bool solve_six(double (&S)[6][6], double* x) {
     return positive;
 }
 
-// One step of Newton's method for the nearest point and its weights; returns the largest change of a joint
-// asked for, and NaN where there is no such step.
+// One Newton step for the nearest point and its weights. Returns the largest joint change of the full step,
+// and NaN where no such step exists.
 CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
     using V = Pack<2>;
     constexpr double flat = 0.05;
@@ -229,8 +229,8 @@ CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
     return max(lane(largest, 0), lane(largest, 1));
 }
 
-// Whether nothing is nearer to the seed than the point found. Third derivatives: see halves_at; a slide may
-// be as far out as at the seed and beyond.
+// Whether no solution is nearer to the seed than this point. Third derivatives: see halves_at. The bound
+// allows for a prismatic joint as far out as at the seed and beyond.
 CSPACE_INLINE bool is_proven_nearest(const ik::Halves& arm, const HalvesPoint& at) {
     using V = Pack<2>;
     constexpr double margin = 0.02;  // what the last step, and rounding, may change
@@ -259,8 +259,8 @@ CSPACE_INLINE double missing_between(const HalvesMotion& motion) {
     return most;
 }
 
-// Newton's method from a seed close to the manifold, and the proof; false where either fails. All joints must
-// count alike.
+// Newton's method from a seed close to the manifold, and the proof; false if either fails. All joints must
+// have the same weight.
 CSPACE_INLINE bool nearest_by_proof(const ik::Halves& arm, const Posed& goal, double length,
                                     const double* seed, double* q) {
     using V = Pack<2>;

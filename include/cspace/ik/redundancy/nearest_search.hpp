@@ -1,6 +1,6 @@
-// The nearest configuration of the whole manifold: coarse samples over the held joints propose, Newton's
-// method on the distance settles. A joint that counts cannot be farther away than the best found so far,
-// which narrows the search from a seed close by to a few samples.
+// The nearest configuration of the whole self-motion manifold. Coarse samples over the locked joints give the
+// starts, and Newton's method on the distance refines them. A weighted joint cannot be farther away than the
+// best distance found so far. This bound reduces the search from a nearby seed to a few samples.
 #pragma once
 
 #include "cspace/ik/redundancy/narrow_valleys.hpp"
@@ -9,7 +9,7 @@
 
 namespace cspace {
 
-// The best starts so far, by their distance from the seed.
+// The best starts so far, by distance from the seed.
 struct Starts {
     static constexpr int room = 12;
     int count = 0;
@@ -28,7 +28,7 @@ inline double distance_from_seed(const ik::Redundant& arm, const double* seed, c
     return std::sqrt(sum);
 }
 
-// Adds a start, in place of the worst where there is no room.
+// Adds a start. If there is no room, it replaces the worst one.
 inline void add_start(const ik::Redundant& arm, Starts& starts, const double* q, double distance) {
     int at = starts.count;
     if (at == Starts::room) {
@@ -43,7 +43,7 @@ inline void add_start(const ik::Redundant& arm, Starts& starts, const double* q,
     starts.distance[at] = distance;
 }
 
-// Keeps a start unless it is worse than all, or shares the valley of a better one.
+// Keeps a start unless it is worse than all others, or lies in the valley of a better one.
 inline void keep_start(const ik::Redundant& arm, Starts& starts, const double* q, double distance) {
     constexpr double valley = 0.4;
     if (!is_allowed(arm, q)) return;
@@ -60,14 +60,14 @@ inline void keep_start(const ik::Redundant& arm, Starts& starts, const double* q
 inline constexpr double settled_step = 1e-6;  // squared it is the error that Newton's method leaves
 inline constexpr int most_nearest_steps = 25;
 
-// What Newton's method has settled on so far.
+// The best result of Newton's method so far.
 struct Nearest {
     double distance = std::numeric_limits<double>::infinity();
     double q[ik::max_joints];
 };
 
-// Newton's method on starts abreast, as many as V has lanes; the best that settles is kept. rank: of the
-// Jacobian along what they lead to.
+// Newton's method on as many starts as V has lanes; keeps the best result that converges. rank: of the
+// Jacobian along the iterates.
 template <int N, class V>
 inline void settle_abreast(const ik::Redundant& arm, int rank, const Posed& goal, const double* seed,
                            const double* const* starts, int count, Nearest& best) {
@@ -96,7 +96,7 @@ inline void settle_abreast(const ik::Redundant& arm, int rank, const Posed& goal
     }
 }
 
-// Abreast where the rank is full: which coordinates of a pose say most differs from start to start.
+// On lanes where the rank is full. Otherwise the selected pose coordinates differ from start to start.
 inline void settle_all(const ik::Redundant& arm, const Posed& goal, const double* seed,
                        const double* const* starts, int count, Nearest& best) {
     const bool full = arm.rank == 6;
@@ -108,7 +108,8 @@ inline void settle_all(const ik::Redundant& arm, const Posed& goal, const double
         settle(arm, arm.rank, goal, seed, starts + first, min(lanes, count - first), best);
 }
 
-// The starts from which a valley may lead below the best one; `also`: one more, on the manifold or not.
+// Refines the starts whose valley may contain a point below the best one. `also`: an additional start, on the
+// manifold or off it.
 inline void settle_starts(const ik::Redundant& arm, const Posed& goal, const double* seed,
                           const Starts& starts, const double* also, Nearest& best) {
     const double* chosen[Starts::room + 1];
@@ -121,8 +122,8 @@ inline void settle_starts(const ik::Redundant& arm, const Posed& goal, const dou
     settle_all(arm, goal, seed, chosen, count, best);
 }
 
-// From the seed and from two places beside it along the curve, about as far off as the curve is from the
-// seed: beside a singularity it doubles back. Returns how far off.
+// Starts at the seed and at two points along the curve on either side of it. Their distance from the seed is
+// about that of the curve, because near a singularity the curve doubles back. Returns that distance.
 inline double settle_around(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
     const int n = arm.chain.n;
     TipMotion<double> motion;
@@ -141,7 +142,7 @@ inline double settle_around(const ik::Redundant& arm, const Posed& goal, const d
     return off;
 }
 
-// The lowest samples of a curve whose closed form runs on lanes, within a window of the parameter.
+// The lowest samples of a curve within a window of the parameter, by a closed form on lanes.
 inline void sample_window(const ik::Redundant& arm, const Sweep& sweep, const double* seed,
                           const double* values, int count, double window, const Nearest& best,
                           Starts& starts) {
@@ -162,8 +163,8 @@ inline void sample_window(const ik::Redundant& arm, const Sweep& sweep, const do
                    [&](const double* q, double d) { add_start(arm, starts, q, d); });
 }
 
-// One joint to spare: from the seed itself, then from its values around the seed as far as the best solution
-// leaves room.
+// One redundant joint: starts at the seed, then at parameter values around the seed within the bound of the
+// best solution.
 inline void nearest_of_curve(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
     constexpr double spacing = 0.1;
     constexpr int most = 64;
@@ -192,7 +193,7 @@ inline void nearest_of_curve(const ik::Redundant& arm, const Posed& goal, const 
     if (best.distance > 3 * off) settle_abreast<0, double>(arm, arm.rank - 1, goal, seed, &seed, 1, best);
 }
 
-// More joints to spare: the held ones at the seed, and spread around it ever farther.
+// Several redundant joints: the locked joints start at the seed, then at samples farther and farther from it.
 inline void nearest_of_surface(const ik::Redundant& arm, const Posed& goal, const double* seed,
                                Nearest& best) {
     constexpr int most = 48;
@@ -216,7 +217,7 @@ inline void nearest_of_surface(const ik::Redundant& arm, const Posed& goal, cons
     settle_starts(arm, goal, seed, starts, seed, best);
 }
 
-// By descent from configurations spread around the seed, where no value of the held joints led anywhere.
+// By descent from configurations around the seed, if no sample of the locked joints gave a solution.
 inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, const double* seed,
                                Nearest& best) {
     constexpr int most = 32;
@@ -242,7 +243,7 @@ inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, cons
     }
 }
 
-// False where nothing reaches the goal. q: turning joints in (−π, π].
+// Returns false if no configuration reaches the goal. q: revolute joints in (−π, π].
 inline bool nearest_configuration(const ik::Redundant& arm, const Posed& goal, const double* seed,
                                   double* q) {
     if (arm.halves.exist && nearest_by_proof(arm.halves, goal, arm.length, seed, q)) {

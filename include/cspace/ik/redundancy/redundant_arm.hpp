@@ -1,5 +1,5 @@
-// An arm with joints to spare: which of them are held as parameters, within which limits, and what is solved
-// for a value of them.
+// A redundant arm: the joints that are locked as parameters, their limits, and the solver of the other
+// joints.
 #pragma once
 
 #include "cspace/ik/redundancy/basis.hpp"
@@ -20,7 +20,7 @@ struct Redundant {
     Halves halves;  // where all joints count alike and none is missing to rank 6
 };
 
-// Where a joint may be: a turning joint with a whole turn of room or more is never stopped.
+// Whether the limits can stop a joint. A revolute joint with a range of 2π or more is never stopped.
 inline bool is_stopped(const Redundant& arm, int i) {
     constexpr double turn = 6.283185307179586;
     if (arm.chain.prismatic[i]) return std::isfinite(arm.lower[i]) || std::isfinite(arm.upper[i]);
@@ -31,7 +31,7 @@ inline bool is_stopped(const Redundant& arm, int i) {
 
 namespace cspace::inline CSPACE_ISA {
 
-// By how much a value stays outside the limits of joint i whatever whole turn is taken; not positive inside.
+// The least distance from a value to the limits of joint i over all multiples of 2π; not positive inside.
 inline double excess(const ik::Redundant& arm, int i, double q) {
     if (!ik::is_stopped(arm, i)) return -1;
     if (arm.chain.prismatic[i]) return max(arm.lower[i] - q, q - arm.upper[i]);
@@ -44,15 +44,15 @@ inline bool is_within(const ik::Redundant& arm, const double* q, double slack) {
     return true;
 }
 
-// Joints that do not count in distances stand for what a goal leaves open, and keep to it: a tool looks
-// ahead.
+// Joints without weight in the distance represent coordinates that the goal leaves free. They must stay in
+// range: a tool has to point forwards.
 inline bool is_allowed(const ik::Redundant& arm, const double* q) {
     for (int i = 0; i < arm.chain.n; ++i)
         if (arm.weight[i] == 0 && excess(arm, i, q[i]) > 1e-9 * arm.length) return false;
     return true;
 }
 
-// The largest difference of a joint, turning ones the short way round.
+// The largest joint difference, by the shorter way for revolute joints.
 inline double joint_gap(const ik::Chain& chain, const double* a, const double* b) {
     double most = 0;
     for (int i = 0; i < chain.n; ++i) {
@@ -62,15 +62,15 @@ inline double joint_gap(const ik::Chain& chain, const double* a, const double* b
     return most;
 }
 
-// Twice as far as anything of the arm is from its base or from the goal [m]: slides without limits are
-// followed so far.
+// Twice the largest distance of any part of the arm from its base or from the goal [m]. Prismatic joints
+// without limits are followed to this bound.
 inline double far_away(const ik::Redundant& arm, const Posed& goal) {
     double reach = norm(goal.t) + norm(arm.chain.tip.t);
     for (int i = 0; i < arm.chain.n; ++i) reach += 2 * norm(arm.chain.point[i]);
     return reach > 0 ? 2 * reach : 2.0;
 }
 
-// The values a parameter takes: [lower, upper], a whole turn, or as far as a slide can be from the goal.
+// The domain of a parameter: [lower, upper], the full circle, or the bound of a prismatic joint.
 struct Domain {
     double lower, upper;
     bool is_circle;
@@ -83,7 +83,7 @@ inline Domain domain_of(const ik::Redundant& arm, int parameter, const Posed& go
     return {max(lower, -far), min(upper, far), false};
 }
 
-// A value for each joint at which nothing special is expected.
+// A generic value for each joint.
 inline void typical_values(const ik::Redundant& arm, double* at) {
     for (int i = 0; i < arm.chain.n; ++i) {
         const bool bounded = std::isfinite(arm.lower[i]) && std::isfinite(arm.upper[i]);
@@ -93,14 +93,14 @@ inline void typical_values(const ik::Redundant& arm, double* at) {
     }
 }
 
-// How good an arm is to be left with: closed forms on lanes before other closed forms before the general
-// solver before nothing.
+// Preference among the arms that remain after locking: closed forms on lanes, other closed forms, the general
+// solver, no solver.
 inline int rank_of(const ik::Arm& arm) {
     if (arm.has_plan) return arm.plan.on_lanes && arm.plan.virtual_joints == 0 ? 3 : 2;
     if (arm.has_few_joints) return 2;
     return is_solvable(arm) ? 1 : 0;
 }
-// The arm with all joints held but those of a basis.
+// The arm with all joints locked except a basis.
 inline ik::LockedArm lock_outside(const ik::Redundant& arm, unsigned basis, const double* typical,
                                   bool with_general) {
     int locked_joint[ik::max_joints], n_locked = 0;
@@ -109,8 +109,9 @@ inline ik::LockedArm lock_outside(const ik::Redundant& arm, unsigned basis, cons
     return lock_joints(arm.chain, locked_joint, n_locked, typical, with_general);
 }
 
-// Sets of joints that may be left to move, the best to try first: neighbours from each joint on, with those
-// nearest behind and before them where neighbours do each other's work; then all but one joint.
+// Sets of joints that may remain movable, in order of preference. First come consecutive joints from each
+// joint on. Where consecutive joints are dependent, the nearest joints behind and before them are added. Then
+// come all joints except one.
 struct Bases {
     static constexpr int room = 2 * ik::max_joints;
     int count = 0;
@@ -146,8 +147,9 @@ inline Bases bases_of(const ik::Redundant& arm) {
     return out;
 }
 
-// Chooses the joints to hold: at the ends, so that neighbours move and a value only moves the goal; the last
-// ones if that is as good as any. Only if nothing solves neighbours, one between others is held.
+// Chooses the joints to lock. Joints at the ends are preferred: the moving joints are then consecutive, and a
+// locked value only moves the goal. Of equally good choices, the last joints are locked. An inner joint is
+// locked only if no solver exists for consecutive joints.
 inline void choose_locks(ik::Redundant& arm) {
     double typical[ik::max_joints];
     typical_values(arm, typical);
@@ -174,7 +176,7 @@ inline void choose_locks(ik::Redundant& arm) {
         }
 }
 
-// How many dimensions a pose leaves free when some joints are held, one bit each.
+// The number of dimensions that a pose leaves free when some joints are locked, given as a bit mask.
 inline int redundancy_degree_with(const ik::Redundant& arm, unsigned locked_joint) {
     int order[ik::max_joints], count = 0;
     for (int i = 0; i < arm.chain.n; ++i)
@@ -182,7 +184,7 @@ inline int redundancy_degree_with(const ik::Redundant& arm, unsigned locked_join
     return count - basis_of(arm.chain, arm.length, order, count).rank;
 }
 
-// lower, upper, weight: per joint. An arm without a joint to spare has nothing to hold.
+// lower, upper, weight: per joint. An arm without redundant joints has no joint to lock.
 CSPACE_ONCE ik::Redundant make_redundant(const ik::Chain& chain, const double* lower, const double* upper,
                                          const double* weight) {
     ik::Redundant arm;

@@ -1,6 +1,6 @@
-// An arm cut in its middle: the joints from the base on and those from the tip back move two frames that meet
-// where a goal is reached. Each frame depends on its own half of the joints, so that second derivatives do
-// not couple the halves, and both are walked abreast, one on each lane.
+// An arm divided in its middle. The joints from the base on and the joints from the tip back move two frames,
+// which coincide where the goal is reached. Each frame depends on one half of the joints only. Second
+// derivatives therefore do not couple the halves, and both halves are computed together, one per lane.
 #pragma once
 
 #include <initializer_list>
@@ -11,8 +11,9 @@
 
 namespace cspace::ik {
 
-// Lengths count over the arm's own. Lane 0: the joints from the base to the middle; lane 1: from the tip
-// back, turning the other way. The frame of a joint has it turn about (slide along) its z.
+// Lengths are divided by the size of the arm. Lane 0: the joints from the base to the middle. Lane 1: the
+// joints from the tip back, with the opposite sense. A joint rotates about (translates along) the z axis of
+// its frame.
 struct Halves {
     static constexpr int longest = 4;
     bool exist = false;                              // for arms of up to eight joints
@@ -36,10 +37,10 @@ inline Mat3d frame_along(const Vec3d& z) {
 }
 inline double to_the_three_halves(int k) { return k * std::sqrt(double(k)); }
 
-// The halves of a chain with `front` joints before the middle, which is at c, a point at zero; length: of the
-// arm. The point of each joint is the nearest of its axis to the next one towards the middle, so that the
-// joints' third derivatives, each at most the cube of all angles before a link times its length, are bounded
-// well: (Σ |x_j|)³ ≤ k^(3/2) |x|³ for k of them.
+// The halves of a chain with `front` joints before the middle. The middle is at the point c (at q = 0).
+// length: size of the arm. The point of each joint is the nearest of its axis to the next one towards the
+// middle, which gives good bounds of the third derivatives. Each is at most the cube of all angles before a
+// link times the length of the link: (Σ |x_j|)³ ≤ k^(3/2) |x|³ for k of them.
 inline ik::Halves halves_at(const ik::Chain& chain, double length, int front, const Vec3d& c) {
     ik::Halves out;
     out.exist = true;
@@ -84,7 +85,7 @@ inline ik::Halves halves_at(const ik::Chain& chain, double length, int front, co
     return out;
 }
 
-// Cut where the bounds come out least, at a point of one of the axes beside the cut.
+// Divides where the bounds are smallest, at a point of one of the axes next to the division.
 inline ik::Halves make_halves(const ik::Chain& chain, double length) {
     constexpr int longest = ik::Halves::longest;
     ik::Halves best;

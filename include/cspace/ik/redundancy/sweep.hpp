@@ -1,6 +1,6 @@
-// All solutions at many values of one held joint. Where it stands at an end of the chain, the goal of the six
-// joints that move is an affine function of the cosine and sine of the value (or of the value of a slide):
-// their closed form runs over the values on lanes.
+// All solutions at many values of one locked joint. If that joint is at an end of the chain, the goal of the
+// six moving joints is an affine function of its cosine and sine (or of its value, if it is prismatic). The
+// closed form is evaluated for several values at once, on lanes.
 #pragma once
 
 #include "cspace/ik/closed_form.hpp"
@@ -9,13 +9,13 @@
 
 namespace cspace {
 
-// G(v) = still + c · cosine + s · sine, entry by entry; for a slide c = v, s = 0.
+// G(v) = still + c · cosine + s · sine, entry by entry; c = v, s = 0 for a prismatic joint.
 struct MovingGoal {
     Posed still, cosine, sine;
     bool slides;
 };
 
-// Sweeping arm `locked` over the values of joint `parameter`, which it holds.
+// Solves arm `locked` at values of its locked joint `parameter`.
 struct Sweep {
     const ik::LockedArm* locked;
     int parameter;
@@ -25,7 +25,7 @@ struct Sweep {
     MovingGoal in_chain, in_form;
 };
 
-// What the arm answers at one value: rows of the whole chain.
+// The solutions at one value, as rows of the whole chain.
 struct SweptRows {
     int count = 0;
     bool complete = true;
@@ -45,7 +45,7 @@ inline Posed combined(const Posed& A, double a, const Posed& B, double b) {
     out.t = a * A.t + b * B.t;
     return out;
 }
-// From the goal at 0, ¼ turn and ½ turn, or at 0 and 1 of a slide.
+// From the goal at 0, π/2 and π, or at 0 and 1 for a prismatic joint.
 template <class GoalAt>
 inline MovingGoal moving_goal(bool slides, const GoalAt& goal_at) {
     MovingGoal out;
@@ -87,7 +87,7 @@ CSPACE_INLINE void value_on_circle(const MovingGoal& goal, V value, V& c, V& s) 
     }
 }
 
-// at: the values of all held joints; that of the parameter does not matter.
+// at: the values of all locked joints; the value of the parameter is ignored.
 CSPACE_ONCE Sweep make_sweep(const ik::LockedArm& locked, int parameter, const Posed& goal,
                              const double* at) {
     Sweep sweep;
@@ -121,7 +121,7 @@ inline void near_singular_rows(const Sweep& sweep, double value, SweptRows& out)
     }
 }
 
-// The angles of every branch on lanes, corrected on the true chain where the form idealises it.
+// The angles of every branch on lanes, corrected on the true chain where the closed form idealises it.
 template <class V>
 CSPACE_NOINLINE void branches_at(const Sweep& sweep, V value, Branches<V>& b) {
     const ik::Plan& plan = sweep.locked->arm.plan;

@@ -1,5 +1,6 @@
-// The configurations that reach a goal when joints are to spare form a manifold. At a configuration: the
-// error that is left, the Jacobian split into what corrects it and what moves along the manifold.
+// The tip Jacobian of a redundant arm. The configurations that reach a goal form a manifold. At each
+// configuration: the pose error, and the Jacobian split into its row space, which corrects the error, and its
+// null space, which moves along the manifold.
 #pragma once
 
 #include "cspace/ik/chain.hpp"
@@ -7,7 +8,7 @@
 
 namespace cspace {
 
-// The error of q against a goal, and the tip's Jacobian, columns [linear over the arm's length; angular].
+// The pose error of q, and the tip Jacobian with columns [linear over the size of the arm; angular].
 template <class V>
 struct TipMotion {
     V error[6];
@@ -15,9 +16,9 @@ struct TipMotion {
     V column[ik::max_joints][6];
 };
 
-// Jᵀ = Q R by reflections: the first columns of Q span what moves the tip, the others what does not. Of a
-// Jacobian of lower rank r the r coordinates of the pose that say most come first, in the order `chosen`; the
-// others follow from them.
+// Jᵀ = Q R by Householder reflections. The first columns of Q span the row space, the others the null space.
+// For a Jacobian of rank r < 6, the r pose coordinates with the largest remainders come first, in the order
+// `chosen`; the others depend on them.
 template <class V>
 struct SplitJacobian {
     V reflector[ik::max_joints][6];  // v_k below and on the diagonal
@@ -31,8 +32,8 @@ struct SplitJacobian {
 
 namespace cspace::inline CSPACE_ISA {
 
-// The functions below are compiled for arms of `N` joints and rank 6, or with N = 0 for any number and rank:
-// loops of known length are unrolled, which halves their time.
+// The functions below are compiled for arms of `N` joints and rank 6, or with N = 0 for any number and rank.
+// Unrolling loops of known length halves their time.
 template <int N>
 CSPACE_INLINE int size_or(int n) {
     return N ? N : n;
@@ -82,7 +83,7 @@ CSPACE_INLINE void tip_motion(const ik::Chain& chain, const Pose<V>& goal, doubl
     }
 }
 
-// Brings the coordinate that is left with most to place k.
+// Moves the coordinate with the largest remainder to place k.
 inline void choose_coordinate(SplitJacobian<double>& out, int n, int k) {
     int best = k;
     double most = -1;
@@ -103,7 +104,8 @@ inline void choose_coordinate(SplitJacobian<double>& out, int n, int k) {
     out.chosen[best] = kept;
 }
 
-// rank: how many coordinates of the pose the joints move independently; below six on one lane alone.
+// rank: the number of pose coordinates that the joints move independently. A rank below six is supported on
+// one lane only.
 template <int N, class V>
 CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, int rank, SplitJacobian<V>& out) {
     const int n = size_or<N>(size);
@@ -157,7 +159,7 @@ CSPACE_INLINE V away_from_zero(V x) {
     return select(abs(x) < 1e-14, copysign(fill<V>(1e-14), x), x);
 }
 
-// The shortest step of the joints that moves the tip by e: Rᵀ y = e, Q y.
+// The shortest joint step that moves the tip by e: Rᵀ y = e, Q y.
 template <int N, class V>
 CSPACE_INLINE void shortest_step(const SplitJacobian<V>& split, int size, const V* e, V* step) {
     const int n = size_or<N>(size), rank = rank_in<N>(split);
@@ -169,14 +171,14 @@ CSPACE_INLINE void shortest_step(const SplitJacobian<V>& split, int size, const 
     }
     turn_out<N>(split, n, step);
 }
-// Direction number k (of n − rank) along the manifold, unit.
+// Unit vector k (of n − rank) of the null space.
 template <int N, class V>
 CSPACE_INLINE void free_direction(const SplitJacobian<V>& split, int size, int k, V* direction) {
     const int n = size_or<N>(size);
     for (int i = 0; i < n; ++i) direction[i] = fill<V>(i == rank_in<N>(split) + k ? 1.0 : 0.0);
     turn_out<N>(split, n, direction);
 }
-// The λ of least |Jᵀ λ − g|.
+// The λ that minimises |Jᵀ λ − g|.
 template <int N, class V>
 CSPACE_INLINE void multipliers(const SplitJacobian<V>& split, int size, const V* g, V* lambda) {
     const int n = size_or<N>(size), rank = rank_in<N>(split);

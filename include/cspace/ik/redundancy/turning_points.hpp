@@ -1,9 +1,9 @@
-// Where branches meet and vanish as the held joint turns: the double roots of a closed form.
+// Folds of the branches as functions of a locked joint: the double roots of a closed form.
 //
 // With axes 1 and 2 of the form meeting (see pieper_position.hpp), t3 solves a cos t3 + b sin t3 = r(v),
 // where r is of first degree in the cosine and sine of v, so that n² − r² is a trigonometric polynomial of
-// degree 2. The room of t2 is U ± √(n² − r²) W for the two t3; its product U² − (n² − r²) W² is one of
-// degree 4. Their roots are isolated like those of the general solver's determinant, none lost.
+// degree 2. The discriminant of t2 is U ± √(n² − r²) W for the two t3. The product U² − (n² − r²) W² has
+// degree 4. All roots are isolated by the method of the general solver's determinant.
 #pragma once
 
 #include "cspace/ik/general/isolate.hpp"
@@ -24,7 +24,7 @@ struct FoldValues {
 
 namespace cspace::inline CSPACE_ISA {
 
-// n² − r² and the product of the rooms of t2, at a goal on the circle.
+// n² − r² and the product of the discriminants of t2, at a goal on the circle.
 template <class V>
 struct Rooms {
     V elbow, lift;
@@ -54,7 +54,8 @@ CSPACE_INLINE Rooms<V> rooms_of(const ik::ThreeJoints& g, const Vec3<V>& p) {
     return {room, even * even - room * odd * odd};
 }
 
-// Whether the wrist's own solutions never meet but at isolated configurations: both of its twists are square.
+// Whether the two solutions of the wrist coincide at isolated configurations only: both its twist angles are
+// 90°.
 inline bool has_square_wrist(const Wrist& w) { return std::fabs(w.ca4) < 1e-4 && std::fabs(w.ca5) < 1e-4; }
 
 inline void add_fold(FoldValues& out, double value, int branch) {
@@ -65,7 +66,8 @@ inline void add_fold(FoldValues& out, double value, int branch) {
     out.value[out.count] = wrap_once(short_way(value));
     out.branch[out.count++] = branch;
 }
-// The folds of an idealised form lie beside those of the arm, a little differently for each pair of branches.
+// The folds of an idealised form are close to those of the arm, at a slightly different value for each pair
+// of branches.
 inline void add_true_folds(const ik::Redundant& arm, const Sweep& sweep, double value, FoldValues& out) {
     const ik::Plan& plan = sweep.locked->arm.plan;
     const Posed goal = goal_at(sweep.in_form, std::cos(value), std::sin(value));
@@ -84,7 +86,7 @@ inline void add_true_folds(const ik::Redundant& arm, const Sweep& sweep, double 
             add_fold(out, at.q[sweep.parameter], k);
     }
 }
-// Isolated roots are known to 1e-8; two Newton steps take them to rounding.
+// Isolated roots are accurate to 1e-8; two Newton steps refine them to rounding.
 template <class Function>
 inline double settled_root(const Function& f, double value) {
     constexpr double h = 1e-5, farthest = 1e-6;
@@ -130,7 +132,7 @@ CSPACE_ONCE FoldValues fold_values(const ik::Redundant& whole, const Sweep& swee
     return out;
 }
 
-// The folds in [start, start + 2π), sorted, and the first once more a turn later.
+// The folds in [start, start + 2π), sorted; the first is repeated at + 2π.
 inline int sort_folds(const FoldValues& folds, double start, double* sorted) {
     const int n = folds.count;
     for (int k = 0; k < n; ++k) {

@@ -1,5 +1,6 @@
-// Families that cross those already found: along a curve of configurations that keep the tip, the arm may
-// come to one from which it can leave another way (a wrist that straightens while the shoulder turns).
+// Bifurcations of self-motions: other self-motions that cross those already found. On a curve of
+// configurations with fixed tip the arm may reach a configuration from which a second curve starts (for
+// example, a wrist that becomes straight while the shoulder turns).
 #pragma once
 
 #include "cspace/ik/general/representatives.hpp"
@@ -9,7 +10,7 @@
 
 namespace cspace::ik {
 
-// What was seen of the hold on all directions but the family's own while one curve was followed.
+// The singular values other than that of the self-motion, observed while one curve was followed.
 struct CurveMargin {
     static constexpr int most = 6;
     int crossings = 0;
@@ -22,7 +23,7 @@ struct CurveMargin {
 
 namespace cspace::inline CSPACE_ISA {
 
-// The least singular value but for the family's own.
+// The smallest singular value other than that of the self-motion.
 inline double margin_at(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q) {
     PoseError at;
     measure_constrained(chain, constraint, q, at);
@@ -37,8 +38,8 @@ inline double margin_at(const ik::Chain& chain, const ik::TipConstraint& constra
     return second;
 }
 
-// Whether the family only rolls a spherical wrist or shoulder that the other three joints hold by its centre:
-// then nothing crosses it.
+// Whether the self-motion only rolls a spherical wrist or shoulder whose centre is fixed by the other three
+// joints. Then no other curve crosses it.
 inline bool only_rolls(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
                        const double* direction) {
     constexpr double moving = 1e-9, firm = 1e-3, together = 1e-9;
@@ -68,7 +69,7 @@ inline bool only_rolls(const ik::Chain& chain, const ik::TipConstraint& constrai
            std::fabs(volume) > firm * constraint.length * constraint.length * constraint.length;
 }
 
-// Follows the family through q and notes where other curves cross it.
+// Follows the self-motion through q and records where other curves cross it.
 inline ik::CurveMargin follow_margin(const ik::Chain& chain, const ik::TipConstraint& constraint,
                                      const double* q, const double* direction, int& steps_left) {
     constexpr double crossed = 1e-3, free = 1e-6, far_enough = 0.3;
@@ -100,7 +101,8 @@ inline ik::CurveMargin follow_margin(const ik::Chain& chain, const ik::TipConstr
     return out;
 }
 
-// Directions of joints per unit of the curve's own coordinates, slides over the arm's length, and back.
+// Converts directions of joints to the curve's own coordinates, prismatic joints over the size of the arm,
+// and back.
 inline void in_lengths(const ik::Chain& chain, double length, const double* direction, double* out) {
     double size2 = 0;
     for (int i = 0; i < chain.n; ++i) {
@@ -110,9 +112,9 @@ inline void in_lengths(const ik::Chain& chain, double length, const double* dire
     for (int i = 0; i < chain.n; ++i) out[i] /= std::sqrt(size2);
 }
 
-// Adds the family through q unless it passes one that is listed, by the member whose leading joint stands at
-// its value in `idle` (null: zero). A curve that was not followed to its ends, or finds no row to spare,
-// leaves the list without a certificate.
+// Adds the self-motion through q unless it passes a listed one. It is represented by the member whose leading
+// joint has its value in `unconstrained` (null: zero). A curve that was not followed to its ends, or for
+// which no row is free, leaves the list without a certificate.
 inline void add_self_motion(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
                             const double* direction, const double* unconstrained, int room, int& steps_left,
                             ik::Solutions& out) {
@@ -138,8 +140,8 @@ inline void add_self_motion(const ik::Chain& chain, const ik::TipConstraint& con
     out.self_motion[n] = true;
 }
 
-// The direction in which a crossing is free, square to `along`; false if there is none. Of more than one,
-// that which the null vector farthest from `along` has.
+// The unconstrained direction at a crossing, perpendicular to `along`; false if there is none. Of several,
+// the one in which the null vector farthest from `along` points.
 inline bool direction_across(const ik::Chain& chain, const PoseSvd& J, const double* along, double* across) {
     constexpr double hardly_constrained = 2e-3, clear = 1e-3;
     double farthest = clear;
@@ -158,7 +160,7 @@ inline bool direction_across(const ik::Chain& chain, const PoseSvd& J, const dou
     return farthest > clear;
 }
 
-// Adds the curves that leave a crossing another way than `along`, seen a stride from it.
+// Adds the curves that leave a crossing in a direction other than `along`, found at a stride from it.
 inline void leave_crossing(const ik::Chain& chain, const ik::TipConstraint& constraint,
                            const double* crossing, const double* along, const double* unconstrained, int room,
                            int& steps_left, ik::Solutions& out) {
@@ -191,8 +193,8 @@ inline void leave_crossing(const ik::Chain& chain, const ik::TipConstraint& cons
     }
 }
 
-// Adds the families that cross those listed, as far as there is room for rows. Where there is more than one
-// freedom all along a family a curve does not say all: such a list is not certified.
+// Adds the self-motions that cross those listed, while rows are free. If a self-motion has more than one
+// dimension throughout, a curve does not cover it, and the list is not certified.
 inline void add_bifurcations(const ik::Chain& chain, const Posed& goal, double length,
                              const double* unconstrained, int room, ik::Solutions& out) {
     const ik::TipConstraint constraint = {goal, true, length};
@@ -213,8 +215,7 @@ inline void add_bifurcations(const ik::Chain& chain, const Posed& goal, double l
     }
 }
 
-// What is left to say of the solutions of a goal once they are found: the families that cross, and valleys
-// that rounding leaves.
+// Completes the solutions of a goal: self-motions that cross, and valleys caused by rounding.
 inline void look_along(const ik::Chain& chain, const Posed& goal, double length, const double* unconstrained,
                        int room, ik::Solutions& out) {
     if (out.status == ik::Status::singular) add_bifurcations(chain, goal, length, unconstrained, room, out);

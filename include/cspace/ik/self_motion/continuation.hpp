@@ -1,6 +1,6 @@
-// The curve of configurations that a family runs through: the tip (or its position alone) stays where it is
-// at the start. Steps along the tangent, each followed by Newton steps back onto the curve (Allgower & Georg
-// 1990, chapter 6).
+// Numerical continuation of a self-motion: the curve of configurations with the same tip pose (or the same
+// tip position). Each step along the tangent is followed by Newton steps back onto the curve (Allgower &
+// Georg 1990, chapter 6).
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace cspace::ik {
 
-// What stays put.
+// The constraint on the tip.
 struct TipConstraint {
     Posed goal;
     bool whole_pose;
@@ -33,7 +33,7 @@ inline double unit_of(const ik::Chain& chain, int i, double length) {
     return chain.prismatic[i] ? length : 1;
 }
 
-// The error at q and its decomposed Jacobian, joints in their units.
+// The error at q and its decomposed Jacobian, in joint units.
 inline double measure_constrained(const ik::Chain& chain, const ik::TipConstraint& constraint,
                                   const double* q, PoseError& at) {
     measure_error(chain, constraint.goal, constraint.length, q, at);
@@ -47,11 +47,11 @@ inline double measure_constrained(const ik::Chain& chain, const ik::TipConstrain
     return size_of_error(at);
 }
 
-// A singular value below this is a direction that moves nothing.
+// A direction with a singular value below this does not move the tip.
 inline constexpr double still = 1e-7;
 
-// The direction of the curve at a point: the part of `along` that moves nothing, unit. False if there is
-// none.
+// The tangent of the curve at a point: the projection of `along` onto the null space, unit. False if it
+// vanishes.
 inline bool tangent_at(const ik::Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
     for (int i = 0; i < chain.n; ++i) tangent[i] = 0;
     for (int j = 0; j < J.columns; ++j) {
@@ -65,7 +65,7 @@ inline bool tangent_at(const ik::Chain& chain, const PoseSvd& J, const double* a
     return true;
 }
 
-// The least of the other singular values: it vanishes where two curves cross.
+// The smallest of the other singular values. It vanishes where two curves cross.
 inline double margin_on_curve(const PoseSvd& J) {
     double least_margin = 1;
     for (int j = 0; j < J.columns; ++j)
@@ -73,8 +73,9 @@ inline double margin_on_curve(const PoseSvd& J) {
     return least_margin;
 }
 
-// How long a step may be: a longer one could change to another curve. Towards a crossing the hold falls about
-// in proportion to the distance; beside a curve that stays close a step strays by its square.
+// Upper bound of a step: a longer one could switch to another curve. Towards a crossing this singular value
+// decreases about in proportion to the distance. Near a curve that stays close, a step deviates by its
+// square.
 struct Room {
     double slope = 1;  // of the hold, the steepest of late
 
@@ -89,7 +90,7 @@ struct Room {
     }
 };
 
-// The shortest change of the joints, in their units, that undoes the error; none along the curve.
+// The minimum-norm joint step that corrects the error, in joint units, without a component along the curve.
 inline void shortest_step(const PoseError& at, double* dq) {
     const PoseSvd& J = at.jacobian;
     for (int i = 0; i < J.columns; ++i) dq[i] = 0;
@@ -100,7 +101,7 @@ inline void shortest_step(const PoseError& at, double* dq) {
     }
 }
 
-// Brings q onto the curve by the shortest steps; true if the tip is where it is held. `at` belongs to q.
+// Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
 inline bool onto_curve(const ik::Chain& chain, const ik::TipConstraint& constraint, double* q,
                        PoseError& at) {
     constexpr int most_steps = 12;
@@ -121,7 +122,7 @@ inline bool onto_curve(const ik::Chain& chain, const ik::TipConstraint& constrai
     return size <= tolerance::reached;
 }
 
-// One step of length h from q along its tangent. False if the curve bends too much for it.
+// One step of length h from q along its tangent. False if the curve bends too much for this length.
 inline bool step_along(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
                        const double* tangent, double h, double* next, double* next_tangent, double* margin) {
     constexpr double least_cosine = 0.995, largest_return = 0.1;
@@ -139,8 +140,8 @@ inline bool step_along(const ik::Chain& chain, const ik::TipConstraint& constrai
            dot_n(tangent, next_tangent, chain.n) >= least_cosine;
 }
 
-// Whether the start lies ahead of q within a step, the curve passing it as it left it; `lift` is then the
-// start by the turns that bring it there.
+// Whether the start lies ahead of q within one step and the curve passes it in the original direction. `lift`
+// is then the start plus the multiples of 2π accumulated on the way.
 inline bool start_is_next(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
                           const double* tangent, const double* start, const double* start_tangent, double h,
                           double* lift) {
@@ -158,9 +159,9 @@ inline bool start_is_next(const ik::Chain& chain, const ik::TipConstraint& const
 
 inline double first_step(const PoseSvd& J) { return min(1e-3, 0.2 * Room{}.here(margin_on_curve(J))); }
 
-// The tangent at a configuration, from a guess. Where curves cross, the null space holds more directions than
-// theirs: a short step along each of many is brought back, and the way it then has gone that is nearest to
-// the guess is taken. False if no curve leaves from there.
+// The tangent at a configuration, from a guess. Where curves cross, the null space has more dimensions than
+// the tangents. A short step along each of many directions is therefore corrected back, and the resulting
+// direction nearest to the guess is taken. False if no curve leaves from there.
 inline bool start_direction(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
                             const double* guess, double* tangent) {
     constexpr int around = 48;
@@ -196,8 +197,9 @@ inline bool start_direction(const ik::Chain& chain, const ik::TipConstraint& con
     return best > -1;
 }
 
-// Follows the curve from `start` along `direction` (in joint units), telling `visit` every configuration and
-// the tangent there, the start first; where the curve closes, the start comes last again, its angles unwound.
+// Follows the curve from `start` along `direction` (in joint units). Calls `visit` with every configuration
+// and its tangent, the start first. If the curve closes, the start also comes last, with its angles
+// unwrapped.
 template <class Visit>
 ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* start,
                           const double* direction, Visit&& visit, int most_steps = ik::most_curve_steps) {
@@ -237,9 +239,9 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::TipConstraint& const
     return ik::CurveEnd::lost;
 }
 
-// The whole of a family: both ways from q, or once around where it closes. Tells `visit` which way (0 or 1),
-// every configuration and the tangent there; each takes one of the steps that are left. False if the curve
-// was lost, or the steps used up, before its end.
+// The whole self-motion: in both directions from q, or once around if it closes. Calls `visit` with the
+// direction (0 or 1), every configuration and its tangent; each uses one of the remaining steps. False if the
+// curve was lost, or the steps were used up, before its end.
 template <class Visit>
 bool follow_self_motion(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
                         const double* direction, int& steps_left, Visit&& visit) {

@@ -1,5 +1,5 @@
-// Whether an arm can move at a configuration while its tip stays: the null space of the Jacobian proposes,
-// a stride along it decides.
+// Self-motion test: whether an arm can move at a configuration while its tip stays fixed. The null space of
+// the Jacobian gives candidate directions, and a finite stride along each decides.
 #pragma once
 
 #include <initializer_list>
@@ -9,13 +9,13 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// Steps that a stride may take to come back to the goal: along a family it needs three, beside one (a fold
-// on top of a family) the error halves in each.
+// Maximum number of steps from a stride back to the goal. On a self-motion three steps suffice. Near one (a
+// fold on top of a self-motion) each step halves the error.
 inline constexpr int steps_back = 30;
 
-// A stride from q and back to the goal: of the way, the part that was kept; 0 if the goal is then missed by
-// more than `most`. `floor`: by steps that leave directions alone which move next to nothing, as rounded axes
-// leave them.
+// A stride from q and back to the goal: returns the fraction of the stride that remains; 0 if the final error
+// exceeds `most`. `floor`: the steps back ignore directions that hardly move the tip, as occur with rounded
+// axes.
 inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                              const double* direction, double stride, bool floor, double most) {
     double moved[ik::max_joints] = {}, along = 0;
@@ -29,9 +29,9 @@ inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double l
     return size_of_error(error) <= most ? along / stride : 0;
 }
 
-// Whether the arm can move along `direction` with its tip at rest: it goes a stride that way and comes back
-// to the goal. In a family it has moved by about the stride, whatever the stride; at a fold it slides back,
-// or over to a neighbouring solution, whose distance is one and the same.
+// Whether the arm can move along `direction` with its tip fixed: a stride in that direction, and a correction
+// back to the goal. On a self-motion the arm has then moved by about the stride, for every stride. At a fold
+// it returns to q, or reaches a nearby solution at one fixed distance.
 inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                          const double* direction) {
     // What may be missed along a family, and where rounded axes leave a valley instead of one.
@@ -53,7 +53,7 @@ inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double lengt
     return true;
 }
 
-// Whether a family too small for such strides runs through q: it comes round to where it began.
+// Whether a closed self-motion too small for such strides passes through q.
 inline bool runs_round(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                        const double* direction) {
     constexpr double least = 1e-3;
@@ -67,8 +67,8 @@ inline bool runs_round(const ik::Chain& chain, const Posed& goal, double length,
            farthest > least;
 }
 
-// Whether q lies in a valley along which the goal counts as reached all the way, although no family runs
-// there: rounded axes leave such valleys, and any of their configurations may be the one that was meant.
+// Whether q lies in a valley along which the goal counts as reached throughout, without a self-motion.
+// Rounded axes cause such valleys, and any configuration in them may be the intended one.
 inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
     constexpr double hardly = 1e-7, stride = 0.02, next_to_nothing = 1e-10;
     PoseError at;
@@ -85,7 +85,7 @@ inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double len
     return false;
 }
 
-// The part of v in the span of the orthonormal vectors basis[0 … k), made unit.
+// The projection of v onto the span of the orthonormal vectors basis[0 … k), normalised.
 inline bool project(const double* const* basis, int k, int n, double* v) {
     double out[ik::max_joints] = {};
     for (int j = 0; j < k; ++j) {
@@ -97,7 +97,7 @@ inline bool project(const double* const* basis, int k, int n, double* v) {
     return size > 0;
 }
 
-// Where a stride along `trial` leads, as a direction of the null space; false if it leads back.
+// The direction in the null space to which a stride along `trial` leads; false if it leads back.
 inline bool led_away(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                      const double* const* basis, int k, double* trial) {
     constexpr double stride = 0.03;
@@ -113,9 +113,9 @@ inline bool led_away(const ik::Chain& chain, const Posed& goal, double length, c
     return away > 0.25 * stride * stride && project(basis, k, chain.n, trial);
 }
 
-// The vectors of a null space of dimension 2 or 3 that leave one or two joints alone: families of real arms
-// move few joints (a wrist rolling against the forearm), and lie among these where the null space holds more
-// than the family. basis[0 … k): orthonormal, length n.
+// The vectors of a null space of dimension 2 or 3 in which one or two joints do not move. Self-motions of
+// real arms move few joints (a wrist rolling against the forearm). If the null space is larger than the
+// self-motion, the self-motion lies among these vectors. basis[0 … k): orthonormal, length n.
 struct SparseDirections {
     int count = 0;
     double d[2 + ik::max_joints * ik::max_joints][ik::max_joints];
@@ -142,9 +142,10 @@ inline SparseDirections sparse_directions(const double* const* basis, int k, int
     return out;
 }
 
-// Looks for a self-motion at q, whose decomposed Jacobian is J; on success `direction` is its unit velocity.
-// Where freedom is lost twice or more (an elbow stretched over a wrist), the null space has more dimensions
-// than the motion: its sparse directions are tried, then some all around it.
+// Searches for a self-motion at q with the decomposed Jacobian J; on success `direction` is its unit
+// velocity. If the rank drops by two or more (a stretched elbow and an aligned wrist), the null space has
+// more dimensions than the motion. Then its sparse directions are tried first, and after them directions
+// spread over it.
 CSPACE_ONCE bool find_self_motion(const ik::Chain& chain, const Posed& goal, double length, const double* q,
                                   const PoseSvd& J, double* direction) {
     constexpr double lost = 1e-7;

@@ -1,11 +1,11 @@
-// The least residual of a system of two angles over the whole torus: a sweep, then refinement of its valleys.
+// Global least squares of a system of two angles: a sweep of the torus, then refinement of the local minima.
 #pragma once
 
 #include "cspace/ik/subproblems/refine.hpp"
 
 namespace cspace::inline CSPACE_ISA {
 
-// The lowest points of a coarse sweep, at most `most` ≤ 16; returns how many.
+// The lowest points of a coarse sweep, at most `most` ≤ 16; returns their number.
 template <class System>
 int valleys(const System& system, int most, Turn<double> (*at)[2]) {
     constexpr int steps = 24;
@@ -35,8 +35,8 @@ int valleys(const System& system, int most, Turn<double> (*at)[2]) {
     return count;
 }
 
-// Newton's method on half the squared residual, its second derivatives taken as differences of the gradient:
-// where the residual stays large, Gauss–Newton alone converges slowly.
+// Newton's method on half the squared residual, with second derivatives from differences of the gradient.
+// Where the residual remains large, Gauss–Newton alone converges slowly.
 template <class System, class Unknown>
 double descend(const System& system, Unknown* t) {
     constexpr int n = System::angles;

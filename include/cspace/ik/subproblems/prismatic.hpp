@@ -1,14 +1,15 @@
-// Subproblems 1, 3 and 4 for a joint that slides: the turn Rot(k, θ) p becomes the shift p + x h, h a unit
-// vector.
+// Subproblems 1, 3 and 4 for a prismatic joint: the rotation Rot(k, θ) p becomes the translation p + x h, h a
+// unit vector.
 //
 //     1  min over x of ‖p1 + x h − p2‖
 //     3  min over x of | ‖p1 + x h − p2‖ − d |
 //     4  min over x of |nᵀ (p + x h) − d|
 //
-// Proof. With r = p2 − p1, x0 = h·r and m = ‖h × r‖ the distance of p2 from the line, Pythagoras gives
-// ‖p1 + x h − p2‖² = (x − x0)² + m². Hence 1: x = x0, with the error m. 3: x = x0 ± √(d² − m²) for d > m, one
-// answer x0 for d = m; for d < m the same x0 is nearest, with the error m − d. 4 is linear: x = (d − n·p) /
-// (n·h); if the line runs along the plane (n·h = 0), every x serves alike, 0 is returned and `free` is set.
+// Proof. With r = p2 − p1, x0 = h·r and m = ‖h × r‖ the distance of p2 from the line, Pythagoras gives ‖p1 +
+// x h − p2‖² = (x − x0)² + m². Hence 1: x = x0, with the error m. 3: x = x0 ± √(d² − m²) for d > m, one
+// solution x0 for d = m; for d < m the same x0 is nearest, with the error m − d. 4 is linear: x = (d − n·p) /
+// (n·h). If the line is parallel to the plane (n·h = 0), every x is equivalent, 0 is returned and `free` is
+// set.
 #pragma once
 
 #include "cspace/math/vec.hpp"
@@ -16,7 +17,7 @@
 
 namespace cspace {
 
-// x[0] always holds an answer; x[1] a second one where `two`, otherwise the first again.
+// x[0] is always a solution; x[1] is a second one if `two`, otherwise equal to the first.
 template <class V>
 struct Slides {
     V x[2];

@@ -1,4 +1,4 @@
-// Gauss–Newton with damping on a few angles: polishes candidates, and finds the least-squares answer where no
+// Damped Gauss–Newton on a few angles: refines candidates, and finds the least-squares solution where no
 // exact one exists.
 //
 // A System has `angles` and `equations`, and as a function (turns, value, slope) gives the residuals and
@@ -30,8 +30,8 @@ double linearise(const System& system, const Unknown* t, Linearised<System>& at)
     return std::sqrt(sum);
 }
 
-// Solves (a + damping) x = b for a symmetric a (lower half used) by Cholesky; b becomes x. Not positive
-// definite: false.
+// Solves (a + damping) x = b for a symmetric a (lower half used) by Cholesky factorisation; b becomes x.
+// False if it is not positive definite.
 template <int n>
 bool solve_damped(const double (*a)[n], double damping, double* b) {
     double l[n][n];
@@ -53,7 +53,7 @@ bool solve_damped(const double (*a)[n], double damping, double* b) {
     return true;
 }
 
-// JᵀJ and −Jᵀ value; the length of the latter.
+// JᵀJ and −Jᵀ value; returns the length of the latter.
 template <class System>
 double normal_equations(const Linearised<System>& at, double (*a)[System::angles], double* down) {
     double length = 0;
@@ -69,8 +69,8 @@ double normal_equations(const Linearised<System>& at, double (*a)[System::angles
     return length;
 }
 
-// Moves the unknowns to a minimum of the residual nearby; returns its length there. A step that does not help
-// is not taken, and damped more the next time (Marquardt 1963), so the residual never grows.
+// Moves the unknowns to a local minimum of the residual; returns its length there. A step that does not
+// reduce the residual is rejected and the damping increased (Marquardt 1963), so the residual never grows.
 template <class System, class Unknown>
 double refine(const System& system, Unknown* t, int iterations = 30) {
     constexpr int n = System::angles;
@@ -100,9 +100,8 @@ double refine(const System& system, Unknown* t, int iterations = 30) {
     return error;
 }
 
-// Whether the zero t lies on a curve of zeros that leads along the direction `along` of length one: a step
-// away the refinement finds a residual below `zero` close by, whereas towards an isolated multiple zero it
-// must go all the way back.
+// Whether the zero t lies on a curve of zeros with the unit tangent `along`. After a step along a curve,
+// refinement finds a residual below `zero` nearby; from an isolated multiple zero it must return all the way.
 template <class System, class Unknown>
 bool continues_along(const System& system, const Unknown* t, const double* along, double zero) {
     constexpr double reach = 1e-3;

@@ -1,15 +1,15 @@
-// Subproblem 1 (Paden–Kahan I): turn one point onto another.
+// Subproblem 1 (Paden–Kahan I): rotate one point onto another.
 //
 //     min over θ of ‖Rot(k, θ) p1 − p2‖
 //
 // Proof. A rotation about k keeps the component z = k·p along the axis and the distance ρ = ‖k × p‖ from it,
 // and adds θ to the polar angle around it. In these coordinates
 //     ‖Rot(k, θ) p1 − p2‖² = (z1 − z2)² + ρ1² + ρ2² − 2 ρ1 ρ2 cos(θ − φ),
-// φ being the polar angle from p1 to p2. The minimum is at θ = φ alone, with the error
-// √((z1 − z2)² + (ρ1 − ρ2)²); it is zero exactly when p2 lies on the circle of p1. Both k × p1 and k × p2
-// are the perpendicular parts turned by 90°, so ρ1 ρ2 cos φ = (k × p1)·(k × p2) and
-// ρ1 ρ2 sin φ = k·((k × p1) × (k × p2)). If ρ1 or ρ2 is zero the error does not depend on θ: every angle
-// serves, 0 is returned and `free` is set.
+// φ being the polar angle from p1 to p2. The minimum is at θ = φ alone, with the error √((z1 − z2)² + (ρ1 −
+// ρ2)²); it is zero exactly when p2 lies on the circle of p1. Both k × p1 and k × p2 are the perpendicular
+// components rotated by 90°, so ρ1 ρ2 cos φ = (k × p1)·(k × p2) and ρ1 ρ2 sin φ = k·((k × p1) × (k × p2)). If
+// ρ1 or ρ2 is zero the error does not depend on θ: every angle is a solution, 0 is returned and `free` is
+// set.
 //
 // Reference: Paden 1986, §4.3; Elias & Wen 2022, §3.1.
 #pragma once

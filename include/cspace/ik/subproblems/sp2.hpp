@@ -1,19 +1,20 @@
-// Subproblem 2 (Paden–Kahan II): turn two points about two axes until they meet.
+// Subproblem 2 (Paden–Kahan II): rotate two points about two axes until they coincide.
 //
 //     min over θ1, θ2 of ‖Rot(k1, θ1) p1 − Rot(k2, θ2) p2‖
 //
 // Proof. The squared error is ‖p1‖² + ‖p2‖² − 2 (Rot(k1, θ1) p1)·(Rot(k2, θ2) p2), so only the directions
-// matter: let p1 and p2 be unit vectors. They run on two circles of the unit sphere, at the heights
-// c1 = k1·p1 over k1 and c2 = k2·p2 over k2. A common point z has k1·z = c1, k2·z = c2, ‖z‖ = 1. With
-// c = k1·k2, s = ‖k1 × k2‖, the axes e = (k2 − c k1)/s and n = (k1 × k2)/s complete k1 to a frame, in which
+// matter: let p1 and p2 be unit vectors. They move on two circles of the unit sphere, at the heights c1 =
+// k1·p1 over k1 and c2 = k2·p2 over k2. A common point z has k1·z = c1, k2·z = c2, ‖z‖ = 1. With c = k1·k2, s
+// = ‖k1 × k2‖, the axes e = (k2 − c k1)/s and n = (k1 × k2)/s complete k1 to a frame, in which
 //     z = c1 k1 + y e + γ n,  y = (c2 − c c1)/s,  γ² = 1 − c1² − y².
-// γ² > 0: two answers; γ² = 0: one, the circles touch. γ² < 0: the circles miss each other. Then the nearest
-// pair of points lies in the plane of k1 and k2 (the distance on the sphere is smallest on the great circle
-// through both poles), each on the side of its axis where the line pair k1·z = c1, k2·z = c2 of that plane
-// meets: outside the unit circle, at z = c1 k1 + y e. For y exceeds ρ1 = √(1 − c1²) just when circle 1
+// γ² > 0: two solutions; γ² = 0: one, the circles touch. γ² < 0: the circles miss each other. Then the
+// nearest pair of points lies in the plane of k1 and k2 (the distance on the sphere is smallest on the great
+// circle through both poles), each on the side of its axis where the line pair k1·z = c1, k2·z = c2 of that
+// plane meets: outside the unit circle, at z = c1 k1 + y e. For y exceeds ρ1 = √(1 − c1²) just when circle 1
 // must turn towards k2, and is below −ρ1 when it must turn away; the same holds for circle 2. So z with γ = 0
-// gives both angles. In each case θ1 turns p1 towards z about k1 and θ2 turns p2 towards z about k2, two
-// subproblems 1. Parallel axes (s = 0) see one angle only, θ1 ∓ θ2: θ2 = 0 is returned with `parallel` set.
+// gives both angles. In each case θ1 rotates p1 towards z about k1 and θ2 rotates p2 towards z about k2: two
+// subproblems 1. For parallel axes (s = 0) only the angle θ1 ∓ θ2 matters: θ2 = 0 is returned with `parallel`
+// set.
 //
 // Reference: Paden 1986, §4.3; Elias & Wen 2022, §3.2.
 #pragma once
@@ -22,7 +23,7 @@
 
 namespace cspace {
 
-// theta1[0], theta2[0] always hold an answer; the second pair differs where `two`.
+// theta1[0], theta2[0] are always a solution; the second pair is different if `two`.
 template <class V>
 struct Sp2 {
     Turn<V> theta1[2], theta2[2];

@@ -1,15 +1,15 @@
-// Subproblem 3 (Paden–Kahan III): turn a point to a given distance from another.
+// Subproblem 3 (Paden–Kahan III): rotate a point to a given distance from another.
 //
 //     min over θ of | ‖Rot(k, θ) p1 − p2‖ − d |
 //
-// Proof. In the cylindrical coordinates of subproblem 1 the squared distance is
-// (z1 − z2)² + ρ1² + ρ2² − 2 ρ1 ρ2 cos(θ − φ): it grows with |θ − φ| from the nearest distance
-// m² = (z1 − z2)² + (ρ1 − ρ2)² at θ = φ to the farthest M² = (z1 − z2)² + (ρ1 + ρ2)² at θ = φ + π. Hence two
-// answers θ = φ ± ψ for m < d < M, one at either end, and beyond an end that end is the best. Subtracting
-// the ends, d² − m² = 4 ρ1 ρ2 sin²(ψ/2) and M² − d² = 4 ρ1 ρ2 cos²(ψ/2), so with S = (d − m)(d + m) and
-// C = (M − d)(M + d): cos ψ = (C − S)/(C + S), sin ψ = 2 √(S C)/(C + S). No difference of nearly equal
-// squares is left, which matters for small d. A point on the axis keeps one distance: every angle serves, 0
-// is returned and `free` is set.
+// Proof. In the cylindrical coordinates of subproblem 1 the squared distance is (z1 − z2)² + ρ1² + ρ2² − 2 ρ1
+// ρ2 cos(θ − φ): it grows with |θ − φ| from the nearest distance m² = (z1 − z2)² + (ρ1 − ρ2)² at θ = φ to the
+// farthest M² = (z1 − z2)² + (ρ1 + ρ2)² at θ = φ + π. Hence there are two solutions θ = φ ± ψ for m < d < M
+// and one at either end. Beyond an end, that end is the best. Subtracting the ends, d² − m² = 4 ρ1 ρ2
+// sin²(ψ/2) and M² − d² = 4 ρ1 ρ2 cos²(ψ/2), so with S = (d − m)(d + m) and C = (M − d)(M + d): cos ψ = (C −
+// S)/(C + S), sin ψ = 2 √(S C)/(C + S). This avoids differences of nearly equal squares, which matters for
+// small d. A point on the axis has a constant distance: every angle is a solution, 0 is returned and `free`
+// is set.
 //
 // Reference: Paden 1986, §4.3; Elias & Wen 2022, §3.3.
 #pragma once
@@ -18,7 +18,7 @@
 
 namespace cspace {
 
-// theta[0] always holds an answer; theta[1] a second one where `two`, otherwise the first again.
+// theta[0] is always a solution; theta[1] is a second one if `two`, otherwise equal to the first.
 template <class V>
 struct Sp3 {
     Turn<V> theta[2];

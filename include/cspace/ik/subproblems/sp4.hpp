@@ -1,12 +1,13 @@
-// Subproblem 4: turn a point into a plane.
+// Subproblem 4: rotate a point into a plane.
 //
 //     min over θ of | hᵀ Rot(k, θ) p − d |
 //
-// Proof. Rot(k, θ) p = (k·p) k + cos θ p⊥ + sin θ k × p with p⊥ the part of p across the axis. Its product
-// with h is linear in (cos θ, sin θ):
+// Proof. Rot(k, θ) p = (k·p) k + cos θ p⊥ + sin θ k × p with p⊥ the component of p perpendicular to the axis.
+// Its product with h is linear in (cos θ, sin θ):
 //     a cos θ + b sin θ = d − (h·k)(k·p),  a = h·p⊥ = (k × h)·(k × p),  b = h·(k × p),
-// solved by cos_sin.hpp: two, one or no angle, and beyond the range the nearer end of it. If the point lies
-// on the axis or the plane is square to it (a = b = 0), every angle serves: 0 is returned and `free` is set.
+// solved by cos_sin.hpp: two, one or no angle; outside the range, the nearer end of it. If the point lies on
+// the axis or the plane is perpendicular to it (a = b = 0), every angle is a solution: 0 is returned and
+// `free` is set.
 //
 // Reference: Elias & Wen 2022, §3.4.
 #pragma once
@@ -15,7 +16,7 @@
 
 namespace cspace {
 
-// theta[0] always holds an answer; theta[1] a second one where `two`, otherwise the first again.
+// theta[0] is always a solution; theta[1] is a second one if `two`, otherwise equal to the first.
 template <class V>
 struct Sp4 {
     Turn<V> theta[2];

@@ -2,14 +2,14 @@
 //
 //     p0 + Rot(k1, θ1) p1 = p2 + Rot(k2, θ2) (p3 + Rot(k3, θ3) p4)
 //
-// Proof. Let a(θ1) = p0 − p2 + Rot(k1, θ1) p1 and b(θ3) = p3 + Rot(k3, θ3) p4. Some θ2 turns b into a about
+// Proof. Let a(θ1) = p0 − p2 + Rot(k1, θ1) p1 and b(θ3) = p3 + Rot(k3, θ3) p4. Some θ2 rotates b into a about
 // k2 exactly when both have the same height over k2 and the same length (subproblem 1):
 //     k2·a = k2·b,   ‖a‖² = ‖b‖².
-// Both are linear in the cosines and sines of θ1 and θ3, since ‖x + Rot(k, θ) y‖² = ‖x‖² + ‖y‖² +
-// 2 xᵀ Rot(k, θ) y and by the proof of subproblem 4. Two such equations have at most four answers
-// (two_angles.hpp); θ2 follows from subproblem 1, and any θ2 serves where the meeting point is on its axis.
-// Where no answer exists, the distance ‖a − Rot(k2, θ2) b‖ left by the best θ2 is the one between the points
-// (k2·a, ‖k2 × a‖) and (k2·b, ‖k2 × b‖) of the half plane; its least value over θ1 and θ3 is returned.
+// Both are linear in the cosines and sines of θ1 and θ3, since ‖x + Rot(k, θ) y‖² = ‖x‖² + ‖y‖² + 2 xᵀ Rot(k,
+// θ) y and by the proof of subproblem 4. Two such equations have at most four solutions (two_angles.hpp). θ2
+// follows from subproblem 1, and any θ2 is a solution if the meeting point is on its axis. If no solution
+// exists, the distance ‖a − Rot(k2, θ2) b‖ left by the best θ2 is the one between the points (k2·a, ‖k2 × a‖)
+// and (k2·b, ‖k2 × b‖) of the half plane; its least value over θ1 and θ3 is returned.
 //
 // Reference: Elias & Wen 2022, §3.5.
 #pragma once
@@ -23,7 +23,7 @@ namespace cspace {
 struct Sp5Problem {
     Vec3d p0, p1, p2, p3, p4, k1, k2, k3;
 };
-// Exact answers, or one least-squares answer with `exact` unset. `free`: they are not isolated.
+// Exact solutions, or one least-squares solution with `exact` unset. `free`: they are not isolated.
 struct Sp5 {
     int count = 0;
     Turn<double> theta[4][3];
@@ -56,7 +56,7 @@ struct HalfPlaneDistance {
     }
 };
 
-// The gap itself, as a function of all three angles; smooth also where the points meet on the axis k2.
+// The gap itself as a function of all three angles. It is smooth also where the points meet on the axis k2.
 struct Gap {
     static constexpr int angles = 3, equations = 3;
     const Sp5Problem& s;
@@ -92,7 +92,7 @@ inline TwoTurnEquations equations(const Sp5Problem& s) {
     return e;
 }
 
-// Completes θ1 and θ3 by θ2, refines all three and appends them; returns the distance left.
+// Computes θ2 for θ1 and θ3, refines all three and appends them; returns the remaining distance.
 inline double append(const Sp5Problem& s, const Turn<double>& first, const Turn<double>& third, Sp5& r) {
     const Sp1<double> second =
         subproblem_1(s.k2, s.p3 + rotate(s.k3, third, s.p4), s.p0 - s.p2 + rotate(s.k1, first, s.p1));
@@ -102,13 +102,13 @@ inline double append(const Sp5Problem& s, const Turn<double>& first, const Turn<
     return refine(Gap{s}, theta, 100);
 }
 
-// All lengths divided by their sum, which is one afterwards.
+// Divides all lengths by their sum, which is one afterwards.
 inline Sp5Problem scaled(const Sp5Problem& s, double size) {
     const double f = 1 / size;
     return {f * s.p0, f * s.p1, f * s.p2, f * s.p3, f * s.p4, s.k1, s.k2, s.k3};
 }
 
-// The least-squares answer.
+// The least-squares solution.
 inline Sp5 nearest(const Sp5Problem& s, double size) {
     Turn<double> at[6][2];
     const int count = valleys(HalfPlaneDistance{s}, 6, at);

@@ -1,12 +1,12 @@
-// Subproblem 6: two turned points per plane, two planes, two angles.
+// Subproblem 6: two rotated points per plane, two planes, two angles.
 //
 //     h1ᵀ Rot(k1, θ1) p1 + h2ᵀ Rot(k2, θ2) p2 = d1
 //     h3ᵀ Rot(k3, θ1) p3 + h4ᵀ Rot(k4, θ2) p4 = d2
 //
-// Proof. By the proof of subproblem 4 each product hᵀ Rot(k, θ) p is (h·k)(k·p) + a cos θ + b sin θ with
-// a = (k × h)·(k × p) and b = h·(k × p). Both equations are linear in the cosines and sines of the two
-// angles, which two_angles.hpp solves: at most four answers. Where none exists, the pair of angles with the
-// smallest length of the residual vector is returned.
+// Proof. By the proof of subproblem 4 each product hᵀ Rot(k, θ) p is (h·k)(k·p) + a cos θ + b sin θ with a =
+// (k × h)·(k × p) and b = h·(k × p). Both equations are linear in the cosines and sines of the two angles,
+// which two_angles.hpp solves: at most four solutions. If none exists, the pair of angles with the smallest
+// length of the residual vector is returned.
 //
 // Reference: Elias & Wen 2022, §3.6.
 #pragma once
@@ -16,12 +16,12 @@
 
 namespace cspace {
 
-// Equation i pairs (h, k, p)[2 i], turned by θ1, with (h, k, p)[2 i + 1], turned by θ2.
+// Equation i pairs (h, k, p)[2 i], rotated by θ1, with (h, k, p)[2 i + 1], rotated by θ2.
 struct Sp6Problem {
     Vec3d h[4], k[4], p[4];
     double d[2];
 };
-// Exact answers, or one least-squares answer with `exact` unset. `free`: they are not isolated.
+// Exact solutions, or one least-squares solution with `exact` unset. `free`: they are not isolated.
 struct Sp6 {
     int count = 0;
     Turn<double> theta[4][2];

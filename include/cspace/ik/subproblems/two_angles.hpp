@@ -3,13 +3,13 @@
 //     α_i + β_i·u + γ_i·w = 0,  i = 0, 1,  u = (cos θ, sin θ), w = (cos φ, sin φ)
 //
 // Proof. Write B and Γ for the matrices of rows β_i and γ_i. If Γ is regular, w = −Γ⁻¹ (α + B u), and ‖w‖ = 1
-// says ‖adj Γ (α + B u)‖² = (det Γ)²: a trigonometric polynomial of degree two in θ, hence at most four θ,
+// gives ‖adj Γ (α + B u)‖² = (det Γ)²: a trigonometric polynomial of degree two in θ, hence at most four θ,
 // each with one φ. If B is regular the roles may be exchanged; the side with the larger smallest singular
-// value is eliminated. If neither is regular, B u runs on a line along b and Γ w on a line along g. Crossing
-// with g leaves one linear equation of θ alone, crossing with b one of φ alone: two times two answers. If
-// these lines are parallel as well, only one equation is left for two angles: no answer or a one-parameter
-// family. Close to these cases the polynomial has nearly double roots; therefore all candidates are refined
-// by Newton's method on the two equations, where pairs of answers that share θ lie apart in φ.
+// value is eliminated. If neither is regular, B u moves on a line along b and Γ w on a line along g. The
+// cross product with g leaves one linear equation in θ alone, that with b one in φ alone: two times two
+// solutions. If these lines are parallel as well, only one equation remains for two angles: no solution or a
+// one-parameter set. Close to these cases the polynomial has near-double roots. All candidates are therefore
+// refined by Newton's method on the two equations, where pairs of solutions with the same θ differ in φ.
 #pragma once
 
 #include "cspace/ik/subproblems/refine.hpp"
@@ -22,7 +22,7 @@ struct TwoTurnEquations {
     double alpha[2], beta[2][2], gamma[2][2];
     double weight[2] = {1, 1};  // the size of each row before it was brought to one
 };
-// `free`: the answers are not isolated; those given represent them.
+// `free`: the solutions are not isolated; those given represent them.
 struct TwoTurns {
     int count = 0;
     Turn<double> u[4], w[4];
@@ -52,7 +52,7 @@ struct Residual {
     }
 };
 
-// What rounding may have left in the coefficients of rows brought to size one.
+// Bound of the rounding error in the coefficients of normalised rows.
 inline double noise(const TwoTurnEquations& e) {
     return tolerance::rounding / std::fmin(e.weight[0], e.weight[1]);
 }
@@ -65,8 +65,8 @@ inline double smallest_singular_value(const double m[2][2]) {
     const double largest = size(m);
     return largest > 0 ? std::fabs(determinant(m)) / largest : 0;
 }
-// Coefficients that are nothing but rounding become zero, so that what is degenerate looks so; the other rows
-// are brought to size one, so that a short row counts as much as a long one.
+// Coefficients within rounding become zero, so that degenerate cases are exactly degenerate. The other rows
+// are normalised, so that a short row has the same weight as a long one.
 inline TwoTurnEquations balanced(TwoTurnEquations e) {
     for (int i = 0; i < 2; ++i) {
         double largest = 0;
@@ -91,7 +91,7 @@ inline TwoTurnEquations exchanged(const TwoTurnEquations& e) {
 inline double chord(const Turn<double>& a, const Turn<double>& b) {
     return std::fabs(a.c - b.c) + std::fabs(a.s - b.s);
 }
-// Whether the answer is one of a family.
+// Whether the solution belongs to a one-parameter set.
 inline bool continues(const TwoTurnEquations& e, const Turn<double>* t) {
     const Residual system{e};
     Linearised<Residual> at;
@@ -107,9 +107,9 @@ inline bool continues(const TwoTurnEquations& e, const Turn<double>* t) {
     const double along[2] = {at.slope[i][1] / length, -at.slope[i][0] / length};
     return continues_along(system, t, along, zero);
 }
-// Refines a candidate and keeps it if it solves the equations and is new. Rows of equal size find the way;
-// rows of their true size settle what rounding in a short row would spoil when the equations are more than
-// the angles.
+// Refines a candidate and appends it if it solves the equations and is new. The iteration uses rows of equal
+// size. The final refinement uses rows of their true size, because normalising amplifies the rounding of a
+// short row if there are more equations than angles.
 inline void propose_candidates(const TwoTurnEquations& e, const Turn<double>& u, const Turn<double>& w,
                                TwoTurns& found) {
     Turn<double> t[2] = {u, w};
@@ -121,7 +121,7 @@ inline void propose_candidates(const TwoTurnEquations& e, const Turn<double>& u,
     found.u[found.count] = t[0];
     found.w[found.count++] = t[1];
 }
-// All w that suit a given u, by the larger row of Γ.
+// All w for a given u, by the larger row of Γ.
 inline void propose_with(const TwoTurnEquations& e, const Turn<double>& u, TwoTurns& found) {
     const auto length = [&](int i) { return std::hypot(e.gamma[i][0], e.gamma[i][1]); };
     const int i = length(1) > length(0);
@@ -131,13 +131,13 @@ inline void propose_with(const TwoTurnEquations& e, const Turn<double>& u, TwoTu
     if (w.two) propose_candidates(e, u, w.theta[1], found);
 }
 
-// The line on which M x runs when M is singular: its larger column.
+// The line on which M x moves if M is singular: its larger column.
 inline void range_of(const double m[2][2], double line[2]) {
     const int j = std::hypot(m[0][1], m[1][1]) > std::hypot(m[0][0], m[1][0]);
     line[0] = m[0][j], line[1] = m[1][j];
 }
 
-// Γ eliminated by its inverse.
+// Eliminates w by the inverse of Γ.
 inline void by_quartic(const TwoTurnEquations& e, TwoTurns& found) {
     const double (*g)[2] = e.gamma;
     double f[2][3];  // adj Γ (α + B u) as coefficients of 1, cos θ, sin θ
@@ -155,8 +155,8 @@ inline void by_quartic(const TwoTurnEquations& e, TwoTurns& found) {
     for (int i = 0; i < u.count; ++i) propose_with(e, u.theta[i], found);
 }
 
-// One equation β·u + γ·w + α = 0 is left for two angles: θ = 0 where some φ suits it, otherwise the θ in the
-// middle of those for which one does: |β·u| ≤ ‖β‖ and |α + β·u| ≤ ‖γ‖.
+// One equation β·u + γ·w + α = 0 remains for two angles. θ = 0 if some φ solves it, otherwise the middle of
+// the θ for which one does: |β·u| ≤ ‖β‖ and |α + β·u| ≤ ‖γ‖.
 inline void by_one_equation(const TwoTurnEquations& e, TwoTurns& found) {
     propose_with(e, no_turn<double>(), found);
     if (found.count) return;
@@ -168,7 +168,7 @@ inline void by_one_equation(const TwoTurnEquations& e, TwoTurns& found) {
     for (const Turn<double>& t : u.theta) propose_with(e, t, found);
 }
 
-// B and Γ singular (or nearly: then these are candidates beside those of the quartic).
+// B and Γ singular (or nearly: then these are candidates in addition to those of the quartic).
 inline void by_lines(const TwoTurnEquations& e, bool singular, TwoTurns& found) {
     double b[2], g[2];
     range_of(e.beta, b);

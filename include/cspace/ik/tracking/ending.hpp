@@ -1,4 +1,5 @@
-// How a branch ends: where exactly a limit is met, how singular the arm is there, and what is written down.
+// The end of a tracked branch: the exact point at which a limit is reached, how singular the arm is there,
+// and the record of it.
 #pragma once
 
 #include "cspace/ik/tracking/walker.hpp"
@@ -22,8 +23,8 @@ inline double least_singular_value(const ik::Path& path, const double* q) {
     return sigma[path.n < 6 ? path.n - 1 : 5];
 }
 
-// Finds the place between w.u, where w.q is inside the limits, and w.u + w.du, where w.trial is not, at which
-// the first limit is met; w moves there. Regula falsi that halves the value of an end it keeps (Dowell and
+// The point at which the first limit is reached, between w.u, where w.q is within the limits, and w.u + w.du,
+// where w.trial is not; w moves there. Regula falsi that halves the value of a retained end (Dowell and
 // Jarratt 1971).
 inline Outside meet_limit(const ik::Track& t, ik::Walker& w) {
     const int n = t.path->n;
@@ -65,7 +66,7 @@ inline Outside meet_limit(const ik::Track& t, ik::Walker& w) {
     return met;
 }
 
-// Writes down where and why the branch of a walker ends.
+// Records where the branch of a walker ends, and the cause.
 inline void finish_branch(const ik::Track& t, const ik::Walker& w, ik::Fate fate, int joint,
                           std::size_t reached) {
     const int n = t.path->n;

@@ -1,13 +1,13 @@
-// Branches followed along a path of poses, one per lane: predicted by slope and bend, corrected by Newton's
-// method, with steps cut until the correction is small beside the step (Allgower and Georg 1990). A lane
-// whose branch has ended takes the next branch.
+// Continuation of solution branches along a path of poses, one branch per lane. A step is predicted from
+// slope and curvature, and corrected by Newton's method. It is shortened until the correction is small
+// compared with the step (Allgower and Georg 1990). A lane whose branch has ended takes the next branch.
 #pragma once
 
 #include "cspace/ik/tracking/ending.hpp"
 
 namespace cspace {
 
-// The lanes of a track: what is measured next.
+// The lanes of a track: the configurations to evaluate next.
 template <class V>
 struct TrackLanes {
     Pose<V> goal;
@@ -27,7 +27,7 @@ CSPACE_INLINE void set_lane(Vec3<V>& to, int l, const Vec3d& from) {
     set_lane(to.z, l, from.z);
 }
 
-// Puts the trial of a walker into lane l. What is measured there serves the step after it.
+// Loads the trial of a walker into lane l. The evaluation there also serves the following step.
 template <class V>
 CSPACE_INLINE void load_trial(const ik::Track& t, const ik::Walker& w, int l, TrackLanes<V>& lanes) {
     const bool row = !w.starts && to_a_row(w);
@@ -42,7 +42,7 @@ CSPACE_INLINE void load_trial(const ik::Track& t, const ik::Walker& w, int l, Tr
     for (int j = 0; j < t.path->n; ++j) set_lane(lanes.q[j], l, w.trial[j]);
 }
 
-// A branch at its start, which is corrected to the first pose.
+// Initialises a branch at its start, which is corrected to the first pose.
 inline void begin_branch(const ik::Track& t, std::size_t branch, ik::Walker& w) {
     w.branch = branch;
     w.row = 0;
@@ -60,7 +60,7 @@ inline void begin_branch(const ik::Track& t, std::size_t branch, ik::Walker& w) 
     }
 }
 
-// The branch stands on its next pose; true if that is the last one.
+// Records that the branch has reached its next pose; true if it is the last one.
 inline bool arrive_at_pose(const ik::Track& t, ik::Walker& w) {
     w.u = 0;
     w.rows_tried = false;
@@ -71,7 +71,7 @@ inline bool arrive_at_pose(const ik::Track& t, ik::Walker& w) {
     return true;
 }
 
-// Takes the trial as the place of the walker; true if the branch has ended.
+// Accepts the trial as the state of the walker; true if the branch has ended.
 inline bool take_step(const ik::Track& t, ik::Walker& w) {
     const int broken = run_to(t, w, w.trial);
     if (w.starts) {
@@ -99,7 +99,7 @@ inline bool take_step(const ik::Track& t, ik::Walker& w) {
     return row && arrive_at_pose(t, w);
 }
 
-// After a step that was not taken: a step read off the rows before, else one half as long.
+// After a rejected step: a step estimated from the previous rows, else one half as long.
 inline void think_again(const ik::Track& t, ik::Walker& w) {
     if (w.by_rows) {
         w.by_rows = false;
@@ -109,8 +109,7 @@ inline void think_again(const ik::Track& t, ik::Walker& w) {
     w.reach = 0.5 * w.du * t.ways[w.row].length;
 }
 
-// Judges what was measured at the trial of a walker and plans what to measure next; true if its branch has
-// ended.
+// Evaluates the trial of a walker and plans the next evaluation; true if its branch has ended.
 inline bool go_on(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
     const std::size_t reached = w.row + !w.starts;
     switch (judge_step(t, w, at)) {

@@ -1,31 +1,31 @@
-// How configurations follow a moving pose, on lanes: the correction to where the pose is, the slope q' and
-// the bend q'' of the joints as the pose moves on.
+// Differential kinematics along a moving pose, on lanes: the correction to the pose, the slope q' and the
+// second derivative q'' of the joints along the path.
 //
-// With the twist t = [v; ω] of the pose, constant along its way,
+// With the twist t = [v; ω] of the pose, constant on each segment,
 //     J q' = t,    J q'' = −J' q'.
-// With joints to spare q' is the least one, q' = J⁺ t, and q'' has the part (I − J⁺J) J'ᵀ (J Jᵀ)⁻¹ t besides,
-// the rate of J⁺ across the rows of J (Golub and Pereyra 1973). With fewer than six coordinates all three are
-// solved by least squares.
+// With redundant joints q' is the minimum-norm solution, q' = J⁺ t, and q'' has the additional term (I − J⁺J)
+// J'ᵀ (J Jᵀ)⁻¹ t, the rate of J⁺ perpendicular to the rows of J (Golub and Pereyra 1973). With fewer than six
+// coordinates all three are solved by least squares.
 #pragma once
 
 #include "cspace/ik/numeric/path.hpp"
 
 namespace cspace {
 
-// The joints of a path at configurations, in base.
+// The joints of a path at configurations, in base coordinates.
 template <class V>
 struct PlacedJoints {
     Vec3<V> point[ik::max_path], axis[ik::max_path];
     Pose<V> tip;
 };
 
-// Twists [v; ω], lengths over that of the path, slides likewise.
+// Twists [v; ω]; lengths and prismatic joints are divided by the length of the path.
 template <class V>
 struct Twist {
     V entry[6];
 };
 
-// A = L Q, the k rows of Q orthonormal: of the rows of J where it is wide, else of its columns.
+// A = L Q with k orthonormal rows of Q, where A is J if J is wide, else Jᵀ.
 template <class V>
 struct Factors {
     V Q[6][ik::max_joints], L[6][6], inverse[6];
@@ -45,7 +45,8 @@ struct Motion {
 
 namespace cspace::inline CSPACE_ISA {
 
-// A row of J that the others leave this short of is lost: its direction cannot be told from rounding.
+// A row of J whose remainder is smaller than this is dependent: its direction cannot be distinguished from
+// rounding.
 inline constexpr double lost_direction = 1e-10;
 
 template <class V>
@@ -62,7 +63,7 @@ CSPACE_INLINE PlacedJoints<V> place_joints(const ik::Path& path, const V* q) {
     return at;
 }
 
-// What one unit of the scaled coordinate of joint i moves.
+// The motion of joint i per unit of its scaled coordinate.
 CSPACE_INLINE double unit_of(const ik::Path& path, int i) {
     const ChainJoint& joint = path.joint[i];
     return joint.ratio * (path.slides[joint.coordinate] ? path.length : 1.0);
@@ -169,7 +170,7 @@ CSPACE_INLINE void backward_solve(const Factors<V>& f, const V* b, V* y) {
     }
 }
 
-// x with J x = e: the least one, or that of the least squares. y (k,) is Q x.
+// x with J x = e: the minimum-norm solution, or the least-squares solution. y (k,) is Q x.
 template <class V>
 CSPACE_INLINE void solve_for(const Factors<V>& f, const V* e, V* x, V* y) {
     if (!f.wide) {
@@ -187,7 +188,7 @@ CSPACE_INLINE void solve_for(const Factors<V>& f, const V* e, V* x, V* y) {
     }
 }
 
-// Adds to q'' the part of it that only joints to spare have; y = Q q'.
+// Adds the term of q'' that only redundant arms have; y = Q q'.
 template <class V>
 CSPACE_INLINE void add_rate_of_inverse(const Factors<V>& f, const Twist<V>* J_rate, const V* y, V* bend) {
     V z[6], g[ik::max_joints];
@@ -204,7 +205,7 @@ CSPACE_INLINE void add_rate_of_inverse(const Factors<V>& f, const Twist<V>* J_ra
     for (int j = 0; j < f.width; ++j) bend[j] = bend[j] + g[j];
 }
 
-// The error of the tip against the goal, to first order in the rotation, and the largest part of it.
+// The tip error relative to the goal, to first order in the rotation, and its largest component.
 template <class V>
 CSPACE_INLINE Twist<V> error_of(const Pose<V>& tip, const Pose<V>& goal, double length, V& largest) {
     const Vec3<V> dp = (1 / length) * (goal.t - tip.t);
@@ -242,7 +243,7 @@ CSPACE_INLINE void measure_coordinates(const ik::Path& path, int n, const Pose<V
     if (n > 6) add_rate_of_inverse(f, J, y, out.bend);
 }
 
-// slope and bend are by the share of the way whose twist is given.
+// slope and bend are derivatives by the fraction of the segment whose twist is given.
 template <class V>
 CSPACE_NOINLINE void measure_motion(const ik::Path& path, const Pose<V>& goal, const Twist<V>& twist,
                                     const V* q, Motion<V>& out) {

@@ -1,4 +1,5 @@
-// One branch on its way along a path of poses: where it is, the step it tries next, and what is made of it.
+// State of one tracked branch: its position on a path of poses, its next trial step, and whether the step is
+// accepted.
 #pragma once
 
 #include <cstddef>
@@ -17,7 +18,7 @@ enum class Fate : unsigned char {
     unreachable,  // an arm of fewer than six joints cannot keep to the poses
 };
 
-// What all branches share, and where their results go.
+// Data shared by all branches, and the destination of their results.
 struct Track {
     const Path* path;
     const Posed* poses;
@@ -57,20 +58,22 @@ struct Walker {
 namespace cspace::inline CSPACE_ISA {
 
 namespace track {
-// Largest change of a coordinate in one step [rad, lengths of the path], and largest part of it that the bend
-// may have: what neglects the third derivative stays a few percent.
+// Largest change of a coordinate in one step [rad, lengths of the path], and largest fraction of it from the
+// second derivative. The neglected third derivative then contributes a few percent.
 inline constexpr double longest_step = 0.25, most_bend = 0.15;
-// Largest part of a step that corrections may have: other branches closer than this are nobody's.
+// Largest fraction of a step that corrections may have. Branches closer to each other than this cannot be
+// distinguished.
 inline constexpr double most_correction = 0.1;
 inline constexpr double free_correction = 1e-8;  // [rad, lengths] that is never too much
 inline constexpr int most_corrections = 6;
-// A fold takes some hundred steps, a joint a hundred per turn: whoever needs more gets nowhere.
+// A fold takes some hundred steps, a joint a hundred per revolution. A branch that exceeds this bound makes
+// no progress.
 inline constexpr int most_tries = 20000;
-// A correction below `small` leaves its square. What is closer than `met` is there.
+// A correction below `small` leaves an error of its square. An error below `met` counts as zero.
 inline constexpr double small = 1e-7, met = 1e-13;
-// Error of a pose that counts as reached where corrections do not vanish with it.
+// Pose error that counts as reached where the corrections do not converge to zero.
 inline constexpr double feasible = 1e-9;
-// Steps shorter than this share of a way, or than this length, are not tried: the branch ends.
+// Steps shorter than this fraction of a segment, or than this length, are not tried: the branch ends.
 inline constexpr double least_share = 1e-8, least_length = 1e-11;
 inline constexpr double slack = 1e-11;         // of limits [rad, m]
 inline constexpr double singular_row = 1e-7;   // least diagonal entry that leaves joints free
@@ -86,14 +89,15 @@ CSPACE_INLINE double scale_of(const ik::Path& path, int j) { return path.slides[
 CSPACE_INLINE void copy_numbers(const double* from, int n, double* to) {
     for (int j = 0; j < n; ++j) to[j] = from[j];
 }
-// The largest of n numbers, taken positive.
+// The largest absolute value of n numbers.
 CSPACE_INLINE double largest_of(const double* x, int n) {
     double largest = 0;
     for (int j = 0; j < n; ++j) largest = max(largest, std::fabs(x[j]));
     return largest;
 }
 
-// The step read off the last three rows: the parabola through them, over the length of the ways between.
+// The step estimated from the last three rows: the parabola through them, by the lengths of the segments
+// between them.
 inline void plan_by_rows(const ik::Track& t, ik::Walker& w) {
     const double a = t.ways[w.row - 2].length, b = t.ways[w.row - 1].length, h = t.ways[w.row].length;
     const double *q0 = row_of(t, w, w.row - 2), *q1 = row_of(t, w, w.row - 1);
@@ -107,7 +111,7 @@ CSPACE_INLINE bool rows_can_tell(const ik::Track& t, const ik::Walker& w) {
     return w.u == 0 && w.row >= 2 && t.ways[w.row - 2].length > 0 && t.ways[w.row - 1].length > 0;
 }
 
-// The longest step that slope and bend let hope for.
+// The longest step that slope and second derivative allow.
 inline double hopeful_step(const ik::Track& t, const ik::Walker& w) {
     const double slope = largest_of(w.slope, t.path->n), bend = largest_of(w.bend, t.path->n);
     const double length = t.ways[w.row].length;
@@ -119,7 +123,7 @@ inline double hopeful_step(const ik::Track& t, const ik::Walker& w) {
     return du;
 }
 
-// Sets du, planned and trial; false where the step would be too short to be taken.
+// Sets du, planned and trial; false if the step would be too short.
 inline bool plan(const ik::Track& t, ik::Walker& w) {
     const double left = 1 - w.u;
     w.corrections = 0;
@@ -149,7 +153,7 @@ CSPACE_INLINE bool to_a_row(const ik::Walker& w) { return w.du == 1 - w.u; }
 
 enum class Verdict { again, taken, failed, infeasible };
 
-// Takes a correction of the trial and judges the step.
+// Applies a correction to the trial and decides whether the step is accepted.
 inline Verdict judge_step(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
     const int n = t.path->n;
     double total = 0;
@@ -174,8 +178,8 @@ inline Verdict judge_step(const ik::Track& t, ik::Walker& w, const Motion<double
     return ++w.corrections < track::most_corrections ? Verdict::again : Verdict::failed;
 }
 
-// Moves the limits of coordinate j by the whole turns nearest to none that keep all that it has run through
-// between them; false where none do.
+// Shifts the limits of coordinate j by the smallest multiple of 2π that keeps its whole traversed range
+// between them; false if none does.
 inline bool fit_turns(const ik::Track& t, ik::Walker& w, int j) {
     if (!t.whole_turns || t.path->slides[j]) return false;
     constexpr double turn = track::whole_turn;
@@ -188,7 +192,7 @@ inline bool fit_turns(const ik::Track& t, ik::Walker& w, int j) {
     return true;
 }
 
-// By how much q is outside the limits where the walker stands, and the coordinate it concerns.
+// The amount by which q violates the limits, and the coordinate that does.
 struct Outside {
     double by;
     int joint;
@@ -203,8 +207,8 @@ inline Outside outside(const ik::Track& t, const ik::Walker& w, const double* q)
     return worst;
 }
 
-// Widens what the coordinates have run through to q. Returns the coordinate whose limits whole turns cannot
-// save, or −1.
+// Extends the traversed ranges of the coordinates to q. Returns the coordinate whose limits no multiple of 2π
+// satisfies, or −1.
 inline int run_to(const ik::Track& t, ik::Walker& w, const double* q) {
     int broken = -1;
     for (int j = 0; j < t.path->n; ++j) {
@@ -216,7 +220,7 @@ inline int run_to(const ik::Track& t, ik::Walker& w, const double* q) {
     return broken;
 }
 
-// The coordinate that has gone too far since the last pose, or −1.
+// The coordinate that has moved too far since the last pose, or −1.
 inline int too_far(const ik::Track& t, const ik::Walker& w, const double* q) {
     const double* from = row_of(t, w, w.row);
     for (int j = 0; j < t.path->n; ++j)

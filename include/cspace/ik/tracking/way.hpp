@@ -1,5 +1,5 @@
-// The way from one pose to the next: its point moves on a straight line, its rotation about an axis that
-// stands still, both at constant speed.
+// The segment between two poses: its point moves on a straight line, and its rotation about a fixed axis,
+// both at constant speed.
 #pragma once
 
 #include "cspace/ik/numeric/error.hpp"
@@ -21,7 +21,7 @@ inline ik::Way way_between(const Posed& from, const Posed& to, double arm_length
     return {from, step, turn, norm(step) / arm_length + norm(turn)};
 }
 
-// The pose at the share u of the way.
+// The pose at the fraction u of the segment.
 inline Posed pose_on(const ik::Way& way, double u) {
     const double angle = norm(way.turn);
     Posed at = {way.from.R, way.from.t + u * way.step};
