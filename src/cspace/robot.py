@@ -1,4 +1,5 @@
-"""The robot: one object with every function of it; each method is one line into its room."""
+"""The robot: one object with every function of the library; each method calls the free function of its
+package."""
 
 from __future__ import annotations
 
@@ -25,20 +26,21 @@ __all__ = ["Robot"]
 
 
 class Robot(RobotBase):
-    """A robot that can be asked where it is and how it moves.
+    """A robot: a kinematic chain or tree with its poses, velocities, inverse kinematics and export.
 
-    description: links and joints. base, tip: links; with a tip (or when the joints follow one another
-    anyway) the robot is the chain from base to tip, joints off it are held still and left out; without one
-    it may be a tree, whose frames are then asked for by name. floating: the base moves freely, and six
-    velocities come before those of the joints; None: if the description says so. T_world_base, T_tip_tool
-    (4, 4): where the base is mounted and what is mounted on the tip; both count in every function.
+    description: links and joints. base, tip: links. With a tip, or when the joints form a chain anyway, the
+    robot is the chain from base to tip; joints off the chain are locked and left out. Without a tip it may
+    be a tree, whose frames are addressed by name. floating: the base moves freely, and six velocities
+    precede those of the joints; None takes it from the description. T_world_base, T_tip_tool (4, 4): the
+    mounting of the base and the tool on the tip; both apply in every function. name: of the robot.
 
-    name: of the robot. dof: number of velocities. joint_names: the n coordinates of a configuration, in
-    order; joint_types: "R" (turns) or "P" (slides) per coordinate. limits: each (n,). frames: every name
-    that fk knows. base, tip, leaves: names of links. mass: of all links it keeps [kg]. floating,
-    description: as given.
+    dof: number of velocities. joint_names: the n coordinates of a configuration, in order; joint_types: "R"
+    (revolute) or "P" (prismatic) per coordinate. limits: each (n,). frames: every name that fk accepts.
+    base, tip, leaves: names of links. mass: of all links of the robot [kg]. floating, description: as
+    given.
 
-    Raises UnknownNameError for a link that is not there, InputError for a base= that leaves a choice of tips.
+    Raises UnknownNameError for a link that does not exist, InputError for a base= with more than one
+    possible tip.
     """
 
     def __init__(
@@ -76,9 +78,9 @@ class Robot(RobotBase):
         self.mass = float(assembly.mass.sum())
 
     _ik_room = 0  # rows that the solutions of a goal may need; 0 before a solver is built
-    _ik_direct = False  # whether a goal settles the joints, known once a solver is built
-    _ik_reach = float("inf")  # how far from the base a goal's point may be [m], where the goal adds a slide
-    _ik_uncounted: tuple[int, ...] = ()  # joints that stand for a goal and count in no distance
+    _ik_direct = False  # whether a goal determines the joints, known once a solver is built
+    _ik_reach = float("inf")  # largest distance of a goal point from the base [m]
+    _ik_uncounted: tuple[int, ...] = ()  # virtual joints of a goal, which count in no distance
 
     @classmethod
     def from_urdf(
@@ -138,33 +140,33 @@ class Robot(RobotBase):
         return cls(model.from_screws(axes, points, one_pose(T_zero, "T_zero"), **options))
 
     def to_urdf(self, path: str | os.PathLike[str] | None = None) -> str:
-        """The text of a URDF file, written to `path` if there is one; see model.to_urdf.
+        """The text of a URDF file, written to `path` if one is given; see model.to_urdf.
 
-        It holds the whole description, tool and mounting included.
+        The text contains the whole description, including tool and mounting.
         """
         return model.to_urdf(self._whole(), path)
 
     def to_toml(self, path: str | os.PathLike[str] | None = None) -> str:
-        """The text of a TOML file, written to `path` if there is one; see model.to_toml.
+        """The text of a TOML file, written to `path` if one is given; see model.to_toml.
 
-        It holds the whole description, tool and mounting included.
+        The text contains the whole description, including tool and mounting.
         """
         return model.to_toml(self._whole(), path)
 
     def to_dh(self, *, convention: str) -> DHTable:
-        """The Denavit–Hartenberg table from base to tip, tool and mounting included; see model.to_dh."""
+        """The Denavit–Hartenberg table from base to tip, including tool and mounting; see model.to_dh."""
         return model.to_dh(self.chain, convention=convention)
 
     def link_matrices(self, *, convention: str = "standard") -> LinkMatrices:
-        """The matrices of the links and their products with c1, s12 and the like as symbols.
+        """The matrices of the links and their products, with c1, s12 and the like as symbols.
 
-        convention: of the Denavit–Hartenberg table behind them, "standard" or "modified". The result prints,
+        convention: of the underlying Denavit–Hartenberg table, "standard" or "modified". The result prints,
         has to_markdown() and to_latex(), and can be evaluated; see model.link_matrices.
         """
         return model.link_matrices(self.to_dh(convention=convention))
 
     def to_screws(self) -> Chain:
-        """The joint axes at zero from base to tip, tool and mounting included; the same as chain."""
+        """The joint axes at zero from base to tip, including tool and mounting; the same as chain."""
         return self.chain
 
     def export(
@@ -175,12 +177,12 @@ class Robot(RobotBase):
         name: str | None = None,
         locked: Any = None,
     ) -> Export:
-        """The inverse kinematics as source code that needs nothing of cspace, written to `path` if there is
-        one; see export.export, which also names the errors.
+        """The inverse kinematics as source code that does not depend on cspace, written to `path` if one is
+        given.
 
-        lang: "cpp", "c" or "python"; by the ending of path unless given. name: of the namespace in it.
-        locked: joints whose values the caller of the code gives; of arms of more than six the solver's
-        choice.
+        See export.export, which also names the errors. lang: "cpp", "c" or "python"; by the suffix of path
+        unless given. name: of the namespace in the code. locked: joints whose values the caller of the code
+        supplies; for arms with more than six joints, the solver's choice unless given.
         """
         from cspace.export import export
 
@@ -215,31 +217,33 @@ class Robot(RobotBase):
         return kinematics.screws(self._assembly, self.name)
 
     def ik_plan(self, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
-        """How ik solves this arm: the geometry found, the steps, the equations with its numbers.
+        """How ik solves this arm: the geometry found, the steps, and the equations with the arm's numbers.
 
-        goal_parts: for goals that ask for less than a pose, their keywords, such as ("position",
-        "direction"), or a dict with values. locked: joints that will be held, with their values. The result
-        prints, has to_markdown(), to_latex() and residuals(q, T), and is false, with a reason, for an arm
-        that nothing solves; see cspace.ik.ik_plan.
+        goal_parts: the keywords of a partial goal, such as ("position", "direction"), or a dict with
+        values. locked: joints that will be locked, with their values. The result prints and has
+        to_markdown(), to_latex() and residuals(q, T). For an arm without a solver it is falsy and gives the
+        reason; see cspace.ik.ik_plan.
         """
         from cspace.ik.explain import ik_plan
 
         return ik_plan(self, goal_parts=goal_parts, locked=locked, tool_axis=tool_axis)
 
     def with_tool(self, T_tip_tool: PoseLike) -> Robot:
-        """The same robot with a tool on its tip; the new tip is the frame "tool", and it counts everywhere.
+        """The same robot with a tool on its tip. The new tip is the frame "tool", and it applies in every
+        function.
 
-        T_tip_tool (4, 4): the tool in the tip, after tools that are there already.
-        Raises InputError for what is no pose, and for a tree without tip.
+        T_tip_tool (4, 4): the pose of the tool in the tip frame, after any tools that are already attached.
+        Raises InputError for a value that is not a pose, and for a tree without a tip.
         """
         tool = one_pose(T_tip_tool, "T_tip_tool")
         return self._changed(T_tip_tool=tool if self._T_tip_tool is None else self._T_tip_tool @ tool)
 
     def with_base(self, T_world_base: PoseLike) -> Robot:
-        """The same robot mounted in the world: its poses are then in the world, in every function.
+        """The same robot mounted in the world: its poses are world poses in every function.
 
-        T_world_base (4, 4): what was the base, in the world; on a mounted robot the mount itself is moved.
-        Raises InputError for what is no pose, and for a floating base, which is placed in each call instead.
+        T_world_base (4, 4): the pose of the present base frame in the world; for a mounted robot the mount
+        itself is moved. Raises InputError for a value that is not a pose, and for a floating base, whose
+        pose is an argument of each call instead.
         """
         mount = one_pose(T_world_base, "T_world_base")
         return self._changed(T_world_base=mount if self._T_world_base is None else mount @ self._T_world_base)
@@ -249,8 +253,8 @@ class Robot(RobotBase):
     ) -> Array:
         """Configurations drawn uniformly between the limits; see kinematics.random_configurations.
 
-        n: how many; None gives one. rng: seed or generator. A turning joint without limits is drawn from
-        (−π, π]; a sliding one needs reach [m]. Returns q (n, n_joints) or (n_joints,) [rad or m].
+        n: how many; None gives one. rng: seed or generator. A revolute joint without limits is drawn from
+        (−π, π]; a prismatic one needs reach [m]. Returns q (n, n_joints) or (n_joints,) [rad or m].
         """
         return kinematics.random_configurations(self.limits, self.joint_types, n, rng=rng, reach=reach)
 
@@ -262,9 +266,11 @@ class Robot(RobotBase):
         locked: Mapping[Any, float] | None = None,
         **parts: Any,
     ) -> Redundancy:
-        """Where a joint to spare may be while all keep their limits and reach a goal; see ik.redundancy.
+        """The feasible values of a redundant joint: a goal is reached and all limits are kept; see
+        ik.redundancy.
 
-        goal: a pose (4, 4), or parts of one by name, as `ik` takes them (position=, direction=, tool_axis=).
+        goal: a pose (4, 4), or parts of one by name, as `ik` takes them (position=, direction=,
+        tool_axis=).
         """
         from cspace.ik import redundancy
 
@@ -291,7 +297,7 @@ class Robot(RobotBase):
         return ik_many_starts(self, goal, starts, **options)
 
     def ik_tasks(self, tasks: Any, start: Any = None, **options: Any) -> TaskSolution:
-        """The configuration that serves several tasks best, by steps from start (n,).
+        """The configuration that minimises the weighted errors of several tasks, by steps from start (n,).
 
         options: limits, starts, max_iterations, tolerance, rng, T_world_base, as in ik.ik_tasks, which also
         names the errors.
@@ -301,9 +307,11 @@ class Robot(RobotBase):
         return ik_tasks(self, tasks, start, **options)
 
     def task_velocity(self, q: Any, tasks: Any, dt: float, **options: Any) -> Array:
-        """The velocities (dof,) that serve several tasks best in the next step of dt [s], at q (n,).
+        """The velocities (dof,) that minimise the weighted errors of several tasks in the next step of dt
+        [s], at q (n,).
 
-        options: limits, velocity, damping, T_world_base, as in ik.task_velocity, which also names the errors.
+        options: limits, velocity, damping, T_world_base, as in ik.task_velocity, which also names the
+        errors.
         """
         from cspace.ik import task_velocity
 
@@ -318,19 +326,20 @@ class Robot(RobotBase):
         cost: str | Callable[[Array], Any] = "length",
         max_step: Any = np.pi / 2,
     ) -> Track:
-        """The branches of configurations that follow a path of poses (n, 4, 4), and where the others end.
+        """The branches of configurations that follow a path of poses (n, 4, 4), and where each other branch
+        ends.
 
-        start (dof,): follow the branch nearest to it alone. limits: True for the robot's, False for none, or
-        Limits. cost: of the best branch, "length", "step", "time" or a function of q (n, dof). max_step: how
-        far a joint may turn from one pose to the next [rad], or (dof,). See ik.track, which also names the
-        errors.
+        start (dof,): follow only the branch nearest to it. limits: True for the robot's, False for none, or
+        Limits. cost: of the best branch, "length", "step", "time" or a function of q (n, dof). max_step:
+        the largest joint displacement between neighbouring poses [rad], or (dof,). See ik.track, which also
+        names the errors.
         """
         from cspace.ik import track
 
         return track(self, poses, start, limits=limits, cost=cost, max_step=max_step)
 
     def resolved_rate(self, q: Any, twist: Any, **options: Any) -> Array:
-        """The least joint velocities (..., dof) that give the tip a twist (..., 6) at q (..., n).
+        """The joint velocities (..., dof) of least norm that give the tip a twist (..., 6) at q (..., n).
 
         options: frame, point, expressed_in, damping, null_space, velocity, T_world_base, threads, as in
         ik.resolved_rate, which also names the errors.

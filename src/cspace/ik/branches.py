@@ -32,8 +32,8 @@ SPHERICAL_WRIST, THREE_PARALLEL = 1, 2
 LAST_PARALLEL = 0
 NOISE = 1e-9
 LEVEL = 1e-6
-"""Part of its own length up to which an elbow or a slide counts as being on the line: rounding moves it by
-the root of 1e-15 there."""
+"""Part of its own length up to which an elbow or a prismatic joint counts as being on the line: rounding
+moves it by the root of 1e-15 there."""
 
 Words = Callable[[Placed, int], str]
 """The name of one configuration, from where the arm is and the number of its branch."""
@@ -78,7 +78,7 @@ def six_joints(other: int, wrist_bit: int, forearm_end: int | None) -> Words:
 
 
 def words_of_completed(chain: Any) -> Words | None:
-    """Arms of four and five turning joints: axis 1 square to parallel axes 2 and 3."""
+    """Arms of four and five revolute joints: axis 1 perpendicular to parallel axes 2 and 3."""
     h, p = chain.axes, chain.points
     if not (are_square(h[0], h[1]) and are_parallel(h[1], h[2])):
         return None
@@ -97,7 +97,7 @@ def shoulder_and_elbow_at_meeting(at: Placed, _: int) -> str:
 
 
 def words_of_few(chain: Any) -> Words | None:
-    """Arms of up to three joints, turning or sliding."""
+    """Arms of up to three joints, revolute or prismatic."""
     kinds, h = chain.joint_types, chain.axes
     turns = [i for i, kind in enumerate(kinds) if kind == "R"]
     slides = [i for i, kind in enumerate(kinds) if kind == "P"]
@@ -183,7 +183,8 @@ def link(at: Placed, turn: int, sliding: int) -> str:
 
 
 def side_of(at: Placed, turn: int, sliding: int, end: Array, words: tuple[str, str]) -> str:
-    """On which side of a turning axis `end` lies, along a slide; "level" with it at the fold between."""
+    """On which side of a turning axis `end` lies, along a prismatic joint; "level" with it at the fold
+    between."""
     from_axis = across(end - at.points[turn], at.axes[turn])
     ahead = from_axis @ at.axes[sliding]
     if abs(ahead) <= LEVEL * np.linalg.norm(from_axis):
@@ -192,5 +193,5 @@ def side_of(at: Placed, turn: int, sliding: int, end: Array, words: tuple[str, s
 
 
 def across(v: Array, h: Array) -> Array:
-    """The part of v square to the unit vector h."""
+    """The part of v perpendicular to the unit vector h."""
     return np.asarray(v - (v @ h) * h)

@@ -60,7 +60,8 @@ class Geometry:
 
 
 def geometry(robot: Any) -> Geometry:
-    """The closed form that serves `robot`, or why there is none; what is no robot raises InputTypeError."""
+    """The closed form that serves `robot`, or why there is none; a value that is not a robot raises
+    InputTypeError."""
     missing = ""
     try:
         prepare(robot)
@@ -85,7 +86,7 @@ def geometry(robot: Any) -> Geometry:
 
 
 def redundant_geometry(robot: Any, tested: tuple[Condition, ...]) -> Geometry:
-    """Of an arm with joints to spare: which of them are held, and how the others are solved."""
+    """Of an arm with redundant joints: which of them are locked, and how the others are solved."""
     from cspace.ik.locked_joints import lock_joints
 
     solver = lock_joints(robot, {}).solver

@@ -53,9 +53,8 @@ def place(chain: Any, q: Array) -> Placed:
 
 
 def front_at_zero(chain: Any) -> Array:
-    """The direction square to axes 1 and 2 in which the tip lies from axis 1 at zero; if it stands upright,
-    the one in which joint 2 tilts it.
-    """
+    """The direction perpendicular to axes 1 and 2 in which the tip lies from axis 1 at zero; if it stands
+    upright, the one in which joint 2 tilts it."""
     if len(chain.axes) < 2:
         return np.zeros(3)
     (h1, h2), p1, tip = chain.axes[:2], chain.points[0], chain.T_zero[:3, 3]

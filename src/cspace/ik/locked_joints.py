@@ -45,7 +45,7 @@ class LockedArm:
 
     @property
     def freedom(self) -> tuple[str, ...]:
-        """What the goal leaves free, by the joints held in its place."""
+        """What the goal leaves free, by the locked joints in its place."""
         return self.parameters if self.solver.redundancy_degree else ()
 
     def whole(self, q: Array) -> Array:
@@ -107,7 +107,7 @@ def by_name(robot: Any, locked: Mapping[Any, Any]) -> dict[str, Any]:
 
 
 def locked_in_words(robot: Any, locked: Mapping[int, Any]) -> str:
-    """Joints with the values at which they are held: lift = 0.2 m, wrist = 1.5 rad."""
+    """Joints with the values at which they are locked: lift = 0.2 m, wrist = 1.5 rad."""
     values = ((robot.joint_names[k], value_in_words(robot, k, value)) for k, value in locked.items())
     return ", ".join(f"{name} = {value}" for name, value in values)
 
@@ -118,7 +118,7 @@ def value_in_words(robot: Any, joint: int, value: Any) -> str:
 
 
 def leads_ahead(robot: Any) -> npt.NDArray[np.bool_]:
-    """Which joints are slides that a goal adds and that only lead ahead, as a look does."""
+    """Which joints are prismatic joints that a goal adds and that only lead ahead, as a look does."""
     out = np.zeros(robot.dof, dtype=bool)
     out[list(robot._ik_uncounted)] = robot.limits.lower[list(robot._ik_uncounted)] == 0.0
     return out
@@ -164,7 +164,7 @@ def with_joints_locked(chain: Any, locked: dict[int, float]) -> tuple[Array, Arr
 
 
 def without_locked(robot: Any, locked: Mapping[int, float]) -> Any:
-    """The arm of the joints that move, without limits; those held stand at their values."""
+    """The arm of the joints that move, without limits; the locked ones stand at their values."""
     chain = robot.chain
     rows = [k for k in range(len(chain.joint_types)) if k not in locked]
     axes, points, T_zero = with_joints_locked(chain, dict(locked))

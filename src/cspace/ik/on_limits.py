@@ -65,7 +65,7 @@ def settle_row(robot: Any, q: Array, limits: Limits, rows: slice) -> Array:
 
 
 def onto_limits(q: Array, locked: Flags, kinds: str, lower: Array, upper: Array) -> tuple[Array, Flags]:
-    """q (dof,) with joints slightly beyond a limit set to it, and which joints are held there so far."""
+    """q (dof,) with joints slightly beyond a limit set to it, and which joints are locked there so far."""
     moved, _ = into_limits(q, kinds, lower, upper, DOUBLE_SOLUTION)
     return moved, locked | (moved == lower) | (moved == upper)
 

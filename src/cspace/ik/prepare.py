@@ -21,10 +21,10 @@ MOST_SOLUTIONS = 16
 def prepare(robot: Any) -> None:
     """Build the solver of `robot` once: its axes, points and tip at zero go to the core, which looks for a
     form. Afterwards robot._ik_direct says whether a pose settles its joints and that solver answers; else
-    some of them are held, see cspace.ik.redundancy.solve.
+    some of them are locked, see cspace.ik.redundancy.solve.
 
-    Raises InputTypeError for what is no robot, NoClosedFormError for joints that mimic others, a floating
-    base, no joint or more than sixteen.
+    Raises InputTypeError for a value that is not a robot, NoClosedFormError for joints that mimic others, a
+    floating base, no joint or more than sixteen.
     """
     check_robot(robot)
     if robot._ik_room:

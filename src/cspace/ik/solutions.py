@@ -56,9 +56,9 @@ def verdict_name(verdict: int) -> str:
 class Solutions(_core.SolutionsBase):
     """Every configuration that reaches one goal.
 
-    q: (k, dof) [rad, m], revolute joints in (−π, π]. goal: T_base_tip (4, 4). Truthy if there is a solution;
-    `status` is "exact", "singular", "unreachable" or "least_squares", and `reason` says it in a sentence. The
-    filters `within`, `nearest`, `wrapped` return the same kind of object.
+    q: (k, dof) [rad, m], revolute joints in (−π, π]. goal: T_base_tip (4, 4). Truthy if there is a
+    solution; `status` is "exact", "singular", "unreachable" or "least_squares", and `reason` says it as one
+    sentence. The filters `within`, `nearest`, `wrapped` return the same kind of object.
     """
 
     __slots__ = ()
@@ -138,7 +138,7 @@ class Solutions(_core.SolutionsBase):
 
     @property
     def reason(self) -> str:
-        """The verdict in a sentence."""
+        """The verdict as one sentence."""
         if self._note is not None:
             return self._note
         if self._status == UNREACHABLE:
@@ -165,7 +165,7 @@ class Solutions(_core.SolutionsBase):
         whole_pose = self.goal.shape == (4, 4)
         return tuple(self_motion_at(self.robot, row, self.q[row], whole_pose) for row in rows)
 
-    if not TYPE_CHECKING:  # which reports such names itself
+    if not TYPE_CHECKING:  # type checkers report such names themselves
 
         def __getattr__(self, name: str) -> Any:
             raise attribute_error(self, name)

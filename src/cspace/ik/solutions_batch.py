@@ -61,7 +61,7 @@ class SolutionsBatch:
         self._partial = partial  # solve_partial.Many, where the goals are no poses
         self.freedom = freedom
 
-    if not TYPE_CHECKING:  # which reports such names itself
+    if not TYPE_CHECKING:  # type checkers report such names themselves
 
         def __getattr__(self, name: str) -> Any:
             raise attribute_error(self, name)
@@ -117,9 +117,8 @@ class SolutionsBatch:
 
     @property
     def reason(self) -> npt.NDArray[np.object_]:
-        """The verdict of each goal in a sentence, (...,). Made when read, goal by goal: an unreachable one
-        costs a search, so for a few goals ask batch[i].reason.
-        """
+        """The verdict of each goal as one sentence, (...,). Made when read, goal by goal: an unreachable
+        one costs a search, so for a few goals ask batch[i].reason."""
         return self._of_each("reason", np.dtype(object))
 
     @property

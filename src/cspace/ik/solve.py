@@ -57,7 +57,7 @@ class Wish:
 
     @property
     def holds(self) -> bool:
-        """Whether something is held, or sampled at a number of values of one's own."""
+        """Whether something is locked, or sampled at a number of values of one's own."""
         return self.locked is not None or self.samples is not None
 
 
@@ -90,23 +90,23 @@ def inverse_kinematics(
     ray=(p, d): the line of the tool axis, through p along d. tool_axis: in the tip, "x", "-z" or any (3,).
 
     near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
-    singular pose leaves free take its values. Limits choose among a joint's whole turns, not among solutions,
-    and with joints to spare count for nothing. locked: joints held at given values, by name or number,
-    {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with two spherical
-    joints, the angle of its elbow about the line from shoulder to wrist [rad] (see `cs.ik.swivel`), or many.
-    samples: of an arm with one joint to spare, at how many of its values branches are listed (16 unless
-    given). least_squares: where nothing reaches the goal, the answer is the configuration that misses least
-    (a radian weighs like the arm's characteristic length). threads: for a batch, all cores unless given; the
-    answer does not depend on it.
+    singular pose leaves free take its values. Limits choose among a joint's multiples of 2π, not among
+    solutions, and with redundant joints count for nothing. locked: locked joints at given values, by name
+    or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with
+    two spherical joints, the angle of its elbow about the line from shoulder to wrist [rad] (see
+    `cs.ik.swivel`), or many. samples: of an arm with one redundant joint, at how many of its values
+    branches are listed (16 unless given). least_squares: where nothing reaches the goal, the answer is the
+    configuration that misses least (a radian weighs like the arm's characteristic length). threads: for a
+    batch, all cores unless given; the answer does not depend on it.
 
-    An arm with more than six joints, or some of which do the work of others, leaves freedom, which `freedom`
-    of the answer names. With locked= for all joints to spare every solution of the others is listed; with
-    near= the nearest of all; else, with one joint to spare, all branches at values of it spread over its
-    feasible intervals, and with more the configuration nearest to the middle of the limits.
+    An arm with more than six joints, or some of which do the work of others, leaves freedom, which
+    `freedom` of the answer names. With locked= for all redundant joints every solution of the others is
+    listed; with near= the nearest of all; else, with one redundant joint, all branches at values of it
+    spread over its feasible intervals, and with more the configuration nearest to the middle of the limits.
 
     Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
-    with the reason); a goal that is no pose raises InputError; joints that mimic others, a floating base or
-    more than sixteen joints raise NoClosedFormError.
+    with the reason); a goal that is not a pose raises InputError; joints that mimic others, a floating base
+    or more than sixteen joints raise NoClosedFormError.
     """
     check_robot(robot)
     workers = thread_count(threads, (1,)) or os.cpu_count() or 1
@@ -220,8 +220,8 @@ def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
 
 def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
     """The wish in terms of the arm with the joints that stand for what the goal leaves open: these begin
-    where they bring the seed closest to the goal, and joints are held by name, for their numbers are others.
-    """
+    where they bring the seed closest to the goal, and joints are locked by name, for their numbers are
+    others."""
     from cspace.ik.redundancy.solve import count_redundancy
 
     locked, near = wish.locked, None

@@ -181,9 +181,8 @@ def subproblem_4(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
     """The angles that turn p into the plane hᵀ x = d: min |hᵀ Rot(k, θ) p − d|.
 
     h (..., 3) normal of the plane, of any length; k (..., 3) axis; p (..., 3) point; d (...) in units of
-    ‖h‖ times length; theta (..., 2). Exact if the plane cuts the circle of p; free if the plane is square to
-    the axis or p lies on the axis.
-    Source: Elias & Wen 2022, §3.4.
+    ‖h‖ times length; theta (..., 2). Exact if the plane cuts the circle of p; free if the plane is
+    perpendicular to the axis or p lies on the axis. Source: Elias & Wen 2022, §3.4.
     """
     arrays = [
         amounts(h, "h", last=(3,)),

@@ -29,7 +29,7 @@ def turning(kinds: Sequence[str]) -> Flags:
 
 
 def short_way(gap: Array, kinds: Sequence[str]) -> Array:
-    """Differences (..., dof) of configurations, those of turning joints the short way round."""
+    """Differences (..., dof) of configurations, those of revolute joints the short way round."""
     return np.where(turning(kinds), np.pi - np.mod(np.pi - gap, TURN), gap)
 
 
@@ -96,7 +96,8 @@ def violations(q: Array, kinds: Sequence[str], lower: Array, upper: Array, slack
 def all_windings(
     q: Array, kinds: Sequence[str], lower: Array, upper: Array
 ) -> tuple[npt.NDArray[np.intp], Array]:
-    """Every combination of whole turns inside the limits: the row each comes from, and the configurations.
+    """Every combination of multiples of 2π inside the limits: the row each comes from, and the
+    configurations.
 
     A joint without limits is kept in (−π, π], one with a limit on one side as near to it as the limit lets
     it: it has infinitely many copies. Raises InputError for more than tolerances.MOST_WINDINGS of them.

@@ -1,4 +1,4 @@
-"""Worlds of the plane: polygons and occupancy grids."""
+"""Worlds of the plane: polygonal obstacles and occupancy grids."""
 
 from cspace.maps.movingai import Scenarios, read_scenarios
 from cspace.maps.occupancy_grid import OccupancyGrid

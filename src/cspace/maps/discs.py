@@ -1,4 +1,4 @@
-"""Discs as polygons around them."""
+"""Discs approximated by circumscribed polygons."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ MOST_SIDES: Final = 1 << 20
 
 
 def disc_outlines(centers: Any, radii: Any, sides: int) -> list[Array]:
-    """A regular polygon (sides, 2) [m] around each disc; its first side looks along x."""
+    """A regular circumscribed polygon (sides, 2) [m] of each disc; its first side faces the x direction."""
     at = as_floats(centers, "centers", last=(2,), largest=FARTHEST_POINT)
     reach = as_floats(radii, "radii", largest=FARTHEST_POINT)
     if at.ndim != 2:

@@ -1,4 +1,4 @@
-"""The bytes, text and paths of map files."""
+"""Reading map files: bytes, text and paths."""
 
 from __future__ import annotations
 
@@ -13,17 +13,18 @@ __all__ = ["map_bytes", "map_path", "map_text"]
 
 
 def map_path(path: Any) -> str:
-    """The path as text; InputTypeError for what is none."""
+    """The path as text; InputTypeError for any other type."""
     return files.path_of(path, "a map file is given by its path")
 
 
 def map_bytes(path: str | os.PathLike[str]) -> bytes:
-    """The bytes of a map file; MapError names the path of one that is missing, too large or not readable."""
+    """The bytes of a map file; MapError names the path of a file that is missing, too large or not
+    readable."""
     return files.read_regular(map_path(path), "map", MAP_BYTES, MapError)
 
 
 def map_text(path: str | os.PathLike[str]) -> str:
-    """The text of a map file in UTF-8; MapError as in map_bytes, and with the byte that is none."""
+    """The text of a map file in UTF-8; MapError as in map_bytes, and with the position of an invalid byte."""
     try:
         return map_bytes(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:

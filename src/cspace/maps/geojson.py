@@ -1,4 +1,4 @@
-"""Polygons from and to GeoJSON (RFC 7946: Butler et al. 2016), as coordinates of the plane."""
+"""GeoJSON (RFC 7946: Butler et al. 2016): reads and writes polygons as coordinates of the plane."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def _parsed(path: str) -> dict[str, Any]:
 
 
 def _polygons(thing: Any, path: str | None, where: str) -> Iterator[list[Any]]:
-    """The rings of each polygon in a GeoJSON object; geometries without area are passed over."""
+    """The rings of each polygon in a GeoJSON object; geometries without area are skipped."""
     kind = thing.get("type") if isinstance(thing, dict) else None
     if kind == "FeatureCollection":
         for i, feature in enumerate(_list(thing, "features", path, where)):
@@ -79,7 +79,7 @@ def _list(thing: dict[str, Any], name: str, path: str | None, where: str) -> lis
 
 
 def _plane(rings: Any, path: str | None, where: str) -> list[Any]:
-    """The rings without heights."""
+    """The rings with the height coordinates removed."""
     try:
         made = [[[point[0], point[1]] for point in ring] for ring in rings]
     except (TypeError, IndexError, KeyError):

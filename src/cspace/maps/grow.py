@@ -1,9 +1,9 @@
-"""Obstacles grown by the radius of a disc: the world that its centre moves in.
+"""Minkowski sum of polygonal obstacles and a disc: the configuration space of the disc's centre.
 
-The exact shape has an arc around each corner. Here a corner gets a polygon around the disc instead, whose
-sides touch it in chosen directions. In those directions nothing is given away, so they are, beside evenly
-spread ones: across the walls that meet in the corner, and towards each corner and wall that the disc just
-passes, so that a gap is open exactly if the disc fits.
+The exact sum has an arc around each corner. Here each arc is replaced by a circumscribed polygon whose
+sides touch the disc in chosen directions. In those directions the polygon adds nothing to the exact sum.
+The directions are evenly spread ones, the normals of the two walls at the corner, and the directions to
+each corner and wall that the disc can just pass. A gap is therefore open exactly if the disc fits.
 """
 
 from __future__ import annotations
@@ -20,10 +20,10 @@ from cspace.maps.outlines import Outline
 __all__ = ["grown"]
 
 TURN: Final = 2**40
-"""Directions are whole numbers, so many to a turn: those that differ by roundings are one, and what is
-opposite is so exactly."""
+"""Directions are quantised to integers, this many per revolution: those that differ by rounding become
+equal, and opposite directions are exactly opposite."""
 BLOCK: Final = 64
-"""Corners that are compared at once with the walls near them."""
+"""The number of corners compared at once with the walls near them."""
 
 Directions = npt.NDArray[np.int64]
 
@@ -31,10 +31,11 @@ Directions = npt.NDArray[np.int64]
 def grown(
     outlines: list[Outline], bounds: Array, radius: float, sides: int, keep: Array
 ) -> tuple[list[Outline], Array]:
-    """The sum of the obstacles with polygons around the disc, inside bounds that are shrunk.
+    """The sum of the obstacles and polygons around the disc, inside shrunk bounds.
 
-    keep: (k, 2), places of the centre in whose direction corners give nothing away. The sum of a polygon and
-    a disc is the union of the first with the disc at each corner and a strip along each edge.
+    keep: (k, 2), positions of the centre in whose direction the corner polygons add nothing to the exact
+    sum. The sum of a polygon and a disc is the union of the polygon, the disc at each corner and a strip
+    along each edge.
     """
     reach = _radius(radius, sides)
     xmin, ymin, xmax, ymax = map(float, bounds)
@@ -47,7 +48,7 @@ def grown(
     nexts = np.vstack([np.empty((0, 2)), *(np.roll(ring, -1, axis=0) for ring in rings)])
     ahead = _direction(nexts - corners)
     across = _tight(corners, nexts, ahead, reach, sides, keep)
-    axes = np.arange(4) * (TURN // 4)  # towards the bounds
+    axes = np.arange(4) * (TURN // 4)  # normals of the bounds
     even = np.concatenate([axes, np.rint(np.arange(sides) * (TURN / sides)).astype(np.int64)])
     first = 0
     made: list[Outline] = []
@@ -77,13 +78,13 @@ def _radius(radius: Any, sides: Any) -> float:
 
 
 def _direction(vectors: Array) -> Directions:
-    """Of vectors (n, 2), counterclockwise from x."""
+    """Angles of vectors (n, 2), counterclockwise from x."""
     angle = np.arctan2(vectors[:, 1], vectors[:, 0])
     return np.rint(angle * (TURN / (2 * np.pi))).astype(np.int64) % TURN
 
 
 def _around(radius: float, touches: Directions) -> Array:
-    """The polygon (m, 2) whose sides touch a disc in directions (m,): side i lies before corner i."""
+    """The polygon (m, 2) whose sides touch a disc in directions (m,): side i precedes corner i."""
     wide = np.diff(touches, append=touches[:1]) % TURN
     middle = (touches + wide / 2) * (2 * np.pi / TURN)
     away = radius / np.cos(wide * (np.pi / TURN))
@@ -92,8 +93,8 @@ def _around(radius: float, touches: Directions) -> Array:
 
 
 def _beside(ahead: int, one: tuple[Directions, Array], other: tuple[Directions, Array]) -> Array:
-    """What lies beside an edge (4, 2) that leads `ahead` from one corner to another, between the sides of
-    their polygons that touch in its two directions across: its own sides end where those do."""
+    """The strip along an edge (4, 2) that leads `ahead` from one corner to the next, between the corner
+    polygons. Its sides end at the polygon sides that touch in the two directions normal to the edge."""
     right, left = (ahead - TURN // 4) % TURN, (ahead + TURN // 4) % TURN
     (i, j), (k, n) = (np.searchsorted(touches, [right, left]) for touches, _ in (one, other))
     return np.array([one[1][i], other[1][k - 1], other[1][n], one[1][j - 1]])
@@ -102,8 +103,8 @@ def _beside(ahead: int, one: tuple[Directions, Array], other: tuple[Directions, 
 def _tight(
     corners: Array, nexts: Array, ahead: Directions, radius: float, sides: int, keep: Array
 ) -> list[Directions]:
-    """For each corner the directions of what lies as far as the disc just fits between: other corners, walls
-    and the places of `keep`."""
+    """For each corner the directions of objects between which the disc just fits: other corners, walls and
+    the positions of `keep`."""
     found: list[list[Directions]] = [[np.empty(0, np.int64)] for _ in corners]
     near, far = 2 * radius * (1 - 1e-9), 2 * radius / np.cos(np.pi / sides)
     low, high = np.minimum(corners, nexts) - far, np.maximum(corners, nexts) + far

@@ -1,4 +1,4 @@
-"""Grey images as maps use them: PGM (Netpbm), and PNG by way of pillow."""
+"""Grey-scale images of maps: PGM (Netpbm), and PNG through pillow."""
 
 from __future__ import annotations
 
@@ -21,10 +21,10 @@ PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 
 
 def read_image(path: str | os.PathLike[str]) -> Array:
-    """The grey of an image, (rows, columns) from 0 (black) to 1 (white), its top row first.
+    """The grey values of an image, (rows, columns) from 0 (black) to 1 (white), top row first.
 
-    Colours are averaged; pixels that are wholly transparent are NaN. Raises MapError for a file that cannot
-    be read, MissingExtraError for PNG without pillow.
+    Colours are averaged; fully transparent pixels are NaN. Raises MapError for a file that cannot be read,
+    MissingExtraError for PNG without pillow.
     """
     name, data = map_path(path), map_bytes(path)
     if data.startswith(PNG_SIGNATURE):
@@ -47,7 +47,8 @@ def _check_size(columns: int, rows: int, name: str) -> None:
 
 
 def _pgm(data: bytes, name: str) -> Array:
-    """The grey of a PGM file: header of three numbers, with comments, then numbers as text or as bytes."""
+    """The grey values of a PGM file: a header of three numbers, with comments, then numbers as text or as
+    bytes."""
     token = re.compile(rb"(?:\s|#[^\n]*(?:\n|$))*(\d{1,10})")
     numbers, at = [], 2
     for what in ("width", "height", "largest grey"):
@@ -84,7 +85,7 @@ def _text_pixels(text: bytes, count: int, at: int, name: str) -> Array:
 
 
 def _png(data: bytes, name: str) -> Array:
-    """The grey of a PNG file; pillow keeps 16 bits per pixel of grey, and 8 per channel of colours."""
+    """The grey values of a PNG file; pillow keeps 16 bits per pixel of grey, and 8 per channel of colours."""
     try:
         from PIL.PngImagePlugin import PngImageFile
     except ImportError:

@@ -1,4 +1,4 @@
-"""Maps and scenarios of the MovingAI benchmarks (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding",
+"""MovingAI benchmarks: reads maps and scenarios (N. Sturtevant, "Benchmarks for Grid-Based Pathfinding",
 2012)."""
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ FREE: Final = b".GS"
 """Ground and swamp."""
 
 BLOCKED: Final = b"@OTW"
-"""Out of bounds, trees, and water, which nobody enters who is not in it."""
+"""Out of bounds, trees and water. Water can only be entered from water."""
 
 
 VERSIONS: Final = (["version", "1"], ["version", "1.0"])
@@ -29,19 +29,19 @@ VERSIONS: Final = (["version", "1"], ["version", "1.0"])
 
 
 class Scenarios(NamedTuple):
-    """The questions of a scenario file, a row each."""
+    """The queries of a scenario file, one row each."""
 
     start: npt.NDArray[np.int64]
-    """(k, 2): x and y of the start, which are the column and the row of its cell."""
+    """(k, 2): x and y of the start, the column and the row of its cell."""
     goal: npt.NDArray[np.int64]
-    """(k, 2): those of the goal."""
+    """(k, 2): x and y of the goal."""
     length: Array
-    """(k,): the length of the shortest way by eight moves without cutting corners [cells], as printed."""
+    """(k,): the length of the shortest path by eight moves without cutting corners [cells], as printed."""
 
     def ends(self, line: int, grid: Any) -> tuple[Array, Array]:
-        """Start and goal of a line, 0 to k − 1, as points (2,) [m]: the centres of their cells in grid, the
-        OccupancyGrid of the file's map. InputError for a line that is none, and for cells that the grid does
-        not have."""
+        """Start and goal of a query, 0 to k − 1, as points (2,) [m]: the centres of their cells in grid,
+        the OccupancyGrid of the file's map. InputError for a query that does not exist, and for cells
+        outside the grid."""
         count = len(self.length)
         if not (isinstance(line, (int, np.integer)) and 0 <= line < count):
             raise InputError(f"line is {line!r}; the file has {count} lines, numbered from 0")
@@ -103,7 +103,7 @@ def _cells(lines: list[bytes], rows: int, columns: int, name: str, first: int) -
 
 
 def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
-    """The questions of a `.scen` file: start (k, 2), goal (k, 2), length (k,); MapError names the line at
+    """The queries of a `.scen` file: start (k, 2), goal (k, 2), length (k,); MapError names the line at
     fault."""
     name = map_path(path)
     lines = map_bytes(path).decode("utf-8", "replace").split("\n")
@@ -117,7 +117,7 @@ def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
         try:
             ends, length = words[-5:-1], float(words[-1])
             x0, y0, x1, y1 = (int(word) for word in ends)
-            bucket, _ = words[0].split(maxsplit=1)  # and the name of the map, which may hold spaces
+            bucket, _ = words[0].split(maxsplit=1)  # and the name of the map, which may contain spaces
             int(bucket)
         except ValueError:
             x0 = y0 = x1 = y1 = -1

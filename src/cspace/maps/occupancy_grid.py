@@ -1,4 +1,4 @@
-"""A plane of square cells, each free or blocked."""
+"""Occupancy grid: a plane of square cells, each free or blocked."""
 
 from __future__ import annotations
 
@@ -19,19 +19,19 @@ from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CE
 __all__ = ["OccupancyGrid"]
 
 RULES: Final = ("cells", "centers")
-"""What must keep away from obstacles when a grid is inflated."""
+"""The part of the grid that inflation keeps clear of obstacles."""
 
 
 class OccupancyGrid(_core.GridBase):
-    """Square cells, each free or blocked; nothing outside of the grid is free.
+    """Square cells, each free or blocked; everything outside the grid is blocked.
 
     blocked: (rows, columns), truth values, or numbers 0 and 1. resolution [m]: the side of a cell. origin
-    (2,) [m]: the corner of cell (0, 0) of least x and y. Row i spans y in origin_y + resolution · [i, i + 1],
-    column j spans x likewise, so the first row of the array is the lowest. The cells are copied, one bit each
-    by rows and one by columns.
+    (2,) [m]: the corner of cell (0, 0) of least x and y. Row i spans y in origin_y + resolution · [i, i +
+    1], column j spans x likewise, so the first row of the array is the lowest. The cells are copied and
+    stored as two bit arrays, one by rows and one by columns.
 
-    Raises InputTypeError on other things than cells, InputError on a wrong shape, an empty grid, more than
-    tolerances.MAP_CELLS cells, a resolution that is not positive, an origin that is not finite.
+    Raises InputTypeError for values that are not cells, InputError for a wrong shape, an empty grid, more
+    than tolerances.MAP_CELLS cells, a resolution that is not positive, or an origin that is not finite.
     """
 
     kind: Final = "grid"
@@ -64,7 +64,7 @@ class OccupancyGrid(_core.GridBase):
         """A map of the MovingAI benchmarks: . G S are free, @ O T W blocked.
 
         The first line of the file is row 0, the lowest in the plane. So x and y of its scenarios are the
-        column and the row of a cell; the point is its centre, origin + resolution · (x + ½, y + ½), origin
+        column and the row of a cell; the point is the centre, origin + resolution · (x + ½, y + ½), origin
         (2,) [m].
         """
         from cspace.maps.movingai import read_movingai
@@ -73,9 +73,9 @@ class OccupancyGrid(_core.GridBase):
 
     @classmethod
     def from_ros(cls, path: str | os.PathLike[str], *, unknown: str = "blocked") -> OccupancyGrid:
-        """A map of ROS: a YAML file with a PGM or PNG image, mode "trinary"; its lowest pixels are row 0.
+        """A ROS map: a YAML file with a PGM or PNG image, mode "trinary"; the lowest pixels are row 0.
 
-        unknown: what cells are of which nothing is known, "blocked" or "free".
+        unknown: how unknown cells are treated, "blocked" or "free".
         """
         from cspace.maps.ros_map import read_ros
 
@@ -93,9 +93,9 @@ class OccupancyGrid(_core.GridBase):
         *,
         blocked_below: float = 0.5,
     ) -> OccupancyGrid:
-        """A PGM or PNG image, a pixel per cell, its lowest pixels row 0; origin (2,) [m].
+        """A PGM or PNG image, one pixel per cell, the lowest pixels being row 0; origin (2,) [m].
 
-        Blocked is what is darker than blocked_below (0 black, 1 white) and what is transparent.
+        Pixels darker than blocked_below (0 black, 1 white) and transparent pixels are blocked.
         """
         from cspace.maps.images import read_image
 
@@ -120,7 +120,7 @@ class OccupancyGrid(_core.GridBase):
 
     @cached_property
     def corners(self) -> int:
-        """How many corners the outlines of its blocked cells have."""
+        """The number of corners of the outlines of the blocked cells."""
         return self._corners
 
     @property
@@ -131,10 +131,10 @@ class OccupancyGrid(_core.GridBase):
         return cells.view(np.bool_)
 
     def cell_of(self, point: ArrayLike) -> tuple[int, int]:
-        """Row and column of the cell that holds a point (2,) [m].
+        """Row and column of the cell that contains a point (2,) [m].
 
-        A point on a border is in the free one of the cells beside it; if several are, in the one of higher
-        coordinates. InputError for a point outside of the grid.
+        A point on a border belongs to the free one of the adjacent cells; if several are free, to the one
+        with the higher coordinates. InputError for a point outside the grid.
         """
         x, y = _point(point)
         place, row, column = self._locate(x, y)
@@ -148,18 +148,18 @@ class OccupancyGrid(_core.GridBase):
         return self.origin + self.resolution * (index[..., ::-1] + 0.5)
 
     def is_free(self, points: ArrayLike) -> Any:
-        """Whether points (..., 2) [m] lie in free cells or on their borders: (...) of bool; none outside
-        do."""
+        """Whether points (..., 2) [m] lie in free cells or on their borders: (...) of bool; points outside
+        do not."""
         given = as_floats(points, "points", last=(2,))
         free = np.empty(given.size // 2, np.uint8)
         self._free(np.ascontiguousarray(given).reshape(-1, 2), free)
         return free.view(np.bool_).reshape(given.shape[:-1]) if given.ndim > 1 else bool(free[0])
 
     def path_clearance(self, path: ArrayLike) -> float:
-        """The least distance [m] from a path (m, 2) [m] to the square of a blocked cell, or to the border of
-        the grid: zero if it touches or enters one.
+        """The least distance [m] from a path (m, 2) [m] to the square of a blocked cell, or to the border
+        of the grid: zero if it touches or enters one.
 
-        Exact up to rounding, over the whole path and not its corners alone; NaN of an empty path.
+        Exact up to rounding, over the whole path and not only at its corners; NaN for an empty path.
         """
         points = as_path(path)
         return self._path_clearance(points) if len(points) else np.nan
@@ -178,14 +178,14 @@ class OccupancyGrid(_core.GridBase):
         return np.array([x, y])
 
     def inflate(self, radius: float, *, clear: str = "cells") -> OccupancyGrid:
-        """The grid for the centre of a round robot of a radius [m]: obstacles, and the outside, have grown by
-        it.
+        """The grid for the centre of a circular robot of a radius [m]: obstacles, and the outside, are
+        grown by it.
 
-        clear="cells": a cell is blocked if any point of it lies nearer than the radius to a blocked cell, so
-        the robot may be anywhere in what is left, and a corridor of one cell is closed to any robot.
-        "centers": if its centre does, so the robot may be at the centres of what is left. Squares of
-        distances are compared in half cells as integers; where the square of the radius in half cells is a
-        whole number but for rounding, it is taken as that.
+        clear="cells": a cell is blocked if any of its points is nearer than the radius to a blocked cell.
+        The robot may then be anywhere in the free cells, and a corridor of one cell is closed to every
+        robot. clear="centers": a cell is blocked if its centre is nearer than the radius, so the robot may
+        be at the centres of free cells. Squared distances are compared as integers in half cells; where the
+        square of the radius in half cells is an integer up to rounding, that integer is used.
         """
         grown = one_number(radius, "radius")
         if grown < 0:
@@ -197,19 +197,19 @@ class OccupancyGrid(_core.GridBase):
         return made
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
-        """The grid itself: it has its own resolution."""
+        """The grid itself: a grid has its own resolution."""
         if resolution is not None and one_number(resolution, "resolution") != self.resolution:
             raise InputTypeError(f"the grid has cells of {self.resolution:g} m; they cannot be resampled")
         return self
 
     def save_ros(self, path: str | os.PathLike[str]) -> None:
-        """Writes a map of ROS: a YAML file at the path, which ends in .yaml, and a PGM image beside it."""
+        """Writes a ROS map: a YAML file at the path, which ends in .yaml, and a PGM image next to it."""
         from cspace.maps.ros_map import write_ros
 
         write_ros(path, self.blocked, self.resolution, self._x, self._y)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Cells, resolution and origin: what pickle makes it from again."""
+        """Cells, resolution and origin: the data that pickle stores."""
         return type(self), (self.blocked, self.resolution, (self._x, self._y))
 
     def __repr__(self) -> str:
@@ -222,7 +222,7 @@ class OccupancyGrid(_core.GridBase):
 
 FREE: Final = 0
 OUTSIDE: Final = 2
-"""Where a point can be: in a free cell, in a blocked one (1), or outside of the grid."""
+"""The kinds of positions: in a free cell, in a blocked cell (1), or outside the grid."""
 
 
 def outside(grid: OccupancyGrid, subject: str, x: float, y: float) -> InputError:

@@ -1,8 +1,9 @@
-"""Where the centre of a disc may be, exactly: bounded by segments along walls and arcs around corners.
+"""Offset curves: the exact free space of a disc's centre, bounded by segments along walls and arcs around
+corners.
 
-Every wall and every corner that free space bends around gives a segment or an arc at the radius from it. They
-are cut where they come as near to something else, and of the pieces those are kept that nothing is nearer to
-than the radius.
+Every wall, and every corner that free space bends around, contributes a segment or an arc at the distance
+of the radius. These are cut at their intersections. The pieces with no wall nearer than the radius are
+kept.
 """
 
 from __future__ import annotations
@@ -20,26 +21,26 @@ from cspace.tolerances import ON_WALL
 __all__ = ["Offset", "OffsetCurve", "offset_of"]
 
 ROUNDINGS: Final = 100
-"""How many times ON_WALL a point of the boundary may be nearer to walls than the radius, and ends of pieces
-from each other: they are intersections of circles."""
+"""The tolerance in multiples of ON_WALL: for a boundary point nearer to walls than the radius, and for gaps
+between ends of pieces, which are intersections of circles."""
 
 Clearance = Callable[[Array], Any]
 
 
 class OffsetCurve(NamedTuple):
-    """A closed curve of k pieces, the room of the disc's centre on its left."""
+    """A closed curve of k pieces, with the free space of the disc's centre on its left."""
 
     start: Array
-    """(k, 2) [m]: where each piece begins."""
+    """(k, 2) [m]: the start of each piece."""
     end: Array
-    """(k, 2) [m]: where it ends."""
+    """(k, 2) [m]: the end of each piece."""
     center: Array
-    """(k, 2) [m]: of an arc; NaN for a segment."""
+    """(k, 2) [m]: the centre of an arc; NaN for a segment."""
     angles: Array
-    """(k, 2) [rad]: from where to where an arc runs around its centre, clockwise; NaN for a segment."""
+    """(k, 2) [rad]: the start and end angle of an arc around its centre, clockwise; NaN for a segment."""
 
     def points(self, chord: float) -> Array:
-        """The curve as a closed polygon (m, 2) [m] whose sides are no farther than `chord` [m] from it."""
+        """The curve as a closed polygon (m, 2) [m] whose sides deviate from it by at most `chord` [m]."""
         made = []
         for start, center, (begin, end) in zip(self.start, self.center, self.angles, strict=True):
             if np.isnan(begin):
@@ -53,15 +54,15 @@ class OffsetCurve(NamedTuple):
 
 
 class Offset(NamedTuple):
-    """Where the centre of a disc may be."""
+    """The free space of the centre of a disc."""
 
     radius: float
-    """Of the disc [m]."""
+    """Radius of the disc [m]."""
     curves: list[OffsetCurve]
 
     @property
     def length(self) -> float:
-        """Of all curves [m]."""
+        """Total length of all curves [m]."""
         total = 0.0
         for curve in self.curves:
             turns = np.nan_to_num(curve.angles[:, 0] - curve.angles[:, 1])
@@ -71,18 +72,18 @@ class Offset(NamedTuple):
 
     @property
     def area(self) -> float:
-        """Of the room of the disc's centre [m²]."""
+        """Area of the free space of the disc's centre [m²]."""
         total = 0.0
         for curve in self.curves:
             (x, y), (u, v) = (curve.start - curve.start[0]).T, (curve.end - curve.start[0]).T
             turns = np.nan_to_num(curve.angles[:, 0] - curve.angles[:, 1])
-            caps = self.radius**2 * (turns - np.sin(turns))  # what arcs cut off on the left of their chords
+            caps = self.radius**2 * (turns - np.sin(turns))  # the area between arcs and their chords
             total += 0.5 * float(np.sum(x * v - y * u) - np.sum(caps))
         return total
 
 
 class _Tracks(NamedTuple):
-    """Segments (turn 0) and arcs at the radius from walls and corners, m of them."""
+    """m segments (turn 0) and arcs at the radius from walls and corners."""
 
     start: Array
     along: Array  # unit vectors of segments
@@ -100,7 +101,7 @@ class _Tracks(NamedTuple):
 
 
 def offset_of(walls: list[Array], clearance: Clearance, wide: float, radius: float) -> Offset:
-    """The room of a disc's centre; InputError on a radius that is not positive [m].
+    """The free space of a disc's centre; InputError for a radius that is not positive [m].
 
     walls: rings (n, 2) [m] with free space on their left; clearance: of points (m, 2) [m], from all walls;
     wide [m]: the longer side of the bounds.
@@ -109,7 +110,7 @@ def offset_of(walls: list[Array], clearance: Clearance, wide: float, radius: flo
     if not reach > 0:
         raise InputError(f"radius is {reach:g}; it must be positive [m]")
     if reach > wide:
-        return Offset(reach, [])  # no place in the bounds is that far from them
+        return Offset(reach, [])  # no point in the bounds is that far from them
     slack = ROUNDINGS * ON_WALL * wide
     tracks = _tracks(walls, reach)
     pieces = [piece for k in range(len(tracks.size)) for piece in _kept(clearance, tracks, k, reach, slack)]
@@ -142,7 +143,7 @@ def _tracks(walls: list[Array], radius: float) -> _Tracks:
 def _kept(
     clearance: Clearance, tracks: _Tracks, k: int, radius: float, slack: float
 ) -> Iterator[tuple[int, float, float]]:
-    """The pieces of a track, as (track, from, to), that are nowhere nearer to walls than the radius."""
+    """The pieces of a track, as (track, from, to), with no wall nearer than the radius."""
     size = float(tracks.size[k])
     fine = 1e-12 * size
     cuts = np.unique(np.concatenate([[0.0, size], np.clip(_cuts(tracks, k, radius), 0.0, size)]))
@@ -154,7 +155,7 @@ def _kept(
 
 
 def _cuts(tracks: _Tracks, k: int, radius: float) -> Array:
-    """Where on a track others meet it: lengths on a segment, clockwise angles on an arc."""
+    """Where other tracks cross a track: lengths along a segment, clockwise angles along an arc."""
     lines, arcs = np.isnan(tracks.angle), ~np.isnan(tracks.angle)
     u, p = tracks.along[lines], tracks.start[lines]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -191,7 +192,7 @@ def _cross(a: Array, b: Array) -> Array:
 def _linked(
     tracks: _Tracks, pieces: list[tuple[int, float, float]], radius: float, slack: float
 ) -> list[OffsetCurve]:
-    """Closed curves of pieces, each begun by the piece that starts nearest to the end of the one before."""
+    """Closed curves of pieces; each piece is followed by the piece that starts nearest to its end."""
     if not pieces:
         return []
     ends = np.array([tracks.at(k, np.array([begin, end]), radius) for k, begin, end in pieces])

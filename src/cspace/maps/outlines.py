@@ -1,4 +1,4 @@
-"""What users give as obstacles becomes rings of points here, or a clear error."""
+"""Checks obstacles as users give them and converts them to rings of points."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ Outline = list[Array]
 
 
 def read_outlines(obstacles: Iterable[Any]) -> list[Outline]:
-    """The rings of each obstacle: of an (n, 2) array itself, of a list of such arrays all of them."""
+    """The rings of each obstacle: an (n, 2) array is one ring, a list of such arrays several."""
     if isinstance(obstacles, (str, bytes, dict)) or not isinstance(obstacles, Iterable):
         raise InputTypeError(
             f"obstacles must be a list of (n, 2) arrays, got an object of type {type(obstacles).__name__}"
@@ -54,7 +54,7 @@ def _ring(points: Any, subject: str) -> Array:
 
 
 def check_bounds(bounds: Any) -> Array:
-    """(xmin, ymin, xmax, ymax) as an array (4,); InputError if they enclose nothing."""
+    """(xmin, ymin, xmax, ymax) as an array (4,); InputError if the rectangle is empty."""
     given = as_floats(bounds, "bounds", last=(4,), largest=FARTHEST_POINT)
     if given.shape != (4,):
         raise InputError(f"bounds has shape {given.shape}, expected (4,): xmin, ymin, xmax, ymax")
@@ -68,7 +68,8 @@ def check_bounds(bounds: Any) -> Array:
 
 
 def bounds_of(outlines: list[Outline]) -> Array:
-    """The box of all points with a quarter of its longer side around it (4,); of nothing, the unit square."""
+    """The bounding box of all points, extended by a quarter of its longer side (4,); the unit square if
+    there are no points."""
     if not outlines:
         return np.array([0.0, 0.0, 1.0, 1.0])
     points = np.vstack([ring for rings in outlines for ring in rings])

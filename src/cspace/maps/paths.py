@@ -1,4 +1,4 @@
-"""Paths as they are given to worlds."""
+"""Checks the paths that are passed to worlds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A world of polygons: obstacles inside a rectangle, prepared once for every planner."""
+"""Polygon world: obstacles inside a rectangle, preprocessed once for all planners."""
 
 from __future__ import annotations
 
@@ -36,12 +36,16 @@ class PolygonWorld:
 
     obstacles: a list of polygons, each an array (n, 2) [m] of its corners in order, in either direction, or
     a list of such rings, the first the outline and the others holes in it. bounds: (xmin, ymin, xmax, ymax)
-    [m], a wall around everything; by default the obstacles with a quarter of their extent on each side.
-    Obstacles may touch, overlap and lie in the holes of others: what counts is their union, which is
-    closed, so a path may touch it but not pass a point where two obstacles meet. With repair=True a polygon
-    that crosses itself is read by the even-odd rule and one without area stays as a wall without thickness;
-    `repairs` says what was done.
-    Raises GeometryError on a polygon that crosses itself or has no area, InputError on numbers that are none.
+    [m], a wall around everything; by default the bounding box of the obstacles extended by a quarter on
+    each side.
+
+    Obstacles may touch, overlap and lie in the holes of others. Only their union counts. It is closed: a
+    path may touch it but cannot pass a point where two obstacles meet. With repair=True a polygon that
+    crosses itself is read by the even-odd rule, and one without area remains as a wall without thickness;
+    `repairs` lists the changes.
+
+    Raises GeometryError for a polygon that crosses itself or has no area, InputError for coordinates that
+    are not finite numbers.
     """
 
     kind: ClassVar[str] = "polygons"
@@ -71,8 +75,8 @@ class PolygonWorld:
         """The polygons of a text file: a point "x y" [m] per line, an empty line between rings.
 
         A line "hole" before a ring makes it a hole of the polygon before it, a line "bounds xmin ymin xmax
-        ymax" gives the bounds, "#" begins a comment. keywords: those of PolygonWorld.
-        Raises MapError with the line that cannot be read.
+        ymax" gives the bounds, "#" begins a comment. keywords: those of PolygonWorld. Raises MapError with
+        the line that cannot be read.
         """
         obstacles, bounds = read_polygons(path)
         return cls(obstacles, **{"bounds": bounds, **keywords})
@@ -83,15 +87,15 @@ class PolygonWorld:
     ) -> PolygonWorld:
         """Discs as obstacles: centers (n, 2) [m], radii (n,) or one for all [m].
 
-        Each becomes a regular polygon around it, which sticks out by at most radius · (1 / cos(π / sides) −
-        1). InputError on a radius that is not positive, and on less than four sides.
+        Each disc becomes a regular circumscribed polygon, which exceeds it by at most radius · (1 / cos(π /
+        sides) − 1). InputError for a radius that is not positive, and for fewer than four sides.
         """
         return cls(disc_outlines(centers, radii, sides), bounds)
 
     @classmethod
     def from_grid(cls, grid: OccupancyGrid) -> PolygonWorld:
-        """The blocked cells of a grid as one obstacle, its outline along their sides; the bounds are the
-        grid's."""
+        """The blocked cells of a grid as one obstacle, with its outline along their sides; the bounds are
+        the grid's."""
         made = cls.__new__(cls)
         side, (x, y) = grid.resolution, map(float, grid.origin)
         rows, columns = grid.shape
@@ -103,7 +107,7 @@ class PolygonWorld:
 
     @cached_property
     def _outlines(self) -> list[Outline]:
-        """Of a grid: everything but free space, in a box that is larger than the bounds."""
+        """The complement of the free space of a grid, in a box larger than the bounds."""
         xmin, ymin, xmax, ymax = self.bounds
         wide = max(xmax - xmin, ymax - ymin)
         low, high = (xmin - wide, ymin - wide), (xmax + wide, ymax + wide)
@@ -122,26 +126,26 @@ class PolygonWorld:
 
     @property
     def repairs(self) -> tuple[str, ...]:
-        """What repair=True did, a sentence for each polygon that was wrong."""
+        """What repair=True changed, one sentence for each invalid polygon."""
         return self._repairs
 
     @property
     def components(self) -> int:
-        """How many parts free space has that no path connects."""
+        """The number of connected components of free space."""
         return self._core.components
 
     @cached_property
     def walls(self) -> list[Array]:
-        """The boundary of free space as closed rings (n, 2) [m], the free space on their left."""
+        """The boundary of free space as closed rings (n, 2) [m], with free space on their left."""
         points, following, ring, _ = self._core.walls()
         return [points[_in_order(following, first)] for first in np.unique(ring, return_index=True)[1]]
 
     def save_geojson(self, path: str | PathLike[str]) -> None:
-        """Writes obstacles and bounds as GeoJSON, whole or not at all."""
+        """Writes obstacles and bounds as GeoJSON; the file is replaced atomically."""
         write_geojson(path, self._outlines, self.bounds)
 
     def save_text(self, path: str | PathLike[str]) -> None:
-        """Writes obstacles and bounds as a text file that from_text reads, whole or not at all."""
+        """Writes obstacles and bounds as a text file for from_text; the file is replaced atomically."""
         write_polygons(path, self._outlines, self.bounds)
 
     def is_free(self, points: ArrayLike) -> Any:
@@ -162,7 +166,7 @@ class PolygonWorld:
     def path_clearance(self, path: ArrayLike) -> float:
         """The least distance [m] from a path (m, 2) [m] to a wall: zero if it touches or crosses one.
 
-        Exact up to rounding, over the whole path and not its corners alone; NaN of an empty path.
+        Exact up to rounding, over the whole path and not only at its corners; NaN for an empty path.
         """
         points = as_path(path)
         if not len(points):
@@ -173,35 +177,37 @@ class PolygonWorld:
     def inflate(self, radius: float, *, sides: int = 32, keep: ArrayLike = ()) -> PolygonWorld:
         """The world of the centre of a disc of a radius [m]: obstacles grown by it, bounds shrunk.
 
-        What is exactly at the radius from a wall has straight sides and an arc around each corner; in place
-        of the arc stands a polygon of `sides` or more around it. So a path keeps the radius everywhere, and
-        gives away at most radius · (1 / cos(π / sides) − 1), nothing along walls, and nothing in gaps: one
-        is open exactly if the disc fits. keep: (k, 2) [m], where corners give nothing away either, for
-        centres that are less than that farther than the radius from a corner.
+        The exact boundary at the radius from the walls has straight sides and an arc around each corner.
+        Each arc is replaced by a circumscribed polygon with `sides` or more sides. A path therefore keeps
+        the radius everywhere. The polygons exceed the arcs by at most radius · (1 / cos(π / sides) − 1), by
+        nothing along walls, and by nothing in gaps: a gap is open exactly if the disc fits.
+
+        keep: (k, 2) [m], points toward which corner polygons add nothing either, for centres that exceed
+        the radius from a corner by less than that amount.
         """
         wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
         places = as_floats(keep, "keep", last=(2,)).reshape(-1, 2) if np.size(keep) else np.empty((0, 2))
         if 0 <= one_number(radius, "radius") <= ON_WALL * wide:
-            return self  # less than the roundings of its corners
+            return self  # less than the rounding of its corners
         obstacles, bounds = grown(self._outlines, self._bounds, radius, sides, places)
         return PolygonWorld(obstacles, bounds, repair=True)
 
     def offset(self, radius: float) -> Offset:
-        """Where the centre of a disc of a radius [m] may be, exactly: curves of segments and arcs.
+        """The exact free space of the centre of a disc of a radius [m]: curves of segments and arcs.
 
-        Exact up to rounding, where `inflate` has polygons around the arcs. InputError on a radius that is
-        not positive.
+        Exact up to rounding, where `inflate` has polygons in place of the arcs. InputError for a radius
+        that is not positive.
         """
         wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
         return offset_of(self.walls, self.clearance, wide, radius)
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
-        """Cells of a side `resolution` [m], cell (0, 0) in the lower left corner of the bounds.
+        """Cells of a side `resolution` [m], with cell (0, 0) in the lower left corner of the bounds.
 
-        By default 200 along the longer side of the bounds, or up to 300 where that leaves less of the shorter
-        side over. A cell is blocked if an obstacle reaches into it (by more than 1e-12 of the world's side),
-        if a wall without thickness touches it, or if it sticks out of the bounds: a resolution that divides
-        their sides loses none of the room.
+        By default there are 200 along the longer side of the bounds, or up to 300 where that leaves a
+        smaller remainder of the shorter side. A cell is blocked in three cases: an obstacle overlaps it (by
+        more than 1e-12 of the world's side), a wall without thickness touches it, or it extends beyond the
+        bounds. A resolution that divides both sides of the bounds loses no free space.
         """
         blocked, side = rasterized(self._core, self._bounds, resolution)
         return OccupancyGrid(blocked, side, self._bounds[:2])
@@ -228,7 +234,7 @@ class PolygonWorld:
         )
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Obstacles and bounds: what pickle makes it from again."""
+        """Obstacles and bounds: the data that pickle stores."""
         return _again, (self._outlines, self._bounds)
 
     def __repr__(self) -> str:
@@ -253,7 +259,7 @@ def _again(outlines: list[Outline], bounds: Array) -> PolygonWorld:
 
 
 def _in_order(following: Any, first: int) -> list[int]:
-    """The edges of a ring from one of them on."""
+    """The edges of a ring, starting at a given one."""
     found, at = [first], int(following[first])
     while at != first:
         found.append(at)

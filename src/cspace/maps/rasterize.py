@@ -1,4 +1,4 @@
-"""Polygons as cells: a cell is blocked if an obstacle reaches into it."""
+"""Rasterisation of polygons: a cell is blocked if an obstacle overlaps it."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from cspace.tolerances import MAP_CELLS
 __all__ = ["rasterized"]
 
 FEWEST: Final = 200
-"""Cells along the longer side of the bounds where no resolution is asked for: gaps of a two-hundredth of the
-world count as narrow."""
+"""Default number of cells along the longer side of the bounds: gaps of a two-hundredth of the world count
+as narrow."""
 
 
 def rasterized(
     core: _core.PolygonCore, bounds: Array, resolution: float | None
 ) -> tuple[npt.NDArray[np.bool_], float]:
-    """Which cells (rows, columns) are blocked, and their side [m]; cell (0, 0) is lower left in the
+    """Which cells (rows, columns) are blocked, and their side [m]; cell (0, 0) is at the lower left of the
     bounds."""
     xmin, ymin, xmax, ymax = map(float, bounds)
     wide = max(xmax - xmin, ymax - ymin)
@@ -46,9 +46,9 @@ def rasterized(
 
 
 def _parts(flatness: float) -> int:
-    """Into how many cells the longer side of the bounds is cut, whose shorter one is `flatness` of it: 200 or
-    up to half as many more, so that least of the shorter side is left over; more where that is no longer than
-    a cell."""
+    """The number of cells along the longer side of the bounds; `flatness` is the ratio of the shorter side
+    to it. It is 200 or up to half as many more, chosen for the smallest remainder of the shorter side; more
+    where the shorter side is no longer than a cell."""
     first = max(FEWEST, math.ceil(1 / max(flatness, 1 / MAP_CELLS)))
     rows = flatness * np.arange(first, first + first // 2 + 1)
     left_over = rows + 1e-9 - np.floor(rows + 1e-9)

@@ -1,4 +1,4 @@
-"""What is wrong with a polygon, said by name, and what a repair did about it."""
+"""Invalid polygons: names the defect and repairs it."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ __all__ = ["GeometryError", "check_area", "describe_crossings"]
 
 
 class GeometryError(InputError):
-    """A polygon that is none: it crosses itself, or has no area. The message names it and the way out."""
+    """An invalid polygon: it crosses itself, or has no area. The message names it and the remedy."""
 
 
 def check_area(outlines: Sequence[Sequence[Array]], repair: bool) -> list[str]:
-    """What the repair keeps as walls without thickness; GeometryError for rings without area if not
+    """Polygons without area, which the repair keeps as walls without thickness; GeometryError without
     repair."""
     said = []
     for k, rings in enumerate(outlines):
@@ -41,7 +41,8 @@ def _is_on_one_line(ring: Array) -> bool:
 
 
 def describe_crossings(core: _core.PolygonCore, repair: bool) -> list[str]:
-    """What the repair read by the even-odd rule; GeometryError for polygons that cross themselves if not."""
+    """Polygons that cross themselves, which the repair reads by the even-odd rule; GeometryError without
+    repair."""
     points, pairs = core.crossings()
     own: dict[int, list[Array]] = {}
     for point, (one, other) in zip(points, pairs, strict=True):

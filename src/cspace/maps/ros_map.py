@@ -1,4 +1,4 @@
-"""Maps of ROS: a YAML file beside an image, as map_server reads them."""
+"""ROS maps: a YAML file and an image, as map_server reads them."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ __all__ = ["RosMap", "read_ros", "write_ros"]
 
 NEEDED: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 TEXT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
-"""What stands in a line before its comment."""
+"""The content of a line before its comment."""
 
 
 @dataclass(frozen=True)
 class RosMap:
-    """What a map of ROS says: cells (rows, columns) 0 free, 1 occupied, 2 unknown, the lowest row first."""
+    """A ROS map: cells (rows, columns) 0 free, 1 occupied, 2 unknown, the lowest row first."""
 
     cells: npt.NDArray[np.uint8]
     resolution: float
@@ -36,8 +36,8 @@ class RosMap:
 def read_ros(path: str | os.PathLike[str]) -> RosMap:
     """The map of a YAML file; MapError names the line or byte at fault.
 
-    A cell is occupied where its darkness exceeds occupied_thresh, free where it is below free_thresh, unknown
-    between and where the image is transparent. Fields beyond those of map_server are left alone.
+    A cell is occupied where its darkness exceeds occupied_thresh, free where it is below free_thresh,
+    unknown between and where the image is transparent. Fields other than those of map_server are ignored.
     """
     name = map_path(path)
     fields = _fields(map_text(path), name)
@@ -73,7 +73,7 @@ def _kinds(grey: Array, negate: bool, occupied: float, free: float) -> npt.NDArr
 def write_ros(
     path: str | os.PathLike[str], blocked: npt.NDArray[np.bool_], resolution: float, x: float, y: float
 ) -> None:
-    """Writes a map of cells (rows, columns): a YAML file at the path, and a PGM image beside it."""
+    """Writes a map of cells (rows, columns): a YAML file at the path, and a PGM image next to it."""
     name = map_path(path)
     stem, ending = os.path.splitext(name)
     if ending not in {".yaml", ".yml"}:
@@ -91,12 +91,12 @@ def _quoted(text: str) -> str:
     return text if re.fullmatch(r"[\w.-]+", text, re.ASCII) else "'" + text.replace("'", "''") + "'"
 
 
-# A value, and the line it stands in.
+# a value and the number of its line
 _Fields = dict[str, tuple[Any, int]]
 
 
 def _fields(document: str, name: str) -> _Fields:
-    """The fields of the one level of YAML that map files have: numbers, texts and lists of them."""
+    """The fields of a single-level YAML map file: numbers, texts and lists of them."""
     fields: _Fields = {}
     open_list: list[Any] | None = None
     for number, line in enumerate(document.splitlines(), 1):
@@ -110,7 +110,7 @@ def _fields(document: str, name: str) -> _Fields:
         if pair is None:
             raise MapError("expected 'field: value'", path=name, line=number)
         if pair.group(1):
-            continue  # within a field that map files do not have
+            continue  # inside a field that map files do not have
         field, value = pair.group(2), pair.group(3) or ""
         if field in fields:
             raise MapError(f"the field '{field}:' stands here for the second time", path=name, line=number)
@@ -128,7 +128,7 @@ def _fields(document: str, name: str) -> _Fields:
 
 
 def _without_comment(line: str) -> str:
-    """The line up to a # that stands after a blank and outside quotes."""
+    """The line up to a # that follows a blank and is outside quotes."""
     found = TEXT.match(line)
     return found.group() if found else ""
 

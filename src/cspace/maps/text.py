@@ -1,4 +1,4 @@
-"""Polygons from and to plain text: a point per line, an empty line between rings."""
+"""Plain text: reads and writes polygons, a point per line and an empty line between rings."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def read_polygons(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] 
 def write_polygons(
     path: str | os.PathLike[str], obstacles: list[list[Array]], bounds: tuple[float, ...]
 ) -> None:
-    """Writes obstacles, each a list of rings (n, 2) [m], and the bounds, so that every bit comes back."""
+    """Writes obstacles, each a list of rings (n, 2) [m], and the bounds, with every digit preserved."""
     rings = [
         ("hole\n" if number else "") + "".join(f"{x!r} {y!r}\n" for x, y in ring.tolist())
         for polygon in obstacles

@@ -1,4 +1,4 @@
-"""Navigation in the plane: from start to goal through a world, by classical planners and new ones."""
+"""Navigation in the plane: planners that find a path from start to goal in polygonal worlds and grids."""
 
 from cspace.navigation.bugs import BugEvidence
 from cspace.navigation.cars import CarRoute, hybrid_a_star

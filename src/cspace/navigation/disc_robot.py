@@ -1,10 +1,10 @@
-"""Discs among polygons: their ends, and verdicts that hold for the disc and not only for the polygon around
-it.
+"""Disc robots among polygons: endpoints and verdicts that hold for the exact disc, not only for its
+polygon.
 
 A world grown by a disc has polygons in place of arcs around corners. Its gaps are open exactly if the disc
-fits, so what it connects and divides is right but for places that the corners of those polygons cover: ends
-that lie there, and nooks. The clearance of the world itself decides about these. A descent may rest before a
-side of such a polygon and not before the arc: polygons of many sides decide about that.
+fits, so its connectivity is correct except for positions that the corners of those polygons cover: start or
+goal positions there, and nooks. The clearance in the original world decides these cases. A gradient descent
+may stop at a side of such a polygon but not at the arc; polygons with more sides decide this case.
 """
 
 from __future__ import annotations
@@ -23,20 +23,21 @@ if TYPE_CHECKING:
 __all__ = ["DiscFits", "fitted", "plan_disc"]
 
 FINE: Final = 1024
-"""Sides around a disc where 32 have closed a way or hold a descent: they give away 5e-6 of the radius."""
+"""Sides of the polygons where 32 sides have closed a path or stopped a descent: they exceed the disc by
+5e-6 of the radius."""
 
 
 class DiscFits(NamedTuple):
-    """What stands against a verdict in a world of grown polygons."""
+    """The clearance that contradicts a verdict in a world of grown polygons."""
 
     clearance: float
-    """How far some way from start to goal keeps from walls [m]."""
+    """The clearance of some path from start to goal [m]."""
     radius: float
-    """Of the disc [m]."""
+    """Radius of the disc [m]."""
 
     @property
     def reason(self) -> str:
-        """The verdict in a sentence."""
+        """The verdict as one sentence."""
         return (
             f"polygons around corners close the way of a disc of radius {self.radius:g} m, which fits: "
             f"some way keeps {self.clearance:.9g} m from walls; planner 'voronoi' without a radius finds it"
@@ -44,8 +45,8 @@ class DiscFits(NamedTuple):
 
 
 def fitted(world: PolygonWorld, grown: PolygonWorld, radius: float, start: Any, goal: Any) -> PolygonWorld:
-    """The grown world, or one in which a disc fits at its ends where it does in truth; InputError where it
-    does not."""
+    """The grown world, or a finer one if the disc fits at start and goal; InputError where it does not fit.
+    """
     ends = [world.check_free(start, "start"), world.check_free(goal, "goal")]
     if all(grown.is_free(end) for end in ends):
         return grown
@@ -71,7 +72,7 @@ def plan_disc(
     """The route of a disc among polygons; `grown` is the world grown by its radius [m]."""
     plan = module_of(planner).plan
     route: Route = plan(fitted(world, grown, radius, *ends), *ends, **options)
-    if route.status == "local_minimum":  # which a side of a polygon may be where an arc is none
+    if route.status == "local_minimum":  # at a side of the polygon, but not at the arc
         route = plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
     if route.status != "unreachable":
         return route

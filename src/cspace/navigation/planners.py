@@ -34,7 +34,7 @@ class Planner:
     takes_cells: bool = False
     """Whether its file says, by takes_cells(grid), of which grids the cells serve it better than polygons."""
 
-    if not TYPE_CHECKING:  # which reports such names itself
+    if not TYPE_CHECKING:  # type checkers report such names themselves
 
         def __getattr__(self, name: str) -> Any:
             raise attribute_error(self, name)
@@ -175,7 +175,7 @@ class PlannerModule(Protocol):
     """plan(world, start, goal, **options) → Route: start and goal (2,) lie in free space."""
 
     reason: Callable[[Any], str]
-    """reason(route): the verdict in a sentence."""
+    """reason(route): the verdict as one sentence."""
 
     trace: Callable[[Any], Trace]
     """trace(route): the events of the search, by running it again with a record kept."""

@@ -33,11 +33,11 @@ class Stats(NamedTuple):
 class Route(_core.RouteBase):
     """The answer of one planner to one question; truthy if a path was found.
 
-    path: (m, 2) [m] from start to goal, (1, 2) where they are the same point; of a robot that walks, the walk
-    it made, also where it came to rest elsewhere or proved that no way exists. length [m] of the path,
-    whatever the verdict; inf where the path is empty, as it is of planners with a map that find no way.
-    start, goal: (2,) [m]. world, planner: what was asked. `status` is "found", "unreachable" (proven),
-    "undetermined" (the search ended without a proof) or "local_minimum"; `reason` says it in a sentence.
+    path: (m, 2) [m] from start to goal, (1, 2) where they are the same point; of a robot that walks, the
+    walk it made, also where it came to rest elsewhere or proved that no path exists. length [m] of the
+    path, whatever the verdict; inf where the path is empty, as it is of planners with a map that find no
+    way. start, goal: (2,) [m]. world, planner: what was asked. `status` is "found", "unreachable" (proven),
+    "undetermined" (the search ended without a proof) or "local_minimum"; `reason` says it as one sentence.
     """
 
     @property
@@ -47,7 +47,7 @@ class Route(_core.RouteBase):
 
     @property
     def reason(self) -> str:
-        """The verdict in a sentence, with what backs it."""
+        """The verdict as one sentence, with what backs it."""
         if self and len(self.path) == 1:
             return "start and goal are the same point"
         said: str = getattr(self._evidence, "reason", None) or module_of(self.planner).reason(self)
@@ -94,7 +94,7 @@ class Route(_core.RouteBase):
         """The world before it was grown by a radius, or converted."""
         return self.__dict__.get("given_world", self.world)
 
-    if not TYPE_CHECKING:  # which reports such names itself
+    if not TYPE_CHECKING:  # type checkers report such names themselves
 
         def __getattr__(self, name: str) -> Any:
             raise attribute_error(self, name)

@@ -1,4 +1,4 @@
-"""What planners share: their options, and the trace of a search."""
+"""Shared by all planners: their options and the trace of a search."""
 
 from cspace.search.options import Option
 from cspace.search.trace import Trace

@@ -1,5 +1,5 @@
-"""The options of planners: read from the signature and the docstring of each planner's function, which are
-their one source."""
+"""Planner options: parsed from the signature and the docstring of each planner's function, their only
+source."""
 
 from __future__ import annotations
 
@@ -19,10 +19,10 @@ COMPOSED: Final = {"costs", "rng"}
 """Options that are not one number or word."""
 
 ENTRY: Final = re.compile(r"(?:^|(?<=\. ))(\w+(?:, \w+)*)(?: \(([^)]*)\))?(?: \[([^\]]*)\])?: ")
-"""Names in a docstring, with a shape or a unit, and a colon before what they mean."""
+"""Names in a docstring, with a shape or a unit, followed by a colon and their meaning."""
 
 ELSEWHERE: Final = "as for A*."
-"""What is said of options that mean what they mean for A*."""
+"""The text for an option that has the same meaning as for A*."""
 
 
 @dataclass(frozen=True)
@@ -31,19 +31,19 @@ class Option:
 
     name: str
     type: str
-    """As its function declares it: "float", "int", "str", "bool", or what it takes besides."""
+    """The annotation in the function's signature: "float", "int", "str", "bool" or another type."""
     default: Any
-    """None where it depends on the world, or the option is off: the meaning says which."""
+    """None where the default depends on the world or the option is off; the meaning states which."""
     unit: str
     """ "m" and the like; empty for words and for numbers without a unit."""
     meaning: str
-    """What it does, which values it takes, and what holds where it is not given."""
+    """What the option does, the values it accepts and its default behaviour."""
 
 
 @cache
 def options_of(plan: Callable[..., Any], a_star: Callable[..., Any]) -> Mapping[str, Option]:
-    """The options of a planner's function by name, in its order; a_star: the function of A*, to which others
-    refer."""
+    """The options of a planner's function by name, in signature order; a_star: the function of A*, to which
+    other planners refer."""
     parameters = [p for p in inspect.signature(plan).parameters.values() if p.kind is p.KEYWORD_ONLY]
     told = {name: (unit, meaning) for name, unit, meaning in _entries(inspect.getdoc(plan) or "")}
     found = {}
@@ -56,8 +56,8 @@ def options_of(plan: Callable[..., Any], a_star: Callable[..., Any]) -> Mapping[
 
 
 def check_options(planner: str, known: Mapping[str, Option], options: dict[str, Any]) -> None:
-    """InputTypeError for an option that is not among those known of the planner, several values where it
-    takes one, or others than True and False where it takes these."""
+    """Raises InputTypeError for an unknown option, for several values where one is expected, or for a value
+    other than True and False of a boolean option."""
     for name, value in options.items():
         if name not in known:
             raise InputTypeError(str(suggest("option", name, known, owner=f"planner {planner!r}")))
@@ -69,14 +69,14 @@ def check_options(planner: str, known: Mapping[str, Option], options: dict[str, 
 
 
 def _type_of(parameter: inspect.Parameter) -> str:
-    """The annotation; without None where that only stands for a default."""
+    """The annotation, without None where None only marks the default."""
     text = str(parameter.annotation).replace("np.random.", "")
     return text.removesuffix(" | None") if parameter.default is None else text
 
 
 def _entries(doc: str) -> Iterator[tuple[str, str, str]]:
-    """Name, unit and meaning of each entry of a docstring; a paragraph that begins with one has nothing
-    else."""
+    """Name, unit and meaning of each entry of a docstring. A paragraph that begins with an entry contains
+    only entries."""
     for paragraph in doc.split("\n\n"):
         text = " ".join(paragraph.split())
         matches = list(ENTRY.finditer(text))

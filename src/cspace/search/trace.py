@@ -1,4 +1,4 @@
-"""What a planner did, one event after the other: enough to draw its search again."""
+"""Trace: the events of a search in order, sufficient to draw the search again."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ __all__ = ["Trace"]
 
 @dataclass(frozen=True, eq=False)
 class Trace:
-    """The events of a search in the order in which they happened.
+    """The events of a search in chronological order.
 
-    words: what can happen, in the planner's own words ("expand", "hit", "follow", …). kind: (k,) which of
-    the words each event is. start, end: (k, 2) [m] where it happened: from one point to another, or twice the
-    same.
-    value: (k,) what the planner weighed (a cost, a clearance, an arc length; its page says which).
+    words: the kinds of events of the planner ("expand", "hit", "follow", …). kind: (k,) index of each event
+    into words. start, end: (k, 2) [m] the segment of the event, or the same point twice. value: (k,) the
+    number that the planner records with the event (a cost, a clearance, an arc length; its page states
+    which).
     """
 
     words: tuple[str, ...]
@@ -30,7 +30,7 @@ class Trace:
     value: Array
 
     def __len__(self) -> int:
-        """How many events there are."""
+        """The number of events."""
         return len(self.kind)
 
     def __iter__(self) -> Iterator[tuple[str, Array, Array, float]]:
@@ -39,6 +39,6 @@ class Trace:
             yield self.words[kind], start, end, float(value)
 
     def only(self, word: str) -> Trace:
-        """The events of one word: a Trace with the same arrays (k, 2), fewer rows."""
+        """The events of one kind: a Trace with the same arrays (k, 2), fewer rows."""
         kept = self.kind == (self.words.index(word) if word in self.words else -1)
         return Trace(self.words, self.kind[kept], self.start[kept], self.end[kept], self.value[kept])

@@ -133,7 +133,7 @@ def equal(left: Vector, right: Vector, *, but: Equation) -> tuple[Equation, ...]
 
 
 def swivel_values(robot: Any, q: Array, T: Array) -> dict[str, Any]:
-    """The numbers of angles, goal, K and M; K from the swivel, not from the joints that make it.
+    """The numeric values of angles, goal, K and M; K from the swivel, not from the joints that make it.
 
     Where the wrist lies on axis 1 there is no half-plane to measure from, and the numbers are NaN.
     """

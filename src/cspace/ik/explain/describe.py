@@ -156,7 +156,7 @@ def notes_of(form: Form, seen: dict[str, Any]) -> tuple[str, ...]:
 
 
 def general_plan(loop: Loop, common: dict[str, Any]) -> IkPlan:
-    """Up to six joints, turning or sliding, without a closed form on lanes."""
+    """Up to six joints, revolute or prismatic, without a closed form on lanes."""
     n = len(common["joints"])
     notes = []
     if n < 6:
@@ -229,7 +229,7 @@ def perturbed_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPl
 
 
 def slides_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
-    """Three slides: the orientation first."""
+    """Three prismatic joints: the orientation first."""
     steps = orientation_steps(loop.six, loop.chain_equation())
     return IkPlan(
         **{**common, "length": 1.0},

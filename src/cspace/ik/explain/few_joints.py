@@ -1,4 +1,4 @@
-"""Arms of up to three joints, turning or sliding: the steps of include/cspace/ik/position/."""
+"""Arms of up to three joints, revolute or prismatic: the steps of include/cspace/ik/position/."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WAYS = {1: 1, 2: 2, 3: 4}
 
 
 def few_joint_values(chain: Any, q: Array, T: Array) -> dict[str, Any]:
-    """The numbers of the joints and of the goal."""
+    """The numeric values of the joints and of the goal."""
     return joint_values(chain.joint_types, q) | goal_values(T)
 
 

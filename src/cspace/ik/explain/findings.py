@@ -40,15 +40,13 @@ class Findings:
     """How `robot.ik` solves an arm, as data; false if it does not.
 
     robot: its name; joints: their names. family: the geometry that is used, "general", "fewer than six
-    joints" or "none".
-    summary: the method in a sentence. branches: how many solutions a goal has at most. reason: why nothing
-    solves the arm, else "". relations, invariant_points, invariant_directions: the geometry found. notes:
-    sentences about signs, frames and goals. tables: named rows of numbers that the equations refer to.
-    matrices: named displacements (4, 4). constants: numbers of the symbols that belong to the arm. steps:
-    what is done. held: the joints that are parameters. counted: whose solutions `branches` counts, where that
-    needs saying.
-    calls: how the functions that
-    ask for solutions use the steps. other_ways: further ways to a solution, by name, each with its steps.
+    joints" or "none". summary: the method as one sentence. branches: how many solutions a goal has at most.
+    reason: why nothing solves the arm, else "". relations, invariant_points, invariant_directions: the
+    geometry found. notes: sentences about signs, frames and goals. tables: named rows of numbers that the
+    equations refer to. matrices: named displacements (4, 4). constants: numbers of the symbols that belong
+    to the arm. steps: what is done. held: the joints that are parameters. counted: whose solutions
+    `branches` counts, where that needs saying. calls: how the functions that ask for solutions use the
+    steps. other_ways: further ways to a solution, by name, each with its steps.
     """
 
     robot: str
@@ -87,7 +85,7 @@ class Findings:
         """How far each equation is off, (..., k), at configurations q (..., n) that reach T (..., 4, 4).
 
         Lengths count in units of the arm's length. Definitions introduce symbols for those behind them and
-        are never off. Raises InputError for a wrong shape, NaN, and what is no pose.
+        are never off. Raises InputError for a wrong shape, NaN, and a value that is not a pose.
         """
         n = len(self.joints) if self._dof is None else self._dof
         q, T = as_floats(q, "q", last=(n,), largest=FARTHEST), as_pose(T, "T")

@@ -72,7 +72,7 @@ class Form:
         return symbol(f"ca_{i}"), symbol(f"sa_{i}")
 
     def constants(self) -> dict[str, float]:
-        """The numbers of a_i, d_i, ca_i, sa_i."""
+        """The numeric values of a_i, d_i, ca_i, sa_i."""
         out: dict[str, float] = {}
         for i in range(5):
             out |= {f"a_{i + 1}": self.a[i], f"ca_{i + 1}": self.ca[i], f"sa_{i + 1}": self.sa[i]}
@@ -132,7 +132,7 @@ class Form:
         return np.asarray(np.linalg.inv(self.tool), dtype=np.float64)
 
     def values(self, q: Array, T: Array) -> dict[str, Any]:
-        """The numbers of angles and goal at configurations q (..., n) that reach T (..., 4, 4)."""
+        """The numeric values of angles and goal at configurations q (..., n) that reach T (..., 4, 4)."""
         goal = self.left @ (np.linalg.inv(T) if self.reversed else T) @ self.right
         out: dict[str, Any] = {}
         for i, joint in enumerate(self.joint):

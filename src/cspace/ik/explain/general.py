@@ -54,7 +54,7 @@ class Loop:
         return self.six.joint_types.count("P")
 
     def values(self, q: Array, T: Array) -> dict[str, Any]:
-        """The numbers of angles and goal, lengths over the arm's."""
+        """The numeric values of angles and goal, lengths over the arm's."""
         joints = joint_values(self.six.joint_types, q, length=self.length)
         return joints | goal_values(T, length=self.length)
 
@@ -130,7 +130,7 @@ class Loop:
         ]
 
     def two_sheets(self, t: list[str]) -> list[Step]:
-        """Two slides: the orientation is made by four turns."""
+        """Two prismatic joints: the orientation is made by four turns."""
         turns = [each for each in t[1:] if "t" in each]
         slides = [each for each in t if "q" in each]
         return [
@@ -153,7 +153,7 @@ class Loop:
         ]
 
     def turn(self, joint: int, *, back: bool = False) -> Factor:
-        """Rz of a joint's angle, or of minus it; Tz of a slide."""
+        """Rz of a joint's angle, or of minus it; Tz of a prismatic joint."""
         sign, number = "−" if back else "", joint + 1
         if self.six.joint_types[joint] == "P":
             matrix = TrigMatrix.shift(z=TrigPolynomial.symbol(f"q_{number}"))

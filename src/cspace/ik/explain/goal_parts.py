@@ -1,4 +1,4 @@
-"""Goals that ask for less than a pose: the arm with the joints that stand for what they leave open."""
+"""partial goals: the arm with the joints that stand for what they leave open."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Arms of which joints are held: a parameter takes their place, and the others are an arm of their own."""
+"""Arms of which joints are locked: a parameter takes their place, and the others are an arm of their own."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ SQUARE = 1e-4
 
 @dataclass(frozen=True, eq=False)
 class Split:
-    """Which joints are held and which move, by number from 0. at: values of those held between others."""
+    """Which joints are locked and which move, by number from 0. at: values of the locked ones between
+    others."""
 
     robot: Any
     locked: tuple[int, ...]
@@ -52,7 +53,8 @@ class Split:
         return between_others(len(self.robot.joint_names), self.locked)
 
     def others(self) -> Any:
-        """The arm of the joints that move; those held at the ends at zero, which leaves the plan alone."""
+        """The arm of the joints that move; the locked ones at the ends at zero, which leaves the plan
+        alone."""
         return without_locked(self.robot, {k: self.at[k] if k in self.between else 0.0 for k in self.locked})
 
     def frame(self, k: int) -> Array:
@@ -90,7 +92,7 @@ class Split:
 
 
 def locked_plan(robot: Any, locked: Mapping[int, float], common: dict[str, Any]) -> IkPlan:
-    """An arm with joints to spare, or with joints held. locked: joints that the user holds, and where."""
+    """An arm with redundant joints, or with locked joints. locked: joints that the user holds, and where."""
     locked_arm = lock_joints(robot, dict(locked))
     redundancy_degree = locked_arm.solver.redundancy_degree
     default = tuple(locked_arm.free[k] for k in locked_arm.solver.locked)
@@ -140,7 +142,7 @@ def typical(robot: Any, k: int) -> float:
 
 
 def summary(split: Split, default: tuple[int, ...], redundancy_degree: int, inner: IkPlan) -> str:
-    """The method in a sentence."""
+    """The method as one sentence."""
     n, robot = len(split.robot.joint_names), split.robot
     moving = len(split.moving)
     if redundancy_degree and moving == MAX_SETTLED:
@@ -162,7 +164,7 @@ def stand(split: Split) -> str:
 
 
 def reasons(split: Split, default: tuple[int, ...]) -> list[str]:
-    """Why these joints are held."""
+    """Why these joints are locked."""
     out = []
     one = len(default) == 1
     if default:
@@ -199,7 +201,7 @@ def numbering(split: Split) -> list[str]:
 
 
 def choices(robot: Any, default: tuple[int, ...]) -> Rows:
-    """For every joint that may be held how the six others are solved."""
+    """For every joint that may be locked how the six others are solved."""
     rows = []
     for k, name in enumerate(robot.joint_names):
         split = Split(robot, (k,), {k: typical(robot, k)})
@@ -293,7 +295,7 @@ def swivel_of(robot: Any) -> tuple[Step, ...]:
 
 # --- the goal of the others -------------------------------------------------------------------------------
 def locked_step(split: Split, ends: list[int]) -> Step:
-    """What joints held at the ends do to the goal."""
+    """What locked joints at the ends do to the goal."""
     chain, number = split.robot.chain, [f"$q_{k + 1}$" for k in split.locked]
     words = ""
     if ends:
@@ -342,7 +344,7 @@ def whole_goal(name: str) -> TrigMatrix:
 
 
 def goal_entries(name: str, T: Array) -> dict[str, Any]:
-    """The numbers of those symbols."""
+    """The numeric values of those symbols."""
     return {f"{name}_{i}{j}": T[..., i, j] for i in range(3) for j in range(4)}
 
 

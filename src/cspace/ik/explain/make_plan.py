@@ -24,15 +24,15 @@ def ik_plan(robot: Any, *, goal_parts: Any = None, locked: Any = None, tool_axis
     """How `robot.ik` solves an arm: the geometry found, the steps, the equations with its numbers.
 
     goal_parts: the parts of a pose that goals will have, by the keywords of `robot.ik`: "position", or
-    ("position", "direction"), or a dict with values, {"position": (None, None, 0.1)}, where these change the
-    method; a full pose unless given. tool_axis: as in `robot.ik`. locked: joints that will be held, by name
-    or number, with their values, {"joint4": 0.3}; of an arm with joints to spare the solver's own choice
-    unless given.
+    ("position", "direction"), or a dict with values, {"position": (None, None, 0.1)}, where these change
+    the method; a full pose unless given. tool_axis: as in `robot.ik`. locked: joints that will be locked,
+    by name or number, with their values, {"joint4": 0.3}; of an arm with redundant joints the solver's own
+    choice unless given.
 
     The answer is built from what the solver itself holds. It prints, has to_markdown() and to_latex(), and
     plan.residuals(q, T) evaluates every equation. An arm that nothing solves gets a plan that is false and
-    says why. Raises InputTypeError for what is no robot and for goals that are none, InputError for joints
-    that the arm does not have.
+    says why. Raises InputTypeError for a value that is not a robot and for goals that are none, InputError
+    for joints that the arm does not have.
     """
     check_robot(robot)
     if goal_parts is not None:

@@ -1,6 +1,5 @@
-"""A wrist behind three joints of any kind, and three turns with three slides: general/position_first.hpp and
-orientation_first.hpp.
-"""
+"""A wrist behind three joints of any kind, and three turns with three prismatic joints:
+general/position_first.hpp and orientation_first.hpp."""
 
 from __future__ import annotations
 
@@ -39,7 +38,7 @@ def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
 
 
 def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...]) -> list[Step]:
-    """Three turning joints make what is left of the rotation: the middle one first."""
+    """Three revolute joints make what is left of the rotation: the middle one first."""
     i, j, k = turns
     h, R_tip = arm.axes, arm.T_zero[:3, :3]
     left = goal_turns(R_tip.T @ h[k])  # where the last axis points, seen behind the joints before
@@ -91,7 +90,7 @@ def turned_back_by_goal(v: Vector, R_tip: Array) -> Vector:
 
 
 def orientation_steps(six: Screws, chain: MatrixEquation) -> list[Step]:
-    """Three turns make the orientation, then three slides the position."""
+    """Three turns make the orientation, then three prismatic joints the position."""
     turns = [k for k, kind in enumerate(six.joint_types) if kind == "R"]
     slides = [f"$q_{k + 1}$" for k, kind in enumerate(six.joint_types) if kind == "P"]
     return [

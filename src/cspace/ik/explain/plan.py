@@ -15,10 +15,11 @@ class IkPlan(Findings):
     """How `robot.ik` solves an arm; prints, has to_markdown() and to_latex(), and is false if it does not.
 
     robot: its name; joints: their names. family: the geometry that is used, "general", "fewer than six
-    joints", "other" or "none". summary: the method in a sentence. branches: how many solutions a goal has at
-    most. reason: why nothing solves the arm, else "". relations, invariant_points, invariant_directions: the
-    geometry found. steps: what is done, with equations; constants: the numbers of their symbols; matrices:
-    named displacements (4, 4). residuals(q, T): how far each equation is off at configurations q (..., n).
+    joints", "other" or "none". summary: the method as one sentence. branches: how many solutions a goal has
+    at most. reason: why nothing solves the arm, else "". relations, invariant_points, invariant_directions:
+    the geometry found. steps: what is done, with equations; constants: the numbers of their symbols;
+    matrices: named displacements (4, 4). residuals(q, T): how far each equation is off at configurations q
+    (..., n).
     """
 
     def to_text(self) -> str:

@@ -67,7 +67,8 @@ def vector(v: Any) -> str:
 
 
 def joint_values(kinds: str, q: Array, *, length: float = 1.0) -> dict[str, Any]:
-    """The numbers of t_i and q_i (slides over `length`); joints behind those of q (..., n) are at zero."""
+    """The numeric values of t_i and q_i (prismatic joints over `length`); joints behind those of q (..., n)
+    are at zero."""
     out: dict[str, Any] = {}
     for i, kind in enumerate(kinds):
         value = q[..., i] if i < q.shape[-1] else np.zeros(q.shape[:-1])
@@ -76,7 +77,7 @@ def joint_values(kinds: str, q: Array, *, length: float = 1.0) -> dict[str, Any]
 
 
 def goal_values(T: Array, *, length: float = 1.0) -> dict[str, Any]:
-    """The numbers of p (over `length`) and r_ij."""
+    """The numeric values of p (over `length`) and r_ij."""
     out: dict[str, Any] = {}
     for i, axis in enumerate("xyz"):
         out[f"p_{axis}"] = T[..., i, 3] / length
@@ -109,7 +110,7 @@ def group_of(chain: Any, i: int) -> int:
 
 
 def turned(chain: Any, i: int, v: Vector, *, back: bool = False) -> Vector:
-    """The direction v turned by joint i, or back; a slide leaves it."""
+    """The direction v turned by joint i, or back; a prismatic joint leaves it."""
     if chain.joint_types[i] == "P":
         return v
     h, angle = chain.axes[i], Angle(i + 1, group_of(chain, i))

@@ -26,8 +26,8 @@ __all__ = [
 class Relation:
     """Two neighbouring axes. joints: their numbers from 1. angle: between the lines [rad], 0 to π/2.
 
-    distance: between the lines [m], NaN where one belongs to a slide, which has no place. parallel, meet,
-    square: within what the solver allows.
+    distance: between the lines [m], NaN where one belongs to a prismatic joint, which has no place.
+    parallel, meet, square: within what the solver allows.
     """
 
     joints: tuple[int, int]
@@ -113,7 +113,7 @@ def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
 
 
 def invariant_directions(chain: Any, length: float) -> tuple[InvariantDirection, ...]:
-    """Runs of neighbouring parallel axes of turning joints."""
+    """Runs of neighbouring parallel axes of revolute joints."""
     runs: list[list[int]] = []
     for each in relations(chain, length):
         a, b = each.joints

@@ -1,4 +1,4 @@
-"""Goals that ask for less than a pose.
+"""partial goals.
 
 What a goal leaves open is a motion, and joints that do not exist make it: a tip asked to be at a point may
 turn about it, as on a ball joint. With such joints behind the tip (or before the base) the goal is a pose of
@@ -164,7 +164,7 @@ def check_tool_axis(tool_axis: Any, names: Iterable[str]) -> None:
 def partial_goal(given: dict[str, Any], tool_axis: Any) -> PartialGoal:
     """The goal that some of KEYWORDS ask for; `given` holds those that are not None.
 
-    Raises InputTypeError for keywords that do not go together, InputError for values that make no sense.
+    Raises InputTypeError for keywords that do not go together, InputError for values outside their range.
     """
     axis = one_axis(tool_axis, "tool_axis")
     kind = "+".join(name for name in KEYWORDS if name in given)

@@ -144,9 +144,8 @@ def make_whole(robot: Any, goal: PartialGoal) -> Any:
 
 
 def reach_of(robot: Any) -> float:
-    """No point of the tip is farther from the base [m]: all links in one line; without end for slides, whose
-    limits a solution may break.
-    """
+    """No point of the tip is farther from the base [m]: all links in one line; without end for prismatic
+    joints, whose limits a solution may break."""
     chain = robot.chain
     if "P" in chain.joint_types:
         return float("inf")
@@ -155,7 +154,7 @@ def reach_of(robot: Any) -> float:
 
 
 def tilted(axis: Array, angle: float) -> Array:
-    """A rotation by `angle` about a direction square to `axis`."""
+    """A rotation by `angle` about a direction perpendicular to `axis`."""
     square = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
     x, y, z = square / np.linalg.norm(square)
     K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
@@ -179,7 +178,7 @@ def of_own(robot: Any, goal: PartialGoal, whole: Any, found: Solutions) -> Solut
     certain = found.complete
     if (
         any(self_motions) and not whole._ik_direct
-    ):  # members of families that nobody describes where joints are held
+    ):  # members of families that nobody describes where joints are locked
         certain, status, self_motions = False, EXACT, [False] * len(rows)
     verdict = status + (INCOMPLETE if not certain and status != NEAREST else 0)
     about = About(goal, whole, found.q[rows], () if found._about is None else found._about.freedom)
@@ -193,7 +192,7 @@ def of_own(robot: Any, goal: PartialGoal, whole: Any, found: Solutions) -> Solut
 
 
 def moves_itself(whole: Any, q: Array, own: slice) -> bool:
-    """Whether the arm's own joints take part in the family through q."""
+    """Whether the arm's own joints take part in the self-motion through q."""
     direction = _core._ik_direction(whole, np.ascontiguousarray(q), True)
     return direction is None or bool(np.abs(direction[own]).max() > STILL)
 

@@ -59,9 +59,9 @@ def ik_numeric(
     evenly. threads: of a batch, every processor unless given; the answer does not depend on it.
 
     Returns NumericSolution: q (..., dof), success, residual, iterations, reason; falsy unless every goal is
-    reached. Raises InputError for a goal that is no pose, a start of the wrong shape, NaN, a floating base or
-    more than 16 joints on the way; InputTypeError for no goal or two; UnknownNameError for another method or
-    an unknown frame.
+    reached. Raises InputError for a goal that is not a pose, a start of the wrong shape, NaN, a floating
+    base or more than 16 joints on the way; InputTypeError for no goal or two; UnknownNameError for another
+    method or an unknown frame.
 
     Levenberg 1944; Sugihara 2011 (damping in proportion to the error); Bertsekas 1982 (limits).
     """

@@ -52,7 +52,7 @@ class TaskSolution:
 
     @property
     def reason(self) -> str:
-        """What became of the tasks in a sentence."""
+        """What became of the tasks as one sentence."""
         if self.success:
             return f"all tasks are done after {self.iterations} steps"
         worst = int(np.argmax(np.maximum(self.position_error, self.rotation_error)))

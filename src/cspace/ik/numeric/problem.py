@@ -48,8 +48,8 @@ def ask(
 ) -> Question:
     """The arguments that all descents share.
 
-    Raises InputError for a goal that is no pose, weights that are negative or all zero, limits upside down,
-    a tolerance that is not positive, a floating base, or a frame that more than 16 joints move;
+    Raises InputError for a goal that is not a pose, weights that are negative or all zero, limits upside
+    down, a tolerance that is not positive, a floating base, or a frame that more than 16 joints move;
     InputTypeError unless there is one goal; UnknownNameError for a frame that is not there.
     """
     check_robot(robot)
@@ -98,8 +98,8 @@ def _weights(value: Any) -> Array:
 def positive(value: Any, subject: str) -> float:
     """The value as a positive number.
 
-    Raises InputTypeError for what is no number, InputError for zero, a negative number, NaN, or one beyond
-    FARTHEST.
+    Raises InputTypeError for a value that is not a number, InputError for zero, a negative number, NaN, or
+    one beyond FARTHEST.
     """
     if type(value) is float and 0.0 < value <= FARTHEST:
         return value
@@ -150,8 +150,8 @@ def middle(robot: Any, bounds: Array) -> Array:
 def further_starts(robot: Any, bounds: Array, goals: Array, count: int, rng: Any) -> Array:
     """Configurations (count, n) all over the limits, to start from.
 
-    Angles without limits lie in (−π, π]; slides without limits reach as far as the goals and the tip at
-    zero. rng: seed or generator of random ones; None spreads them evenly, the same in every call.
+    Angles without limits lie in (−π, π]; prismatic joints without limits reach as far as the goals and the
+    tip at zero. rng: seed or generator of random ones; None spreads them evenly, the same in every call.
     """
     n = len(robot.joint_names)
     share = spread(count, n) if rng is None else as_generator(rng).random((count, n))

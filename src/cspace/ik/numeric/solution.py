@@ -82,7 +82,7 @@ class NumericSolution:
 
     @property
     def reason(self) -> str:
-        """The verdict in a sentence; of a batch, how many goals were reached."""
+        """The verdict as one sentence; of a batch, how many goals were reached."""
         if self.q.ndim > 1:
             reached = int(np.count_nonzero(self.success))
             return f"{reached} of {self.success.size} goals reached"
@@ -144,7 +144,7 @@ class SampledSolutions:
 
     @property
     def reason(self) -> str:
-        """What was found in a sentence."""
+        """What was found as one sentence."""
         reached = int(self.hits.sum())
         if not reached:
             return f"none of {self.starts} starts reached the goal; this proves nothing"

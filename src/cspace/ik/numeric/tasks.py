@@ -36,9 +36,9 @@ class PoseTask:
     """A frame is to take a pose.
 
     frame: its name, None for the tip. T (4, 4): the pose in the world. weight: of the error [Δp; rotation
-    vector] in the axes of T [m, rad]: one number, or (6,), zeros leaving directions free. gain: the share of
-    the error that one step takes away, above 0 and at most 1.
-    Raises InputError for what is no pose, and for weights that are negative or all zero.
+    vector] in the axes of T [m, rad]: one number, or (6,), zeros leaving directions free. gain: the share
+    of the error that one step takes away, above 0 and at most 1. Raises InputError for a value that is not
+    a pose, and for weights that are negative or all zero.
     """
 
     frame: str | None

@@ -26,8 +26,9 @@ def swivel(robot: Any, q: Any) -> Array:
     ψ = atan2(n · (z × e), z · e), n = (W − S)/|W − S|, z = r − (r · n) n.
 
     q (..., 7) [rad] → ψ (...) [rad]. S: where axes 1, 2, 3 meet, W: where axes 5, 6, 7 do, e: from S to the
-    point of axis 4 nearest to S, r: the direction of axis 1. Where W lies on axis 1 a fixed direction square
-    to it stands for r. Raises InputError for an arm that is not built so. M. Shimizu et al. 2008, section II.
+    point of axis 4 nearest to S, r: the direction of axis 1. Where W lies on axis 1 a fixed direction
+    perpendicular to it stands for r. Raises InputError for an arm that is not built so. M. Shimizu et al.
+    2008, section II.
     """
     check_robot(robot)
     solver = swivel_solver(robot)

@@ -1,4 +1,4 @@
-"""The feasible intervals of a joint to spare, as the core computes them for a pose."""
+"""The feasible intervals of a redundant joint, as the core computes them for a pose."""
 
 from __future__ import annotations
 
@@ -44,9 +44,8 @@ def redundancy_of_pose(robot: Any, T: Array, parameter: Any, locked: Any) -> Red
 
 
 def is_bounded(locked_arm: LockedArm, joint: int) -> bool:
-    """Whether the parameter runs between limits or round a circle: along a slide without limits the search
-    looks as far as the arm is long.
-    """
+    """Whether the parameter runs between limits or round a circle: along a prismatic joint without limits
+    the search looks as far as the arm is long."""
     limits, k = locked_arm.robot.limits, locked_arm.free[joint]
     return locked_arm.robot.joint_types[k] == "R" or bool(
         np.isfinite([limits.lower[k], limits.upper[k]]).all()

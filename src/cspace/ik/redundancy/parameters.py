@@ -1,4 +1,4 @@
-"""Where a joint to spare may be, for a pose or for parts of one."""
+"""Where a redundant joint may be, for a pose or for parts of one."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def redundancy(
     tool_axis: Any = "z",
     **parts: Any,
 ) -> Redundancy:
-    """For which values of a joint to spare a goal can be reached within all limits, branch by branch.
+    """For which values of a redundant joint a goal can be reached within all limits, branch by branch.
 
     The ends are where another joint reaches a limit (it is locked there, and the others are solved) and where
     branches fold: the determinant of the others' Jacobian vanishes. goal (4, 4): T_base_tip; or parts of it
@@ -36,9 +36,9 @@ def redundancy(
     an arm with two spherical joints; the solver's own choice unless given (`ik(goal).freedom` names it).
     locked: values of other joints [rad, m], so that one is left to spare.
 
-    Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a joint to spare
-    or with more than one, and for a joint that the goal settles.
-    For arms with two spherical joints: M. Shimizu et al. 2008; here for any arm.
+    Returns a `Redundancy`, falsy where no value will do. Raises InputError for arms without a redundant
+    joint or with more than one, and for a joint that the goal settles. For arms with two spherical joints:
+    M. Shimizu et al. 2008; here for any arm.
     """
     given = {name: value for name, value in parts.items() if value is not None}
     unknown = sorted(given.keys() - set(KEYWORDS))

@@ -1,4 +1,4 @@
-"""Joints to spare: where a free joint can be."""
+"""redundant joints: where a free joint can be."""
 
 from __future__ import annotations
 
@@ -48,10 +48,10 @@ class Interval:
 class Redundancy:
     """The feasible intervals of a parameter for one goal, falsy if there is none.
 
-    parameter: the joint that is held. intervals: sorted by branch and lower end; they are computed from the
-    limits that joints reach and from the folds of the branches, not sampled. complete: whether none is
-    missing. Changes closer together than 1e-6 (1e-4 for axes rounded in a file) count as one, so an interval
-    shorter than that may be left out.
+    parameter: the joint that is locked. intervals: sorted by branch and lower end; they are computed from
+    the limits that joints reach and from the folds of the branches, not sampled. complete: whether none is
+    missing. Changes closer together than 1e-6 (1e-4 for axes rounded in a file) count as one, so an
+    interval shorter than that may be left out.
     """
 
     robot: Any
@@ -71,7 +71,8 @@ class Redundancy:
         return iter(self.intervals)
 
     def feasible(self, value: float) -> tuple[int, ...]:
-        """The branches that keep all limits at this value of the parameter [rad or m], whole turns aside."""
+        """The branches that keep all limits at this value of the parameter [rad or m], multiples of 2π
+        aside."""
         number = as_floats(value, "value", largest=FARTHEST)
         if number.ndim:
             raise InputError(f"value has shape {number.shape}, expected one number: ask in a loop")

@@ -1,4 +1,4 @@
-"""Arms with joints to spare: which are held, and how a goal is then answered."""
+"""Arms with redundant joints: which are locked, and how a goal is then answered."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def redundant_answer(
     near: Any,
     threads: int,
 ) -> Solutions | SolutionsBatch:
-    """The answer of an arm with joints to spare, or with joints held: see inverse_kinematics."""
+    """The answer of an arm with redundant joints, or with locked joints: see inverse_kinematics."""
     values = locked_values(robot, {} if locked is None else locked)
     redundancy_degree = count_redundancy(robot, values)
     if samples is not None and near is not None:
@@ -67,7 +67,7 @@ def redundant_answer(
 
 
 def count_redundancy(robot: Any, locked: Mapping[int, Any]) -> int:
-    """How many dimensions a pose leaves free with some joints held, at values without a pattern."""
+    """How many dimensions a pose leaves free with some joints locked, at values without a pattern."""
     return lock_joints(robot, {}).solver.redundancy_degree_with(list(locked))
 
 
@@ -75,7 +75,7 @@ def count_redundancy(robot: Any, locked: Mapping[int, Any]) -> int:
 def solve_locked(
     robot: Any, T: Array, values: dict[int, Any], near: Any, threads: int
 ) -> Solutions | SolutionsBatch:
-    """All joints to spare are held: every solution of the others."""
+    """All redundant joints are locked: every solution of the others."""
     solver = lock_joints(robot, {}).solver
     joints = list(values)
     given = {f"locked[{robot.joint_names[joint]!r}]": np.shape(v) for joint, v in values.items()}

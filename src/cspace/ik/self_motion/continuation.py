@@ -125,7 +125,7 @@ class Arc:
 
 
 def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc | None:
-    """The part of the family through q within the robot's limits; None where q itself breaks them."""
+    """The part of the self-motion through q within the robot's limits; None where q itself breaks them."""
     prepare(robot)  # a robot out of a pickle comes without its solver
     lower, upper = robot.limits.lower, robot.limits.upper
     moved, fits = into_limits(q[None], robot.joint_types, lower, upper)
@@ -140,9 +140,8 @@ def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc
 
 
 def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, seed: Array) -> Array:
-    """The configuration (dof,) of the family through q that is nearest to a seed, limits aside, each turning
-    joint by the turn that brings it closest.
-    """
+    """The configuration (dof,) of the self-motion through q that is nearest to a seed, limits aside, each
+    revolute joint by the turn that brings it closest."""
     prepare(robot)
     rounds, parts = 9, 33
     curve, _ = trace(robot, np.ascontiguousarray(q), direction, whole_pose)
@@ -157,7 +156,7 @@ def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, see
 
 
 def distances(robot: Any, points: Array, seed: Array) -> Array:
-    """How far configurations (k, dof) are from a seed, turning joints the short way round, (k,)."""
+    """How far configurations (k, dof) are from a seed, revolute joints the short way round, (k,)."""
     return np.asarray(np.linalg.norm(short_way(points - seed, robot.joint_types), axis=1))
 
 
@@ -252,7 +251,7 @@ def crossing(curve: Curve, inside: float, outside: float, limits: tuple[Array, A
 
 
 def outward(curve: Curve, way: int) -> npt.NDArray[np.float64]:
-    """The way slides go at an end of a curve that runs on for ever; zero for joints that rest."""
+    """The way prismatic joints go at an end of a curve that runs on for ever; zero for joints that rest."""
     t = curve.tangents[-1 if way > 0 else 0]
     return np.where(np.abs(t) > AT_REST, t, 0.0)
 

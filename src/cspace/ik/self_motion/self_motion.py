@@ -27,8 +27,8 @@ class SelfMotion:
     """A one-parameter family of configurations: the joints move, the tip stays.
 
     row: the solution that stands for it. q: that configuration (dof,). direction: the unit joint velocity
-    (dof,) along the family at q. joints: the names of the joints that move at q. bounds: how far each of them
-    goes; sample(n): configurations along the way.
+    (dof,) along the self-motion at q. joints: the names of the joints that move at q. bounds: how far each
+    of them goes; sample(n): configurations along the way.
     """
 
     row: int
@@ -44,14 +44,14 @@ class SelfMotion:
 
     @property
     def bounds(self) -> Array:
-        """The least and the largest value of each joint along the family, (dof, 2) [rad, m].
+        """The least and the largest value of each joint along the self-motion, (dof, 2) [rad, m].
 
         The family is the curve of configurations through q that keep the tip where it is (for a position
         goal: keep its position), followed from q both ways until a joint of the robot meets a limit or the
-        curve closes. A joint that goes all the way round a curve without limits has bounds −π and π; one that
-        is stopped on one side only, or a slide that nothing stops, has an infinite bound on the other. A
-        joint that rests has twice its value. Angles are those of q, after whole turns into the limits,
-        counted on without a jump, so that bounds may lie beyond ±π.
+        curve closes. A joint that goes all the way round a curve without limits has bounds −π and π; one
+        that is stopped on one side only, or a prismatic joint that nothing stops, has an infinite bound on
+        the other. A joint that rests has twice its value. Angles are those of q, after multiples of 2π into
+        the limits, counted on without a jump, so that bounds may lie beyond ±π.
 
         NaN where q breaks the limits whatever turn is taken: ik(..., near=q) picks another representative.
         Where more freedom is left than one, the curve is the one that goes on straight from `direction`; it
@@ -65,7 +65,7 @@ class SelfMotion:
         return self._arc.bounds()
 
     def sample(self, n: int) -> Array:
-        """n configurations along the family, (n, dof) [rad, m], evenly spread, each keeping the tip.
+        """n configurations along the self-motion, (n, dof) [rad, m], evenly spread, each keeping the tip.
 
         From one end of the part within limits to the other, both included; of a closed curve without limits
         from q once around, joints that go all the way round in (−π, π]. No rows where q breaks the limits
@@ -88,13 +88,14 @@ class SelfMotion:
     def nearest(self, q: Array) -> Array:
         """The configuration of the family that is nearest to q (dof,), (dof,) [rad, m].
 
-        Limits aside; each turning joint by the turn that brings it closest.
+        Limits aside; each revolute joint by the turn that brings it closest.
         """
         return nearest_member(self._robot, self.q, self.direction, self._whole_pose, q)
 
 
 def self_motion_at(robot: Any, row: int, q: Array, whole_pose: bool) -> SelfMotion:
-    """The family through q: the joint velocity keeping the tip's twist, or the tip's velocity, at zero."""
+    """The self-motion through q: the joint velocity keeping the tip's twist, or the tip's velocity, at
+    zero."""
     rows = 6 if whole_pose else 3
     found = _core._ik_direction(robot, np.ascontiguousarray(q), whole_pose)
     direction = np.linalg.svd(robot.jacobian(q)[:rows])[2][-1] if found is None else found

@@ -38,7 +38,7 @@ class Branch:
     cost: float
     number: int = -1
 
-    if not TYPE_CHECKING:  # which reports such names itself
+    if not TYPE_CHECKING:  # type checkers report such names themselves
 
         def __getattr__(self, name: str) -> Any:
             raise attribute_error(self, name)
@@ -58,7 +58,7 @@ class Branch:
 
     @property
     def reason(self) -> str:
-        """Where it ends and why, in a sentence."""
+        """Where it ends and why, as one sentence."""
         if self:
             return f"follows {all_of(len(self.poses))}"
         return f"ends {where(self.end, len(self.q))}: {self._cause()}"
@@ -99,7 +99,7 @@ class Track:
         self.complete, self._note = complete, note
         self.best = min(branches, key=_order) if branches else None
 
-    if not TYPE_CHECKING:  # which reports such names itself
+    if not TYPE_CHECKING:  # type checkers report such names themselves
 
         def __getattr__(self, name: str) -> Any:
             raise attribute_error(self, name)
@@ -138,7 +138,7 @@ class Track:
 
     @property
     def reason(self) -> str:
-        """The verdict in a sentence."""
+        """The verdict as one sentence."""
         if self.best is None:
             return f"no branch begins: {self._note}"
         through, b, n = sum(map(bool, self.branches)), len(self.branches), len(self.poses)

@@ -53,14 +53,14 @@ def track(
     Angles are continuous from pose to pose.
 
     poses (n, 4, 4): T_base_tip. start (dof,): follow one branch alone, from the solution of the first pose
-    that is nearest to it; unless given, every solution of the first pose begins a branch, each angle with the
-    whole turns that keep it within limits for longest. An arm with joints to spare is followed by the least
-    motion of its joints, from start or else from the solution nearest the middle of its limits; one of fewer
-    than six joints has to reach the poses alone, and stays as near as it can between them. limits: True for
-    the robot's, False for none, or Limits. cost: of the best branch: "length" Σ‖Δq‖, "step" the largest
-    change of a joint between neighbouring poses, "time" Σ max |Δq| / velocity limit, or a function of
-    q (n, dof). max_step: how far a joint may turn from one pose to the next [rad], or (dof,) for each joint
-    in its own unit; inf allows any.
+    that is nearest to it; unless given, every solution of the first pose begins a branch, each angle with
+    the multiples of 2π that keep it within limits for longest. An arm with redundant joints is followed by
+    the least motion of its joints, from start or else from the solution nearest the middle of its limits;
+    one of fewer than six joints has to reach the poses alone, and stays as near as it can between them.
+    limits: True for the robot's, False for none, or Limits. cost: of the best branch: "length" Σ‖Δq‖,
+    "step" the largest change of a joint between neighbouring poses, "time" Σ max |Δq| / velocity limit, or
+    a function of q (n, dof). max_step: how far a joint may turn from one pose to the next [rad], or (dof,)
+    for each joint in its own unit; inf allows any.
 
     Returns Track: q, branches, ends, reason; falsy where no branch follows every pose. Raises InputError for
     poses that are none, neighbours half a turn apart (the way between is open), a start of the wrong shape,

@@ -1,3 +1,3 @@
-"""Shortest paths at any angle through convex polygons and over cells."""
+"""Any-angle planning: shortest paths through convex polygons and over cells."""
 
 __all__: list[str] = []

@@ -1,10 +1,11 @@
-"""The shortest path in the plane: Polyanya on the convex polygons of free space.
+"""Polyanya: the shortest path in the plane, by a search over intervals of the sides of convex polygons.
 
-Cui, Harabor & Grastien 2017, "Compromise-free pathfinding on a navigation mesh". A path turns at corners of
-obstacles alone; the search runs over intervals of polygons' sides that such a corner sees, the most
-promising first, so the first path that arrives is a shortest one. Every decision is an exact orientation of
-given points. In grids of many corners the polygons are the runs of free cells in the rows, read from the
-cells where the search comes to them: nothing is prepared.
+Cui, Harabor & Grastien 2017, "Compromise-free pathfinding on a navigation mesh". A shortest path turns only
+at corners of obstacles. A search node is an interval of a polygon's side that is visible from such a
+corner. The search expands the interval with the smallest lower bound, so the first path to the goal is a
+shortest one. Every decision is an exact orientation test of given points. In grids with many corners the
+polygons are the runs of free cells in the rows, read from the cells during the search, without
+preprocessing.
 """
 
 from __future__ import annotations
@@ -31,8 +32,8 @@ _WORDS = ("see",)
 def plan(world: PolygonWorld | OccupancyGrid, start: ArrayLike, goal: ArrayLike) -> Route:
     """The shortest path from start to goal (2,) [m] through a PolygonWorld, or over an OccupancyGrid.
 
-    The trace holds the event "see": from one end of an interval to the other; its value is the length [m]
-    that a path through it has at least.
+    The trace contains the event "see": a segment from one end of an interval to the other; its value is a
+    lower bound of the length [m] of a path through the interval.
     """
     if isinstance(world, OccupancyGrid):
         return _over_cells(world, start, goal)
@@ -54,13 +55,13 @@ def _over_cells(grid: OccupancyGrid, start: ArrayLike, goal: ArrayLike) -> Route
 
 
 def takes_cells(grid: OccupancyGrid) -> bool:
-    """Whether runs of cells serve this grid better than polygons: where it has many corners."""
+    """Whether runs of cells are faster than polygons for this grid: it has many corners."""
     cells = grid.rows * grid.columns
     return cells <= RUN_CELLS and grid.corners > max(MESHED_CORNERS, cells / CELLS_PER_CORNER)
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     if route:
         corners = max(len(route.path) - 2, 0)
         return f"the shortest path; it turns at {counted(corners, 'corner')} of obstacles"
@@ -70,7 +71,7 @@ def reason(route: Route) -> str:
 
 
 def trace(route: Route) -> Trace:
-    """The intervals in the order in which they were looked through."""
+    """The intervals in the order in which they were expanded."""
     world, ends = route.world, (route.start, route.goal)
     if world.kind == "grid":
         return Trace(_WORDS, *_core._grid_any_angle_trace(world, *ends))

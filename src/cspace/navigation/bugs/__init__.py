@@ -1,4 +1,4 @@
-"""Robots without a map: they feel or see walls, and know where they and the goal are."""
+"""Bug algorithms: robots without a map that sense walls, and know their own position and the goal's."""
 
 from cspace.navigation.bugs.walk import BugEvidence
 

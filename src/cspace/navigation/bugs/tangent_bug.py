@@ -1,9 +1,10 @@
-"""Tangent Bug (Kamon, Rimon & Rivlin 1998): around what is in view by its edges, else along walls.
+"""Tangent Bug: moves toward the visible edge with the shortest estimated path (Kamon, Rimon & Rivlin 1998).
 
-A robot sees walls up to a distance. It goes for the goal, around what is in the way by the edge in view over
-which the rest of the way would be shortest. Where every edge lies further from the goal than it is itself, it
-follows the wall until a point comes into view that is nearer to the goal than all of the wall it has
-followed. A ring of walls followed all around is judged as Bug 1 judges it.
+A range sensor detects walls up to a distance. The robot moves to the goal, and passes an obstacle at the
+visible edge that minimises the estimated remaining path. Where every visible edge is farther from the goal
+than the robot itself, it follows the wall. It leaves the wall when a visible point is nearer to the goal
+than every point of the wall followed so far. A boundary loop that has been followed completely is judged as
+in Bug 1.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ __all__ = ["plan", "reason", "trace"]
 
 
 def plan(world: Any, start: Any, goal: Any, *, range: float = inf, hand: str | None = None) -> Route:
-    """The walk of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
+    """The path of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
 
-    range [m]: how far it sees; 0 leaves touch alone, inf sees as far as walls let it. hand: the one it
-    keeps on the wall, "left" or "right"; None turns it to the better edge in view.
+    range [m]: of the sensor; 0 is contact only, inf is limited only by walls. hand: the side of the robot
+    on which it keeps the wall, "left" or "right"; None turns it to the better visible edge.
 
-    route.path is the walk even where no way exists; route.evidence is a BugEvidence. Raises InputError on
-    a negative range or NaN.
+    route.path is the path travelled even where no path exists; route.evidence is a BugEvidence. Raises
+    InputError for a negative range or NaN.
     """
     reach = inf if range == inf else float(as_floats(range, "range"))
     if reach < 0:
@@ -37,7 +38,7 @@ def plan(world: Any, start: Any, goal: Any, *, range: float = inf, hand: str | N
 
 
 def trace(route: Route) -> Trace:
-    """The walk: "go", "hit", "follow" and "leave", one event after the other."""
+    """The motion: the events "go", "hit", "follow" and "leave" in order."""
     options = route.options
     return traced(route, TANGENT_BUG, _number(options["hand"]), options["range"])
 

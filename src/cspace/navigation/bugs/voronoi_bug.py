@@ -1,19 +1,21 @@
-"""Voronoi Bug (Choset & Burdick 1995): between the walls, by the distance to those in sight.
+"""Voronoi Bug: explores the generalised Voronoi diagram with a range sensor (Choset & Burdick 1995).
 
-A robot sees walls up to a distance and has no map. It moves away from the nearest wall until two are as near,
-and follows the points as near to both, branch by branch, keeping a graph of the points where three meet; dead
-ends it sees and leaves. Where no wall is within its range it goes straight for the goal, where only one is it
-follows that wall at this distance. It goes to the goal when that is in view. If all branches that hang
-together are exhausted, the goal lies beyond a wall that it follows, from whose point nearest to the goal it
-goes on, or beyond a ring of walls, and cannot be reached.
+The robot detects walls up to a distance and has no map. It moves away from the nearest wall until two walls
+are equally near. It then follows the points equally near to both, branch by branch, and keeps a graph of
+the points where three walls meet. It recognises dead ends and leaves them. Where no wall is within range it
+moves straight to the goal; where only one is, it follows that wall at this distance. It moves to the goal
+when the goal is visible. If all connected branches are exhausted, the goal is behind a wall that the robot
+follows, or enclosed by a boundary loop. In the first case it continues from the wall's point nearest to the
+goal; in the second the goal is unreachable.
 
-With noise it gets nothing but a scan: 720 readings all around, each the distance to the nearest wall in a
-beam of half a degree plus a normal deviate, clipped to [0, range]. It stands still and averages scans until
-their mean is sure to a hundredth of the least reading, 16 to 400 of them. Walls are as near as others if
-that could be chance. It steps a quarter of the clearance between two of them, then back to where both are as
-near, and goes to where three are. Branches that end in full view of their walls it leaves. A place counts as
-known within a quarter of the clearance. If all branches are exhausted it looks again, closer to walls, four
-times in all. Since a gap may have been missed, it never says that the goal is unreachable.
+With noise its only input is a scan: 720 readings all around. Each reading is the distance to the nearest
+wall in a beam of half a degree plus a normal deviate, clipped to [0, range]. The robot stops and averages
+16 to 400 scans until the standard error of their mean is a hundredth of the least reading. Walls count as
+equally near if the difference could be chance. It steps a quarter of the clearance between two walls,
+corrects to where both are equally near, and moves to where three are. It leaves branches whose end is
+visible together with their walls. A position counts as known within a quarter of the clearance. If all
+branches are exhausted it repeats the search closer to walls, four times in all. Since a gap may have been
+missed, it never reports that the goal is unreachable.
 """
 
 from __future__ import annotations
@@ -38,21 +40,22 @@ WORDS: Final = ("away", "trace", "roll", "back", "go")
 
 
 class VoronoiBugEvidence(NamedTuple):
-    """What a robot met that traces the points as near to two walls, and what shuts off its goal."""
+    """The record of a robot that traced the points equally near to two walls, and the loop that encloses
+    its goal."""
 
     meets: Array
-    """(k, 2) [m]: where three walls or more are nearest, in the order in which they were found."""
+    """(k, 2) [m]: where three or more walls are nearest, in the order of their discovery."""
     branches: int
-    """How many branches it went into."""
+    """The number of branches that it entered."""
     dead_ends: int
-    """How many of them end in a corner of walls."""
+    """The number of branches that end in a corner of walls."""
     clearance: float
-    """The least distance from walls along the branches [m], as sensed; inf where it took none."""
+    """The least sensed distance from walls along the branches [m]; inf if there was no branch."""
     scans: int
-    """How many scans a sensor with noise made; 0 without."""
+    """The number of scans of a sensor with noise; 0 without noise."""
     shut: tuple[int, tuple[float, float]] | None
-    """Unreachable: the ring that shuts the goal off, an index of `world.walls`, and a point (x, y) of it
-    where the line to the goal enters the wall; else None."""
+    """For an unreachable goal: the boundary loop that encloses it, an index of `world.walls`, and a point
+    (x, y) of the loop where the line to the goal enters the wall; else None."""
 
 
 def plan(
@@ -64,18 +67,17 @@ def plan(
     noise: float = 0.0,
     rng: int | np.random.Generator | None = None,
 ) -> Route:
-    """The walk of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
+    """The path of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
 
-    range [m]: how far it sees, more than 0; inf sees as far as walls let it.
-    noise [m]: the standard deviation of a reading, at most a fifth of the range; with 0 walls are seen as
-    they are.
-    rng: seed, Generator or None, drawn from where there is noise; `route.options` keeps the seed.
+    range [m]: of the sensor, more than 0; inf is limited only by walls. noise [m]: the standard deviation
+    of a reading, at most a fifth of the range; 0 gives exact readings. rng: seed, Generator or None, used
+    only with noise; `route.options` keeps the seed.
 
-    The robot keeps just within its range from walls that it follows. route.path is the walk even where no way
-    exists; route.evidence is a VoronoiBugEvidence; route.stats counts meet points and branches. Raises
-    InputError on a range that is not positive and on noise that is negative or too much. The status is
-    "undetermined" where rounding hides how branches hang together, and with noise where the goal has not been
-    seen.
+    The robot stays just within its range of the walls that it follows. route.path is the path travelled
+    even where no path exists; route.evidence is a VoronoiBugEvidence; route.stats counts meet points and
+    branches. Raises InputError for a range that is not positive and for noise that is negative or too
+    large. The status is "undetermined" where rounding hides the connections between branches, and with
+    noise where the goal has not been seen.
     """
     reach = inf if range == inf else float(as_floats(range, "range"))
     if not reach > 0:
@@ -95,7 +97,7 @@ def plan(
 
 
 def _check_noise(deviation: float, reach: float, world: Any) -> None:
-    """InputError for noise beyond a fifth of what the sensor can read."""
+    """InputError for noise above a fifth of the sensor's range."""
     xmin, ymin, xmax, ymax = world.bounds
     most = SCAN_NOISE * min(reach, hypot(xmax - xmin, ymax - ymin))
     if not 0 <= deviation <= most:
@@ -105,11 +107,9 @@ def _check_noise(deviation: float, reach: float, world: Any) -> None:
 
 
 def trace(route: Route) -> Trace:
-    """The walk, step by step: "away" from the nearest wall, "trace" between two, "roll" along one, "back"
-    where it has been, "go" straight for the goal.
-
-    start, end: (k, 2) [m]. value [m]: the least distance from walls along that branch, NaN where it is none.
-    """
+    """The motion, step by step: "away" from the nearest wall, "trace" between two, "roll" along one, "back"
+    over known positions, "go" straight to the goal. start, end: (k, 2) [m]. value [m]: the least distance
+    from walls along that branch, NaN without a branch."""
     return Trace(
         WORDS,
         *_core._voronoi_bug_trace(route.world._core, *route.options.values(), route.start, route.goal),
@@ -117,7 +117,7 @@ def trace(route: Route) -> Trace:
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     found: VoronoiBugEvidence = route.evidence
     branches = counted(found.branches, "branch", "branches")
     took = f"{branches} and {counted(len(found.meets), 'meet point')}"

@@ -1,7 +1,7 @@
-"""What the planners without a map share: hands, evidence, verdicts in words, traces.
+"""Shared by the bug algorithms: hands, evidence, verdicts and traces.
 
-Each of them is shown a robot that feels (or sees) walls, and nothing else of the world. A robot keeps a hand
-on the wall: with the left hand it walks with the wall on its left.
+Each robot receives only sensor readings of walls, and nothing else of the world. A robot keeps a hand on
+the wall: with the left hand the wall is on its left.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ WORDS: Final = ("go", "hit", "follow", "leave")
 
 
 class BugEvidence(NamedTuple):
-    """The stretches that a robot followed walls, k of them, and what shuts off its goal."""
+    """The k stretches of wall that a robot followed, and the loop that encloses its goal."""
 
     hits: Array
     """(k, 2) [m]: where it met a wall."""
     leaves: Array
-    """(k, 2) [m]: where it left that wall again, or ended."""
+    """(k, 2) [m]: where it left that wall, or stopped."""
     walked: Array
-    """(k,) [m]: how far it followed the wall."""
+    """(k,) [m]: the distance followed along the wall."""
     rings: npt.NDArray[np.int64]
-    """(k,): the ring of walls, an index of `world.walls`."""
+    """(k,): the boundary loop, an index of `world.walls`."""
     shut: tuple[int, tuple[float, float]] | None
-    """Unreachable: the ring that shuts the goal off, and a point (x, y) of it where the line to the goal
-    enters the wall; else None."""
+    """For an unreachable goal: the boundary loop that encloses it, and a point (x, y) of the loop where the
+    line to the goal enters the wall; else None."""
 
 
 def hand_of(hand: object) -> int:
@@ -65,7 +65,7 @@ def search(
     hand: int,
     reach: float = 0.0,
 ) -> Route:
-    """Lets a robot walk from start to goal (2,) [m]; hand: its number; reach [m]: how far the robot sees."""
+    """Runs a robot from start to goal (2,) [m]; hand: its number; reach [m]: the range of its sensor."""
     made: Route | None
     made = _core._bug(world, name, options, BugEvidence, world._core, kind, hand, reach, start, goal)
     if made is None:
@@ -76,15 +76,14 @@ def search(
 
 
 def traced(route: Route, kind: int, hand: int, reach: float = 0.0) -> Trace:
-    """The walk: straight ways "go" and stretches "follow" along walls, with "hit" and "leave" between them.
-
-    start, end: (k, 2) [m]. value [m]: how far the wall has been followed, else the distance left to the goal.
-    """
+    """The motion: straight lines "go" and stretches "follow" along walls, with "hit" and "leave" between
+    them. start, end: (k, 2) [m]. value [m]: the distance followed along the wall, else the remaining
+    distance to the goal."""
     return Trace(WORDS, *_core._bug_trace(route.world._core, kind, hand, reach, route.start, route.goal))
 
 
 def reason(route: Route) -> str:
-    """The verdict of a robot without a map, in a sentence."""
+    """The verdict of a robot without a map, as one sentence."""
     found: BugEvidence = route.evidence
     walls = len(found.rings)
     if route:

@@ -1,4 +1,4 @@
-"""Cars on grids: ways that a smallest turning circle allows, around obstacles."""
+"""Cars on grids: paths with a minimum turning radius, around obstacles."""
 
 from cspace.navigation.cars.car_route import CarRoute
 from cspace.navigation.cars.hybrid_a_star import hybrid_a_star

@@ -1,4 +1,4 @@
-"""What hybrid A* answers: a way of a car, or why there is none."""
+"""The result of hybrid A*: a path of a car, or the reason why there is none."""
 
 from __future__ import annotations
 
@@ -22,15 +22,15 @@ REASONS: Final = (
     "no way on this lattice: every pose that it reaches is settled; a smaller box may find one",
     "gave up: more poses than max_nodes; raise it, or take a larger box",
 )
-"""Why a search ended, in the order of the compiled core."""
+"""The reasons for the end of a search, in the order of the compiled core."""
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class CarRoute:
-    """The answer of hybrid A*; truthy if a way was found.
+    """The result of hybrid A*; truthy if a path was found.
 
-    curve: the way as segments, None without one. start, goal (3,): x, y [m] and theta [rad]. status: "found",
-    "unreachable" (proven) or "undetermined". stats: poses settled, pieces tried, seconds.
+    curve: the path as segments, None without one. start, goal (3,): x, y [m] and theta [rad]. status:
+    "found", "unreachable" (proven) or "undetermined". stats: poses expanded, segments tested, seconds.
     """
 
     grid: Any
@@ -47,24 +47,24 @@ class CarRoute:
 
     @property
     def length(self) -> float:
-        """Length of the way [m], forwards and backwards together; inf without one."""
+        """Length of the path [m], the sum of forward and reverse driving; inf without one."""
         return np.inf if self.curve is None else self.curve.length
 
     @cached_property
     def poses(self) -> Array:
-        """Poses along the way, (m, 3), a twentieth of the turning radius apart; (0, 3) without one."""
+        """Poses along the path, (m, 3), a twentieth of the turning radius apart; (0, 3) without one."""
         if self.curve is None:
             return np.empty((0, 3))
         return self.curve.sample(self.curve.radius / SAMPLES_PER_RADIUS)
 
     @property
     def path(self) -> Array:
-        """Places along the way, (m, 2) [m], of poses."""
+        """Positions along the path, (m, 2) [m], of its poses."""
         return self.poses[:, :2]
 
     @property
     def reason(self) -> str:
-        """The verdict in a sentence."""
+        """The verdict as one sentence."""
         if self.curve is None:
             return REASONS[self._cause]
         k = len(self.curve.cusps)

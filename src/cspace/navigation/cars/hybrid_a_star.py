@@ -1,4 +1,4 @@
-"""Hybrid A*: the words around the search for a way of a car."""
+"""Hybrid A*: searches for a path of a car over poses in a lattice of positions and headings."""
 
 from __future__ import annotations
 
@@ -33,25 +33,28 @@ def hybrid_a_star(
     weight: float = 2.0,
     max_nodes: int = 1_000_000,
 ) -> CarRoute:
-    """A way of a car on an occupancy grid: arcs of its turning circle and straight segments, without contact.
+    """A collision-free path of a car on an occupancy grid: arcs of its turning circle and straight
+    segments.
 
-    Best-first search over poses that the car can drive to, one kept for each box of a lattice of places and
-    headings. What is left is at least the curve of reeds_shepp (or dubins) without obstacles, and the way of
-    a disc around them. From time to time such a curve is tried; at the end, such curves cut corners. The
-    rectangle of the car never covers a part of a blocked cell, between the poses either; it may touch one.
+    Best-first search over poses that the car can reach, at most one for each box of a lattice of positions
+    and headings. The heuristic is the larger of two lower bounds: the length of the reeds_shepp (or dubins)
+    curve without obstacles, and the path of a disc around them. Such curves are also tried as direct
+    connections to the goal during the search; at the end they shorten the path. The rectangle of the car
+    never overlaps a blocked cell, also between the poses; it may touch one.
 
-    grid: an OccupancyGrid; outside it the car is not free. start, goal (3,): x, y [m] of the middle of the
-    rear axle, theta [rad]. vehicle: a Car() unless given. radius [m]: of the arcs, the car's smallest unless
-    given. reverse: whether it may drive backwards. box [m]: side of the boxes, an eighth of the radius unless
-    given, at least a cell; headings: how many there are. reverse_cost: of a metre backwards beside one
-    forwards; gear_cost [m]: of a change of direction, half a radius unless given. weight: of what is left
-    beside what is driven, 1 for the fewest detours on the lattice, more for less search (2 takes a twentieth
-    of it on large maps, and after the last curves the ways are no longer). max_nodes: how many poses are
-    settled at most.
+    grid: an OccupancyGrid; everything outside it is blocked. start, goal (3,): x, y [m] of the middle of
+    the rear axle, theta [rad]. vehicle: a Car() unless given. radius [m]: of the arcs, the car's minimum
+    unless given. reverse: whether it may drive backwards. box [m]: side of the boxes, an eighth of the
+    radius unless given, at least a cell; headings: their number. reverse_cost: the cost of a metre in
+    reverse relative to one forwards; gear_cost [m]: of a change of direction, half a radius unless given.
+    weight: the factor of the heuristic; 1 for the fewest detours on the lattice, larger for less search (2
+    takes a twentieth of it on large maps, and after the final shortening the paths are no longer).
+    max_nodes: the largest number of expanded poses.
 
-    Returns CarRoute: "found"; "unreachable" where not even a disc within the car can pass, which proves it;
-    or else "undetermined". The way is no shortest one. Raises InputTypeError for what is no OccupancyGrid or
-    Car, InputError for a start or goal where the car touches something, or what is no number above zero.
+    Returns CarRoute: "found"; "unreachable" where not even a disc inside the car can pass, which is a
+    proof; else "undetermined". The path is not guaranteed to be the shortest. Raises InputTypeError for a
+    value that is not an OccupancyGrid or Car, InputError for a start or goal where the car touches an
+    obstacle, or for a number that is not positive.
 
     Dolgov, Thrun, Montemerlo and Diebel 2010.
     """
@@ -76,7 +79,7 @@ def hybrid_a_star(
 
 
 def number(value: Any, name: str, least: float) -> float:
-    """A number that is not below the least that makes sense, or InputError."""
+    """A number not below its smallest useful value, or InputError."""
     given = as_floats(value, name, largest=LARGEST_NUMBER)
     if given.ndim or given < least:
         raise InputError(f"{name} is {value!r}; give one number, at least {least:g}")

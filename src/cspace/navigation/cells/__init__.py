@@ -1,4 +1,4 @@
-"""Free space cut into cells: convex polygons, trapezoids, squares."""
+"""Cell decompositions of free space: convex polygons, trapezoids, squares."""
 
 from cspace.navigation.cells.approximate_cells import ApproximateCells, CellEvidence, approximate_cells
 

@@ -1,10 +1,12 @@
-"""A path through approximate cells: squares, split where they are neither free nor full.
+"""Approximate cell decomposition: a quadtree whose mixed squares are subdivided, and a path through its
+free squares.
 
-The bounds lie in a square. A square that no wall enters is free or full; one that a wall enters is mixed, and
-is split into four, down to a level (Brooks & Lozano-Pérez 1983, "A subdivision algorithm in configuration
-space for findpath with rotation"; Latombe 1991, section 5.3). The route goes through free squares alone, from
-the middle of one door to the next, a shortest such way. Where not even the mixed squares connect start with
-goal, there is no way at all; where only they do, the answer is open, and they are split further.
+The root square contains the bounds. A square without a wall inside is free or full. A square that contains
+a wall is mixed, and is split into four, down to a level (Brooks & Lozano-Pérez 1983, "A subdivision
+algorithm in configuration space for findpath with rotation"; Latombe 1991, section 5.3). The route goes
+through free squares only, from the middle of one door to the next, along a shortest such path. If not even
+the mixed squares connect start with goal, no path exists. If only they do, the answer is open, and they are
+split further.
 """
 
 from __future__ import annotations
@@ -37,7 +39,7 @@ FINEST: Final = 20
 
 
 class ApproximateCells(NamedTuple):
-    """The squares that a world is cut into, which fill the square around its bounds."""
+    """The squares of the decomposition of a world; they fill the square around its bounds."""
 
     squares: Array
     """(k, 4): xmin, ymin, xmax, ymax [m]."""
@@ -46,15 +48,15 @@ class ApproximateCells(NamedTuple):
 
 
 class CellEvidence(NamedTuple):
-    """The squares that a verdict rests on."""
+    """The squares that support a verdict."""
 
     free: int
     mixed: int
     full: int
     depth: int
-    """The level of the smallest."""
+    """The level of the smallest square."""
     side: float
-    """Of the smallest [m]."""
+    """Side of the smallest square [m]."""
 
 
 def plan(
@@ -71,17 +73,17 @@ def plan(
 ) -> Route:
     """A path from start to goal (2,) [m] through the free squares of a PolygonWorld.
 
-    depth: the level to which mixed squares are split at once; at level k a square's side is the longer
-    side of the bounds over 2ᵏ. min_size [m]: no square is split into smaller ones than this; 0 sets no
-    bound. refine: whether squares that may still hide a way are split on, where depth does not settle the
-    question. max_depth: the level at which that ends; by default 12, or 9 for squares of one size.
-    uniform: whether free squares are split as well, so that all have one size. metric: what the way
-    through the middles of doors is a shortest in, "euclidean" or "manhattan"; by default the latter for
-    squares of one size.
+    depth: the level to which mixed squares are split at once; at level k a square's side is the longer side
+    of the bounds over 2ᵏ. min_size [m]: the lower bound of a square's side; 0 sets no bound. refine:
+    whether squares that may still contain a path are split further, where depth does not decide the query.
+    max_depth: the level at which refinement ends; by default 12, or 9 for squares of one size. uniform:
+    whether free squares are split as well, so that all have one size. metric: the metric in which the path
+    through the middles of doors is shortest, "euclidean" or "manhattan"; by default the latter for squares
+    of one size.
 
-    The status is "undetermined" where mixed squares are left that may hide a way: narrow gaps, or an end
-    that sees no free square nearby. route.evidence is a CellEvidence. UnknownNameError for another
-    metric, InputError for a level that is not whole or not within 0 and 20, and for a size below zero.
+    The status is "undetermined" where the remaining mixed squares may contain a path: narrow gaps, or a
+    start or goal without a visible free square nearby. route.evidence is a CellEvidence. UnknownNameError
+    for another metric, InputError for a level that is not an integer from 0 to 20, and for a negative size.
     """
     options: dict[str, Any] = {
         "depth": depth,
@@ -104,7 +106,7 @@ def plan(
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     found: CellEvidence = route.evidence
     squares = (
         f"{found.free} free and {counted(found.mixed, 'mixed square')}, the smallest {found.side:.6g} m wide"
@@ -117,18 +119,18 @@ def reason(route: Route) -> str:
 
 
 def trace(route: Route) -> Trace:
-    """How squares were made and searched: "split" and "free" squares, start their lower left and end their
-    upper right corner [m], value their level; "expand" a door, start the one before, value [m] the way there
-    in the metric."""
+    """The decomposition and its search: "split" and "free" squares, with their lower left corner as start,
+    their upper right corner as end and their level as value; "expand" for a door, with the previous door as
+    start and the path length so far [m] in the metric as value."""
     settings = _settings(route.world, **route.options)
     return Trace(WORDS, *_core._approximate_cells_trace(route.world._core, route.start, route.goal, settings))
 
 
 def approximate_cells(world: PolygonWorld, depth: int = 6, *, uniform: bool = False) -> ApproximateCells:
-    """The squares that a PolygonWorld is cut into.
+    """The decomposition of a PolygonWorld into squares.
 
-    depth, uniform: as in `plan`, for a tree that is not refined. InputError for a depth that is not whole or
-    not within 0 and 20.
+    depth, uniform: as in `plan`, for a tree without refinement. InputError for a depth that is not an
+    integer from 0 to 20.
     """
     need_polygons(world)
     settings = _settings(world, depth, 0.0, False, None, uniform, None)
@@ -136,7 +138,7 @@ def approximate_cells(world: PolygonWorld, depth: int = 6, *, uniform: bool = Fa
 
 
 def _side(world: PolygonWorld) -> float:
-    """Of the square around the bounds [m]."""
+    """Side of the square around the bounds [m]."""
     xmin, ymin, xmax, ymax = world.bounds
     return max(xmax - xmin, ymax - ymin)
 
@@ -150,7 +152,7 @@ def _settings(
     uniform: bool,
     metric: str | None,
 ) -> npt.NDArray[np.int64]:
-    """depth, the deepest level, refine, uniform, manhattan, the most cells: (6,)."""
+    """depth, the deepest level, refine, uniform, manhattan, the largest number of cells: (6,)."""
     metric = metric if metric is not None else METRICS[bool(uniform)]
     if metric not in METRICS:
         raise suggest("metric", metric, METRICS)

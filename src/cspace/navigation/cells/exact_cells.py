@@ -1,11 +1,11 @@
-"""A path through exact cells: trapezoids between the corners of obstacles.
+"""Exact cell decomposition: trapezoids between vertical lines through the corners of obstacles.
 
 A vertical line through every corner, up and down to the next wall, cuts free space into trapezoids, at most
-three for each corner and one more; a sweep from left to right finds them in n log n steps (de Berg et al.
-2008, chapter 6; Latombe 1991, section 5.1). Cells that share a piece of side are neighbours. The route goes
-from cell to cell through the middles of the doors between them, a shortest such way, and is then pulled
-taut inside those cells by a funnel (Lee & Preparata 1984): the shortest path in this row of cells, not of
-all.
+three for each corner and one more. A sweep from left to right finds them in n log n steps (de Berg et al.
+2008, chapter 6; Latombe 1991, section 5.1). Cells that share part of a side are neighbours. The route goes
+from cell to cell through the middles of the doors between them, along a shortest such path. The funnel
+algorithm (Lee & Preparata 1984) then shortens it inside those cells. The result is the shortest path in
+this sequence of cells, not in all of free space.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ _WORDS = ("enter",)
 def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
     """A path from start to goal (2,) [m] through the trapezoids of a PolygonWorld.
 
-    The trace holds the event "enter": the point of the door through which a cell is entered; its value is
-    the length [m] of the way there.
+    The trace contains the event "enter": the point of the door through which a cell is entered; its value
+    is the path length [m] to it.
     """
     route: Route | None = _core._exact_cells(world, world._core, "exact_cells", None, start, goal)
     if route is None:
@@ -45,7 +45,7 @@ def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     cells = counted(len(exact_cells(route.world)[0]), "cell")
     if route:
         return f"a chain of cells leads from start to goal; the shortest path inside it, of {cells} in all"
@@ -53,14 +53,14 @@ def reason(route: Route) -> str:
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were entered."""
+    """The cells in the order in which the search entered them."""
     return Trace(_WORDS, *_core._exact_cells_trace(route.world._core, route.start, route.goal))
 
 
 def exact_cells(world: PolygonWorld) -> tuple[Array, npt.NDArray[np.int32]]:
     """The trapezoids (k, 4, 2) [m], counterclockwise from the lower left, and the pairs (d, 2) with a door.
 
-    Between corners of one x lie cells without width: they are links between those beside them.
+    Corners with equal x have cells of zero width between them, which connect the cells on both sides.
     """
     corners, doors = _core._exact_cells_all(world._core)
     return corners.reshape(-1, 4, 2), doors

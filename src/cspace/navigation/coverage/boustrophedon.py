@@ -1,4 +1,4 @@
-"""Coverage to and fro: a way that sweeps every free cell of a grid."""
+"""Boustrophedon coverage: a path that sweeps every free cell of a grid in parallel lines."""
 
 from __future__ import annotations
 
@@ -17,20 +17,21 @@ __all__ = ["Coverage", "coverage"]
 
 ALONG: Final = ("x", "y")
 ROUNDING: Final = 1e-9
-"""Share of a cell by which a width may miss whole cells: 3 × 0.1 is less than 0.3."""
+"""Tolerance in cells for a width that is a multiple of the cell size: 3 × 0.1 differs from 0.3 by rounding.
+"""
 
 Labels = npt.NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Coverage:
-    """A way that sweeps a grid; truthy if no free cell is left.
+    """A path that sweeps a grid; truthy if every free cell is swept.
 
-    path (m, 2) [m]: its corners, the start first. regions (rows, cols): the region of each cell, −1 where the
-    robot cannot come. order (k,): the regions as they are entered. passes (rows, cols): how often the bar
-    came over each cell. along: "x" or "y", the axis of the lines. width [m]: of the bar, in whole cells.
-    reached, free: how many cells are swept, and free. lanes: how many lines are driven; leftover: how many
-    cells took a way of their own.
+    path (m, 2) [m]: its corners, the start first. regions (rows, cols): the region of each cell, −1 for
+    cells that the robot cannot reach. order (k,): the regions in the order of visit. passes (rows, cols):
+    how often the bar passed over each cell. along: "x" or "y", the axis of the lines. width [m]: of the
+    bar, in whole cells. reached, free: the numbers of swept and free cells. lanes: the number of lines;
+    leftover: the number of cells that needed a separate path.
     """
 
     grid: Any
@@ -55,12 +56,12 @@ class Coverage:
 
     @property
     def overlap(self) -> float:
-        """How often a swept cell is passed beyond the first time, on average: 0 where each is swept once."""
+        """The mean number of passes over a swept cell beyond the first: 0 where each is swept once."""
         return float(self.passes.sum(dtype=np.int64)) / self.reached - 1.0
 
     @property
     def reason(self) -> str:
-        """The verdict in a sentence."""
+        """The verdict as one sentence."""
         k = len(self.order)
         how = f"{k} region{'' if k == 1 else 's'}, {self.length:.6g} m, overlap {self.overlap:.2g}"
         if self:
@@ -72,20 +73,24 @@ class Coverage:
 
 
 def coverage(grid: Any, start: Any, width: float | None = None, *, along: str | None = None) -> Coverage:
-    """A way to and fro that sweeps every free cell that can be reached (boustrophedon).
+    """A boustrophedon path that sweeps every reachable free cell.
 
-    Free space is cut into regions wherever the free part of a line splits, joins, appears or ends; they are
-    taken nearest first, by the way that the robot drives, each line by line, a bar's width apart. The robot
-    carries a bar across its lines that ends at walls; what lies behind them is swept last. Moves are along
-    and across the lines, so that the robot comes between no two cells that touch in a corner.
+    Free space is split into regions wherever the free part of a line splits, merges, appears or ends. The
+    robot visits the nearest region next, by path length, and sweeps each line by line, one bar width apart.
+    The robot carries a bar perpendicular to its lines that ends at walls; cells behind walls are swept
+    last. Moves are along and across the lines, so the robot never passes between two cells that touch at a
+    corner.
 
-    grid: an OccupancyGrid of the places of the robot's centre (inflate it for a robot with a size). start
-    (2,) [m]: in a free cell, whose middle the path begins at. width [m] of the bar: a cell unless given, else
-    an odd number of whole cells that fit. along: "x" or "y", the axis of the lines; the one with the shorter
-    way unless given. Returns Coverage, truthy if no free cell is left.
+    grid: an OccupancyGrid of the positions of the robot's centre (inflate it for a robot with a size).
+    start (2,) [m]: in a free cell, at whose centre the path begins. width [m] of the bar: one cell unless
+    given, else the largest odd number of whole cells that fit. along: "x" or "y", the axis of the lines;
+    the one with the shorter path unless given.
 
-    Raises InputTypeError for what is no OccupancyGrid, InputError for a start that is not in a free cell or a
-    width of less than a cell, UnknownNameError for another axis. Choset and Pignon 1997.
+    Returns Coverage, truthy if every free cell is swept. Raises InputTypeError for a value that is not an
+    OccupancyGrid, InputError for a start that is not in a free cell or a width below one cell,
+    UnknownNameError for another axis.
+
+    Choset and Pignon 1997.
     """
     if not isinstance(grid, _core.GridBase):
         raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
@@ -117,7 +122,7 @@ def free_cell(grid: Any, point: Any) -> tuple[int, int]:
 
 
 def half_width(grid: Any, width: float | None) -> int:
-    """How many cells a bar reaches to either side of the robot's."""
+    """The number of cells that the bar extends to either side of the robot's cell."""
     if width is None:
         return 0
     bar = as_floats(width, "width")
@@ -128,7 +133,7 @@ def half_width(grid: Any, width: float | None) -> int:
 
 
 def corners(cells: npt.NDArray[np.int32]) -> Array:
-    """The cells (n, 2) at which a way turns, both ends among them."""
+    """The cells (n, 2) at which a path turns, including both ends."""
     moves = np.diff(cells, axis=0)
     turns = np.flatnonzero((moves[1:] != moves[:-1]).any(axis=1)) + 1
     kept = np.unique([0, *turns.tolist(), len(cells) - 1])

@@ -1,4 +1,4 @@
-"""Curves for cars: the shortest ways between poses that a smallest turning radius allows."""
+"""Curves for cars: shortest paths between poses with a minimum turning radius."""
 
 from cspace.navigation.curves.curve import Curve, Segment
 from cspace.navigation.curves.shortest import dubins, dubins_distance, reeds_shepp, reeds_shepp_distance

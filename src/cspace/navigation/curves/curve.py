@@ -1,4 +1,4 @@
-"""A curve for a car as an object: its segments, and the pose anywhere along it."""
+"""A curve of a car: its segments, and the pose at every arc length."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ __all__ = ["Curve", "Segment"]
 
 KINDS: Final = {1: "left", 0: "straight", -1: "right"}
 Pieces = tuple[tuple[int, float], ...]
-"""Turn (+1 left, 0 straight, −1 right) and length [m] of each segment; driven backwards below zero."""
+"""Turn (+1 left, 0 straight, −1 right) and length [m] of each segment; a negative length is driven in
+reverse."""
 
 
 @dataclass(frozen=True)
 class Segment:
-    """One piece of a curve: kind "left", "straight" or "right" as seen when driving forwards, length [m],
-    curvature [1/m] (above zero to the left) and direction: 1 driven forwards, −1 backwards."""
+    """One segment of a curve: kind "left", "straight" or "right" as seen when driving forwards, length [m],
+    curvature [1/m] (positive to the left) and direction: 1 forwards, −1 in reverse."""
 
     kind: str
     length: float
@@ -32,10 +33,10 @@ class Segment:
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Curve:
-    """A way of a car from pose to pose, made of arcs of one radius and straight segments.
+    """A path of a car from pose to pose, composed of arcs of one radius and straight segments.
 
-    start, goal (3,): x, y [m] of the middle of the rear axle and heading theta [rad]. radius [m]: that of
-    the arcs.
+    start, goal (3,): x, y [m] of the middle of the rear axle and heading theta [rad]. radius [m]: of the
+    arcs.
     """
 
     start: Array
@@ -45,7 +46,7 @@ class Curve:
 
     @cached_property
     def segments(self) -> tuple[Segment, ...]:
-        """The segments in driving order; none where start and goal are one pose."""
+        """The segments in driving order; none where start and goal are the same pose."""
         return tuple(
             Segment(KINDS[turn], abs(length), turn / self.radius, 1 if length > 0 else -1)
             for turn, length in self._pieces
@@ -53,30 +54,30 @@ class Curve:
 
     @property
     def length(self) -> float:
-        """How far is driven [m], forwards and backwards together."""
+        """The distance driven [m], the sum of forward and reverse driving."""
         return sum(abs(length) for _, length in self._pieces)
 
     @property
     def word(self) -> str:
-        """The letters of the segments, L, S and R, each with + if driven forwards and − if backwards."""
+        """The letters of the segments, L, S and R, each with + if driven forwards and − if in reverse."""
         return "".join("SLR"[turn] + ("+" if length > 0 else "−") for turn, length in self._pieces)
 
     @property
     def cusps(self) -> Array:
-        """How far along the curve the car changes its direction of driving, (k,) [m]."""
+        """The arc lengths at which the car changes its direction of driving, (k,) [m]."""
         signs = np.sign([length for _, length in self._pieces])
         return np.asarray(self._ends[:-1][signs[1:] != signs[:-1]])
 
     @cached_property
     def _ends(self) -> Array:
-        """How far along the curve each segment ends, (k,) [m]."""
+        """The arc length at the end of each segment, (k,) [m]."""
         return np.cumsum([abs(length) for _, length in self._pieces])
 
     def at(self, s: Any) -> Array:
-        """The poses at lengths s (...,) [m] along the curve, (..., 3).
+        """The poses at arc lengths s (...,) [m], (..., 3).
 
-        Headings go on smoothly from that of the start, so that the last differs from that of the goal by
-        whole turns. Raises InputError for a length outside the curve.
+        Headings are continuous from that of the start, so that the last may differ from that of the goal by
+        a multiple of 2π. Raises InputError for an arc length outside the curve.
         """
         lengths = as_floats(s, "s")
         beyond = lengths[(lengths < 0) | (lengths > self.length)]
@@ -88,8 +89,8 @@ class Curve:
         return poses.reshape(*lengths.shape, 3)
 
     def sample(self, spacing: float) -> Array:
-        """Poses along the curve at most `spacing` [m] apart, (n, 3), both ends and those of every segment
-        among them."""
+        """Poses along the curve at most `spacing` [m] apart, (n, 3), including both ends and those of every
+        segment."""
         step = as_floats(spacing, "spacing")
         if step.ndim or step <= 0:
             raise InputError(f"spacing is {spacing!r}; give a length above zero, in metres")

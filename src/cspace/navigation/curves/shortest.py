@@ -1,4 +1,4 @@
-"""The shortest curves of a car: forwards alone (Dubins), and forwards and backwards (Reeds and Shepp)."""
+"""Dubins and Reeds–Shepp curves: the shortest curves of a car, forwards only, and forwards and in reverse."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ __all__ = ["dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]
 
 
 def dubins(start: Any, goal: Any, radius: float) -> Curve:
-    """The shortest curve of a car that drives forwards and turns no tighter than a radius.
+    """The shortest curve of a car that drives forwards with a minimum turning radius (Dubins).
 
-    It is an arc, then a straight segment or an arc the other way of more than half a turn, then an arc; any
-    of them may be missing. start, goal (3,): x, y [m], theta [rad]. radius [m] above zero.
-
-    The length jumps where an arc becomes a whole turn. An arc that misses a whole turn by no more than the
-    rounding of the coordinates counts as none. Raises InputError for what is no pose, and for a radius that
-    is not above zero.
+    It is an arc, then a straight segment or an opposite arc of more than π, then an arc; any of them may be
+    missing. start, goal (3,): x, y [m], theta [rad]. radius [m] above zero. The length is discontinuous
+    where an arc becomes a full circle. An arc that differs from a full circle by no more than the rounding
+    of the coordinates counts as none. Raises InputError for a value that is not a pose, and for a radius
+    that is not positive.
 
     Dubins 1957; Shkel and Lumelsky 2001.
     """
@@ -31,9 +30,10 @@ def dubins(start: Any, goal: Any, radius: float) -> Curve:
 
 
 def reeds_shepp(start: Any, goal: Any, radius: float) -> Curve:
-    """The shortest curve of a car that drives forwards and backwards and turns no tighter than a radius.
+    """The shortest curve of a car that drives forwards and in reverse with a minimum turning radius (Reeds
+    and Shepp).
 
-    It has up to five segments and two changes of direction: a word of the 48 of Reeds and Shepp. start,
+    It has up to five segments and two changes of direction: one of the 48 words of Reeds and Shepp. start,
     goal (3,): x, y [m], theta [rad]. radius [m] above zero. Raises InputError as dubins does.
 
     Reeds and Shepp 1990; Sussmann and Tang 1991.
@@ -60,7 +60,7 @@ def reeds_shepp_distance(start: Any, goal: Any, radius: float) -> Any:
 def shortest(reverses: bool, start: Any, goal: Any, radius: Any) -> Curve:
     """The curve of one start and one goal."""
     told = _core._car_shortest(reverses, start, goal, radius)
-    if told is None:  # not plain numbers: said what is wrong, or made plain
+    if told is None:  # not plain numbers: raises an error or converts them
         r = turning_radius(radius)
         ends = car_poses(start, "start", r), car_poses(goal, "goal", r)
         for pose, name in zip(ends, ("start", "goal"), strict=True):
@@ -84,7 +84,7 @@ def distances(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
 
 
 def turning_radius(radius: Any) -> float:
-    """A turning radius [m]; InputError unless it is one number above zero."""
+    """A turning radius [m]; InputError unless it is one positive number."""
     r = as_floats(radius, "radius", largest=LARGEST_NUMBER)
     if r.ndim or not r > 0:
         raise InputError(
@@ -95,7 +95,7 @@ def turning_radius(radius: Any) -> float:
 
 
 def car_poses(poses: Any, name: str, radius: float) -> Array:
-    """Poses (..., 3) of x, y, theta, none so far away that rounding would decide the curve."""
+    """Poses (..., 3) of x, y, theta; refuses coordinates so large that rounding would decide the curve."""
     array = as_floats(poses, name, last=(3,))
     if array.ndim == 1:
         x, y, theta = array.tolist()

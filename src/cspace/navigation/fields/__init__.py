@@ -1,4 +1,4 @@
-"""Fields over the world: waves, fronts, potentials, and ways down them."""
+"""Fields over the world: wavefronts, distance fields and potentials, and descent along them."""
 
 from cspace.navigation.fields.brushfire import BrushfireDiagram, brushfire_diagram
 from cspace.navigation.fields.fast_marching import arrival_times

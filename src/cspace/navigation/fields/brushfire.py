@@ -1,13 +1,13 @@
-"""Brushfire: fires lit at the walls of a grid burn into free space, and where fires from different walls meet
-they leave its Voronoi diagram, along which clearance is greatest.
+"""Brushfire: the distance transform of a grid, and its Voronoi diagram, along which clearance is greatest.
 
-Blum 1967, "A transformation for extracting new descriptors of shape"; Choset et al. 2005, "Principles of
-Robot Motion", section 5.3. The distances are Euclidean and exact: from the centre of a cell to the nearest
-point of a blocked one, or of the border of the grid. Fires meet in a cell if they stem from different rings
-of walls, or from places of one ring that are, along the wall, more than twice as far apart as straight on;
-around a single corner, and along stairs, it is less than that. What joins the cells where they meet is found
-by thinning free space from the walls inwards, at every level of clearance, so that a way along the diagram is
-as wide as any way over the cells.
+Fires start at the walls and spread into free space. Where fires from different walls meet they form the
+Voronoi diagram. Blum 1967, "A transformation for extracting new descriptors of shape"; Choset et al. 2005,
+"Principles of Robot Motion", section 5.3. The distances are Euclidean and exact: from the centre of a cell
+to the nearest point of a blocked cell or of the border of the grid. Two fires meet in a cell in two cases.
+They come from different boundary loops, or from points of one loop whose distance along the wall is more
+than twice their straight distance. Around a single corner, and along stairs, the ratio is smaller. The
+meeting cells are connected by thinning free space from the walls inwards, at every level of clearance. A
+path along the diagram is therefore as wide as any path over the cells.
 """
 
 from __future__ import annotations
@@ -35,12 +35,13 @@ WORDS: Final = ("burn", "meet", "keep")
 
 @dataclass(frozen=True, eq=False)
 class BrushfireDiagram:
-    """The Voronoi diagram of a grid (rows, columns), and what it was made from.
+    """The Voronoi diagram of a grid (rows, columns), and the fields behind it.
 
     clearance (rows, columns) [m]: from the centre of a cell to the nearest wall, 0 where blocked. labels
-    (rows, columns): the straight piece of wall, between corners, that is nearest, −1 where blocked. cells
-    (rows, columns): the diagram. Its branches join cells with other than two neighbours in it: ends (k, 4)
-    are row and column of the two, lengths (k,) [m] by steps along sides, widths (k,) [m] the least clearance.
+    (rows, columns): the nearest straight piece of wall, between corners, −1 where blocked. cells (rows,
+    columns): the diagram. Its branches join cells that have a number of neighbours in it other than two:
+    ends (k, 4) are row and column of the two, lengths (k,) [m] by steps along sides, widths (k,) [m] the
+    least clearance.
     """
 
     clearance: Array
@@ -60,15 +61,15 @@ def brushfire_diagram(grid: Any) -> BrushfireDiagram:
 
 
 def plan(world: Any, start: Any, goal: Any, *, prefer: str = "clearance") -> Route:
-    """A way over the cells of a grid that keeps away from walls.
+    """A path over the cells of a grid that maximises the clearance.
 
-    start, goal: (2,) [m] in free cells. prefer: on the diagram, "clearance" makes the least clearance as
-    great as on any way by sides of cells, and the way the shortest of those on the diagram; "length"
-    takes the shortest on the diagram.
+    start, goal: (2,) [m] in free cells. prefer: on the diagram, "clearance" maximises the least clearance
+    over all paths by sides of cells, and is the shortest of those on the diagram; "length" is the shortest
+    path on the diagram.
 
-    From start and goal the way goes up the clearance to the diagram. A diagonal step is taken where both
-    cells beside it are free. route.evidence["least_clearance"] [m] is that of the centres of the cells on
-    the way. UnknownNameError for another preference.
+    From start and goal the path ascends the clearance to the diagram. A diagonal step is allowed where both
+    adjacent cells are free. route.evidence["least_clearance"] [m] is that of the centres of the cells on
+    the path. UnknownNameError for another preference.
     """
     if prefer not in PREFER:
         raise suggest("choice of prefer=", prefer, PREFER)
@@ -79,7 +80,7 @@ def plan(world: Any, start: Any, goal: Any, *, prefer: str = "clearance") -> Rou
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     if not route:
         return "no way leads to the goal: start and goal lie in different parts of the diagram"
     least: float = route.evidence["least_clearance"]
@@ -89,12 +90,12 @@ def reason(route: Route) -> str:
 
 def trace(route: Route) -> Trace:
     """The fires: "burn" reaches a cell from the nearest point of a wall, "meet" is a cell where fires meet,
-    "keep" one that joins them in the diagram. start, end: (k, 2) [m]; value [m]: the clearance."""
+    "keep" a cell that connects the diagram. start, end: (k, 2) [m]; value [m]: the clearance."""
     return Trace(WORDS, *_core_of(route.world).trace())
 
 
 def _core_of(grid: Any) -> _core.BrushfireCore:
-    """What the core has made of a grid, kept beside it."""
+    """The fields that the core has computed for a grid, cached with it."""
     kept = vars(grid)
     if "_brushfire" not in kept:
         kept["_brushfire"] = _core.BrushfireCore(grid)

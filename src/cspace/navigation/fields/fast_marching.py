@@ -1,9 +1,9 @@
-"""Fast marching: a front leaves the goal, the time at which it arrives solves |∇T| · speed = 1, and the way
-goes down T (Sethian 1996, "A fast marching level set method for monotonically advancing fronts").
+"""Fast marching: solves the eikonal equation |∇T| · speed = 1 from the goal; the path descends T.
 
-T is found by upwind differences of first order, in the order in which the front arrives, so it has no minimum
-but the goal. Its error shrinks with the cells, by their side times the logarithm of their number; ways over a
-grid keep the error of their eight directions.
+Sethian 1996, "A fast marching level set method for monotonically advancing fronts". T is the arrival time
+of a front that starts at the goal. It is computed by first-order upwind differences in the order of
+arrival, so its only minimum is the goal. The error decreases with the side of the cells times the logarithm
+of their number. Paths over a grid keep the error of their eight directions.
 """
 
 from __future__ import annotations
@@ -29,14 +29,14 @@ WORDS: Final = ("arrive",)
 
 
 def plan(world: Any, start: Any, goal: Any, *, slow_within: float = 0.0) -> Route:
-    """The way down the times of a front from the goal, of any angle.
+    """The descent along the arrival times of a front from the goal, at any angle.
 
-    start, goal: (2,) [m] in free cells. slow_within [m]: nearer to walls than this the speed falls in
-    proportion to the clearance, so that the way keeps away from them (Garrido et al. 2006); elsewhere,
-    and with 0, it is 1.
+    start, goal: (2,) [m] in free cells. slow_within [m]: nearer to walls than this the speed decreases in
+    proportion to the clearance, so that the path keeps away from them (Garrido et al. 2006); elsewhere, and
+    with 0, it is 1.
 
-    The front passes from cell to cell along sides; the way lies in free cells and passes corners no
-    closer than the centre of a cell beside them. route.evidence["time"] [m] is T of the start's cell.
+    The front moves from cell to cell across sides. The path is in free cells and passes corners no closer
+    than the centre of an adjacent cell. route.evidence["time"] [m] is T of the start's cell.
     """
     near = number_of("slow_within", slow_within, 0.0)
     ends = checked_ends(world, start, goal)
@@ -48,9 +48,9 @@ def plan(world: Any, start: Any, goal: Any, *, slow_within: float = 0.0) -> Rout
 
 
 def arrival_times(grid: Any, goal: ArrayLike, *, slow_within: float = 0.0) -> Array:
-    """When a front from the cell of goal (2,) [m] arrives at the centres of cells: (rows, columns) [m, over a
-    speed of 1]; infinite where it never does. slow_within: as for the planner. InputTypeError for other
-    worlds than grids."""
+    """Arrival times of a front from the cell of goal (2,) [m] at the centres of cells: (rows, columns) [m,
+    over a speed of 1]; infinite where it does not arrive. slow_within: as for the planner. InputTypeError
+    for worlds other than grids."""
     if not isinstance(grid, _core.GridBase):
         raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
     near = number_of("slow_within", slow_within, 0.0)
@@ -60,7 +60,7 @@ def arrival_times(grid: Any, goal: ArrayLike, *, slow_within: float = 0.0) -> Ar
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     if not route:
         cells = counted(route.stats.nodes, "cell")
         return f"no way leads to the goal: its front has come to {cells} and no farther"
@@ -68,7 +68,7 @@ def reason(route: Route) -> str:
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which the front arrives: start and end (k, 2) [m] are their centre; value [m]
+    """The cells in the order of the front's arrival: start and end (k, 2) [m] are their centre; value [m]
     is the time."""
     world = route.world
     near = route.options["slow_within"] / world.resolution

@@ -1,11 +1,10 @@
-"""Harmonic potential: Laplace's equation over free cells, 0 at the goal and 1 on walls (Connolly, Burns &
-Weiss 1990, "Path planning using Laplace's equation").
+"""Harmonic potential: solves Laplace's equation over free cells, with 0 at the goal and 1 on walls.
 
-Every other cell is the mean of the four beside it, so none but the goal is lower than all around it, and a
-way down leads to the goal from everywhere. 1 − the potential is the chance that a random walk comes to the
-goal before it comes to a wall. Along a corridor that is w cells wide it falls by exp(−π / w) with every
-cell, and the potential is soon 1 to the last digit of a double; so what is solved for, and kept, is the
-logarithm of the chance, to a relative error that does not depend on how small it is.
+Connolly, Burns & Weiss 1990, "Path planning using Laplace's equation". Every other cell is the mean of its
+four neighbours, so the goal is the only local minimum, and a descent leads to it from everywhere. 1 − the
+potential is the probability that a random walk reaches the goal before a wall. Along a corridor of w cells
+it decreases by exp(−π / w) per cell, and the potential soon rounds to 1. The solver therefore computes and
+stores the logarithm of the probability, to a relative error that does not depend on its size.
 """
 
 from __future__ import annotations
@@ -33,31 +32,32 @@ __all__ = ["HarmonicEvidence", "harmonic", "plan", "reason", "trace"]
 
 WORDS: Final = ("descend",)
 MOST_KEPT: Final = 2
-"""Fields that are kept with a grid; each takes some fifty bytes per cell."""
+"""The number of fields cached with a grid; each takes about fifty bytes per cell."""
 
 
 class HarmonicEvidence(NamedTuple):
-    """How well Laplace's equation was solved."""
+    """The accuracy of the solution of Laplace's equation."""
 
     residual: float
-    """By what share of itself a cell's chance differs from the mean of the four beside it, at most."""
+    """The largest relative difference between a cell's probability and the mean of its four neighbours."""
     cycles: int
-    """Of the solver."""
+    """Iterations of the solver."""
     rests: int
-    """Cells but the goal from which no step leads down: with none, descents arrive from everywhere."""
+    """Cells other than the goal without a descending step; if there are none, descents arrive from
+    everywhere."""
 
 
 UNSOLVED: Final = HarmonicEvidence(0.0, 0, 0)
-"""Where walls are known to divide start from goal."""
+"""Whether walls are known to separate start from goal."""
 
 
 def plan(world: Any, start: Any, goal: Any) -> Route:
-    """Down the harmonic potential from start to goal, from cell to cell, past no blocked corner.
+    """Descent along the harmonic potential from start to goal, from cell to cell, past no blocked corner.
 
-    start, goal: (2,) [m] in free cells. The first question for a goal solves for the whole field, further
-    ones go down it; where walls divide start from goal, none is needed. An interrupt ends the solution.
-    route.evidence is a HarmonicEvidence. "undetermined" where the equation was not solved well enough for
-    the descent to arrive.
+    start, goal: (2,) [m] in free cells. The first query for a goal solves the whole field, further queries
+    only descend it; where walls separate start from goal, no solution is needed. An interrupt stops the
+    solver. route.evidence is a HarmonicEvidence. "undetermined" where the equation was not solved
+    accurately enough for the descent to arrive.
     """
     ends = checked_ends(world, start, goal)
     began = time.perf_counter()
@@ -74,12 +74,12 @@ def plan(world: Any, start: Any, goal: Any) -> Route:
 
 
 def harmonic(grid: Any, goal: ArrayLike) -> Array:
-    """−log of the chance that a random walk from a cell comes to goal (2,) [m] before a wall: (rows,
+    """−log of the probability that a random walk from a cell reaches goal (2,) [m] before a wall: (rows,
     columns).
 
-    0 at the goal, infinite on blocked cells and where no way leads to the goal. The harmonic potential is
-    1 − exp(−field), which is 1 in doubles where the field is above 37; the field goes up with it.
-    InputTypeError for other worlds than grids.
+    0 at the goal, infinite on blocked cells and where no path leads to the goal. The harmonic potential is
+    1 − exp(−field), which rounds to 1 where the field is above 37; it increases with the field.
+    InputTypeError for worlds other than grids.
     """
     if not isinstance(grid, _core.GridBase):
         raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
@@ -89,7 +89,7 @@ def harmonic(grid: Any, goal: ArrayLike) -> Array:
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     evidence: HarmonicEvidence = route.evidence
     if evidence == UNSOLVED:
         return "no way leads to the goal: walls divide it from the start, as is known without the potential"
@@ -103,8 +103,8 @@ def reason(route: Route) -> str:
 
 
 def trace(route: Route) -> Trace:
-    """The steps "descend": start, end (k, 2) [m] are centres of cells; value: −log of the chance at the
-    end."""
+    """The steps "descend": start, end (k, 2) [m] are centres of cells; value: −log of the probability at
+    the end."""
     world = route.world
     if route.evidence == UNSOLVED:
         return Trace(WORDS, np.empty(0, np.int8), np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
@@ -112,7 +112,7 @@ def trace(route: Route) -> Trace:
 
 
 def _field(grid: Any, goal: Array) -> _core.HarmonicField:
-    """The field of a goal, kept beside the grid."""
+    """The field of a goal, cached with the grid."""
     kept: dict[tuple[float, ...], _core.HarmonicField] = vars(grid).setdefault("_harmonic", {})
     key = tuple(map(float, goal))
     if key not in kept:

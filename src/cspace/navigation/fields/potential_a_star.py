@@ -1,15 +1,16 @@
-"""A potential as heuristic: what pulls a robot to the goal and keeps it from walls tells a search where to
-look first, and the search, unlike the descent, is complete.
+"""A* with a potential as heuristic: attraction to the goal and repulsion from walls order the search, which
+is complete.
 
 U = d + min(½ k_r (1/ρ − 1/ρ₀)², cap) [m] for a cell at the distance d from the goal and ρ from the nearest
-wall, without the second term beyond ρ₀. "exact": A* with h = min(s U, d), which is never more than what is
-left, so its way is a shortest one. "bounded": h = min(s U, w d), so the way is at most w times as long (Pohl
-1970); cells that are reached again on a shorter way are settled again, as these h need not be consistent.
-"greedy": by U alone (Pearl 1984).
+wall, without the second term beyond ρ₀. "exact": A* with h = min(s U, d), which never exceeds the remaining
+distance, so its path is a shortest one. "bounded": h = min(s U, w d), so the path is at most w times as
+long (Pohl 1970); a cell that is reached again on a shorter path is reopened, because this h need not be
+consistent. "greedy": by U alone (Pearl 1984).
 
-What walls add says nothing of the way around them. Measured on five MovingAI maps: "exact" settles as many
-cells as A* with s = 1, where min(s U, d) is d, and up to 1.7 times as many with s = 0.9; "bounded" 0.96 to
-1.2 times as many, with ways 0.1 to 1.4 % longer; "greedy" 3 to 34 % of them, with ways 5 to 23 % longer.
+The repulsion from walls contains no information about the path around them. Measured on five MovingAI maps:
+"exact" expands as many cells as A* with s = 1, where min(s U, d) is d, and up to 1.7 times as many with s =
+0.9; "bounded" 0.96 to 1.2 times as many, with paths 0.1 to 1.4 % longer; "greedy" 3 to 34 % of them, with
+paths 5 to 23 % longer.
 """
 
 from __future__ import annotations
@@ -46,15 +47,15 @@ def plan(
     weight: float = 1.5,
     corners: str = "never",
 ) -> Route:
-    """A way over the cells of a grid, found by A* or greedy search that counts on a potential.
+    """A path over the cells of a grid, found by A* or greedy search with a potential as heuristic.
 
-    start, goal: (2,) [m] in free cells. mode: "exact", "bounded" or "greedy". rho_0 [m]: how far walls
-    repel, four cells by default. k_r [m³]: repulsion; by default that with which the cells beside walls
-    stand rho_0 higher; 0 makes it plain A*. scale: s, by which the potential is multiplied before it is
-    compared. weight: w, how many times the shortest the way may be, for "bounded" alone. corners: as for
-    A*.
+    start, goal: (2,) [m] in free cells. mode: "exact", "bounded" or "greedy". rho_0 [m]: the distance of
+    influence of walls, four cells by default. k_r [m³]: repulsion; by default the value with which cells
+    next to walls are rho_0 higher; 0 gives plain A*. scale: s, the factor of the potential before it is
+    compared. weight: w, the bound on path length relative to the shortest, for "bounded" alone. corners: as
+    for A*.
 
-    What walls add is capped at the diagonal of the grid. InputError for numbers out of range.
+    The repulsion is capped at the diagonal of the grid. InputError for numbers out of range.
     """
     options: dict[str, Any] = {"mode": mode, **_repulsion(world, k_r, rho_0)}
     options |= {"scale": scale, "weight": weight, "corners": corners}
@@ -67,8 +68,8 @@ def plan(
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were settled, each from its parent: start, end (k, 2) [m]; value:
-    their potential [m]."""
+    """The cells in the order of their expansion, each from its parent: start, end (k, 2) [m]; value: their
+    potential [m]."""
     world = route.world
     settings, rule = _settings(world, **route.options)
     found = clearance_field(world).potential_trace(world, route.start, route.goal, settings, rule)
@@ -76,7 +77,7 @@ def trace(route: Route) -> Trace:
 
 
 def clearance_field(grid: Any) -> _core.ClearanceField:
-    """The distances of the cells of a grid from walls, kept beside it."""
+    """The distances of the cells of a grid from walls, cached with it."""
     kept = vars(grid)
     if "_clearance" not in kept:
         kept["_clearance"] = _core.ClearanceField(grid)
@@ -112,7 +113,7 @@ def _repulsion(world: Any, k_r: float | None, rho_0: float | None) -> dict[str, 
 
 
 def number_of(name: str, value: Any, least: float) -> float:
-    """One finite number that is not below the least; InputError names it."""
+    """One finite number not below its lower bound; InputError names it."""
     number = float(as_floats(value, name).reshape(())) if np.size(value) == 1 else np.nan
     if not number >= least:
         raise InputError(f"{name} is {value!r}; it must be one number of {least:g} or more")

@@ -1,10 +1,11 @@
-"""Potential field: the goal attracts, walls repel, and the robot goes down the sum of both (Khatib 1986,
-"Real-time obstacle avoidance for manipulators and mobile robots").
+"""Potential field: gradient descent on an attractive potential of the goal and repulsive potentials of
+walls.
 
-U(p) = U_goal(d) + Σ ½ k_r (1/ρ − 1/ρ₀)² over the rings of walls nearer than ρ₀, where d is the distance to
-the goal and ρ that to the nearest place of a ring. U_goal is ½ k d² within `cone` of the goal and grows with
-the constant slope k · cone beyond it, so that the force is limited. A robot sees no farther than ρ₀, and has
-no notion of what lies beyond: it may come to rest away from the goal, which is then said.
+Khatib 1986, "Real-time obstacle avoidance for manipulators and mobile robots". U(p) = U_goal(d) + Σ ½ k_r
+(1/ρ − 1/ρ₀)² over the boundary loops nearer than ρ₀, where d is the distance to the goal and ρ that to the
+nearest point of a loop. U_goal is ½ k d² within `cone` of the goal and grows with the constant slope k ·
+cone beyond it, so that the force is limited. A robot senses walls within ρ₀ only. It may stop in a local
+minimum away from the goal, which the verdict then states.
 """
 
 from __future__ import annotations
@@ -43,12 +44,12 @@ class PotentialRest(NamedTuple):
     """Where and how a descent ended."""
 
     kind: str
-    """ "goal"; "minimum" or "crease", where the potential rises all around; or, where that is not shown,
-    "saddle", "wall", or "budget": the looks at the potential ran out on the way down."""
+    """ "goal"; "minimum" or "crease", where the potential is proven to rise all around; otherwise "saddle",
+    "wall", or "budget": the limit of potential evaluations was reached on the way down."""
     force: float
-    """What is left of it, in units of k times metres."""
+    """The remaining force, in units of k times metres."""
     saddles: int
-    """How many places without force were left again."""
+    """The number of equilibria that the descent left again."""
     gains: dict[str, float]
     """k, k_r, rho_0, cone and step as they were used."""
 
@@ -64,17 +65,19 @@ def plan(
     cone: float | None = None,
     step: float | None = None,
 ) -> Route:
-    """Down the potential from start until the goal is reached, or the robot rests.
+    """Gradient descent on the potential from start until the robot reaches the goal or stops.
 
-    start, goal: (2,) [m]. k: attraction. rho_0 [m]: how far walls repel; by default a twentieth of the
-    longer side of the bounds. k_r [m⁴]: repulsion; by default ¼ k ρ₀⁴, with which a wall holds the goal's
-    pull at half of ρ₀. cone [m]: from how far on the goal pulls with the same force; by default rho_0.
-    step [m]: the longest step; by default a quarter of rho_0.
+    start, goal: (2,) [m]. k: attraction. rho_0 [m]: the distance of influence of walls; by default a
+    twentieth of the longer side of the bounds. k_r [m⁴]: repulsion; by default ¼ k ρ₀⁴, with which a wall
+    balances the goal's attraction at half of ρ₀. cone [m]: the distance from the goal beyond which the
+    attractive force is constant; by default rho_0. step [m]: the longest step; by default a quarter of
+    rho_0.
 
-    A step is never longer than half the clearance, and goes no farther across a valley than to its bottom.
-    The status is "local_minimum" where the robot rests elsewhere and the potential rises all around,
-    "undetermined" where that is not shown or its looks at the potential ran out; route.evidence, a
-    PotentialRest, says how it ended. InputError for a gain or a length that is not positive.
+    A step is never longer than half the clearance, and stops at the bottom of a valley that it would cross.
+    The status is "local_minimum" where the robot stops away from the goal and the potential is proven to
+    rise all around. It is "undetermined" where that is not proven or the limit of potential evaluations was
+    reached. route.evidence, a PotentialRest, records how the descent ended. InputError for a gain or a
+    length that is not positive.
     """
     ends = world.check_free(start, "start"), world.check_free(goal, "goal")
     settings = _settings(world, k, k_r, rho_0, cone, step)
@@ -89,7 +92,7 @@ def plan(
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     rest: PotentialRest = route.evidence
     if route:
         over = f", over {counted(rest.saddles, 'saddle')}" if rest.saddles else ""
@@ -106,15 +109,15 @@ def reason(route: Route) -> str:
 
 
 def _remedy(gains: dict[str, float]) -> str:
-    """What makes steps longer: they are limited by an option, or by how near to walls it goes."""
+    """The cause that limits the step length: an option, or the clearance."""
     if gains["step"] < 0.1 * gains["rho_0"]:
         return f"a longer step= than {gains['step']:g} m gets farther"
     return f"a larger k_r= than {gains['k_r']:g} keeps it farther from walls, where steps are longer"
 
 
 def trace(route: Route) -> Trace:
-    """The steps: "descend", and "rest" where it rests away from the goal. start, end: (k, 2) [m]; value: the
-    potential."""
+    """The steps: "descend", and "rest" where it stops away from the goal. start, end: (k, 2) [m]; value:
+    the potential."""
     world = route.world
     settings = _settings(world, **route.options)
     return Trace(WORDS, *_walls(world, settings[2]).trace(world._core, route.start, route.goal, settings))
@@ -132,7 +135,8 @@ def potential(
 ) -> Array:
     """The potential of a goal (2,) [m] at points (..., 2) [m]: (...), infinite inside obstacles.
 
-    k, k_r, rho_0, cone: as for the planner "potential_field". InputTypeError for other worlds than polygons.
+    k, k_r, rho_0, cone: as for the planner "potential_field". InputTypeError for worlds other than
+    polygons.
     """
     if not isinstance(world, PolygonWorld):
         raise InputTypeError(f"world is a {type(world).__name__}; give a PolygonWorld")
@@ -147,7 +151,7 @@ def potential(
 def _settings(
     world: Any, k: float, k_r: float | None, rho_0: float | None, cone: float | None, step: float | None
 ) -> Array:
-    """k, k_r, rho_0, cone, step, looks: (6,)."""
+    """k, k_r, rho_0, cone, step, evaluations: (6,)."""
     xmin, ymin, xmax, ymax = world.bounds
     reach = _positive("rho_0", max(xmax - xmin, ymax - ymin) / 20 if rho_0 is None else rho_0)
     if not LEAST_REACH < reach < 1 / LEAST_REACH:
@@ -167,7 +171,7 @@ def _positive(name: str, value: float) -> float:
 
 
 def _walls(world: Any, reach: float) -> _core.NearWalls:
-    """What the core has made of the walls, kept beside the world."""
+    """The data that the core has computed for the walls, cached with the world."""
     kept = vars(world)
     walls: _core.NearWalls | None = kept.get("_near_walls")
     if walls is None or walls.reach != reach:

@@ -1,13 +1,13 @@
-"""Navigation functions: potentials whose only minimum is the goal (Koditschek & Rimon 1990, "Robot navigation
-functions on manifolds with boundary"; Rimon & Koditschek 1992, "Exact robot navigation using artificial
-potential functions").
+"""Navigation functions: potentials whose only minimum is the goal, for sphere worlds and star worlds.
 
-In a sphere world, a disc without the discs in it, φ = γ / (γ^κ + β)^(1/κ) with γ = |p − goal|² and β the
-product of what is left to each disc: β₀ = R² − |p − c₀|² for the room, β_i = |p − c_i|² − r_i² for others.
-φ is 0 at the goal alone and 1 on walls, and for κ large enough has no other minimum. How large is decided
-here by proof: V = κ log γ − Σ log β_i grows with φ, and a subdivision of the world shows that no place but
-the goal is a minimum of it. In a star world a homeomorphism takes star-shaped obstacles to discs. Descents
-arrive from everywhere; what holds them up, saddles, one for each obstacle, is left by a push.
+Koditschek & Rimon 1990, "Robot navigation functions on manifolds with boundary"; Rimon & Koditschek 1992,
+"Exact robot navigation using artificial potential functions". A sphere world is a disc with smaller discs
+removed. There φ = γ / (γ^κ + β)^(1/κ) with γ = |p − goal|² and β the product of the obstacle functions: β₀
+= R² − |p − c₀|² for the outer disc, β_i = |p − c_i|² − r_i² for the others. φ is 0 only at the goal and 1
+on walls, and has no other minimum if κ is large enough. The required κ is proven here: V = κ log γ − Σ log
+β_i increases with φ, and a subdivision of the world shows that it has no other minimum. In a star world a
+homeomorphism maps star-shaped obstacles to discs. Descents arrive from everywhere. They can stop only at
+saddles, one for each obstacle, and a push moves them off.
 """
 
 from __future__ import annotations
@@ -34,26 +34,27 @@ __all__ = ["NavigationEvidence", "NavigationFunction", "navigation_function", "p
 
 WORDS: Final = ("descend",)
 MOST_KEPT: Final = 8
-"""Navigation functions that are kept with a world."""
+"""The number of navigation functions cached with a world."""
 
 
 class NavigationEvidence(NamedTuple):
-    """What backs a descent of a navigation function."""
+    """The evidence for a descent on a navigation function."""
 
     function: NavigationFunction | None
-    """None where the world is no star world, or the goal touches a wall."""
+    """None where the world is not a star world, or the goal touches a wall."""
     pushes: int
-    """How many saddles the descent was pushed off."""
+    """The number of saddles that the descent was pushed off."""
     fault: str
-    """What stood in the way of a navigation function, in a sentence; empty where nothing did."""
+    """The reason why there is no navigation function, as one sentence; empty where there is one."""
 
 
 class NavigationFunction:
     """A navigation function: call it with points (..., 2) [m] for φ (...), 0 at the goal and 1 on walls.
 
-    `kappa` is its power, `is_proven` whether the goal is proven to be its only minimum, `saddles` (k, 2) [m]
-    the other places where it is flat, one for each obstacle. `goal` (2,) [m] cannot be written to: it never
-    changes, so copies are the object itself. Pickles hold what it was made for, and prove again when read.
+    `kappa` is its power, `is_proven` whether the goal is proven to be its only minimum, `saddles` (k, 2)
+    [m] the other stationary points, one for each obstacle. `goal` (2,) [m] is read-only. The object is
+    immutable, so a copy is the object itself. Pickles store the data it was built from; loading repeats the
+    proof.
     """
 
     def __init__(
@@ -63,7 +64,7 @@ class NavigationFunction:
         goal: Array,
         made_for: tuple[Any, float],
     ) -> None:
-        """made_for: discs (n, 3), or outlines and bounds, and the kappa asked for, zero for none."""
+        """made_for: discs (n, 3), or outlines and bounds, and the requested kappa, zero for none."""
         self._core, self._world, self._made_for = core, world, made_for
         self.goal = goal.copy()
         self.goal.setflags(write=False)
@@ -80,31 +81,32 @@ class NavigationFunction:
 
     @property
     def obstacles(self) -> int:
-        """How many obstacles stand in the room."""
+        """The number of obstacles."""
         return self._core.obstacles
 
     @property
     def saddles(self) -> Array:
-        """Where it is flat and no minimum: (k, 2) [m]; one for each obstacle where there is one minimum."""
+        """The stationary points that are not minima: (k, 2) [m]; one for each obstacle where there is a
+        single minimum."""
         found: Array = self._core.saddles()
         return found
 
     def __call__(self, points: ArrayLike) -> Any:
-        """φ at points (..., 2) [m]: (...), between 0 and 1; 1 in obstacles and outside. It rounds to 1 where
-        V of `log_odds` does not."""
+        """φ at points (..., 2) [m]: (...), between 0 and 1; 1 in obstacles and outside. It rounds to 1 in
+        places where V of `log_odds` remains distinct."""
         logs = np.asarray(self.log_odds(points))
         return self._core.phi(np.ascontiguousarray(logs.reshape(-1))).reshape(logs.shape)[()]
 
     def log_odds(self, points: ArrayLike) -> Any:
-        """V = κ log γ − Σ log β_i at points (..., 2) [m], lengths in radii of the room: (...), infinite on
-        walls and in obstacles. φ = (e^V / (1 + e^V))^(1/κ)."""
+        """V = κ log γ − Σ log β_i at points (..., 2) [m], lengths in radii of the outer disc: (...),
+        infinite on walls and in obstacles. φ = (e^V / (1 + e^V))^(1/κ)."""
         at = as_floats(points, "points", last=(2,))
         found: Array = self._core.log_odds(self._world, np.ascontiguousarray(at.reshape(-1, 2)))
         return found.reshape(at.shape[:-1])[()]
 
     def descend(self, start: ArrayLike) -> Array | None:
-        """The way down from a free point start (2,) [m] to the goal: (m, 2) [m]; None where it came to no
-        end. InputError where start is not free."""
+        """The descent from a free point start (2,) [m] to the goal: (m, 2) [m]; None where it did not
+        arrive. InputError where start is not free."""
         at = np.ascontiguousarray(as_floats(start, "start", last=(2,)))
         if at.shape != (2,) or np.isposinf(self.log_odds(at)):
             raise InputError(f"start {at.tolist()} lies in an obstacle or on a wall; give a free point (2,)")
@@ -118,7 +120,7 @@ class NavigationFunction:
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """What it was made for: what pickle makes it from again."""
+        """What it was made for: the data that pickle stores."""
         return _again, (*self._made_for, self.goal)
 
     def __repr__(self) -> str:
@@ -128,14 +130,14 @@ class NavigationFunction:
 
 
 def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Route:
-    """Down a navigation function from start to goal.
+    """Descent on a navigation function from start to goal.
 
     start, goal: (2,) [m]. kappa: the power of the function; by default the least power of two with which
     the goal is proven to be the only minimum.
 
-    The world around the goal must be a star world: every obstacle, and the room, has a point that sees
-    all of it, and no two touch. Where it is none, or the goal touches a wall, the status is
-    "undetermined" and the reason says which. route.evidence is a NavigationEvidence. InputError for a
+    The world around the goal must be a star world: every obstacle, and the outer boundary, has a point from
+    which all of it is visible, and no two touch. Otherwise, or if the goal touches a wall, the status is
+    "undetermined" and the reason states which. route.evidence is a NavigationEvidence. InputError for a
     kappa that is not positive.
     """
     power = _power(kappa)
@@ -169,7 +171,7 @@ def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Ro
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     evidence: NavigationEvidence = route.evidence
     if route.status == "unreachable":
         return "start and goal lie in parts of free space that no way connects"
@@ -196,9 +198,10 @@ def trace(route: Route) -> Trace:
 def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = None) -> NavigationFunction:
     """The navigation function of a star or sphere world with a goal (2,) [m].
 
-    world: a PolygonWorld, or discs (n, 3) as rows of x, y, radius [m], the first the room and the others in
-    it. kappa: as for the planner "rimon_koditschek". InputError where obstacles touch or are no stars, where
-    the goal is not in the interior of free space, or where no kappa was proven.
+    world: a PolygonWorld, or discs (n, 3) as rows of x, y, radius [m], the first the outer disc and the
+    others obstacles in it. kappa: as for the planner "rimon_koditschek". InputError where obstacles touch
+    or are not star-shaped, where the goal is not in the interior of free space, or where no kappa was
+    proven.
     """
     power = _power(kappa)
     if isinstance(world, PolygonWorld):
@@ -216,7 +219,7 @@ def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = No
 
 
 def _again(world: Any, power: float, goal: Array) -> NavigationFunction:
-    """The same function, made anew."""
+    """The same function, built again."""
     if isinstance(world, tuple):
         outlines, bounds = world
         world = PolygonWorld(outlines, bounds, repair=True)
@@ -262,7 +265,7 @@ def _check_discs(discs: Array, goal: Array) -> None:
 
 
 def _kept(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
-    """The navigation function of a goal, or None and what is in its way; kept beside the world."""
+    """The navigation function of a goal, or None and the obstruction; cached with the world."""
     kept = vars(world).setdefault("_navigation_functions", {})
     key = (*map(float, goal), power)
     if key not in kept:
@@ -288,7 +291,7 @@ def _made(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | N
 
 
 def _said(world: Any, kind: int, x: float, y: float) -> str:
-    """Why a world is no star world, with the obstacle that has a corner at (x, y)."""
+    """Why a world is not a star world, with the obstacle that has a corner at (x, y)."""
     owner = ""
     for number, rings in enumerate(vars(world).get("_outlines", ())):
         if any(np.any(np.all(ring == (x, y), axis=1)) for ring in rings):

@@ -72,9 +72,9 @@ def follow(
         reach and that can be braked in time, the best by `weights` of heading, free way and speed (Fox,
         Burgard and Thrun 1997).
 
-    Returns a Run, truthy if it arrived. Raises InputError for a path of fewer than two points or with none to
-    follow, or a number that makes no sense; UnknownNameError for an unknown controller; InputTypeError for an
-    option that it does not have, or a vehicle that it cannot drive.
+    Returns a Run, truthy if it arrived. Raises InputError for a path of fewer than two points or with none
+    to follow, or a number outside its range; UnknownNameError for an unknown controller; InputTypeError for
+    an option that it does not have, or a vehicle that it cannot drive.
     """
     body = Unicycle() if vehicle is None else vehicle
     rows, runs = track_of(path)

@@ -22,8 +22,8 @@ def cast_rays(grid: Any, points: Any, angles: Any, max_range: float = np.inf) ->
     cell or outside the range is 0. A ray between two cells is stopped where both are blocked, one through a
     corner by the cell behind it or by both beside it.
 
-    Raises InputTypeError for what is no OccupancyGrid, InputError for what is no point or angle, or a
-    max_range that is not above zero. Amanatides and Woo 1987.
+    Raises InputTypeError for a value that is not an OccupancyGrid, InputError for a value that is not a
+    point or angle, or a max_range that is not above zero. Amanatides and Woo 1987.
     """
     if not isinstance(grid, _core.GridBase):
         raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")

@@ -51,7 +51,7 @@ class Run:
 
     @property
     def reason(self) -> str:
-        """The end of the run in a sentence."""
+        """The end of the run as one sentence."""
         missing = float(np.hypot(*(self.poses[-1, :2] - self._goal)))
         at = f"after {self.times[-1]:.4g} s"
         if self.status == "arrived":

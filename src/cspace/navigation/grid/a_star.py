@@ -22,13 +22,12 @@ def plan(
     corners: str = "never",
     costs: ArrayLike | None = None,
 ) -> Route:
-    """The shortest way over the cells of a grid; with costs the cheapest.
+    """The shortest path over the cells of a grid; with costs the cheapest.
 
-    start, goal: (2,) [m] in free cells. metric: "octile" (eight moves), "manhattan" (four), or
-    "euclidean" (eight, with the straight line as what is left). corners: whether a diagonal step may pass
+    start, goal: (2,) [m] in free cells. metric: "octile" (eight moves), "manhattan" (four), or "euclidean"
+    (eight, with the straight line as the remaining distance). corners: whether a diagonal step may pass
     blocked cells: "never", with "one" beside it, "always". costs (rows, columns): of the cells, each more
-    than 0; with None a way costs its length, else a step costs its length times the mean of its two
-    cells.
+    than 0; with None a way costs its length, else a step costs its length times the mean of its two cells.
 
     route.evidence["cost"] is what the way costs then.
     """
@@ -37,7 +36,7 @@ def plan(
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were settled."""
+    """The cells in the order of their expansion."""
     return traced(route, _settings(route.world, **route.options))
 
 

@@ -1,4 +1,4 @@
-"""D* Lite: a shortest way that is mended when cells become blocked or free (Koenig & Likhachev 2002)."""
+"""D* Lite: a shortest path that is mended when cells become blocked or free (Koenig & Likhachev 2002)."""
 
 from __future__ import annotations
 
@@ -27,9 +27,9 @@ class DStarLite:
     """A robot on its way over a grid of which it learns more.
 
     grid: what is known at first; it stays as it is. start, goal: (2,) [m] in free cells. metric: "octile"
-    (eight moves) or "manhattan" (four). corners: as for A*. Tell what changes by `set_blocked` and where the
-    robot is by `move`; `route` is the shortest way from there, of the same length as that of a fresh search.
-    Threads that share one are served one by one.
+    (eight moves) or "manhattan" (four). corners: as for A*. Tell what changes by `set_blocked` and where
+    the robot is by `move`; `route` is the shortest path from there, of the same length as that of a fresh
+    search. Threads that share one are served one by one.
     """
 
     def __init__(
@@ -92,7 +92,8 @@ class DStarLite:
 
     @property
     def route(self) -> Route:
-        """The shortest way from where the robot is; unreachable also while its cell or the goal's is blocked.
+        """The shortest path from where the robot is; unreachable also while its cell or the goal's is
+        blocked.
 
         route.stats says what mending took, not what the whole search has. route.world is the grid given
         first.
@@ -135,7 +136,8 @@ def _again(
 
 
 def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: str = "never") -> Route:
-    """The shortest way over the cells of a grid, searched from the goal: D* Lite before anything has changed.
+    """The shortest path over the cells of a grid, searched from the goal: D* Lite before anything has
+    changed.
 
     start, goal: (2,) [m] in free cells. metric: "octile" or "manhattan". corners: as for A*.
     """
@@ -143,7 +145,7 @@ def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: 
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     cells = route.stats.nodes
     if route:
         return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"

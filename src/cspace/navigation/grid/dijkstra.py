@@ -22,7 +22,7 @@ def plan(
     corners: str = "never",
     costs: ArrayLike | None = None,
 ) -> Route:
-    """The shortest way over the cells of a grid, found without a guess of what is left.
+    """The shortest path over the cells of a grid, found without a guess of the remaining distance.
 
     start, goal: (2,) [m] in free cells. metric, corners, costs (rows, columns): as for A*.
     """
@@ -31,7 +31,7 @@ def plan(
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were settled."""
+    """The cells in the order of their expansion."""
     return traced(route, _settings(route.world, **route.options))
 
 

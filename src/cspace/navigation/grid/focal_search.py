@@ -38,7 +38,7 @@ def plan(
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were settled."""
+    """The cells in the order of their expansion."""
     return traced(route, _settings(route.world, **route.options))
 
 

@@ -22,7 +22,7 @@ def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: 
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were settled."""
+    """The cells in the order of their expansion."""
     return traced(route, _settings(**route.options))
 
 

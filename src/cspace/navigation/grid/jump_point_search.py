@@ -1,5 +1,5 @@
-"""Jump point search: A* that goes straight from one place where a shortest way may have to turn to the next
-(Harabor & Grastien 2011, 2014)."""
+"""Jump point search: A* that goes straight from one place where a shortest path may have to turn to the
+next (Harabor & Grastien 2011, 2014)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ USUAL = Settings(JUMP_POINTS)
 
 
 def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: str = "never") -> Route:
-    """The shortest way over the cells of a grid, as A* finds it, with far fewer cells looked at.
+    """The shortest path over the cells of a grid, as A* finds it, with far fewer cells looked at.
 
     start, goal: (2,) [m] in free cells. metric, corners: as for A*.
 
@@ -28,7 +28,7 @@ def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: 
 
 
 def trace(route: Route) -> Trace:
-    """The jump points in the order in which they were settled."""
+    """The jump points in the order of their expansion."""
     return traced(route, _settings(**route.options))
 
 

@@ -29,8 +29,8 @@ CORNERS: Final = {"never": 0, "one": 1, "always": 2}
 """When a diagonal step is allowed: both cells beside it are free, one is, always."""
 
 METRICS: Final = {"octile": 0, "manhattan": 1, "euclidean": 2}
-"""What a planner counts on: eight moves, four, or eight with the straight line to the goal as what is
-left."""
+"""What a planner counts on: eight moves, four, or eight with the straight line to the goal as the remaining
+distance."""
 
 FOUR_MOVES: Final = 3
 WORDS: Final = ("settle",)
@@ -59,7 +59,7 @@ WAVES: Final = 5
 
 
 def metric_of(metric: str, corners: str) -> tuple[int, int]:
-    """The numbers of the corner rule and the metric; UnknownNameError suggests the nearest name."""
+    """The numeric values of the corner rule and the metric; UnknownNameError suggests the nearest name."""
     try:
         number, rule = METRICS[metric], CORNERS[corners]
         return (FOUR_MOVES if number == 1 else rule), number
@@ -121,7 +121,7 @@ def checked_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
 
 
 def reason(route: Route) -> str:
-    """The verdict of a planner of this family, in a sentence."""
+    """The verdict of a planner of this family, as one sentence."""
     cells = route.stats.nodes
     if route:
         return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"
@@ -136,8 +136,8 @@ def reason(route: Route) -> str:
 
 
 def traced(route: Route, settings: Settings) -> Trace:
-    """The cells in the order in which they were settled, each from its parent: start, end (k, 2) [m]; value
-    [m], or [m · cost], is the way so far."""
+    """The cells in the order of their expansion, each from its parent: start, end (k, 2) [m]; value [m], or
+    [m · cost], is the path so far."""
     world = route.world
     found = _core._grid_order(world, route.start, route.goal, route.planner, None, *settings)
     cells: npt.NDArray[np.int32] = found[0]

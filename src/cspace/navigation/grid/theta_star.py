@@ -34,7 +34,7 @@ def plan(world: Any, start: Any, goal: Any, *, corners: str = "never", lazy: boo
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were settled, each from its parent."""
+    """The cells in the order of their expansion, each from its parent."""
     return traced(route, _settings(**route.options))
 
 

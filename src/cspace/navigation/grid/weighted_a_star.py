@@ -1,4 +1,5 @@
-"""Weighted A*: what is left counts more than it should, so the search hurries to the goal (Pohl 1970)."""
+"""Weighted A*: the remaining distance counts more than it should, so the search hurries to the goal (Pohl
+1970)."""
 
 from __future__ import annotations
 
@@ -43,7 +44,7 @@ def plan(
 
 
 def trace(route: Route) -> Trace:
-    """The cells in the order in which they were settled."""
+    """The cells in the order of their expansion."""
     return traced(route, _settings(route.world, **route.options))
 
 

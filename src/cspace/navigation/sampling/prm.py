@@ -1,5 +1,5 @@
 """A probabilistic roadmap: points drawn evenly from free space, each joined to those near it that it sees,
-and a shortest way on the roadmap (Kavraki, Svestka, Latombe & Overmars 1996).
+and a shortest path on the roadmap (Kavraki, Svestka, Latombe & Overmars 1996).
 
 By default points are joined within γ (log n / n)^½ of each other, γ a little above (6 A / π)^½ for free space
 of the area A: then the way tends to the shortest as n grows (PRM*, Karaman & Frazzoli 2011, theorem 34).
@@ -50,7 +50,7 @@ def plan(
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     done: problem.Sampled = route.evidence
     segments = counted(done.edges, "segment")
     return problem.verdict_of(

@@ -56,7 +56,7 @@ def trace_of(route: Route) -> Trace:
 
 
 def verdict_of(route: Route, found: str) -> str:
-    """The verdict in a sentence; `found` where there is a path."""
+    """The verdict as one sentence; `found` where there is a path."""
     done: Sampled = route.evidence
     tried = f"{counted(done.samples, 'sample')}, {counted(done.nodes, 'node')}"
     if route:

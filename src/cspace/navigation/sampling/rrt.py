@@ -1,8 +1,8 @@
-"""A rapidly exploring random tree: of a tree that is rooted at the start, the node nearest to a random point
-grows a step towards it, until one sees the goal within a step (LaValle 1998, "Rapidly-exploring random trees:
-a new tool for path planning").
+"""A rapidly exploring random tree: of a tree that is rooted at the start, the node nearest to a random
+point grows a step towards it, until one sees the goal within a step (LaValle 1998, "Rapidly-exploring
+random trees: a new tool for path planning").
 
-Where a way exists, one is found with a probability that tends to one; it is no shortest way, and does not
+Where a way exists, one is found with a probability that tends to one; it is no shortest path, and does not
 tend to one.
 """
 
@@ -47,7 +47,7 @@ def plan(
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     done: problem.Sampled = route.evidence
     return problem.verdict_of(
         route,

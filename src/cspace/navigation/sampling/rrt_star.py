@@ -50,7 +50,7 @@ def plan(
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     done: problem.Sampled = route.evidence
     return problem.verdict_of(
         route,

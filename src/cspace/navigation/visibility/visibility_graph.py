@@ -43,8 +43,8 @@ class VisibilityGraph(NamedTuple):
 def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
     """The shortest path from start to goal (2,) [m] through a PolygonWorld.
 
-    The trace holds the event "expand": the last edge of the shortest way to a corner; its value is that way's
-    length [m].
+    The trace holds the event "expand": the last edge of the shortest path to a corner; its value is that
+    way's length [m].
     """
     route: Route | None = _core._visibility(world, world._core, "visibility_graph", None, start, goal)
     if route is None:
@@ -55,7 +55,7 @@ def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     if route:
         nodes = len(visibility_graph(route.world).corners)
         return (

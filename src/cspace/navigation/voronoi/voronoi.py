@@ -93,7 +93,7 @@ def plan(
 
 
 def reason(route: Route) -> str:
-    """The verdict in a sentence."""
+    """The verdict as one sentence."""
     if route:
         found: VoronoiEvidence = route.evidence
         wide = "; no way keeps farther" if route.options["prefer"] == PREFER[0] else ""
