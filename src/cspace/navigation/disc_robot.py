@@ -45,8 +45,7 @@ class DiscFits(NamedTuple):
 
 
 def fitted(world: PolygonWorld, grown: PolygonWorld, radius: float, start: Any, goal: Any) -> PolygonWorld:
-    """The grown world, or a finer one if the disc fits at start and goal; InputError where it does not fit.
-    """
+    """The grown world, or a finer one if the disc fits at start and goal; InputError where it does not fit."""
     ends = [world.check_free(start, "start"), world.check_free(goal, "goal")]
     if all(grown.is_free(end) for end in ends):
         return grown
