@@ -15,7 +15,7 @@ constexpr std::size_t stride = 16 + LOCKED;
 
 static arm::Solutions solutions(const double* goal) {
 #if LOCKED
-    static_assert(arm::locked == LOCKED, "as many values as the arm holds joints");
+    static_assert(arm::locked_count == LOCKED, "as many values as the arm holds joints");
     return arm::ik(goal, goal + 16);
 #else
     return arm::ik(goal);
