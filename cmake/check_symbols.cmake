@@ -3,7 +3,7 @@
 #   cmake -DNM=nm -DISA=avx2 "-DOBJECTS=a.o;b.o" -P cmake/check_symbols.cmake
 # With -DELSEWHERE=ON the objects are others, and may define nothing of that instruction set.
 string(LENGTH "${ISA}" length)
-set(own "6cspace${length}${ISA}")  # the mangled namespace cspace::<isa>
+set(own "6cspace([0-9]+[a-z_]+)?${length}${ISA}")  # the mangled namespace cspace::<isa> or cspace::<room>::<isa>
 set(leaks)
 foreach(object IN LISTS OBJECTS)
   execute_process(COMMAND ${NM} --extern-only --defined-only ${object} OUTPUT_VARIABLE symbols

@@ -66,10 +66,10 @@ static void measure_arm(const NamedArm& arm) {
     }
     constexpr int n = 1000;
     const std::vector<double> goals = random_goals(arm.chain, n);
-    std::vector<double> q(n * max_branches * 6);
+    std::vector<double> q(n * ik::max_branches * 6);
     std::vector<std::int64_t> counts(n);
     std::vector<ik::FastPath> verdicts(n);
-    std::int8_t branch[max_branches];
+    std::int8_t branch[ik::max_branches];
     bench::measure(("ik " + arm.name).c_str(), n, 200, [&] {
         for (int k = 0; k < n; ++k) {
             int count = 0;
@@ -78,7 +78,7 @@ static void measure_arm(const NamedArm& arm) {
         }
     });
     bench::measure(("ik batch " + arm.name).c_str(), n, 200, [&] {
-        kernels::ik_many(solver, goals.data(), n, max_branches, q.data(), counts.data(), verdicts.data());
+        kernels::ik_many(solver, goals.data(), n, ik::max_branches, q.data(), counts.data(), verdicts.data());
     });
 }
 

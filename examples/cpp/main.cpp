@@ -29,7 +29,7 @@ int main() {
     for (int k = 0; k < found.count; ++k) {
         for (int i = 0; i < arm.plan.chain.n; ++i) std::printf("%8.4f", found.q[k][i]);
         const Posed reached = forward(arm.plan.chain, found.q[k]);
-        const double error = pose_difference(reached, goal, 1);  // of rotations, and of places in m
+        const double error = ik::pose_difference(reached, goal, 1);  // of rotations, and of places in m
         std::printf("   error %.0e\n", error);
         if (error > 1e-12) return 1;
     }

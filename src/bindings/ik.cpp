@@ -71,8 +71,8 @@ const double* goal_in_place(PyObject* value, double* copy) {
 
 // Null without an error for a goal that is no pose.
 PyObject* answer_single(PyObject* robot, const ik::BuiltArm& arm, const double* goal) {
-    double q[max_branches * 6];
-    std::int8_t branch[max_branches];
+    double q[ik::max_branches * 6];
+    std::int8_t branch[ik::max_branches];
     int count;
     const ik::FastPath quick = kernels::ik_one(*arm.arm, goal, q, branch, &count);
     if (quick == ik::FastPath::refused) return nullptr;

@@ -15,6 +15,6 @@ cspace::ik::Chain chain_from(int n, const double* axes, const double* points, co
         chain.point[i] = {points[0], points[1], points[2]};
         chain.prismatic[i] = slides[i] != Flag{};
     }
-    chain.tip = cspace::read_matrix(T_zero);
+    chain.tip = cspace::kinematics::read_matrix(T_zero);
     return chain;
 }

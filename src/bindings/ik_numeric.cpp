@@ -18,9 +18,9 @@ void require(bool fits) {
     if (!fits) throw nb::value_error("arrays of matching sizes, one column per coordinate of the robot");
 }
 
-DescentTask task_from(nb::handle robot, int frame, const Weights& weights, const LimitRows& limits,
-                      double tolerance, int most_steps, bool newton, int threads) {
-    const Chain& chain = chain_on(robot, frame);
+ik::DescentTask task_from(nb::handle robot, int frame, const Weights& weights, const LimitRows& limits,
+                          double tolerance, int most_steps, bool newton, int threads) {
+    const model::Chain& chain = chain_on(robot, frame);
     require(limits.shape(1) == 0 || int(limits.shape(1)) == chain.n_coordinates);
     return {chain,  weights.data(), limits.shape(1) ? limits.data() : nullptr, tolerance, most_steps,
             newton, threads};
@@ -29,8 +29,9 @@ DescentTask task_from(nb::handle robot, int frame, const Weights& weights, const
 // See ik_descend in the package for the meaning of each argument.
 void descend(nb::handle robot, int frame, Goals goals, Matrix starts, Matrix more, Matrix posture,
              Weights weights, LimitRows limits, double tolerance, int most_steps, bool newton, int threads,
-             Array<double, nb::ndim<2>> q, Array<double, nb::shape<-1, descent_info>> info) {
-    const DescentTask task = task_from(robot, frame, weights, limits, tolerance, most_steps, newton, threads);
+             Array<double, nb::ndim<2>> q, Array<double, nb::shape<-1, ik::descent_info>> info) {
+    const ik::DescentTask task =
+        task_from(robot, frame, weights, limits, tolerance, most_steps, newton, threads);
     const std::size_t count = goals.shape(0), dof = std::size_t(task.chain.n_coordinates);
     require(starts.shape(1) == dof && more.shape(1) == dof && posture.shape(1) == dof && q.shape(1) == dof &&
             q.shape(0) == count && info.shape(0) == count &&
@@ -45,7 +46,8 @@ std::size_t sample(nb::handle robot, int frame, Goal goal, Matrix starts, Matrix
                    LimitRows limits, double tolerance, int most_steps, int threads,
                    Array<double, nb::ndim<2>> q, Array<double, nb::ndim<1>> residual,
                    Array<std::int64_t, nb::ndim<1>> hits) {
-    const DescentTask task = task_from(robot, frame, weights, limits, tolerance, most_steps, false, threads);
+    const ik::DescentTask task =
+        task_from(robot, frame, weights, limits, tolerance, most_steps, false, threads);
     const std::size_t count = starts.shape(0), dof = std::size_t(task.chain.n_coordinates);
     require(starts.shape(1) == dof && wanted.shape(1) == dof && q.shape(1) == dof && q.shape(0) == count &&
             hits.shape(0) == count && residual.shape(0) == count && wanted.shape(0) == 1);
@@ -54,7 +56,7 @@ std::size_t sample(nb::handle robot, int frame, Goal goal, Matrix starts, Matrix
                             hits.data());
 }
 
-int moving(nb::handle robot, int frame) { return moving_coordinates(chain_on(robot, frame)); }
+int moving(nb::handle robot, int frame) { return ik::moving_coordinates(chain_on(robot, frame)); }
 
 }  // namespace
 

@@ -21,7 +21,8 @@ void same_rows(const Theta& theta, std::size_t most, std::size_t angles, std::si
         throw nb::value_error("every array needs one row per problem, and theta room for all answers");
 }
 
-cspace::SubproblemAnswers answers(Theta& theta, RowOut& residual, Count& count, Flags& exact, Flags& free) {
+cspace::ik::SubproblemAnswers answers(Theta& theta, RowOut& residual, Count& count, Flags& exact,
+                                      Flags& free) {
     return {theta.data(), residual.data(), count.data(), exact.data(), free.data()};
 }
 

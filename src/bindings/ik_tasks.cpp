@@ -20,13 +20,13 @@ void require(bool fits) {
     if (!fits) throw nb::value_error("arrays of matching sizes");
 }
 
-TaskRows rows_from(nb::handle robot, const Matrix& tasks, const Matrix& postures, const LimitRows& limits,
-                   std::size_t q_size, const Errors& errors) {
+ik::TaskRows rows_from(nb::handle robot, const Matrix& tasks, const Matrix& postures, const LimitRows& limits,
+                       std::size_t q_size, const Errors& errors) {
     if (!PyObject_TypeCheck(robot.ptr(), robot_type)) throw nb::type_error("a robot comes first");
     auto* object = reinterpret_cast<RobotObject*>(robot.ptr());
     require(object->model != nullptr);
     const std::size_t n = std::size_t(object->model->n_coordinates());
-    require(tasks.shape(1) == task_width && postures.shape(1) == 2 * n + 1 && q_size == n &&
+    require(tasks.shape(1) == ik::task_width && postures.shape(1) == 2 * n + 1 && q_size == n &&
             (limits.shape(1) == 0 || limits.shape(1) == n) && errors.shape(0) == tasks.shape(0));
     return {*object->model,
             object->floating,
@@ -40,19 +40,19 @@ TaskRows rows_from(nb::handle robot, const Matrix& tasks, const Matrix& postures
 bool velocity(nb::handle robot, Matrix tasks, Matrix postures, Row q,
               Array<const double, nb::shape<4, 4>> T_world_base, LimitRows limits, Row speed, double dt,
               double damping, RowOut qd, Errors errors) {
-    const TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
+    const ik::TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
     require(int(qd.shape(0)) == rows.dof() && (speed.shape(0) == 0 || speed.shape(0) == q.shape(0)));
-    return task_velocity(rows, q.data(), T_world_base.data(), speed.shape(0) ? speed.data() : nullptr, dt,
-                         damping, qd.data(), errors.data());
+    return ik::task_velocity(rows, q.data(), T_world_base.data(), speed.shape(0) ? speed.data() : nullptr, dt,
+                             damping, qd.data(), errors.data());
 }
 
 std::tuple<int, bool, double> serve(nb::handle robot, Matrix tasks, Matrix postures, RowOut q,
                                     Array<double, nb::shape<4, 4>> T_world_base, LimitRows limits,
                                     int most_steps, double settled, Errors errors) {
-    const TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
+    const ik::TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
     const nb::gil_scoped_release release;
-    const TaskEnding ending =
-        serve_tasks(rows, most_steps, settled, q.data(), T_world_base.data(), errors.data());
+    const ik::TaskEnding ending =
+        ik::serve_tasks(rows, most_steps, settled, q.data(), T_world_base.data(), errors.data());
     return {ending.steps, ending.settled, ending.cost};
 }
 
@@ -62,17 +62,17 @@ void rate(Array<const double, nb::shape<-1, 6, -1>> J, Array<const double, nb::s
     const std::size_t rows = J.shape(0), dof = J.shape(2);
     require(twist.shape(0) == rows && qd.shape(0) == rows && qd.shape(1) == dof &&
             (wish.shape(0) == 0 || (wish.shape(0) == rows && wish.shape(1) == dof)) &&
-            (most.shape(0) == 0 || most.shape(0) == dof) && dof <= max_rate_dof);
+            (most.shape(0) == 0 || most.shape(0) == dof) && dof <= ik::max_rate_dof);
     const nb::gil_scoped_release release;
-    resolve_rates({J.data(), rows, dof, twist.data(), wish.shape(0) ? wish.data() : nullptr,
-                   most.shape(0) ? most.data() : nullptr, damping, threshold, threads, qd.data()});
+    ik::resolve_rates({J.data(), rows, dof, twist.data(), wish.shape(0) ? wish.data() : nullptr,
+                       most.shape(0) ? most.data() : nullptr, damping, threshold, threads, qd.data()});
 }
 
 int box_qp(Matrix H, Row g, Row lower, Row upper, RowOut x) {
     const std::size_t n = g.shape(0);
     require(H.shape(0) == n && H.shape(1) == n && lower.shape(0) == n && upper.shape(0) == n &&
             x.shape(0) == n);
-    return solve_box_program(H.data(), g.data(), lower.data(), upper.data(), n, x.data());
+    return ik::solve_box_program(H.data(), g.data(), lower.data(), upper.data(), n, x.data());
 }
 
 }  // namespace

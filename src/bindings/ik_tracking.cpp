@@ -14,8 +14,8 @@ namespace {
 // See robot.track in the package for the meaning of each argument. q beyond the poses reached is left alone.
 void track(nb::handle robot, int frame, Goals poses, Matrix starts,
            Array<const double, nb::shape<3, -1>> bounds, bool whole_turns, Array<double, nb::ndim<3>> q,
-           Array<double, nb::ndim<2>> last, Array<double, nb::shape<-1, track_info>> info) {
-    const Chain& chain = chain_on(robot, frame);
+           Array<double, nb::ndim<2>> last, Array<double, nb::shape<-1, ik::track_info>> info) {
+    const model::Chain& chain = chain_on(robot, frame);
     const std::size_t count = poses.shape(0), branches = starts.shape(0),
                       dof = std::size_t(chain.n_coordinates);
     if (count == 0 || starts.shape(1) != dof || bounds.shape(1) != dof || q.shape(0) != branches ||
@@ -23,8 +23,8 @@ void track(nb::handle robot, int frame, Goals poses, Matrix starts,
         info.shape(0) != branches)
         throw nb::value_error("arrays of matching sizes");
     const nb::gil_scoped_release release;
-    track_branches({chain, poses.data(), count, starts.data(), branches, bounds.data(), whole_turns, q.data(),
-                    last.data(), info.data()});
+    ik::track_branches({chain, poses.data(), count, starts.data(), branches, bounds.data(), whole_turns,
+                        q.data(), last.data(), info.data()});
 }
 
 }  // namespace

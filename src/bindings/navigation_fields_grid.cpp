@@ -82,11 +82,11 @@ nb::object march_route(const Clearance& clearance, const GridWorld& world, nb::h
 nb::object march_times(const Clearance& clearance, const GridWorld& world, fields::PointRow goal,
                        double slow_within) {
     const maps::BitGrid& grid = world.bits;
-    Front front(grid, &clearance, slow_within, no_node);
+    Front front(grid, &clearance, slow_within, search::no_node);
     {
         nb::gil_scoped_release free;
-        PriorityQueue queue;
-        Effort effort;
+        search::PriorityQueue queue;
+        search::Effort effort;
         front.start(fields::free_cell(grid, world.frame, goal), queue);
         best_first(front, queue, effort);
     }
@@ -98,9 +98,9 @@ nb::object march_trace(const Clearance& clearance, const GridWorld& world, field
     const maps::BitGrid& grid = world.bits;
     const maps::Cell from = fields::free_cell(grid, world.frame, start);
     Front front(grid, &clearance, slow_within, grid.number(from));
-    PriorityQueue queue;
+    search::PriorityQueue queue;
     std::vector<std::uint32_t> order;
-    Effort effort{0, 0, &order};
+    search::Effort effort{0, 0, &order};
     front.start(fields::free_cell(grid, world.frame, goal), queue);
     best_first(front, queue, effort);
     Trace events;

@@ -37,7 +37,7 @@ struct Question {
     sampling::Answer on_roadmap(const sampling::Problem& problem, Trace* trace) const {
         const sampling::RoadmapKey key{problem.component, growth.samples, neighbours, growth.seed};
         const auto make = [&] { return std::make_shared<const sampling::Roadmap>(core->world, key); };
-        const auto roadmap = core->roadmap.of(key, make, most_kept_bytes);
+        const auto roadmap = core->roadmap.of(key, make, search::most_kept_bytes);
         return sampling::RoadmapSearch(problem, *roadmap).solve(trace);
     }
 

@@ -83,7 +83,7 @@ namespace {
 
 // What a single call needs, if it is one: `call(q)` or `call(q, frame)`, the frame by position or by name.
 struct Single {
-    const Chain* chain = nullptr;
+    const model::Chain* chain = nullptr;
     const double* q = nullptr;
     double copy[robot_stack_joints];
 };
@@ -186,7 +186,7 @@ PyObject* dof(PyObject* self, void*) {
 PyObject* create(PyTypeObject* type, PyObject*, PyObject*) {
     auto* robot = reinterpret_cast<RobotObject*>(type->tp_alloc(type, 0));
     if (!robot) return nullptr;
-    new (&robot->model) std::unique_ptr<const RobotModel>();
+    new (&robot->model) std::unique_ptr<const model::RobotModel>();
     new (&robot->ik) std::shared_ptr<void>();
     new (&robot->near) std::shared_ptr<void>();
     new (&robot->locked) std::shared_ptr<void>();

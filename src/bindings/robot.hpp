@@ -12,9 +12,10 @@
 #include "numpy_api.hpp"
 
 struct RobotObject {
-    PyObject_HEAD std::unique_ptr<const cspace::RobotModel> model;  // null until __init__; never replaced
-    PyObject* frame_index;                                          // dict: name of a frame → its number
-    int tip;  // the frame meant where none is named, or -1
+    PyObject_HEAD std::unique_ptr<const cspace::model::RobotModel>
+        model;              // null until __init__; never replaced
+    PyObject* frame_index;  // dict: name of a frame → its number
+    int tip;                // the frame meant where none is named, or -1
     bool floating;
     std::shared_ptr<void>
         ik;  // the solver, built by the first call of ik; never replaced: threads may be in it

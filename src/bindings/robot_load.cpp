@@ -43,12 +43,13 @@ long integer(PyObject* owner, const char* name) {
 }
 
 // The indices that the compiled loops follow blindly must be right.
-bool indices_fit(const std::vector<Joint>& joints, const std::vector<Frame>& frames, long n, long tip) {
+bool indices_fit(const std::vector<model::Joint>& joints, const std::vector<model::Frame>& frames, long n,
+                 long tip) {
     for (int k = 0; k < int(joints.size()); ++k) {
         if (joints[k].parent < -1 || joints[k].parent >= k) return false;
         if (joints[k].coordinate < 0 || joints[k].coordinate >= n) return false;
     }
-    for (const Frame& frame : frames) {
+    for (const model::Frame& frame : frames) {
         if (frame.joint < -1 || frame.joint >= int(joints.size())) return false;
     }
     return tip >= -1 && tip < int(frames.size());
@@ -64,8 +65,8 @@ bool names_fit(PyObject* names, long n_frames) {
     return !PyErr_Occurred();
 }
 
-std::unique_ptr<const RobotModel> read_model(PyObject* assembly, long n_joints, long n_frames, long n,
-                                             long tip) {
+std::unique_ptr<const model::RobotModel> read_model(PyObject* assembly, long n_joints, long n_frames, long n,
+                                                    long tip) {
     const Column T_joint(assembly, "T_parent_joint", 16 * n_joints), parent(assembly, "parent", n_joints),
         coordinate(assembly, "coordinate", n_joints), ratio(assembly, "ratio", n_joints),
         offset(assembly, "offset", n_joints), prismatic(assembly, "prismatic", n_joints),
@@ -73,9 +74,9 @@ std::unique_ptr<const RobotModel> read_model(PyObject* assembly, long n_joints, 
         mass(assembly, "mass", n_joints + 1), center(assembly, "center", 3 * (n_joints + 1));
     if (PyErr_Occurred()) return nullptr;
 
-    std::vector<Joint> joints(n_joints);
+    std::vector<model::Joint> joints(n_joints);
     for (long k = 0; k < n_joints; ++k) {
-        joints[k] = {read_matrix(T_joint.data + 16 * k),
+        joints[k] = {kinematics::read_matrix(T_joint.data + 16 * k),
                      int(parent.data[k]),
                      int(coordinate.data[k]),
                      ratio.data[k],
@@ -83,10 +84,10 @@ std::unique_ptr<const RobotModel> read_model(PyObject* assembly, long n_joints, 
                      prismatic.data[k] != 0.0,
                      0.0};
     }
-    std::vector<Frame> frames(n_frames);
+    std::vector<model::Frame> frames(n_frames);
     for (long k = 0; k < n_frames; ++k)
-        frames[k] = {read_matrix(T_frame.data + 16 * k), int(carrier.data[k])};
-    std::vector<Body> bodies(n_joints + 1);
+        frames[k] = {kinematics::read_matrix(T_frame.data + 16 * k), int(carrier.data[k])};
+    std::vector<model::Body> bodies(n_joints + 1);
     for (long k = 0; k <= n_joints; ++k) {
         bodies[k] = {{center.data[3 * k], center.data[3 * k + 1], center.data[3 * k + 2]}, mass.data[k]};
     }
@@ -95,8 +96,8 @@ std::unique_ptr<const RobotModel> read_model(PyObject* assembly, long n_joints, 
                         "the joints, coordinates and frames of the assembly do not fit together");
         return nullptr;
     }
-    return std::make_unique<const RobotModel>(std::move(joints), std::move(frames), std::move(bodies),
-                                              int(n));
+    return std::make_unique<const model::RobotModel>(std::move(joints), std::move(frames), std::move(bodies),
+                                                     int(n));
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ PyObject* run(const Rows& rows, npy_intp n, long threads, Kernel kernel) {
     return PyBool_FromLong(finite);
 }
 
-const RobotModel* loaded(PyObject* self) {
+const model::RobotModel* loaded(PyObject* self) {
     const auto& model = reinterpret_cast<RobotObject*>(self)->model;
     if (!model) PyErr_SetString(PyExc_TypeError, "the robot was not initialised");
     return model.get();
@@ -98,7 +98,7 @@ int count_bits(unsigned bits) {
 }  // namespace
 
 PyObject* robot_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
-    const RobotModel* model = loaded(self);
+    const model::RobotModel* model = loaded(self);
     if (!model) return nullptr;
     if (nargs != 12) return PyErr_Format(PyExc_TypeError, "_chain_rows takes 12 arguments, got %zd", nargs);
     const bool floating = reinterpret_cast<RobotObject*>(self)->floating;
@@ -111,7 +111,7 @@ PyObject* robot_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nar
     Reader read{row_count(args[1], n)};
     if (read.rows < 0) return nullptr;
     const int counted = count_bits(unsigned(chosen) & 63u), k = counted < n ? counted : n;
-    ChainRows rows{};
+    kinematics::ChainRows rows{};
     rows.chain = model->chain(int(frame));
     rows.q = read.array(args[1], n, "q");
     rows.qd = read.array(args[2], dof, "qd");
@@ -132,7 +132,7 @@ PyObject* robot_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nar
 }
 
 PyObject* robot_tree_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
-    const RobotModel* model = loaded(self);
+    const model::RobotModel* model = loaded(self);
     if (!model) return nullptr;
     if (nargs != 6) return PyErr_Format(PyExc_TypeError, "_tree_rows takes 6 arguments, got %zd", nargs);
     const bool floating = reinterpret_cast<RobotObject*>(self)->floating;
@@ -141,7 +141,7 @@ PyObject* robot_tree_rows(PyObject* self, PyObject* const* args, Py_ssize_t narg
     const int n = model->n_coordinates(), dof = n + (floating ? 6 : 0);
     Reader read{row_count(args[0], n)};
     if (read.rows < 0) return nullptr;
-    TreeRows rows{};
+    kinematics::TreeRows rows{};
     rows.tree = model->tree();
     rows.q = read.array(args[0], n, "q");
     rows.T_world_base = read.array(args[1], 16, "T_world_base", false, true);

@@ -1,11 +1,12 @@
 // Which of the compiled copies of a kernel runs: decided once, by what the processor can do.
 //
-// A kernel is declared with CSPACE_KERNEL(result, name, (parameters)) in a header of this folder, defined in
-// `namespace cspace::inline CSPACE_ISA` in the .cpp of the same name (compiled once per instruction set), and
-// called as kernels::name(...). CSPACE_NARROW_KERNEL declares one whose packs hold four numbers: its widest
-// copy is that for AVX2, for an AVX-512 copy would gain nothing (cmake/kernels.cmake lists the others). The
-// files compiled per instruction set hold plain arrays only: a standard container instantiated there could
-// leak its AVX2 copy into the rest of the program (a test looks for leaks).
+// A kernel is declared with CSPACE_KERNEL(room, result, name, (parameters)) in a header of this folder; the
+// room is its namespace, such as cspace::ik. It is defined in `namespace room::inline CSPACE_ISA` in the .cpp
+// of the same name (compiled once per instruction set), and called as kernels::name(...).
+// CSPACE_NARROW_KERNEL declares one whose packs hold four numbers: its widest copy is that for AVX2, for an
+// AVX-512 copy would gain nothing (cmake/kernels.cmake lists the others). The files compiled per instruction
+// set hold plain arrays only: a standard container instantiated there could leak its AVX2 copy into the rest
+// of the program (a test looks for leaks).
 //
 // On x86-64 the build defines CSPACE_HAS_AVX2, and CSPACE_HAS_AVX512 where the compiler has vector
 // extensions.
@@ -21,43 +22,50 @@ Isa isa();
 const char* isa_name();
 }  // namespace cspace::kernels
 
-#define CSPACE_KERNEL_COPY(copy, result, name, parameters) \
-    namespace cspace::copy {                               \
-    result name parameters;                                \
+#define CSPACE_KERNEL_COPY(room, copy, result, name, parameters) \
+    namespace room::copy {                                       \
+    result name parameters;                                      \
     }
 
 #if defined(CSPACE_HAS_AVX2)
-#define CSPACE_NARROW_COPIES(result, name, parameters)     \
-    CSPACE_KERNEL_COPY(baseline, result, name, parameters) \
-    CSPACE_KERNEL_COPY(avx2, result, name, parameters)
-#define CSPACE_NARROW_CHOICE(name) (isa() == Isa::baseline ? &baseline::name : &avx2::name)
+#define CSPACE_NARROW_COPIES(room, result, name, parameters)     \
+    CSPACE_KERNEL_COPY(room, baseline, result, name, parameters) \
+    CSPACE_KERNEL_COPY(room, avx2, result, name, parameters)
+#define CSPACE_NARROW_CHOICE(room, name) (isa() == Isa::baseline ? &room::baseline::name : &room::avx2::name)
 #else
-#define CSPACE_NARROW_COPIES(result, name, parameters) CSPACE_KERNEL_COPY(baseline, result, name, parameters)
-#define CSPACE_NARROW_CHOICE(name) (&baseline::name)
+#define CSPACE_NARROW_COPIES(room, result, name, parameters) \
+    CSPACE_KERNEL_COPY(room, baseline, result, name, parameters)
+#define CSPACE_NARROW_CHOICE(room, name) (&room::baseline::name)
 #endif
 
 #if defined(CSPACE_HAS_AVX512)
-#define CSPACE_KERNEL_COPIES(result, name, parameters) \
-    CSPACE_NARROW_COPIES(result, name, parameters)     \
-    CSPACE_KERNEL_COPY(avx512, result, name, parameters)
-#define CSPACE_KERNEL_CHOICE(name) (isa() == Isa::avx512 ? &avx512::name : CSPACE_NARROW_CHOICE(name))
+#define CSPACE_KERNEL_COPIES(room, result, name, parameters) \
+    CSPACE_NARROW_COPIES(room, result, name, parameters)     \
+    CSPACE_KERNEL_COPY(room, avx512, result, name, parameters)
+#define CSPACE_KERNEL_CHOICE(room, name) \
+    (isa() == Isa::avx512 ? &room::avx512::name : CSPACE_NARROW_CHOICE(room, name))
 #else
 #define CSPACE_KERNEL_COPIES CSPACE_NARROW_COPIES
 #define CSPACE_KERNEL_CHOICE CSPACE_NARROW_CHOICE
 #endif
 
 #if defined(CSPACE_COMPILING_KERNELS)
-#define CSPACE_KERNEL(result, name, parameters) CSPACE_KERNEL_COPIES(result, name, parameters)
-#define CSPACE_NARROW_KERNEL(result, name, parameters) CSPACE_NARROW_COPIES(result, name, parameters)
+// The namespace of this copy is inline, and has to be so where it is opened first.
+#define CSPACE_KERNEL(room, result, name, parameters) \
+    namespace room::inline CSPACE_ISA {}              \
+    CSPACE_KERNEL_COPIES(room, result, name, parameters)
+#define CSPACE_NARROW_KERNEL(room, result, name, parameters) \
+    namespace room::inline CSPACE_ISA {}                     \
+    CSPACE_NARROW_COPIES(room, result, name, parameters)
 #else
-#define CSPACE_KERNEL_POINTER(choice, result, name, parameters) \
-    namespace cspace::kernels {                                 \
-    static result(*const name) parameters = choice(name);       \
+#define CSPACE_KERNEL_POINTER(name, choice) \
+    namespace cspace::kernels {             \
+    static auto* const name = choice;       \
     }
-#define CSPACE_KERNEL(result, name, parameters)    \
-    CSPACE_KERNEL_COPIES(result, name, parameters) \
-    CSPACE_KERNEL_POINTER(CSPACE_KERNEL_CHOICE, result, name, parameters)
-#define CSPACE_NARROW_KERNEL(result, name, parameters) \
-    CSPACE_NARROW_COPIES(result, name, parameters)     \
-    CSPACE_KERNEL_POINTER(CSPACE_NARROW_CHOICE, result, name, parameters)
+#define CSPACE_KERNEL(room, result, name, parameters)    \
+    CSPACE_KERNEL_COPIES(room, result, name, parameters) \
+    CSPACE_KERNEL_POINTER(name, CSPACE_KERNEL_CHOICE(room, name))
+#define CSPACE_NARROW_KERNEL(room, result, name, parameters) \
+    CSPACE_NARROW_COPIES(room, result, name, parameters)     \
+    CSPACE_KERNEL_POINTER(name, CSPACE_NARROW_CHOICE(room, name))
 #endif

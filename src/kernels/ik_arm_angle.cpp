@@ -4,16 +4,16 @@
 
 #include "cspace/math/rows.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-void swivel_solutions(const ik::SwivelArm& arm, const Posed& goal, const double* swivels, int n, double* q) {
+void swivel_solutions(const SwivelArm& arm, const Posed& goal, const double* swivels, int n, double* q) {
     using V = Pack<4>;
-    constexpr int row = ik::swivel_branches * 7;
+    constexpr int row = swivel_branches * 7;
     for (int first = 0; first < n; first += 4) {
         const int lanes = n - first < 4 ? n - first : 4;
         SwivelSolutions<V> found;
         solve_swivel(arm, goal, load<V>(swivels + first, lanes), found);
-        for (int b = 0; b < ik::swivel_branches; ++b) {
+        for (int b = 0; b < swivel_branches; ++b) {
             for (V& angle : found.q[b])
                 angle = select(found.ok[b], angle, fill<V>(std::numeric_limits<double>::quiet_NaN()));
             store_rows(found.q[b], 7, q + row * first + 7 * b, row, lanes);
@@ -21,4 +21,4 @@ void swivel_solutions(const ik::SwivelArm& arm, const Posed& goal, const double*
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -4,6 +4,5 @@
 #include "dispatch.hpp"
 
 // All solutions of a goal at n swivels: q (n, 8, 7), NaN in rows without a solution.
-CSPACE_NARROW_KERNEL(void, swivel_solutions,
-                     (const cspace::ik::SwivelArm& arm, const cspace::Posed& goal, const double* swivels,
-                      int n, double* q))
+CSPACE_NARROW_KERNEL(cspace::ik, void, swivel_solutions,
+                     (const SwivelArm& arm, const Posed& goal, const double* swivels, int n, double* q))

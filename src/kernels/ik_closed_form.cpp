@@ -5,7 +5,7 @@
 #include "cspace/math/stream.hpp"
 #include "once.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 namespace {
 
 using V = Pack<native_width>;
@@ -33,20 +33,20 @@ CSPACE_INLINE unsigned branches_of_lane(const mask_of<V>* ok, int l) {
 
 }  // namespace
 
-template ik::FastPath solve_quickly(const ik::Plan&, const double*, double*, signed char*, int*);
-template Branches<double> solve_closed_form(const ik::Plan&, const Posed&, const Care&);
+template FastPath solve_quickly(const Plan&, const double*, double*, signed char*, int*);
+template Branches<double> solve_closed_form(const Plan&, const Posed&, const Care&);
 
-ik::FastPath ik_one(const ik::Arm& arm, const double* T, double* q, std::int8_t* branch, int* count) {
+FastPath ik_one(const Arm& arm, const double* T, double* q, std::int8_t* branch, int* count) {
     if (arm.has_plan) return solve_quickly(arm.plan, T, q, branch, count);
-    return read_goal(T).is_pose ? ik::FastPath::doubtful : ik::FastPath::refused;
+    return read_goal(T).is_pose ? FastPath::doubtful : FastPath::refused;
 }
 
-void ik_many(const ik::Arm& arm, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
-             ik::FastPath* quick) {
-    const ik::Plan& plan = arm.plan;
+void ik_many(const Arm& arm, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
+             FastPath* quick) {
+    const Plan& plan = arm.plan;
     const Care care = care_of(plan);
     const std::size_t row = std::size_t(room) * 6;
-    alignas(64) double stage[native_width * ik::max_solutions * 6];
+    alignas(64) double stage[native_width * max_solutions * 6];
     const bool past_cache = goes_past_cache(n * row) && is_aligned(q);
     for (std::size_t first = 0; first < n; first += native_width) {
         const int lanes = int(n - first < native_width ? n - first : native_width);
@@ -62,13 +62,13 @@ void ik_many(const ik::Arm& arm, const double* T, std::size_t n, int room, doubl
         }
         for (int l = 0; l < lanes; ++l) {
             count[first + l] = compact(branches_of_lane(b.ok, l), stage + row * l, room);
-            quick[first + l] = !lane(goal.is_pose, l) ? ik::FastPath::refused
-                               : lane(b.doubt, l)     ? ik::FastPath::doubtful
-                                                      : ik::FastPath::settled;
+            quick[first + l] = !lane(goal.is_pose, l) ? FastPath::refused
+                               : lane(b.doubt, l)     ? FastPath::doubtful
+                                                      : FastPath::settled;
         }
         write_out(q + row * first, stage, row * std::size_t(lanes), past_cache);
     }
     if (past_cache) finish_streams();
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

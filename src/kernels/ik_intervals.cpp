@@ -2,15 +2,15 @@
 #include "ik_redundancy.hpp"
 #include "once.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-void ik_make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) { make_limit_arms(arm, out); }
+void ik_make_limit_arms(const Redundant& arm, LimitArms& out) { make_limit_arms(arm, out); }
 
-void ik_intervals(const ik::Redundant& arm, const ik::LockedArm& locked, int parameter,
-                  const ik::LimitArms& arms, const Posed& goal, Trail& trail, ik::Intervals& out) {
+void ik_intervals(const Redundant& arm, const LockedArm& locked, int parameter, const LimitArms& arms,
+                  const Posed& goal, Trail& trail, Intervals& out) {
     const bool by_default = &locked == &arm.locked;
     if (by_default && intervals_by_cells(arm, arms, goal, out)) return;
     intervals_by_arcs(arm, locked, parameter, arms, goal, trail, out);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

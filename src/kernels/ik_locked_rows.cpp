@@ -6,14 +6,14 @@
 #include "cspace/math/rows.hpp"
 #include "once.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-void locked_goals(const ik::LockedArm& locked, const double* goals, const double* at, std::size_t stride,
+void locked_goals(const LockedArm& locked, const double* goals, const double* at, std::size_t stride,
                   std::size_t rows, double* moved) {
     using V = Pack<native_width>;
     for (std::size_t first = 0; first < rows; first += native_width) {
         const int count = rows - first < native_width ? int(rows - first) : native_width;
-        V m[16], value[ik::max_joints];
+        V m[16], value[max_joints];
         load_rows(goals + 16 * first, 16, count, 12, m);
         for (int k = 0; k < locked.n_locked; ++k)
             load_rows(at + stride * first + locked.locked_joint[k], stride, count, 1,
@@ -33,7 +33,7 @@ void locked_goals(const ik::LockedArm& locked, const double* goals, const double
     }
 }
 
-void locked_rows(const ik::LockedArm& locked, const double* at, const double* q, std::int64_t count,
+void locked_rows(const LockedArm& locked, const double* at, const double* q, std::int64_t count,
                  std::size_t room, double* rows) {
     const std::size_t n = std::size_t(locked.whole.n);
     for (std::int64_t k = 0; k < count; ++k) whole_row(locked, at, q + 6 * k, rows + n * std::size_t(k));
@@ -41,4 +41,4 @@ void locked_rows(const ik::LockedArm& locked, const double* at, const double* q,
         rows[i] = std::numeric_limits<double>::quiet_NaN();
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

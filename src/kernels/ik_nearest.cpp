@@ -2,10 +2,10 @@
 #include "ik_redundancy.hpp"
 #include "once.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-bool ik_nearest(const ik::Redundant& arm, const Posed& goal, const double* seed, double* q) {
+bool ik_nearest(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
     return nearest_configuration(arm, goal, seed, q);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

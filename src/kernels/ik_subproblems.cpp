@@ -8,7 +8,7 @@
 #include "cspace/ik/subproblems/sp6.hpp"
 #include "cspace/math/rows.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 namespace {
 
 using V = Pack<native_width>;
@@ -142,4 +142,4 @@ void subproblem_6_n(const double* h, const double* k, const double* p, const dou
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -2,17 +2,17 @@
 #include "ik_redundancy.hpp"
 #include "once.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-template Sweep make_sweep(const ik::LockedArm&, int, const Posed&, const double*);
+template Sweep make_sweep(const LockedArm&, int, const Posed&, const double*);
 template void branches_at(const Sweep&, Pack<4>, Branches<Pack<4>>&);
-template FoldValues fold_values(const ik::Redundant&, const Sweep&);
-template void onto_curve(const ik::Chain&, int, const Posed&, double, CurvePoint&);
+template FoldValues fold_values(const Redundant&, const Sweep&);
+template void onto_curve(const Chain&, int, const Posed&, double, CurvePoint&);
 
-void ik_sweep(const ik::LockedArm& locked, int parameter, const Posed& goal, const double* at,
+void ik_sweep(const LockedArm& locked, int parameter, const Posed& goal, const double* at,
               const double* values, int n, SweptRows* rows) {
     const Sweep sweep = make_sweep(locked, parameter, goal, at);
     sweep_values(sweep, values, n, [&](int k, const SweptRows& found) { rows[k] = found; });
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -1,7 +1,7 @@
 #include "ik_tracking.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-void ik_track(const ik::Track& track) { follow_branches<Pack<native_width>>(track); }
+void ik_track(const Track& track) { follow_branches<Pack<native_width>>(track); }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

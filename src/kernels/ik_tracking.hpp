@@ -4,4 +4,4 @@
 #include "dispatch.hpp"
 
 // Branches along a path of poses: see cspace/ik/tracking/follow.hpp.
-CSPACE_KERNEL(void, ik_track, (const cspace::ik::Track& track))
+CSPACE_KERNEL(cspace::ik, void, ik_track, (const Track& track))

@@ -8,7 +8,7 @@
 #include "cspace/math/rows.hpp"
 #include "cspace/math/stream.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::kinematics::inline CSPACE_ISA {
 namespace {
 
 // Hands out arrays from memory that the caller owns.
@@ -143,7 +143,7 @@ CSPACE_INLINE bool chain_pack(const ChainRows& rows, const ChainWork<V>& w, std:
 template <class V>
 bool tree_pack(const TreeRows& rows, void* memory, std::size_t i, int count) {
     Scratch scratch{static_cast<char*>(memory)};
-    const Tree& tree = rows.tree;
+    const model::Tree& tree = rows.tree;
     const int n = tree.n_coordinates, first = rows.floating ? 6 : 0, dof = first + n;
     V* q = take<V>(scratch, n);
     auto* T_world_joint = take<Pose<V>>(scratch, tree.n_joints);
@@ -186,13 +186,13 @@ struct OneWork {
     double *s, *c;
     Axis<double>* axes;
 };
-OneWork one_work(const Chain& chain, void* memory) {
+OneWork one_work(const model::Chain& chain, void* memory) {
     Scratch scratch{static_cast<char*>(memory)};
     return {take<double>(scratch, chain.n + 3), take<double>(scratch, chain.n + 3),
             take<Axis<double>>(scratch, chain.n)};
 }
 // Compiled once for pose and Jacobian, so that both round alike.
-CSPACE_NOINLINE Posed follow_one(const Chain& chain, const double* q, const OneWork& work) {
+CSPACE_NOINLINE Posed follow_one(const model::Chain& chain, const double* q, const OneWork& work) {
     chain_sines(chain, q, work.s, work.c);
     return follow_chain(chain, chain.T_base_first, q, work.s, work.c,
                         [&](int k, const Vec3d& p, const Vec3d& d) { work.axes[k] = {p, d}; });
@@ -217,13 +217,13 @@ bool tree_rows(const TreeRows& rows, std::size_t begin, std::size_t end, void* s
     });
 }
 
-bool chain_pose(const Chain& chain, const double* q, double* T, void* memory) {
+bool chain_pose(const model::Chain& chain, const double* q, double* T, void* memory) {
     if (!all_finite(q, chain.n_coordinates)) return false;
     write_matrix(follow_one(chain, q, one_work(chain, memory)), T);
     return true;
 }
 
-bool chain_jacobian(const Chain& chain, const double* q, double* T, double* J, void* memory) {
+bool chain_jacobian(const model::Chain& chain, const double* q, double* T, double* J, void* memory) {
     if (!all_finite(q, chain.n_coordinates)) return false;
     const OneWork work = one_work(chain, memory);
     const Posed end = follow_one(chain, q, work);
@@ -232,4 +232,4 @@ bool chain_jacobian(const Chain& chain, const double* q, double* T, double* J, v
     return true;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::kinematics::inline CSPACE_ISA

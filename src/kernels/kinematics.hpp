@@ -5,13 +5,13 @@
 #include "cspace/model/tree.hpp"
 #include "dispatch.hpp"
 
-namespace cspace {
+namespace cspace::kinematics {
 
 // What is given and what is asked for, for many configurations of one chain. Arrays are row-major with one
 // row per configuration; a stride is in values per row, 0 where all rows share one. An output that is null
 // is not asked for.
 struct ChainRows {
-    Chain chain;
+    model::Chain chain;
     const double* q;             // (rows, n_coordinates)
     const double* qd;            // (rows, dof), for J_rate
     const double* T_world_base;  // 4×4, or null for the identity
@@ -28,7 +28,7 @@ struct ChainRows {
 };
 // The same for what needs the whole tree.
 struct TreeRows {
-    Tree tree;
+    model::Tree tree;
     const double* q;
     const double* T_world_base;
     std::size_t base_stride;
@@ -48,13 +48,16 @@ inline std::size_t scratch_bytes(const TreeRows& rows) {
     return 32 * (15 * n + 4 * dof + 64);
 }
 
-}  // namespace cspace
+}  // namespace cspace::kinematics
 
 // Rows begin to end. False if a joint value among them is not finite; the outputs are then of no use.
-CSPACE_KERNEL(bool, chain_rows, (const ChainRows& rows, std::size_t begin, std::size_t end, void* scratch))
-CSPACE_KERNEL(bool, tree_rows, (const TreeRows& rows, std::size_t begin, std::size_t end, void* scratch))
+CSPACE_KERNEL(cspace::kinematics, bool, chain_rows,
+              (const ChainRows& rows, std::size_t begin, std::size_t end, void* scratch))
+CSPACE_KERNEL(cspace::kinematics, bool, tree_rows,
+              (const TreeRows& rows, std::size_t begin, std::size_t end, void* scratch))
 
 // One configuration, as quickly as can be: T (4, 4) and, unless null, J (6, n_coordinates) in the base.
-CSPACE_KERNEL(bool, chain_pose, (const Chain& chain, const double* q, double* T, void* scratch))
-CSPACE_KERNEL(bool, chain_jacobian,
-              (const Chain& chain, const double* q, double* T, double* J, void* scratch))
+CSPACE_KERNEL(cspace::kinematics, bool, chain_pose,
+              (const model::Chain& chain, const double* q, double* T, void* scratch))
+CSPACE_KERNEL(cspace::kinematics, bool, chain_jacobian,
+              (const model::Chain& chain, const double* q, double* T, double* J, void* scratch))

@@ -3,7 +3,7 @@
 #include "cspace/math/rows.hpp"
 #include "cspace/spatial/rotation.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::spatial::inline CSPACE_ISA {
 namespace {
 
 using V = Pack<native_width>;
@@ -58,4 +58,4 @@ bool axis_angle_matrices_n(const double* axis, const double* angle, double* R, s
     });
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::spatial::inline CSPACE_ISA

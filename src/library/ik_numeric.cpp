@@ -7,7 +7,7 @@
 #include "kernels/ik_numeric.hpp"
 #include "robot_path.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 namespace {
 
@@ -88,7 +88,7 @@ std::size_t sample_solutions(const DescentTask& given, const double* goal, const
     return different;
 }
 
-int moving_coordinates(const Chain& chain) {
+int moving_coordinates(const model::Chain& chain) {
     int count = 0;
     for (int i = 0; i < chain.n; ++i) {
         bool known = false;
@@ -98,4 +98,4 @@ int moving_coordinates(const Chain& chain) {
     return chain.n > ik::max_path && count <= ik::max_joints ? chain.n : count;
 }
 
-}  // namespace cspace
+}  // namespace cspace::ik

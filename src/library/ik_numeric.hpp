@@ -7,11 +7,11 @@
 
 #include "cspace/model/chain.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // What a frame has to meet, and how: weights (6,) of the error's rows, limits (2, dof) or null.
 struct DescentTask {
-    const Chain& chain;
+    const model::Chain& chain;
     const double* weights;
     const double* limits;
     double tolerance;
@@ -36,6 +36,6 @@ std::size_t sample_solutions(const DescentTask& task, const double* goal, const 
                              std::int64_t* hits);
 
 // How many coordinates move the end of a chain; more than a path holds if its joints alone are too many.
-int moving_coordinates(const Chain& chain);
+int moving_coordinates(const model::Chain& chain);
 
-}  // namespace cspace
+}  // namespace cspace::ik

@@ -10,18 +10,18 @@
 #include "cspace/kinematics/forward.hpp"
 #include "cspace/math/threads.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 namespace {
 
-FrameTask task_from(const double* row, const RobotModel& model) {
+FrameTask task_from(const double* row, const model::RobotModel& model) {
     FrameTask task;
     task.kind = static_cast<TaskKind>(int(row[0]));
     task.frame = int(row[1]);
     if (task.kind != TaskKind::center_of_mass && (task.frame < 0 || task.frame >= model.n_frames()))
         throw std::invalid_argument("no such frame");
     task.gain = row[2];
-    task.target = read_matrix(row + 3);
+    task.target = kinematics::read_matrix(row + 3);
     std::copy_n(row + 19, 6, task.weight);
     task.point = {row[25], row[26], row[27]};
     return task;
@@ -46,7 +46,7 @@ TaskProblem problem_from(const TaskRows& rows) {
 TaskPlace place_at(const TaskProblem& problem, const double* q, const double* T_world_base) {
     TaskPlace at;
     at.q.assign(q, q + problem.model->n_coordinates());
-    at.T_world_base = read_matrix(T_world_base);
+    at.T_world_base = kinematics::read_matrix(T_world_base);
     return at;
 }
 
@@ -109,7 +109,7 @@ TaskEnding serve_tasks(const TaskRows& rows, int most_steps, double settled, dou
     TaskPlace at = place_at(problem, q, T_world_base);
     const Served served = serve(problem, {most_steps, settled}, at);
     std::copy(at.q.begin(), at.q.end(), q);
-    write_matrix(at.T_world_base, T_world_base);
+    kinematics::write_matrix(at.T_world_base, T_world_base);
     write_errors(at, errors);
     return {served.steps, served.settled, at.cost};
 }
@@ -137,4 +137,4 @@ int solve_box_program(const double* H, const double* g, const double* lower, con
     return solve(qp, x);
 }
 
-}  // namespace cspace
+}  // namespace cspace::ik

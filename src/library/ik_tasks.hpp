@@ -5,14 +5,14 @@
 
 #include "cspace/model/robot_model.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The columns of a packed task: kind, frame, gain, target (16), weights (6), point (3).
 inline constexpr int task_width = 28;
 
 // tasks (n_tasks, task_width); postures (n_postures, 2 n + 1): places, weights, gain; limits (2, n) or null.
 struct TaskRows {
-    const RobotModel& model;
+    const model::RobotModel& model;
     bool floating;
     const double* tasks;
     std::size_t n_tasks;
@@ -57,4 +57,4 @@ void resolve_rates(const RateRows& given);
 int solve_box_program(const double* H, const double* g, const double* lower, const double* upper,
                       std::size_t n, double* x);
 
-}  // namespace cspace
+}  // namespace cspace::ik

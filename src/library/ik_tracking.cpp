@@ -6,7 +6,7 @@
 #include "kernels/ik_tracking.hpp"
 #include "robot_path.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 namespace {
 
@@ -75,4 +75,4 @@ void track_branches(const TrackRows& given) {
     }
 }
 
-}  // namespace cspace
+}  // namespace cspace::ik

@@ -5,7 +5,7 @@
 
 #include "cspace/model/chain.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 inline constexpr int track_info = 5;  // poses reached, end, fate, joint, least singular value
 
@@ -13,7 +13,7 @@ inline constexpr int track_info = 5;  // poses reached, end, fate, joint, least 
 // pose. q (branches, count, dof) up to the poses reached, last (branches, dof) and info (branches,
 // track_info) take the results.
 struct TrackRows {
-    const Chain& chain;
+    const model::Chain& chain;
     const double* poses;
     std::size_t count;
     const double* starts;
@@ -26,4 +26,4 @@ struct TrackRows {
 };
 void track_branches(const TrackRows& rows);
 
-}  // namespace cspace
+}  // namespace cspace::ik

@@ -6,7 +6,7 @@
 
 #include "cspace/ik/numeric/path.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // Coordinate j of the path is coordinate number[j] of the robot.
 struct RobotPath {
@@ -15,7 +15,7 @@ struct RobotPath {
     int coordinates;  // of the robot
 
     // Throws std::invalid_argument for a chain of more joints or coordinates than a path holds.
-    explicit RobotPath(const Chain& chain) : coordinates(chain.n_coordinates) {
+    explicit RobotPath(const model::Chain& chain) : coordinates(chain.n_coordinates) {
         if (chain.n > ik::max_path) throw std::invalid_argument("too many joints on the path");
         path.joints = chain.n;
         path.T_base_first = chain.T_base_first;
@@ -50,4 +50,4 @@ struct RobotPath {
     }
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik

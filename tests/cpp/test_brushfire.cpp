@@ -68,7 +68,7 @@ std::vector<long> widest(const BitGrid& grid, const Clearance& clearance, Cell s
 }  // namespace
 
 TEST(distances_are_those_to_the_nearest_blocked_cell) {
-    check::Random random(1);
+    check::Random random{1};
     for (int k = 0; k < 400; ++k) {
         const BitGrid grid = random_grid(random);
         const Clearance clearance = make_clearance(grid);
@@ -84,7 +84,7 @@ TEST(distances_are_those_to_the_nearest_blocked_cell) {
 }
 
 TEST(marks_lie_where_the_distance_says) {
-    check::Random random(2);
+    check::Random random{2};
     for (int k = 0; k < 300; ++k) {
         const BitGrid grid = random_grid(random);
         const Diagram diagram(grid);
@@ -104,7 +104,7 @@ TEST(marks_lie_where_the_distance_says) {
 }
 
 TEST(ways_on_the_diagram_are_as_wide_as_ways_anywhere) {
-    check::Random random(3);
+    check::Random random{3};
     for (int k = 0; k < 300; ++k) {
         const BitGrid grid = random_grid(random);
         const std::vector<Cell> cells = free_cells(grid);
@@ -138,7 +138,7 @@ TEST(ways_on_the_diagram_are_as_wide_as_ways_anywhere) {
 }
 
 TEST(the_diagram_is_thin_and_has_every_branch) {
-    check::Random random(4);
+    check::Random random{4};
     for (int k = 0; k < 300; ++k) {
         const BitGrid grid = random_grid(random);
         const Diagram diagram(grid);

@@ -33,7 +33,7 @@ Outlines random_outlines(check::Random& random) {
 }  // namespace
 
 TEST(descents_go_down_and_never_through_walls) {
-    check::Random random(1);
+    check::Random random{1};
     int found = 0;
     for (int k = 0; k < 200; ++k) {
         const PolygonWorld world(random_outlines(random));

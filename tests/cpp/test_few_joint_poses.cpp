@@ -5,6 +5,7 @@
 #include "few_joints.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 using check::Random;
 
 TEST(the_joints_a_pose_was_made_from_come_back) {

@@ -32,7 +32,7 @@ Cell random_free(check::Random& random, const BitGrid& grid) {
 }  // namespace
 
 TEST(exact_and_bounded_searches_keep_to_the_shortest_way) {
-    check::Random random(1);
+    check::Random random{1};
     for (int k = 0; k < 400; ++k) {
         const BitGrid grid = random_grid(random);
         const Clearance clearance = make_clearance(grid);
@@ -53,14 +53,14 @@ TEST(exact_and_bounded_searches_keep_to_the_shortest_way) {
                 find_by_potential(grid, clearance, order, corners, start, goal, answer);
                 CHECK(answer.found == shortest.found);
                 if (!answer.found || is_greedy) continue;
-                const double length = search::summed(answer.cells, StepLength{});
+                const double length = grid_search::summed(answer.cells, StepLength{});
                 CHECK(length <= most * shortest.cost + 1e-9 && length >= shortest.cost - 1e-9);
             }
     }
 }
 
 TEST(a_front_comes_where_cells_join_and_its_way_leads_down) {
-    check::Random random(2);
+    check::Random random{2};
     for (int k = 0; k < 400; ++k) {
         const BitGrid grid = random_grid(random);
         const Clearance clearance = make_clearance(grid);

@@ -27,7 +27,7 @@ TEST(mended_ways_are_as_long_as_fresh_ones) {
                 start = {random.below(rows), random.below(columns)};
                 planner.move(start);
             }
-            Effort effort;
+            cspace::search::Effort effort;
             const bool found = planner.replan(effort);
             if (grid.blocked(start) || grid.blocked(goal)) {
                 CHECK(!found);
@@ -41,7 +41,7 @@ TEST(mended_ways_are_as_long_as_fresh_ones) {
             if (!found) continue;
             std::vector<Cell> cells;
             planner.way(cells);
-            CHECK_NEAR(search::summed(cells, StepLength{}), answer.cost, 1e-9);
+            CHECK_NEAR(grid_search::summed(cells, StepLength{}), answer.cost, 1e-9);
         }
     }
 }

@@ -331,20 +331,21 @@ TEST(any_angle_ways_keep_in_sight_and_are_shorter_than_by_steps) {
 // Rising, falling and scattered priorities, some beyond the last bucket.
 TEST(buckets_keep_the_order_of_a_heap) {
     check::Random random{6};
-    BucketQueue queue;
+    cspace::search::BucketQueue queue;
     for (int round = 0; round < 60; ++round) {
         queue.begin(random.uniform(0.01, 2));
-        PriorityQueue heap;
+        cspace::search::PriorityQueue heap;
         double last = random.uniform(0, 100);
         const double reach = round % 3 ? 10 : 1e6;
         for (int k = 0; k < 3000; ++k) {
             if (random.uniform(0, 1) < 0.55) {
                 const double low = round % 2 ? 0 : -5;
-                const Waiting entry = {last + random.uniform(low, reach), float(random.below(3)), 0};
+                const cspace::search::Waiting entry = {last + random.uniform(low, reach),
+                                                       float(random.below(3)), 0};
                 queue.push(entry);
                 heap.push(entry);
             } else if (!heap.empty()) {
-                const Waiting a = queue.pop(), b = heap.pop();
+                const cspace::search::Waiting a = queue.pop(), b = heap.pop();
                 CHECK(a.priority == b.priority && a.tie == b.tie);
                 last = a.priority;
             }

@@ -21,7 +21,7 @@ BitGrid random_grid(check::Random& random, int most, double share) {
 }  // namespace
 
 TEST(every_cell_is_the_mean_of_the_four_beside_it_and_descents_arrive) {
-    check::Random random(1);
+    check::Random random{1};
     for (int k = 0; k < 300; ++k) {
         BitGrid grid = random_grid(random, 40, random.uniform(0, 0.45));
         const Cell goal{random.below(grid.rows()), random.below(grid.columns())};

@@ -7,6 +7,7 @@
 #include "random_arms.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 using arms::Class;
 
 static void expect_every_generator_found(Class kind, bool backwards) {

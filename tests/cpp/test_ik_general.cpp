@@ -5,6 +5,7 @@
 #include "random_arms.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 
 // Joint i slides where bit i of `slides` is set.
 static ik::Chain general_arm(int n, int slides, arms::Rng& rng) {

@@ -9,6 +9,7 @@
 #include "random_arms.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 
 namespace {
 
@@ -49,7 +50,7 @@ Runs run(const ik::Path& path, const ik::Task& task, const Posed& goal, const st
              std::vector<ik::Ending>(n)};
     std::fill(out.ending.begin(), out.ending.end(), ik::Ending::unknown);
     double T[16];
-    write_matrix(goal, T);
+    kinematics::write_matrix(goal, T);
     run_descents<V>({&path, &task, T, 0, starts.data(), std::size_t(path.n), nullptr, n, first_only,
                      out.q.data(), out.cost.data(), out.position.data(), out.rotation.data(),
                      out.steps.data(), out.ending.data()});
@@ -72,9 +73,9 @@ TEST(a_path_leads_where_its_chain_leads) {
         const ik::Path path = path_of(chain);
         const auto q = random_q(n, rng);
         double s[ik::max_path + 3], c[ik::max_path + 3];
-        chain_sines(view_of(path), q.data(), s, c);
-        const Posed T =
-            follow_chain(view_of(path), path.T_base_first, q.data(), s, c, [](int, auto&&, auto&&) {});
+        kinematics::chain_sines(view_of(path), q.data(), s, c);
+        const Posed T = kinematics::follow_chain(view_of(path), path.T_base_first, q.data(), s, c,
+                                                 [](int, auto&&, auto&&) {});
         CHECK(largest_difference(T, forward(chain, q.data())) < 1e-13);
     }
 }
@@ -122,7 +123,7 @@ TEST(what_descents_reach_is_among_the_solutions_of_the_closed_form) {
         const Posed goal = forward(chain, truth.data());
         const ik::Solutions all = solve_pose(arm, goal, nullptr);
         double T[16];
-        write_matrix(goal, T);
+        kinematics::write_matrix(goal, T);
         const auto start = random_q(6 * 32, rng);
         std::vector<double> q(start.size()), residual(32);
         kernels::ik_many_starts(chain, T, start.data(), 32, q.data(), residual.data());

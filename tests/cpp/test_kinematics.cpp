@@ -15,6 +15,8 @@
 #include "kernels/kinematics.hpp"
 
 using namespace cspace;
+using namespace cspace::kinematics;
+using namespace cspace::model;
 
 namespace {
 

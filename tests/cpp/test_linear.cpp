@@ -58,7 +58,7 @@ void check_solve() {
     for (int round = 0; round < 300; ++round) {
         const auto s = random_system<n, n, V>(random);
         auto used = s;
-        const auto regular = cspace::solve(used.A, used.b);
+        const auto regular = cspace::solve_linear(used.A, used.b);
         for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
             if (!cspace::lane(regular, k)) continue;
             ++told_regular;
@@ -150,7 +150,7 @@ TEST(permutations_are_solved_exactly) {
             A[i][order[i]] = 1 << i;
             b[i] = (order[i] + 1) * (1 << i);
         }
-        CHECK(cspace::solve(A, b));
+        CHECK(cspace::solve_linear(A, b));
         for (int i = 0; i < 5; ++i) CHECK(b[i] == i + 1);
     } while (std::next_permutation(order, order + 5));
 }
@@ -162,7 +162,7 @@ TEST(a_singular_lane_is_told_and_harms_no_other) {
         for (int j = 0; j < 6; ++j) cspace::set_lane(s.A[3][j], 2, 2 * cspace::lane(s.A[5][j], 2));
         auto eliminated = s, reflected = s;
         cspace::Pack<4> x[6];
-        const auto regular = cspace::solve(eliminated.A, eliminated.b);
+        const auto regular = cspace::solve_linear(eliminated.A, eliminated.b);
         const auto full = cspace::least_squares(reflected.A, reflected.b, x);
         CHECK(!cspace::lane(regular, 2) && !cspace::lane(full, 2));
         for (int k : {0, 1, 3}) {
@@ -171,7 +171,7 @@ TEST(a_singular_lane_is_told_and_harms_no_other) {
                 for (int j = 0; j < 6; ++j) A[i][j] = cspace::lane(s.A[i][j], k);
                 b[i] = cspace::lane(s.b[i], k);
             }
-            CHECK(cspace::solve(A, b) == cspace::lane(regular, k));
+            CHECK(cspace::solve_linear(A, b) == cspace::lane(regular, k));
             for (int i = 0; i < 6; ++i) {
                 CHECK_NEAR(b[i], cspace::lane(eliminated.b[i], k), 1e-8 * (1 + std::fabs(b[i])));
                 CHECK(std::isfinite(cspace::lane(x[i], 2)) &&

@@ -47,7 +47,7 @@ bool cuts(Point a, Point b, Point p, Point q) {
 }  // namespace
 
 TEST(bounds_of_a_summand_hold) {
-    check::Random random(1);
+    check::Random random{1};
     for (int k = 0; k < 20000; ++k) {
         const bool is_room = k % 3 == 0;
         const LogTerm term{{0, 0}, k % 3 == 1 ? 0 : random.uniform(0.5, 2), k % 3 == 1 ? 7.0 : -1.0, is_room};
@@ -66,7 +66,7 @@ TEST(bounds_of_a_summand_hold) {
 }
 
 TEST(sphere_worlds_have_one_minimum_and_a_saddle_for_each_disc) {
-    check::Random random(2);
+    check::Random random{2};
     for (int k = 0; k < 60; ++k) {
         const SphereWorld world = random_discs(random, k % 30);
         const Point goal = pick(random, world, 0.1);
@@ -95,7 +95,7 @@ TEST(a_wall_of_discs_with_a_low_power_has_a_minimum_behind_it) {
 TEST(no_minimum_is_overlooked) {
     // Where the proof says that none is there, descents from many places all come to the goal, also without
     // the step that leaves saddles; where it says that one is, some do not.
-    check::Random random(3);
+    check::Random random{3};
     int refuted = 0;
     for (int k = 0; k < 200; ++k) {
         const SphereWorld world = random_discs(random, 25);
@@ -111,7 +111,7 @@ TEST(no_minimum_is_overlooked) {
 }
 
 TEST(the_map_of_a_star_world_is_a_homeomorphism_and_descents_arrive) {
-    check::Random random(4);
+    check::Random random{4};
     for (int k = 0; k < 60; ++k) {
         const PolygonWorld world = random_stars(random, 1 + k % 14);
         const auto pick_free = [&] {

@@ -7,6 +7,7 @@
 #include "few_joints.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 using namespace few_joints;
 
 namespace {

@@ -4,6 +4,7 @@
 #include "random.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 using check::Random;
 
 namespace {

@@ -8,6 +8,7 @@
 #include "random_arms.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 
 // A 7R arm with a spherical shoulder and two meeting axes before the last, sizes and limits as of a Panda.
 static ik::Redundant shoulder_arm() {

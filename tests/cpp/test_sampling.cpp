@@ -86,7 +86,7 @@ TEST(ways_are_never_shorter_than_the_shortest) {
 
 TEST(the_nearest_are_found_among_buckets) {
     std::mt19937 random(5);
-    sampling::Buckets buckets({0, 0}, {3, 1});
+    cspace::search::Buckets buckets({0, 0}, {3, 1});
     std::vector<Point> all;
     std::vector<std::int32_t> found;
     const auto draw = [&] { return double(random()) / 4294967296.0; };

@@ -3,6 +3,7 @@
 #include "cspace/ik/self_motion/continuation.hpp"
 
 using namespace cspace;
+using namespace cspace::ik;
 
 namespace {
 

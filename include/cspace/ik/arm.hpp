@@ -25,13 +25,13 @@ inline int room_for(const Arm& arm) { return arm.is_general ? max_solutions : ma
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // with_general: whether arms in general position are planned too, which takes milliseconds.
-CSPACE_ONCE ik::Arm make_arm(const ik::Chain& chain, bool with_general = true) {
-    ik::Arm arm;
+CSPACE_ONCE Arm make_arm(const Chain& chain, bool with_general = true) {
+    Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
-    arm.has_few_joints = chain.n <= ik::max_position_joints;
+    arm.has_few_joints = chain.n <= max_position_joints;
     if (!arm.has_plan) arm.plan.form.length = characteristic_length(chain);
     if (!arm.has_plan && !arm.has_few_joints && chain.n <= 6)
         arm.is_general = with_general && make_general_arm(chain, arm.general);
@@ -45,10 +45,10 @@ CSPACE_ONCE ik::Arm make_arm(const ik::Chain& chain, bool with_general = true) {
 
 // The solutions of an arm with fewer than six joints for a position or a pose, in the common format.
 template <class Found>
-ik::Solutions from_few_joints(const ik::Chain& chain, const Found& found) {
-    ik::Solutions out;
+Solutions from_few_joints(const Chain& chain, const Found& found) {
+    Solutions out;
     out.count = found.count;
-    out.status = found.count ? ik::Status::exact : ik::Status::unreachable;
+    out.status = found.count ? Status::exact : Status::unreachable;
     for (int k = 0; k < found.count; ++k) {
         for (int i = 0; i < chain.n; ++i) {
             out.q[k][i] = found.q[k][i];
@@ -56,15 +56,15 @@ ik::Solutions from_few_joints(const ik::Chain& chain, const Found& found) {
         }
         out.branch[k] = static_cast<signed char>(k);
         out.self_motion[k] = found.free[k];
-        if (found.free[k]) out.status = ik::Status::singular;
+        if (found.free[k]) out.status = Status::singular;
     }
     return out;
 }
 
 // Refines the solutions of an arm with few joints to rounding.
-inline void refine_few_joints(const ik::Chain& chain, const Posed& goal, double length, ik::Solutions& out) {
+inline void refine_few_joints(const Chain& chain, const Posed& goal, double length, Solutions& out) {
     for (int k = 0; k < out.count; ++k) {
-        double q[ik::max_joints];
+        double q[max_joints];
         for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i];
         PoseError error;
         measure_error(chain, goal, length, q, error);
@@ -78,14 +78,14 @@ inline void refine_few_joints(const ik::Chain& chain, const Posed& goal, double 
 // Solves an arm whose closed form idealises it: by elimination, and by both methods where elimination or the
 // closed form is uncertain. Closer to a fold than the idealisation moves it, both methods may miss the same
 // pair. Elsewhere both lists agree if they are complete.
-inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, const double* unconstrained) {
+inline Solutions solve_both_ways(const Arm& arm, const Posed& goal, const double* unconstrained) {
     const Posed goal_form = goal_in_form(arm.plan, goal);
-    ik::Solutions out = solve_general_carefully(arm.general, goal, unconstrained);
+    Solutions out = solve_general_carefully(arm.general, goal, unconstrained);
     if (!out.complete || solve_closed_form(arm.plan, goal_form, care_of(arm.plan)).doubt) {
         const int alone = out.count;
-        const ik::Solutions form = solve_carefully(arm.plan, goal, unconstrained);
+        const Solutions form = solve_carefully(arm.plan, goal, unconstrained);
         for (int k = 0; k < form.count; ++k) {
-            double q[ik::max_joints];
+            double q[max_joints];
             for (int i = 0; i < 6; ++i) q[i] = form.q[k][i];
             accept_solution(out, arm.plan.chain, goal, arm.plan.form.length, q, form.branch[k], 2);
         }
@@ -101,12 +101,12 @@ inline ik::Solutions solve_both_ways(const ik::Arm& arm, const Posed& goal, cons
 }
 
 // By the closed form at perturbed goals near this one, if they leave the virtual joints in place.
-inline bool search_perturbed_goals_in_form(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
+inline bool search_perturbed_goals_in_form(const Plan& plan, const Posed& goal, Solutions& out) {
     const auto propose = [&](const Posed& beside, const auto& add_candidate) {
         const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, beside), care_of(plan));
         for (int k = 0; k < max_branches; ++k) {
             if (!b.ok[k]) continue;
-            double q[ik::max_joints] = {};
+            double q[max_joints] = {};
             for (int i = 0; i < 6; ++i)
                 if (plan.joint[i] >= 0) q[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
             add_candidate(q);
@@ -116,21 +116,20 @@ inline bool search_perturbed_goals_in_form(const ik::Plan& plan, const Posed& go
 }
 
 // Arms that can place their tip in every orientation need no reach test.
-inline bool is_limited(const ik::Arm& arm) {
+inline bool is_limited(const Arm& arm) {
     return arm.plan.chain.n < 6 || (arm.is_general && arm.general.plan.slides > 0);
 }
 
-inline ik::Solutions solutions_and_self_motions(const ik::Arm& arm, const Posed& goal,
-                                                const double* unconstrained) {
+inline Solutions solutions_and_self_motions(const Arm& arm, const Posed& goal, const double* unconstrained) {
     constexpr int starts = 12;
-    const ik::Chain& chain = arm.plan.chain;
+    const Chain& chain = arm.plan.chain;
     const double length = arm.plan.form.length;
     if (is_limited(arm) && exceeds_reach(chain, goal, length)) return {};
     if (arm.is_general)
         return arm.has_plan ? solve_both_ways(arm, goal, unconstrained)
                             : solve_general_carefully(arm.general, goal, unconstrained);
     if (arm.has_plan) {
-        ik::Solutions out = solve_carefully(arm.plan, goal, unconstrained);
+        Solutions out = solve_carefully(arm.plan, goal, unconstrained);
         // Where the completed arm is singular the arm itself need not be, and where a wrist is almost free
         // rounding may put a goal on the border out of reach.
         if ((arm.plan.virtual_joints == 0 && out.count > 0) ||
@@ -141,16 +140,16 @@ inline ik::Solutions solutions_and_self_motions(const ik::Arm& arm, const Posed&
         out.complete = out.complete && out.count > 0;
         return out;
     }
-    ik::Solutions out = from_few_joints(chain, solve_few_joint_pose(chain, goal));
+    Solutions out = from_few_joints(chain, solve_few_joint_pose(chain, goal));
     if (out.count == 0) search_by_descent(chain, goal, length, starts, out);
     refine_few_joints(chain, goal, length, out);
     return out;
 }
 
-CSPACE_ONCE ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, const double* unconstrained) {
-    const ik::Chain& chain = arm.plan.chain;
-    ik::Solutions out = solutions_and_self_motions(arm, goal, unconstrained);
-    if (chain.n > ik::max_position_joints)
+CSPACE_ONCE Solutions solve_pose(const Arm& arm, const Posed& goal, const double* unconstrained) {
+    const Chain& chain = arm.plan.chain;
+    Solutions out = solutions_and_self_motions(arm, goal, unconstrained);
+    if (chain.n > max_position_joints)
         look_along(chain, goal, arm.plan.form.length, unconstrained, room_for(arm), out);
     return out;
 }
@@ -159,18 +158,18 @@ CSPACE_ONCE ik::Solutions solve_pose(const ik::Arm& arm, const Posed& goal, cons
 // large weight keeps the orientation, and the result is the distance by which the goal is out of reach.
 // Starts are the branches clipped at their boundaries, and configurations spread over the joints. A large
 // weight is increased in steps, because the set of configurations with the required orientation is narrow.
-CSPACE_ONCE ik::NearestPose nearest_to_goal(const ik::Arm& arm, const Posed& goal, double weight) {
-    const ik::Plan& plan = arm.plan;
+CSPACE_ONCE NearestPose nearest_to_goal(const Arm& arm, const Posed& goal, double weight) {
+    const Plan& plan = arm.plan;
     const int n = plan.chain.n;
     Care care;
     care.band = std::numeric_limits<double>::infinity();
     Branches<double> b{};
     if (arm.has_plan) b = solve_closed_form(plan, goal_in_form(plan, goal), care);
-    ik::NearestPose best;
+    NearestPose best;
     best.cost = std::numeric_limits<double>::infinity();
     constexpr int spread = 16;
     for (int k = 0; k < max_branches + spread; ++k) {
-        double q[ik::max_joints] = {};
+        double q[max_joints] = {};
         spread_configuration(k, n, q);
         for (int i = 0; arm.has_plan && i < 6 && k < max_branches; ++i)
             if (plan.joint[i] >= 0 && std::isfinite(b.t[k][i]))
@@ -189,4 +188,4 @@ CSPACE_ONCE ik::NearestPose nearest_to_goal(const ik::Arm& arm, const Posed& goa
     return best;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -3,7 +3,7 @@
 
 #include "cspace/math/lanes.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 inline constexpr int max_branches = 8;
 
@@ -23,4 +23,4 @@ struct Abreast {
     bool doubt;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik

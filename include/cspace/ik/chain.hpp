@@ -19,12 +19,12 @@ struct Chain {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 CSPACE_INLINE Posed identity_pose() { return {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}}; }
 
 // The displacement of joint i by q.
-inline Posed joint_motion(const ik::Chain& chain, int i, double q) {
+inline Posed joint_motion(const Chain& chain, int i, double q) {
     if (chain.prismatic[i]) return {identity_pose().R, q * chain.axis[i]};
     double s, c;
     sincos(q, s, c);
@@ -32,16 +32,16 @@ inline Posed joint_motion(const ik::Chain& chain, int i, double q) {
     return {R, chain.point[i] - R * chain.point[i]};
 }
 
-inline Posed forward(const ik::Chain& chain, const double* q) {
+inline Posed forward(const Chain& chain, const double* q) {
     Posed T = identity_pose();
     for (int i = 0; i < chain.n; ++i) T = T * joint_motion(chain, i, q[i]);
     return T * chain.tip;
 }
 
 // The same arm from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.
-inline ik::Chain reversed(const ik::Chain& chain) {
+inline Chain reversed(const Chain& chain) {
     const Posed T_tip_base = inverse(chain.tip);
-    ik::Chain back;
+    Chain back;
     back.n = chain.n;
     for (int i = 0; i < chain.n; ++i) {
         const int k = chain.n - 1 - i;
@@ -55,7 +55,7 @@ inline ik::Chain reversed(const ik::Chain& chain) {
 
 // A characteristic length of the arm [m]: the largest distance between consecutive axes or to the tip, or 1
 // if all intersect.
-inline double characteristic_length(const ik::Chain& chain) {
+inline double characteristic_length(const Chain& chain) {
     double longest = 0;
     for (int i = 0; i < chain.n; ++i) {
         const Vec3d next = i + 1 < chain.n ? chain.point[i + 1] : chain.tip.t;
@@ -69,4 +69,4 @@ inline double characteristic_length(const ik::Chain& chain) {
     return longest > 0 ? longest : 1.0;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -21,7 +21,7 @@ struct DhForm {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The common normal of two axes: its direction and its feet on both.
 struct CommonNormal {
@@ -61,7 +61,7 @@ inline Posed frame_at(const Vec3d& origin, const Vec3d& x, const Vec3d& z) {
     return {from_columns(x, cross(z, x), z), origin};
 }
 
-inline Posed dh_forward(const ik::DhForm& f, const double* q) {
+inline Posed dh_forward(const DhForm& f, const double* q) {
     Posed T = f.base;
     for (int i = 0; i < 6; ++i) {
         const double t = q[i] + f.offset[i], c = std::cos(t), s = std::sin(t);
@@ -90,7 +90,7 @@ inline void spread_configuration(int k, int n, double* q) {
     }
 }
 
-inline double measure_deviation(const ik::Chain& chain, const ik::DhForm& f) {
+inline double measure_deviation(const Chain& chain, const DhForm& f) {
     double worst = 0;
     for (int k = 0; k < 8; ++k) {
         double q[6];
@@ -101,8 +101,8 @@ inline double measure_deviation(const ik::Chain& chain, const ik::DhForm& f) {
 }
 
 // Requires six revolute joints.
-inline ik::DhForm dh_form(const ik::Chain& chain) {
-    ik::DhForm f{};
+inline DhForm dh_form(const Chain& chain) {
+    DhForm f{};
     f.length = characteristic_length(chain);
     Vec3d z[6];
     CommonNormal normal[5];
@@ -146,4 +146,4 @@ inline ik::DhForm dh_form(const ik::Chain& chain) {
     return f;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

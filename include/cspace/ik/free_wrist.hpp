@@ -19,10 +19,10 @@ struct FreeSums {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline void insert_sorted(ik::FreeSums& out, double sum, double rank) {
-    if (out.count == ik::FreeSums::most) return;
+inline void insert_sorted(FreeSums& out, double sum, double rank) {
+    if (out.count == FreeSums::most) return;
     int at = out.count++;
     for (; at > 0 && out.rank[at - 1] > rank; --at) {
         out.sum[at] = out.sum[at - 1];
@@ -35,7 +35,7 @@ inline void insert_sorted(ik::FreeSums& out, double sum, double rank) {
 // The sums at which the target, seen from joint 2 at (x, y) less Rz(sum) (x4, y4), is at distance `reach`.
 // First come values slightly to either side of them, where the elbow is bent, those nearest to
 // `unconstrained` first; then the sums themselves.
-inline void add_ends(ik::FreeSums& out, const ik::ThreeParallel& arm, double x, double y, double reach,
+inline void add_ends(FreeSums& out, const ThreeParallel& arm, double x, double y, double reach,
                      double unconstrained, const Care& care) {
     const double a = 2 * (x * arm.x4 + y * arm.y4), b = 2 * (y * arm.x4 - x * arm.y4);
     const double r = x * x + y * y + arm.x4 * arm.x4 + arm.y4 * arm.y4 - reach * reach;
@@ -53,9 +53,9 @@ inline void add_ends(ik::FreeSums& out, const ik::ThreeParallel& arm, double x, 
 
 // For shoulder solution i. The list is empty where nothing is free, or where the other shoulder solution is
 // the same.
-inline ik::FreeSums free_sums(const ik::ThreeParallel& arm, const Posed& goal, int i, double unconstrained,
-                              const Care& care) {
-    ik::FreeSums out;
+inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, double unconstrained,
+                          const Care& care) {
+    FreeSums out;
     const Vec3d& p = goal.t;
     const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
     const TwoAngles<double> shoulder =
@@ -71,4 +71,4 @@ inline ik::FreeSums free_sums(const ik::ThreeParallel& arm, const Posed& goal, i
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

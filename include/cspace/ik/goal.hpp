@@ -4,7 +4,7 @@
 #include "cspace/math/vec.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 template <class V>
 struct ReadGoal {
@@ -12,9 +12,9 @@ struct ReadGoal {
     mask_of<V> is_pose;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The rotation nearest to R for an R that is one up to a small error e = RᵀR − I: R (I − e/2), twice.
 template <class V>
@@ -51,4 +51,4 @@ CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -10,18 +10,18 @@
 #include "cspace/ik/self_motion/self_motion.hpp"
 #include "cspace/ik/solution.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Sets the status of a list of solutions.
-inline void classify_solutions(ik::Solutions& out) {
-    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+inline void classify_solutions(Solutions& out) {
+    out.status = out.count ? Status::exact : Status::unreachable;
     for (int k = 0; k < out.count; ++k)
-        if (out.self_motion[k]) out.status = ik::Status::singular;
+        if (out.self_motion[k]) out.status = Status::singular;
 }
 
 // The largest joint difference between two configurations, angles by the shorter way. Prismatic joints far
 // from zero are known only to a relative accuracy.
-inline double joint_distance(const ik::Chain& chain, const double* a, const double* b) {
+inline double joint_distance(const Chain& chain, const double* a, const double* b) {
     double worst = 0;
     for (int i = 0; i < chain.n; ++i) {
         const double d = a[i] - b[i];
@@ -30,7 +30,7 @@ inline double joint_distance(const ik::Chain& chain, const double* a, const doub
     return worst;
 }
 
-inline double miss_of(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
+inline double miss_of(const Chain& chain, const Posed& goal, double length, const double* q) {
     PoseError error;
     measure_error(chain, goal, length, q, error);
     return size_of_error(error);
@@ -39,9 +39,9 @@ inline double miss_of(const ik::Chain& chain, const Posed& goal, double length, 
 // The error between two configurations: at their midpoint, on the floor of the valley between them. Between
 // two solutions that are about to merge it is larger than at them; between two copies of one solution it is
 // not.
-inline double miss_between(const ik::Chain& chain, const Posed& goal, double length, const double* a,
+inline double miss_between(const Chain& chain, const Posed& goal, double length, const double* a,
                            const double* b) {
-    double q[ik::max_joints], dq[ik::max_joints];
+    double q[max_joints], dq[max_joints];
     for (int i = 0; i < chain.n; ++i) {
         const double step = b[i] - a[i];
         q[i] = a[i] + 0.5 * (chain.prismatic[i] ? step : std::remainder(step, 2 * pi));
@@ -59,19 +59,19 @@ inline double miss_between(const ik::Chain& chain, const Posed& goal, double len
 
 // Whether two configurations are the same solution, given their distance and the larger error `left` of the
 // two. Those within `near`, the uncertainty from rounding, count as distinct only with evidence.
-inline bool are_one(const ik::Chain& chain, const Posed& goal, double length, const double* a,
-                    const double* b, double gap, double near, double left) {
+inline bool are_one(const Chain& chain, const Posed& goal, double length, const double* a, const double* b,
+                    double gap, double near, double left) {
     constexpr double wide = 1e-2, rounding = 1e-15;
     if (!(gap < max(near, wide))) return false;
     return miss_between(chain, goal, length, a, b) <= max(left, gap < near ? tolerance::halfway : rounding);
 }
 
 // Adds q to the solutions unless it is not a solution or is already listed.
-CSPACE_ONCE void accept_solution(ik::Solutions& out, const ik::Chain& chain, const Posed& goal, double length,
+CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed& goal, double length,
                                  double* q, int branch, int most_steps) {
     PoseError error;
     const double size = refine(chain, goal, length, q, error, most_steps);
-    if (!(size <= tolerance::reached) || out.count == ik::max_solutions) return;
+    if (!(size <= tolerance::reached) || out.count == max_solutions) return;
     const int weak = weakest_direction(error.jacobian);
     const double conditioning = max(error.jacobian.sigma[weak], 1e-9);
     const double near = 10 * max(size, 1e-15) / conditioning;
@@ -89,19 +89,19 @@ CSPACE_ONCE void accept_solution(ik::Solutions& out, const ik::Chain& chain, con
 
 // The branches of the plan to try, the tolerated values of virtual joints [rad], and the number of steps per
 // candidate.
-struct Search {
+struct CandidateSearch {
     int first = 0, last = max_branches;
     double stray = 1e-3;
     int most_steps = 60;  // of the refinement
 };
 
 // The branches of the plan for one choice of unconstrained joints, as configurations of the chain.
-inline void closed_form_candidates(const ik::Plan& plan, const Posed& goal_form, const Care& care,
-                                   ik::Solutions& out, const Posed& goal, const Search& search = {}) {
+inline void closed_form_candidates(const Plan& plan, const Posed& goal_form, const Care& care, Solutions& out,
+                                   const Posed& goal, const CandidateSearch& search = {}) {
     const Branches<double> b = solve_closed_form(plan, goal_form, care);
     for (int k = search.first; k < search.last; ++k) {
         if (!b.ok[k]) continue;
-        double q[ik::max_joints] = {};
+        double q[max_joints] = {};
         bool real = true;
         for (int i = 0; i < 6; ++i) {
             const double angle = joint_angle(plan, i, b.t[k][i]);
@@ -117,17 +117,17 @@ inline void closed_form_candidates(const ik::Plan& plan, const Posed& goal_form,
 
 // The angles t_i of unconstrained joints, from the joints of the chain. The free sum of three parallel joints
 // is the sum of their values.
-inline void set_unconstrained(const ik::Plan& plan, const double* unconstrained, Care& care, double* t) {
+inline void set_unconstrained(const Plan& plan, const double* unconstrained, Care& care, double* t) {
     for (int i = 0; i < 6; ++i) {
         const double q = plan.joint[i] >= 0 && unconstrained ? unconstrained[plan.joint[i]] : 0.0;
         t[i] = plan.sign[i] * q + plan.form.offset[i];
     }
-    if (plan.family == ik::Family::three_parallel) t[3] += t[1] + t[2];
+    if (plan.family == Family::three_parallel) t[3] += t[1] + t[2];
     for (int i = 0; i < 6; ++i) care.unconstrained[i] = {std::cos(t[i]), std::sin(t[i])};
 }
 
 // Whether the branches depend on the angle of joint i when it is free.
-inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
+inline bool is_free(const Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
     const Branches<double> b = solve_closed_form(plan, goal_form, care);
     Care other = care;
     other.unconstrained[i] = {std::cos(t + 2.4), std::sin(t + 2.4)};
@@ -143,8 +143,8 @@ inline bool is_free(const ik::Plan& plan, const Posed& goal_form, const Care& ca
 // Where a joint of the form is free but the joint of the arm is not (the form idealises the arm, or has
 // virtual joints), the solutions lie somewhere on the self-motion of the form. Starts are angles on the full
 // circle.
-inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, const Care& care, const double* t,
-                              ik::Solutions& out, const Posed& goal) {
+inline void sweep_free_joints(const Plan& plan, const Posed& goal_form, const Care& care, const double* t,
+                              Solutions& out, const Posed& goal) {
     constexpr int turns = 16;
     for (int i = 0; i < 6; ++i) {
         if (!is_free(plan, goal_form, care, t[i], i)) continue;
@@ -159,7 +159,7 @@ inline void sweep_free_joints(const ik::Plan& plan, const Posed& goal_form, cons
 
 // Near a singularity of the completed arm that the arm itself does not have, the error of the idealised form
 // grows to its square root. Starts are the branches of goals at that distance.
-inline void try_perturbed_goals(const ik::Plan& plan, const Posed& goal_form, Care care, ik::Solutions& out,
+inline void try_perturbed_goals(const Plan& plan, const Posed& goal_form, Care care, Solutions& out,
                                 const Posed& goal) {
     care.band = std::sqrt(care.band);
     if (solve_closed_form(plan, goal_form, care).doubt)
@@ -168,8 +168,8 @@ inline void try_perturbed_goals(const ik::Plan& plan, const Posed& goal_form, Ca
 
 // If the wrist of three parallel axes is free and its preferred angle puts the goal out of reach of the
 // planar arm: the nearest angle that does not.
-inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care care, double unconstrained,
-                            ik::Solutions& out, const Posed& goal) {
+inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, Care care, double unconstrained,
+                            Solutions& out, const Posed& goal) {
     care.free =
         max(care.free, 1e-6);  // behind two shoulders that merge, the wrist is seen through their error
     constexpr int half = max_branches / 2;
@@ -177,7 +177,7 @@ inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care c
         bool found = false;
         for (int k = 0; k < out.count; ++k) found = found || out.branch[k] / half == i;
         if (found) continue;
-        const ik::FreeSums sums = free_sums(plan.parallel, goal_form, i, unconstrained, care);
+        const FreeSums sums = free_sums(plan.parallel, goal_form, i, unconstrained, care);
         const int before = out.count;
         for (int k = 0; k < sums.count && out.count == before; ++k) {
             care.unconstrained[3] = {std::cos(sums.sum[k]), std::sin(sums.sum[k])};
@@ -188,7 +188,7 @@ inline void turn_free_wrist(const ik::Plan& plan, const Posed& goal_form, Care c
 
 // Solutions found by other methods get the number of the nearest branch. Each branch is used once, the
 // nearest pairs first. The others get numbers beyond the branches.
-inline void number_by_branches(const ik::Plan& plan, const Posed& goal, ik::Solutions& out) {
+inline void number_by_branches(const Plan& plan, const Posed& goal, Solutions& out) {
     Care care = care_of(plan);
     care.spread = 4 * plan.form.deviation;
     const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, goal), care);
@@ -218,8 +218,8 @@ inline void number_by_branches(const ik::Plan& plan, const Posed& goal, ik::Solu
 
 // Adds the solutions that are not in `out` yet. `unconstrained`: the values of the chain's joints that are
 // free at the goal.
-inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const double* unconstrained,
-                            ik::Solutions& out) {
+inline void solve_carefully(const Plan& plan, const Posed& goal, const double* unconstrained,
+                            Solutions& out) {
     Care care = care_of(plan);
     const double slack = 4 * plan.form.deviation;
     care.free = max(tolerance::free_joint, slack);
@@ -227,7 +227,7 @@ inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const doubl
     set_unconstrained(plan, unconstrained, care, t);
     const Posed goal_form = goal_in_form(plan, goal);
     // Near singularities of the completed arm an idealised form leaves virtual joints far from zero.
-    const Search search = {0, max_branches, plan.idealised ? 0.1 : 1e-3};
+    const CandidateSearch search = {0, max_branches, plan.idealised ? 0.1 : 1e-3};
     closed_form_candidates(plan, goal_form, care, out, goal, search);
     if (plan.idealised) {
         care.spread = slack;
@@ -236,7 +236,7 @@ inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const doubl
     if (plan.idealised && plan.virtual_joints && out.count == 0)
         try_perturbed_goals(plan, goal_form, care, out, goal);
     if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
-    if (plan.family == ik::Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
+    if (plan.family == Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
     classify_solutions(out);
     out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
     // Merging pairs of the true arm may lie where the form has none.
@@ -245,10 +245,10 @@ inline void solve_carefully(const ik::Plan& plan, const Posed& goal, const doubl
         out.complete = false;
 }
 
-inline ik::Solutions solve_carefully(const ik::Plan& plan, const Posed& goal, const double* unconstrained) {
-    ik::Solutions out;
+inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const double* unconstrained) {
+    Solutions out;
     solve_carefully(plan, goal, unconstrained, out);
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -14,20 +14,16 @@ struct NearestPose {
     double cost = 0;      // ½ (‖Δp‖/length)² + ½ (weight · angle)²
 };
 
-}  // namespace cspace::ik
-
-namespace cspace {
-
 // Gradient and Hessian of the cost. The Hessian is symmetric and stored in full.
 struct Quadratic {
     int n;
-    double gradient[ik::max_joints];
-    double hessian[ik::max_joints][ik::max_joints];
+    double gradient[max_joints];
+    double hessian[max_joints][max_joints];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline double cost_of(const PoseError& error, double weight) {
     const double* e = error.e;
@@ -57,7 +53,7 @@ inline Quadratic quadratic_model(const PoseError& error, double weight) {
 
 // Solves (H + damping) x = −gradient by Cholesky factorisation; false if the matrix is not positive definite.
 inline bool solve_damped(const Quadratic& m, double damping, double* x) {
-    double L[ik::max_joints][ik::max_joints];
+    double L[max_joints][max_joints];
     for (int i = 0; i < m.n; ++i) {
         for (int j = 0; j <= i; ++j) {
             const double rest = m.hessian[i][j] + (i == j ? damping : 0) - dot_n(L[i], L[j], j);
@@ -74,7 +70,7 @@ inline bool solve_damped(const Quadratic& m, double damping, double* x) {
 }
 
 // Descends from q to a local minimum of the cost; `error` belongs to q on return.
-inline double minimise(const ik::Chain& chain, const Posed& goal, double length, double weight, double* q,
+inline double minimise(const Chain& chain, const Posed& goal, double length, double weight, double* q,
                        PoseError& error) {
     constexpr int most_steps = 60;
     constexpr double stride = 0.5, settled = 1e-10;
@@ -86,7 +82,7 @@ inline double minimise(const ik::Chain& chain, const Posed& goal, double length,
         bool taken = false;
         double reach = 0;
         for (int trial = 0; trial < 30 && !taken; ++trial) {
-            double dq[ik::max_joints], next[ik::max_joints];
+            double dq[max_joints], next[max_joints];
             if (solve_damped(model, damping, dq)) {
                 reach = 0;
                 for (int i = 0; i < chain.n; ++i) reach = max(reach, std::fabs(dq[i]));
@@ -111,4 +107,4 @@ inline double minimise(const ik::Chain& chain, const Posed& goal, double length,
     return cost;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -10,10 +10,10 @@
 #include "cspace/ik/subproblems/two_angles.hpp"
 #include "cspace/ik/trig_steps.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Rz(t) Tz(d) Tx(a) Rx(α) of joint i.
-inline Posed link(const ik::DhForm& f, int i, const Turn<double>& t) {
+inline Posed link(const DhForm& f, int i, const Turn<double>& t) {
     return {
         {{{t.c, -t.s * f.ca[i], t.s * f.sa[i]}, {t.s, t.c * f.ca[i], -t.c * f.sa[i]}, {0, f.sa[i], f.ca[i]}}},
         {f.a[i] * t.c, f.a[i] * t.s, f.d[i]}};
@@ -27,8 +27,8 @@ inline Turn<double> turn_about_z(const Mat3d& R) {
 
 // `planar` = Rz(t_j) Tx(a_j) Rz(t_k) Tx(a_k) Rz(t_l), the displacement required of the parallel joints j, k,
 // l. Both elbow solutions are written into rows n and n + 1.
-inline void planar_three(const ik::DhForm& f, int j, const Posed& planar, const Care& care,
-                         Branches<double>& out, int n) {
+inline void planar_three(const DhForm& f, int j, const Posed& planar, const Care& care, Branches<double>& out,
+                         int n) {
     const TwoLink<double> arm =
         two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], f.length, care, care.unconstrained[j]);
     const Turn<double> all = turn_about_z(planar.R);
@@ -58,7 +58,7 @@ inline TwoTurns both_angles(TwoTurnEquations e) {
 
 // Axes 2, 3, 4 parallel, axes 5 and 6 separate: the height of axis 6 and its slope relative to n determine t1
 // and t5.
-inline Branches<double> solve_middle_parallel(const ik::DhForm& f, const Posed& goal, const Care& care) {
+inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal, const Care& care) {
     Branches<double> out{};
     out.doubt = true;
     const Vec3d p = goal.t, g = column(goal.R, 2);
@@ -95,7 +95,7 @@ inline Branches<double> solve_middle_parallel(const ik::DhForm& f, const Posed& 
 }
 
 // Axes 1, 2, 3 parallel: the slope of n relative to axis 5 and the height of the goal determine t4 and t6.
-inline Branches<double> solve_first_parallel(const ik::DhForm& f, const Posed& goal, const Care& care) {
+inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal, const Care& care) {
     Branches<double> out{};
     out.doubt = true;
     const Vec3d r = row(goal.R, 2);
@@ -132,4 +132,4 @@ inline Branches<double> solve_first_parallel(const ik::DhForm& f, const Posed& g
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -24,10 +24,6 @@ struct ThreeJoints {
     Turn<double> w_angle;  // direction of w about axis 3
 };
 
-}  // namespace cspace::ik
-
-namespace cspace {
-
 template <class V>
 struct Triples {
     Turn<V> t1[4], t2[4], t3[4];
@@ -35,13 +31,13 @@ struct Triples {
     mask_of<V> doubt;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Axes 2 ∥ 3: the height of p over their plane determines t1, a planar two-link arm t2 and t3.
 template <class V>
-CSPACE_INLINE Triples<V> last_parallel(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> last_parallel(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
     const V k = ((g.w.z + g.d2) - g.ca1 * p.z) * (1 / g.sa1);
     // s1 px − c1 py = k
@@ -68,7 +64,7 @@ CSPACE_INLINE Triples<V> last_parallel(const ik::ThreeJoints& g, const Vec3<V>& 
 
 // w after joint 3, before joint 2: Rz(t3) w, then v = (a2, 0, d2) + Rx(α2) Rz(t3) w.
 template <class V>
-CSPACE_INLINE Vec3<V> behind_joint_two(const ik::ThreeJoints& g, const Turn<V>& t3) {
+CSPACE_INLINE Vec3<V> behind_joint_two(const ThreeJoints& g, const Turn<V>& t3) {
     const V x = t3.c * g.w.x - t3.s * g.w.y, y = t3.s * g.w.x + t3.c * g.w.y;
     return {x + g.a2, g.ca2 * y - g.sa2 * g.w.z, g.sa2 * y + (g.ca2 * g.w.z + g.d2)};
 }
@@ -76,7 +72,7 @@ CSPACE_INLINE Vec3<V> behind_joint_two(const ik::ThreeJoints& g, const Turn<V>& 
 // Axes 1 and 2 intersect: the distance of p from their intersection determines t3, its height along axis 1
 // t2, its bearing t1.
 template <class V>
-CSPACE_INLINE Triples<V> first_meet(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
     const double a = g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y, b = g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y;
     const double fixed = 0.5 * (g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w)) + g.d2 * g.ca2 * g.w.z;
@@ -106,7 +102,7 @@ CSPACE_INLINE Triples<V> first_meet(const ik::ThreeJoints& g, const Vec3<V>& p, 
 // Axes 2 and 3 intersect: the distance of p from their intersection determines t1, then a height along axis 2
 // t3, a bearing t2.
 template <class V>
-CSPACE_INLINE Triples<V> last_meet(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> last_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
     const double out_of_plane = -g.sa1 * g.d2, height = g.ca1 * g.d2;
     const V r = 0.5 * (dot(p, p) + (g.a1 * g.a1 + g.d2 * g.d2 - dot(g.w, g.w))) - height * p.z;
@@ -138,7 +134,7 @@ CSPACE_INLINE Triples<V> last_meet(const ik::ThreeJoints& g, const Vec3<V>& p, c
 
 // Axes 1 ∥ 2: the height of p determines t3, its distance from axis 1 t2, its bearing t1.
 template <class V>
-CSPACE_INLINE Triples<V> first_parallel(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> first_parallel(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
     const TwoAngles<V> elbow =
         linear_equation<V>(fill<V>(g.sa2 * g.w.y), fill<V>(g.sa2 * g.w.x), p.z - (g.d2 + g.ca2 * g.w.z),
@@ -164,4 +160,4 @@ CSPACE_INLINE Triples<V> first_parallel(const ik::ThreeJoints& g, const Vec3<V>&
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -8,27 +8,27 @@
 #include "cspace/ik/pieper_position.hpp"
 #include "cspace/math/trig_polynomial.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // k + c cos t + s sin t
 struct LinearInTurn {
     double k, c, s;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline TrigPolynomial square(const LinearInTurn& f) { return product(f.k, f.c, f.s, f.k, f.c, f.s); }
 inline TrigPolynomial negative(const TrigPolynomial& f) { return {-f.a0, -f.a1, -f.b1, -f.a2, -f.b2}; }
 
 // The part of X and Y that does not depend on the pose; p adds |p|²/(2 a1) to X.k and pz/sin α1 to Y.k.
-inline LinearInTurn pieper_x(const ik::ThreeJoints& g) {
+inline LinearInTurn pieper_x(const ThreeJoints& g) {
     const double fixed = g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w) + 2 * g.d2 * g.ca2 * g.w.z;
     return {-(g.a1 * g.a1 + fixed) / (2 * g.a1), -(g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y) / g.a1,
             -(g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y) / g.a1};
 }
-inline LinearInTurn pieper_y(const ik::ThreeJoints& g) {
+inline LinearInTurn pieper_y(const ThreeJoints& g) {
     const double cot = g.ca1 / g.sa1;
     return {-cot * (g.ca2 * g.w.z + g.d2), -cot * g.sa2 * g.w.y, -cot * g.sa2 * g.w.x};
 }
@@ -41,7 +41,7 @@ struct PieperRoots {
     TrigRoots roots;
     bool close;  // two of them are about to merge
 };
-inline PieperRoots pieper_roots(const ik::ThreeJoints& g, double p2, double pz, double band) {
+inline PieperRoots pieper_roots(const ThreeJoints& g, double p2, double pz, double band) {
     LinearInTurn X = pieper_x(g), Y = pieper_y(g);
     X.k += p2 / (2 * g.a1);
     Y.k += pz / g.sa1;
@@ -65,7 +65,7 @@ inline PieperRoots pieper_roots(const ik::ThreeJoints& g, double p2, double pz, 
 }
 
 template <class V>
-CSPACE_INLINE Triples<V> any_three(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+CSPACE_INLINE Triples<V> any_three(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
     const V p2 = dot(p, p);
     V count = fill<V>(0.0), close = fill<V>(0.0);
@@ -95,4 +95,4 @@ CSPACE_INLINE Triples<V> any_three(const ik::ThreeJoints& g, const Vec3<V>& p, c
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

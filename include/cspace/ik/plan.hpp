@@ -37,10 +37,10 @@ struct Plan {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Reverses axes so that adjacent parallel axes have the same direction.
-inline ik::Chain with_agreeing_axes(ik::Chain chain, double* sign) {
+inline Chain with_agreeing_axes(Chain chain, double* sign) {
     sign[0] = 1;
     for (int i = 1; i < chain.n; ++i) {
         const Vec3d across = cross(chain.axis[i - 1], chain.axis[i]);
@@ -52,47 +52,47 @@ inline ik::Chain with_agreeing_axes(ik::Chain chain, double* sign) {
     return chain;
 }
 
-inline ik::Family recognise_family(const ik::DhForm& f) {
-    if (f.degenerate) return ik::Family::none;
+inline Family recognise_family(const DhForm& f) {
+    if (f.degenerate) return Family::none;
     const bool last_three_meet = f.meeting[3] && f.meeting[4] && f.d[4] == 0;
-    if (last_three_meet && !(f.parallel[0] && f.parallel[1])) return ik::Family::spherical_wrist;
+    if (last_three_meet && !(f.parallel[0] && f.parallel[1])) return Family::spherical_wrist;
     const bool middle_parallel = f.parallel[1] && f.parallel[2] && !f.parallel[0] && !f.parallel[3];
-    if (middle_parallel && f.meeting[4]) return ik::Family::three_parallel;
-    if (middle_parallel && !f.parallel[4]) return ik::Family::middle_parallel;
+    if (middle_parallel && f.meeting[4]) return Family::three_parallel;
+    if (middle_parallel && !f.parallel[4]) return Family::middle_parallel;
     const bool first_parallel = f.parallel[0] && f.parallel[1] && !f.parallel[2];
-    if (first_parallel && !f.parallel[3] && !f.parallel[4]) return ik::Family::first_parallel;
-    return ik::Family::none;
+    if (first_parallel && !f.parallel[3] && !f.parallel[4]) return Family::first_parallel;
+    return Family::none;
 }
 
 // Tries the six joints of `arm` in one direction; `plan.joint` must already contain their sources.
-inline bool plan_in_direction(ik::Plan& plan, const ik::Chain& arm, bool backwards) {
-    const ik::Chain agreeing = with_agreeing_axes(backwards ? reversed(arm) : arm, plan.sign);
+inline bool plan_in_direction(Plan& plan, const Chain& arm, bool backwards) {
+    const Chain agreeing = with_agreeing_axes(backwards ? reversed(arm) : arm, plan.sign);
     plan.form = dh_form(agreeing);
     plan.family = recognise_family(plan.form);
-    if (plan.family == ik::Family::none) return false;
+    if (plan.family == Family::none) return false;
     plan.reversed = backwards;
-    if (plan.family == ik::Family::spherical_wrist) plan.wrist = make_spherical_wrist(plan.form);
-    if (plan.family == ik::Family::three_parallel) plan.parallel = make_three_parallel(plan.form);
-    plan.on_lanes = plan.family == ik::Family::spherical_wrist || plan.family == ik::Family::three_parallel;
+    if (plan.family == Family::spherical_wrist) plan.wrist = make_spherical_wrist(plan.form);
+    if (plan.family == Family::three_parallel) plan.parallel = make_three_parallel(plan.form);
+    plan.on_lanes = plan.family == Family::spherical_wrist || plan.family == Family::three_parallel;
     plan.to_form_left = inverse(plan.form.base);
     plan.to_form_right = inverse(plan.form.tool);
     const bool quartic =
-        plan.family == ik::Family::spherical_wrist && plan.wrist.first.kind == ik::FirstThree::general;
+        plan.family == Family::spherical_wrist && plan.wrist.first.kind == FirstThree::general;
     plan.idealised = plan.form.deviation > tolerance::geometry_exact;
     plan.polish = quartic || plan.idealised;
     return true;
 }
 
 // A plan for exactly six revolute joints.
-inline bool plan_six(ik::Plan& plan, const ik::Chain& six, const int* source) {
+inline bool plan_six(Plan& plan, const Chain& six, const int* source) {
     // A family with a kernel in either direction, before one without.
     for (const bool any_family : {false, true})
         for (const bool backwards : {false, true}) {
             for (int i = 0; i < 6; ++i) plan.joint[i] = source[backwards ? 5 - i : i];
             if (plan_in_direction(plan, six, backwards) && (any_family || plan.on_lanes)) return true;
         }
-    plan.family = ik::Family::none;
+    plan.family = Family::none;
     return false;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

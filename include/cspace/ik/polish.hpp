@@ -6,12 +6,12 @@
 #include "cspace/math/linear.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // One step of q (n = 6) to the goal, shortened if a joint would rotate by more than `stride` [rad]. Returns
 // the largest joint change of the full step. Prismatic joints are divided by `length`.
 template <class V>
-CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, double length, V* q,
+CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double length, V* q,
                               double stride = 1e300) {
     Mat3<V> R = fill33<V>(identity_pose().R);
     Vec3<V> t = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)};
@@ -47,7 +47,7 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
         const V col[6] = {v.x, v.y, v.z, turns * axis[i].x, turns * axis[i].y, turns * axis[i].z};
         for (int k = 0; k < 6; ++k) A[k][i] = col[k];
     }
-    solve(A, b);
+    solve_linear(A, b);
     V largest = fill<V>(0.0);
     for (int i = 0; i < 6; ++i) largest = max(largest, abs(b[i]));
     const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
@@ -59,10 +59,10 @@ CSPACE_NOINLINE V newton_step(const ik::Chain& chain, const Pose<V>& goal, doubl
 
 // True if q, a candidate near a solution, has converged to it.
 template <class V>
-CSPACE_INLINE mask_of<V> polish(const ik::Chain& chain, const Pose<V>& goal, double length, V* q) {
+CSPACE_INLINE mask_of<V> polish(const Chain& chain, const Pose<V>& goal, double length, V* q) {
     const V first = newton_step(chain, goal, length, q);
     const V second = newton_step(chain, goal, length, q);
     return (first < tolerance::polish_reach) && (second < tolerance::polished);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

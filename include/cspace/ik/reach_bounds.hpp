@@ -5,7 +5,7 @@
 #include "cspace/ik/chain.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline double angle_between(const Vec3d& a, const Vec3d& b) {
     return 2 * std::atan2(norm(a - b), norm(a + b));
@@ -24,7 +24,7 @@ inline AngleRange behind_turn(const AngleRange& range, double arc) {
 
 // Whether the rotations cannot give the last revolute axis its direction. `motion`: of the tip from its pose
 // at zero.
-inline bool is_turned_too_far(const ik::Chain& chain, const Posed& motion) {
+inline bool is_turned_too_far(const Chain& chain, const Posed& motion) {
     int first = -1, last = -1;
     AngleRange range;
     for (int i = 0; i < chain.n; ++i) {
@@ -43,7 +43,7 @@ inline bool is_turned_too_far(const ik::Chain& chain, const Posed& motion) {
 
 // A direction along which all prismatic joints of a chain move, whatever its rotations are; false if there is
 // none.
-inline bool slides_keep_direction(const ik::Chain& chain, Vec3d& along) {
+inline bool slides_keep_direction(const Chain& chain, Vec3d& along) {
     along = {0, 0, 0};
     const auto is_along = [&](const Vec3d& h) { return norm(cross(along, h)) < tolerance::rounding; };
     for (int i = chain.n - 1; i >= 0; --i) {
@@ -56,7 +56,7 @@ inline bool slides_keep_direction(const ik::Chain& chain, Vec3d& along) {
 
 // Whether the required distance of the last revolute axis from the first exceeds the total length of the
 // links between them, seen along the prismatic joints.
-inline bool is_out_of_reach(const ik::Chain& chain, const Posed& motion, double length) {
+inline bool is_out_of_reach(const Chain& chain, const Posed& motion, double length) {
     Vec3d along;
     if (!slides_keep_direction(chain, along)) return false;
     const auto across = [&](const Vec3d& v) { return norm(v - dot(along, v) * along); };
@@ -80,9 +80,9 @@ inline bool is_out_of_reach(const ik::Chain& chain, const Posed& motion, double 
 }
 
 // Whether no configuration reaches the goal, regardless of limits. False is no statement.
-inline bool exceeds_reach(const ik::Chain& chain, const Posed& goal, double length) {
+inline bool exceeds_reach(const Chain& chain, const Posed& goal, double length) {
     const Posed motion = goal * inverse(chain.tip);
     return is_turned_too_far(chain, motion) || is_out_of_reach(chain, motion, length);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -6,9 +6,9 @@
 #include "cspace/math/small_svd.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
-using PoseSvd = SmallSvd<6, ik::max_joints>;
+using PoseSvd = SmallSvd<6, max_joints>;
 
 // The error of a configuration relative to a goal: twist [Δp/length; rotation vector], and the Jacobian of
 // the tip in the same units.
@@ -19,9 +19,9 @@ struct PoseError {
     PoseSvd jacobian;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The rotation vector of R for any |R − I|, rotations by π included.
 inline Vec3d rotation_vector(const Mat3d& R) {
@@ -39,10 +39,10 @@ inline Vec3d rotation_vector(const Mat3d& R) {
     return (angle / norm(axis)) * axis;
 }
 
-inline void measure_error(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+inline void measure_error(const Chain& chain, const Posed& goal, double length, const double* q,
                           PoseError& out) {
     Posed T = identity_pose();
-    Vec3d axis[ik::max_joints], point[ik::max_joints];
+    Vec3d axis[max_joints], point[max_joints];
     for (int i = 0; i < chain.n; ++i) {
         axis[i] = T.R * chain.axis[i];
         point[i] = T * chain.point[i];
@@ -88,7 +88,7 @@ inline int weakest_direction(const PoseSvd& J) {
 }
 
 // Applies a step, shortened to a stride; returns the remaining error.
-inline double take_step(const ik::Chain& chain, const Posed& goal, double length, const double* from,
+inline double take_step(const Chain& chain, const Posed& goal, double length, const double* from,
                         const double* dq, double* to, PoseError& error) {
     constexpr double stride = 0.3;
     double reach = 0;
@@ -102,15 +102,15 @@ inline double take_step(const ik::Chain& chain, const Posed& goal, double length
 // Newton's method. It may leave the valley of small errors on its way: near a singularity the solution can
 // lie farther along the valley than any descent would go. True if it converged; q is then a solution, else
 // unchanged.
-inline bool newton(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
+inline bool newton(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
     constexpr int most_steps = 16;
     constexpr double settled = 1e-15, arrived = 1e-12;
-    double best[ik::max_joints], at[ik::max_joints];
+    double best[max_joints], at[max_joints];
     for (int i = 0; i < chain.n; ++i) best[i] = at[i] = q[i];
     measure_error(chain, goal, length, at, error);
     double least = min(size_of_error(error), 1.0);
     for (int step = 0; step < most_steps && least >= settled; ++step) {
-        double dq[ik::max_joints];
+        double dq[max_joints];
         decompose(error.jacobian);
         damped_step(error, 0, dq);
         const double size = take_step(chain, goal, length, at, dq, at, error);
@@ -140,11 +140,10 @@ inline void step_to_floor(const PoseError& error, int weak, double* dq) {
 // In a valley with an almost flat floor, Newton's steps along the floor leave it sideways by more than the
 // error on the floor. Here steps to the floor and along it alternate. For six joints; true if it converged, q
 // is then a solution, else unchanged.
-inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double length, double* q,
-                          PoseError& error) {
+inline bool follow_valley(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
     constexpr int most_steps = 96;
     constexpr double narrow = 1e-2, settled = 1e-15, arrived = 1e-12;
-    double at[ik::max_joints], size = 1;
+    double at[max_joints], size = 1;
     for (int i = 0; i < chain.n; ++i) at[i] = q[i];
     measure_error(chain, goal, length, at, error);
     for (int step = 0; step < most_steps; ++step) {
@@ -156,7 +155,7 @@ inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double leng
         if (!(J.sigma[weak] < narrow) || J.sigma[weak] <= tolerance::free_joint) break;
         const double along = dot_n(J.us[weak], error.e, 6) / J.sigma[weak];
         const bool on_floor = size * size < 1.01 * along * along;
-        double dq[ik::max_joints];
+        double dq[max_joints];
         step_to_floor(error, weak, dq);
         for (int i = 0; i < chain.n && on_floor; ++i) dq[i] += along / J.sigma[weak] * J.v[weak][i];
         take_step(chain, goal, length, at, dq, at, error);
@@ -171,7 +170,7 @@ inline bool follow_valley(const ik::Chain& chain, const Posed& goal, double leng
 // Damping by the square of the error converges fast to a self-motion (Yamashita & Fukushima 2001). Larger
 // damping starts at the square of the smallest singular value, where it begins to restrain the weakest
 // direction.
-inline double descend(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
+inline double descend(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
                       int most_steps) {
     constexpr double settled = 1e-15, noise = 1e-13;
     constexpr double growth = 4;
@@ -181,7 +180,7 @@ inline double descend(const ik::Chain& chain, const Posed& goal, double length, 
     double size = size_of_error(error);
     decompose(error.jacobian);
     for (int step = 0; step < most_steps && size > settled && stalls < 6; ++step) {
-        double dq[ik::max_joints], next[ik::max_joints];
+        double dq[max_joints], next[max_joints];
         PoseError trial;
         damped_step(error, damping + size * size, dq);
         const double trial_size = take_step(chain, goal, length, q, dq, next, trial);
@@ -208,11 +207,11 @@ inline double descend(const ik::Chain& chain, const Posed& goal, double length, 
 }
 
 // Refines a candidate to a solution, or as near to one as descent leads.
-inline double refine(const ik::Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
+inline double refine(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
                      int most_steps = 60) {
     const bool arrived = newton(chain, goal, length, q, error) ||
                          (chain.n == 6 && follow_valley(chain, goal, length, q, error));
     return descend(chain, goal, length, q, error, arrived ? 2 : most_steps);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

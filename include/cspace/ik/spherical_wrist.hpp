@@ -16,12 +16,12 @@ struct SphericalWrist {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline ik::SphericalWrist make_spherical_wrist(const ik::DhForm& f) {
-    ik::SphericalWrist arm;
-    ik::ThreeJoints& g = arm.first;
-    g = {ik::FirstThree::general,
+inline SphericalWrist make_spherical_wrist(const DhForm& f) {
+    SphericalWrist arm;
+    ThreeJoints& g = arm.first;
+    g = {FirstThree::general,
          f.a[0],
          f.ca[0],
          f.sa[0],
@@ -38,13 +38,13 @@ inline ik::SphericalWrist make_spherical_wrist(const ik::DhForm& f) {
     if (g.wrist_reach > 0) g.w_angle = {g.w.x / g.wrist_reach, g.w.y / g.wrist_reach};
     // A planar pair of links first: it is the cheapest and the best conditioned.
     if (f.parallel[1])
-        g.kind = ik::FirstThree::last_parallel;
+        g.kind = FirstThree::last_parallel;
     else if (f.parallel[0])
-        g.kind = ik::FirstThree::first_parallel;
+        g.kind = FirstThree::first_parallel;
     else if (f.meeting[0])
-        g.kind = ik::FirstThree::first_meet;
+        g.kind = FirstThree::first_meet;
     else if (f.meeting[1])
-        g.kind = ik::FirstThree::last_meet;
+        g.kind = FirstThree::last_meet;
     arm.last = make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]);
     arm.ca3 = f.ca[2];
     arm.sa3 = f.sa[2];
@@ -58,18 +58,18 @@ CSPACE_INLINE Vec3<V> undo_joint(const Turn<V>& t, double ca, double sa, const V
     return {x, ca * y + sa * v.z, ca * v.z - sa * y};
 }
 
-template <ik::FirstThree kind, class V>
-CSPACE_INLINE Triples<V> place_wrist(const ik::ThreeJoints& g, const Vec3<V>& p, const Care& care) {
-    if constexpr (kind == ik::FirstThree::last_parallel) return last_parallel(g, p, care);
-    if constexpr (kind == ik::FirstThree::first_parallel) return first_parallel(g, p, care);
-    if constexpr (kind == ik::FirstThree::first_meet) return first_meet(g, p, care);
-    if constexpr (kind == ik::FirstThree::last_meet) return last_meet(g, p, care);
-    if constexpr (kind == ik::FirstThree::general) return any_three(g, p, care);
+template <FirstThree kind, class V>
+CSPACE_INLINE Triples<V> place_wrist(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
+    if constexpr (kind == FirstThree::last_parallel) return last_parallel(g, p, care);
+    if constexpr (kind == FirstThree::first_parallel) return first_parallel(g, p, care);
+    if constexpr (kind == FirstThree::first_meet) return first_meet(g, p, care);
+    if constexpr (kind == FirstThree::last_meet) return last_meet(g, p, care);
+    if constexpr (kind == FirstThree::general) return any_three(g, p, care);
 }
 
 // The orientation behind the first three joints, in the frame of the wrist.
 template <class V>
-CSPACE_INLINE WristAngles<V> turn_wrist(const ik::SphericalWrist& arm, const Turn<V>& t1, const Turn<V>& t2,
+CSPACE_INLINE WristAngles<V> turn_wrist(const SphericalWrist& arm, const Turn<V>& t1, const Turn<V>& t2,
                                         const Turn<V>& t3, const Mat3<V>& R, const Care& care) {
     Vec3<V> seen[2];
     for (int k = 0; k < 2; ++k) {
@@ -98,7 +98,7 @@ CSPACE_INLINE void write_wrist(const Wrist& w, const WristAngles<V>& r, V* flip_
 }
 
 template <class V>
-CSPACE_INLINE Branches<V> finish_with_wrist(const ik::SphericalWrist& arm, const Triples<V>& first,
+CSPACE_INLINE Branches<V> finish_with_wrist(const SphericalWrist& arm, const Triples<V>& first,
                                             const Mat3<V>& R, const Care& care) {
     Branches<V> out;
     out.doubt = first.doubt;
@@ -117,8 +117,8 @@ CSPACE_INLINE Branches<V> finish_with_wrist(const ik::SphericalWrist& arm, const
 }
 
 // goal: in the base frame of the form, up to its tool frame.
-template <ik::FirstThree kind, class V>
-CSPACE_INLINE Branches<V> solve(const ik::SphericalWrist& arm, const Pose<V>& goal, const Care& care) {
+template <FirstThree kind, class V>
+CSPACE_INLINE Branches<V> solve(const SphericalWrist& arm, const Pose<V>& goal, const Care& care) {
     return finish_with_wrist(arm, place_wrist<kind>(arm.first, goal.t, care), goal.R, care);
 }
 
@@ -139,8 +139,8 @@ CSPACE_INLINE Four side_by_side(const bool* ok) {
     return out;
 }
 
-template <ik::FirstThree kind>
-CSPACE_INLINE Abreast solve_abreast(const ik::SphericalWrist& arm, const Posed& goal, const Care& care) {
+template <FirstThree kind>
+CSPACE_INLINE Abreast solve_abreast(const SphericalWrist& arm, const Posed& goal, const Care& care) {
     const Triples<double> first = place_wrist<kind>(arm.first, goal.t, care);
     const Turn<Four> t1 = side_by_side(first.t1), t2 = side_by_side(first.t2), t3 = side_by_side(first.t3);
     const WristAngles<Four> r = turn_wrist(arm, t1, t2, t3, fill33<Four>(goal.R), care);
@@ -155,4 +155,4 @@ CSPACE_INLINE Abreast solve_abreast(const ik::SphericalWrist& arm, const Posed& 
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

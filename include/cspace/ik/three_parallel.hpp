@@ -21,17 +21,17 @@ struct ThreeParallel {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline ik::ThreeParallel make_three_parallel(const ik::DhForm& f) {
+inline ThreeParallel make_three_parallel(const DhForm& f) {
     return {f.a[0], f.ca[0], f.sa[0],           f.d[1] + f.d[2] + f.d[3] + f.ca[3] * f.d[4],    f.a[1],
             f.a[2], f.a[3],  -f.sa[3] * f.d[4], make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]), f.length};
 }
 
 // Completes one shoulder and one wrist solution by the planar arm: both elbow solutions.
 template <class V>
-CSPACE_INLINE void finish_in_plane(const ik::ThreeParallel& arm, const Turn<V>& t234, V x, V y,
-                                   V* const out[2], mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
+CSPACE_INLINE void finish_in_plane(const ThreeParallel& arm, const Turn<V>& t234, V x, V y, V* const out[2],
+                                   mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
     const V u = x - (t234.c * arm.x4 - t234.s * arm.y4), v = y - (t234.s * arm.x4 + t234.c * arm.y4);
     const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, arm.length, care, care.unconstrained[1]);
     doubt = doubt || (ok && links.doubt);
@@ -46,7 +46,7 @@ CSPACE_INLINE void finish_in_plane(const ik::ThreeParallel& arm, const Turn<V>& 
 }
 
 template <class V>
-CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goal, const Care& care) {
+CSPACE_INLINE Branches<V> solve(const ThreeParallel& arm, const Pose<V>& goal, const Care& care) {
     Branches<V> out;
     const Vec3<V>& p = goal.t;
     const V k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
@@ -80,7 +80,7 @@ CSPACE_INLINE Branches<V> solve(const ik::ThreeParallel& arm, const Pose<V>& goa
 
 // One goal: the lanes are (shoulder, wrist) = (0, 0), (0, 1), (1, 0), (1, 1); t[0] and t[1] differ in the
 // elbow.
-CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& goal, const Care& care) {
+CSPACE_INLINE Abreast solve_abreast(const ThreeParallel& arm, const Posed& goal, const Care& care) {
     const Vec3d& p = goal.t;
     const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
     const TwoAngles<double> shoulder =
@@ -111,4 +111,4 @@ CSPACE_INLINE Abreast solve_abreast(const ik::ThreeParallel& arm, const Posed& g
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

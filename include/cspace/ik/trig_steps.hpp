@@ -7,7 +7,7 @@
 #include "cspace/math/turn.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // Settings of the careful solver: the width of the band in which two solutions may merge, the distance kept
 // between merging solutions, the size below which a lever arm counts as zero and its joint as free, and the
@@ -25,9 +25,9 @@ struct TwoAngles {
     mask_of<V> ok, doubt;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Turn<V> choose(mask_of<V> m, const Turn<double>& yes, const Turn<V>& no) {
@@ -203,4 +203,4 @@ CSPACE_INLINE V wrap_once(V t) {
     return select(t <= fill<V>(-pi), t + 2 * pi, t);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -8,7 +8,7 @@
 #include "cspace/ik/plan.hpp"
 #include "cspace/ik/refine.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct Axis {
     Vec3d direction, point;
@@ -19,9 +19,9 @@ struct AxisChoices {
     Axis axis[most];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline void add_axis_choice(AxisChoices& choices, const Vec3d& direction, const Vec3d& point) {
     const double size = norm(direction);
@@ -39,7 +39,7 @@ inline void offer_at(AxisChoices& choices, const Vec3d& point, const Vec3d& h, c
 
 // Candidate axes between joints at − 1 and `at`: through the points where the adjacent axes intersect their
 // own neighbours, perpendicular to them or along them.
-inline AxisChoices axes_to_insert(const ik::Chain& c, int at) {
+inline AxisChoices axes_to_insert(const Chain& c, int at) {
     AxisChoices choices;
     for (const int side : {-1, 1}) {
         const int near = side < 0 ? at - 1 : at, far = near + side;
@@ -58,8 +58,8 @@ inline AxisChoices axes_to_insert(const ik::Chain& c, int at) {
     return choices;
 }
 
-inline ik::Chain with_axis(const ik::Chain& c, int at, const Axis& axis) {
-    ik::Chain longer = c;
+inline Chain with_axis(const Chain& c, int at, const Axis& axis) {
+    Chain longer = c;
     for (int i = c.n; i > at; --i) {
         longer.axis[i] = c.axis[i - 1];
         longer.point[i] = c.point[i - 1];
@@ -72,7 +72,7 @@ inline ik::Chain with_axis(const ik::Chain& c, int at, const Axis& axis) {
 
 // The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some generic
 // configurations; virtual joints stay at zero.
-inline double completed_conditioning(const ik::Chain& chain, const int* source, double length, int k) {
+inline double completed_conditioning(const Chain& chain, const int* source, double length, int k) {
     double q[6];
     spread_configuration(k, chain.n, q);
     for (int i = 0; i < chain.n; ++i)
@@ -85,7 +85,7 @@ inline double completed_conditioning(const ik::Chain& chain, const int* source, 
 
 // Whether the completed arm is regular where its virtual joints are zero. Only then do its branches coincide
 // with those of the arm.
-inline bool is_regular(const ik::Chain& six, const int* source, double length) {
+inline bool is_regular(const Chain& six, const int* source, double length) {
     int regular = 0;
     constexpr int trials = 5;
     for (int k = 0; k < trials; ++k) regular += completed_conditioning(six, source, length, k) > 1e-3;
@@ -94,14 +94,14 @@ inline bool is_regular(const ik::Chain& six, const int* source, double length) {
 
 // Whether an arm has a redundant joint (two wrists, a wrist on axis 3, four parallel axes). Then each of its
 // poses is singular, to within `blind`, and so are those of every completed arm.
-inline bool is_always_singular(const ik::Chain& chain, const int* source, double length, double blind) {
+inline bool is_always_singular(const Chain& chain, const int* source, double length, double blind) {
     for (int k = 0; k < 8; ++k)
         if (completed_conditioning(chain, source, length, k) > blind) return false;
     return true;
 }
 
 // `source[i]`: the joint of the arm that is joint i of the completed arm, or −1 for a virtual joint.
-inline bool complete(ik::Plan& plan, const ik::Chain& c, const int* source) {
+inline bool complete(Plan& plan, const Chain& c, const int* source) {
     if (c.n == 6) return is_regular(c, source, characteristic_length(c)) && plan_six(plan, c, source);
     for (int at = c.n; at >= 0; --at) {
         const AxisChoices choices = axes_to_insert(c, at);
@@ -114,9 +114,9 @@ inline bool complete(ik::Plan& plan, const ik::Chain& c, const int* source) {
 }
 
 // The plan of an arm of four to six revolute joints.
-CSPACE_ONCE bool make_plan(ik::Plan& plan, const ik::Chain& chain) {
+CSPACE_ONCE bool make_plan(Plan& plan, const Chain& chain) {
     plan.chain = chain;
-    plan.family = ik::Family::none;
+    plan.family = Family::none;
     if (chain.n < 4 || chain.n > 6) return false;
     for (int i = 0; i < chain.n; ++i)
         if (chain.prismatic[i]) return false;
@@ -129,8 +129,8 @@ CSPACE_ONCE bool make_plan(ik::Plan& plan, const ik::Chain& chain) {
     if (plan_six(plan, chain, source) &&
         !is_always_singular(chain, source, plan.form.length, max(rounding, 10 * plan.form.deviation)))
         return true;
-    plan.family = ik::Family::none;
+    plan.family = Family::none;
     return false;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

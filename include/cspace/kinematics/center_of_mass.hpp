@@ -8,19 +8,19 @@
 #include "cspace/kinematics/jacobian.hpp"
 #include "cspace/model/tree.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::kinematics::inline CSPACE_ISA {
 
 // The first moment of the base and of what is fixed to it.
 template <class V>
-CSPACE_INLINE Vec3<V> base_moment(const Tree& tree, const Pose<V>& T_world_base) {
+CSPACE_INLINE Vec3<V> base_moment(const model::Tree& tree, const Pose<V>& T_world_base) {
     return tree.bodies[0].mass * (T_world_base * fill3<V>(tree.bodies[0].center));
 }
 // The centre of mass; moments[k] becomes the first moment Σ m p of all that joint k carries.
 template <class V>
-CSPACE_INLINE Vec3<V> center_of_mass(const Tree& tree, const Pose<V>& T_world_base,
+CSPACE_INLINE Vec3<V> center_of_mass(const model::Tree& tree, const Pose<V>& T_world_base,
                                      const Pose<V>* T_world_joint, Vec3<V>* moments) {
     for (int k = 0; k < tree.n_joints; ++k) {
-        const Body& body = tree.bodies[k + 1];
+        const model::Body& body = tree.bodies[k + 1];
         moments[k] = body.mass * (T_world_joint[k] * fill3<V>(body.center));
     }
     Vec3<V> sum = base_moment(tree, T_world_base);
@@ -34,13 +34,13 @@ CSPACE_INLINE Vec3<V> center_of_mass(const Tree& tree, const Pose<V>& T_world_ba
 
 // The columns of the joints, from column `first` of J (3, columns) on.
 template <class V>
-CSPACE_INLINE void center_of_mass_columns(const Tree& tree, const Pose<V>* T_world_joint,
+CSPACE_INLINE void center_of_mass_columns(const model::Tree& tree, const Pose<V>* T_world_joint,
                                           const Vec3<V>* moments, V* J, int columns, int first) {
     for (int j = 0; j < 3 * columns; ++j) {
         if (j % columns >= first) J[j] = fill<V>(0.0);
     }
     for (int k = 0; k < tree.n_joints; ++k) {
-        const Joint& joint = tree.joints[k];
+        const model::Joint& joint = tree.joints[k];
         const Vec3<V> d = (joint.ratio / tree.mass) * column(T_world_joint[k].R, 2);
         const Vec3<V> lever = moments[k] - joint.carried_mass * T_world_joint[k].t;
         add_to_column(J, columns, first + joint.coordinate, 0,
@@ -48,4 +48,4 @@ CSPACE_INLINE void center_of_mass_columns(const Tree& tree, const Pose<V>* T_wor
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::kinematics::inline CSPACE_ISA

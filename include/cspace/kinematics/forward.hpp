@@ -8,25 +8,25 @@
 #include "cspace/model/chain.hpp"
 #include "cspace/model/tree.hpp"
 
-namespace cspace {
+namespace cspace::kinematics {
 template <class V>
 struct FrameAxes {
     Vec3<V> x, y, z, origin;
 };
-}  // namespace cspace
+}  // namespace cspace::kinematics
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::kinematics::inline CSPACE_ISA {
 
 // The sine and cosine of each joint angle of a chain; s and c hold n rounded up to four.
 // One configuration alone fills the lanes with its joints.
 template <class V>
-CSPACE_INLINE void chain_sines(const Chain& chain, const V* q, V* s, V* c) {
+CSPACE_INLINE void chain_sines(const model::Chain& chain, const V* q, V* s, V* c) {
     if constexpr (Lanes<V>::count == 1) {
         for (int i = 0; i < chain.n; i += 4) {
             auto angles = fill<Pack<4>>(0.0);
             const int count = chain.n - i < 4 ? chain.n - i : 4;
             for (int k = 0; k < count; ++k) {
-                const ChainJoint& joint = chain.joints[i + k];
+                const model::ChainJoint& joint = chain.joints[i + k];
                 set_lane(angles, k, joint.turn * q[joint.coordinate] + joint.angle);
             }
             Pack<4> sines, cosines;
@@ -38,7 +38,7 @@ CSPACE_INLINE void chain_sines(const Chain& chain, const V* q, V* s, V* c) {
         }
     } else {
         for (int i = 0; i < chain.n; ++i) {
-            const ChainJoint& joint = chain.joints[i];
+            const model::ChainJoint& joint = chain.joints[i];
             sincos(joint.turn * q[joint.coordinate] + joint.angle, s[i], c[i]);
         }
     }
@@ -62,20 +62,20 @@ CSPACE_INLINE void turn_about_z(FrameAxes<V>& frame, const S& s, const S& c) {
 }
 // Turns the frame about its own x by the α of a joint.
 template <class V>
-CSPACE_INLINE void tilt(FrameAxes<V>& frame, const ChainJoint& joint) {
+CSPACE_INLINE void tilt(FrameAxes<V>& frame, const model::ChainJoint& joint) {
     const Vec3<V> y = frame.y;
     switch (joint.tilt) {
-        case Tilt::none:
+        case model::Tilt::none:
             return;
-        case Tilt::quarter:
+        case model::Tilt::quarter:
             frame.y = frame.z;
             frame.z = -y;
             return;
-        case Tilt::half:
+        case model::Tilt::half:
             frame.y = -y;
             frame.z = -frame.z;
             return;
-        case Tilt::any:
+        case model::Tilt::any:
             frame.y = joint.cos_alpha * y + joint.sin_alpha * frame.z;
             frame.z = joint.cos_alpha * frame.z - joint.sin_alpha * y;
     }
@@ -84,11 +84,11 @@ CSPACE_INLINE void tilt(FrameAxes<V>& frame, const ChainJoint& joint) {
 // Follows a chain from the frame of its first joint to its own frame, which it returns. visit(i, point,
 // direction) sees each joint: a point on its axis and the direction of the axis.
 template <class V, class Visit>
-CSPACE_INLINE Pose<V> follow_chain(const Chain& chain, const Pose<V>& first, const V* q, const V* s,
+CSPACE_INLINE Pose<V> follow_chain(const model::Chain& chain, const Pose<V>& first, const V* q, const V* s,
                                    const V* c, const Visit& visit) {
     FrameAxes<V> frame = frame_axes(first);
     for (int i = 0; i < chain.n; ++i) {
-        const ChainJoint& joint = chain.joints[i];
+        const model::ChainJoint& joint = chain.joints[i];
         visit(i, frame.origin, frame.z);
         turn_about_z(frame, s[i], c[i]);
         const V z = joint.slide * q[joint.coordinate] + joint.z;
@@ -103,10 +103,10 @@ CSPACE_INLINE Pose<V> follow_chain(const Chain& chain, const Pose<V>& first, con
 
 // The moving frames of all joints of a tree, in the base.
 template <class V>
-CSPACE_INLINE void joint_poses(const Tree& tree, const V* q, const Pose<V>& T_world_base,
+CSPACE_INLINE void joint_poses(const model::Tree& tree, const V* q, const Pose<V>& T_world_base,
                                Pose<V>* T_world_joint) {
     for (int k = 0; k < tree.n_joints; ++k) {
-        const Joint& joint = tree.joints[k];
+        const model::Joint& joint = tree.joints[k];
         const Pose<V>& parent = joint.parent < 0 ? T_world_base : T_world_joint[joint.parent];
         Pose<V> T = parent * fill_pose<V>(joint.T_parent_joint);
         const V value = joint.ratio * q[joint.coordinate] + joint.offset;
@@ -125,7 +125,7 @@ CSPACE_INLINE void joint_poses(const Tree& tree, const V* q, const Pose<V>& T_wo
 
 // The pose of a frame of the tree, from the poses of the joints.
 template <class V>
-CSPACE_INLINE Pose<V> frame_pose(const Frame& frame, const Pose<V>& T_world_base,
+CSPACE_INLINE Pose<V> frame_pose(const model::Frame& frame, const Pose<V>& T_world_base,
                                  const Pose<V>* T_world_joint) {
     const Pose<V>& T = frame.joint < 0 ? T_world_base : T_world_joint[frame.joint];
     return T * fill_pose<V>(frame.T_joint_frame);
@@ -146,4 +146,4 @@ CSPACE_INLINE Pose<V> read_matrix(const V* m) {
     return {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}}, {m[3], m[7], m[11]}};
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::kinematics::inline CSPACE_ISA

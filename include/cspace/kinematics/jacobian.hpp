@@ -7,15 +7,15 @@
 #include "cspace/math/vec.hpp"
 #include "cspace/model/chain.hpp"
 
-namespace cspace {
+namespace cspace::kinematics {
 // The axis of a joint where it is at a configuration.
 template <class V>
 struct Axis {
     Vec3<V> point, direction;
 };
-}  // namespace cspace
+}  // namespace cspace::kinematics
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::kinematics::inline CSPACE_ISA {
 
 // One column of a matrix of `columns` columns, rows first to first + 2.
 template <class V>
@@ -36,8 +36,8 @@ CSPACE_INLINE void add_to_column(V* J, int columns, int j, int first, const Vec3
 // The columns of the joints of a chain for the point p, from column `first` of J (6, columns) on.
 // Everything in one frame: the axes, p and the result. The other columns are set to zero.
 template <class V>
-CSPACE_INLINE void joint_columns(const Chain& chain, const Axis<V>* axes, const Vec3<V>& p, V* J, int columns,
-                                 int first) {
+CSPACE_INLINE void joint_columns(const model::Chain& chain, const Axis<V>* axes, const Vec3<V>& p, V* J,
+                                 int columns, int first) {
     if (chain.ordered) {
         const V zero = fill<V>(0.0);
         for (int i = 0; i < chain.n; ++i) {
@@ -52,7 +52,7 @@ CSPACE_INLINE void joint_columns(const Chain& chain, const Axis<V>* axes, const 
         for (int j = first; j < columns; ++j) J[r * columns + j] = fill<V>(0.0);
     }
     for (int i = 0; i < chain.n; ++i) {
-        const ChainJoint& joint = chain.joints[i];
+        const model::ChainJoint& joint = chain.joints[i];
         const Vec3<V> d = joint.ratio * axes[i].direction;
         add_to_column(J, columns, first + joint.coordinate, 0,
                       joint.prismatic ? d : cross(d, p - axes[i].point));
@@ -83,4 +83,4 @@ CSPACE_INLINE void express_in(const Mat3<V>& R, V* J, int columns) {
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::kinematics::inline CSPACE_ISA

@@ -7,21 +7,21 @@
 
 #include "cspace/kinematics/jacobian.hpp"
 
-namespace cspace {
+namespace cspace::kinematics {
 // How fast something moves: the velocity of its reference point and its angular velocity.
 template <class V>
 struct Twist {
     Vec3<V> v, w;
 };
-}  // namespace cspace
+}  // namespace cspace::kinematics
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::kinematics::inline CSPACE_ISA {
 
 // The rates of all axes of a chain, and, returned, the twist of the point p at its end. base is the twist
 // of the base at p_base; qd holds the joint velocities by coordinate.
 template <class V>
-CSPACE_INLINE Twist<V> axis_rates(const Chain& chain, const Axis<V>* axes, const Vec3<V>& p, const V* qd,
-                                  const Twist<V>& base, const Vec3<V>& p_base, Axis<V>* rates) {
+CSPACE_INLINE Twist<V> axis_rates(const model::Chain& chain, const Axis<V>* axes, const Vec3<V>& p,
+                                  const V* qd, const Twist<V>& base, const Vec3<V>& p_base, Axis<V>* rates) {
     Twist<V> link = base;
     Vec3<V> from = p_base;
     for (int i = 0; i < chain.n; ++i) {
@@ -42,13 +42,13 @@ CSPACE_INLINE Twist<V> axis_rates(const Chain& chain, const Axis<V>* axes, const
 
 // The columns of the joints of a chain, differentiated; the other columns from `first` on are set to zero.
 template <class V>
-CSPACE_INLINE void joint_column_rates(const Chain& chain, const Axis<V>* axes, const Axis<V>* rates,
+CSPACE_INLINE void joint_column_rates(const model::Chain& chain, const Axis<V>* axes, const Axis<V>* rates,
                                       const Vec3<V>& p, const Vec3<V>& p_rate, V* J, int columns, int first) {
     for (int r = 0; r < 6; ++r) {
         for (int j = first; j < columns; ++j) J[r * columns + j] = fill<V>(0.0);
     }
     for (int i = 0; i < chain.n; ++i) {
-        const ChainJoint& joint = chain.joints[i];
+        const model::ChainJoint& joint = chain.joints[i];
         const Vec3<V> rate = joint.ratio * rates[i].direction;
         const int j = first + joint.coordinate;
         if (joint.prismatic) {
@@ -86,4 +86,4 @@ CSPACE_INLINE void express_rate_in(const Mat3<V>& R, const Vec3<V>& w, const V* 
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::kinematics::inline CSPACE_ISA

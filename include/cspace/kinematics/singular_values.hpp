@@ -9,7 +9,7 @@
 
 #include "cspace/math/lanes.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::kinematics::inline CSPACE_ISA {
 
 // Rotates the vectors a and b of n entries, `step` apart, so that they become orthogonal; true where they
 // were not.
@@ -65,4 +65,4 @@ CSPACE_INLINE void singular_values(V* J, int rows, int columns, V* sigma) {
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::kinematics::inline CSPACE_ISA

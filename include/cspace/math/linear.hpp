@@ -76,7 +76,7 @@ CSPACE_INLINE void reflect(const V (&A)[m][n], const V (&factor)[reduced], int k
 // A x = b by elimination with partial pivoting in each lane (Golub & Van Loan 2013, section 3.4). A is used
 // up, b becomes x; true where A is regular.
 template <int n, class V>
-CSPACE_INLINE mask_of<V> solve(V (&A)[n][n], V (&b)[n]) {
+CSPACE_INLINE mask_of<V> solve_linear(V (&A)[n][n], V (&b)[n]) {
     V diagonal[n], inverse[n];
     for (int k = 0; k < n; ++k) {
         for (int i = k + 1; i < n; ++i) linear::lift_pivot(A, b, k, i);

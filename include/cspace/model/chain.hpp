@@ -11,7 +11,7 @@
 
 #include "cspace/math/vec.hpp"
 
-namespace cspace {
+namespace cspace::model {
 
 // Most arms have axes that are parallel or perpendicular: their turns by α cost nothing.
 enum class Tilt : unsigned char { none, quarter, half, any };
@@ -34,4 +34,4 @@ struct Chain {
     double cos_last, sin_last;  // the turn ψ that is left at the tip
 };
 
-}  // namespace cspace
+}  // namespace cspace::model

@@ -7,14 +7,14 @@
 #include "cspace/model/tree.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace {
+namespace cspace::model {
 // R = Rz(first) Rx(α) Rz(last), with cos α and sin α read from R, so that right angles stay exact.
 struct TurnTiltTurn {
     double first, cos_alpha, sin_alpha, last;
 };
-}  // namespace cspace
+}  // namespace cspace::model
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::model::inline CSPACE_ISA {
 
 // The last angle is read from Rz(-first) R, not from R itself: where α is almost zero only the sum of both is
 // well defined.
@@ -54,4 +54,4 @@ inline ChainJoint reduce_joint(const Joint& joint, const Posed& next, double& ca
             tilt_of(r.cos_alpha, r.sin_alpha)};
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::model::inline CSPACE_ISA

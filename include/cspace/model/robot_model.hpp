@@ -12,7 +12,7 @@
 #include "cspace/model/reduce_joint.hpp"
 #include "cspace/model/tree.hpp"
 
-namespace cspace {
+namespace cspace::model {
 
 class RobotModel {
   public:
@@ -75,4 +75,4 @@ class RobotModel {
     std::vector<Chain> chains_;
 };
 
-}  // namespace cspace
+}  // namespace cspace::model

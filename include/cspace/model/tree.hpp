@@ -8,7 +8,7 @@
 
 #include "cspace/math/vec.hpp"
 
-namespace cspace {
+namespace cspace::model {
 
 struct Joint {
     Posed T_parent_joint;
@@ -37,4 +37,4 @@ struct Tree {
     double mass;
 };
 
-}  // namespace cspace
+}  // namespace cspace::model

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace cspace::navigation {
+namespace cspace::search {
 
 inline constexpr std::uint32_t no_node = 0xffffffff;
 
@@ -114,4 +114,4 @@ std::uint32_t best_first(Space& space, Queue& queue, Effort& effort) {
     return no_node;
 }
 
-}  // namespace cspace::navigation
+}  // namespace cspace::search

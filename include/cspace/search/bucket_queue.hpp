@@ -15,7 +15,7 @@
 
 #include "cspace/search/best_first.hpp"
 
-namespace cspace::navigation {
+namespace cspace::search {
 
 class BucketQueue {
   public:
@@ -148,4 +148,4 @@ class BucketQueue {
     bool is_spread_ = false;
 };
 
-}  // namespace cspace::navigation
+}  // namespace cspace::search

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-namespace cspace::navigation {
+namespace cspace::search {
 
 template <class Key, class Made>
 class LastMade {
@@ -38,4 +38,4 @@ class LastMade {
 // The most that is kept of one kind: some hundred thousand cells or samples [bytes].
 constexpr std::size_t most_kept_bytes = std::size_t(64) << 20;
 
-}  // namespace cspace::navigation
+}  // namespace cspace::search

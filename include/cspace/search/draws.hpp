@@ -5,7 +5,7 @@
 #include <bit>
 #include <cstdint>
 
-namespace cspace::navigation::sampling {
+namespace cspace::search {
 
 class Draws {
   public:
@@ -35,4 +35,4 @@ class Draws {
     }
 };
 
-}  // namespace cspace::navigation::sampling
+}  // namespace cspace::search

@@ -13,7 +13,7 @@
 
 #include "cspace/search/best_first.hpp"
 
-namespace cspace::navigation {
+namespace cspace::search {
 
 class FocalQueue {
   public:
@@ -61,4 +61,4 @@ class FocalQueue {
     std::vector<std::uint8_t> taken_;
 };
 
-}  // namespace cspace::navigation
+}  // namespace cspace::search

@@ -9,7 +9,7 @@
 
 #include "cspace/math/plane.hpp"
 
-namespace cspace::navigation::sampling {
+namespace cspace::search {
 
 class Buckets {
   public:
@@ -120,4 +120,4 @@ class Buckets {
     }
 };
 
-}  // namespace cspace::navigation::sampling
+}  // namespace cspace::search

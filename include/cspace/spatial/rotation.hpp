@@ -5,7 +5,7 @@
 #include "cspace/math/vec.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::spatial::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE mask_of<V> safe_square(V square) {
@@ -48,4 +48,4 @@ CSPACE_INLINE Mat3<V> rotation_of_axis_angle(const Vec3<V>& axis, V angle, V squ
     return rotation_of(axis, twice * c / sqrt(square), twice * s / square);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::spatial::inline CSPACE_ISA

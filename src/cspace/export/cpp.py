@@ -118,7 +118,7 @@ def chain_of(arm: ExportedArm) -> dict[str, Any]:
 def plan_of(arm: ExportedArm) -> dict[str, Any]:
     if arm.kind == "locked":
         return chain_of(arm)
-    return {**arm.plan, "solve": "&solve_general"} if arm.kind == "general" else arm.plan
+    return {**arm.plan, "solve": "&ik::solve_general"} if arm.kind == "general" else arm.plan
 
 
 def solver(arm: ExportedArm) -> tuple[list[str], str]:

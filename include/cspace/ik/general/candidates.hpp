@@ -24,24 +24,23 @@ struct Candidates {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline void append_candidate(ik::Candidates& out, const double* q, bool close) {
-    if (out.count == ik::Candidates::room) return;
+inline void append_candidate(Candidates& out, const double* q, bool close) {
+    if (out.count == Candidates::room) return;
     for (int i = 0; i < 6; ++i) out.q[out.count][i] = q[i];
     out.close[out.count++] = close;
 }
 
 template <class V>
-inline void put_lane(ik::Candidates& out, const V* q, int k, bool close) {
+inline void put_lane(Candidates& out, const V* q, int k, bool close) {
     double row[6];
     for (int i = 0; i < 6; ++i) row[i] = lane(q[i], k);
     append_candidate(out, row, close);
 }
 
 // Newton's method on four candidates abreast, from number `first` on.
-inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, int first,
-                              ik::Candidates& all) {
+inline void polish_candidates(const GeneralPlan& plan, const Posed& goal, int first, Candidates& all) {
     using V = Pack<4>;
     const Pose<V> goal4 = fill_pose<V>(goal);
     for (; first < all.count; first += 4) {
@@ -59,14 +58,14 @@ inline void polish_candidates(const ik::GeneralPlan& plan, const Posed& goal, in
 
 // Whether no slide has run away: where two of them are nearly parallel Newton's method may send them where
 // nothing is left of the tip but rounding.
-inline bool is_sane(const ik::Chain& chain, const Posed& goal, const double* q) {
+inline bool is_sane(const Chain& chain, const Posed& goal, const double* q) {
     constexpr double far = 1e4;  // lengths of the arm, and of the way to the goal
     for (int i = 0; i < chain.n; ++i)
         if (chain.prismatic[i] && !(std::fabs(q[i]) < far * (1 + norm(goal.t)))) return false;
     return true;
 }
 
-inline void drop_row(ik::Solutions& out, int row) {
+inline void drop_row(Solutions& out, int row) {
     --out.count;
     for (int k = row; k < out.count; ++k)
         for (int i = 0; i < 6; ++i) out.q[k][i] = out.q[k + 1][i];
@@ -74,9 +73,8 @@ inline void drop_row(ik::Solutions& out, int row) {
 
 // Adds a polished solution unless it is there or the room is used up. Of those that differ by no more than
 // what Newton's method left of them, as it does on a fold, the best one stays.
-inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, const Posed& goal,
-                           const double* q) {
-    const ik::Chain& chain = plan.chain;
+inline void admit_polished(Solutions& out, const GeneralPlan& plan, const Posed& goal, const double* q) {
+    const Chain& chain = plan.chain;
     if (!is_sane(chain, goal, q)) return;
     constexpr double wide = 1e-2, near = 1e-3;
     double here = -1;
@@ -96,7 +94,7 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
         if (there <= here) return;
         drop_row(out, k);
     }
-    if (out.count == ik::max_solutions) return;
+    if (out.count == max_solutions) return;
     const int n = out.count++;
     for (int i = 0; i < 6; ++i) out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
     out.branch[n] = static_cast<signed char>(n);
@@ -106,8 +104,8 @@ inline void admit_polished(ik::Solutions& out, const ik::GeneralPlan& plan, cons
 // Beside a fold a solution has a twin: along the weakest direction v the error is σ t u + ½ κ t² u + …, which
 // vanishes again at t = −2 σ/κ. False where there is no fold (σ is more than `most`, κ less than `least`): a
 // family does not bend.
-inline bool find_near_double(const ik::GeneralPlan& plan, const Posed& goal, const double* q,
-                             double* near_double, double most = 0.1, double least = 1e-4) {
+inline bool find_near_double(const GeneralPlan& plan, const Posed& goal, const double* q, double* near_double,
+                             double most = 0.1, double least = 1e-4) {
     PoseError error;
     const double length = 1.0;
     measure_error(plan.chain, goal, length, q, error);
@@ -127,7 +125,7 @@ inline bool find_near_double(const ik::GeneralPlan& plan, const Posed& goal, con
     return std::fabs(t) < 0.5 && std::fabs(bend) > least;
 }
 // Whether a solution is its own twin, as far as rounding can tell: two in one.
-inline bool is_double(const ik::GeneralPlan& plan, const Posed& goal, const double* q) {
+inline bool is_double(const GeneralPlan& plan, const Posed& goal, const double* q) {
     double near_double[6];
     if (!find_near_double(plan, goal, q, near_double)) return false;
     return joint_distance(plan.chain, q, near_double) < 1e-3 &&
@@ -135,16 +133,16 @@ inline bool is_double(const ik::GeneralPlan& plan, const Posed& goal, const doub
 }
 
 // Polishes the candidates from number `first` on.
-inline void admit_candidates(const ik::GeneralPlan& plan, const Posed& goal, int first, ik::Candidates& all,
-                             ik::Solutions& out) {
+inline void admit_candidates(const GeneralPlan& plan, const Posed& goal, int first, Candidates& all,
+                             Solutions& out) {
     polish_candidates(plan, goal, first, all);
     for (int k = first; k < all.count; ++k)
         if (all.settled[k]) admit_polished(out, plan, goal, all.q[k]);
 }
 
 // The twins of solutions that stand beside others, or may.
-inline void add_near_double_roots(const ik::GeneralPlan& plan, const Posed& goal, ik::Candidates& all,
-                                  ik::Solutions& out) {
+inline void add_near_double_roots(const GeneralPlan& plan, const Posed& goal, Candidates& all,
+                                  Solutions& out) {
     const int direct = all.count;
     double near_double[6];
     for (int k = 0; k < direct; ++k)
@@ -154,8 +152,7 @@ inline void add_near_double_roots(const ik::GeneralPlan& plan, const Posed& goal
 }
 
 // Candidates that Newton's method did not settle, once more with damping.
-inline void refine_unsettled(const ik::GeneralPlan& plan, const Posed& goal, ik::Candidates& all,
-                             ik::Solutions& out) {
+inline void refine_unsettled(const GeneralPlan& plan, const Posed& goal, Candidates& all, Solutions& out) {
     const int direct = all.count;
     for (int k = 0; k < direct; ++k) {
         if (all.settled[k]) continue;
@@ -172,4 +169,4 @@ inline void refine_unsettled(const ik::GeneralPlan& plan, const Posed& goal, ik:
     admit_candidates(plan, goal, direct, all, out);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -10,7 +10,7 @@
 #include "cspace/ik/general/elimination.hpp"
 #include "cspace/math/linear.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE V equation(const Elimination& e, int i, int monomial, V c, V s) {
@@ -19,7 +19,7 @@ CSPACE_INLINE V equation(const Elimination& e, int i, int monomial, V c, V s) {
 }
 
 template <int reduced, class V>
-CSPACE_INLINE V product(const V (&diagonal)[reduced]) {
+CSPACE_INLINE V product_of(const V (&diagonal)[reduced]) {
     V out = diagonal[0];
     for (int k = 1; k < reduced; ++k) out = out * diagonal[k];
     return out;
@@ -36,7 +36,7 @@ CSPACE_NOINLINE V determinant(const Elimination& e, V c, V s) {
     V d3[3], d6[6], factor3[3], factor6[6];
     linear::factor_qr(A, d3, factor3);  // [R0 b1 b2; 0 a1 a2]
     const V zero = fill<V>(0.0);
-    V out = product(d3);
+    V out = product_of(d3);
     V B[6][9];  // [R0 b2 b1; a1 0 a2]
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
@@ -48,7 +48,7 @@ CSPACE_NOINLINE V determinant(const Elimination& e, V c, V s) {
             B[3 + i][6 + j] = A[3 + i][6 + j];
         }
     linear::factor_qr(B, d3, factor3);
-    out = out * product(d3);
+    out = out * product_of(d3);
     V D[6][6];  // [a2 a1; d2 d1]
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) {
@@ -58,7 +58,7 @@ CSPACE_NOINLINE V determinant(const Elimination& e, V c, V s) {
             D[3 + i][3 + j] = B[3 + i][6 + j];
         }
     linear::factor_qr(D, d6, factor6);
-    return out * product(d6);
+    return out * product_of(d6);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

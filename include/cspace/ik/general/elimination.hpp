@@ -15,7 +15,7 @@
 #include "cspace/ik/general/invariants.hpp"
 #include "cspace/ik/general/loop.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct Elimination {
     double level[6][9], across[6][9], quarter[6][9];
@@ -26,9 +26,9 @@ struct Elimination {
     double faintest;         // size of an equation, before all are made of one size
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Angles at which the half angles of a1 and a2 are zero: away from what arms are fond of.
 inline constexpr double a1_origin = 0.7, a2_origin = 2.1;
@@ -136,7 +136,7 @@ inline double annihilator(Complex (&A)[4][3], Complex (&n)[4]) {
 }
 
 // The six equations as functionals of the left side's invariants behind M5.
-inline void right_side(const ik::Loop& loop, Elimination& e, Invariants (&g)[6]) {
+inline void right_side(const Loop& loop, Elimination& e, Invariants (&g)[6]) {
     const Invariants behind = moved(inverse(loop.M[3]), axis_invariants());
     const Posed M4 = inverse(loop.M[4]);
     // Rz(−a4): the sine counts backwards; Tz(−a4): so does the slide.
@@ -173,7 +173,7 @@ inline void right_side(const ik::Loop& loop, Elimination& e, Invariants (&g)[6])
 }
 
 // The invariants behind M0, as coefficients of the nine monomials.
-inline void left_side(const ik::Loop& loop, Invariants (&B)[9]) {
+inline void left_side(const Loop& loop, Invariants (&B)[9]) {
     const auto from = [&](int link, double angle) {
         if (loop.slides[link + 1]) return loop.M[link];
         const double c = std::cos(angle), s = std::sin(angle);
@@ -201,7 +201,7 @@ inline void left_side(const ik::Loop& loop, Invariants (&B)[9]) {
     }
 }
 
-inline Elimination eliminate(const ik::Loop& loop) {
+inline Elimination eliminate(const Loop& loop) {
     Elimination e;
     Invariants g[6], B[9];
     right_side(loop, e, g);
@@ -229,4 +229,4 @@ inline Elimination eliminate(const ik::Loop& loop) {
     return e;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

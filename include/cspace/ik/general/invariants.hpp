@@ -8,16 +8,16 @@
 
 #include "cspace/math/vec.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct Invariants {
     Vec3d l, p, m, q;
     double pp, pl, one;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The z axis with the origin on it.
 inline Invariants axis_invariants() {
@@ -84,4 +84,4 @@ inline Invariants twice(const Invariants& v) {
     return {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {v.l.x, v.l.y, -v.l.z}, v.one, 0, 0};
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -45,7 +45,7 @@ struct Pieces {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline constexpr double cluster_width = 2e-5;  // [rad], a piece this small is not divided further
 inline constexpr double near_miss = 0.02;      // [rad], a pair announced on such a piece is followed up
@@ -53,22 +53,22 @@ inline constexpr double order_seen = 4e-4;     // [rad], roots this close show t
 inline constexpr int most_samplings = 48, most_divisions = 400;  // of pieces, per goal
 inline constexpr double regular_alias = 1e-6;  // above, a formulation vanishes identically or drowns in noise
 
-inline double angle_at(const ik::Arc& arc, double u) {
+inline double angle_at(const Arc& arc, double u) {
     return arc.centre + arc_angle(arc.from + (arc.to - arc.from) * u, arc.quarter);
 }
 
 // About the angle that a piece spans, to a twentieth: arcs bend their parameter little.
-inline double width_of(const ik::Arc& arc) { return 4 * arc.quarter * (arc.to - arc.from); }
+inline double width_of(const Arc& arc) { return 4 * arc.quarter * (arc.to - arc.from); }
 
 // The last arc written is one of the pieces if it may hold roots.
-inline void keep_if_crossed(ik::Pieces& pieces) {
-    ik::Piece& last = pieces.piece[pieces.count];
-    last.signs = variations<ik::degree>(last.arc.b, last.arc.noise);
+inline void keep_if_crossed(Pieces& pieces) {
+    Piece& last = pieces.piece[pieces.count];
+    last.signs = variations<degree>(last.arc.b, last.arc.noise);
     pieces.count += last.signs.most > 0;
 }
 
-inline void append_hidden_angle(ik::HiddenAngles& out, const ik::HiddenAngle& root) {
-    if (out.count == ik::max_roots)
+inline void append_hidden_angle(HiddenAngles& out, const HiddenAngle& root) {
+    if (out.count == max_roots)
         out.overflow = true;
     else
         out.root[out.count++] = root;
@@ -85,14 +85,13 @@ inline int order_of_zero(const Function& f, double angle) {
     const V value = abs(f(c, s));
     const double outside = lane(value, 0) + lane(value, 3), inside = lane(value, 1) + lane(value, 2);
     const double order = std::round(std::log(outside / inside) / std::log(ratio));
-    return order > 0 && order <= ik::degree ? int(order) : 0;
+    return order > 0 && order <= degree ? int(order) : 0;
 }
 
 // A small piece where the signs leave a pair of roots open: the parabola through its middle tells whether
 // they are real and apart, together, or missing by more than noise.
 template <class Function>
-inline void close_roots(const Function& f, const ik::Arc& arc, const Variations& signs,
-                        ik::HiddenAngles& out) {
+inline void close_roots(const Function& f, const Arc& arc, const Variations& signs, HiddenAngles& out) {
     const double from = angle_at(arc, 0), to = angle_at(arc, 1), middle = 0.5 * (from + to);
     const double h = cluster_width;
     using V = Pack<4>;
@@ -116,56 +115,56 @@ inline void close_roots(const Function& f, const ik::Arc& arc, const Variations&
         append_hidden_angle(out, {vertex - apart, h, 1, 0, order});
         append_hidden_angle(out, {vertex + apart, h, 1, 0, order});
     } else {
-        append_hidden_angle(out, {vertex, h, signs.count >= 2 ? 2 : ik::unknown, 0, order});
+        append_hidden_angle(out, {vertex, h, signs.count >= 2 ? 2 : unknown, 0, order});
     }
 }
 
 // The pieces with one root each, four at a time, until a step is no longer than the last.
-inline void find_simple_roots(const ik::Pieces& simple, double last_step, ik::HiddenAngles& out) {
+inline void find_simple_roots(const Pieces& simple, double last_step, HiddenAngles& out) {
     using V = Pack<4>;
     for (int first = 0; first < simple.count; first += 4) {
         const int lanes = simple.count - first < 4 ? simple.count - first : 4;
-        V b[ik::padded];
-        for (int i = 0; i <= ik::degree; ++i)
+        V b[padded];
+        for (int i = 0; i <= degree; ++i)
             for (int k = 0; k < 4; ++k) set_lane(b[i], k, simple.piece[first + (k < lanes ? k : 0)].arc.b[i]);
-        const V u = only_roots<ik::degree>(b, last_step);
+        const V u = only_roots<degree>(b, last_step);
         for (int k = 0; k < lanes; ++k)
             append_hidden_angle(out, {angle_at(simple.piece[first + k].arc, lane(u, k)), 0, 1});
     }
 }
 
-inline double value_halfway(const ik::Arc& arc) {
-    double half[ik::padded];
-    combine(sampler_tables().lower_half, arc.b, ik::degree + 1, half);
-    return half[ik::degree];
+inline double value_halfway(const Arc& arc) {
+    double half[padded];
+    combine(sampler_tables().lower_half, arc.b, degree + 1, half);
+    return half[degree];
 }
 
 // Where a small piece announced two roots and neither was found: the bottom of the dip.
-inline void note_near_misses(const ik::Pieces& dips, ik::HiddenAngles& out) {
+inline void note_near_misses(const Pieces& dips, HiddenAngles& out) {
     const int found = out.count;
     for (int i = 0; i < dips.count; ++i) {
-        const ik::Arc& dip = dips.piece[i].arc;
+        const Arc& dip = dips.piece[i].arc;
         const double from = angle_at(dip, 0), to = angle_at(dip, 1);
         bool has_root = false;
         for (int k = 0; k < found; ++k)
             has_root |= out.root[k].angle > from - 1e-3 && out.root[k].angle < to + 1e-3;
         if (has_root) continue;
         // The parabola through both ends and the middle.
-        const double left = dip.b[0], right = dip.b[ik::degree], middle = value_halfway(dip);
+        const double left = dip.b[0], right = dip.b[degree], middle = value_halfway(dip);
         const double slope = right - left, bend = left - 2 * middle + right;
         const double u = 0.5 - 0.25 * slope / bend, bottom = middle - 0.125 * slope * slope / bend;
         const bool inside = u > 0 && u < 1;
-        append_hidden_angle(out, {angle_at(dip, inside ? u : 0.5), to - from, ik::nearly_two,
+        append_hidden_angle(out, {angle_at(dip, inside ? u : 0.5), to - from, nearly_two,
                                   std::fabs(inside ? bottom : middle)});
     }
 }
 
 // Both halves of an arc, as far as they may hold roots.
-inline void divide_arc(const ik::SamplerTables& t, const ik::Arc& arc, ik::Pieces& pieces) {
+inline void divide_arc(const SamplerTables& t, const Arc& arc, Pieces& pieces) {
     const double middle = 0.5 * (arc.from + arc.to);
     for (const bool upper : {false, true}) {
-        ik::Arc& half = pieces.piece[pieces.count].arc;
-        combine(upper ? t.upper_half : t.lower_half, arc.b, ik::degree + 1, half.b);
+        Arc& half = pieces.piece[pieces.count].arc;
+        combine(upper ? t.upper_half : t.lower_half, arc.b, degree + 1, half.b);
         half.centre = arc.centre;
         half.quarter = arc.quarter;
         half.from = upper ? middle : arc.from;
@@ -179,39 +178,39 @@ inline void divide_arc(const ik::SamplerTables& t, const ik::Arc& arc, ik::Piece
 // f(c, s) on packs of four: a trigonometric polynomial of degree 8. The roots are as exact as Newton's method
 // is behind its last step [arc].
 template <class Function>
-inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) {
+inline void isolate(const Function& f, double last_step, HiddenAngles& out) {
     using V = Pack<4>;
-    const ik::SamplerTables& tables = sampler_tables();
-    double sampled[2 * ik::samples];
-    for (int j = 0; j < ik::samples; j += 4)
+    const SamplerTables& tables = sampler_tables();
+    double sampled[2 * samples];
+    for (int j = 0; j < samples; j += 4)
         store(sampled + j, f(load<V>(tables.cosine + j), load<V>(tables.sine + j)));
-    out.evaluations = ik::samples / 4;
+    out.evaluations = samples / 4;
     double largest = 0;
-    for (int j = 0; j < ik::samples; ++j) largest = max(largest, std::fabs(sampled[j]));
+    for (int j = 0; j < samples; ++j) largest = max(largest, std::fabs(sampled[j]));
     out.largest = largest;
     if (!(largest > 0) || !std::isfinite(largest)) {
         out.alias = 1;
         return;
     }
-    for (int j = 0; j < ik::samples; ++j) sampled[ik::samples + j] = sampled[j] /= largest;
+    for (int j = 0; j < samples; ++j) sampled[samples + j] = sampled[j] /= largest;
     for (const auto& harmonic : tables.alias) {
         double sum = 0;
-        for (int j = 0; j < ik::samples; ++j) sum += harmonic[j] * sampled[j];
+        for (int j = 0; j < samples; ++j) sum += harmonic[j] * sampled[j];
         out.alias = max(out.alias, std::fabs(sum));
     }
     if (out.alias > regular_alias) return;
-    ik::Pieces stack, simple, dips;
+    Pieces stack, simple, dips;
     const double noise = max(30 * out.alias, 1e-15) * tables.arc_gain;
-    for (int k = 0; k < ik::arcs; ++k) {
-        ik::Arc& arc = stack.piece[stack.count].arc;
+    for (int k = 0; k < arcs; ++k) {
+        Arc& arc = stack.piece[stack.count].arc;
         read_arc(tables, sampled, k, arc);
         arc.noise = noise;
         keep_if_crossed(stack);
     }
     int samplings = 0, divisions = 0;
     while (stack.count > 0) {
-        const ik::Piece piece = stack.piece[--stack.count];
-        const ik::Arc& arc = piece.arc;
+        const Piece piece = stack.piece[--stack.count];
+        const Arc& arc = piece.arc;
         const Variations& signs = piece.signs;
         const double width = width_of(arc);
         const bool whole = arc.from == 0 && arc.to == 1;
@@ -219,14 +218,14 @@ inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) 
         if (drowning && width > 2 * cluster_width && !(whole && arc.resampled) &&
             samplings < most_samplings) {
             ++samplings;
-            out.evaluations += ik::padded / 4;
+            out.evaluations += padded / 4;
             const double from = angle_at(arc, 0), to = angle_at(arc, 1);
             resample(tables, f, largest, 0.5 * (from + to), 0.25 * (to - from), stack.piece[stack.count].arc);
             keep_if_crossed(stack);
             continue;
         }
         if (signs.most == 1 && signs.ends_known) {
-            if (simple.count == ik::Pieces::room)
+            if (simple.count == Pieces::room)
                 out.overflow = true;
             else
                 simple.piece[simple.count++] = piece;
@@ -236,12 +235,11 @@ inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) 
             close_roots(f, arc, signs, out);
             continue;
         }
-        if (stack.count + 2 > ik::Pieces::room || ++divisions > most_divisions) {
+        if (stack.count + 2 > Pieces::room || ++divisions > most_divisions) {
             out.overflow = true;
             break;
         }
-        if (signs.count >= 2 && width < near_miss && width >= 0.5 * near_miss &&
-            dips.count < ik::Pieces::room)
+        if (signs.count >= 2 && width < near_miss && width >= 0.5 * near_miss && dips.count < Pieces::room)
             dips.piece[dips.count++] = piece;
         divide_arc(tables, arc, stack);
     }
@@ -249,4 +247,4 @@ inline void isolate(const Function& f, double last_step, ik::HiddenAngles& out) 
     note_near_misses(dips, out);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

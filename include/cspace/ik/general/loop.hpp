@@ -63,12 +63,12 @@ struct GeneralArm {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Each frame stands where its axis comes closest to the frame before: feet of common normals would run away
 // from axes that are almost parallel. A slide has a direction and no place: its frame stays where it is.
-inline ik::LoopFrames loop_frames(const ik::Chain& chain) {
-    ik::LoopFrames out;
+inline LoopFrames loop_frames(const Chain& chain) {
+    LoopFrames out;
     Posed frame[6];
     Vec3d before = chain.point[1];
     for (int i = 0; i < 6; ++i) {
@@ -84,26 +84,25 @@ inline ik::LoopFrames loop_frames(const ik::Chain& chain) {
 }
 
 // The arm with lengths in units of `length`.
-inline ik::Chain in_units_of(double length, ik::Chain chain) {
+inline Chain in_units_of(double length, Chain chain) {
     for (int i = 0; i < chain.n; ++i) chain.point[i] = (1 / length) * chain.point[i];
     chain.tip.t = (1 / length) * chain.tip.t;
     return chain;
 }
 
-inline ik::Formulation formulation(int number) { return {number % 6, number >= 6}; }
-inline int hidden_joint(ik::Formulation form) { return form.backwards ? 5 - form.shift : form.shift; }
+inline Formulation formulation(int number) { return {number % 6, number >= 6}; }
+inline int hidden_joint(Formulation form) { return form.backwards ? 5 - form.shift : form.shift; }
 
 // From axis 6 by the goal back to axis 1.
-inline Posed closing_link(const ik::LoopFrames& frames, const Posed& goal) {
+inline Posed closing_link(const LoopFrames& frames, const Posed& goal) {
     return frames.last * (inverse(goal) * frames.first);
 }
 
-inline ik::Loop make_loop(const ik::LoopFrames& frames, const bool* prismatic, const Posed& goal,
-                          ik::Formulation form) {
+inline Loop make_loop(const LoopFrames& frames, const bool* prismatic, const Posed& goal, Formulation form) {
     Posed link[6];
     for (int i = 0; i < 5; ++i) link[i] = frames.between[i];
     link[5] = closing_link(frames, goal);
-    ik::Loop loop;
+    Loop loop;
     loop.sign = form.backwards ? -1 : 1;
     for (int j = 0; j < 6; ++j) {
         const int k = (form.shift + j) % 6;
@@ -114,4 +113,4 @@ inline ik::Loop make_loop(const ik::LoopFrames& frames, const bool* prismatic, c
     return loop;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

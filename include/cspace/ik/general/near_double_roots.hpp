@@ -4,16 +4,16 @@
 
 #include "cspace/ik/general/recover.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 template <class V>
 struct WeakPlane {
     V z[2][12];  // orthonormal
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE V dot12(const V* a, const V* b) {
@@ -103,4 +103,4 @@ CSPACE_NOINLINE mask_of<V> split_plane(const WeakPlane<V>& plane, Monomials<V> (
     return det > 0.0;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

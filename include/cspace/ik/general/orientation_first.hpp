@@ -6,7 +6,7 @@
 #include "cspace/ik/general/three_revolutes.hpp"
 #include "cspace/math/linear.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct OrientationFirst {
     int turn[3], slide[3];
@@ -19,11 +19,11 @@ struct TwoOrientations {
     double inside, volume;  // see TurnedTwice; of the slides' directions, the lesser of both
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline OrientationFirst orientation_first(const ik::Chain& chain) {
+inline OrientationFirst orientation_first(const Chain& chain) {
     OrientationFirst out;
     int turns = 0, slides = 0;
     for (int i = 0; i < 6; ++i) {
@@ -37,7 +37,7 @@ inline OrientationFirst orientation_first(const ik::Chain& chain) {
 }
 
 // The slides that bring the tip to the goal, the turns being as in q.
-inline bool solve_slides(const ik::Chain& chain, const OrientationFirst& arm, const Posed& goal, double* q,
+inline bool solve_slides(const Chain& chain, const OrientationFirst& arm, const Posed& goal, double* q,
                          double& volume) {
     for (const int i : arm.slide) q[i] = 0;
     Posed T = identity_pose();
@@ -50,13 +50,12 @@ inline bool solve_slides(const ik::Chain& chain, const OrientationFirst& arm, co
     volume = min(volume, std::fabs(dot(D[0], cross(D[1], D[2]))));
     double A[3][3], b[3] = {gap.x, gap.y, gap.z};
     for (int j = 0; j < 3; ++j) A[0][j] = D[j].x, A[1][j] = D[j].y, A[2][j] = D[j].z;
-    const bool regular = solve(A, b);
+    const bool regular = solve_linear(A, b);
     for (int j = 0; j < 3; ++j) q[arm.slide[j]] = b[j];
     return regular;
 }
 
-inline TwoOrientations two_orientations(const ik::Chain& chain, const OrientationFirst& arm,
-                                        const Posed& goal) {
+inline TwoOrientations two_orientations(const Chain& chain, const OrientationFirst& arm, const Posed& goal) {
     const TurnedTwice turned = solve(arm.turns, goal.R * transpose(chain.tip.R));
     TwoOrientations out;
     out.inside = turned.inside;
@@ -69,4 +68,4 @@ inline TwoOrientations two_orientations(const ik::Chain& chain, const Orientatio
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -9,19 +9,19 @@
 #include "cspace/ik/general/plan.hpp"
 #include "cspace/ik/perturbed_goals.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline constexpr double disturbance = 3e-4;  // [rad], and over the arm's length
 
 // A vector of entries up to one, without a pattern.
 inline Vec3d pattern_vector(int k) {
-    double q[ik::max_joints];
+    double q[max_joints];
     spread_configuration(k, 3, q);
     return {q[0] / pi, q[1] / pi, q[2] / pi};
 }
 
-inline ik::Chain perturb_chain(const ik::Chain& chain, double size) {
-    ik::Chain out = chain;
+inline Chain perturb_chain(const Chain& chain, double size) {
+    Chain out = chain;
     for (int i = 0; i < chain.n; ++i) {
         const Vec3d axis = chain.axis[i] + size * pattern_vector(2 * i);
         out.axis[i] = (1 / norm(axis)) * axis;
@@ -31,12 +31,12 @@ inline ik::Chain perturb_chain(const ik::Chain& chain, double size) {
 }
 
 // Those of another arm.
-inline void forget_spurious_roots(ik::GeneralPlan& plan) {
+inline void forget_spurious_roots(GeneralPlan& plan) {
     for (int& count : plan.spurious_roots) count = 0;
 }
 
 // What serves the one serves the other.
-inline void make_perturbed_arms(ik::GeneralArm& arm) {
+inline void make_perturbed_arms(GeneralArm& arm) {
     make_general_plan(perturb_chain(arm.plan.chain, disturbance), arm.perturbed[0]);
     arm.perturbed[1] = arm.perturbed[0];
     arm.perturbed[1].chain = perturb_chain(arm.plan.chain, -disturbance);
@@ -46,24 +46,23 @@ inline void make_perturbed_arms(ik::GeneralArm& arm) {
 }
 
 // Whether the disturbance may have cost an arm the pair that q belongs to: its twin stands close by.
-inline bool is_about_to_merge(const ik::GeneralPlan& plan, const Posed& goal, const double* q) {
+inline bool is_about_to_merge(const GeneralPlan& plan, const Posed& goal, const double* q) {
     double near_double[6];
     return find_near_double(plan, goal, q, near_double);
 }
 
 // Which solutions of a neighbour, brought to the goal, became which of `out`, to which they are added.
 struct Led {
-    int count = 0;                      // of the neighbour's solutions
-    bool complete = false;              // as the neighbour says
-    bool lost[ik::max_solutions] = {};  // those that became none
-    int from[ik::max_solutions] = {};   // how many became each of `out`
+    int count = 0;                  // of the neighbour's solutions
+    bool complete = false;          // as the neighbour says
+    bool lost[max_solutions] = {};  // those that became none
+    int from[max_solutions] = {};   // how many became each of `out`
 };
-inline Led lead_to_goal(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& beside,
-                        ik::Solutions& out) {
+inline Led lead_to_goal(const GeneralPlan& plan, const Posed& goal, const Solutions& beside, Solutions& out) {
     Led led;
     led.count = beside.count;
     led.complete = beside.complete;
-    ik::Candidates start;
+    Candidates start;
     for (int j = 0; j < beside.count; ++j) append_candidate(start, beside.q[j], false);
     admit_candidates(plan, goal, 0, start, out);
     refine_unsettled(plan, goal, start, out);
@@ -79,12 +78,12 @@ inline Led lead_to_goal(const ik::GeneralPlan& plan, const Posed& goal, const ik
 }
 
 // Complete if both neighbours are and both lead to every solution, pairs about to merge excepted.
-inline void solve_perturbed(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
-    const ik::GeneralPlan& plan = arm.plan;
+inline void solve_perturbed(const GeneralArm& arm, const Posed& goal, Solutions& out) {
+    const GeneralPlan& plan = arm.plan;
     Led led[2];
     out.complete = out.crowded = true;
     for (int k = 0; k < 2; ++k) {
-        ik::Solutions beside;
+        Solutions beside;
         solve_by_plan(arm.perturbed[k], goal, beside);
         led[k] = lead_to_goal(plan, goal, beside, out);
         out.complete = out.complete && led[k].complete;
@@ -94,21 +93,21 @@ inline void solve_perturbed(const ik::GeneralArm& arm, const Posed& goal, ik::So
     for (int m = 0; m < out.count && out.complete; ++m)
         out.complete = (led[0].from[m] && led[1].from[m]) || is_about_to_merge(plan, goal, out.q[m]);
     out.complete = out.complete && out.count % 2 == 0;
-    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    out.status = out.count ? Status::exact : Status::unreachable;
 }
 
 // Goals that are special to an arm, say a tool held along its first axis, have solutions that share every
 // hidden angle: goals tilted to either side have not, if by enough. True if both certify their solutions, and
 // these become those of `out`, one each.
-inline bool certify_by_tilting(const ik::GeneralPlan& plan, const Posed& goal, double size, int way,
-                               ik::Solutions& out) {
+inline bool certify_by_tilting(const GeneralPlan& plan, const Posed& goal, double size, int way,
+                               Solutions& out) {
     const Vec3d turn = pattern_vector(2 * way + 1), away = pattern_vector(2 * way + 2);
     const Vec3d axis = (1 / norm(turn)) * turn;
     Led led[2];
     for (int k = 0; k < 2; ++k) {
         const double by = k ? -size : size;
         const Posed tilted = {rotation_about(axis, std::cos(by), std::sin(by)) * goal.R, goal.t + by * away};
-        ik::Solutions beside;
+        Solutions beside;
         solve_by_plan(plan, tilted, beside);
         if (!beside.complete) return false;
         led[k] = lead_to_goal(plan, goal, beside, out);
@@ -119,11 +118,11 @@ inline bool certify_by_tilting(const ik::GeneralPlan& plan, const Posed& goal, d
 }
 
 // Whether descents from all over the joints come to solutions that `out` lacks: families attract them.
-inline bool lacks_by_descent(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& out) {
+inline bool lacks_by_descent(const GeneralPlan& plan, const Posed& goal, const Solutions& out) {
     constexpr int starts = 16, most_steps = 60;
-    ik::Solutions more = out;
+    Solutions more = out;
     for (int k = 0; k < starts && more.count == out.count; ++k) {
-        double q[ik::max_joints];
+        double q[max_joints];
         spread_configuration(k, 6, q);
         descend_to_solution(plan.chain, goal, 1, q, most_steps, more);
     }
@@ -132,8 +131,7 @@ inline bool lacks_by_descent(const ik::GeneralPlan& plan, const Posed& goal, con
 
 // At goals that are special to the formulations: complete if tilting says so, and a formulation announces no
 // more at the goal itself or descents find no more.
-inline void solve_tilted(const ik::GeneralPlan& plan, const Posed& goal, const Tried& tried_all,
-                         ik::Solutions& out) {
+inline void solve_tilted(const GeneralPlan& plan, const Posed& goal, const Tried& tried_all, Solutions& out) {
     bool shared = false, drowned = plan.regular > 0;
     for (int k = 0; k < tried_all.count; ++k) {
         shared = shared || tried_all.seen[k].shared;
@@ -142,23 +140,23 @@ inline void solve_tilted(const ik::GeneralPlan& plan, const Posed& goal, const T
     if (!shared && !drowned) return;
     constexpr double sizes[] = {3e-3, 2e-2};  // [rad], and over the arm's length
     for (int trial = 0; trial < 6; ++trial) {
-        ik::Solutions tried = out;
+        Solutions tried = out;
         if (!certify_by_tilting(plan, goal, sizes[trial % 2], trial / 2, tried)) continue;
         if (!is_announced_by_one(plan, goal, tried_all, true, tried) && lacks_by_descent(plan, goal, tried))
             return;
         out = tried;
         out.complete = out.crowded = true;
-        out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+        out.status = out.count ? Status::exact : Status::unreachable;
         return;
     }
 }
 
 // Whether the arm's own plan does well on its poses.
-inline bool serves_alone(const ik::GeneralPlan& plan) {
+inline bool serves_alone(const GeneralPlan& plan) {
     constexpr int poses = 24, light = 70;
     int doubtful = 0, work = 0;
     for (int k = 0; k < poses && doubtful < 2 && work <= light * poses; ++k) {
-        ik::Solutions out;
+        Solutions out;
         work += solve_by_plan(plan, own_pose(plan.chain, k), out);
         doubtful += !out.complete;
     }
@@ -166,7 +164,7 @@ inline bool serves_alone(const ik::GeneralPlan& plan) {
 }
 
 // Whether it does with one of the best formulations asked first: their prices come of few poses.
-inline bool serves_in_some_order(ik::GeneralPlan& plan) {
+inline bool serves_in_some_order(GeneralPlan& plan) {
     constexpr int best = 3;
     for (int k = 0; k < best && (k == 0 || k < plan.regular); ++k) {
         std::swap(plan.order[0], plan.order[k]);
@@ -177,19 +175,19 @@ inline bool serves_in_some_order(ik::GeneralPlan& plan) {
 }
 
 // By the wrist that the arm has. Where solutions merge or joints are free its list may be short.
-inline void solve_with_wrist(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
+inline void solve_with_wrist(const GeneralArm& arm, const Posed& goal, Solutions& out) {
     const PlacedAndTurned found = solve(arm.position_first, goal);
-    ik::Candidates start;
+    Candidates start;
     for (int k = 0; k < found.count; ++k) append_candidate(start, found.q[k], found.close[k]);
     admit_candidates(arm.plan, goal, 0, start, out);
     add_near_double_roots(arm.plan, goal, start, out);
     refine_unsettled(arm.plan, goal, start, out);
     out.complete = true;
     out.crowded = found.doubt;
-    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    out.status = out.count ? Status::exact : Status::unreachable;
 }
 
-inline void solve_general(const ik::GeneralArm& arm, const Posed& goal, ik::Solutions& out) {
+inline void solve_general(const GeneralArm& arm, const Posed& goal, Solutions& out) {
     if (arm.position_first.serves) return solve_with_wrist(arm, goal, out);
     if (arm.has_perturbed) solve_perturbed(arm, goal, out);
     if (arm.has_perturbed && out.complete) return;
@@ -198,4 +196,4 @@ inline void solve_general(const ik::GeneralArm& arm, const Posed& goal, ik::Solu
     if (!arm.has_perturbed && !out.complete) solve_tilted(arm.plan, goal, tried_all, out);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

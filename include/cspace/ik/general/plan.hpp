@@ -6,7 +6,7 @@
 
 #include "cspace/ik/general/solve.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // How a formulation did on the poses of an arm.
 struct FormulationTrial {
@@ -16,19 +16,19 @@ struct FormulationTrial {
     int found[most_poses];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Whether the link that the goal makes of tip and base is longer than all the others together.
-inline bool is_beyond_reach(const ik::LoopFrames& frames, const Posed& goal) {
+inline bool is_beyond_reach(const LoopFrames& frames, const Posed& goal) {
     double others = 0;
     for (const Posed& link : frames.between) others += norm(link.t);
     return norm(closing_link(frames, goal).t) > (1 + 1e-9) * others;
 }
 
 // Solutions come in pairs, those on folds counted twice: where one is left over its partner is missing.
-inline bool come_in_pairs(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& found) {
+inline bool come_in_pairs(const GeneralPlan& plan, const Posed& goal, const Solutions& found) {
     int count = found.count;
     for (int k = 0; k < found.count && found.count % 2; ++k) count += is_double(plan, goal, found.q[k]);
     return count % 2 == 0;
@@ -36,9 +36,9 @@ inline bool come_in_pairs(const ik::GeneralPlan& plan, const Posed& goal, const 
 
 // Looks across the folds that are very near: pairs there may hide behind one hidden angle. True if it found a
 // twin that had been missed.
-inline bool add_hidden_near_doubles(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& found) {
+inline bool add_hidden_near_doubles(const GeneralPlan& plan, const Posed& goal, Solutions& found) {
     constexpr double very_near = 1e-4, hardly_bent = 1e-7;
-    ik::Candidates start;
+    Candidates start;
     double near_double[6];
     for (int k = 0; k < found.count; ++k)
         if (find_near_double(plan, goal, found.q[k], near_double, very_near, hardly_bent))
@@ -51,18 +51,18 @@ inline bool add_hidden_near_doubles(const ik::GeneralPlan& plan, const Posed& go
 // The formulations that a goal was put to.
 struct Tried {
     int count = 0, work = 0;
-    int number[ik::formulations];
-    ik::Certificate seen[ik::formulations];
+    int number[formulations];
+    Certificate seen[formulations];
 };
 
 // Whether what one of them announced is there; `sharing`: those count as well whose solutions share a hidden
 // angle.
-inline bool is_announced_by_one(const ik::GeneralPlan& plan, const Posed& goal, const Tried& tried_all,
-                                bool sharing, const ik::Solutions& found) {
-    bool twice[ik::max_solutions];
+inline bool is_announced_by_one(const GeneralPlan& plan, const Posed& goal, const Tried& tried_all,
+                                bool sharing, const Solutions& found) {
+    bool twice[max_solutions];
     mark_doubles(plan, goal, found, twice);
     for (int k = 0; k < tried_all.count; ++k) {
-        const ik::Certificate& seen = tried_all.seen[k];
+        const Certificate& seen = tried_all.seen[k];
         if (!seen.trusted || !all_matched(seen, found, twice)) continue;
         if (sharing || !share_angles(seen, plan.chain, found, twice, plan.paired[tried_all.number[k]]))
             return true;
@@ -70,9 +70,9 @@ inline bool is_announced_by_one(const ik::GeneralPlan& plan, const Posed& goal, 
     return false;
 }
 
-inline void try_formulation(const ik::GeneralPlan& plan, const Posed& goal, int number, ik::Solutions& out,
+inline void try_formulation(const GeneralPlan& plan, const Posed& goal, int number, Solutions& out,
                             Tried& tried_all) {
-    ik::Certificate& seen = tried_all.seen[tried_all.count];
+    Certificate& seen = tried_all.seen[tried_all.count];
     tried_all.number[tried_all.count++] = number;
     seen = solve_formulation(plan, goal, number, out);
     tried_all.work += seen.work;
@@ -84,8 +84,7 @@ inline void try_formulation(const ik::GeneralPlan& plan, const Posed& goal, int 
 // One formulation after the other until one of them certifies that nothing is missing; where none does, what
 // all of them found together may be what one of them announced. Where solutions share an angle others that
 // hide it are of no use.
-inline void try_formulations(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out,
-                             Tried& tried_all) {
+inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutions& out, Tried& tried_all) {
     constexpr int most_shared = 3;  // a goal special to so many joints is special to most
     out.crowded = false;
     if (plan.slides == 3) {
@@ -106,11 +105,11 @@ inline void try_formulations(const ik::GeneralPlan& plan, const Posed& goal, ik:
     if (tried_all.count > 0 && !out.complete)
         out.complete = is_announced_by_one(plan, goal, tried_all, false, out);
     out.complete = out.complete && come_in_pairs(plan, goal, out);
-    out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+    out.status = out.count ? Status::exact : Status::unreachable;
 }
 
 // Returns the work.
-inline int solve_by_plan(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+inline int solve_by_plan(const GeneralPlan& plan, const Posed& goal, Solutions& out) {
     Tried tried_all;
     try_formulations(plan, goal, out, tried_all);
     return tried_all.work;
@@ -120,10 +119,10 @@ inline constexpr double usual_sensitivity = 1e5, useless_sensitivity = 1e8;
 
 // By how much more than their own the relative errors of the six equations change the determinant: where an
 // arm is almost, but not quite, one for which a formulation vanishes, its values are rounding enlarged.
-inline double pose_sensitivity(const ik::GeneralPlan& plan, const Posed& goal, int number) {
+inline double pose_sensitivity(const GeneralPlan& plan, const Posed& goal, int number) {
     using V = Pack<4>;
     constexpr double slip = 1e-9;
-    const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
+    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
     if (!is_possible(loop, formulation(number))) return useless_sensitivity;
     if (plan.slides == 2) return 0;
     const Elimination e = eliminate(loop);
@@ -136,9 +135,9 @@ inline double pose_sensitivity(const ik::GeneralPlan& plan, const Posed& goal, i
                 sign = (7 * i + 5 * m + (sign > 0)) % 3 ? -sign : sign;
             }
         }
-    const ik::SamplerTables& tables = sampler_tables();
+    const SamplerTables& tables = sampler_tables();
     double largest = 0, change = 0;
-    for (int j = 0; j < ik::samples; j += 4) {
+    for (int j = 0; j < samples; j += 4) {
         const V c = load<V>(tables.cosine + j), s = load<V>(tables.sine + j);
         const V exact = determinant(e, c, s), other = determinant(slipped, c, s);
         for (int k = 0; k < 4; ++k) {
@@ -151,7 +150,7 @@ inline double pose_sensitivity(const ik::GeneralPlan& plan, const Posed& goal, i
 
 // Tries one on poses of its own arm, up to number `last`; one that drowns in noise, or whose roots always
 // come in close pairs, is known for it after a few.
-inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int last, int number,
+inline void try_formulation(const GeneralPlan& plan, const Posed* goal, int last, int number,
                             FormulationTrial& trial) {
     constexpr int first_look = 4, heavy = 400;
     for (int k = trial.poses; k < last; ++k) {
@@ -159,8 +158,8 @@ inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int 
             trial.sensitivity = max(trial.sensitivity, pose_sensitivity(plan, goal[k], number));
         if (!(trial.sensitivity < useless_sensitivity)) break;
         if (k == first_look && (trial.drowned == k || trial.work > heavy * k)) break;
-        ik::Solutions out;
-        const ik::Certificate seen = solve_formulation(plan, goal[k], number, out);
+        Solutions out;
+        const Certificate seen = solve_formulation(plan, goal[k], number, out);
         trial.drowned += seen.hidden.alias > regular_alias;
         trial.work += seen.work;
         trial.shared += seen.shared;
@@ -170,9 +169,9 @@ inline void try_formulation(const ik::GeneralPlan& plan, const Posed* goal, int 
 
 // Whether two of the joints do one's work, or would but for rounded axes: then every configuration is
 // singular and no list of solutions could be complete.
-inline bool is_redundant(const ik::Chain& chain) {
+inline bool is_redundant(const Chain& chain) {
     for (int k = 0; k < 8; ++k) {
-        double q[ik::max_joints];
+        double q[max_joints];
         spread_configuration(k, 6, q);
         PoseError error;
         measure_error(chain, forward(chain, q), 1, q, error);
@@ -182,14 +181,14 @@ inline bool is_redundant(const ik::Chain& chain) {
 }
 
 // The k-th of some poses of an arm without a pattern.
-inline Posed own_pose(const ik::Chain& chain, int k) {
-    double q[ik::max_joints];
+inline Posed own_pose(const Chain& chain, int k) {
+    double q[max_joints];
     spread_configuration(k, 6, q);
     return forward(chain, q);
 }
 
 // A plan without formulations.
-inline void describe_formulation(const ik::Chain& chain, ik::GeneralPlan& plan) {
+inline void describe_formulation(const Chain& chain, GeneralPlan& plan) {
     plan = {};
     plan.chain = chain;
     plan.frames = loop_frames(chain);
@@ -198,13 +197,13 @@ inline void describe_formulation(const ik::Chain& chain, ik::GeneralPlan& plan) 
 
 // The formulations in the order of their prices: what they miss, their work and how much they enlarge
 // rounding.
-inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations], ik::GeneralPlan& plan) {
+inline void rank_formulations(const FormulationTrial (&trial)[formulations], GeneralPlan& plan) {
     int most[FormulationTrial::most_poses] = {};
     for (const FormulationTrial& t : trial)
         for (int k = 0; k < t.poses; ++k) most[k] = t.found[k] > most[k] ? t.found[k] : most[k];
-    double cost[ik::formulations];
+    double cost[formulations];
     plan.regular = 0;
-    for (int number = 0; number < ik::formulations; ++number) {
+    for (int number = 0; number < formulations; ++number) {
         const FormulationTrial& t = trial[number];
         plan.sensitivity[number] = t.sensitivity;
         plan.paired[number] = plan.paired[number] || 2 * t.shared > t.poses;
@@ -221,32 +220,32 @@ inline void rank_formulations(const FormulationTrial (&trial)[ik::formulations],
 
 // The hidden angles of a formulation at which it has roots for each of three goals: factors that come of axes
 // almost parallel or almost meeting, where no solution need be.
-inline void find_ghosts(const Posed* goal, int number, ik::GeneralPlan& plan) {
+inline void find_ghosts(const Posed* goal, int number, GeneralPlan& plan) {
     constexpr double fine = 1e-8, same = 1e-7;
     if (plan.slides == 2) return;
-    ik::HiddenAngles hidden[3];
+    HiddenAngles hidden[3];
     for (int k = 0; k < 3; ++k) {
-        const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal[k], formulation(number));
+        const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal[k], formulation(number));
         const Elimination e = eliminate(loop);
         isolate([&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); }, fine, hidden[k]);
     }
-    const auto has = [&](const ik::HiddenAngles& h, const ik::HiddenAngle& root) {
+    const auto has = [&](const HiddenAngles& h, const HiddenAngle& root) {
         const double spread = root.order > 2 ? order_seen : same;  // several on one place are known less well
         for (int j = 0; j < h.count; ++j)
             if (std::fabs(short_way(h.root[j].angle - root.angle)) < spread) return true;
         return false;
     };
     int& spurious_roots = plan.spurious_roots[number];
-    for (int j = 0; j < hidden[0].count && spurious_roots < ik::GeneralPlan::most_ghosts; ++j) {
-        const ik::HiddenAngle& root = hidden[0].root[j];
+    for (int j = 0; j < hidden[0].count && spurious_roots < GeneralPlan::most_ghosts; ++j) {
+        const HiddenAngle& root = hidden[0].root[j];
         if (has(hidden[1], root) && has(hidden[2], root))
-            plan.spurious[number * ik::GeneralPlan::most_ghosts + spurious_roots++] = root.angle;
+            plan.spurious[number * GeneralPlan::most_ghosts + spurious_roots++] = root.angle;
     }
 }
 
 // For arms with parallel or meeting axes most determinants vanish identically; others lose solutions or find
 // them at great cost. All regular ones are ordered after a few poses, the best of them once more after many.
-inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
+inline void make_general_plan(const Chain& chain, GeneralPlan& plan) {
     constexpr int few = 6, best = 4;
     describe_formulation(chain, plan);
     if (plan.slides > 3) return;
@@ -256,8 +255,8 @@ inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
     }
     Posed goal[FormulationTrial::most_poses];
     for (int k = 0; k < FormulationTrial::most_poses; ++k) goal[k] = own_pose(chain, k);
-    FormulationTrial trial[ik::formulations];
-    for (int number = 0; number < ik::formulations; ++number)
+    FormulationTrial trial[formulations];
+    for (int number = 0; number < formulations; ++number)
         try_formulation(plan, goal, few, number, trial[number]);
     rank_formulations(trial, plan);
     for (int k = 0; k < best && k < plan.regular; ++k)
@@ -266,4 +265,4 @@ inline void make_general_plan(const ik::Chain& chain, ik::GeneralPlan& plan) {
     for (int k = 0; k < plan.regular; ++k) find_ghosts(goal, plan.order[k], plan);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -18,24 +18,20 @@ struct PositionFirst {
     ThreeTurns wrist;
 };
 
-}  // namespace cspace::ik
-
-namespace cspace {
-
 struct PlacedAndTurned {
-    static constexpr int room = 2 * ik::max_position_solutions;
+    static constexpr int room = 2 * max_position_solutions;
     int count = 0;
     double q[room][6];
     bool close[room];    // to another one
     bool doubt = false;  // a joint is free, or two solutions merge
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The point in which the axes of joints 4, 5, 6 meet; false if they do not, up to rounding.
-inline bool wrist_centre(const ik::Chain& six, Vec3d& centre) {
+inline bool wrist_centre(const Chain& six, Vec3d& centre) {
     const Vec3d &h4 = six.axis[3], &h5 = six.axis[4], &h6 = six.axis[5];
     const bool parallel = norm(cross(h4, h5)) < tolerance::axis_relation;
     if (parallel || six.prismatic[3] || six.prismatic[4] || six.prismatic[5]) return false;
@@ -46,8 +42,8 @@ inline bool wrist_centre(const ik::Chain& six, Vec3d& centre) {
 }
 
 // For arms with slides, lengths over the arm's; those that only turn have closed forms on lanes.
-inline ik::PositionFirst position_first(const ik::Chain& six) {
-    ik::PositionFirst out;
+inline PositionFirst position_first(const Chain& six) {
+    PositionFirst out;
     bool slides = false;
     for (int i = 0; i < 6; ++i) slides = slides || six.prismatic[i];
     for (const bool backwards : {false, true}) {
@@ -66,11 +62,11 @@ inline ik::PositionFirst position_first(const ik::Chain& six) {
     return out;
 }
 
-inline PlacedAndTurned solve(const ik::PositionFirst& plan, const Posed& goal_of_six) {
+inline PlacedAndTurned solve(const PositionFirst& plan, const Posed& goal_of_six) {
     constexpr double merging = 1e-6;
     PlacedAndTurned out;
     const Posed goal = plan.backwards ? inverse(goal_of_six) : goal_of_six;
-    const ik::PositionSolutions placed = solve_position(plan.first, goal * plan.centre_in_tip, false);
+    const PositionSolutions placed = solve_position(plan.first, goal * plan.centre_in_tip, false);
     for (int k = 0; k < placed.count; ++k) {
         Mat3d G = goal.R * transpose(plan.arm.tip.R);
         for (int i = 0; i < 3; ++i) G = transpose(joint_motion(plan.first, i, placed.q[k][i]).R) * G;
@@ -86,4 +82,4 @@ inline PlacedAndTurned solve(const ik::PositionFirst& plan, const Posed& goal_of
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -4,7 +4,7 @@
 
 #include "cspace/ik/general/determinant.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // Products of half angles, x[3 i + j] belonging to S1^(3−i) C1^i and S2^(2−j) C2^j.
 template <class V>
@@ -31,9 +31,9 @@ struct ReducedEquations {
     V A[12][12], diagonal[12], factor[12];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_NOINLINE void reduce_equations(const Elimination& e, V c, V s, ReducedEquations<V>& out) {
@@ -118,7 +118,7 @@ CSPACE_INLINE void parts_without_a5(const Elimination& e, const Pose<V>& X, V (&
 
 // a5 and a3 from the two sides of the loop once a4 is known; writes the joints of all six.
 template <class V>
-CSPACE_INLINE void close_loop(const ik::Loop& loop, const Pose<V>& X, const Turn<V>& a0, const Step<V>& a1,
+CSPACE_INLINE void close_loop(const Loop& loop, const Pose<V>& X, const Turn<V>& a0, const Step<V>& a1,
                               const Step<V>& a2, const Step<V>& a4, V* q) {
     const Pose<V> M3 = fill_pose<V>(inverse(loop.M[3])), M4 = fill_pose<V>(inverse(loop.M[4]));
     const Step<V> back = {{a4.turn.c, -a4.turn.s}, -a4.slide};
@@ -139,7 +139,7 @@ CSPACE_INLINE void close_loop(const ik::Loop& loop, const Pose<V>& X, const Turn
 // Candidates for the joints of one hidden angle (cosine and sine a0) and the half angles found there. Where
 // the parts fix a4 by one equation alone there are two; `second` says so.
 template <class V>
-CSPACE_INLINE void joints_from(const ik::Loop& loop, const Elimination& e, const Turn<V>& a0,
+CSPACE_INLINE void joints_from(const Loop& loop, const Elimination& e, const Turn<V>& a0,
                                const TwoHalfAngles<V>& half, V* q, V* second) {
     const Turn<V> o1 = {fill<V>(std::cos(a1_origin)), fill<V>(std::sin(a1_origin))};
     const Turn<V> o2 = {fill<V>(std::cos(a2_origin)), fill<V>(std::sin(a2_origin))};
@@ -188,4 +188,4 @@ CSPACE_INLINE void joints_from(const ik::Loop& loop, const Elimination& e, const
     close_loop(loop, X, a0, a1, a2, turn_step(mean - off), second);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

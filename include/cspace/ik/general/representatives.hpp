@@ -19,7 +19,7 @@ struct Representative {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline int leading_joint(const double* direction, int n) {
     constexpr double clearly = 0.1;
@@ -28,12 +28,12 @@ inline int leading_joint(const double* direction, int n) {
     return 0;
 }
 
-inline double from_value(const ik::Chain& chain, const ik::Representative& r, const double* q) {
+inline double from_value(const Chain& chain, const Representative& r, const double* q) {
     const double d = q[r.joint] - r.value;
     return chain.prismatic[r.joint] ? d : short_way(d);
 }
 
-inline void offer_member(const ik::Chain& chain, ik::Representative& r, const double* q, const double* t) {
+inline void offer_member(const Chain& chain, Representative& r, const double* q, const double* t) {
     const double gap = std::fabs(from_value(chain, r, q));
     if (!(gap < r.gap)) return;
     r.gap = gap;
@@ -45,12 +45,11 @@ inline void offer_member(const ik::Chain& chain, ik::Representative& r, const do
 
 // Between two members beside each other the leading joint passes its value: the member that has it, by the
 // secant.
-inline void offer_between(const ik::Chain& chain, const ik::TipConstraint& constraint, ik::Representative& r,
+inline void offer_between(const Chain& chain, const TipConstraint& constraint, Representative& r,
                           const double* a, const double* b, const double* t) {
-    double low = from_value(chain, r, a), high = from_value(chain, r, b), q[ik::max_joints],
-           left[ik::max_joints];
+    double low = from_value(chain, r, a), high = from_value(chain, r, b), q[max_joints], left[max_joints];
     if (!(low * high < 0) || std::fabs(high - low) > 1) return;
-    double right[ik::max_joints];
+    double right[max_joints];
     for (int i = 0; i < chain.n; ++i) left[i] = a[i], right[i] = b[i];
     for (int step = 0; step < 30; ++step) {
         const double part = low / (low - high);
@@ -67,8 +66,8 @@ inline void offer_between(const ik::Chain& chain, const ik::TipConstraint& const
 }
 
 // The next member on a way along the family.
-inline void offer_next(const ik::Chain& chain, const ik::TipConstraint& constraint, ik::Representative& r,
-                       int way, const double* q, const double* t) {
+inline void offer_next(const Chain& chain, const TipConstraint& constraint, Representative& r, int way,
+                       const double* q, const double* t) {
     offer_member(chain, r, q, t);
     if (way == r.way) offer_between(chain, constraint, r, r.before, q, t);
     r.way = way;
@@ -76,10 +75,10 @@ inline void offer_next(const ik::Chain& chain, const ik::TipConstraint& constrai
 }
 
 // Whether a solution lies on the piece of the curve around q, of about a step's length.
-inline bool lies_near(const ik::Chain& chain, double length, const double* q, const double* t,
+inline bool lies_near(const Chain& chain, double length, const double* q, const double* t,
                       const double* other) {
     constexpr double reach = 0.06, narrow = 0.05;
-    double gap[ik::max_joints];
+    double gap[max_joints];
     for (int i = 0; i < chain.n; ++i)
         gap[i] = chain.prismatic[i] ? (other[i] - q[i]) / length : short_way(other[i] - q[i]);
     const double along = dot_n(gap, t, chain.n), size2 = dot_n(gap, gap, chain.n);
@@ -87,7 +86,7 @@ inline bool lies_near(const ik::Chain& chain, double length, const double* q, co
 }
 
 // Whether families cross at q: there it has more directions than one.
-inline bool is_crossing(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q) {
+inline bool is_crossing(const Chain& chain, const TipConstraint& constraint, const double* q) {
     constexpr double close = 1e-6;
     PoseError at;
     measure_constrained(chain, constraint, q, at);
@@ -98,17 +97,17 @@ inline bool is_crossing(const ik::Chain& chain, const ik::TipConstraint& constra
 
 // `idle`: the values that leading joints take, zero if null; but where families cross none is taken to the
 // crossing, which would not tell which of them is meant. Lengths are over the arm's.
-inline void keep_one_per_self_motion(const ik::Chain& chain, const Posed& goal, const double* unconstrained,
-                                     ik::Solutions& out) {
-    const ik::TipConstraint constraint = {goal, true, 1};
+inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, const double* unconstrained,
+                                     Solutions& out) {
+    const TipConstraint constraint = {goal, true, 1};
     int steps_left = 4000;  // of all curves together
-    bool dropped[ik::max_solutions] = {};
+    bool dropped[max_solutions] = {};
     for (int k = 0; k < out.count; ++k) {
         if (!out.self_motion[k] || dropped[k] || steps_left <= 0) continue;
-        ik::Representative r;
+        Representative r;
         r.joint = leading_joint(out.direction[k], chain.n);
         r.value = unconstrained ? unconstrained[r.joint] : 0;
-        double start[ik::max_joints], along[ik::max_joints];
+        double start[max_joints], along[max_joints];
         for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
         follow_self_motion(
             chain, constraint, start, along, steps_left, [&](int way, const double* q, const double* t) {
@@ -136,4 +135,4 @@ inline void keep_one_per_self_motion(const ik::Chain& chain, const Posed& goal, 
     out.count = kept;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -44,7 +44,7 @@ struct Arc {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline double binomial(int n, int k) {
     if (k < 0 || k > n) return 0;
@@ -72,33 +72,33 @@ inline void harmonic_coefficient(int k, int i, double quarter, double& cosine, d
     cosine = sine = 0;
     for (int j = 0; j <= i; ++j) {
         const double weight =
-            binomial(ik::harmonics + k, j) * binomial(ik::harmonics - k, i - j) / binomial(ik::degree, i);
+            binomial(harmonics + k, j) * binomial(harmonics - k, i - j) / binomial(degree, i);
         cosine += weight * std::cos(quarter * (4 * j - 2 * i - 2 * k));
         sine += weight * std::sin(quarter * (4 * j - 2 * i - 2 * k));
     }
 }
 
-inline void fill_arc_matrix(ik::SamplerTables& t) {
-    constexpr double quarter = 2 * pi / ik::arcs / 4, step = 2 * pi / ik::samples;
+inline void fill_arc_matrix(SamplerTables& t) {
+    constexpr double quarter = 2 * pi / arcs / 4, step = 2 * pi / samples;
     t.arc_gain = 0;
-    for (int i = 0; i <= ik::degree; ++i) {
-        double c[ik::harmonics + 1], s[ik::harmonics + 1], gain = 0;
-        for (int k = 0; k <= ik::harmonics; ++k) harmonic_coefficient(k, i, quarter, c[k], s[k]);
-        for (int j = 0; j < ik::samples; ++j) {
+    for (int i = 0; i <= degree; ++i) {
+        double c[harmonics + 1], s[harmonics + 1], gain = 0;
+        for (int k = 0; k <= harmonics; ++k) harmonic_coefficient(k, i, quarter, c[k], s[k]);
+        for (int j = 0; j < samples; ++j) {
             const double from_centre = (j - 0.5) * step;
             double sum = c[0];
-            for (int k = 1; k <= ik::harmonics; ++k)
+            for (int k = 1; k <= harmonics; ++k)
                 sum += 2 * (c[k] * std::cos(k * from_centre) + s[k] * std::sin(k * from_centre));
-            t.to_arc[j][i] = sum / ik::samples;
+            t.to_arc[j][i] = sum / samples;
             gain += std::fabs(t.to_arc[j][i]);
         }
         t.arc_gain = max(t.arc_gain, gain);
     }
 }
 
-inline void fill_node_matrices(ik::SamplerTables& t) {
-    constexpr int n_nodes = ik::degree + 1;
-    for (int m = 0; m < ik::padded; ++m) {
+inline void fill_node_matrices(SamplerTables& t) {
+    constexpr int n_nodes = degree + 1;
+    for (int m = 0; m < padded; ++m) {
         const double angle = pi - pi * (m + 0.5) / n_nodes;
         t.node[m] = m < n_nodes ? 0.5 + 0.5 * std::cos(angle) : 0.5;
         for (int n = 0; n < n_nodes; ++n)
@@ -108,7 +108,7 @@ inline void fill_node_matrices(ik::SamplerTables& t) {
         double* b = t.to_bernstein[n];
         for (int i = 0; i <= n; ++i)
             b[i] = ((n - i) % 2 ? -1.0 : 1.0) * binomial(2 * n, 2 * i) / binomial(n, i);
-        for (int d = n; d < ik::degree; ++d)  // raise the degree from d to d + 1
+        for (int d = n; d < degree; ++d)  // raise the degree from d to d + 1
             for (int i = d + 1; i >= 0; --i)
                 b[i] = double(i) / (d + 1) * (i > 0 ? b[i - 1] : 0) + (1 - double(i) / (d + 1)) * b[i];
         t.bernstein_gain[n] = 0;
@@ -118,25 +118,25 @@ inline void fill_node_matrices(ik::SamplerTables& t) {
 
 // de Casteljau (1959): coefficient i of the lower half is the mean of those up to i by the weights of i
 // tosses.
-inline void fill_halves(ik::SamplerTables& t) {
-    for (int i = 0; i <= ik::degree; ++i)
+inline void fill_halves(SamplerTables& t) {
+    for (int i = 0; i <= degree; ++i)
         for (int j = 0; j <= i; ++j) {
             const double weight = std::ldexp(binomial(i, j), -i);
             t.lower_half[j][i] = weight;
-            t.upper_half[ik::degree - j][ik::degree - i] = weight;
+            t.upper_half[degree - j][degree - i] = weight;
         }
 }
 
-inline ik::SamplerTables make_sampler_tables() {
-    ik::SamplerTables t{};
-    for (int j = 0; j < ik::samples; ++j) {
-        const double on_grid = 2 * pi * (j + 0.5) / ik::samples;
-        t.angle[j] = on_grid + ik::askew;
+inline SamplerTables make_sampler_tables() {
+    SamplerTables t{};
+    for (int j = 0; j < samples; ++j) {
+        const double on_grid = 2 * pi * (j + 0.5) / samples;
+        t.angle[j] = on_grid + askew;
         t.cosine[j] = std::cos(t.angle[j]);
         t.sine[j] = std::sin(t.angle[j]);
-        t.alias[0][j] = 2.0 / ik::samples * std::cos(9 * on_grid);
-        t.alias[1][j] = 2.0 / ik::samples * std::sin(9 * on_grid);
-        t.alias[2][j] = 1.0 / ik::samples * std::sin(10 * on_grid);
+        t.alias[0][j] = 2.0 / samples * std::cos(9 * on_grid);
+        t.alias[1][j] = 2.0 / samples * std::sin(9 * on_grid);
+        t.alias[2][j] = 1.0 / samples * std::sin(10 * on_grid);
     }
     fill_arc_matrix(t);
     fill_node_matrices(t);
@@ -144,31 +144,30 @@ inline ik::SamplerTables make_sampler_tables() {
     return t;
 }
 #ifdef CSPACE_TABLES_AT_START  // made on first use they would need the run-time library of C++
-static const ik::SamplerTables tables_of_sampler = make_sampler_tables();
-inline const ik::SamplerTables& sampler_tables() { return tables_of_sampler; }
+static const SamplerTables tables_of_sampler = make_sampler_tables();
+inline const SamplerTables& sampler_tables() { return tables_of_sampler; }
 #else
-inline const ik::SamplerTables& sampler_tables() {
-    static const ik::SamplerTables tables = make_sampler_tables();
+inline const SamplerTables& sampler_tables() {
+    static const SamplerTables tables = make_sampler_tables();
     return tables;
 }
 #endif
 
 // out = Σ x_j row_j
-CSPACE_INLINE void combine(const double (*row)[ik::padded], const double* x, int count, double* out) {
+CSPACE_INLINE void combine(const double (*row)[padded], const double* x, int count, double* out) {
     using V = Pack<4>;
-    V sum[ik::padded / 4];
+    V sum[padded / 4];
     for (V& v : sum) v = fill<V>(0.0);
     for (int j = 0; j < count; ++j)
-        for (int i = 0; i < ik::padded / 4; ++i)
-            sum[i] = mul_add(fill<V>(x[j]), load<V>(row[j] + 4 * i), sum[i]);
-    for (int i = 0; i < ik::padded / 4; ++i) store(out + 4 * i, sum[i]);
+        for (int i = 0; i < padded / 4; ++i) sum[i] = mul_add(fill<V>(x[j]), load<V>(row[j] + 4 * i), sum[i]);
+    for (int i = 0; i < padded / 4; ++i) store(out + 4 * i, sum[i]);
 }
 
 // The arc that starts at sample 2 k; f: the samples, twice round.
-inline void read_arc(const ik::SamplerTables& t, const double* f, int k, ik::Arc& arc) {
-    combine(t.to_arc, f + 2 * k, ik::samples, arc.b);
-    arc.centre = t.angle[2 * k] + pi / ik::samples;
-    arc.quarter = 2 * pi / ik::arcs / 4;
+inline void read_arc(const SamplerTables& t, const double* f, int k, Arc& arc) {
+    combine(t.to_arc, f + 2 * k, samples, arc.b);
+    arc.centre = t.angle[2 * k] + pi / samples;
+    arc.quarter = 2 * pi / arcs / 4;
     arc.from = 0;
     arc.to = 1;
     arc.resampled = false;
@@ -178,41 +177,41 @@ inline void read_arc(const ik::SamplerTables& t, const double* f, int k, ik::Arc
 // drown in the noise of the samples are dropped: what they would put into the Bernstein form is noise
 // enlarged.
 template <class Function>
-inline void resample(const ik::SamplerTables& t, const Function& f, double unit, double centre,
-                     double quarter, ik::Arc& arc) {
+inline void resample(const SamplerTables& t, const Function& f, double unit, double centre, double quarter,
+                     Arc& arc) {
     using V = Pack<4>;
-    double g[ik::padded], largest = 0;
-    for (int m = 0; m < ik::padded; m += 4) {
+    double g[padded], largest = 0;
+    for (int m = 0; m < padded; m += 4) {
         V angle, s, c;
         for (int k = 0; k < 4; ++k) set_lane(angle, k, centre + arc_angle(t.node[m + k], quarter));
         sincos(angle, s, c);
         store(g + m, f(c, s));
     }
-    for (int m = 0; m <= ik::degree; ++m) {
+    for (int m = 0; m <= degree; ++m) {
         g[m] *= arc_weight(t.node[m], quarter) / unit;
         largest = max(largest, std::fabs(g[m]));
     }
-    for (int m = ik::degree + 1; m < ik::padded; ++m) g[m] = 0;
-    double c[ik::degree + 1];
-    for (int n = 0; n <= ik::degree; ++n) {
+    for (int m = degree + 1; m < padded; ++m) g[m] = 0;
+    double c[degree + 1];
+    for (int n = 0; n <= degree; ++n) {
         double sum = 0;
-        for (int m = 0; m < ik::padded; ++m) sum += t.to_chebyshev[n][m] * g[m];
+        for (int m = 0; m < padded; ++m) sum += t.to_chebyshev[n][m] * g[m];
         c[n] = sum;
     }
     // On a piece of an arc the last coefficients are nothing but noise, and measure it.
     double tail = 0;
-    for (int n = ik::degree - 2; n <= ik::degree; ++n) tail = max(tail, std::fabs(c[n]));
+    for (int n = degree - 2; n <= degree; ++n) tail = max(tail, std::fabs(c[n]));
     const double noise = max(1e-15 * largest, 8 * tail);
     int top = 0;
-    for (int n = 0; n <= ik::degree; ++n)
+    for (int n = 0; n <= degree; ++n)
         if (std::fabs(c[n]) > noise) top = n;
     combine(t.to_bernstein, c, top + 1, arc.b);
     arc.centre = centre;
     arc.quarter = quarter;
     arc.from = 0;
     arc.to = 1;
-    arc.noise = noise * (ik::degree - top + 2 * t.bernstein_gain[top]);
+    arc.noise = noise * (degree - top + 2 * t.bernstein_gain[top]);
     arc.resampled = true;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

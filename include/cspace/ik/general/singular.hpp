@@ -6,10 +6,10 @@
 #include "cspace/ik/perturbed_goals.hpp"
 #include "cspace/ik/self_motion/self_motion.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // A family needs a direction in which the arm hardly moves its tip; only then is it worth a closer look.
-inline void mark_self_motions(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+inline void mark_self_motions(const GeneralPlan& plan, const Posed& goal, Solutions& out) {
     constexpr double hardly = 1e-6;
     for (int k = 0; k < out.count; ++k) {
         PoseError error;
@@ -18,18 +18,18 @@ inline void mark_self_motions(const ik::GeneralPlan& plan, const Posed& goal, ik
         decompose(error.jacobian);
         out.self_motion[k] =
             find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);
-        if (out.self_motion[k]) out.status = ik::Status::singular;
+        if (out.self_motion[k]) out.status = Status::singular;
     }
 }
 
 // Where a determinant vanishes all round the circle a family runs through every hidden angle, and where a
 // completed arm is singular the arm itself need not be: what is there is found by descent from configurations
 // all over the joints.
-inline void search_by_descent(const ik::Chain& chain, const Posed& goal, double length, int starts,
-                              ik::Solutions& out) {
+inline void search_by_descent(const Chain& chain, const Posed& goal, double length, int starts,
+                              Solutions& out) {
     constexpr int most_steps = 60;
-    for (int k = 0; k < starts && out.count < ik::max_solutions; ++k) {
-        double q[ik::max_joints];
+    for (int k = 0; k < starts && out.count < max_solutions; ++k) {
+        double q[max_joints];
         spread_configuration(k, chain.n, q);
         for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
         descend_to_solution(chain, goal, length, q, most_steps, out);
@@ -38,7 +38,7 @@ inline void search_by_descent(const ik::Chain& chain, const Posed& goal, double 
 }
 
 // Slides in metres again, and directions of length one.
-inline void in_metres(const ik::Chain& chain, double length, ik::Solutions& out) {
+inline void in_metres(const Chain& chain, double length, Solutions& out) {
     for (int k = 0; k < out.count; ++k) {
         for (int i = 0; i < chain.n; ++i)
             if (chain.prismatic[i]) out.q[k][i] *= length;
@@ -52,14 +52,13 @@ inline void in_metres(const ik::Chain& chain, double length, ik::Solutions& out)
 }
 
 // Of the completed arm's solutions those with virtual joints at zero, on the arm itself.
-inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed& goal,
-                                            const ik::Solutions& six) {
+inline Solutions without_virtual_joints(const Chain& chain, const Posed& goal, const Solutions& six) {
     constexpr double stray = 1e-3;  // rounding beside singularities of the completed arm
-    ik::Solutions out;
+    Solutions out;
     out.complete = six.complete;
     out.crowded = six.crowded;
     for (int k = 0; k < six.count; ++k) {
-        double q[ik::max_joints], off = 0;
+        double q[max_joints], off = 0;
         for (int i = 0; i < 6; ++i) q[i] = six.q[k][i];
         for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(q[i]));
         if (off < stray) accept_solution(out, chain, goal, 1, q, out.count, 20);
@@ -70,15 +69,15 @@ inline ik::Solutions without_virtual_joints(const ik::Chain& chain, const Posed&
 // What a second look may still find where the solver did not certify its list, or where slides, wrists and
 // virtual joints may hide a singular pose: from goals beside this one, and by descent. Lengths are over the
 // arm's.
-inline void look_at_perturbed_goals(const ik::GeneralArm& arm, const ik::Chain& chain, const Posed& goal,
-                                    bool certain, ik::Solutions& out) {
+inline void look_at_perturbed_goals(const GeneralArm& arm, const Chain& chain, const Posed& goal,
+                                    bool certain, Solutions& out) {
     constexpr double hardly_off = 0.2;
     int there = 0;
     const auto propose = [&](const Posed& beside, const auto& add_candidate) {
-        ik::Solutions six;
+        Solutions six;
         arm.solve(arm, beside, six);
         for (int k = 0; k < six.count; ++k) {
-            double off = 0, q[ik::max_joints], turned[ik::max_joints];
+            double off = 0, q[max_joints], turned[max_joints];
             for (int i = chain.n; i < 6; ++i) off = max(off, std::fabs(six.q[k][i]));
             there += off < hardly_off;
             for (int i = 0; i < chain.n; ++i) {
@@ -99,13 +98,13 @@ inline void look_at_perturbed_goals(const ik::GeneralArm& arm, const ik::Chain& 
 }
 
 // goal and `idle`, the values that leading joints of families take (null: zero): in metres, as is the answer.
-inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Posed& goal_in_metres,
-                                             const double* unconstrained = nullptr) {
+inline Solutions solve_general_carefully(const GeneralArm& arm, const Posed& goal_in_metres,
+                                         const double* unconstrained = nullptr) {
     const double length = arm.plan.length;
     const Posed goal = {goal_in_metres.R, (1 / length) * goal_in_metres.t};
-    ik::Chain chain = arm.plan.chain;
+    Chain chain = arm.plan.chain;
     chain.n = arm.chain.n;
-    ik::Solutions out;
+    Solutions out;
     arm.solve(arm, goal, out);
     const bool certain = out.complete && !out.crowded, completed = chain.n < 6;
     if (completed) out = without_virtual_joints(chain, goal, out);
@@ -116,8 +115,8 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
         look_at_perturbed_goals(arm, chain, goal, certain, out);
     if (!certain && !completed) mark_self_motions(arm.plan, goal, out);
     classify_solutions(out);
-    if (out.status == ik::Status::singular) {
-        double rest[ik::max_joints];
+    if (out.status == Status::singular) {
+        double rest[max_joints];
         for (int i = 0; i < chain.n; ++i)
             rest[i] = unconstrained ? unconstrained[i] / (chain.prismatic[i] ? length : 1) : 0;
         keep_one_per_self_motion(chain, goal, rest, out);
@@ -126,4 +125,4 @@ inline ik::Solutions solve_general_carefully(const ik::GeneralArm& arm, const Po
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -27,7 +27,7 @@ struct Certificate {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline constexpr double clear_equation =
     1e-8;                                     // its rounding moves no pair of roots that the signs would miss
@@ -38,8 +38,8 @@ inline constexpr double equation_error = 3e-14;  // of their entries, with a mar
 inline constexpr double near_roots = 3e-3;       // [rad] hidden angles this close share a null plane
 
 // The null vectors of hidden angles, four at a time.
-inline void follow_roots(const ik::Loop& loop, const Elimination& e, const double* angle, int count,
-                         bool close, ik::Candidates& out) {
+inline void follow_roots(const Loop& loop, const Elimination& e, const double* angle, int count, bool close,
+                         Candidates& out) {
     using V = Pack<4>;
     const bool doubled = !(e.a4_rank > 1e-6);
     for (int first = 0; first < count; first += 4) {
@@ -58,8 +58,8 @@ inline void follow_roots(const ik::Loop& loop, const Elimination& e, const doubl
 }
 
 // Both solutions of the null planes that belong to hidden angles, four at a time.
-inline void split_planes(const ik::Loop& loop, const Elimination& e, const double* angle, int count,
-                         ik::Candidates& out) {
+inline void split_planes(const Loop& loop, const Elimination& e, const double* angle, int count,
+                         Candidates& out) {
     using V = Pack<4>;
     const bool doubled = !(e.a4_rank > 1e-6);
     for (int first = 0; first < count; first += 4) {
@@ -86,20 +86,19 @@ inline void split_planes(const ik::Loop& loop, const Elimination& e, const doubl
 }
 
 // How many solutions a root announces. Where noise hides whether there is a pair of roots, it counts as one.
-inline int announced_roots(const ik::HiddenAngle& root, double slip) {
-    const bool hidden_pair =
-        root.expected == ik::unknown || (root.expected == ik::nearly_two && root.depth < slip);
+inline int announced_roots(const HiddenAngle& root, double slip) {
+    const bool hidden_pair = root.expected == unknown || (root.expected == nearly_two && root.depth < slip);
     return hidden_pair ? 2 : std::max(root.expected, 0);
 }
 
 // How many more there are about a root than it and those beside it announce: pairs that the signs do not
 // show. None of roots that are there for every goal.
-inline int hidden_beside(const ik::Certificate& seen, const ik::HiddenAngle& root) {
+inline int hidden_beside(const Certificate& seen, const HiddenAngle& root) {
     int shown = 0;
     for (int j = 0; j < seen.hidden.count; ++j) {
-        const ik::HiddenAngle& other = seen.hidden.root[j];
+        const HiddenAngle& other = seen.hidden.root[j];
         if (!(std::fabs(short_way(other.angle - root.angle)) < order_seen)) continue;
-        if (other.expected == ik::spurious) return 0;
+        if (other.expected == spurious) return 0;
         shown += announced_roots(other, seen.slip);
     }
     return std::max(root.order - shown, 0) / 2 * 2;
@@ -109,13 +108,12 @@ inline int hidden_beside(const ik::Certificate& seen, const ik::HiddenAngle& roo
 struct Around {
     int expected = 0, there = 0;
 };
-inline Around count_around(const ik::Certificate& seen, const ik::Solutions& found, const bool* twice,
-                           double angle) {
+inline Around count_around(const Certificate& seen, const Solutions& found, const bool* twice, double angle) {
     const auto is_near = [&](double a) { return std::fabs(short_way(a - angle)) < near_roots; };
     Around out;
     int hidden = 0;
     for (int j = 0; j < seen.hidden.count; ++j) {
-        const ik::HiddenAngle& root = seen.hidden.root[j];
+        const HiddenAngle& root = seen.hidden.root[j];
         if (!is_near(root.angle)) continue;
         out.expected += announced_roots(root, seen.slip);
         if (root.order > 2) hidden = std::max(hidden, hidden_beside(seen, root));
@@ -128,13 +126,13 @@ inline Around count_around(const ik::Certificate& seen, const ik::Solutions& fou
 
 // Whether every announced root has brought its solutions: around each hidden angle there are at least as many
 // solutions as roots, and an even number in all.
-inline bool all_matched(const ik::Certificate& seen, const ik::Solutions& found, const bool* twice) {
+inline bool all_matched(const Certificate& seen, const Solutions& found, const bool* twice) {
     int count = 0;
     for (int j = 0; j < found.count; ++j) count += twice[j] ? 2 : 1;
     if (count % 2 != 0) return false;
     for (int k = 0; k < seen.hidden.count; ++k) {
-        const ik::HiddenAngle& root = seen.hidden.root[k];
-        if (root.expected == ik::nearly_two && !(root.depth < seen.slip)) continue;
+        const HiddenAngle& root = seen.hidden.root[k];
+        if (root.expected == nearly_two && !(root.depth < seen.slip)) continue;
         const Around here = count_around(seen, found, twice, root.angle);
         if (here.there < here.expected) return false;
     }
@@ -142,7 +140,7 @@ inline bool all_matched(const ik::Certificate& seen, const ik::Solutions& found,
 }
 
 // Hidden angles that stand beside others, or are themselves more than one.
-inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
+inline int mark_close(const HiddenAngles& hidden, bool* close) {
     int count = 0;
     for (int k = 0; k < hidden.count; ++k) {
         close[k] = hidden.root[k].width > 0;
@@ -157,10 +155,10 @@ inline int mark_close(const ik::HiddenAngles& hidden, bool* close) {
 // Whether solutions far from each other share a hidden angle and its roots may not show how many they are:
 // there are more of them already, or they stand where roots are not told apart and not by the arm's nature
 // (`paired`).
-inline bool share_angles(const ik::Certificate& seen, const ik::Chain& chain, const ik::Solutions& found,
+inline bool share_angles(const Certificate& seen, const Chain& chain, const Solutions& found,
                          const bool* twice, bool paired) {
     constexpr double far = 0.01, unresolved = 2e-4, exactly = 1e-6;
-    bool close[ik::max_roots];
+    bool close[max_roots];
     mark_close(seen.hidden, close);
     for (int k = 0; k < seen.hidden.count; ++k) {
         if (!close[k]) continue;
@@ -184,14 +182,13 @@ inline bool share_angles(const ik::Certificate& seen, const ik::Chain& chain, co
     return false;
 }
 
-inline void mark_doubles(const ik::GeneralPlan& plan, const Posed& goal, const ik::Solutions& found,
-                         bool* twice) {
+inline void mark_doubles(const GeneralPlan& plan, const Posed& goal, const Solutions& found, bool* twice) {
     for (int k = 0; k < found.count; ++k) twice[k] = is_double(plan, goal, found.q[k]);
 }
 
 // On both sheets of each hidden angle: one of them is meant, unless noise hides which.
-inline bool follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidden, const bool* close,
-                          ik::Candidates& out) {
+inline bool follow_sheets(const TwoSheets& sheets, const HiddenAngles& hidden, const bool* close,
+                          Candidates& out) {
     constexpr double clearly = 1e-3;
     bool doubtful = false;
     for (int k = 0; k < hidden.count; ++k) {
@@ -213,10 +210,10 @@ inline bool follow_sheets(const TwoSheets& sheets, const ik::HiddenAngles& hidde
 
 // Null vectors of the hidden angles that stand alone, null planes of the others; these by null vectors too if
 // asked `again`. True where each angle has two candidates, of which one may be a solution's twin.
-inline bool follow_angles(const ik::Loop& loop, const Elimination& e, const ik::HiddenAngles& hidden,
-                          const bool* close, bool again, ik::Candidates& out) {
+inline bool follow_angles(const Loop& loop, const Elimination& e, const HiddenAngles& hidden,
+                          const bool* close, bool again, Candidates& out) {
     constexpr double same_plane = 1e-4;
-    double alone[ik::max_roots], beside[ik::max_roots], plane[ik::max_roots], last = 100;
+    double alone[max_roots], beside[max_roots], plane[max_roots], last = 100;
     int n_alone = 0, n_beside = 0, n_planes = 0;
     for (int k = 0; k < hidden.count; ++k) {
         const double angle = hidden.root[k].angle;
@@ -233,38 +230,38 @@ inline bool follow_angles(const ik::Loop& loop, const Elimination& e, const ik::
 }
 
 // Of roots that are there for every goal no solutions are expected.
-inline void expect_no_ghosts(const ik::GeneralPlan& plan, int number, ik::HiddenAngles& hidden) {
-    const double* const spurious = plan.spurious + number * ik::GeneralPlan::most_ghosts;
+inline void expect_no_ghosts(const GeneralPlan& plan, int number, HiddenAngles& hidden) {
+    const double* const angles = plan.spurious + number * GeneralPlan::most_ghosts;
     for (int k = 0; k < hidden.count; ++k) {
-        ik::HiddenAngle& root = hidden.root[k];
+        HiddenAngle& root = hidden.root[k];
         const double spread = root.order > 2 ? order_seen : as_isolated;  // of several on one place
         for (int j = 0; j < plan.spurious_roots[number]; ++j)
-            if (std::fabs(short_way(root.angle - spurious[j])) < spread) root.expected = ik::spurious;
+            if (std::fabs(short_way(root.angle - angles[j])) < spread) root.expected = spurious;
     }
 }
 
 // All solutions by the roots of f, a function of the hidden angle of formulation `number`; `follow` makes
 // candidates of them, and more where its first did not bring as many solutions as there must be.
 template <class Function, class Follow>
-inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const Posed& goal, int number,
-                                             const ik::Loop& loop, double slip, const Function& f,
-                                             const Follow& follow, ik::Solutions& out) {
-    ik::Certificate seen;
+inline Certificate solve_by_hidden_angle(const GeneralPlan& plan, const Posed& goal, int number,
+                                         const Loop& loop, double slip, const Function& f,
+                                         const Follow& follow, Solutions& out) {
+    Certificate seen;
     seen.slip = slip;
-    ik::HiddenAngles& hidden = seen.hidden;
+    HiddenAngles& hidden = seen.hidden;
     isolate(f, rough_root, hidden);
     seen.joint = loop.joint[0];
     seen.sign = loop.sign;
     seen.work = hidden.evaluations;
     if (hidden.alias > regular_alias) return seen;
     expect_no_ghosts(plan, number, hidden);
-    bool close[ik::max_roots], folds = false;
+    bool close[max_roots], folds = false;
     seen.clusters = mark_close(hidden, close);
     for (int k = 0; k < hidden.count; ++k) folds |= hidden.root[k].width > 0;
-    ik::Candidates found;
+    Candidates found;
     folds |= follow(hidden, close, false, found);
     admit_candidates(plan, goal, 0, found, out);
-    bool twice[ik::max_solutions] = {};
+    bool twice[max_solutions] = {};
     if (folds || !all_matched(seen, out, twice)) add_near_double_roots(plan, goal, found, out);
     seen.work += found.count;
     bool all = all_matched(seen, out, twice);
@@ -285,49 +282,47 @@ inline ik::Certificate solve_by_hidden_angle(const ik::GeneralPlan& plan, const 
 
 // Whether a formulation can be asked of these joints: the hidden angle, the one that is stripped and the one
 // that is eliminated last must turn.
-inline bool is_possible(const ik::Loop& loop, ik::Formulation form) {
+inline bool is_possible(const Loop& loop, Formulation form) {
     int slides = 0;
     for (const bool s : loop.slides) slides += s;
     if (slides == 2) return !loop.slides[0] && !form.backwards;
     return slides < 2 && !loop.slides[0] && !loop.slides[3] && !loop.slides[5];
 }
 
-inline ik::Certificate solve_formulation(const ik::GeneralPlan& plan, const Posed& goal, int number,
-                                         ik::Solutions& out) {
-    const ik::Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
+inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal, int number, Solutions& out) {
+    const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
     if (!is_possible(loop, formulation(number))) return {};
     if (plan.slides == 2) {
         const TwoSheets sheets = two_sheets(loop);
         if (!(min(sheets.square_end, sheets.square_corner) > clear_sheets)) {
-            ik::Certificate vanished;
+            Certificate vanished;
             vanished.hidden.alias = 1;
             return vanished;
         }
         const auto f = [&](Pack<4> c, Pack<4> s) { return lack_on_both(sheets, c, s); };
-        const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, bool again,
-                                ik::Candidates& found) {
+        const auto follow = [&](const HiddenAngles& hidden, const bool* close, bool again,
+                                Candidates& found) {
             return !again && follow_sheets(sheets, hidden, close, found);
         };
         return solve_by_hidden_angle(plan, goal, number, loop, 0, f, follow, out);
     }
     const Elimination e = eliminate(loop);
     const auto f = [&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); };
-    const auto follow = [&](const ik::HiddenAngles& hidden, const bool* close, bool again,
-                            ik::Candidates& found) {
+    const auto follow = [&](const HiddenAngles& hidden, const bool* close, bool again, Candidates& found) {
         return follow_angles(loop, e, hidden, close, again, found);
     };
     const double slip = plan.sensitivity[number] * equation_error / min(e.faintest, 1.0);
-    ik::Certificate seen = solve_by_hidden_angle(plan, goal, number, loop, slip, f, follow, out);
+    Certificate seen = solve_by_hidden_angle(plan, goal, number, loop, slip, f, follow, out);
     seen.trusted = seen.trusted && e.faintest > clear_equation;
     seen.complete = seen.complete && seen.trusted;
     return seen;
 }
 
 // Of three joints that turn and three that slide.
-inline bool solve_orientation_first(const ik::GeneralPlan& plan, const Posed& goal, ik::Solutions& out) {
+inline bool solve_orientation_first(const GeneralPlan& plan, const Posed& goal, Solutions& out) {
     constexpr double clear = 1e-9, flat = 1e-9;
     const TwoOrientations both = two_orientations(plan.chain, orientation_first(plan.chain), goal);
-    ik::Candidates found;
+    Candidates found;
     for (int k = 0; k < both.count; ++k) append_candidate(found, both.q[k], both.inside < 1e-6);
     admit_candidates(plan, goal, 0, found, out);
     add_near_double_roots(plan, goal, found, out);
@@ -335,4 +330,4 @@ inline bool solve_orientation_first(const ik::GeneralPlan& plan, const Posed& go
     return both.volume > flat && std::fabs(both.inside) > clear;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -5,7 +5,7 @@
 
 #include "cspace/math/turn.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // R(h1, q1) R(h2, q2) R(h3, q3) = G; what h1 sees of h3 fixes q2:  a cos q2 + b sin q2 + constant = h1 G h3.
 struct ThreeTurns {
@@ -20,9 +20,9 @@ struct TurnedTwice {
     double inside;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline ThreeTurns three_turns(const Vec3d& h1, const Vec3d& h2, const Vec3d& h3) {
     ThreeTurns out = {{h1, h2, h3}, 0, 0, dot(h1, h2) * dot(h2, h3)};
@@ -60,4 +60,4 @@ inline TurnedTwice solve(const ThreeTurns& turns, const Mat3d& G) {
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -12,7 +12,7 @@
 #include "cspace/ik/general/loop.hpp"
 #include "cspace/math/turn.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct TwoSheets {
     Mat3d A[4];
@@ -44,12 +44,12 @@ struct AtHiddenAngle {
     OnSheets<V> p, D[2];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Of a loop that starts with a turn and holds two slides.
-inline TwoSheets two_sheets(const ik::Loop& loop) {
+inline TwoSheets two_sheets(const Loop& loop) {
     TwoSheets out;
     int turns = 0, slides = 0;
     Posed link = identity_pose();
@@ -177,4 +177,4 @@ inline void joints_on_sheet(const TwoSheets& s, const AtHiddenAngle<double>& at,
     q[s.slide[1]] = -scale * dot(cross(D, p), normal);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -6,17 +6,17 @@
 
 #include "cspace/ik/general/perturbed_arms.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline constexpr double regular_enough = 1e-3;  // singular value of a completed Jacobian
 
 // How well a completed arm is conditioned where its virtual joints are zero: the median over some
 // configurations of the smallest singular value.
-inline double completed_conditioning(const ik::Chain& six, int joints) {
+inline double completed_conditioning(const Chain& six, int joints) {
     constexpr int trials = 5;
     double sigma[trials];
     for (int k = 0; k < trials; ++k) {
-        double q[ik::max_joints];
+        double q[max_joints];
         spread_configuration(k, 6, q);
         for (int i = joints; i < 6; ++i) q[i] = 0;
         PoseError error;
@@ -32,8 +32,8 @@ inline double completed_conditioning(const ik::Chain& six, int joints) {
 }
 
 // The chain with virtual joints, the first `slides` of which slide, in directions without a pattern.
-inline ik::Chain with_virtual_joints(const ik::Chain& chain, int slides, int choice) {
-    ik::Chain six = chain;
+inline Chain with_virtual_joints(const Chain& chain, int slides, int choice) {
+    Chain six = chain;
     six.n = 6;
     for (int i = chain.n; i < 6; ++i) {
         const Vec3d direction = pattern_vector(7 * choice + 2 * i),
@@ -46,10 +46,10 @@ inline ik::Chain with_virtual_joints(const ik::Chain& chain, int slides, int cho
 }
 
 // A wrist made of the turning joints at one end and virtual ones square to them.
-inline bool with_virtual_wrist(const ik::Chain& chain, ik::Chain& best) {
+inline bool with_virtual_wrist(const Chain& chain, Chain& best) {
     if (chain.n < 4) return false;
     const Vec3d& last = chain.axis[chain.n - 1];
-    ik::Chain six = chain;
+    Chain six = chain;
     six.n = 6;
     Vec3d centre = chain.point[chain.n - 1] + dot(chain.tip.t - chain.point[chain.n - 1], last) * last;
     if (chain.n == 5) {
@@ -72,7 +72,7 @@ inline bool with_virtual_wrist(const ik::Chain& chain, ik::Chain& best) {
 
 // The more of six joints slide, up to three, the simpler their equations. Returns whether any choice makes
 // the arm regular; its lengths are over its own.
-inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
+inline bool complete_arm(const Chain& chain, Chain& best) {
     constexpr int choices = 12;
     if (with_virtual_wrist(chain, best)) return true;
     int sliding = 0;
@@ -80,7 +80,7 @@ inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
     for (int slides = std::min(6 - chain.n, 3 - sliding); slides >= 0; --slides) {
         double most = regular_enough;
         for (int choice = 0; choice < choices; ++choice) {
-            const ik::Chain six = with_virtual_joints(chain, slides, choice);
+            const Chain six = with_virtual_joints(chain, slides, choice);
             const double sigma = completed_conditioning(six, chain.n);
             if (sigma > most) {
                 most = sigma;
@@ -94,14 +94,14 @@ inline bool complete_arm(const ik::Chain& chain, ik::Chain& best) {
 
 // The solver of an arm of up to six joints none of which is to spare; false for others. `arm.alone` says
 // whether it has to do without neighbours.
-CSPACE_ONCE bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
+CSPACE_ONCE bool make_general_arm(const Chain& chain, GeneralArm& arm) {
     const bool alone = arm.alone;
     arm = {};
     arm.alone = alone;
     arm.chain = chain;
     arm.solve = &solve_general;
     const double length = characteristic_length(chain);
-    ik::Chain six = in_units_of(length, chain);
+    Chain six = in_units_of(length, chain);
     if (chain.n > 6 || (chain.n < 6 && !complete_arm(in_units_of(length, chain), six))) return false;
     arm.plan.chain = six;
     if (is_redundant(six)) return false;
@@ -119,13 +119,12 @@ CSPACE_ONCE bool make_general_arm(const ik::Chain& chain, ik::GeneralArm& arm) {
 // The same arm with other numbers, say with another value of a joint that is held: the choices that were made
 // for `typical` (virtual joints, formulations and their order) stay, for to make them takes a thousand times
 // as long as to use them.
-CSPACE_ONCE bool renumber_general_arm(const ik::GeneralArm& typical, const ik::Chain& chain,
-                                      ik::GeneralArm& arm) {
+CSPACE_ONCE bool renumber_general_arm(const GeneralArm& typical, const Chain& chain, GeneralArm& arm) {
     arm = typical;
     arm.chain = chain;
     const double length = characteristic_length(chain);
-    ik::Chain six = typical.plan.chain;
-    const ik::Chain own = in_units_of(length, chain);
+    Chain six = typical.plan.chain;
+    const Chain own = in_units_of(length, chain);
     for (int i = 0; i < chain.n; ++i) {
         six.axis[i] = own.axis[i];
         six.point[i] = own.point[i];
@@ -144,4 +143,4 @@ CSPACE_ONCE bool renumber_general_arm(const ik::GeneralArm& typical, const ik::C
     return !is_redundant(six);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -4,16 +4,16 @@
 #include "cspace/ik/refine.hpp"
 #include "cspace/math/linear.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The smallest singular value with its vectors: J v = σ u.
 struct WeakDirection {
     double sigma, v[6], u[6];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline double make_unit6(double* v) {
     const double size = std::sqrt(dot_n(v, v, 6));
@@ -53,4 +53,4 @@ inline WeakDirection weak_direction(const double (*columns)[6]) {
     return out;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -12,7 +12,7 @@
 #include <cmath>
 #include <vector>
 
-namespace cspace {
+namespace cspace::ik {
 
 struct BoxQp {
     int n;
@@ -142,4 +142,4 @@ inline int solve(BoxQp& p, double* x) {
     return -1;
 }
 
-}  // namespace cspace
+}  // namespace cspace::ik

@@ -13,13 +13,13 @@
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/numeric/step.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // Items k = 0 … count − 1: item k is row `pick[k]`, or k where pick is null. A stride is the number of values
 // per row, and 0 where all rows share one.
 struct DescentRows {
-    const ik::Path* path;
-    const ik::Task* task;
+    const Path* path;
+    const Task* task;
     const double* goals;  // T_base_tip, 16 numbers each
     std::size_t goal_stride;
     const double* starts;  // (n,) each
@@ -33,22 +33,22 @@ struct DescentRows {
     double* position;     // [m]
     double* rotation;     // [rad]
     std::int32_t* steps;  // how many it took
-    ik::Ending* ending;
+    Ending* ending;
 };
 
 // The lanes of a descent.
 template <class V>
 struct Descent {
     Pose<V> T_goal_first;
-    V q[ik::max_joints], trial[ik::max_joints];
+    V q[max_joints], trial[max_joints];
     Gap<V> at, there;  // at q, and at the trial
     V cost, mu, slow, steps;
     V fresh, near;  // 1 or 0: just begun; within the tolerance already
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace descent {
 inline constexpr double first_mu = 0.1, least_mu = 1e-7, largest_mu = 1e7;
@@ -68,7 +68,7 @@ inline constexpr double newton_floor = 1e-15;
 
 // Evaluates the trial. It becomes the current iterate if it is better, or if it must be accepted.
 template <class V>
-CSPACE_INLINE void take_trial(const ik::Path& path, const Rows& rows, bool always, Descent<V>& d) {
+CSPACE_INLINE void take_trial(const Path& path, const Rows& rows, bool always, Descent<V>& d) {
     V cost = fill<V>(0.0);
     for (int r = 0; r < rows.m; ++r) cost = mul_add(0.5 * d.there.e[r], d.there.e[r], cost);
     const mask_of<V> begun = d.fresh > 0.5;
@@ -92,7 +92,7 @@ CSPACE_INLINE void take_trial(const ik::Path& path, const Rows& rows, bool alway
 // The lanes that have finished. A descent within the tolerance continues while it makes good progress: the
 // last steps cost little and reduce the error to rounding.
 template <class V>
-CSPACE_INLINE mask_of<V> ended(const ik::Path& path, const ik::Task& task, Descent<V>& d) {
+CSPACE_INLINE mask_of<V> ended(const Path& path, const Task& task, Descent<V>& d) {
     const V gap = max(d.at.position, d.at.rotation);
     const mask_of<V> inside = gap <= task.tolerance;
     const mask_of<V> settled =
@@ -105,8 +105,8 @@ CSPACE_INLINE mask_of<V> ended(const ik::Path& path, const ik::Task& task, Desce
 
 // The next trial of each lane.
 template <class V>
-CSPACE_INLINE void next_trial(const ik::Path& path, const ik::Task& task, const Rows& rows, Descent<V>& d) {
-    V loose[ik::max_joints], dx[ik::max_joints];
+CSPACE_INLINE void next_trial(const Path& path, const Task& task, const Rows& rows, Descent<V>& d) {
+    V loose[max_joints], dx[max_joints];
     const V one = fill<V>(1.0), zero = fill<V>(0.0);
     for (int j = 0; j < path.n; ++j) {
         loose[j] = one;
@@ -118,7 +118,7 @@ CSPACE_INLINE void next_trial(const ik::Path& path, const ik::Task& task, const 
         loose[j] = select(active, zero, one);
     }
     V damping = 2.0 * d.mu * d.cost + 1e-30;
-    if (task.method == ik::Method::newton) {
+    if (task.method == Method::newton) {
         damping = fill<V>(1e-30);
         for (int r = 0; r < rows.m; ++r)
             for (int j = 0; j < path.n; ++j)
@@ -161,11 +161,11 @@ template <class V>
 bool end_lane(const DescentRows& rows, std::size_t row, int l, const Descent<V>& d) {
     const double position = lane(d.at.position, l), rotation = lane(d.at.rotation, l), cost = lane(d.cost, l);
     const bool reached = position <= rows.task->tolerance && rotation <= rows.task->tolerance;
-    const bool known = rows.ending[row] != ik::Ending::unknown;
-    if (known && (rows.ending[row] == ik::Ending::reached || !(cost < rows.cost[row]))) return reached;
-    rows.ending[row] = reached                                             ? ik::Ending::reached
-                       : lane(d.steps, l) >= double(rows.task->most_steps) ? ik::Ending::exhausted
-                                                                           : ik::Ending::stalled;
+    const bool known = rows.ending[row] != Ending::unknown;
+    if (known && (rows.ending[row] == Ending::reached || !(cost < rows.cost[row]))) return reached;
+    rows.ending[row] = reached                                             ? Ending::reached
+                       : lane(d.steps, l) >= double(rows.task->most_steps) ? Ending::exhausted
+                                                                           : Ending::stalled;
     rows.cost[row] = cost;
     rows.steps[row] = std::int32_t(lane(d.steps, l));
     rows.position[row] = position;
@@ -178,7 +178,7 @@ template <class V>
 void run_descents(const DescentRows& rows) {
     constexpr int lanes = Lanes<V>::count;
     const Rows counted = rows_of(*rows.task);
-    const bool always = rows.task->method == ik::Method::newton;
+    const bool always = rows.task->method == Method::newton;
     Descent<V> d;
     for (V& x : d.trial) x = fill<V>(0.0);
     d.T_goal_first = fill_pose<V>(rows.path->T_base_first);
@@ -214,4 +214,4 @@ void run_descents(const DescentRows& rows) {
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -7,7 +7,7 @@
 
 #include "cspace/ik/numeric/task.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The rows of the error with nonzero weight, lengths divided by that of the path, times their weights.
 struct Rows {
@@ -21,15 +21,15 @@ struct Rows {
 template <class V>
 struct Gap {
     V e[6];
-    V J[6][ik::max_joints];  // −∂e/∂x of the coordinates x, slides over the length of the path
-    V position, rotation;    // lengths of the counted parts [m, rad]
+    V J[6][max_joints];    // −∂e/∂x of the coordinates x, slides over the length of the path
+    V position, rotation;  // lengths of the counted parts [m, rad]
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline Rows rows_of(const ik::Task& task) {
+inline Rows rows_of(const Task& task) {
     Rows rows;
     for (int k = 0; k < 6; ++k) {
         if (!(task.weight[k] > 0)) continue;
@@ -92,17 +92,17 @@ CSPACE_INLINE Vec3<V> operator*(const LogRate<V>& rate, const Vec3<V>& omega) {
 
 // T_goal_first: the frame of the first joint relative to the goal.
 template <class V>
-CSPACE_INLINE void measure_gap(const ik::Path& path, const Rows& rows, const Pose<V>& T_goal_first,
-                               const V* q, Gap<V>& out) {
-    V s[ik::max_path + 3], c[ik::max_path + 3];
-    Vec3<V> point[ik::max_path], axis[ik::max_path];
-    const Chain chain = view_of(path);
-    chain_sines(chain, q, s, c);
-    const Pose<V> T =
-        follow_chain(chain, T_goal_first, q, s, c, [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
-            point[i] = p;
-            axis[i] = d;
-        });
+CSPACE_INLINE void measure_gap(const Path& path, const Rows& rows, const Pose<V>& T_goal_first, const V* q,
+                               Gap<V>& out) {
+    V s[max_path + 3], c[max_path + 3];
+    Vec3<V> point[max_path], axis[max_path];
+    const model::Chain chain = view_of(path);
+    kinematics::chain_sines(chain, q, s, c);
+    const Pose<V> T = kinematics::follow_chain(chain, T_goal_first, q, s, c,
+                                               [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
+                                                   point[i] = p;
+                                                   axis[i] = d;
+                                               });
     const V zero = fill<V>(0.0);
     const Vec3<V> w = rows.turns ? log_of(T.R) : Vec3<V>{zero, zero, zero};
     const V error[6] = {T.t.x, T.t.y, T.t.z, w.x, w.y, w.z};
@@ -118,7 +118,7 @@ CSPACE_INLINE void measure_gap(const ik::Path& path, const Rows& rows, const Pos
     out.rotation = sqrt(square[1]);
     const LogRate<V> rate = rows.even ? LogRate<V>{w, zero} : log_rate(w);
     for (int i = 0; i < path.joints; ++i) {
-        const ChainJoint& joint = path.joint[i];
+        const model::ChainJoint& joint = path.joint[i];
         const int j = joint.coordinate;
         const double unit = joint.ratio * (path.slides[j] ? path.length : 1.0);
         const Vec3<V> v = joint.prismatic ? axis[i] : cross(axis[i], T.t - point[i]);
@@ -130,4 +130,4 @@ CSPACE_INLINE void measure_gap(const ik::Path& path, const Rows& rows, const Pos
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

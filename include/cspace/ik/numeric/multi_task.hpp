@@ -6,7 +6,7 @@
 
 #include "cspace/ik/numeric/tasks.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct ServeSettings {
     int most_steps;
@@ -23,9 +23,9 @@ inline constexpr double floor = 1e-13;  // of the damping, so that there is alwa
 inline constexpr double stride = 1.0;   // largest change of a joint, or of the turn of a base, in one step
 }  // namespace serving
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The bounds of the next step: joint limits and the maximum stride.
 inline void bound_step(const TaskProblem& problem, const TaskPlace& at, BoxQp& qp) {
@@ -77,4 +77,4 @@ inline Served serve(const TaskProblem& problem, const ServeSettings& settings, T
     return {settings.most_steps, false};
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -11,7 +11,7 @@ namespace cspace::ik {
 inline constexpr int max_path = 32;  // joints on a path, those that follow another one's coordinate included
 
 struct Path {
-    ChainJoint joint[max_path];  // their coordinates are those of the path, 0 to n − 1
+    model::ChainJoint joint[max_path];  // their coordinates are those of the path, 0 to n − 1
     int joints = 0, n = 0;
     Posed T_base_first;
     double cos_last = 1, sin_last = 0;
@@ -21,25 +21,25 @@ struct Path {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The view that cspace/kinematics evaluates.
-CSPACE_INLINE Chain view_of(const ik::Path& path) {
+CSPACE_INLINE model::Chain view_of(const Path& path) {
     return {path.joint, path.joints, path.n, false, path.T_base_first, path.cos_last, path.sin_last};
 }
 
 // The largest distance between consecutive axes, or from an axis to the tip, with every coordinate at zero; 1
 // if all intersect.
-inline double length_of(const ik::Path& path) {
-    double q[ik::max_joints] = {}, s[ik::max_path + 3], c[ik::max_path + 3];
-    Vec3d point[ik::max_path + 1], axis[ik::max_path];
-    const Chain chain = view_of(path);
-    chain_sines(chain, q, s, c);
-    const Posed tip =
-        follow_chain(chain, path.T_base_first, q, s, c, [&](int i, const Vec3d& p, const Vec3d& d) {
-            point[i] = p;
-            axis[i] = d;
-        });
+inline double length_of(const Path& path) {
+    double q[max_joints] = {}, s[max_path + 3], c[max_path + 3];
+    Vec3d point[max_path + 1], axis[max_path];
+    const model::Chain chain = view_of(path);
+    kinematics::chain_sines(chain, q, s, c);
+    const Posed tip = kinematics::follow_chain(chain, path.T_base_first, q, s, c,
+                                               [&](int i, const Vec3d& p, const Vec3d& d) {
+                                                   point[i] = p;
+                                                   axis[i] = d;
+                                               });
     point[path.joints] = tip.t;
     double longest = 0;
     for (int i = 0; i < path.joints; ++i) {
@@ -58,17 +58,17 @@ inline Mat3d turned_to(const Vec3d& z) {
 }
 
 // The path of an arm given by its joint axes; joint i is coordinate i.
-inline ik::Path path_of(const ik::Chain& chain) {
-    ik::Path path;
+inline Path path_of(const Chain& chain) {
+    Path path;
     path.joints = path.n = chain.n;
-    Posed frame[ik::max_joints + 1];  // of each joint at zero, its axis along z
+    Posed frame[max_joints + 1];  // of each joint at zero, its axis along z
     for (int i = 0; i < chain.n; ++i) frame[i] = {turned_to(chain.axis[i]), chain.point[i]};
     frame[chain.n] = chain.tip;
     path.T_base_first = frame[0];
     double carried = 0;
     for (int i = 0; i < chain.n; ++i) {
-        const Joint joint = {frame[i], i - 1, i, 1.0, 0.0, chain.prismatic[i], 0.0};
-        path.joint[i] = reduce_joint(joint, inverse(frame[i]) * frame[i + 1], carried);
+        const model::Joint joint = {frame[i], i - 1, i, 1.0, 0.0, chain.prismatic[i], 0.0};
+        path.joint[i] = model::reduce_joint(joint, inverse(frame[i]) * frame[i + 1], carried);
         path.slides[i] = chain.prismatic[i];
     }
     path.cos_last = std::cos(carried);
@@ -77,4 +77,4 @@ inline ik::Path path_of(const ik::Chain& chain) {
     return path;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

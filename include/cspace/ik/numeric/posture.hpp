@@ -16,7 +16,7 @@ struct Posture {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace posture {
 inline constexpr int most_steps = 300, corrections = 8;
@@ -31,14 +31,14 @@ inline constexpr double damping = 1e-14;  // keeps a singular Jacobian from over
 
 // A robot and its goal.
 struct SelfMotion {
-    const ik::Path* path;
-    const ik::Task* task;
-    const ik::Posture* posture;
+    const Path* path;
+    const Task* task;
+    const Posture* posture;
     Rows rows;
     Posed T_goal_first;
 };
 
-inline double unit_of(const ik::Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
+inline double unit_of(const Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
 
 inline double posture_cost(const SelfMotion& at, const double* q) {
     double cost = 0;
@@ -48,24 +48,24 @@ inline double posture_cost(const SelfMotion& at, const double* q) {
     }
     return cost;
 }
-inline double size_of(const Gap<double>& gap, const ik::Path& path) {
+inline double size_of(const Gap<double>& gap, const Path& path) {
     return max(gap.position / path.length, gap.rotation);
 }
-inline bool is_at_limit(const ik::Task& task, const double* q, const double* move, int j) {
+inline bool is_at_limit(const Task& task, const double* q, const double* move, int j) {
     return task.limited && ((q[j] <= task.lower[j] && move[j] < 0) || (q[j] >= task.upper[j] && move[j] > 0));
 }
 
 // The null-space direction of steepest descent. Coordinates at limits that it pushes outward stay fixed.
 inline void null_space_move(const SelfMotion& at, const double* q, const Gap<double>& gap, double* move) {
     const int n = at.path->n, m = at.rows.m;
-    double scaled[6][ik::max_joints], root[ik::max_joints], loose[ik::max_joints];
+    double scaled[6][max_joints], root[max_joints], loose[max_joints];
     for (int j = 0; j < n; ++j) {
         root[j] = std::sqrt(at.posture->weight[j]) * unit_of(*at.path, j);
         loose[j] = 1;
         for (int r = 0; r < m; ++r) scaled[r][j] = gap.J[r][j] / root[j];
     }
     for (bool changed = true; changed;) {
-        double wanted[ik::max_joints], back[ik::max_joints], moved[6] = {};
+        double wanted[max_joints], back[max_joints], moved[6] = {};
         for (int j = 0; j < n; ++j) {
             wanted[j] = loose[j] * root[j] * (at.posture->rest[j] - q[j]) / unit_of(*at.path, j);
             for (int r = 0; r < m; ++r) moved[r] += scaled[r][j] * wanted[j];
@@ -107,7 +107,7 @@ inline void add_move(const SelfMotion& at, const double* q, const double* move, 
 // return.
 inline bool back_onto_goal(const SelfMotion& at, double good_enough, double* q, Gap<double>& gap) {
     const int n = at.path->n;
-    double loose[ik::max_joints], dx[ik::max_joints];
+    double loose[max_joints], dx[max_joints];
     for (int j = 0; j < n; ++j)
         loose[j] = !at.task->limited || (at.task->lower[j] < q[j] && q[j] < at.task->upper[j]);
     for (int k = 0; k <= posture::corrections; ++k) {
@@ -123,7 +123,7 @@ inline bool back_onto_goal(const SelfMotion& at, double good_enough, double* q, 
 // Step length along the next move, from the change of the move in the last step (Barzilai & Borwein 1988).
 // The move is the negative gradient on the goal, in the metric of the weights.
 struct Pace {
-    double q[ik::max_joints], move[ik::max_joints];
+    double q[max_joints], move[max_joints];
     bool known = false;
 };
 inline double next_pace(const SelfMotion& at, const double* q, const double* move, Pace& last) {
@@ -142,7 +142,7 @@ inline double next_pace(const SelfMotion& at, const double* q, const double* mov
 
 // Moves q, which reaches the goal, to the posture on the goal that is nearest to rest; returns the error
 // there.
-inline Gap<double> settle_posture(const ik::Path& path, const ik::Task& task, const ik::Posture& wish,
+inline Gap<double> settle_posture(const Path& path, const Task& task, const Posture& wish,
                                   const Posed& T_base_tip, double* q) {
     const SelfMotion at = {&path, &task, &wish, rows_of(task), inverse(T_base_tip) * path.T_base_first};
     Gap<double> gap;
@@ -151,7 +151,7 @@ inline Gap<double> settle_posture(const ik::Path& path, const ik::Task& task, co
     const double good_enough = max(size_of(gap, path), posture::on_goal);
     double cost = posture_cost(at, q);
     for (int step = 0; step < posture::most_steps; ++step) {
-        double move[ik::max_joints], next[ik::max_joints], reach = 0;
+        double move[max_joints], next[max_joints], reach = 0;
         null_space_move(at, q, gap, move);
         for (int j = 0; j < path.n; ++j) reach = max(reach, std::fabs(move[j]) / unit_of(path, j));
         if (!(reach > posture::settled)) break;
@@ -175,4 +175,4 @@ inline Gap<double> settle_posture(const ik::Path& path, const ik::Task& task, co
     return gap;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

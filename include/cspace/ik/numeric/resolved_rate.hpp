@@ -9,7 +9,7 @@
 #include "cspace/math/small_svd.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 inline constexpr int max_rate_columns = 128;
 
@@ -21,9 +21,9 @@ struct RateSettings {
 
 using RateSvd = SmallSvd<max_rate_columns, 6>;
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The largest fraction of `extra`, up to 1, that keeps base + share · extra within ±most; 0 if base is
 // outside.
@@ -140,4 +140,4 @@ inline void resolved_rate(const double* J, int dof, const double* twist, const d
     for (int j = 0; j < dof; ++j) qd[j] += share * extra[j];
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -10,20 +10,20 @@
 #include "cspace/ik/numeric/descent.hpp"
 #include "cspace/ik/numeric/posture.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 using Descend = void (*)(const DescentRows&);
 
 struct Search {
-    ik::Path path;
-    ik::Task task;
+    Path path;
+    Task task;
     const double* goals;  // (count, 16)
     std::size_t count;
     const double* starts;  // (count, n), or (1, n) with stride 0
     std::size_t start_stride;
     const double* more;  // (n_more, n): tried in order where the first start failed
     std::size_t n_more;
-    const ik::Posture* posture;  // or null
+    const Posture* posture;  // or null
 };
 
 // The result for a goal. The configuration is that of the first start that reached the goal, or else of the
@@ -32,14 +32,14 @@ struct Found {
     double position, rotation;  // errors left [m, rad]
     std::int32_t steps;         // of the descent that ended there
     std::int32_t start;         // its number, 0 for the first
-    ik::Ending ending;
+    Ending ending;
 };
 
 // Working arrays of the descents, one row each.
 struct DescentResults {
     std::vector<double> q, cost, position, rotation;
     std::vector<std::int32_t> steps;
-    std::vector<ik::Ending> ending;
+    std::vector<Ending> ending;
 
     DescentResults(std::size_t rows, int n)
         : q(rows * std::size_t(n)),
@@ -47,9 +47,9 @@ struct DescentResults {
           position(rows),
           rotation(rows),
           steps(rows),
-          ending(rows, ik::Ending::unknown) {}
+          ending(rows, Ending::unknown) {}
 
-    DescentRows rows_for(const ik::Path& path, const ik::Task& task) {
+    DescentRows rows_for(const Path& path, const Task& task) {
         DescentRows rows{};
         rows.path = &path;
         rows.task = &task;
@@ -65,7 +65,7 @@ struct DescentResults {
 };
 
 // Moves revolute coordinates by multiples of 2π to the values nearest to `wanted`, within the limits.
-inline void nearest_turns(const ik::Path& path, const ik::Task& task, const double* wanted, double* q) {
+inline void nearest_turns(const Path& path, const Task& task, const double* wanted, double* q) {
     for (int j = 0; j < path.n; ++j) {
         // A coordinate that drives several joints, or one through a ratio, has another period.
         int driven = 0;
@@ -104,7 +104,7 @@ inline DescentResults passes(const Search& search, std::size_t begin, std::size_
     for (std::size_t k = 0; k < search.n_more; ++k) {
         left.clear();
         for (std::size_t row = 0; row < end - begin; ++row)
-            if (results.ending[row] != ik::Ending::reached) left.push_back(std::int64_t(row));
+            if (results.ending[row] != Ending::reached) left.push_back(std::int64_t(row));
         if (left.empty()) break;
         cost = results.cost;
         rows.pick = left.data();
@@ -114,7 +114,7 @@ inline DescentResults passes(const Search& search, std::size_t begin, std::size_
         descend(rows);
         for (const std::int64_t row : left)
             if (results.cost[std::size_t(row)] != cost[std::size_t(row)] ||
-                results.ending[std::size_t(row)] == ik::Ending::reached)
+                results.ending[std::size_t(row)] == Ending::reached)
                 start[std::size_t(row)] = std::int32_t(k + 1);
     }
     return results;
@@ -136,11 +136,11 @@ inline DescentResults side_by_side(const Search& search, std::size_t goal, Desce
     descend(rows);
     best = 0;
     for (std::size_t k = 0; k < count; ++k) {
-        if (results.ending[k] == ik::Ending::reached) {
+        if (results.ending[k] == Ending::reached) {
             best = k;
             break;
         }
-        if (results.ending[k] != ik::Ending::unknown && results.cost[k] < results.cost[best]) best = k;
+        if (results.ending[k] != Ending::unknown && results.cost[k] < results.cost[best]) best = k;
     }
     return results;
 }
@@ -148,13 +148,13 @@ inline DescentResults side_by_side(const Search& search, std::size_t goal, Desce
 // The result of a goal from the row that a descent wrote.
 inline Found finish(const Search& search, std::size_t goal, const DescentResults& results, std::size_t row,
                     std::int32_t start, double* q) {
-    const ik::Path& path = search.path;
+    const Path& path = search.path;
     std::copy_n(results.q.begin() + std::ptrdiff_t(row) * path.n, path.n, q);
     Found found = {results.position[row], results.rotation[row], results.steps[row], start,
                    results.ending[row]};
     const double* wanted = search.posture ? search.posture->rest : search.starts + search.start_stride * goal;
     nearest_turns(path, search.task, wanted, q);
-    if (!search.posture || found.ending != ik::Ending::reached) return found;
+    if (!search.posture || found.ending != Ending::reached) return found;
     const Gap<double> left =
         settle_posture(path, search.task, *search.posture, read_goal(search.goals + 16 * goal).T, q);
     found.position = left.position;
@@ -184,4 +184,4 @@ inline void search_goals(const Search& search, std::size_t begin, std::size_t en
             searching::finish(search, goal, results, goal - begin, start[goal - begin], q + n * goal);
 }
 
-}  // namespace cspace
+}  // namespace cspace::ik

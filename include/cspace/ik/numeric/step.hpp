@@ -3,7 +3,7 @@
 
 #include "cspace/ik/numeric/error.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Solves M x = b by M = L D Lᵀ for a symmetric positive definite M of k ≤ 6 rows. The lower triangle is read
 // and overwritten; b becomes x. An unknown whose pivot is lost to rounding is set to zero.
@@ -28,7 +28,7 @@ CSPACE_INLINE void solve_positive(V (&M)[6][6], V (&b)[6], int k) {
 // dx (n,) for m rows. loose[j] is 1, or 0 for a coordinate that must not move. Of two equivalent systems the
 // smaller is solved: (JᵀJ + λ I) dx = Jᵀ e, or dx = Jᵀ y with (J Jᵀ + λ I) y = e.
 template <class V>
-CSPACE_INLINE void damped_step(int m, int n, const V (&J)[6][ik::max_joints], const V (&e)[6], const V* loose,
+CSPACE_INLINE void damped_step(int m, int n, const V (&J)[6][max_joints], const V (&e)[6], const V* loose,
                                V damping, V* dx) {
     V M[6][6], b[6];
     if (n <= m) {
@@ -64,4 +64,4 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[6][ik::max_joints], co
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -13,7 +13,7 @@
 #include "cspace/kinematics/jacobian.hpp"
 #include "cspace/model/robot_model.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 enum class TaskKind : int { pose, position, direction, center_of_mass };
 
@@ -37,7 +37,7 @@ struct TaskError {
 };
 
 struct TaskProblem {
-    const RobotModel* model;
+    const model::RobotModel* model;
     bool floating;
     std::vector<FrameTask> tasks;
     std::vector<PostureTask> postures;
@@ -57,21 +57,21 @@ struct TaskPlace {
 
 struct TaskWork {
     std::vector<double> s, c, J;
-    std::vector<Axis<double>> axes;
+    std::vector<kinematics::Axis<double>> axes;
     std::vector<Posed> T_world_joint;
     std::vector<Vec3d> moments;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline int dof_of(const TaskProblem& problem) {
     return problem.model->n_coordinates() + (problem.floating ? 6 : 0);
 }
 
 inline TaskWork task_work(const TaskProblem& problem) {
-    const Tree tree = problem.model->tree();
+    const model::Tree tree = problem.model->tree();
     const std::size_t joints = std::size_t(tree.n_joints) + 4;
     TaskWork work;
     work.s.resize(joints);
@@ -86,26 +86,27 @@ inline TaskWork task_work(const TaskProblem& problem) {
 // The pose of a frame. work.J receives the Jacobian of its point p, rows [v; ω] in the world.
 inline Posed measure_frame(const TaskProblem& problem, const TaskPlace& at, int frame, const Vec3d& p,
                            TaskWork& work) {
-    const Chain& chain = problem.model->chain(frame);
+    const model::Chain& chain = problem.model->chain(frame);
     const int dof = dof_of(problem), first = problem.floating ? 6 : 0;
-    chain_sines(chain, at.q.data(), work.s.data(), work.c.data());
-    const Posed T =
-        follow_chain(chain, at.T_world_base * chain.T_base_first, at.q.data(), work.s.data(), work.c.data(),
-                     [&](int i, const Vec3d& o, const Vec3d& d) { work.axes[std::size_t(i)] = {o, d}; });
-    joint_columns(chain, work.axes.data(), T * p, work.J.data(), dof, first);
-    if (problem.floating) base_columns(T * p - at.T_world_base.t, work.J.data(), dof, 6);
+    kinematics::chain_sines(chain, at.q.data(), work.s.data(), work.c.data());
+    const Posed T = kinematics::follow_chain(
+        chain, at.T_world_base * chain.T_base_first, at.q.data(), work.s.data(), work.c.data(),
+        [&](int i, const Vec3d& o, const Vec3d& d) { work.axes[std::size_t(i)] = {o, d}; });
+    kinematics::joint_columns(chain, work.axes.data(), T * p, work.J.data(), dof, first);
+    if (problem.floating) kinematics::base_columns(T * p - at.T_world_base.t, work.J.data(), dof, 6);
     return T;
 }
 
 // The centre of mass. The first three rows of work.J receive its Jacobian.
 inline Vec3d measure_center(const TaskProblem& problem, const TaskPlace& at, TaskWork& work) {
-    const Tree tree = problem.model->tree();
+    const model::Tree tree = problem.model->tree();
     const int dof = dof_of(problem), first = problem.floating ? 6 : 0;
-    joint_poses(tree, at.q.data(), at.T_world_base, work.T_world_joint.data());
+    kinematics::joint_poses(tree, at.q.data(), at.T_world_base, work.T_world_joint.data());
     const Vec3d center =
-        center_of_mass(tree, at.T_world_base, work.T_world_joint.data(), work.moments.data());
-    center_of_mass_columns(tree, work.T_world_joint.data(), work.moments.data(), work.J.data(), dof, first);
-    if (problem.floating) base_columns(center - at.T_world_base.t, work.J.data(), dof, 3);
+        kinematics::center_of_mass(tree, at.T_world_base, work.T_world_joint.data(), work.moments.data());
+    kinematics::center_of_mass_columns(tree, work.T_world_joint.data(), work.moments.data(), work.J.data(),
+                                       dof, first);
+    if (problem.floating) kinematics::base_columns(center - at.T_world_base.t, work.J.data(), dof, 3);
     return center;
 }
 
@@ -123,7 +124,7 @@ inline double add_rows(const Mat3d& Q, const Vec3d& error, const double* weight,
         counted += e * e;
         at.cost += 0.5 * w2 * e * e;
         for (int j = 0; j < dof; ++j)
-            row[std::size_t(j)] = dot(axis, get_column(work.J.data(), dof, j, from));
+            row[std::size_t(j)] = dot(axis, kinematics::get_column(work.J.data(), dof, j, from));
         for (int i = 0; i < dof; ++i) {
             const double wi = w2 * row[std::size_t(i)];
             if (wi == 0) continue;
@@ -161,8 +162,8 @@ inline TaskError add_task(const TaskProblem& problem, const FrameTask& task, Tas
             const Vec3d a = T.R * task.point;
             // A turn about the direction itself does not count.
             for (int j = 0; j < dof; ++j) {
-                const Vec3d h = get_column(work.J.data(), dof, j, 3);
-                put_column(work.J.data(), dof, j, 3, h - dot(a, h) * a);
+                const Vec3d h = kinematics::get_column(work.J.data(), dof, j, 3);
+                kinematics::put_column(work.J.data(), dof, j, 3, h - dot(a, h) * a);
             }
             return {0, add_rows(I, turn_between(a, task.target.t), w, task.gain, 3, work, dof, at)};
         }
@@ -175,7 +176,8 @@ inline TaskError add_task(const TaskProblem& problem, const FrameTask& task, Tas
                 // Unequal weights see how the rotation vector itself changes (see error.hpp).
                 const LogRate<double> rate = log_rate(-turn);
                 for (int j = 0; j < dof; ++j)
-                    put_column(work.J.data(), dof, j, 3, rate * get_column(work.J.data(), dof, j, 3));
+                    kinematics::put_column(work.J.data(), dof, j, 3,
+                                           rate * kinematics::get_column(work.J.data(), dof, j, 3));
             }
             return {away, add_rows(Q, turn, w + 3, task.gain, 3, work, dof, at)};
         }
@@ -234,4 +236,4 @@ inline void move_by(const TaskProblem& problem, const TaskPlace& from, const dou
             rotation_about((1 / angle) * w, std::cos(angle), std::sin(angle)) * to.T_world_base.R;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

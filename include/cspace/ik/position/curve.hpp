@@ -7,7 +7,7 @@
 
 #include "cspace/math/turn.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct Curve {
     bool line;
@@ -19,9 +19,9 @@ struct OnCurve {
     double k, a, b, square;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // direction +1: x is moved by the joint, −1: by its inverse.
 inline Curve curve_of(bool prismatic, const Vec3d& axis, const Vec3d& point, const Vec3d& x,
@@ -45,4 +45,4 @@ inline OnCurve squared_distance(const Curve& f, const Vec3d& origin) {
     return f.line ? OnCurve{true, k, a, 0, own} : OnCurve{false, k + own, a, b, 0};
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

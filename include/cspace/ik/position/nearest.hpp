@@ -9,7 +9,7 @@
 #include "cspace/ik/subproblems/least_squares.hpp"
 #include "cspace/ik/subproblems/sp1.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The value of a joint that moves `from` to `to`, or as near to it as possible.
 template <int n>
@@ -108,4 +108,4 @@ double nearest_configuration(const TipGap<n>& g, double* best_q) {
     return best;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -10,7 +10,7 @@
 
 #include "cspace/ik/position/values.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace pair {
 
@@ -121,4 +121,4 @@ inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& f
 
 }  // namespace pair
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

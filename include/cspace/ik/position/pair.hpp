@@ -10,7 +10,7 @@
 
 #include "cspace/ik/position/one_condition.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace pair {
 
@@ -114,4 +114,4 @@ inline PairCandidates solve_pair(const OnCurve f[2], const OnCurve g[2]) {
     return found;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

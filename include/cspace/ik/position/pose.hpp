@@ -13,7 +13,7 @@
 
 #include "cspace/ik/position/solve.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The pose gap: the gap of the tip, and half the sum of g × r over the axes g of the goal and r of the tip,
 // which is the rotation vector between them to first order.
@@ -63,11 +63,11 @@ inline double angle_about(const Vec3d& h, const Mat3d& R) {
 
 template <int n>
 struct Search {
-    const ik::Chain& chain;
+    const Chain& chain;
     const Posed& goal;
     PoseGap<n> gap;
     double size;
-    ik::FewJointSolutions& found;
+    FewJointSolutions& found;
 
     // q in units of the chain; refined in units of its size.
     void propose(const double* q) {
@@ -100,13 +100,13 @@ void by_slides(Search<n>& search, const Posed& G) {
 
 // The last joint is revolute: the others move points of its axis to their goals.
 template <int n>
-void by_last_axis(const ik::Chain& chain, const Posed& G, double size, bool backwards, Search<n>& search) {
-    ik::Chain others = chain;
+void by_last_axis(const Chain& chain, const Posed& G, double size, bool backwards, Search<n>& search) {
+    Chain others = chain;
     others.n = n - 1;
     const Vec3d h = chain.axis[n - 1];
     for (double along : {0.0, size}) {
         others.tip = {identity_pose().R, foot_of_tip(chain, n - 1) + along * h};
-        const ik::PositionSolutions placed = solve_position(others, G * others.tip.t, false);
+        const PositionSolutions placed = solve_position(others, G * others.tip.t, false);
         for (int k = 0; k < placed.count; ++k) {
             double q[n];
             Posed rest = G;
@@ -123,7 +123,7 @@ void by_last_axis(const ik::Chain& chain, const Posed& G, double size, bool back
 }
 
 template <int n>
-void solve(const ik::Chain& chain, const Posed& T, ik::FewJointSolutions& found) {
+void solve(const Chain& chain, const Posed& T, FewJointSolutions& found) {
     const PositionScale scale = position_scale(chain, T.t);
     PoseGap<n> gap{tip_gap<n>(chain, T.t, scale), chain.tip.R, T.R, {}, scale.reached};
     for (int i = 0; i < n; ++i) gap.prismatic[i] = chain.prismatic[i];
@@ -136,7 +136,7 @@ void solve(const ik::Chain& chain, const Posed& T, ik::FewJointSolutions& found)
         if (revolute > 1 && !chain.prismatic[n - 1]) {
             by_last_axis<n>(chain, G, scale.size, false, search);
         } else if (revolute > 1) {
-            const ik::Chain back = reversed(chain);
+            const Chain back = reversed(chain);
             by_last_axis<n>(back, inverse(T) * inverse(back.tip), scale.size, true, search);
         }
     }
@@ -152,12 +152,12 @@ void solve(const ik::Chain& chain, const Posed& T, ik::FewJointSolutions& found)
 }  // namespace few_joint_pose
 
 // Moves the tip of the chain (n ≤ 3) to T, in base coordinates.
-inline ik::FewJointSolutions solve_few_joint_pose(const ik::Chain& chain, const Posed& T) {
-    ik::FewJointSolutions found;
+inline FewJointSolutions solve_few_joint_pose(const Chain& chain, const Posed& T) {
+    FewJointSolutions found;
     if (chain.n == 1) few_joint_pose::solve<1>(chain, T, found);
     if (chain.n == 2) few_joint_pose::solve<2>(chain, T, found);
     if (chain.n == 3) few_joint_pose::solve<3>(chain, T, found);
     return found;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

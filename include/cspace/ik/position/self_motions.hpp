@@ -7,7 +7,7 @@
 #include "cspace/ik/position/solutions.hpp"
 #include "cspace/ik/subproblems/refine.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Whether joints a and b are the same configuration, with angles modulo 2π.
 template <class System>
@@ -90,7 +90,7 @@ bool is_free(const System& g, const double* q, double* along, bool& close) {
 template <class System, class Solutions>
 void keep_distinct(const System& g, double* q, Solutions& found) {
     constexpr int n = System::angles;
-    if (found.count == ik::max_position_solutions) return;
+    if (found.count == max_position_solutions) return;
     for (int i = 0; i < n; ++i)
         if (!g.prismatic[i]) q[i] = angle_of(turn_by(q[i]));
     for (int i = 0; i < found.count; ++i)
@@ -100,4 +100,4 @@ void keep_distinct(const System& g, double* q, Solutions& found) {
     found.free[k] = is_free(g, q, found.direction[k], found.close[k]);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -15,7 +15,7 @@
 #include "cspace/ik/position/self_motions.hpp"
 #include "cspace/ik/position/solutions.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace position {
 
@@ -34,15 +34,15 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
 
 // Refines a candidate and appends it if it reaches the goal.
 template <int n>
-void propose(const TipGap<n>& g, double* q, ik::PositionSolutions& found) {
+void propose(const TipGap<n>& g, double* q, PositionSolutions& found) {
     if (refine(g, q) <= g.reached) keep_distinct(g, q, found);
 }
 
-inline void candidates(const TipGap<1>& g, ik::PositionSolutions& found) {
+inline void candidates(const TipGap<1>& g, PositionSolutions& found) {
     double q[1] = {joint_between(g, 0, g.tip, g.goal)};
     propose(g, q, found);
 }
-inline void candidates(const TipGap<2>& g, ik::PositionSolutions& found) {
+inline void candidates(const TipGap<2>& g, PositionSolutions& found) {
     const Curve curve = tip_curve(g, 1, g.tip, 1);
     const Curve goal = {true, g.goal, {0, 0, 0}, {0, 0, 0}};
     OnCurve f[2], target[2];
@@ -80,7 +80,7 @@ inline bool free_the_middle(const TipGap<3>& g, const Vec3d& behind, const Vec3d
     }
     return true;
 }
-inline void candidates(const TipGap<3>& g, ik::PositionSolutions& found) {
+inline void candidates(const TipGap<3>& g, PositionSolutions& found) {
     const Curve behind = tip_curve(g, 2, g.tip, 1), before = tip_curve(g, 0, g.goal, -1);
     OnCurve f[2], h[2];
     invariants(g, 1, before, f);
@@ -104,7 +104,7 @@ inline void candidates(const TipGap<3>& g, ik::PositionSolutions& found) {
 }
 
 template <int n>
-void solve(const ik::Chain& chain, const Vec3d& goal, bool measure_miss, ik::PositionSolutions& found) {
+void solve(const Chain& chain, const Vec3d& goal, bool measure_miss, PositionSolutions& found) {
     const PositionScale scale = position_scale(chain, goal);
     const double size = scale.size;
     const TipGap<n> g = tip_gap<n>(chain, goal, scale);
@@ -122,13 +122,12 @@ void solve(const ik::Chain& chain, const Vec3d& goal, bool measure_miss, ik::Pos
 
 // Moves the tip of the chain (n ≤ 3) to p, in base coordinates. Without a solution, the nearest configuration
 // is computed on request only, because that search costs fifty times the solution.
-inline ik::PositionSolutions solve_position(const ik::Chain& chain, const Vec3d& p,
-                                            bool measure_miss = true) {
-    ik::PositionSolutions found;
+inline PositionSolutions solve_position(const Chain& chain, const Vec3d& p, bool measure_miss = true) {
+    PositionSolutions found;
     if (chain.n == 1) position::solve<1>(chain, p, measure_miss, found);
     if (chain.n == 2) position::solve<2>(chain, p, measure_miss, found);
     if (chain.n == 3) position::solve<3>(chain, p, measure_miss, found);
     return found;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -4,7 +4,7 @@
 #include "cspace/ik/chain.hpp"
 #include "cspace/ik/subproblems/refine.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Lengths, and with them prismatic joints, are in units of the size of the arm.
 template <int n>
@@ -37,7 +37,7 @@ struct TipGap {
 };
 
 // The point of axis i nearest to the tip, at zero.
-inline Vec3d foot_of_tip(const ik::Chain& chain, int i) {
+inline Vec3d foot_of_tip(const Chain& chain, int i) {
     if (chain.prismatic[i]) return chain.tip.t;
     const Vec3d r = chain.tip.t - chain.point[i];
     return chain.point[i] + dot(r, chain.axis[i]) * chain.axis[i];
@@ -47,7 +47,7 @@ inline Vec3d foot_of_tip(const ik::Chain& chain, int i) {
 struct PositionScale {
     double size, reached;
 };
-inline PositionScale position_scale(const ik::Chain& chain, const Vec3d& goal) {
+inline PositionScale position_scale(const Chain& chain, const Vec3d& goal) {
     double size = norm(goal - chain.tip.t), far = std::fmax(norm(goal), norm(chain.tip.t));
     for (int i = 0; i < chain.n; ++i) {
         size = std::fmax(size, norm(foot_of_tip(chain, i) - chain.tip.t));
@@ -59,7 +59,7 @@ inline PositionScale position_scale(const ik::Chain& chain, const Vec3d& goal) {
 }
 // Moves the origin to the tip at zero, so that an arm far from its base loses no digits.
 template <int n>
-TipGap<n> tip_gap(const ik::Chain& chain, const Vec3d& goal, const PositionScale& scale) {
+TipGap<n> tip_gap(const Chain& chain, const Vec3d& goal, const PositionScale& scale) {
     TipGap<n> g;
     const double f = 1 / scale.size;
     g.reached = scale.reached;
@@ -73,4 +73,4 @@ TipGap<n> tip_gap(const ik::Chain& chain, const Vec3d& goal, const PositionScale
     return g;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

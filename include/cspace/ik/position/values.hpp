@@ -4,7 +4,7 @@
 #include "cspace/ik/position/curve.hpp"
 #include "cspace/ik/subproblems/two_angles.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct PairCandidates {
     int count = 0;
@@ -14,9 +14,9 @@ struct PairCandidates {
     int on_axis = -1;  // the one where both points may lie on the axis between
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline void add(PairCandidates& found, double first, double last) {
     if (found.count == 48 || !std::isfinite(first) || !std::isfinite(last)) return;
@@ -61,4 +61,4 @@ inline double vertex(const OnCurve& f) { return f.line && f.square > 0 ? -f.a / 
 
 }  // namespace pair
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

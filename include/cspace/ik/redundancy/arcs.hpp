@@ -4,7 +4,7 @@
 
 #include "cspace/ik/redundancy/follow.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline const double* last_of_trail(const Tracer& tracer) { return tracer.trail->q[tracer.trail->count - 1]; }
 
@@ -12,7 +12,7 @@ inline void trace_from_limits(Tracer& tracer) {
     const int n = tracer.arm->chain.n;
     for (int k = 0; k < tracer.points->count; ++k) {
         if (tracer.trail->used[k]) continue;
-        const ik::LimitPoint& point = tracer.points->point[k];
+        const LimitPoint& point = tracer.points->point[k];
         CurvePoint at;
         for (int i = 0; i < n; ++i) at.q[i] = point.q[i];
         put_on_curve(tracer, at);
@@ -66,13 +66,13 @@ inline void trace_loop(Tracer& tracer, const double* q) {
 }
 // Traces the arcs through the solutions at sampled values of a joint. A joint whose value the goal determines
 // has no samples.
-inline void trace_loops_at(Tracer& tracer, const ik::LockedArm& locked, int joint, int looks) {
+inline void trace_loops_at(Tracer& tracer, const LockedArm& locked, int joint, int looks) {
     if (!is_solvable(locked.arm)) return;
     const Domain domain = domain_of(*tracer.arm, joint, tracer.goal);
-    double at[ik::max_joints], q[ik::max_joints];
+    double at[max_joints], q[max_joints];
     for (int look = 0; look < looks; ++look) {
         at[joint] = domain.lower + (look + 0.5) / looks * (domain.upper - domain.lower);
-        const ik::Solutions found = solve_locked(locked, tracer.goal, at, nullptr);
+        const Solutions found = solve_locked(locked, tracer.goal, at, nullptr);
         for (int j = 0; j < found.count; ++j) {
             whole_row(locked, at, found.q[j], q);
             trace_loop(tracer, q);
@@ -84,11 +84,11 @@ inline int count_intervals(const Tracer& tracer, double value) {
     constexpr double near_end = 1e-4;
     int count = 0;
     for (int k = 0; k < tracer.out->count; ++k) {
-        const ik::Interval& interval = tracer.out->interval[k];
+        const Interval& interval = tracer.out->interval[k];
         const double middle = 0.5 * (interval.lower + interval.upper);
         const double off = std::fabs(joint_way(tracer.arm->chain, tracer.parameter, middle, value)) -
                            0.5 * (interval.upper - interval.lower);
-        if (std::fabs(off) < near_end && interval.end[0] != ik::end_none) return -1;
+        if (std::fabs(off) < near_end && interval.end[0] != end_none) return -1;
         count += off < 0;
     }
     return count;
@@ -124,7 +124,7 @@ inline void spread_evenly(int k, int n, double* q) {
 // large.
 inline void trace_loops_by_descent(Tracer& tracer) {
     constexpr int starts = 48, most_steps = 60;
-    const ik::Redundant& arm = *tracer.arm;
+    const Redundant& arm = *tracer.arm;
     for (int k = 0; k < starts; ++k) {
         CurvePoint at;
         spread_evenly(k, arm.chain.n, at.q);
@@ -138,7 +138,7 @@ inline void trace_loops_by_descent(Tracer& tracer) {
 // Traces the closed arcs from the solutions at sampled values of the parameter. Other joints are sampled too,
 // because a loop that hardly moves one joint moves others. At the sampled values of the parameter the
 // intervals are counted as a check.
-inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms& arms, SweptRows* swept) {
+inline void trace_loops(Tracer& tracer, const Sweep& sweep, const LimitArms& arms, SweptRows* swept) {
     constexpr int looks = loop_looks, other_looks = 4;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
     double values[looks];
@@ -157,10 +157,9 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const ik::LimitArms&
 }
 
 // The intervals of joint `parameter`, which `locked` locks. trail: working memory.
-inline void intervals_by_arcs(const ik::Redundant& arm, const ik::LockedArm& locked, int parameter,
-                              const ik::LimitArms& arms, const Posed& goal, Trail& trail,
-                              ik::Intervals& out) {
-    ik::LimitPoints points;
+inline void intervals_by_arcs(const Redundant& arm, const LockedArm& locked, int parameter,
+                              const LimitArms& arms, const Posed& goal, Trail& trail, Intervals& out) {
+    LimitPoints points;
     find_limit_points(arm, arms, goal, -1, points);
     out.count = 0;
     out.complete = points.complete;
@@ -175,4 +174,4 @@ inline void intervals_by_arcs(const ik::Redundant& arm, const ik::LockedArm& loc
     trace_loops(tracer, make_sweep(locked, parameter, goal, arm.middle), arms, trail.swept);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

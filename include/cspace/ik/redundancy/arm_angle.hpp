@@ -27,14 +27,10 @@ struct SwivelArm {
 
 inline constexpr int swivel_branches = 8;
 
-}  // namespace cspace::ik
-
-namespace cspace {
-
 template <class V>
 struct SwivelSolutions {
-    V q[ik::swivel_branches][7];
-    mask_of<V> ok[ik::swivel_branches];
+    V q[swivel_branches][7];
+    mask_of<V> ok[swivel_branches];
 };
 
 // Angles of three concurrent axes for a given rotation: two solutions.
@@ -44,12 +40,12 @@ struct SphericalTurns {
     mask_of<V> ok;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The point nearest to three axes. away: the largest distance of an axis from it.
-inline Vec3d meeting_of(const ik::Chain& chain, int first, double& away) {
+inline Vec3d meeting_of(const Chain& chain, int first, double& away) {
     double A[3][3] = {}, b[3] = {};
     for (int i = first; i < first + 3; ++i) {
         const Vec3d &h = chain.axis[i], &p = chain.point[i];
@@ -61,7 +57,7 @@ inline Vec3d meeting_of(const ik::Chain& chain, int first, double& away) {
                 b[r] += entry * point[c];
             }
     }
-    solve(A, b);
+    solve_linear(A, b);
     const Vec3d meeting = {b[0], b[1], b[2]};
     away = 0;
     for (int i = first; i < first + 3; ++i)
@@ -71,9 +67,9 @@ inline Vec3d meeting_of(const ik::Chain& chain, int first, double& away) {
 
 // Sets `serves` where the axes meet to rounding. On an arm that is only approximately S-R-S a swivel is not
 // exact.
-inline ik::SwivelArm make_swivel_arm(const ik::Chain& chain) {
+inline SwivelArm make_swivel_arm(const Chain& chain) {
     constexpr double meets = 1e-12, crosses = 1e-3;
-    ik::SwivelArm arm;
+    SwivelArm arm;
     arm.chain = chain;
     if (chain.n != 7) return arm;
     for (int i = 0; i < 7; ++i)
@@ -139,7 +135,7 @@ CSPACE_INLINE Mat3<V> frame_towards(const Vec3<V>& w, const Vec3<V>& e) {
 }
 
 // Direction of the elbow's half-plane at swivel zero: perpendicular to w, on the side of the reference.
-inline Vec3d swivel_zero(const ik::SwivelArm& arm, const Vec3d& w) {
+inline Vec3d swivel_zero(const SwivelArm& arm, const Vec3d& w) {
     constexpr double along = 1e-9;
     const Vec3d n = (1 / norm(w)) * w;
     Vec3d r = arm.reference - dot(arm.reference, n) * n;
@@ -150,9 +146,9 @@ inline Vec3d swivel_zero(const ik::SwivelArm& arm, const Vec3d& w) {
 // All solutions of a goal at given swivels, one swivel per lane. Branch 4 i + 2 j + k: elbow, shoulder,
 // wrist.
 template <class V>
-CSPACE_NOINLINE void solve_swivel(const ik::SwivelArm& arm, const Posed& goal, V swivel,
+CSPACE_NOINLINE void solve_swivel(const SwivelArm& arm, const Posed& goal, V swivel,
                                   SwivelSolutions<V>& out) {
-    const ik::Chain& chain = arm.chain;
+    const Chain& chain = arm.chain;
     const Vec3d W = goal * arm.tip_to_wrist, w = W - arm.shoulder;
     const Vec3d &h4 = chain.axis[3], fore = arm.wrist - arm.elbow, upper = arm.elbow - arm.shoulder;
     // |upper + e^{h4 q4} fore|² = |w|²
@@ -189,7 +185,7 @@ CSPACE_NOINLINE void solve_swivel(const ik::SwivelArm& arm, const Posed& goal, V
 }
 
 // The swivel of a configuration.
-inline double swivel_of(const ik::SwivelArm& arm, const double* q) {
+inline double swivel_of(const SwivelArm& arm, const double* q) {
     Posed T = identity_pose();
     for (int i = 0; i < 3; ++i) T = T * joint_motion(arm.chain, i, q[i]);
     const Vec3d E = T * arm.elbow;
@@ -199,4 +195,4 @@ inline double swivel_of(const ik::SwivelArm& arm, const double* q) {
     return std::atan2(dot(n, cross(zero, e)), dot(zero, e));
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -5,7 +5,7 @@
 #include "cspace/ik/near_singular.hpp"
 #include "cspace/ik/redundancy/locked_joints.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // Joints with linearly independent columns.
 struct Basis {
@@ -14,9 +14,9 @@ struct Basis {
     double least = 1e300;  // the least part of a column that those before it do not span
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Orthogonalises a column against unit columns, twice because of rounding; returns the norm of the remainder.
 inline double rest_of_column(const double (*unit)[6], int count, double* column) {
@@ -51,11 +51,11 @@ inline Basis basis_at(const PoseError& at, const int* order, int count) {
 
 // A basis at a generic configuration: of several sample configurations, the one with the best-separated
 // columns. Lengths are divided by `length`, the size of the arm.
-inline Basis basis_of(const ik::Chain& chain, double length, const int* order, int count) {
+inline Basis basis_of(const Chain& chain, double length, const int* order, int count) {
     constexpr int looks = 8;
     Basis best;
     for (int look = 0; look < looks; ++look) {
-        double q[ik::max_joints];
+        double q[max_joints];
         spread_configuration(look, chain.n, q);
         for (int i = 0; i < chain.n; ++i)
             if (chain.prismatic[i]) q[i] *= length;
@@ -68,10 +68,10 @@ inline Basis basis_of(const ik::Chain& chain, double length, const int* order, i
     }
     return best;
 }
-inline Basis basis_of(const ik::Chain& chain, double length) {
-    int order[ik::max_joints] = {};
+inline Basis basis_of(const Chain& chain, double length) {
+    int order[max_joints] = {};
     for (int i = 0; i < chain.n; ++i) order[i] = i;
     return basis_of(chain, length, order, chain.n);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

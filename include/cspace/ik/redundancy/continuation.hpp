@@ -6,7 +6,7 @@
 #include "cspace/ik/redundancy/curve.hpp"
 #include "cspace/ik/redundancy/feasible_intervals.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 inline constexpr int loop_looks = 24;  // values of the parameter at which loops are looked for
 
@@ -15,25 +15,25 @@ struct Trail {
     static constexpr int room = 12000;
     int count = 0;
     bool first_of_arc[room];
-    double q[room][ik::max_joints], length[room];  // of the chord that ends there
-    bool used[ik::LimitPoints::room];              // limit points that an arc started or ended in
+    double q[room][max_joints], length[room];  // of the chord that ends there
+    bool used[LimitPoints::room];              // limit points that an arc started or ended in
     SweptRows swept[loop_looks];
 };
 
 struct Tracer {
-    const ik::Redundant* arm;
-    const ik::LimitPoints* points;
+    const Redundant* arm;
+    const LimitPoints* points;
     Posed goal;
     int parameter;
     Trail* trail;
-    ik::Intervals* out;
+    Intervals* out;
     double far;  // how far slides without limits are followed; 0 if there are none
     int branches = 0;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline void put_on_curve(const Tracer& tracer, CurvePoint& at) {
     constexpr double settled = 1e-9;  // the step taken after it is Newton's: it squares the error
@@ -48,15 +48,15 @@ inline void orient_tangent(CurvePoint& at, const double* along, int n) {
 }
 
 // The displacement from one value of a joint to another, by the shorter way for revolute joints.
-inline double joint_way(const ik::Chain& chain, int i, double from, double to) {
+inline double joint_way(const Chain& chain, int i, double from, double to) {
     return chain.prismatic[i] ? to - from : short_way(to - from);
 }
 
 // Position of a solution on the chord of a step, from 0 to 1; −1 if it is off the chord. A chord deviates
 // from the curve by less than the width of the tube, and no other arc enters the tube: see step_along.
-inline double part_of_chord(const ik::Chain& chain, const double* from, const double* to, const double* q) {
+inline double part_of_chord(const Chain& chain, const double* from, const double* to, const double* q) {
     constexpr double tube = 0.06;
-    double way[ik::max_joints], gap[ik::max_joints], length2 = 0, along = 0;
+    double way[max_joints], gap[max_joints], length2 = 0, along = 0;
     for (int i = 0; i < chain.n; ++i) {
         way[i] = to[i] - from[i];
         length2 += way[i] * way[i];
@@ -90,7 +90,7 @@ inline double longest_step(const Tracer& tracer, const CurvePoint& from) {
 inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride, double most_off,
                      CurvePoint& to) {
     const int n = tracer.arm->chain.n;
-    double guess[ik::max_joints], off = 0;
+    double guess[max_joints], off = 0;
     for (int i = 0; i < n; ++i)
         to.q[i] = guess[i] = from.q[i] + stride * from.tangent[i] + 0.5 * stride * stride * from.bend[i];
     put_on_curve(tracer, to);
@@ -129,7 +129,7 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& str
 
 // The joint that violates its limits at `to`, or −1. side: which limit.
 inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slack, int& side) {
-    const ik::Redundant& arm = *tracer.arm;
+    const Redundant& arm = *tracer.arm;
     int worst = -1;
     double most = slack;
     for (int i = 0; i < arm.chain.n; ++i) {
@@ -147,9 +147,9 @@ inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slac
 
 // Moves `at` along the curve to the point where joint i is at its limit.
 inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) {
-    const ik::Redundant& arm = *tracer.arm;
+    const Redundant& arm = *tracer.arm;
     const double limit = limit_of(arm, i, side);
-    double along[ik::max_joints];
+    double along[max_joints];
     for (int j = 0; j < arm.chain.n; ++j) along[j] = at.tangent[j];
     for (int k = 0; k < 12; ++k) {
         const double gap = joint_way(arm.chain, i, at.q[i], limit);
@@ -201,11 +201,11 @@ inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
 
 // The joint that stops the step from `at` to `next`, which then ends there; −1 if none does.
 inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint& next, int& side) {
-    const ik::Chain& chain = tracer.arm->chain;
+    const Chain& chain = tracer.arm->chain;
     const int stop = go_back_to_limit(tracer, next, side);
     const int passed = point_passed(tracer, at, next);
     if (passed < 0) return stop;
-    const ik::LimitPoint& point = tracer.points->point[passed];
+    const LimitPoint& point = tracer.points->point[passed];
     for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_way(chain, i, at.q[i], point.q[i]);
     put_on_curve(tracer, next);
     orient_tangent(next, at.tangent, chain.n);
@@ -250,7 +250,7 @@ inline bool stop_between_turns(const Tracer& tracer, const CurvePoint& at, Curve
 // The turning point of the parameter within a step, by Newton's method; by bisection if Newton's method
 // leaves the step.
 inline CurvePoint turn_between(const Tracer& tracer, const CurvePoint& at, const CurvePoint& next) {
-    const ik::Redundant& arm = *tracer.arm;
+    const Redundant& arm = *tracer.arm;
     const int p = tracer.parameter;
     double low = 0, high = 1;
     CurvePoint fold = point_over_chord(tracer, at, next, at.tangent[p] / (at.tangent[p] - next.tangent[p]));
@@ -290,4 +290,4 @@ inline bool is_on_trail(const Tracer& tracer, const double* q, int first = 0) {
     return false;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -4,27 +4,26 @@
 
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // A point of the curve of n = chain.n joints: q(s) = q + tangent s + ½ bend s² + …
 struct CurvePoint {
-    double q[ik::max_joints], tangent[ik::max_joints], bend[ik::max_joints];
+    double q[max_joints], tangent[max_joints], bend[max_joints];
     double error;  // what is left of the goal [rad, m over the arm's length]
     TipMotion<double> motion;
     SplitJacobian<double> split;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // One Newton step from q back onto the curve, and the quantities of the curve at q before the step.
-CSPACE_ONCE void onto_curve(const ik::Chain& chain, int rank, const Posed& goal, double length,
-                            CurvePoint& at) {
+CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, double length, CurvePoint& at) {
     TipMotion<double>& motion = at.motion;
     SplitJacobian<double>& split = at.split;
     const int n = chain.n;
-    double step[ik::max_joints];
+    double step[max_joints];
     tip_motion<0>(chain, goal, length, at.q, motion);
     split_jacobian<0>(motion, n, rank, split);
     free_direction<0>(split, n, 0, at.tangent);
@@ -67,9 +66,9 @@ inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int
 
 // Moves q along the curve to the fold of joint p, by Newton's method on component p of the tangent. Returns
 // false if it leads farther than `reach` away or does not converge.
-inline bool settle_fold(const ik::Chain& chain, int rank, const Posed& goal, double length, int p,
-                        double reach, CurvePoint& at) {
-    double start[ik::max_joints];
+inline bool settle_fold(const Chain& chain, int rank, const Posed& goal, double length, int p, double reach,
+                        CurvePoint& at) {
+    double start[max_joints];
     for (int i = 0; i < chain.n; ++i) start[i] = at.q[i];
     for (int k = 0; k < 20; ++k) {
         onto_curve(chain, rank, goal, length, at);
@@ -88,4 +87,4 @@ inline bool settle_fold(const ik::Chain& chain, int rank, const Posed& goal, dou
     return false;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -25,10 +25,6 @@ struct Intervals {
     Interval interval[room];
 };
 
-}  // namespace cspace::ik
-
-namespace cspace {
-
 // A value of the parameter at which a branch may change.
 struct Critical {
     double value;
@@ -36,7 +32,7 @@ struct Critical {
     int branch = -1;  // the branch that meets its limit there, where that is known
 };
 struct CriticalValues {
-    static constexpr int room = ik::LimitPoints::room + FoldValues::room + 2;
+    static constexpr int room = LimitPoints::room + FoldValues::room + 2;
     int count = 0;
     Critical at[room];
 };
@@ -45,7 +41,7 @@ struct CriticalValues {
 // limits.
 struct CellView {
     unsigned there = 0, within = 0;
-    double q[max_branches][ik::max_joints];
+    double q[max_branches][max_joints];
 };
 
 // Samples taken during the search for one change. Other branches change at the same values.
@@ -56,9 +52,9 @@ struct Looks {
     CellView view[room];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The value itself, or the value plus a multiple of 2π that lies in the domain or just above it.
 inline double into_domain(const Domain& domain, bool slides, double value) {
@@ -75,7 +71,7 @@ inline void insert_sorted(CriticalValues& all, const Critical& c) {
     all.at[at] = c;
 }
 
-inline CellView view_of(const ik::Redundant& arm, const SweptRows& rows, int parameter) {
+inline CellView view_of(const Redundant& arm, const SweptRows& rows, int parameter) {
     CellView out;
     for (int k = 0; k < rows.count; ++k) {
         const int b = rows.branch[k];
@@ -86,7 +82,7 @@ inline CellView view_of(const ik::Redundant& arm, const SweptRows& rows, int par
     }
     return out;
 }
-inline const CellView& look_at(const ik::Redundant& arm, const Sweep& sweep, Looks& looks, double value) {
+inline const CellView& look_at(const Redundant& arm, const Sweep& sweep, Looks& looks, double value) {
     for (int k = 0; k < looks.count && k < Looks::room; ++k)
         if (looks.at[k] == value) return looks.view[k];
     const int at = looks.count++ % Looks::room;
@@ -97,10 +93,10 @@ inline const CellView& look_at(const ik::Redundant& arm, const Sweep& sweep, Loo
 }
 
 // By bisection, the value at which a branch changes between two values with different results, and the cause.
-inline Critical bisected(const ik::Redundant& arm, const Sweep& sweep, Looks& looks, int branch, double in,
+inline Critical bisected(const Redundant& arm, const Sweep& sweep, Looks& looks, int branch, double in,
                          double out) {
     constexpr double found_to = 1e-13;
-    int cause = ik::end_fold, side = 0;
+    int cause = end_fold, side = 0;
     for (int step = 0; step < 60 && std::fabs(out - in) > found_to; ++step) {
         const double middle = 0.5 * (in + out);
         const CellView& there = look_at(arm, sweep, looks, middle);
@@ -109,7 +105,7 @@ inline Critical bisected(const ik::Redundant& arm, const Sweep& sweep, Looks& lo
             continue;
         }
         out = middle;
-        cause = ik::end_fold;
+        cause = end_fold;
         for (int i = 0; i < arm.chain.n && there.there >> branch & 1; ++i) {
             const double q = there.q[branch][i];
             if (i == sweep.parameter || !(excess(arm, i, q) > 0)) continue;
@@ -122,11 +118,11 @@ inline Critical bisected(const ik::Redundant& arm, const Sweep& sweep, Looks& lo
 
 // The state while the cells are visited in ascending order.
 struct Walk {
-    const ik::Redundant* arm;
+    const Redundant* arm;
     const Sweep* sweep;
     const CriticalValues* critical;
     Domain domain;
-    ik::Intervals* out;
+    Intervals* out;
     Looks* looks;
     int open[max_branches];  // the interval that a branch is in, or −1
     CellView first, before;
@@ -143,26 +139,26 @@ inline Critical end_between(const Walk& walk, int branch, const CellView& out, d
         for (int k = 0; k < walk.critical->count; ++k) {
             const Critical& c = walk.critical->at[k];
             if (!(std::fabs(c.value + turn - boundary) <= walk.fuzz)) continue;
-            const bool folds = c.end == ik::end_fold && (c.branch < 0 || c.branch == branch);
-            if (by_fold ? vanishes && folds : c.end != ik::end_fold && c.branch == branch)
+            const bool folds = c.end == end_fold && (c.branch < 0 || c.branch == branch);
+            if (by_fold ? vanishes && folds : c.end != end_fold && c.branch == branch)
                 return {c.value + turn, c.end, c.side, branch};
         }
     return bisected(*walk.arm, *walk.sweep, *walk.looks, branch, in_at, out_at);
 }
 
 inline void open_interval(Walk& walk, int branch, const CellView& view, const Critical& end) {
-    ik::Intervals& out = *walk.out;
-    if (out.count == ik::Intervals::room) {
+    Intervals& out = *walk.out;
+    if (out.count == Intervals::room) {
         out.complete = false;
         return;
     }
-    ik::Interval& made = out.interval[walk.open[branch] = out.count++];
-    made = {end.value, end.value, branch, {end.end, ik::end_none}, {end.side, 0}, {}};
+    Interval& made = out.interval[walk.open[branch] = out.count++];
+    made = {end.value, end.value, branch, {end.end, end_none}, {end.side, 0}, {}};
     for (int i = 0; i < walk.arm->chain.n; ++i) made.q[i] = view.q[branch][i];
 }
 inline void close_interval(Walk& walk, int branch, const Critical& end) {
     if (walk.open[branch] < 0) return;
-    ik::Interval& made = walk.out->interval[walk.open[branch]];
+    Interval& made = walk.out->interval[walk.open[branch]];
     made.upper = end.value;
     made.end[1] = end.end;
     made.side[1] = end.side;
@@ -186,13 +182,13 @@ inline void cross_boundary(Walk& walk, const CellView& next, double next_at, dou
 // On a circle the last cell is followed by the first.
 inline void close_circle(Walk& walk, double boundary) {
     constexpr double turn = 2 * pi;
-    ik::Intervals& out = *walk.out;
+    Intervals& out = *walk.out;
     for (int b = 0; b < max_branches; ++b) {
         const bool was = walk.before.within >> b & 1, is = walk.first.within >> b & 1;
         const double first_at = walk.first_at + turn;
         int head = -1;  // the interval that the first cell began in
         for (int k = 0; k < out.count && is; ++k)
-            if (head < 0 && out.interval[k].branch == b && out.interval[k].end[0] == ik::end_none) head = k;
+            if (head < 0 && out.interval[k].branch == b && out.interval[k].end[0] == end_none) head = k;
         if (was && !is) {
             close_interval(walk, b,
                            end_between(walk, b, walk.first, walk.before_at, first_at, boundary, turn));
@@ -205,7 +201,7 @@ inline void close_circle(Walk& walk, double boundary) {
             out.interval[head].lower = -pi;
             out.interval[head].upper = pi;
         } else if (was && is && head >= 0 && walk.open[b] >= 0) {
-            ik::Interval& tail = out.interval[walk.open[b]];
+            Interval& tail = out.interval[walk.open[b]];
             tail.upper = out.interval[head].upper + turn;
             tail.end[1] = out.interval[head].end[1];
             tail.side[1] = out.interval[head].side[1];
@@ -219,8 +215,8 @@ inline void close_circle(Walk& walk, double boundary) {
 }
 
 // Assigns each point at a limit to its branch.
-inline void name_branches(const Sweep& sweep, const ik::LimitPoints& points, int* branch) {
-    double values[ik::LimitPoints::room];
+inline void name_branches(const Sweep& sweep, const LimitPoints& points, int* branch) {
+    double values[LimitPoints::room];
     for (int k = 0; k < points.count; ++k) values[k] = points.point[k].q[sweep.parameter];
     sweep_values(sweep, values, points.count, [&](int k, const SweptRows& rows) {
         double least = 1e-4;
@@ -235,29 +231,29 @@ inline void name_branches(const Sweep& sweep, const ik::LimitPoints& points, int
 }
 
 // The values at which a branch may change, in ascending order, once per cause.
-inline void collect_critical(const ik::Redundant& arm, const Sweep& sweep, const Domain& domain,
-                             const ik::LimitPoints& points, const FoldValues& folds, CriticalValues& out) {
+inline void collect_critical(const Redundant& arm, const Sweep& sweep, const Domain& domain,
+                             const LimitPoints& points, const FoldValues& folds, CriticalValues& out) {
     const int p = sweep.parameter;
     const bool slides = arm.chain.prismatic[p];
     const auto add = [&](double value, int end, int side, int branch) {
         const double v = into_domain(domain, slides, value);
         if (v >= domain.lower && v <= domain.upper) insert_sorted(out, {v, end, side, branch});
     };
-    int branch[ik::LimitPoints::room];
+    int branch[LimitPoints::room];
     name_branches(sweep, points, branch);
     for (int k = 0; k < points.count; ++k) {
-        const ik::LimitPoint& point = points.point[k];
+        const LimitPoint& point = points.point[k];
         add(point.q[p], point.joint, point.side, branch[k]);
     }
-    for (int k = 0; k < folds.count; ++k) add(folds.value[k], ik::end_fold, 0, folds.branch[k]);
+    for (int k = 0; k < folds.count; ++k) add(folds.value[k], end_fold, 0, folds.branch[k]);
     if (domain.is_circle) return;
     insert_sorted(out, {domain.lower, p, 0, -1});
     insert_sorted(out, {domain.upper, p, 1, -1});
 }
 
 // For one locked joint at an end of the chain and a closed form with known folds.
-inline void walk_cells(const ik::Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
-                       const Domain& domain, ik::Intervals& out) {
+inline void walk_cells(const Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
+                       const Domain& domain, Intervals& out) {
     // Where two branches all but meet, nothing can be told from a value in between.
     const double fuzz = sweep.locked->arm.plan.idealised ? 1e-4 : 1e-6;
     double boundary[CriticalValues::room + 1], middle[CriticalValues::room + 1];
@@ -282,7 +278,7 @@ inline void walk_cells(const ik::Redundant& arm, const Sweep& sweep, const Criti
         }
         walk.first = walk.before = view;
         walk.first_at = walk.before_at = middle[k];
-        const int end = domain.is_circle ? ik::end_none : sweep.parameter;
+        const int end = domain.is_circle ? end_none : sweep.parameter;
         for (int b = 0; b < max_branches; ++b)
             if (view.within >> b & 1) open_interval(walk, b, view, {boundary[0], end, 0, b});
     });
@@ -294,7 +290,7 @@ inline void walk_cells(const ik::Redundant& arm, const Sweep& sweep, const Criti
 }
 
 // Removes empty intervals that rounding produces at interval ends.
-inline void drop_empty(ik::Intervals& out) {
+inline void drop_empty(Intervals& out) {
     int kept = 0;
     for (int k = 0; k < out.count; ++k)
         if (out.interval[k].upper - out.interval[k].lower > limit_slack)
@@ -304,14 +300,14 @@ inline void drop_empty(ik::Intervals& out) {
 
 // Returns true if this method applies to the arm. `out.complete` then states whether the intervals are
 // complete.
-inline bool intervals_by_cells(const ik::Redundant& arm, const ik::LimitArms& arms, const Posed& goal,
-                               ik::Intervals& out) {
+inline bool intervals_by_cells(const Redundant& arm, const LimitArms& arms, const Posed& goal,
+                               Intervals& out) {
     if (arm.redundancy_degree != 1) return false;
     const int p = arm.locked.locked_joint[0];
     const Sweep sweep = make_sweep(arm.locked, p, goal, arm.middle);
     const FoldValues folds = fold_values(arm, sweep);
     if (!folds.exact) return false;
-    ik::LimitPoints points;
+    LimitPoints points;
     find_limit_points(arm, arms, goal, p, points);
     const Domain domain = domain_of(arm, p, goal);
     CriticalValues critical;
@@ -323,4 +319,4 @@ inline bool intervals_by_cells(const ik::Redundant& arm, const ik::LimitArms& ar
     return true;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

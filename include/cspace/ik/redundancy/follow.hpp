@@ -4,7 +4,7 @@
 
 #include "cspace/ik/redundancy/continuation.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 enum class ArcEnd { limit, known_limit, closed, open, lost };
 
@@ -14,13 +14,13 @@ struct Turns {
     int count = 0;
     double value[room];
     int end[room], side[room];
-    double q[room][ik::max_joints];  // on the piece that ends there
-    double closing;                  // of the parameter where the arc has closed
+    double q[room][max_joints];  // on the piece that ends there
+    double closing;              // of the parameter where the arc has closed
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline bool add_turn(const Tracer& tracer, Turns& turns, double value, int end, int side, const double* q) {
     if (turns.count == Turns::room) return false;
@@ -38,7 +38,7 @@ inline bool add_turn(const Tracer& tracer, Turns& turns, double value, int end, 
 inline bool use_points(Tracer& tracer, const CurvePoint& at, double sense) {
     bool fresh = false;
     for (int k = 0; k < tracer.points->count; ++k) {
-        const ik::LimitPoint& point = tracer.points->point[k];
+        const LimitPoint& point = tracer.points->point[k];
         const double inwards = point.side ? -at.tangent[point.joint] : at.tangent[point.joint];
         if (!(sense * inwards > 0 && joint_gap(tracer.arm->chain, point.q, at.q) < 1e-6)) continue;
         fresh = fresh || !tracer.trail->used[k];
@@ -50,10 +50,10 @@ inline bool use_points(Tracer& tracer, const CurvePoint& at, double sense) {
 // Traces the curve from `at` in the direction of its tangent.
 inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
     constexpr int most_steps = 5000;
-    const ik::Redundant& arm = *tracer.arm;
+    const Redundant& arm = *tracer.arm;
     const int n = arm.chain.n, p = tracer.parameter;
     const CurvePoint origin = at;
-    double stride = 0.02, inside[ik::max_joints];
+    double stride = 0.02, inside[max_joints];
     const auto add = [&](double value, int end, int side) {
         return add_turn(tracer, turns, value, end, side, inside);
     };
@@ -67,7 +67,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
         if (at.tangent[p] * next.tangent[p] < 0 &&
             max(std::fabs(at.tangent[p]), std::fabs(next.tangent[p])) > 1e-9) {
             const CurvePoint fold = turn_between(tracer, at, next);
-            if (!add(fold.q[p], ik::end_fold, 0)) return ArcEnd::lost;
+            if (!add(fold.q[p], end_fold, 0)) return ArcEnd::lost;
             for (int i = 0; i < n; ++i) inside[i] = fold.q[i];
         } else {
             for (int i = 0; i < n; ++i) inside[i] = at.q[i];
@@ -77,7 +77,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
             if (!add(next.q[p], stop, side)) return ArcEnd::lost;
             return use_points(tracer, next, -1) ? ArcEnd::limit : ArcEnd::known_limit;
         }
-        if (is_far(tracer, next.q)) return add(next.q[p], ik::end_none, 0) ? ArcEnd::open : ArcEnd::lost;
+        if (is_far(tracer, next.q)) return add(next.q[p], end_none, 0) ? ArcEnd::open : ArcEnd::lost;
         if (k > 0 && part_of_chord(arm.chain, at.q, next.q, origin.q) >= 0) {
             turns.closing = next.q[p] + joint_way(arm.chain, p, next.q[p], origin.q[p]);
             return ArcEnd::closed;
@@ -88,17 +88,17 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
 }
 
 inline void add_interval(Tracer& tracer, const Critical& low, const Critical& high, const double* q) {
-    ik::Intervals& out = *tracer.out;
-    if (out.count == ik::Intervals::room) {
+    Intervals& out = *tracer.out;
+    if (out.count == Intervals::room) {
         out.complete = false;
         return;
     }
-    ik::Interval& made = out.interval[out.count++];
+    Interval& made = out.interval[out.count++];
     made = {low.value, high.value, tracer.branches++, {low.end, high.end}, {low.side, high.side}, {}};
     for (int i = 0; i < tracer.arm->chain.n; ++i) made.q[i] = q[i];
     const int p = tracer.parameter;
     if (tracer.arm->chain.prismatic[p]) return;
-    const bool stopped = ik::is_stopped(*tracer.arm, p);
+    const bool stopped = is_stopped(*tracer.arm, p);
     const double home = stopped ? 0.5 * (tracer.arm->lower[p] + tracer.arm->upper[p]) : 0;
     const double turns = 2 * pi * std::round((0.5 * (low.value + high.value) - home) / (2 * pi));
     made.lower -= turns;
@@ -115,8 +115,8 @@ inline void add_piece(Tracer& tracer, const Critical& from, const Critical& to, 
     const bool turns = !tracer.arm->chain.prismatic[tracer.parameter];
     const int parts = turns ? int(std::ceil(length / (2 * pi) - 1e-9)) : 1;
     for (int k = 0; k < parts; ++k) {
-        const Critical cut[2] = {{low.value + k * length / parts, ik::end_none, 0},
-                                 {low.value + (k + 1) * length / parts, ik::end_none, 0}};
+        const Critical cut[2] = {{low.value + k * length / parts, end_none, 0},
+                                 {low.value + (k + 1) * length / parts, end_none, 0}};
         add_interval(tracer, k ? cut[0] : low, k + 1 < parts ? cut[1] : high, q);
     }
 }
@@ -137,7 +137,7 @@ inline void add_closed_pieces(Tracer& tracer, const Turns& turns, double start, 
         return;
     }
     const double rounds = std::fabs(std::round(shift / (2 * pi)));  // 0 where it rests at its one value
-    add_piece(tracer, {-pi, ik::end_none, 0}, {-pi + 2 * pi * rounds, ik::end_none, 0}, q);
+    add_piece(tracer, {-pi, end_none, 0}, {-pi + 2 * pi * rounds, end_none, 0}, q);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

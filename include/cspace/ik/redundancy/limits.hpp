@@ -28,21 +28,21 @@ struct LimitPoints {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline double limit_of(const ik::Redundant& arm, int joint, int side) {
+inline double limit_of(const Redundant& arm, int joint, int side) {
     return side ? arm.upper[joint] : arm.lower[joint];
 }
-inline bool has_limit(const ik::Redundant& arm, int joint, int side) {
-    return ik::is_stopped(arm, joint) && std::isfinite(limit_of(arm, joint, side));
+inline bool has_limit(const Redundant& arm, int joint, int side) {
+    return is_stopped(arm, joint) && std::isfinite(limit_of(arm, joint, side));
 }
 
 // Of the joints without a stop, the one that the self-motion moves most; −1 if every joint can be stopped.
-inline int freest_joint(const ik::Redundant& arm) {
+inline int freest_joint(const Redundant& arm) {
     constexpr int looks = 8;
-    double moves[ik::max_joints] = {};
+    double moves[max_joints] = {};
     for (int look = 0; look < looks; ++look) {
-        double q[ik::max_joints];
+        double q[max_joints];
         spread_configuration(look, arm.chain.n, q);
         PoseError at;
         measure_error(arm.chain, arm.chain.tip, arm.length, q, at);
@@ -52,13 +52,13 @@ inline int freest_joint(const ik::Redundant& arm) {
     }
     int best = -1;
     for (int i = 0; i < arm.chain.n; ++i)
-        if (!ik::is_stopped(arm, i) && (best < 0 || moves[i] > moves[best])) best = i;
+        if (!is_stopped(arm, i) && (best < 0 || moves[i] > moves[best])) best = i;
     return best;
 }
 
-// out: as ik::LimitArms{}. It is large, so the caller provides the memory.
-inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
-    double at[ik::max_joints];
+// out: as LimitArms{}. It is large, so the caller provides the memory.
+inline void make_limit_arms(const Redundant& arm, LimitArms& out) {
+    double at[max_joints];
     typical_values(arm, at);
     out.freest = freest_joint(arm);
     for (int i = 0; i < arm.chain.n; ++i) {
@@ -67,7 +67,7 @@ inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
                             : lock_joints(arm.chain, &i, 1, at);
         for (int side = 0; side < 2 && !out.locked[i].at_ends; ++side) {
             if (!has_limit(arm, i, side)) continue;
-            double there[ik::max_joints];
+            double there[max_joints];
             there[i] = limit_of(arm, i, side);
             out.at_limit[i][side] = arm_at(out.locked[i], there);
         }
@@ -75,7 +75,7 @@ inline void make_limit_arms(const ik::Redundant& arm, ik::LimitArms& out) {
 }
 
 // Whether all joints except one are within their limits.
-inline bool others_within(const ik::Redundant& arm, const double* q, int joint, double slack) {
+inline bool others_within(const Redundant& arm, const double* q, int joint, double slack) {
     for (int i = 0; i < arm.chain.n; ++i)
         if (i != joint && excess(arm, i, q[i]) > slack) return false;
     return true;
@@ -84,27 +84,27 @@ inline bool others_within(const ik::Redundant& arm, const double* q, int joint, 
 inline constexpr double limit_slack = 1e-9;  // [rad or m] what rounding may put outside
 
 // Joint `except` is left out (−1: none).
-inline void find_limit_points(const ik::Redundant& arm, const ik::LimitArms& arms, const Posed& goal,
-                              int except, ik::LimitPoints& out) {
-    double at[ik::max_joints] = {};
+inline void find_limit_points(const Redundant& arm, const LimitArms& arms, const Posed& goal, int except,
+                              LimitPoints& out) {
+    double at[max_joints] = {};
     for (int joint = 0; joint < arm.chain.n; ++joint) {
         if (joint == except) continue;
         for (int side = 0; side < 2; ++side) {
             if (!has_limit(arm, joint, side)) continue;
             at[joint] = limit_of(arm, joint, side);
-            const ik::LockedArm& locked = arms.locked[joint];
-            const ik::Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[joint][side];
+            const LockedArm& locked = arms.locked[joint];
+            const Arm& rest = locked.at_ends ? locked.arm : arms.at_limit[joint][side];
             // Six joints with one to spare among them: the joint rests there along every self-motion, and no
             // branch crosses its limit.
             if (!is_solvable(rest)) continue;
-            const ik::Solutions found =
+            const Solutions found =
                 solve_arm_quickly(rest, locked.at_ends ? goal_between_ends(locked, goal, at) : goal);
             out.complete = out.complete && found.complete;
             for (int j = 0; j < found.count; ++j) {
-                ik::LimitPoint point{joint, side, {}};
+                LimitPoint point{joint, side, {}};
                 whole_row(locked, at, found.q[j], point.q);
                 if (!others_within(arm, point.q, joint, limit_slack)) continue;
-                if (out.count == ik::LimitPoints::room)
+                if (out.count == LimitPoints::room)
                     out.complete = false;
                 else
                     out.point[out.count++] = point;
@@ -113,4 +113,4 @@ inline void find_limit_points(const ik::Redundant& arm, const ik::LimitArms& arm
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -19,14 +19,14 @@ struct LockedArm {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline bool is_solvable(const ik::Arm& arm) { return arm.has_plan || arm.has_few_joints || arm.is_general; }
+inline bool is_solvable(const Arm& arm) { return arm.has_plan || arm.has_few_joints || arm.is_general; }
 
 // The chain of the moving joints. `at`: the value of every locked joint, by its number in the whole chain.
-inline ik::Chain locked_chain(const ik::LockedArm& locked, const double* at) {
-    const ik::Chain& whole = locked.whole;
-    ik::Chain out;
+inline Chain locked_chain(const LockedArm& locked, const double* at) {
+    const Chain& whole = locked.whole;
+    Chain out;
     Posed before = identity_pose();
     int next = 0;
     for (int i = 0; i < whole.n; ++i) {
@@ -45,9 +45,9 @@ inline ik::Chain locked_chain(const ik::LockedArm& locked, const double* at) {
 
 // locked_joint: the numbers of the joints to lock, ascending. typical: a generic value for each joint of the
 // chain.
-CSPACE_ONCE ik::LockedArm lock_joints(const ik::Chain& whole, const int* locked_joint, int n_locked,
-                                      const double* typical, bool with_general = true) {
-    ik::LockedArm out;
+CSPACE_ONCE LockedArm lock_joints(const Chain& whole, const int* locked_joint, int n_locked,
+                                  const double* typical, bool with_general = true) {
+    LockedArm out;
     out.whole = whole;
     out.n_locked = n_locked;
     for (int k = 0; k < n_locked; ++k) out.locked_joint[k] = locked_joint[k];
@@ -57,16 +57,16 @@ CSPACE_ONCE ik::LockedArm lock_joints(const ik::Chain& whole, const int* locked_
         else
             out.moving[out.n_moving++] = i;
     }
-    if (out.n_moving > ik::max_moving || out.n_moving == 0) return out;
+    if (out.n_moving > max_moving || out.n_moving == 0) return out;
     out.at_ends = out.moving[out.n_moving - 1] - out.moving[0] == out.n_moving - 1;
-    const double zero[ik::max_joints] = {};
+    const double zero[max_joints] = {};
     out.arm = make_arm(locked_chain(out, out.at_ends ? zero : typical), with_general);
     return out;
 }
 
 // The displacement of joint i by −q.
 template <class V>
-CSPACE_INLINE Pose<V> joint_undone(const ik::Chain& chain, int i, const V& q) {
+CSPACE_INLINE Pose<V> joint_undone(const Chain& chain, int i, const V& q) {
     const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
     if (chain.prismatic[i]) return {fill33<V>(identity_pose().R), -q * h};
     V s, c;
@@ -77,8 +77,8 @@ CSPACE_INLINE Pose<V> joint_undone(const ik::Chain& chain, int i, const V& q) {
 // The goal of an arm whose locked joints are at its ends. Locked joints at the front move the base, those at
 // the back move the tip.
 template <class V>
-CSPACE_INLINE Pose<V> goal_between_ends(const ik::LockedArm& locked, const Pose<V>& goal, const V* at) {
-    const ik::Chain& whole = locked.whole;
+CSPACE_INLINE Pose<V> goal_between_ends(const LockedArm& locked, const Pose<V>& goal, const V* at) {
+    const Chain& whole = locked.whole;
     const Posed& tip = whole.tip;
     Pose<V> out = goal;
     int last = locked.n_locked;
@@ -93,10 +93,10 @@ CSPACE_INLINE Pose<V> goal_between_ends(const ik::LockedArm& locked, const Pose<
 
 // The arm with the inner locked joints at these values. A general arm keeps the order of formulations of its
 // typical values, because ranking them takes a thousand times as long as using them.
-inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
-    const ik::Chain chain = locked_chain(locked, at);
+inline Arm arm_at(const LockedArm& locked, const double* at) {
+    const Chain chain = locked_chain(locked, at);
     if (!locked.arm.is_general) return make_arm(chain);
-    ik::Arm arm;
+    Arm arm;
     arm.has_plan = make_plan(arm.plan, chain);
     if (arm.has_plan && !arm.plan.idealised) return arm;
     arm.plan.form.length = characteristic_length(chain);
@@ -106,13 +106,13 @@ inline ik::Arm arm_at(const ik::LockedArm& locked, const double* at) {
 
 // Solutions of an arm without another solver, by descent from configurations over all joints. They may be
 // members of a self-motion.
-inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal) {
+inline Solutions solve_by_descent(const Chain& chain, const Posed& goal) {
     constexpr int starts = 48;
-    ik::Solutions out;
+    Solutions out;
     out.complete = false;
     const double length = characteristic_length(chain);
-    for (int k = 0; k < starts && out.count < ik::max_solutions; ++k) {
-        double q[ik::max_joints];
+    for (int k = 0; k < starts && out.count < max_solutions; ++k) {
+        double q[max_joints];
         spread_configuration(k, chain.n, q);
         accept_solution(out, chain, goal, length, q, out.count, 60);
     }
@@ -121,15 +121,15 @@ inline ik::Solutions solve_by_descent(const ik::Chain& chain, const Posed& goal)
 }
 
 // By the closed form alone where it certifies its result.
-CSPACE_ONCE ik::Solutions solve_arm_quickly(const ik::Arm& arm, const Posed& goal) {
-    ik::Solutions out;
+CSPACE_ONCE Solutions solve_arm_quickly(const Arm& arm, const Posed& goal) {
+    Solutions out;
     if (arm.has_plan) {
         double T[16] = {0, 0, 0, goal.t.x, 0, 0, 0, goal.t.y, 0, 0, 0, goal.t.z, 0, 0, 0, 1},
                q[max_branches * 6];
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) T[4 * i + j] = goal.R.m[i][j];
-        if (solve_quickly(arm.plan, T, q, out.branch, &out.count) == ik::FastPath::settled) {
-            out.status = out.count ? ik::Status::exact : ik::Status::unreachable;
+        if (solve_quickly(arm.plan, T, q, out.branch, &out.count) == FastPath::settled) {
+            out.status = out.count ? Status::exact : Status::unreachable;
             for (int k = 0; k < out.count; ++k) {
                 for (int i = 0; i < 6; ++i) out.q[k][i] = q[6 * k + i];
                 out.self_motion[k] = false;
@@ -141,16 +141,16 @@ CSPACE_ONCE ik::Solutions solve_arm_quickly(const ik::Arm& arm, const Posed& goa
     return solve_pose(arm, goal, nullptr);
 }
 
-inline ik::Solutions solve_arm(const ik::Arm& arm, const Posed& goal, const double* unconstrained) {
+inline Solutions solve_arm(const Arm& arm, const Posed& goal, const double* unconstrained) {
     if (!unconstrained && arm.has_plan) return solve_arm_quickly(arm, goal);
     return is_solvable(arm) ? solve_pose(arm, goal, unconstrained) : solve_by_descent(arm.plan.chain, goal);
 }
 
 // Every solution of the moving joints, with the locked joints at their values `at`. unconstrained (null, or
 // of the whole chain): the values of joints that the goal leaves free.
-CSPACE_ONCE ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed& goal, const double* at,
-                                       const double* unconstrained) {
-    double rest[ik::max_joints] = {};
+CSPACE_ONCE Solutions solve_locked(const LockedArm& locked, const Posed& goal, const double* at,
+                                   const double* unconstrained) {
+    double rest[max_joints] = {};
     for (int k = 0; unconstrained && k < locked.n_moving; ++k) rest[k] = unconstrained[locked.moving[k]];
     if (locked.at_ends)
         return solve_arm(locked.arm, goal_between_ends(locked, goal, at), unconstrained ? rest : nullptr);
@@ -158,9 +158,9 @@ CSPACE_ONCE ik::Solutions solve_locked(const ik::LockedArm& locked, const Posed&
 }
 
 // A row of the whole chain from the moving joints and the locked joints.
-inline void whole_row(const ik::LockedArm& locked, const double* at, const double* row, double* q) {
+inline void whole_row(const LockedArm& locked, const double* at, const double* row, double* q) {
     for (int k = 0; k < locked.n_locked; ++k) q[locked.locked_joint[k]] = at[locked.locked_joint[k]];
     for (int k = 0; k < locked.n_moving; ++k) q[locked.moving[k]] = row[k];
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -7,13 +7,13 @@
 
 #include "cspace/ik/redundancy/turning_points.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The values of all branches are adjacent in memory, so that they are compared on lanes.
 struct CurveSample {
     double value;
     unsigned there;  // which branches; the others are zero
-    double q[ik::max_joints][max_branches];
+    double q[max_joints][max_branches];
     double distance[max_branches];
     int next;  // in the order of values, or −1
 };
@@ -23,13 +23,13 @@ struct CurveSamples {
     CurveSample sample[room];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The sum of the squared joint differences, on four branches. difference(i): of joint i.
 template <class Difference>
-CSPACE_INLINE Pack<4> squared_way(const ik::Redundant& arm, const Difference& difference) {
+CSPACE_INLINE Pack<4> squared_way(const Redundant& arm, const Difference& difference) {
     Pack<4> sum = fill<Pack<4>>(0.0);
     for (int i = 0; i < arm.chain.n; ++i) {
         const Pack<4> gap = difference(i), way = arm.chain.prismatic[i] ? gap : short_way(gap);
@@ -39,7 +39,7 @@ CSPACE_INLINE Pack<4> squared_way(const ik::Redundant& arm, const Difference& di
 }
 
 // Whether a branch may come nearer than `best` between two adjacent samples.
-inline bool may_hide(const ik::Redundant& arm, const CurveSample& a, const CurveSample& b, double best) {
+inline bool may_hide(const Redundant& arm, const CurveSample& a, const CurveSample& b, double best) {
     using V = Pack<4>;
     constexpr double least_gap = 1e-4, detour = 1.2, short_way_between = 0.15;
     if (!(b.value - a.value > least_gap)) return false;
@@ -53,7 +53,7 @@ inline bool may_hide(const ik::Redundant& arm, const CurveSample& a, const Curve
     return (hidden & a.there & b.there) != 0;
 }
 
-inline void measure_sample(const ik::Redundant& arm, const double* seed, CurveSample& at) {
+inline void measure_sample(const Redundant& arm, const double* seed, CurveSample& at) {
     using V = Pack<4>;
     for (int k = 0; k < max_branches; k += 4) {
         const V square = squared_way(arm, [&](int i) { return load<V>(at.q[i] + k) - seed[i]; });
@@ -63,7 +63,7 @@ inline void measure_sample(const ik::Redundant& arm, const double* seed, CurveSa
 
 // Adds samples at given values, with their distances from the seed. after[k]: the sample that value k
 // follows.
-inline void add_samples(const ik::Redundant& arm, const Sweep& sweep, const double* values, const int* after,
+inline void add_samples(const Redundant& arm, const Sweep& sweep, const double* values, const int* after,
                         int n, const double* seed, CurveSamples& all) {
     sweep_values(sweep, values, n, [&](int k, const SweptRows& rows) {
         const int at = all.count++;
@@ -90,7 +90,7 @@ inline void add_samples(const ik::Redundant& arm, const Sweep& sweep, const doub
 }
 
 // Divides until no pair can contain a point nearer than `best` (or than the nearest sample).
-inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double best, const double* seed,
+inline void divide_samples(const Redundant& arm, const Sweep& sweep, double best, const double* seed,
                            CurveSamples& all) {
     constexpr int most_rounds = 10;
     for (int round = 0; round < most_rounds; ++round) {
@@ -111,9 +111,9 @@ inline void divide_samples(const ik::Redundant& arm, const Sweep& sweep, double 
 }
 
 // Whether q lies between samples a and b of a branch.
-inline bool lies_between(const ik::Chain& chain, const CurveSample& a, const CurveSample& b, int branch,
+inline bool lies_between(const Chain& chain, const CurveSample& a, const CurveSample& b, int branch,
                          const double* q) {
-    double along = 0, length2 = 0, off2 = 0, gap[ik::max_joints], way[ik::max_joints];
+    double along = 0, length2 = 0, off2 = 0, gap[max_joints], way[max_joints];
     for (int i = 0; i < chain.n; ++i) {
         const bool slides = chain.prismatic[i];
         const double from = a.q[i][branch], to = b.q[i][branch];
@@ -131,7 +131,7 @@ inline bool lies_between(const ik::Chain& chain, const CurveSample& a, const Cur
 // Calls visit(q, distance) for the local minima: samples below the adjacent samples of their branch, unless
 // `found` is close to them.
 template <class Visit>
-inline void lowest_samples(const ik::Chain& chain, const CurveSamples& all, const double* found,
+inline void lowest_samples(const Chain& chain, const CurveSamples& all, const double* found,
                            const Visit& visit) {
     const CurveSample* before = nullptr;
     for (int k = all.count ? 0 : -1; k >= 0;) {
@@ -146,7 +146,7 @@ inline void lowest_samples(const ik::Chain& chain, const CurveSamples& all, cons
                 wanted = wanted && !(found && other && other->there >> b & 1 &&
                                      lies_between(chain, at, *other, b, found));
             if (!wanted) continue;
-            double q[ik::max_joints];
+            double q[max_joints];
             for (int i = 0; i < chain.n; ++i) q[i] = at.q[i][b];
             visit(q, at.distance[b]);
         }
@@ -178,4 +178,4 @@ inline int values_between_folds(const FoldValues& folds, double middle, double h
     return count;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

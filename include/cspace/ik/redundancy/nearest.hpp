@@ -6,11 +6,11 @@
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
 #include "cspace/math/turn.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // q − seed, by the shorter way for revolute joints.
 template <int N = 0, class V>
-CSPACE_INLINE void from_seed(const ik::Chain& chain, const double* seed, const double* weight, const V* q,
+CSPACE_INLINE void from_seed(const Chain& chain, const double* seed, const double* weight, const V* q,
                              V* gap) {
     const int n = size_or<N>(chain.n);
     for (int i = 0; i < n; ++i) {
@@ -22,7 +22,7 @@ CSPACE_INLINE void from_seed(const ik::Chain& chain, const double* seed, const d
 // H d for the Hessian of the Lagrangian ½ Σ w (q − seed)² − λ · pose(q). The pose's second derivative by q_i
 // and q_j, i ≤ j, is [axis i × column j; ½ axis i × axis j].
 template <int N, class V>
-CSPACE_INLINE void lagrangian_times(const ik::Chain& chain, const TipMotion<V>& motion, const double* weight,
+CSPACE_INLINE void lagrangian_times(const Chain& chain, const TipMotion<V>& motion, const double* weight,
                                     const V* lambda, const V* d, V* out) {
     const int n = size_or<N>(chain.n);
     const Vec3<V> force = {lambda[0], lambda[1], lambda[2]};
@@ -30,7 +30,7 @@ CSPACE_INLINE void lagrangian_times(const ik::Chain& chain, const TipMotion<V>& 
     // force · (h_i × v_j) = v_j · (force × h_i), so that one running sum serves the rows above and one those
     // below.
     const V zero = fill<V>(0.0);
-    Vec3<V> lever[ik::max_joints], twist[ik::max_joints], turned = {zero, zero, zero}, twisted = turned;
+    Vec3<V> lever[max_joints], twist[max_joints], turned = {zero, zero, zero}, twisted = turned;
     for (int j = 0; j < n; ++j) {
         const V* c = motion.column[j];
         const Vec3<V> v = {c[0], c[1], c[2]}, h = {c[3], c[4], c[5]};
@@ -50,7 +50,7 @@ CSPACE_INLINE void lagrangian_times(const ik::Chain& chain, const TipMotion<V>& 
     }
 }
 
-inline constexpr int max_free = ik::max_joints - 1;
+inline constexpr int max_free = max_joints - 1;
 
 // Solves H x = b for the leading k × k block of a symmetric H by Cholesky factorisation. False in lanes where
 // H is not clearly positive definite.
@@ -82,11 +82,11 @@ CSPACE_INLINE mask_of<V> solve_positive(V (&H)[max_free][max_free], int k, V* x)
 // One step of q to the nearest point. Returns the largest joint change of the full step. motion, lambda: the
 // split Jacobian before the step, and its multipliers.
 template <int N, class V>
-CSPACE_NOINLINE V step_to_nearest(const ik::Chain& chain, int rank, const Pose<V>& goal, double length,
+CSPACE_NOINLINE V step_to_nearest(const Chain& chain, int rank, const Pose<V>& goal, double length,
                                   const double* seed, const double* weight, V* q, TipMotion<V>& motion,
                                   V (&lambda)[6]) {
     constexpr double stride = 0.4;
-    constexpr int room = N ? N : ik::max_joints, most_free = N ? N - 6 : max_free;
+    constexpr int room = N ? N : max_joints, most_free = N ? N - 6 : max_free;
     const int n = size_or<N>(chain.n), free = N ? N - 6 : n - rank;
     SplitJacobian<V> split;
     tip_motion<N>(chain, goal, length, q, motion);
@@ -128,4 +128,4 @@ CSPACE_NOINLINE V step_to_nearest(const ik::Chain& chain, int rank, const Pose<V
     return largest;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -16,33 +16,33 @@
 #include "cspace/ik/redundancy/split_chain.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
-// The kinematics of the two halves of an arm at a configuration, one half per lane; joints as in ik::Halves.
+// The kinematics of the two halves of an arm at a configuration, one half per lane; joints as in Halves.
 struct HalvesMotion {
     using V = Pack<2>;
-    Vec3<V> axis[ik::Halves::longest], linear[ik::Halves::longest];  // of each joint, at the middle
-    double error[6];                                                 // what is missing between the frames
+    Vec3<V> axis[Halves::longest], linear[Halves::longest];  // of each joint, at the middle
+    double error[6];                                         // what is missing between the frames
     double aligned;  // trace of the rotation between them: 3 at the goal
 };
 
 // L D Lᵀ factors of 1 − φ″, one block per half.
 struct HalvesFactor {
     using V = Pack<2>;
-    V below[ik::Halves::longest][ik::Halves::longest], inverse[ik::Halves::longest];
+    V below[Halves::longest][Halves::longest], inverse[Halves::longest];
 };
 
-// An iterate of Newton's method; joints as in ik::Halves.
+// An iterate of Newton's method; joints as in Halves.
 struct HalvesPoint {
     using V = Pack<2>;
-    V q[ik::Halves::longest], gap[ik::Halves::longest];  // gap: from the seed
+    V q[Halves::longest], gap[Halves::longest];  // gap: from the seed
     double lambda[6] = {};
-    V bent[ik::Halves::longest][ik::Halves::longest];  // 1 − φ″ before the last step
+    V bent[Halves::longest][Halves::longest];  // 1 − φ″ before the last step
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <int n, class V>
 CSPACE_INLINE Vec3<V> load_vector(const double (&values)[n][2]) {
@@ -70,7 +70,7 @@ CSPACE_INLINE V there_and_back() {
 
 // Sines and cosines of all joints, in two packs of four angles.
 template <class V>
-CSPACE_INLINE void turns_of(const ik::Halves& arm, const V* q, V* s, V* c) {
+CSPACE_INLINE void turns_of(const Halves& arm, const V* q, V* s, V* c) {
     double angle[8], sine[8], cosine[8];
     for (int k = 0; k < 4; ++k) store(angle + 2 * k, load<V>(arm.turning[k]) * q[k]);
     for (int k = 0; k < 8; k += 4) {
@@ -85,7 +85,7 @@ CSPACE_INLINE void turns_of(const ik::Halves& arm, const V* q, V* s, V* c) {
     }
 }
 
-CSPACE_INLINE void move_halves(const ik::Halves& arm, const Posed& goal, double per_length, const Pack<2>* q,
+CSPACE_INLINE void move_halves(const Halves& arm, const Posed& goal, double per_length, const Pack<2>* q,
                                HalvesMotion& out) {
     using V = Pack<2>;
     V s[4], c[4];
@@ -231,7 +231,7 @@ CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
 
 // Whether no solution is nearer to the seed than this point. Third derivatives: see halves_at. The bound
 // allows for a prismatic joint as far out as at the seed and beyond.
-CSPACE_INLINE bool is_proven_nearest(const ik::Halves& arm, const HalvesPoint& at) {
+CSPACE_INLINE bool is_proven_nearest(const Halves& arm, const HalvesPoint& at) {
     using V = Pack<2>;
     constexpr double margin = 0.02;  // what the last step, and rounding, may change
     V square = fill<V>(0.0);
@@ -248,7 +248,7 @@ CSPACE_INLINE bool is_proven_nearest(const ik::Halves& arm, const HalvesPoint& a
     return factor_halves(at.bent, most * distance * (2.0 / 3.0) + margin, 0, factor);
 }
 
-CSPACE_INLINE void put_joints(const ik::Halves& arm, const HalvesPoint& at, double* q) {
+CSPACE_INLINE void put_joints(const Halves& arm, const HalvesPoint& at, double* q) {
     for (int k = 0; k < 4; ++k)
         for (int half = 0; half < 2; ++half)
             if (arm.joint[k][half] >= 0) q[arm.joint[k][half]] = lane(at.q[k], half);
@@ -261,8 +261,8 @@ CSPACE_INLINE double missing_between(const HalvesMotion& motion) {
 
 // Newton's method from a seed close to the manifold, and the proof; false if either fails. All joints must
 // have the same weight.
-CSPACE_INLINE bool nearest_by_proof(const ik::Halves& arm, const Posed& goal, double length,
-                                    const double* seed, double* q) {
+CSPACE_INLINE bool nearest_by_proof(const Halves& arm, const Posed& goal, double length, const double* seed,
+                                    double* q) {
     using V = Pack<2>;
     constexpr double close = 0.25, settled = 1e-6, left = 1e-10, there = 1e-14;
     constexpr int most_steps = 7;
@@ -293,4 +293,4 @@ CSPACE_INLINE bool nearest_by_proof(const ik::Halves& arm, const Posed& goal, do
     return missing_between(motion) < tolerance::reached && motion.aligned > 2;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

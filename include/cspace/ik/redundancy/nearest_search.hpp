@@ -7,29 +7,29 @@
 #include "cspace/ik/redundancy/nearest_proof.hpp"
 #include "cspace/ik/redundancy/turning_points.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The best starts so far, by distance from the seed.
 struct Starts {
     static constexpr int room = 12;
     int count = 0;
-    double q[room][ik::max_joints];
+    double q[room][max_joints];
     double distance[room];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline double distance_from_seed(const ik::Redundant& arm, const double* seed, const double* q) {
-    double gap[ik::max_joints], sum = 0;
+inline double distance_from_seed(const Redundant& arm, const double* seed, const double* q) {
+    double gap[max_joints], sum = 0;
     from_seed(arm.chain, seed, arm.weight, q, gap);
     for (int i = 0; i < arm.chain.n; ++i) sum += gap[i] * gap[i];
     return std::sqrt(sum);
 }
 
 // Adds a start. If there is no room, it replaces the worst one.
-inline void add_start(const ik::Redundant& arm, Starts& starts, const double* q, double distance) {
+inline void add_start(const Redundant& arm, Starts& starts, const double* q, double distance) {
     int at = starts.count;
     if (at == Starts::room) {
         at = 0;
@@ -44,7 +44,7 @@ inline void add_start(const ik::Redundant& arm, Starts& starts, const double* q,
 }
 
 // Keeps a start unless it is worse than all others, or lies in the valley of a better one.
-inline void keep_start(const ik::Redundant& arm, Starts& starts, const double* q, double distance) {
+inline void keep_start(const Redundant& arm, Starts& starts, const double* q, double distance) {
     constexpr double valley = 0.4;
     if (!is_allowed(arm, q)) return;
     for (int k = 0; k < starts.count; ++k) {
@@ -63,15 +63,15 @@ inline constexpr int most_nearest_steps = 25;
 // The best result of Newton's method so far.
 struct Nearest {
     double distance = std::numeric_limits<double>::infinity();
-    double q[ik::max_joints];
+    double q[max_joints];
 };
 
 // Newton's method on as many starts as V has lanes; keeps the best result that converges. rank: of the
 // Jacobian along the iterates.
 template <int N, class V>
-inline void settle_abreast(const ik::Redundant& arm, int rank, const Posed& goal, const double* seed,
+inline void settle_abreast(const Redundant& arm, int rank, const Posed& goal, const double* seed,
                            const double* const* starts, int count, Nearest& best) {
-    V q[ik::max_joints], step = fill<V>(1.0);
+    V q[max_joints], step = fill<V>(1.0);
     for (int i = 0; i < arm.chain.n; ++i)
         for (int l = 0; l < Lanes<V>::count; ++l) set_lane(q[i], l, starts[l < count ? l : 0][i]);
     const Pose<V> goals = fill_pose<V>(goal);
@@ -80,7 +80,7 @@ inline void settle_abreast(const ik::Redundant& arm, int rank, const Posed& goal
     for (int k = 0; k < most_nearest_steps && any(step > settled_step); ++k)
         step = step_to_nearest<N>(arm.chain, rank, goals, arm.length, seed, arm.weight, q, motion, lambda);
     tip_motion<N>(arm.chain, goals, arm.length, q, motion);
-    double row[ik::max_joints];
+    double row[max_joints];
     for (int l = 0; l < count; ++l) {
         double error = 0;
         for (const V& e : motion.error) error = max(error, std::fabs(lane(e, l)));
@@ -97,7 +97,7 @@ inline void settle_abreast(const ik::Redundant& arm, int rank, const Posed& goal
 }
 
 // On lanes where the rank is full. Otherwise the selected pose coordinates differ from start to start.
-inline void settle_all(const ik::Redundant& arm, const Posed& goal, const double* seed,
+inline void settle_all(const Redundant& arm, const Posed& goal, const double* seed,
                        const double* const* starts, int count, Nearest& best) {
     const bool full = arm.rank == 6;
     const int lanes = full ? 4 : 1;
@@ -110,8 +110,8 @@ inline void settle_all(const ik::Redundant& arm, const Posed& goal, const double
 
 // Refines the starts whose valley may contain a point below the best one. `also`: an additional start, on the
 // manifold or off it.
-inline void settle_starts(const ik::Redundant& arm, const Posed& goal, const double* seed,
-                          const Starts& starts, const double* also, Nearest& best) {
+inline void settle_starts(const Redundant& arm, const Posed& goal, const double* seed, const Starts& starts,
+                          const double* also, Nearest& best) {
     const double* chosen[Starts::room + 1];
     int count = 0;
     double nearest = best.distance;
@@ -124,11 +124,11 @@ inline void settle_starts(const ik::Redundant& arm, const Posed& goal, const dou
 
 // Starts at the seed and at two points along the curve on either side of it. Their distance from the seed is
 // about that of the curve, because near a singularity the curve doubles back. Returns that distance.
-inline double settle_around(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
+inline double settle_around(const Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
     const int n = arm.chain.n;
     TipMotion<double> motion;
     SplitJacobian<double> split;
-    double step[ik::max_joints], along[ik::max_joints], beside[3][ik::max_joints];
+    double step[max_joints], along[max_joints], beside[3][max_joints];
     tip_motion<0>(arm.chain, goal, arm.length, seed, motion);
     split_jacobian<0>(motion, n, arm.rank, split);
     shortest_step<0>(split, n, motion.error, step);
@@ -143,9 +143,8 @@ inline double settle_around(const ik::Redundant& arm, const Posed& goal, const d
 }
 
 // The lowest samples of a curve within a window of the parameter, by a closed form on lanes.
-inline void sample_window(const ik::Redundant& arm, const Sweep& sweep, const double* seed,
-                          const double* values, int count, double window, const Nearest& best,
-                          Starts& starts) {
+inline void sample_window(const Redundant& arm, const Sweep& sweep, const double* seed, const double* values,
+                          int count, double window, const Nearest& best, Starts& starts) {
     CurveSamples samples;
     add_samples(arm, sweep, values, nullptr, count, seed, samples);
     if (has_changes(samples)) {
@@ -165,7 +164,7 @@ inline void sample_window(const ik::Redundant& arm, const Sweep& sweep, const do
 
 // One redundant joint: starts at the seed, then at parameter values around the seed within the bound of the
 // best solution.
-inline void nearest_of_curve(const ik::Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
+inline void nearest_of_curve(const Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
     constexpr double spacing = 0.1;
     constexpr int most = 64;
     const int p = arm.locked.locked_joint[0];
@@ -194,12 +193,11 @@ inline void nearest_of_curve(const ik::Redundant& arm, const Posed& goal, const 
 }
 
 // Several redundant joints: the locked joints start at the seed, then at samples farther and farther from it.
-inline void nearest_of_surface(const ik::Redundant& arm, const Posed& goal, const double* seed,
-                               Nearest& best) {
+inline void nearest_of_surface(const Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
     constexpr int most = 48;
-    const ik::LockedArm& locked = arm.locked;
+    const LockedArm& locked = arm.locked;
     Starts starts;
-    double at[ik::max_joints], row[ik::max_joints], spread[ik::max_joints];
+    double at[max_joints], row[max_joints], spread[max_joints];
     for (int k = 0; k < most; ++k) {
         spread_configuration(k, arm.chain.n, spread);
         for (int i = 0; i < arm.chain.n; ++i) {
@@ -207,7 +205,7 @@ inline void nearest_of_surface(const ik::Redundant& arm, const Posed& goal, cons
             const double part = arm.weight[i] > 0 ? k / (most - 1.0) : (k > 0);
             at[i] = seed[i] + part * reach * spread[i];
         }
-        const ik::Solutions found = solve_locked(locked, goal, at, seed);
+        const Solutions found = solve_locked(locked, goal, at, seed);
         for (int j = 0; j < found.count; ++j) {
             whole_row(locked, at, found.q[j], row);
             keep_start(arm, starts, row, distance_from_seed(arm, seed, row));
@@ -218,12 +216,11 @@ inline void nearest_of_surface(const ik::Redundant& arm, const Posed& goal, cons
 }
 
 // By descent from configurations around the seed, if no sample of the locked joints gave a solution.
-inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, const double* seed,
-                               Nearest& best) {
+inline void nearest_by_descent(const Redundant& arm, const Posed& goal, const double* seed, Nearest& best) {
     constexpr int most = 32;
     constexpr double on_floor = 1e-5;
     Starts starts;
-    double q[ik::max_joints];
+    double q[max_joints];
     for (int k = 0; k < most; ++k) {
         spread_configuration(k, arm.chain.n, q);
         for (int i = 0; i < arm.chain.n; ++i)
@@ -244,8 +241,7 @@ inline void nearest_by_descent(const ik::Redundant& arm, const Posed& goal, cons
 }
 
 // Returns false if no configuration reaches the goal. q: revolute joints in (−π, π].
-inline bool nearest_configuration(const ik::Redundant& arm, const Posed& goal, const double* seed,
-                                  double* q) {
+inline bool nearest_configuration(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
     if (arm.halves.exist && nearest_by_proof(arm.halves, goal, arm.length, seed, q)) {
         for (int i = 0; i < arm.chain.n; ++i)
             if (!arm.chain.prismatic[i]) q[i] = wrap_once(short_way(q[i]));
@@ -265,4 +261,4 @@ inline bool nearest_configuration(const ik::Redundant& arm, const Posed& goal, c
     return true;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

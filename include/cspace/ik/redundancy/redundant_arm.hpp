@@ -29,16 +29,16 @@ inline bool is_stopped(const Redundant& arm, int i) {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The least distance from a value to the limits of joint i over all multiples of 2π; not positive inside.
-inline double excess(const ik::Redundant& arm, int i, double q) {
-    if (!ik::is_stopped(arm, i)) return -1;
+inline double excess(const Redundant& arm, int i, double q) {
+    if (!is_stopped(arm, i)) return -1;
     if (arm.chain.prismatic[i]) return max(arm.lower[i] - q, q - arm.upper[i]);
     const double middle = 0.5 * (arm.lower[i] + arm.upper[i]);
     return std::fabs(short_way(q - middle)) - 0.5 * (arm.upper[i] - arm.lower[i]);
 }
-inline bool is_within(const ik::Redundant& arm, const double* q, double slack) {
+inline bool is_within(const Redundant& arm, const double* q, double slack) {
     for (int i = 0; i < arm.chain.n; ++i)
         if (excess(arm, i, q[i]) > slack) return false;
     return true;
@@ -46,14 +46,14 @@ inline bool is_within(const ik::Redundant& arm, const double* q, double slack) {
 
 // Joints without weight in the distance represent coordinates that the goal leaves free. They must stay in
 // range: a tool has to point forwards.
-inline bool is_allowed(const ik::Redundant& arm, const double* q) {
+inline bool is_allowed(const Redundant& arm, const double* q) {
     for (int i = 0; i < arm.chain.n; ++i)
         if (arm.weight[i] == 0 && excess(arm, i, q[i]) > 1e-9 * arm.length) return false;
     return true;
 }
 
 // The largest joint difference, by the shorter way for revolute joints.
-inline double joint_gap(const ik::Chain& chain, const double* a, const double* b) {
+inline double joint_gap(const Chain& chain, const double* a, const double* b) {
     double most = 0;
     for (int i = 0; i < chain.n; ++i) {
         const double gap = a[i] - b[i];
@@ -64,7 +64,7 @@ inline double joint_gap(const ik::Chain& chain, const double* a, const double* b
 
 // Twice the largest distance of any part of the arm from its base or from the goal [m]. Prismatic joints
 // without limits are followed to this bound.
-inline double far_away(const ik::Redundant& arm, const Posed& goal) {
+inline double far_away(const Redundant& arm, const Posed& goal) {
     double reach = norm(goal.t) + norm(arm.chain.tip.t);
     for (int i = 0; i < arm.chain.n; ++i) reach += 2 * norm(arm.chain.point[i]);
     return reach > 0 ? 2 * reach : 2.0;
@@ -75,16 +75,16 @@ struct Domain {
     double lower, upper;
     bool is_circle;
 };
-inline Domain domain_of(const ik::Redundant& arm, int parameter, const Posed& goal) {
+inline Domain domain_of(const Redundant& arm, int parameter, const Posed& goal) {
     const double lower = arm.lower[parameter], upper = arm.upper[parameter];
     if (!arm.chain.prismatic[parameter])
-        return ik::is_stopped(arm, parameter) ? Domain{lower, upper, false} : Domain{-pi, pi, true};
+        return is_stopped(arm, parameter) ? Domain{lower, upper, false} : Domain{-pi, pi, true};
     const double far = far_away(arm, goal);
     return {max(lower, -far), min(upper, far), false};
 }
 
 // A generic value for each joint.
-inline void typical_values(const ik::Redundant& arm, double* at) {
+inline void typical_values(const Redundant& arm, double* at) {
     for (int i = 0; i < arm.chain.n; ++i) {
         const bool bounded = std::isfinite(arm.lower[i]) && std::isfinite(arm.upper[i]);
         const double lower = bounded ? arm.lower[i] : -1, upper = bounded ? arm.upper[i] : 1;
@@ -95,15 +95,15 @@ inline void typical_values(const ik::Redundant& arm, double* at) {
 
 // Preference among the arms that remain after locking: closed forms on lanes, other closed forms, the general
 // solver, no solver.
-inline int rank_of(const ik::Arm& arm) {
+inline int rank_of(const Arm& arm) {
     if (arm.has_plan) return arm.plan.on_lanes && arm.plan.virtual_joints == 0 ? 3 : 2;
     if (arm.has_few_joints) return 2;
     return is_solvable(arm) ? 1 : 0;
 }
 // The arm with all joints locked except a basis.
-inline ik::LockedArm lock_outside(const ik::Redundant& arm, unsigned basis, const double* typical,
-                                  bool with_general) {
-    int locked_joint[ik::max_joints], n_locked = 0;
+inline LockedArm lock_outside(const Redundant& arm, unsigned basis, const double* typical,
+                              bool with_general) {
+    int locked_joint[max_joints], n_locked = 0;
     for (int i = 0; i < arm.chain.n; ++i)
         if (!(basis >> i & 1)) locked_joint[n_locked++] = i;
     return lock_joints(arm.chain, locked_joint, n_locked, typical, with_general);
@@ -113,11 +113,11 @@ inline ik::LockedArm lock_outside(const ik::Redundant& arm, unsigned basis, cons
 // joint on. Where consecutive joints are dependent, the nearest joints behind and before them are added. Then
 // come all joints except one.
 struct Bases {
-    static constexpr int room = 2 * ik::max_joints;
+    static constexpr int room = 2 * max_joints;
     int count = 0;
     unsigned joints[room];
 };
-inline void add_basis(const ik::Redundant& arm, const int* order, Bases& out) {
+inline void add_basis(const Redundant& arm, const int* order, Bases& out) {
     const Basis found = basis_of(arm.chain, arm.length, order, arm.chain.n);
     for (int k = 0; k < out.count; ++k)
         if (out.joints[k] == found.joints) return;
@@ -127,10 +127,10 @@ inline bool are_neighbours(unsigned joints) {
     while (!(joints & 1)) joints >>= 1;
     return (joints & (joints + 1)) == 0;
 }
-inline Bases bases_of(const ik::Redundant& arm) {
+inline Bases bases_of(const Redundant& arm) {
     Bases out;
     const int n = arm.chain.n;
-    int order[ik::max_joints];
+    int order[max_joints];
     for (int first = 0; first <= arm.redundancy_degree; ++first) {
         int k = 0;
         for (int i = first; i < n; ++i) order[k++] = i;
@@ -150,14 +150,14 @@ inline Bases bases_of(const ik::Redundant& arm) {
 // Chooses the joints to lock. Joints at the ends are preferred: the moving joints are then consecutive, and a
 // locked value only moves the goal. Of equally good choices, the last joints are locked. An inner joint is
 // locked only if no solver exists for consecutive joints.
-inline void choose_locks(ik::Redundant& arm) {
-    double typical[ik::max_joints];
+inline void choose_locks(Redundant& arm) {
+    double typical[max_joints];
     typical_values(arm, typical);
     const Bases bases = bases_of(arm);
     int best = -1, best_score = 0;
     for (int k = 0; k < bases.count; ++k) {
         if (arm.rank == 6 && !are_neighbours(bases.joints[k])) continue;
-        const ik::LockedArm locked = lock_outside(arm, bases.joints[k], typical, false);
+        const LockedArm locked = lock_outside(arm, bases.joints[k], typical, false);
         const int rank = locked.at_ends ? rank_of(locked.arm) : min(rank_of(locked.arm), 2);
         const int score = 2 * rank + locked.at_ends;
         if (rank < 2 || score <= best_score) continue;
@@ -177,17 +177,17 @@ inline void choose_locks(ik::Redundant& arm) {
 }
 
 // The number of dimensions that a pose leaves free when some joints are locked, given as a bit mask.
-inline int redundancy_degree_with(const ik::Redundant& arm, unsigned locked_joint) {
-    int order[ik::max_joints], count = 0;
+inline int redundancy_degree_with(const Redundant& arm, unsigned locked_joint) {
+    int order[max_joints], count = 0;
     for (int i = 0; i < arm.chain.n; ++i)
         if (!(locked_joint >> i & 1)) order[count++] = i;
     return count - basis_of(arm.chain, arm.length, order, count).rank;
 }
 
 // lower, upper, weight: per joint. An arm without redundant joints has no joint to lock.
-CSPACE_ONCE ik::Redundant make_redundant(const ik::Chain& chain, const double* lower, const double* upper,
-                                         const double* weight) {
-    ik::Redundant arm;
+CSPACE_ONCE Redundant make_redundant(const Chain& chain, const double* lower, const double* upper,
+                                     const double* weight) {
+    Redundant arm;
     arm.chain = chain;
     arm.length = characteristic_length(chain);
     for (int i = 0; i < chain.n; ++i) {
@@ -206,4 +206,4 @@ CSPACE_ONCE ik::Redundant make_redundant(const ik::Chain& chain, const double* l
     return arm;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

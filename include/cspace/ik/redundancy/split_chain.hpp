@@ -29,7 +29,7 @@ struct Halves {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline Mat3d frame_along(const Vec3d& z) {
     const Vec3d x = any_perpendicular(z);
@@ -41,13 +41,13 @@ inline double to_the_three_halves(int k) { return k * std::sqrt(double(k)); }
 // length: size of the arm. The point of each joint is the nearest of its axis to the next one towards the
 // middle, which gives good bounds of the third derivatives. Each is at most the cube of all angles before a
 // link times the length of the link: (Σ |x_j|)³ ≤ k^(3/2) |x|³ for k of them.
-inline ik::Halves halves_at(const ik::Chain& chain, double length, int front, const Vec3d& c) {
-    ik::Halves out;
+inline Halves halves_at(const Chain& chain, double length, int front, const Vec3d& c) {
+    Halves out;
     out.exist = true;
     const Mat3d last[2] = {frame_along(chain.axis[front - 1]), frame_along(chain.axis[front])};
     for (int half = 0; half < 2; ++half) {
         const int count = half ? chain.n - front : front;
-        Vec3d point[ik::Halves::longest];
+        Vec3d point[Halves::longest];
         Vec3d next = c;
         out.reach[half] = 0;
         out.turn[half] = to_the_three_halves(count);
@@ -61,7 +61,7 @@ inline ik::Halves halves_at(const ik::Chain& chain, double length, int front, co
             next = point[k];
         }
         Posed before = half ? chain.tip : identity_pose();
-        for (int k = 0; k < ik::Halves::longest; ++k) {
+        for (int k = 0; k < Halves::longest; ++k) {
             const int i = half ? chain.n - 1 - k : k;
             const bool real = k < count;
             const Posed now = real ? Posed{frame_along(chain.axis[i]), point[k]} : before;
@@ -86,9 +86,9 @@ inline ik::Halves halves_at(const ik::Chain& chain, double length, int front, co
 }
 
 // Divides where the bounds are smallest, at a point of one of the axes next to the division.
-inline ik::Halves make_halves(const ik::Chain& chain, double length) {
-    constexpr int longest = ik::Halves::longest;
-    ik::Halves best;
+inline Halves make_halves(const Chain& chain, double length) {
+    constexpr int longest = Halves::longest;
+    Halves best;
     if (chain.n < 2 || chain.n > 2 * longest) return best;
     double least = std::numeric_limits<double>::infinity();
     for (int front = max(1, chain.n - longest); front <= min(longest, chain.n - 1); ++front)
@@ -96,7 +96,7 @@ inline ik::Halves make_halves(const ik::Chain& chain, double length) {
             for (int i = 0; i < chain.n; ++i) {
                 const Vec3d h = chain.axis[beside], p = chain.point[beside];
                 const Vec3d c = p + dot(h, chain.point[i] - p) * h;
-                const ik::Halves found = halves_at(chain, length, front, c);
+                const Halves found = halves_at(chain, length, front, c);
                 const double most = max(found.reach[0], found.reach[1]);
                 if (!(most < least)) continue;
                 least = most;
@@ -105,4 +105,4 @@ inline ik::Halves make_halves(const ik::Chain& chain, double length) {
     return best;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

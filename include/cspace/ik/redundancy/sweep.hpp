@@ -7,7 +7,7 @@
 #include "cspace/ik/polish.hpp"
 #include "cspace/ik/redundancy/redundant_arm.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // G(v) = still + c · cosine + s · sine, entry by entry; c = v, s = 0 for a prismatic joint.
 struct MovingGoal {
@@ -17,10 +17,10 @@ struct MovingGoal {
 
 // Solves arm `locked` at values of its locked joint `parameter`.
 struct Sweep {
-    const ik::LockedArm* locked;
+    const LockedArm* locked;
     int parameter;
     Posed goal;
-    double at[ik::max_joints];  // of the other held joints
+    double at[max_joints];  // of the other held joints
     bool on_lanes;
     MovingGoal in_chain, in_form;
 };
@@ -29,13 +29,13 @@ struct Sweep {
 struct SweptRows {
     int count = 0;
     bool complete = true;
-    double q[ik::max_solutions][ik::max_joints];
-    int branch[ik::max_solutions];
+    double q[max_solutions][max_joints];
+    int branch[max_solutions];
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // a + b − c and the like, entry by entry.
 inline Posed combined(const Posed& A, double a, const Posed& B, double b) {
@@ -88,8 +88,7 @@ CSPACE_INLINE void value_on_circle(const MovingGoal& goal, V value, V& c, V& s) 
 }
 
 // at: the values of all locked joints; the value of the parameter is ignored.
-CSPACE_ONCE Sweep make_sweep(const ik::LockedArm& locked, int parameter, const Posed& goal,
-                             const double* at) {
+CSPACE_ONCE Sweep make_sweep(const LockedArm& locked, int parameter, const Posed& goal, const double* at) {
     Sweep sweep;
     sweep.locked = &locked;
     sweep.parameter = parameter;
@@ -97,7 +96,7 @@ CSPACE_ONCE Sweep make_sweep(const ik::LockedArm& locked, int parameter, const P
     for (int i = 0; i < locked.whole.n; ++i) sweep.at[i] = at[i];
     sweep.on_lanes = locked.at_ends && rank_of(locked.arm) == 3;
     if (!sweep.on_lanes) return sweep;
-    const ik::Plan& plan = locked.arm.plan;
+    const Plan& plan = locked.arm.plan;
     const auto in_chain = [&](double value) {
         sweep.at[parameter] = value;
         return goal_between_ends(locked, goal, sweep.at);
@@ -109,10 +108,10 @@ CSPACE_ONCE Sweep make_sweep(const ik::LockedArm& locked, int parameter, const P
 }
 
 inline void near_singular_rows(const Sweep& sweep, double value, SweptRows& out) {
-    double at[ik::max_joints];
+    double at[max_joints];
     for (int i = 0; i < sweep.locked->whole.n; ++i) at[i] = sweep.at[i];
     at[sweep.parameter] = value;
-    const ik::Solutions found = solve_locked(*sweep.locked, sweep.goal, at, nullptr);
+    const Solutions found = solve_locked(*sweep.locked, sweep.goal, at, nullptr);
     out.count = found.count;
     out.complete = found.complete;
     for (int k = 0; k < found.count; ++k) {
@@ -124,7 +123,7 @@ inline void near_singular_rows(const Sweep& sweep, double value, SweptRows& out)
 // The angles of every branch on lanes, corrected on the true chain where the closed form idealises it.
 template <class V>
 CSPACE_NOINLINE void branches_at(const Sweep& sweep, V value, Branches<V>& b) {
-    const ik::Plan& plan = sweep.locked->arm.plan;
+    const Plan& plan = sweep.locked->arm.plan;
     V c, s;
     value_on_circle(sweep.in_form, value, c, s);
     b = closed_form(plan, goal_at(sweep.in_form, c, s), care_of(plan));
@@ -145,7 +144,7 @@ template <class Visit>
 inline void sweep_values(const Sweep& sweep, const double* values, int n, const Visit& visit) {
     using V = Pack<4>;
     SweptRows rows;
-    const ik::LockedArm& locked = *sweep.locked;
+    const LockedArm& locked = *sweep.locked;
     for (int first = 0; first < n; first += 4) {
         const int lanes = n - first < 4 ? n - first : 4;
         Branches<V> b;
@@ -172,4 +171,4 @@ inline void sweep_values(const Sweep& sweep, const double* values, int n, const 
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -6,14 +6,14 @@
 #include "cspace/ik/chain.hpp"
 #include "cspace/math/lanes.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The pose error of q, and the tip Jacobian with columns [linear over the size of the arm; angular].
 template <class V>
 struct TipMotion {
     V error[6];
     V aligned;  // trace of the rotation that is left: 3 at the goal, −1 half a turn from it
-    V column[ik::max_joints][6];
+    V column[max_joints][6];
 };
 
 // Jᵀ = Q R by Householder reflections. The first columns of Q span the row space, the others the null space.
@@ -21,16 +21,16 @@ struct TipMotion {
 // `chosen`; the others depend on them.
 template <class V>
 struct SplitJacobian {
-    V reflector[ik::max_joints][6];  // v_k below and on the diagonal
-    V upper[6][6];                   // R
+    V reflector[max_joints][6];  // v_k below and on the diagonal
+    V upper[6][6];               // R
     V factor[6];
     int rank = 6;
     int chosen[6] = {0, 1, 2, 3, 4, 5};
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The functions below are compiled for arms of `N` joints and rank 6, or with N = 0 for any number and rank.
 // Unrolling loops of known length halves their time.
@@ -44,12 +44,12 @@ CSPACE_INLINE int rank_in(const SplitJacobian<V>& split) {
 }
 
 template <int N, class V>
-CSPACE_INLINE void tip_motion(const ik::Chain& chain, const Pose<V>& goal, double length, const V* q,
+CSPACE_INLINE void tip_motion(const Chain& chain, const Pose<V>& goal, double length, const V* q,
                               TipMotion<V>& out) {
     const int n = size_or<N>(chain.n);
     Mat3<V> R = fill33<V>(identity_pose().R);
     Vec3<V> t = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)};
-    Vec3<V> axis[ik::max_joints], point[ik::max_joints];
+    Vec3<V> axis[max_joints], point[max_joints];
     for (int i = 0; i < n; ++i) {
         const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
         axis[i] = R * h;
@@ -182,7 +182,7 @@ CSPACE_INLINE void free_direction(const SplitJacobian<V>& split, int size, int k
 template <int N, class V>
 CSPACE_INLINE void multipliers(const SplitJacobian<V>& split, int size, const V* g, V* lambda) {
     const int n = size_or<N>(size), rank = rank_in<N>(split);
-    V b[ik::max_joints];
+    V b[max_joints];
     for (int i = 0; i < n; ++i) b[i] = g[i];
     turn_in<N>(split, n, b);
     for (int k = rank; k < 6; ++k) lambda[N ? k : split.chosen[k]] = fill<V>(0.0);
@@ -193,4 +193,4 @@ CSPACE_INLINE void multipliers(const SplitJacobian<V>& split, int size, const V*
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

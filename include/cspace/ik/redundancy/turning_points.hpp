@@ -10,7 +10,7 @@
 #include "cspace/ik/redundancy/curve.hpp"
 #include "cspace/ik/redundancy/sweep.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct FoldValues {
     static constexpr int room = 256;
@@ -20,9 +20,9 @@ struct FoldValues {
     bool exact = false;  // none is missing
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // n² − r² and the product of the discriminants of t2, at a goal on the circle.
 template <class V>
@@ -30,7 +30,7 @@ struct Rooms {
     V elbow, lift;
 };
 template <class V>
-CSPACE_INLINE Rooms<V> rooms_of(const ik::ThreeJoints& g, const Vec3<V>& p) {
+CSPACE_INLINE Rooms<V> rooms_of(const ThreeJoints& g, const Vec3<V>& p) {
     const double a = g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y, b = g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y;
     const double fixed = 0.5 * (g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w)) + g.d2 * g.ca2 * g.w.z;
     const double n2 = a * a + b * b;
@@ -68,8 +68,8 @@ inline void add_fold(FoldValues& out, double value, int branch) {
 }
 // The folds of an idealised form are close to those of the arm, at a slightly different value for each pair
 // of branches.
-inline void add_true_folds(const ik::Redundant& arm, const Sweep& sweep, double value, FoldValues& out) {
-    const ik::Plan& plan = sweep.locked->arm.plan;
+inline void add_true_folds(const Redundant& arm, const Sweep& sweep, double value, FoldValues& out) {
+    const Plan& plan = sweep.locked->arm.plan;
     const Posed goal = goal_at(sweep.in_form, std::cos(value), std::sin(value));
     Care care = care_of(plan);
     care.band = 1e-3;
@@ -102,8 +102,8 @@ inline double settled_root(const Function& f, double value) {
     return value;
 }
 template <class Function>
-inline void add_roots(const ik::Redundant& arm, const Sweep& sweep, const Function& f, FoldValues& out) {
-    ik::HiddenAngles hidden;
+inline void add_roots(const Redundant& arm, const Sweep& sweep, const Function& f, FoldValues& out) {
+    HiddenAngles hidden;
     isolate(f, 1e-8, hidden);
     out.exact = out.exact && !hidden.overflow;
     for (int k = 0; k < hidden.count; ++k) {
@@ -115,12 +115,12 @@ inline void add_roots(const ik::Redundant& arm, const Sweep& sweep, const Functi
     }
 }
 
-CSPACE_ONCE FoldValues fold_values(const ik::Redundant& whole, const Sweep& sweep) {
+CSPACE_ONCE FoldValues fold_values(const Redundant& whole, const Sweep& sweep) {
     FoldValues out;
     if (!sweep.on_lanes || sweep.in_form.slides) return out;
-    const ik::Plan& plan = sweep.locked->arm.plan;
-    const ik::SphericalWrist& arm = plan.wrist;
-    if (plan.family != ik::Family::spherical_wrist || arm.first.kind != ik::FirstThree::first_meet ||
+    const Plan& plan = sweep.locked->arm.plan;
+    const SphericalWrist& arm = plan.wrist;
+    if (plan.family != Family::spherical_wrist || arm.first.kind != FirstThree::first_meet ||
         !has_square_wrist(arm.last))
         return out;
     out.exact = true;
@@ -146,4 +146,4 @@ inline int sort_folds(const FoldValues& folds, double start, double* sorted) {
     return n;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

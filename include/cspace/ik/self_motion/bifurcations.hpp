@@ -21,10 +21,10 @@ struct CurveMargin {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The smallest singular value other than that of the self-motion.
-inline double margin_at(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q) {
+inline double margin_at(const Chain& chain, const TipConstraint& constraint, const double* q) {
     PoseError at;
     measure_constrained(chain, constraint, q, at);
     double least = 1e300, second = 1e300;
@@ -40,7 +40,7 @@ inline double margin_at(const ik::Chain& chain, const ik::TipConstraint& constra
 
 // Whether the self-motion only rolls a spherical wrist or shoulder whose centre is fixed by the other three
 // joints. Then no other curve crosses it.
-inline bool only_rolls(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+inline bool only_rolls(const Chain& chain, const TipConstraint& constraint, const double* q,
                        const double* direction) {
     constexpr double moving = 1e-9, firm = 1e-3, together = 1e-9;
     if (chain.n != 6) return false;
@@ -70,11 +70,11 @@ inline bool only_rolls(const ik::Chain& chain, const ik::TipConstraint& constrai
 }
 
 // Follows the self-motion through q and records where other curves cross it.
-inline ik::CurveMargin follow_margin(const ik::Chain& chain, const ik::TipConstraint& constraint,
-                                     const double* q, const double* direction, int& steps_left) {
+inline CurveMargin follow_margin(const Chain& chain, const TipConstraint& constraint, const double* q,
+                                 const double* direction, int& steps_left) {
     constexpr double crossed = 1e-3, free = 1e-6, far_enough = 0.3;
-    ik::CurveMargin out;
-    double before[ik::max_joints] = {}, along[ik::max_joints] = {}, margin[2] = {0, 0};
+    CurveMargin out;
+    double before[max_joints] = {}, along[max_joints] = {}, margin[2] = {0, 0};
     double loose = 0;  // how far it ran with more than one freedom
     int seen = 0, last_way = 0;
     bool fits = true;
@@ -82,7 +82,7 @@ inline ik::CurveMargin follow_margin(const ik::Chain& chain, const ik::TipConstr
         const double here = margin_at(chain, constraint, at);
         if (way != last_way) seen = 0;
         const bool least = seen > 1 && margin[1] < crossed && margin[1] <= margin[0] && margin[1] < here;
-        fits = fits && !(least && out.crossings == ik::CurveMargin::most);
+        fits = fits && !(least && out.crossings == CurveMargin::most);
         if (least && fits) {
             for (int i = 0; i < chain.n; ++i) {
                 out.crossing[out.crossings][i] = before[i];
@@ -103,7 +103,7 @@ inline ik::CurveMargin follow_margin(const ik::Chain& chain, const ik::TipConstr
 
 // Converts directions of joints to the curve's own coordinates, prismatic joints over the size of the arm,
 // and back.
-inline void in_lengths(const ik::Chain& chain, double length, const double* direction, double* out) {
+inline void in_lengths(const Chain& chain, double length, const double* direction, double* out) {
     double size2 = 0;
     for (int i = 0; i < chain.n; ++i) {
         out[i] = direction[i] / unit_of(chain, i, length);
@@ -115,11 +115,11 @@ inline void in_lengths(const ik::Chain& chain, double length, const double* dire
 // Adds the self-motion through q unless it passes a listed one. It is represented by the member whose leading
 // joint has its value in `unconstrained` (null: zero). A curve that was not followed to its ends, or for
 // which no row is free, leaves the list without a certificate.
-inline void add_self_motion(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+inline void add_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
                             const double* direction, const double* unconstrained, int room, int& steps_left,
-                            ik::Solutions& out) {
+                            Solutions& out) {
     bool met = false;
-    ik::Representative r;
+    Representative r;
     r.joint = leading_joint(direction, chain.n);
     r.value = unconstrained ? unconstrained[r.joint] : 0;
     const auto visit = [&](int way, const double* at, const double* t) {
@@ -142,13 +142,13 @@ inline void add_self_motion(const ik::Chain& chain, const ik::TipConstraint& con
 
 // The unconstrained direction at a crossing, perpendicular to `along`; false if there is none. Of several,
 // the one in which the null vector farthest from `along` points.
-inline bool direction_across(const ik::Chain& chain, const PoseSvd& J, const double* along, double* across) {
+inline bool direction_across(const Chain& chain, const PoseSvd& J, const double* along, double* across) {
     constexpr double hardly_constrained = 2e-3, clear = 1e-3;
     double farthest = clear;
     for (int j = 0; j < J.columns; ++j) {
         if (J.sigma[j] > hardly_constrained) continue;
         const double part = dot_n(J.v[j], along, chain.n);
-        double rest[ik::max_joints], size2 = 0;
+        double rest[max_joints], size2 = 0;
         for (int i = 0; i < chain.n; ++i) {
             rest[i] = J.v[j][i] - part * along[i];
             size2 += rest[i] * rest[i];
@@ -161,20 +161,20 @@ inline bool direction_across(const ik::Chain& chain, const PoseSvd& J, const dou
 }
 
 // Adds the curves that leave a crossing in a direction other than `along`, found at a stride from it.
-inline void leave_crossing(const ik::Chain& chain, const ik::TipConstraint& constraint,
-                           const double* crossing, const double* along, const double* unconstrained, int room,
-                           int& steps_left, ik::Solutions& out) {
+inline void leave_crossing(const Chain& chain, const TipConstraint& constraint, const double* crossing,
+                           const double* along, const double* unconstrained, int room, int& steps_left,
+                           Solutions& out) {
     constexpr double stride = 0.1, same_line = 0.95, led_back = 0.5 * stride;
     constexpr int around = 24, most_ways = 4;
     PoseError at;
     measure_constrained(chain, constraint, crossing, at);
-    double across[ik::max_joints], gone[most_ways][ik::max_joints];
+    double across[max_joints], gone[most_ways][max_joints];
     if (!direction_across(chain, at.jacobian, along, across)) return;
     int ways = 1;
     for (int i = 0; i < chain.n; ++i) gone[0][i] = along[i];
     for (int m = 1; m < around && ways < most_ways; ++m) {
         const double c = std::cos(pi * m / around), s = std::sin(pi * m / around);
-        double q[ik::max_joints], t[ik::max_joints], *const way = gone[ways];
+        double q[max_joints], t[max_joints], *const way = gone[ways];
         for (int i = 0; i < chain.n; ++i)
             q[i] =
                 crossing[i] + stride * unit_of(chain, i, constraint.length) * (c * along[i] + s * across[i]);
@@ -195,16 +195,16 @@ inline void leave_crossing(const ik::Chain& chain, const ik::TipConstraint& cons
 
 // Adds the self-motions that cross those listed, while rows are free. If a self-motion has more than one
 // dimension throughout, a curve does not cover it, and the list is not certified.
-inline void add_bifurcations(const ik::Chain& chain, const Posed& goal, double length,
-                             const double* unconstrained, int room, ik::Solutions& out) {
-    const ik::TipConstraint constraint = {goal, true, length};
+inline void add_bifurcations(const Chain& chain, const Posed& goal, double length,
+                             const double* unconstrained, int room, Solutions& out) {
+    const TipConstraint constraint = {goal, true, length};
     int steps_left = 8000;  // of all curves together: some 50 ms
     for (int k = 0; k < out.count; ++k) {
         if (!out.self_motion[k] || only_rolls(chain, constraint, out.q[k], out.direction[k])) continue;
-        double q[ik::max_joints], direction[ik::max_joints];
+        double q[max_joints], direction[max_joints];
         for (int i = 0; i < chain.n; ++i) q[i] = out.q[k][i];
         in_lengths(chain, length, out.direction[k], direction);
-        const ik::CurveMargin seen = follow_margin(chain, constraint, q, direction, steps_left);
+        const CurveMargin seen = follow_margin(chain, constraint, q, direction, steps_left);
         out.complete = out.complete && seen.whole && !seen.wide;
         if (seen.wide) continue;
         if (is_crossing(chain, constraint, q))
@@ -216,11 +216,11 @@ inline void add_bifurcations(const ik::Chain& chain, const Posed& goal, double l
 }
 
 // Completes the solutions of a goal: self-motions that cross, and valleys caused by rounding.
-inline void look_along(const ik::Chain& chain, const Posed& goal, double length, const double* unconstrained,
-                       int room, ik::Solutions& out) {
-    if (out.status == ik::Status::singular) add_bifurcations(chain, goal, length, unconstrained, room, out);
+inline void look_along(const Chain& chain, const Posed& goal, double length, const double* unconstrained,
+                       int room, Solutions& out) {
+    if (out.status == Status::singular) add_bifurcations(chain, goal, length, unconstrained, room, out);
     for (int k = 0; k < out.count && out.crowded && out.complete; ++k)
         out.complete = out.self_motion[k] || !lies_in_valley(chain, goal, length, out.q[k]);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

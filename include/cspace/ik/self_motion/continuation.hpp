@@ -18,24 +18,22 @@ struct TipConstraint {
 
 enum class CurveEnd {
     closed,  // the curve came back to its start, up to whole turns
-    far,     // a slide went as far as far_away lengths of the arm: it goes on for ever
+    far,     // a slide went as far as endless_slide lengths of the arm: it goes on for ever
     lost,    // no step succeeded any more
 };
 
-inline constexpr double far_away = 1000;
+inline constexpr double endless_slide = 1000;
 inline constexpr int most_curve_steps = 4000;
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline double unit_of(const ik::Chain& chain, int i, double length) {
-    return chain.prismatic[i] ? length : 1;
-}
+inline double unit_of(const Chain& chain, int i, double length) { return chain.prismatic[i] ? length : 1; }
 
 // The error at q and its decomposed Jacobian, in joint units.
-inline double measure_constrained(const ik::Chain& chain, const ik::TipConstraint& constraint,
-                                  const double* q, PoseError& at) {
+inline double measure_constrained(const Chain& chain, const TipConstraint& constraint, const double* q,
+                                  PoseError& at) {
     measure_error(chain, constraint.goal, constraint.length, q, at);
     if (!constraint.whole_pose)
         for (int k = 3; k < 6; ++k) at.e[k] = 0;
@@ -52,7 +50,7 @@ inline constexpr double still = 1e-7;
 
 // The tangent of the curve at a point: the projection of `along` onto the null space, unit. False if it
 // vanishes.
-inline bool tangent_at(const ik::Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
+inline bool tangent_at(const Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
     for (int i = 0; i < chain.n; ++i) tangent[i] = 0;
     for (int j = 0; j < J.columns; ++j) {
         if (J.sigma[j] > still) continue;
@@ -102,13 +100,12 @@ inline void shortest_step(const PoseError& at, double* dq) {
 }
 
 // Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
-inline bool onto_curve(const ik::Chain& chain, const ik::TipConstraint& constraint, double* q,
-                       PoseError& at) {
+inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q, PoseError& at) {
     constexpr int most_steps = 12;
     constexpr double settled = 1e-15;
     double size = measure_constrained(chain, constraint, q, at);
     for (int step = 0; step < most_steps && size > settled; ++step) {
-        double dq[ik::max_joints], next[ik::max_joints];
+        double dq[max_joints], next[max_joints];
         PoseError trial;
         shortest_step(at, dq);
         for (int i = 0; i < chain.n; ++i) next[i] = q[i] + unit_of(chain, i, constraint.length) * dq[i];
@@ -123,7 +120,7 @@ inline bool onto_curve(const ik::Chain& chain, const ik::TipConstraint& constrai
 }
 
 // One step of length h from q along its tangent. False if the curve bends too much for this length.
-inline bool step_along(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+inline bool step_along(const Chain& chain, const TipConstraint& constraint, const double* q,
                        const double* tangent, double h, double* next, double* next_tangent, double* margin) {
     constexpr double least_cosine = 0.995, largest_return = 0.1;
     PoseError at;
@@ -142,10 +139,10 @@ inline bool step_along(const ik::Chain& chain, const ik::TipConstraint& constrai
 
 // Whether the start lies ahead of q within one step and the curve passes it in the original direction. `lift`
 // is then the start plus the multiples of 2π accumulated on the way.
-inline bool start_is_next(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+inline bool start_is_next(const Chain& chain, const TipConstraint& constraint, const double* q,
                           const double* tangent, const double* start, const double* start_tangent, double h,
                           double* lift) {
-    double gap[ik::max_joints];
+    double gap[max_joints];
     for (int i = 0; i < chain.n; ++i) {
         const double raw = start[i] - q[i];
         const double d = chain.prismatic[i] ? raw : std::remainder(raw, 2 * pi);
@@ -162,14 +159,14 @@ inline double first_step(const PoseSvd& J) { return min(1e-3, 0.2 * Room{}.here(
 // The tangent at a configuration, from a guess. Where curves cross, the null space has more dimensions than
 // the tangents. A short step along each of many directions is therefore corrected back, and the resulting
 // direction nearest to the guess is taken. False if no curve leaves from there.
-inline bool start_direction(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+inline bool start_direction(const Chain& chain, const TipConstraint& constraint, const double* q,
                             const double* guess, double* tangent) {
     constexpr int around = 48;
     const int n = chain.n;
     PoseError at;
     measure_constrained(chain, constraint, q, at);
     const double h = first_step(at.jacobian);
-    double next[ik::max_joints], beyond[ik::max_joints], margin, best = -1;
+    double next[max_joints], beyond[max_joints], margin, best = -1;
     if (tangent_at(chain, at.jacobian, guess, tangent) &&
         step_along(chain, constraint, q, tangent, h, next, beyond, &margin))
         return true;
@@ -178,7 +175,7 @@ inline bool start_direction(const ik::Chain& chain, const ik::TipConstraint& con
             for (int m = 0; m < around; ++m) {
                 if (at.jacobian.sigma[a] > still || at.jacobian.sigma[b] > still) break;
                 const double c = std::cos(2 * pi * m / around), s = std::sin(2 * pi * m / around);
-                double way[ik::max_joints], trial[ik::max_joints];
+                double way[max_joints], trial[max_joints];
                 for (int i = 0; i < n; ++i)
                     next[i] = q[i] + h * unit_of(chain, i, constraint.length) *
                                          (c * at.jacobian.v[a][i] + s * at.jacobian.v[b][i]);
@@ -201,28 +198,28 @@ inline bool start_direction(const ik::Chain& chain, const ik::TipConstraint& con
 // and its tangent, the start first. If the curve closes, the start also comes last, with its angles
 // unwrapped.
 template <class Visit>
-ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* start,
-                          const double* direction, Visit&& visit, int most_steps = ik::most_curve_steps) {
+CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const double* start,
+                      const double* direction, Visit&& visit, int most_steps = most_curve_steps) {
     constexpr double longest = 0.05, shortest = 1e-7;
     const int n = chain.n;
-    double q[ik::max_joints] = {}, t[ik::max_joints] = {}, first[ik::max_joints] = {};
+    double q[max_joints] = {}, t[max_joints] = {}, first[max_joints] = {};
     PoseError at;
     measure_constrained(chain, constraint, start, at);
     const bool leaves = start_direction(chain, constraint, start, direction, first);
     for (int i = 0; i < n; ++i) q[i] = start[i], t[i] = leaves ? first[i] : direction[i];
     visit(q, t);
-    if (!leaves) return ik::CurveEnd::lost;
+    if (!leaves) return CurveEnd::lost;
     double h = first_step(at.jacobian), margin = margin_on_curve(at.jacobian);
     Room room;
     for (int step = 0; step < most_steps; ++step) {
-        double next[ik::max_joints] = {}, next_t[ik::max_joints] = {};
+        double next[max_joints] = {}, next_t[max_joints] = {};
         if (step > 2 && start_is_next(chain, constraint, q, t, start, first, 1.5 * h, next)) {
             visit(next, first);
-            return ik::CurveEnd::closed;
+            return CurveEnd::closed;
         }
         const double last_margin = margin;
         while (!step_along(chain, constraint, q, t, h, next, next_t, &margin))
-            if ((h *= 0.5) < shortest) return ik::CurveEnd::lost;
+            if ((h *= 0.5) < shortest) return CurveEnd::lost;
         double turning = 0, away = 0;
         for (int i = 0; i < n; ++i) {
             q[i] = next[i], t[i] = next_t[i];
@@ -232,34 +229,34 @@ ik::CurveEnd follow_curve(const ik::Chain& chain, const ik::TipConstraint& const
                 turning = max(turning, std::fabs(t[i]));
         }
         visit(q, t);
-        if (away > ik::far_away) return ik::CurveEnd::far;
+        if (away > endless_slide) return CurveEnd::far;
         const double longest_here = min(room.after(margin, last_margin, h), longest);
         h = turning > 1e-9 ? min(1.5 * h, longest_here) : 2 * h;  // slides alone run along a line
     }
-    return ik::CurveEnd::lost;
+    return CurveEnd::lost;
 }
 
 // The whole self-motion: in both directions from q, or once around if it closes. Calls `visit` with the
 // direction (0 or 1), every configuration and its tangent; each uses one of the remaining steps. False if the
 // curve was lost, or the steps were used up, before its end.
 template <class Visit>
-bool follow_self_motion(const ik::Chain& chain, const ik::TipConstraint& constraint, const double* q,
+bool follow_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
                         const double* direction, int& steps_left, Visit&& visit) {
     constexpr int most_steps = 1000;
     bool whole = true;
     for (int way = 0; way < 2; ++way) {
-        double along[ik::max_joints];
+        double along[max_joints];
         for (int i = 0; i < chain.n; ++i) along[i] = (way ? -1 : 1) * direction[i];
         const auto count = [&](const double* at, const double* tangent) {
             --steps_left;
             visit(way, at, tangent);
         };
         const int most = std::clamp(steps_left, 0, most_steps);
-        const ik::CurveEnd end = follow_curve(chain, constraint, q, along, count, most);
-        if (end == ik::CurveEnd::closed) return true;
-        whole = whole && end == ik::CurveEnd::far;
+        const CurveEnd end = follow_curve(chain, constraint, q, along, count, most);
+        if (end == CurveEnd::closed) return true;
+        whole = whole && end == CurveEnd::far;
     }
     return whole;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

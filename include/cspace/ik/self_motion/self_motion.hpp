@@ -7,7 +7,7 @@
 #include "cspace/ik/general/weak_direction.hpp"
 #include "cspace/ik/self_motion/continuation.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // Maximum number of steps from a stride back to the goal. On a self-motion three steps suffice. Near one (a
 // fold on top of a self-motion) each step halves the error.
@@ -16,9 +16,9 @@ inline constexpr int steps_back = 30;
 // A stride from q and back to the goal: returns the fraction of the stride that remains; 0 if the final error
 // exceeds `most`. `floor`: the steps back ignore directions that hardly move the tip, as occur with rounded
 // axes.
-inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+inline double kept_of_stride(const Chain& chain, const Posed& goal, double length, const double* q,
                              const double* direction, double stride, bool floor, double most) {
-    double moved[ik::max_joints] = {}, along = 0;
+    double moved[max_joints] = {}, along = 0;
     for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * direction[i];
     PoseError error;
     if (floor)
@@ -32,7 +32,7 @@ inline double kept_of_stride(const ik::Chain& chain, const Posed& goal, double l
 // Whether the arm can move along `direction` with its tip fixed: a stride in that direction, and a correction
 // back to the goal. On a self-motion the arm has then moved by about the stride, for every stride. At a fold
 // it returns to q, or reaches a nearby solution at one fixed distance.
-inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+inline bool moves_freely(const Chain& chain, const Posed& goal, double length, const double* q,
                          const double* direction) {
     // What may be missed along a family, and where rounded axes leave a valley instead of one.
     constexpr double exactly = 1e-12, nearly = 1e-11;
@@ -54,7 +54,7 @@ inline bool moves_freely(const ik::Chain& chain, const Posed& goal, double lengt
 }
 
 // Whether a closed self-motion too small for such strides passes through q.
-inline bool runs_round(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+inline bool runs_round(const Chain& chain, const Posed& goal, double length, const double* q,
                        const double* direction) {
     constexpr double least = 1e-3;
     constexpr int most_steps = 400;
@@ -62,14 +62,14 @@ inline bool runs_round(const ik::Chain& chain, const Posed& goal, double length,
     const auto visit = [&](const double* at, const double*) {
         for (int i = 0; i < chain.n; ++i) farthest = max(farthest, std::fabs(at[i] - q[i]));
     };
-    const ik::TipConstraint constraint = {goal, true, length};
-    return follow_curve(chain, constraint, q, direction, visit, most_steps) == ik::CurveEnd::closed &&
+    const TipConstraint constraint = {goal, true, length};
+    return follow_curve(chain, constraint, q, direction, visit, most_steps) == CurveEnd::closed &&
            farthest > least;
 }
 
 // Whether q lies in a valley along which the goal counts as reached throughout, without a self-motion.
 // Rounded axes cause such valleys, and any configuration in them may be the intended one.
-inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double length, const double* q) {
+inline bool lies_in_valley(const Chain& chain, const Posed& goal, double length, const double* q) {
     constexpr double hardly = 1e-7, stride = 0.02, next_to_nothing = 1e-10;
     PoseError at;
     measure_error(chain, goal, length, q, at);
@@ -87,7 +87,7 @@ inline bool lies_in_valley(const ik::Chain& chain, const Posed& goal, double len
 
 // The projection of v onto the span of the orthonormal vectors basis[0 … k), normalised.
 inline bool project(const double* const* basis, int k, int n, double* v) {
-    double out[ik::max_joints] = {};
+    double out[max_joints] = {};
     for (int j = 0; j < k; ++j) {
         const double along = dot_n(basis[j], v, n);
         for (int i = 0; i < n; ++i) out[i] += along * basis[j][i];
@@ -98,10 +98,10 @@ inline bool project(const double* const* basis, int k, int n, double* v) {
 }
 
 // The direction in the null space to which a stride along `trial` leads; false if it leads back.
-inline bool led_away(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+inline bool led_away(const Chain& chain, const Posed& goal, double length, const double* q,
                      const double* const* basis, int k, double* trial) {
     constexpr double stride = 0.03;
-    double moved[ik::max_joints];
+    double moved[max_joints];
     for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * trial[i];
     PoseError error;
     if (refine(chain, goal, length, moved, error, steps_back) > 1e-12) return false;
@@ -118,7 +118,7 @@ inline bool led_away(const ik::Chain& chain, const Posed& goal, double length, c
 // self-motion, the self-motion lies among these vectors. basis[0 … k): orthonormal, length n.
 struct SparseDirections {
     int count = 0;
-    double d[2 + ik::max_joints * ik::max_joints][ik::max_joints];
+    double d[2 + max_joints * max_joints][max_joints];
 };
 inline SparseDirections sparse_directions(const double* const* basis, int k, int n) {
     SparseDirections out;
@@ -146,10 +146,10 @@ inline SparseDirections sparse_directions(const double* const* basis, int k, int
 // velocity. If the rank drops by two or more (a stretched elbow and an aligned wrist), the null space has
 // more dimensions than the motion. Then its sparse directions are tried first, and after them directions
 // spread over it.
-CSPACE_ONCE bool find_self_motion(const ik::Chain& chain, const Posed& goal, double length, const double* q,
+CSPACE_ONCE bool find_self_motion(const Chain& chain, const Posed& goal, double length, const double* q,
                                   const PoseSvd& J, double* direction) {
     constexpr double lost = 1e-7;
-    const double* basis[ik::max_joints];
+    const double* basis[max_joints];
     int k = 0;
     for (int j = 0; j < J.columns; ++j)
         if (J.sigma[j] < lost) basis[k++] = J.v[j];
@@ -171,11 +171,11 @@ CSPACE_ONCE bool find_self_motion(const ik::Chain& chain, const Posed& goal, dou
         for (int b = a + 1; b < k; ++b)
             for (int m = 0; m < around; ++m) {
                 const double c = std::cos(pi * m / around), s = std::sin(pi * m / around);
-                double trial[ik::max_joints];
+                double trial[max_joints];
                 for (int i = 0; i < chain.n; ++i) trial[i] = c * basis[a][i] + s * basis[b][i];
                 if (led_away(chain, goal, length, q, basis, k, trial) && accept(trial)) return true;
             }
     return false;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -3,7 +3,7 @@
 
 #include "cspace/ik/subproblems/refine.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // The lowest points of a coarse sweep, at most `most` ≤ 16; returns their number.
 template <class System>
@@ -87,4 +87,4 @@ double least_squares(const System& system, Turn<double>* t) {
     return best;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

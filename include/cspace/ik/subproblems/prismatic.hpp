@@ -15,7 +15,7 @@
 #include "cspace/math/vec.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // x[0] is always a solution; x[1] is a second one if `two`, otherwise equal to the first.
 template <class V>
@@ -25,9 +25,9 @@ struct Slides {
     mask_of<V> two, exact, free;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Slides<V> slide_1(const Vec3<V>& h, const Vec3<V>& p1, const Vec3<V>& p2) {
@@ -67,4 +67,4 @@ CSPACE_INLINE Slides<V> slide_4(const Vec3<V>& n, const Vec3<V>& h, const Vec3<V
     return s;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

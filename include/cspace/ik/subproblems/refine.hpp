@@ -8,7 +8,7 @@
 #include "cspace/math/turn.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline Turn<double> step_angles(const Turn<double>& t, double step) {
     const double length = std::sqrt(1 + step * step);
@@ -113,4 +113,4 @@ bool continues_along(const System& system, const Unknown* t, const double* along
     return drift < 0.5 * reach;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -16,7 +16,7 @@
 
 #include "cspace/math/cos_sin.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 template <class V>
 struct Sp1 {
@@ -25,9 +25,9 @@ struct Sp1 {
     mask_of<V> exact, free;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Sp1<V> subproblem_1(const Vec3<V>& k, const Vec3<V>& p1, const Vec3<V>& p2) {
@@ -43,4 +43,4 @@ CSPACE_INLINE Sp1<V> subproblem_1(const Vec3<V>& k, const Vec3<V>& p1, const Vec
     return r;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

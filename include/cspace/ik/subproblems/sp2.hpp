@@ -21,7 +21,7 @@
 
 #include "cspace/ik/subproblems/sp1.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // theta1[0], theta2[0] are always a solution; the second pair is different if `two`.
 template <class V>
@@ -31,9 +31,9 @@ struct Sp2 {
     mask_of<V> two, exact, free1, free2, parallel;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Sp2<V> subproblem_2(const Vec3<V>& k1, const Vec3<V>& k2, const Vec3<V>& p1,
@@ -73,4 +73,4 @@ CSPACE_INLINE Sp2<V> subproblem_2(const Vec3<V>& k1, const Vec3<V>& k2, const Ve
     return r;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -16,7 +16,7 @@
 
 #include "cspace/ik/subproblems/sp1.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // theta[0] is always a solution; theta[1] is a second one if `two`, otherwise equal to the first.
 template <class V>
@@ -26,9 +26,9 @@ struct Sp3 {
     mask_of<V> two, exact, free;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Sp3<V> subproblem_3(const Vec3<V>& k, const Vec3<V>& p1, const Vec3<V>& p2, V d) {
@@ -53,4 +53,4 @@ CSPACE_INLINE Sp3<V> subproblem_3(const Vec3<V>& k, const Vec3<V>& p1, const Vec
     return r;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -14,7 +14,7 @@
 
 #include "cspace/math/cos_sin.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // theta[0] is always a solution; theta[1] is a second one if `two`, otherwise equal to the first.
 template <class V>
@@ -24,9 +24,9 @@ struct Sp4 {
     mask_of<V> two, exact, free;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE Sp4<V> subproblem_4(const Vec3<V>& h, const Vec3<V>& k, const Vec3<V>& p, V d) {
@@ -44,4 +44,4 @@ CSPACE_INLINE Sp4<V> subproblem_4(const Vec3<V>& h, const Vec3<V>& k, const Vec3
     return r;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -18,7 +18,7 @@
 #include "cspace/ik/subproblems/sp1.hpp"
 #include "cspace/ik/subproblems/two_angles.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct Sp5Problem {
     Vec3d p0, p1, p2, p3, p4, k1, k2, k3;
@@ -31,9 +31,9 @@ struct Sp5 {
     bool exact = false, free = false;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace sp5 {
 
@@ -149,4 +149,4 @@ inline Sp5 subproblem_5(const Sp5Problem& given) {
     return sp5::nearest(s, size);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -14,7 +14,7 @@
 #include "cspace/ik/subproblems/least_squares.hpp"
 #include "cspace/ik/subproblems/two_angles.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // Equation i pairs (h, k, p)[2 i], rotated by θ1, with (h, k, p)[2 i + 1], rotated by θ2.
 struct Sp6Problem {
@@ -29,9 +29,9 @@ struct Sp6 {
     bool exact = false, free = false;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 inline Sp6 subproblem_6(const Sp6Problem& s) {
     TwoTurnEquations e;
@@ -70,4 +70,4 @@ inline Sp6 subproblem_6(const Sp6Problem& s) {
     return r;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -16,7 +16,7 @@
 #include "cspace/math/cos_sin.hpp"
 #include "cspace/math/trig_polynomial.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 struct TwoTurnEquations {
     double alpha[2], beta[2][2], gamma[2][2];
@@ -29,9 +29,9 @@ struct TwoTurns {
     bool free = false;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace two_turns {
 
@@ -214,4 +214,4 @@ inline TwoTurns solve_two_turns(const TwoTurnEquations& given) {
     return found;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

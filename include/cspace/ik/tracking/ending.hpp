@@ -5,31 +5,31 @@
 #include "cspace/ik/tracking/walker.hpp"
 #include "cspace/kinematics/singular_values.hpp"
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline Twist<double> twist_of(const ik::Way& way, double arm_length) {
+inline Twist<double> twist_of(const Way& way, double arm_length) {
     const double per = 1 / arm_length;
     return {{per * way.step.x, per * way.step.y, per * way.step.z, way.turn.x, way.turn.y, way.turn.z}};
 }
 
-inline double least_singular_value(const ik::Path& path, const double* q) {
+inline double least_singular_value(const Path& path, const double* q) {
     const PlacedJoints<double> at = place_joints(path, q);
-    Twist<double> J[ik::max_joints];
+    Twist<double> J[max_joints];
     columns_of(path, path.n, at, J);
-    double rows[6 * ik::max_joints], sigma[6];
+    double rows[6 * max_joints], sigma[6];
     for (int j = 0; j < path.n; ++j)
         for (int r = 0; r < 6; ++r) rows[r * path.n + j] = J[j].entry[r];
-    singular_values(rows, 6, path.n, sigma);
+    kinematics::singular_values(rows, 6, path.n, sigma);
     return sigma[path.n < 6 ? path.n - 1 : 5];
 }
 
 // The point at which the first limit is reached, between w.u, where w.q is within the limits, and w.u + w.du,
 // where w.trial is not; w moves there. Regula falsi that halves the value of a retained end (Dowell and
 // Jarratt 1971).
-inline Outside meet_limit(const ik::Track& t, ik::Walker& w) {
+inline Outside meet_limit(const Track& t, Walker& w) {
     const int n = t.path->n;
-    const ik::Way& way = t.ways[w.row];
-    double low = w.u, high = w.u + w.du, q_high[ik::max_joints], q[ik::max_joints];
+    const Way& way = t.ways[w.row];
+    double low = w.u, high = w.u + w.du, q_high[max_joints], q[max_joints];
     copy_numbers(w.trial, n, q_high);
     Outside at_low = outside(t, w, w.q), at_high = outside(t, w, q_high), met = at_high;
     double f_low = at_low.by, f_high = at_high.by;
@@ -67,8 +67,7 @@ inline Outside meet_limit(const ik::Track& t, ik::Walker& w) {
 }
 
 // Records where the branch of a walker ends, and the cause.
-inline void finish_branch(const ik::Track& t, const ik::Walker& w, ik::Fate fate, int joint,
-                          std::size_t reached) {
+inline void finish_branch(const Track& t, const Walker& w, Fate fate, int joint, std::size_t reached) {
     const int n = t.path->n;
     t.fate[w.branch] = fate;
     t.joint[w.branch] = joint;
@@ -83,4 +82,4 @@ inline void finish_branch(const ik::Track& t, const ik::Walker& w, ik::Fate fate
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -5,23 +5,23 @@
 
 #include "cspace/ik/tracking/ending.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The lanes of a track: the configurations to evaluate next.
 template <class V>
 struct TrackLanes {
     Pose<V> goal;
     Twist<V> twist;
-    V q[ik::max_joints];
+    V q[max_joints];
     Motion<V> motion;
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
-CSPACE_INLINE void set_lane(Vec3<V>& to, int l, const Vec3d& from) {
+CSPACE_INLINE void set_vector_lane(Vec3<V>& to, int l, const Vec3d& from) {
     set_lane(to.x, l, from.x);
     set_lane(to.y, l, from.y);
     set_lane(to.z, l, from.z);
@@ -29,7 +29,7 @@ CSPACE_INLINE void set_lane(Vec3<V>& to, int l, const Vec3d& from) {
 
 // Loads the trial of a walker into lane l. The evaluation there also serves the following step.
 template <class V>
-CSPACE_INLINE void load_trial(const ik::Track& t, const ik::Walker& w, int l, TrackLanes<V>& lanes) {
+CSPACE_INLINE void load_trial(const Track& t, const Walker& w, int l, TrackLanes<V>& lanes) {
     const bool row = !w.starts && to_a_row(w);
     const Posed& to_row = t.poses[w.row + row];
     const Posed goal = row || w.starts ? to_row : pose_on(t.ways[w.row], w.u + w.du);
@@ -37,13 +37,13 @@ CSPACE_INLINE void load_trial(const ik::Track& t, const ik::Walker& w, int l, Tr
     const Twist<double> twist = twist_of(t.ways[next], t.path->length);
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) set_lane(lanes.goal.R.m[i][j], l, goal.R.m[i][j]);
-    set_lane(lanes.goal.t, l, goal.t);
+    set_vector_lane(lanes.goal.t, l, goal.t);
     for (int r = 0; r < 6; ++r) set_lane(lanes.twist.entry[r], l, twist.entry[r]);
     for (int j = 0; j < t.path->n; ++j) set_lane(lanes.q[j], l, w.trial[j]);
 }
 
 // Initialises a branch at its start, which is corrected to the first pose.
-inline void begin_branch(const ik::Track& t, std::size_t branch, ik::Walker& w) {
+inline void begin_branch(const Track& t, std::size_t branch, Walker& w) {
     w.branch = branch;
     w.row = 0;
     w.u = w.du = 0;
@@ -61,33 +61,33 @@ inline void begin_branch(const ik::Track& t, std::size_t branch, ik::Walker& w) 
 }
 
 // Records that the branch has reached its next pose; true if it is the last one.
-inline bool arrive_at_pose(const ik::Track& t, ik::Walker& w) {
+inline bool arrive_at_pose(const Track& t, Walker& w) {
     w.u = 0;
     w.rows_tried = false;
     w.tries = 0;
     copy_numbers(w.q, t.path->n, row_of(t, w, w.row));
     if (w.row + 1 < t.count) return false;
-    finish_branch(t, w, ik::Fate::end, -1, t.count);
+    finish_branch(t, w, Fate::end, -1, t.count);
     return true;
 }
 
 // Accepts the trial as the state of the walker; true if the branch has ended.
-inline bool take_step(const ik::Track& t, ik::Walker& w) {
+inline bool take_step(const Track& t, Walker& w) {
     const int broken = run_to(t, w, w.trial);
     if (w.starts) {
         copy_numbers(w.trial, t.path->n, w.q);
-        if (broken >= 0) finish_branch(t, w, ik::Fate::limit, broken, 0);
+        if (broken >= 0) finish_branch(t, w, Fate::limit, broken, 0);
         w.starts = false;
         return broken >= 0 || arrive_at_pose(t, w);
     }
     if (broken >= 0) {
         const Outside met = meet_limit(t, w);
-        finish_branch(t, w, ik::Fate::limit, met.joint, w.row + 1);
+        finish_branch(t, w, Fate::limit, met.joint, w.row + 1);
         return true;
     }
     const int far = too_far(t, w, w.trial);
     if (far >= 0) {
-        finish_branch(t, w, ik::Fate::jump, far, w.row + 1);
+        finish_branch(t, w, Fate::jump, far, w.row + 1);
         return true;
     }
     const bool row = to_a_row(w);
@@ -100,7 +100,7 @@ inline bool take_step(const ik::Track& t, ik::Walker& w) {
 }
 
 // After a rejected step: a step estimated from the previous rows, else one half as long.
-inline void think_again(const ik::Track& t, ik::Walker& w) {
+inline void think_again(const Track& t, Walker& w) {
     if (w.by_rows) {
         w.by_rows = false;
         return;
@@ -110,17 +110,17 @@ inline void think_again(const ik::Track& t, ik::Walker& w) {
 }
 
 // Evaluates the trial of a walker and plans the next evaluation; true if its branch has ended.
-inline bool go_on(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
+inline bool go_on(const Track& t, Walker& w, const Motion<double>& at) {
     const std::size_t reached = w.row + !w.starts;
     switch (judge_step(t, w, at)) {
         case Verdict::again:
             return false;
         case Verdict::infeasible:
-            finish_branch(t, w, ik::Fate::unreachable, -1, reached);
+            finish_branch(t, w, Fate::unreachable, -1, reached);
             return true;
         case Verdict::failed:
             if (w.starts) {
-                finish_branch(t, w, ik::Fate::singularity, -1, 0);
+                finish_branch(t, w, Fate::singularity, -1, 0);
                 return true;
             }
             think_again(t, w);
@@ -131,8 +131,8 @@ inline bool go_on(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
             copy_numbers(at.bend, t.path->n, w.bend);
     }
     if (++w.tries < track::most_tries && plan(t, w)) return false;
-    finish_branch(t, w, ik::Fate::singularity, -1, reached);
-    t.fate[w.branch] = t.weakest[w.branch] < track::near_singular ? ik::Fate::singularity : ik::Fate::jump;
+    finish_branch(t, w, Fate::singularity, -1, reached);
+    t.fate[w.branch] = t.weakest[w.branch] < track::near_singular ? Fate::singularity : Fate::jump;
     return true;
 }
 
@@ -150,10 +150,10 @@ CSPACE_INLINE Motion<double> lane_of(const Motion<V>& motion, int n, int l) {
 }
 
 template <class V>
-void follow_branches(const ik::Track& t) {
+void follow_branches(const Track& t) {
     constexpr int lanes = Lanes<V>::count;
     if (t.branches == 0) return;
-    ik::Walker walker[lanes];
+    Walker walker[lanes];
     bool live[lanes];
     TrackLanes<V> at;
     std::size_t next = 0;
@@ -166,7 +166,7 @@ void follow_branches(const ik::Track& t) {
         measure_motion(*t.path, at.goal, at.twist, at.q, at.motion);
         alive = false;
         for (int l = 0; l < lanes; ++l) {
-            ik::Walker& w = walker[l];
+            Walker& w = walker[l];
             if (!live[l]) continue;
             if (go_on(t, w, lane_of(at.motion, t.path->n, l))) {
                 live[l] = next < t.branches;
@@ -179,4 +179,4 @@ void follow_branches(const ik::Track& t) {
     }
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -10,12 +10,12 @@
 
 #include "cspace/ik/numeric/path.hpp"
 
-namespace cspace {
+namespace cspace::ik {
 
 // The joints of a path at configurations, in base coordinates.
 template <class V>
 struct PlacedJoints {
-    Vec3<V> point[ik::max_path], axis[ik::max_path];
+    Vec3<V> point[max_path], axis[max_path];
     Pose<V> tip;
 };
 
@@ -28,7 +28,7 @@ struct Twist {
 // A = L Q with k orthonormal rows of Q, where A is J if J is wide, else Jᵀ.
 template <class V>
 struct Factors {
-    V Q[6][ik::max_joints], L[6][6], inverse[6];
+    V Q[6][max_joints], L[6][6], inverse[6];
     V weakest;  // the least diagonal entry of L
     int k, width;
     bool wide;
@@ -36,36 +36,36 @@ struct Factors {
 
 template <class V>
 struct Motion {
-    V correction[ik::max_joints], slope[ik::max_joints], bend[ik::max_joints];
+    V correction[max_joints], slope[max_joints], bend[max_joints];
     V error;    // of the pose before the correction: its largest part
     V weakest;  // see Factors
 };
 
-}  // namespace cspace
+}  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 // A row of J whose remainder is smaller than this is dependent: its direction cannot be distinguished from
 // rounding.
 inline constexpr double lost_direction = 1e-10;
 
 template <class V>
-CSPACE_INLINE PlacedJoints<V> place_joints(const ik::Path& path, const V* q) {
-    V s[ik::max_path + 3], c[ik::max_path + 3];
+CSPACE_INLINE PlacedJoints<V> place_joints(const Path& path, const V* q) {
+    V s[max_path + 3], c[max_path + 3];
     PlacedJoints<V> at;
-    const Chain chain = view_of(path);
-    chain_sines(chain, q, s, c);
-    at.tip = follow_chain(chain, fill_pose<V>(path.T_base_first), q, s, c,
-                          [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
-                              at.point[i] = p;
-                              at.axis[i] = d;
-                          });
+    const model::Chain chain = view_of(path);
+    kinematics::chain_sines(chain, q, s, c);
+    at.tip = kinematics::follow_chain(chain, fill_pose<V>(path.T_base_first), q, s, c,
+                                      [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
+                                          at.point[i] = p;
+                                          at.axis[i] = d;
+                                      });
     return at;
 }
 
 // The motion of joint i per unit of its scaled coordinate.
-CSPACE_INLINE double unit_of(const ik::Path& path, int i) {
-    const ChainJoint& joint = path.joint[i];
+CSPACE_INLINE double joint_unit(const Path& path, int i) {
+    const model::ChainJoint& joint = path.joint[i];
     return joint.ratio * (path.slides[joint.coordinate] ? path.length : 1.0);
 }
 
@@ -83,44 +83,44 @@ CSPACE_INLINE void clear(Twist<V>& twist) {
 
 // The columns of J, one twist per coordinate.
 template <class V>
-CSPACE_INLINE void columns_of(const ik::Path& path, int n, const PlacedJoints<V>& at, Twist<V>* J) {
+CSPACE_INLINE void columns_of(const Path& path, int n, const PlacedJoints<V>& at, Twist<V>* J) {
     const V zero = fill<V>(0.0);
     const double per_length = 1 / path.length;
     for (int j = 0; j < n; ++j) clear(J[j]);
     for (int i = 0; i < path.joints; ++i) {
-        const ChainJoint& joint = path.joint[i];
+        const model::ChainJoint& joint = path.joint[i];
         const Vec3<V>& h = at.axis[i];
         const Vec3<V> none = {zero, zero, zero};
         const Vec3<V> v = joint.prismatic ? h : cross(h, at.tip.t - at.point[i]);
-        add_twist(unit_of(path, i), per_length, v, joint.prismatic ? none : h, J[joint.coordinate]);
+        add_twist(joint_unit(path, i), per_length, v, joint.prismatic ? none : h, J[joint.coordinate]);
     }
 }
 
 // The columns of J' for the rates `slope` of the scaled coordinates.
 template <class V>
-CSPACE_INLINE void column_rates(const ik::Path& path, int n, const PlacedJoints<V>& at, const V* slope,
+CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& at, const V* slope,
                                 Twist<V>* J) {
     const V zero = fill<V>(0.0);
     const Vec3<V> none = {zero, zero, zero};
-    Vec3<V> v_point[ik::max_path], w_joint[ik::max_path];  // of the link that carries joint i
+    Vec3<V> v_point[max_path], w_joint[max_path];  // of the link that carries joint i
     Vec3<V> v = none, w = none, p = at.point[0];
     for (int i = 0; i < path.joints; ++i) {
         v = v + cross(w, at.point[i] - p);
         p = at.point[i];
         v_point[i] = v;
         w_joint[i] = w;
-        const Vec3<V> moved = (unit_of(path, i) * slope[path.joint[i].coordinate]) * at.axis[i];
+        const Vec3<V> moved = (joint_unit(path, i) * slope[path.joint[i].coordinate]) * at.axis[i];
         (path.joint[i].prismatic ? v : w) = (path.joint[i].prismatic ? v : w) + moved;
     }
     const Vec3<V> v_tip = v + cross(w, at.tip.t - p);
     for (int j = 0; j < n; ++j) clear(J[j]);
     for (int i = 0; i < path.joints; ++i) {
-        const ChainJoint& joint = path.joint[i];
+        const model::ChainJoint& joint = path.joint[i];
         const Vec3<V> h_rate = cross(w_joint[i], at.axis[i]);
         const Vec3<V> rate =
             joint.prismatic ? h_rate
                             : cross(h_rate, at.tip.t - at.point[i]) + cross(at.axis[i], v_tip - v_point[i]);
-        add_twist(unit_of(path, i), 1 / path.length, rate, joint.prismatic ? none : h_rate,
+        add_twist(joint_unit(path, i), 1 / path.length, rate, joint.prismatic ? none : h_rate,
                   J[joint.coordinate]);
     }
 }
@@ -133,7 +133,7 @@ CSPACE_INLINE void factor(int n, const Twist<V>* J, Factors<V>& f) {
     f.width = f.wide ? n : 6;
     f.weakest = fill<V>(1e300);
     for (int r = 0; r < f.k; ++r) {
-        V a[ik::max_joints];
+        V a[max_joints];
         for (int j = 0; j < f.width; ++j) a[j] = f.wide ? J[j].entry[r] : J[r].entry[j];
         for (int s = 0; s < r; ++s) {
             V along = fill<V>(0.0);
@@ -191,7 +191,7 @@ CSPACE_INLINE void solve_for(const Factors<V>& f, const V* e, V* x, V* y) {
 // Adds the term of q'' that only redundant arms have; y = Q q'.
 template <class V>
 CSPACE_INLINE void add_rate_of_inverse(const Factors<V>& f, const Twist<V>* J_rate, const V* y, V* bend) {
-    V z[6], g[ik::max_joints];
+    V z[6], g[max_joints];
     backward_solve(f, y, z);
     for (int j = 0; j < f.width; ++j) {
         g[j] = fill<V>(0.0);
@@ -222,10 +222,10 @@ CSPACE_INLINE Twist<V> error_of(const Pose<V>& tip, const Pose<V>& goal, double 
 }
 
 template <class V>
-CSPACE_INLINE void measure_coordinates(const ik::Path& path, int n, const Pose<V>& goal,
-                                       const Twist<V>& twist, const V* q, Motion<V>& out) {
+CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& goal, const Twist<V>& twist,
+                                       const V* q, Motion<V>& out) {
     const PlacedJoints<V> at = place_joints(path, q);
-    Twist<V> J[ik::max_joints], turning;
+    Twist<V> J[max_joints], turning;
     columns_of(path, n, at, J);
     Factors<V> f;
     factor(n, J, f);
@@ -245,11 +245,11 @@ CSPACE_INLINE void measure_coordinates(const ik::Path& path, int n, const Pose<V
 
 // slope and bend are derivatives by the fraction of the segment whose twist is given.
 template <class V>
-CSPACE_NOINLINE void measure_motion(const ik::Path& path, const Pose<V>& goal, const Twist<V>& twist,
-                                    const V* q, Motion<V>& out) {
+CSPACE_NOINLINE void measure_motion(const Path& path, const Pose<V>& goal, const Twist<V>& twist, const V* q,
+                                    Motion<V>& out) {
     // A number that the compiler knows unrolls the loops of most arms.
     if (path.n == 6) return measure_coordinates(path, 6, goal, twist, q, out);
     measure_coordinates(path, path.n, goal, twist, q, out);
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -55,7 +55,7 @@ struct Walker {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
 namespace track {
 // Largest change of a coordinate in one step [rad, lengths of the path], and largest fraction of it from the
@@ -81,10 +81,10 @@ inline constexpr double near_singular = 0.01;  // singular value at an end that 
 inline constexpr double whole_turn = 6.283185307179586476925287;
 }  // namespace track
 
-CSPACE_INLINE double* row_of(const ik::Track& t, const ik::Walker& w, std::size_t row) {
+CSPACE_INLINE double* row_of(const Track& t, const Walker& w, std::size_t row) {
     return t.q + (w.branch * t.count + row) * std::size_t(t.path->n);
 }
-CSPACE_INLINE double scale_of(const ik::Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
+CSPACE_INLINE double scale_of(const Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
 
 CSPACE_INLINE void copy_numbers(const double* from, int n, double* to) {
     for (int j = 0; j < n; ++j) to[j] = from[j];
@@ -98,7 +98,7 @@ CSPACE_INLINE double largest_of(const double* x, int n) {
 
 // The step estimated from the last three rows: the parabola through them, by the lengths of the segments
 // between them.
-inline void plan_by_rows(const ik::Track& t, ik::Walker& w) {
+inline void plan_by_rows(const Track& t, Walker& w) {
     const double a = t.ways[w.row - 2].length, b = t.ways[w.row - 1].length, h = t.ways[w.row].length;
     const double *q0 = row_of(t, w, w.row - 2), *q1 = row_of(t, w, w.row - 1);
     for (int j = 0; j < t.path->n; ++j) {
@@ -107,12 +107,12 @@ inline void plan_by_rows(const ik::Track& t, ik::Walker& w) {
         w.planned[j] = h * (second + (b + h) * bend) / scale_of(*t.path, j);
     }
 }
-CSPACE_INLINE bool rows_can_tell(const ik::Track& t, const ik::Walker& w) {
+CSPACE_INLINE bool rows_can_tell(const Track& t, const Walker& w) {
     return w.u == 0 && w.row >= 2 && t.ways[w.row - 2].length > 0 && t.ways[w.row - 1].length > 0;
 }
 
 // The longest step that slope and second derivative allow.
-inline double hopeful_step(const ik::Track& t, const ik::Walker& w) {
+inline double hopeful_step(const Track& t, const Walker& w) {
     const double slope = largest_of(w.slope, t.path->n), bend = largest_of(w.bend, t.path->n);
     const double length = t.ways[w.row].length;
     double du = 1 - w.u;
@@ -124,7 +124,7 @@ inline double hopeful_step(const ik::Track& t, const ik::Walker& w) {
 }
 
 // Sets du, planned and trial; false if the step would be too short.
-inline bool plan(const ik::Track& t, ik::Walker& w) {
+inline bool plan(const Track& t, Walker& w) {
     const double left = 1 - w.u;
     w.corrections = 0;
     w.du = hopeful_step(t, w);
@@ -149,12 +149,12 @@ inline bool plan(const ik::Track& t, ik::Walker& w) {
     for (int j = 0; j < t.path->n; ++j) w.trial[j] = w.q[j] + scale_of(*t.path, j) * w.planned[j];
     return true;
 }
-CSPACE_INLINE bool to_a_row(const ik::Walker& w) { return w.du == 1 - w.u; }
+CSPACE_INLINE bool to_a_row(const Walker& w) { return w.du == 1 - w.u; }
 
 enum class Verdict { again, taken, failed, infeasible };
 
 // Applies a correction to the trial and decides whether the step is accepted.
-inline Verdict judge_step(const ik::Track& t, ik::Walker& w, const Motion<double>& at) {
+inline Verdict judge_step(const Track& t, Walker& w, const Motion<double>& at) {
     const int n = t.path->n;
     double total = 0;
     for (int j = 0; j < n; ++j) {
@@ -180,7 +180,7 @@ inline Verdict judge_step(const ik::Track& t, ik::Walker& w, const Motion<double
 
 // Shifts the limits of coordinate j by the smallest multiple of 2π that keeps its whole traversed range
 // between them; false if none does.
-inline bool fit_turns(const ik::Track& t, ik::Walker& w, int j) {
+inline bool fit_turns(const Track& t, Walker& w, int j) {
     if (!t.whole_turns || t.path->slides[j]) return false;
     constexpr double turn = track::whole_turn;
     const double low = std::ceil((t.lower[j] - track::slack - w.least[j]) / turn);
@@ -197,7 +197,7 @@ struct Outside {
     double by;
     int joint;
 };
-inline Outside outside(const ik::Track& t, const ik::Walker& w, const double* q) {
+inline Outside outside(const Track& t, const Walker& w, const double* q) {
     Outside worst = {-1e300, -1};
     for (int j = 0; j < t.path->n; ++j) {
         const double by = max(w.lower[j] - q[j], q[j] - w.upper[j]);
@@ -209,7 +209,7 @@ inline Outside outside(const ik::Track& t, const ik::Walker& w, const double* q)
 
 // Extends the traversed ranges of the coordinates to q. Returns the coordinate whose limits no multiple of 2π
 // satisfies, or −1.
-inline int run_to(const ik::Track& t, ik::Walker& w, const double* q) {
+inline int run_to(const Track& t, Walker& w, const double* q) {
     int broken = -1;
     for (int j = 0; j < t.path->n; ++j) {
         w.least[j] = min(w.least[j], q[j]);
@@ -221,11 +221,11 @@ inline int run_to(const ik::Track& t, ik::Walker& w, const double* q) {
 }
 
 // The coordinate that has moved too far since the last pose, or −1.
-inline int too_far(const ik::Track& t, const ik::Walker& w, const double* q) {
+inline int too_far(const Track& t, const Walker& w, const double* q) {
     const double* from = row_of(t, w, w.row);
     for (int j = 0; j < t.path->n; ++j)
         if (std::fabs(q[j] - from[j]) > t.stride[j]) return j;
     return -1;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -14,15 +14,15 @@ struct Way {
 
 }  // namespace cspace::ik
 
-namespace cspace::inline CSPACE_ISA {
+namespace cspace::ik::inline CSPACE_ISA {
 
-inline ik::Way way_between(const Posed& from, const Posed& to, double arm_length) {
+inline Way way_between(const Posed& from, const Posed& to, double arm_length) {
     const Vec3d step = to.t - from.t, turn = log_of(to.R * transpose(from.R));
     return {from, step, turn, norm(step) / arm_length + norm(turn)};
 }
 
 // The pose at the fraction u of the segment.
-inline Posed pose_on(const ik::Way& way, double u) {
+inline Posed pose_on(const Way& way, double u) {
     const double angle = norm(way.turn);
     Posed at = {way.from.R, way.from.t + u * way.step};
     if (angle == 0) return at;
@@ -32,4 +32,4 @@ inline Posed pose_on(const ik::Way& way, double u) {
     return at;
 }
 
-}  // namespace cspace::inline CSPACE_ISA
+}  // namespace cspace::ik::inline CSPACE_ISA

@@ -39,8 +39,8 @@ class IntervalSearch {
     // starts, goals: the polygons whose closures hold the start and the goal.
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
                 const std::vector<Polygon>& goals, Trace* trace = nullptr) {
-        constexpr auto never = std::numeric_limits<std::uint64_t>::max();
-        return solve(start, starts, goal, goals, trace, never, [](std::uint64_t) { return never; });
+        constexpr auto never = [](std::uint64_t) { return std::numeric_limits<std::uint64_t>::max(); };
+        return solve(start, starts, goal, goals, trace, never(0), never);
     }
     // After `pause` nodes look(nodes) is asked, which says after how many it is to be asked again; 0: there
     // is no path.
@@ -53,10 +53,10 @@ class IntervalSearch {
                 if (p == q) return straight();
         for (const Polygon& p : starts) expand_start(p);
         Open open{*this};
-        Effort effort;
+        search::Effort effort;
         for (effort.pause = pause; effort.pause > 0; effort.pause = look(effort.settled)) {
-            const std::uint32_t last = best_first(open, queue_, effort);
-            if (last != no_node) return finish(nodes_[last]);
+            const std::uint32_t last = search::best_first(open, queue_, effort);
+            if (last != search::no_node) return finish(nodes_[last]);
             if (queue_.empty()) break;
         }
         Route route;
@@ -101,7 +101,7 @@ class IntervalSearch {
         std::uint32_t node;
         friend bool operator<(const Waits& x, const Waits& y) { return x.priority < y.priority; }
     };
-    Heap<Waits> queue_;
+    search::Heap<Waits> queue_;
     std::vector<Polygon> goals_;
     Point start_, goal_;
     bool is_inside_ = false;  // whether the start itself looks around, in a polygon that holds it
@@ -148,7 +148,7 @@ class IntervalSearch {
             return false;
         }
         bool is_goal(std::uint32_t n) const { return search.is_goal(search.nodes_[n].edge); }
-        void expand(std::uint32_t n, Heap<Waits>&) {
+        void expand(std::uint32_t n, search::Heap<Waits>&) {
             const Node from = search.nodes_[n];
             search.free_.push_back(Index(n));
             search.expand(from);

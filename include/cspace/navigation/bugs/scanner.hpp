@@ -59,7 +59,7 @@ class Scanner {
   private:
     const Walls& walls_;
     double range_, noise_;
-    sampling::Draws draws_;
+    search::Draws draws_;
     std::vector<double> far_;
     std::vector<Point> directions_, sides_;  // of each beam its middle and its left side
     std::int64_t scans_ = 0;

@@ -23,13 +23,13 @@ class HolonomicDistance {
           middle_(body.middle()),
           farther_(std::hypot(1.0, body.middle() / turn)),
           length_(grid_.numbers(), none) {
-        Heap<Waiting> queue;
+        search::Heap<search::Waiting> queue;
         const maps::Cell from = cell_of(goal);
         if (grid_.blocked(from)) return;
         length_[grid_.number(from)] = 0;
         queue.push({0, 0, grid_.number(from)});
         while (!queue.empty()) {
-            const Waiting next = queue.pop();
+            const search::Waiting next = queue.pop();
             if (float(next.priority) > length_[next.node]) continue;
             spread(next.node, queue);
         }
@@ -90,7 +90,7 @@ class HolonomicDistance {
         const double x = pose.x + middle_ * std::cos(pose.theta), y = pose.y + middle_ * std::sin(pose.theta);
         return {index(y, frame_.origin.y, grid_.rows()), index(x, frame_.origin.x, grid_.columns())};
     }
-    void spread(std::uint32_t node, Heap<Waiting>& queue) {
+    void spread(std::uint32_t node, search::Heap<search::Waiting>& queue) {
         const maps::Cell at = grid_.cell(node);
         for (int dr = -1; dr <= 1; ++dr)
             for (int dc = -1; dc <= 1; ++dc) {

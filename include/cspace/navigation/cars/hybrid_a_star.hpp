@@ -53,15 +53,15 @@ class HybridAStar {
             route.reason = HybridReason::no_gap;
             return route;
         }
-        Heap<Waiting> queue;
-        Effort effort;
+        search::Heap<search::Waiting> queue;
+        search::Effort effort;
         queue.push({left(nodes_[0].pose), 0, 0});
         best_[key(nodes_[0].pose)] = 0;
-        const std::uint32_t last = best_first(*this, queue, effort);
+        const std::uint32_t last = search::best_first(*this, queue, effort);
         route.stats = {std::int64_t(effort.settled), edges_};
-        route.reason = last == no_node ? HybridReason::exhausted
-                       : arrives_      ? HybridReason::found
-                                       : HybridReason::budget;
+        route.reason = last == search::no_node ? HybridReason::exhausted
+                       : arrives_              ? HybridReason::found
+                                               : HybridReason::budget;
         if (arrives_) {
             route.status = Status::found;
             collect(last, route.pieces);
@@ -86,7 +86,7 @@ class HybridAStar {
         }
         return arrives_ || settled_ > set_.most;
     }
-    void expand(std::uint32_t node, Heap<Waiting>& queue) {
+    void expand(std::uint32_t node, search::Heap<search::Waiting>& queue) {
         for (const int turn : {0, 1, -1}) {
             try_piece(node, {turn, step_}, queue);
             if (set_.reverses) try_piece(node, {turn, -step_}, queue);
@@ -102,7 +102,7 @@ class HybridAStar {
         bool settled;
     };
 
-    void try_piece(std::uint32_t at, const Piece& piece, Heap<Waiting>& queue) {
+    void try_piece(std::uint32_t at, const Piece& piece, search::Heap<search::Waiting>& queue) {
         ++edges_;
         const Node from = nodes_[at];
         const CarPose pose = drive(from.pose, piece, set_.radius);

@@ -32,7 +32,7 @@ class ApproximateCells {
         const auto make = [&] { return first_stage(); };
         stage_ = kept && !trace
                      ? kept->of({options_.depth, options_.most_depth, options_.uniform, options_.most_cells},
-                                make, most_kept_bytes)
+                                make, search::most_kept_bytes)
                      : make();
         options_.most_depth = std::min(options_.most_depth, tree().deepest());
     }
@@ -112,7 +112,7 @@ class ApproximateCells {
                 for (const maps::Index c : chosen) tree.split(c);
                 return std::make_shared<const CellStage>(std::move(tree));
             },
-            most_kept_bytes);
+            search::most_kept_bytes);
         return true;
     }
 
@@ -139,7 +139,7 @@ class ApproximateCells {
     struct Space {
         struct State {
             double g = std::numeric_limits<double>::infinity();
-            std::uint32_t before = no_node;
+            std::uint32_t before = search::no_node;
             bool settled = false;
         };
         const ApproximateCells& cells;
@@ -155,24 +155,25 @@ class ApproximateCells {
             State& s = state[node];
             if (s.settled) return false;
             if (trace)
-                trace->push_back({expand_word, s.before == no_node ? start : at(s.before), at(node), s.g});
+                trace->push_back(
+                    {expand_word, s.before == search::no_node ? start : at(s.before), at(node), s.g});
             return s.settled = true;
         }
-        void reach(std::uint32_t node, double g, std::uint32_t before, PriorityQueue& queue) {
+        void reach(std::uint32_t node, double g, std::uint32_t before, search::PriorityQueue& queue) {
             State& s = state[node];
             if (s.settled || g >= s.g) return;
             s.g = g, s.before = before;
             queue.push({g + cells.metric(at(node), goal), float(-g), node});
         }
         // What can be reached from a point of a leaf.
-        void leave(maps::Index c, Point from, double g, std::uint32_t before, PriorityQueue& queue) {
+        void leave(maps::Index c, Point from, double g, std::uint32_t before, search::PriorityQueue& queue) {
             const std::size_t leaf = std::size_t(c);
             if (holds_goal[leaf]) reach(last(), g + cells.metric(from, goal), before, queue);
             const CellStage& stage = *cells.stage_;
             for (std::uint32_t k = stage.first[leaf]; k < stage.first[leaf + 1]; ++k)
                 reach(stage.open[k], g + cells.metric(from, at(stage.open[k])), before, queue);
         }
-        void expand(std::uint32_t node, PriorityQueue& queue) {
+        void expand(std::uint32_t node, search::PriorityQueue& queue) {
             const CellDoor& d = cells.doors()[node];
             for (const maps::Index c : {d.one, d.other}) leave(c, d.at, state[node].g, node, queue);
         }
@@ -215,17 +216,17 @@ class ApproximateCells {
         const Entry from = entry_of(start, at_start_), to = entry_of(goal, at_goal_);
         if (from.leaves.empty() || to.leaves.empty()) return false;
         Space space = this->space(from.at, to);
-        PriorityQueue queue;
-        for (const maps::Index c : from.leaves) space.leave(c, from.at, 0, no_node, queue);
-        Effort effort;
-        const std::uint32_t reached = best_first(space, queue, effort);
+        search::PriorityQueue queue;
+        for (const maps::Index c : from.leaves) space.leave(c, from.at, 0, search::no_node, queue);
+        search::Effort effort;
+        const std::uint32_t reached = search::best_first(space, queue, effort);
         route.stats.nodes += std::int64_t(effort.settled);
-        if (reached == no_node) return false;
+        if (reached == search::no_node) return false;
         route.path = {goal};
         const auto add = [&](Point p) {
             if (route.path.back() != p) route.path.push_back(p);
         };
-        for (std::uint32_t node = reached; node != no_node; node = space.state[node].before)
+        for (std::uint32_t node = reached; node != search::no_node; node = space.state[node].before)
             add(space.at(node));
         add(from.at);
         add(start);

@@ -17,7 +17,7 @@ struct CellStage {
     std::array<std::int64_t, 3> leaves{};  // free, mixed, full
     int depth = 0;                         // of the deepest leaf
     // The tree once more of its leaves are split.
-    mutable LastMade<std::vector<maps::Index>, CellStage> next;
+    mutable search::LastMade<std::vector<maps::Index>, CellStage> next;
 
     explicit CellStage(Quadtree split) : tree(std::move(split)), doors(tree.doors()) {
         list_open_doors();
@@ -57,6 +57,6 @@ struct CellKey {
 };
 
 // What is kept with a world: its tree, as split for the options asked last.
-using CellStages = LastMade<CellKey, CellStage>;
+using CellStages = search::LastMade<CellKey, CellStage>;
 
 }  // namespace cspace::navigation

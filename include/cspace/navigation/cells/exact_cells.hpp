@@ -30,17 +30,17 @@ class ExactCells {
     Route solve(Point start, Point goal, Trace* trace = nullptr) const {
         const std::size_t count = cells_.cells.size();
         Open open{*this, start, trace, std::vector<State>(count), std::vector<std::uint8_t>(count, 0)};
-        PriorityQueue queue;
+        search::PriorityQueue queue;
         for (Index c = 0; c < Index(count); ++c) {
             open.holds_goal[std::size_t(c)] = cells_.contains(c, goal);
             if (cells_.contains(c, start)) open.reach(c, 0, start, -1, queue);
         }
-        Effort effort;
-        const std::uint32_t last = best_first(open, queue, effort);
+        search::Effort effort;
+        const std::uint32_t last = search::best_first(open, queue, effort);
         Route route;
         route.status = Status::unreachable;
         route.stats = {std::int64_t(effort.settled), open.edges};
-        return last == no_node ? route : finish(route, open.state, Index(last), start, goal);
+        return last == search::no_node ? route : finish(route, open.state, Index(last), start, goal);
     }
 
   private:
@@ -67,7 +67,7 @@ class ExactCells {
             return true;
         }
         bool is_goal(std::uint32_t cell) const { return holds_goal[cell]; }
-        void expand(std::uint32_t cell, PriorityQueue& queue) {
+        void expand(std::uint32_t cell, search::PriorityQueue& queue) {
             const State s = state[cell];
             for (Index k = of.first_[cell]; k < of.first_[cell + 1]; ++k) {
                 const Index d = of.door_[std::size_t(k)];
@@ -77,7 +77,7 @@ class ExactCells {
                 reach(other, s.g + distance(s.at, at), at, d, queue);
             }
         }
-        void reach(Index cell, double g, Point at, Index door, PriorityQueue& queue) {
+        void reach(Index cell, double g, Point at, Index door, search::PriorityQueue& queue) {
             State& s = state[std::size_t(cell)];
             ++edges;
             if (s.closed || g >= s.g) return;

@@ -25,7 +25,7 @@ class Walk {
           goal_(goal),
           least_(least),
           widest_(widest),
-          parent_(diagram.cells().size(), no_node),
+          parent_(diagram.cells().size(), search::no_node),
           value_(diagram.cells().size(), std::numeric_limits<double>::infinity()),
           settled_(diagram.cells().size()) {}
     template <class Queue>
@@ -116,9 +116,9 @@ inline BrushfireAnswer find_along(const Diagram& diagram, maps::Cell start, maps
     const std::uint32_t from = diagram.place(way.back()), to = diagram.place(back.back());
     const auto search = [&](bool widest, std::uint32_t least, const auto& then) {
         brushfire::Walk walk(diagram, to, widest, least);
-        PriorityQueue queue;
+        search::PriorityQueue queue;
         walk.start(from, queue);
-        const bool found = best_first(walk, queue, answer.way.effort) == to;
+        const bool found = search::best_first(walk, queue, answer.way.effort) == to;
         answer.way.effort.pushed += walk.edges();
         if (found) then(walk);
         return found;

@@ -201,10 +201,10 @@ inline MarchAnswer march(const maps::BitGrid& grid, const maps::GridFrame& frame
                          std::vector<std::uint32_t>* order) {
     MarchAnswer answer;
     Front front(grid, clearance, slow_within, grid.number(from));
-    PriorityQueue queue;
-    Effort effort{0, 0, order};
+    search::PriorityQueue queue;
+    search::Effort effort{0, 0, order};
     front.start(to, queue);
-    const bool found = best_first(front, queue, effort) != no_node;
+    const bool found = search::best_first(front, queue, effort) != search::no_node;
     answer.route.stats = {std::int64_t(effort.settled), std::int64_t(front.edges())};
     answer.route.status = found ? Status::found : Status::unreachable;
     if (!found) return answer;

@@ -94,7 +94,7 @@ class PotentialSearch {
     double straight(maps::Cell at) const {
         return straight_distance(goal_.row - at.row, goal_.column - at.column);
     }
-    Waiting rank(Steps g, maps::Cell at, std::uint32_t number) const {
+    search::Waiting rank(Steps g, maps::Cell at, std::uint32_t number) const {
         const double pulled = order_.scale * potential(at, number);
         if (order_.is_greedy) return {number == goal_number_ ? 0 : pulled, 0, number};
         const double h = std::min(pulled, order_.weight * straight(at));
@@ -106,18 +106,18 @@ inline void find_by_potential(const maps::BitGrid& grid, const Clearance& cleara
                               const PotentialOrder& order, Corners corners, maps::Cell start, maps::Cell goal,
                               GridAnswer& answer) {
     PotentialSearch::Nodes nodes;
-    PriorityQueue queue;
+    search::PriorityQueue queue;
     PotentialSearch space(grid, clearance, order, corners, goal, nodes);
     answer.effort.order = answer.settled ? &answer.order : nullptr;
     space.start(start, queue);
-    answer.found = best_first(space, queue, answer.effort) != no_node;
+    answer.found = search::best_first(space, queue, answer.effort) != search::no_node;
     answer.effort.pushed = space.edges();
-    search::note_settled(answer, [&](std::uint32_t n) {
+    grid_search::note_settled(answer, [&](std::uint32_t n) {
         const auto& node = nodes.at(n);
         return Settled{grid.cell(n), grid.cell(node.parent), space.potential(grid.cell(n), n)};
     });
     if (!answer.found) return;
-    search::follow_back(
+    grid_search::follow_back(
         grid.number(goal), [&](std::uint32_t n) { return nodes.at(n).parent; },
         [&](std::uint32_t n) { return grid.cell(n); }, answer.cells);
 }

@@ -48,7 +48,7 @@ class DStarLite {
             }
     }
     // Mends what the changes have broken. False where no way leads to the goal.
-    bool replan(Effort& effort) {
+    bool replan(search::Effort& effort) {
         if (grid_.blocked(start_) || grid_.blocked(goal_)) return false;
         const std::uint32_t start = grid_.number(start_);
         while (!queue_.empty()) {
@@ -123,7 +123,7 @@ class DStarLite {
     static bool is_outdated(const Entry& entry, const Node& node) {
         return !node.waits || !(entry.key == node.key);
     }
-    void settle(const Entry& top, Node& node, Effort& effort) {
+    void settle(const Entry& top, Node& node, search::Effort& effort) {
         const maps::Cell cell = grid_.cell(top.cell);
         if (top.key < key_of(node, cell)) {  // the robot has moved since
             wait(cell, node);
@@ -180,7 +180,7 @@ class DStarLite {
     Corners corners_;
     maps::Cell start_, goal_;
     Steps travelled_;  // how far the robot has moved since the first search, at least: k_m
-    Heap<Entry> queue_;
+    search::Heap<Entry> queue_;
     std::vector<std::vector<Node>> pages_ =
         std::vector<std::vector<Node>>((grid_.numbers() >> page_bits) + 1);
     std::uint64_t known_ = 0;

@@ -31,13 +31,13 @@ class GridSearch {
           goal_(grid.number(order.goal)),
           reopen_(reopen) {
         const bool exact = order.g_weight == 1 && (order.h_weight == 0 || order.h_weight == 1);
-        if (Parents::is_length && exact && !reopen) onward_ = &onward_moves[std::size_t(corners)];
+        if (Parents::is_length && exact && !reopen) onward_ = onward_moves[std::size_t(corners)];
         for (int d = 0; d < 8; ++d)
             offset_[d] = std::uint32_t(row_step[d]) * grid.stride() + std::uint32_t(column_step[d]);
         nodes_.begin(grid.numbers());
     }
     template <class Queue>
-    void start(maps::Cell at, Queue& queue, Effort& effort) {
+    void start(maps::Cell at, Queue& queue, search::Effort& effort) {
         const std::uint32_t number = grid_.number(at);
         effort_ = &effort;
         nodes_.reach(nodes_.at(number), G{}, number);
@@ -137,7 +137,7 @@ class GridSearch {
     const Order& order_;
     Parents parents_;
     Nodes& nodes_;
-    Effort* effort_ = nullptr;
+    search::Effort* effort_ = nullptr;
     std::uint32_t goal_;
     std::uint32_t offset_[8];
     bool reopen_;

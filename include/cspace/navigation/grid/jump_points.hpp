@@ -81,7 +81,7 @@ class JumpPoints {
         nodes_.begin();
     }
     template <class Queue>
-    void start(maps::Cell at, Queue& queue, Effort& effort) {
+    void start(maps::Cell at, Queue& queue, search::Effort& effort) {
         effort_ = &effort;
         bool is_new;
         const std::uint32_t place = nodes_.find(grid_.number(at), is_new);
@@ -118,7 +118,7 @@ class JumpPoints {
     }
 
   private:
-    static constexpr jump::OnwardTable onward_ = jump::onward_table(rule);
+    static constexpr const jump::OnwardTable& onward_ = jump::onward_of<rule>;
 
     // How far a straight scan from a cell goes, 0 where it leads nowhere; the goal is a place to stop.
     int stop(maps::Cell from, int d) const {
@@ -207,7 +207,7 @@ class JumpPoints {
     maps::Cell goal_;
     std::uint32_t goal_number_;
     SparseNodes& nodes_;
-    Effort* effort_ = nullptr;
+    search::Effort* effort_ = nullptr;
 };
 
 }  // namespace cspace::navigation

@@ -61,13 +61,17 @@ constexpr OnwardTable onward_table(Corners rule) {
     return table;
 }
 
+// A constant for each rule, because compilers bound the work that one constant may take.
+template <Corners rule>
+inline constexpr OnwardTable onward_of = onward_table(rule);
+
 }  // namespace jump
 
 using jump::OnwardTable;
 
 // By rule, direction of arrival and pattern of the cells around.
-inline constexpr std::array<OnwardTable, corner_rules> onward_moves = {
-    jump::onward_table(Corners::never), jump::onward_table(Corners::one), jump::onward_table(Corners::always),
-    jump::onward_table(Corners::four)};
+inline constexpr std::array<const OnwardTable*, corner_rules> onward_moves = {
+    &jump::onward_of<Corners::never>, &jump::onward_of<Corners::one>, &jump::onward_of<Corners::always>,
+    &jump::onward_of<Corners::four>};
 
 }  // namespace cspace::navigation

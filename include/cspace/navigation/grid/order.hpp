@@ -36,14 +36,14 @@ struct Order {
         if (metric == Metric::euclidean) return straight_distance(goal.row - at.row, goal.column - at.column);
         return steps_left(at).value();
     }
-    Waiting rank(Steps g, maps::Cell at, std::uint32_t node) const {
+    search::Waiting rank(Steps g, maps::Cell at, std::uint32_t node) const {
         if (metric != Metric::euclidean && g_weight == 1 && h_weight == 1) {
             const Steps h = steps_left(at);  // summed in integers, so that equal sums are equal numbers
             return {(g + h).value(), float(h.value()), node};
         }
         return rank(g.value(), at, node);
     }
-    Waiting rank(double g, maps::Cell at, std::uint32_t node) const {
+    search::Waiting rank(double g, maps::Cell at, std::uint32_t node) const {
         if (h_weight == 0) return {g, 0, node};
         const double h = least_cost * left(at);
         return {g_weight * g + h_weight * h, float(h), node};

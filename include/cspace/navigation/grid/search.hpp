@@ -51,7 +51,7 @@ struct GridAnswer {
                                     // row, a column or a diagonal, or, of any angle, a straight line
     double cost = 0;                // of the way, as the planner counts [cells, or cells · cost]
     double least = 0;               // no way costs less, where the planner proves that of its answer
-    Effort effort;
+    search::Effort effort;
     std::int64_t parts =
         0;  // how many there are, where the ends lie in two of them, which proves the verdict
     std::vector<Settled>* settled = nullptr;  // takes the cells in the order in which they were settled
@@ -64,8 +64,8 @@ struct GridScratch {
     PagedNodes<Steps> steps;
     PagedNodes<double> lengths;
     SparseNodes sparse;
-    BucketQueue buckets;
-    Waves waves;
+    search::BucketQueue buckets;
+    search::Waves waves;
 
     std::size_t bytes() const {
         return steps.bytes() + lengths.bytes() + sparse.bytes() + buckets.bytes() + waves.bytes();
@@ -75,7 +75,7 @@ struct GridScratch {
     }
 };
 
-namespace search {
+namespace grid_search {
 
 inline constexpr double bucket_width = 0.05;  // cells, or the least cost of one: few f differ by less
 inline constexpr std::uint64_t between_looks = 1 << 17;  // cells settled: less than a twentieth of a second
@@ -134,15 +134,15 @@ struct Division {
 template <class Space, class Queue>
 std::uint32_t search_or_divide(Space& space, Queue& queue, const Division& division, GridAnswer& answer) {
     constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
-    Effort& effort = answer.effort;
+    search::Effort& effort = answer.effort;
     std::uint64_t asked = division.is_known() ? never : division.patience();
     for (;;) {
         effort.pause = std::min(asked, division.look ? effort.settled + between_looks : never);
-        const std::uint32_t reached = best_first(space, queue, effort);
-        if (reached != no_node || queue.empty()) return reached;
+        const std::uint32_t reached = search::best_first(space, queue, effort);
+        if (reached != search::no_node || queue.empty()) return reached;
         if (division.look) division.look();
         if (effort.settled < asked) continue;
-        if (division.proves(answer)) return no_node;
+        if (division.proves(answer)) return search::no_node;
         asked = never;
     }
 }
@@ -154,7 +154,7 @@ void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& or
     GridSearch<Parents> space(grid, query.corners, order, parents, nodes, reopen);
     space.start(start, queue, answer.effort);
     const std::uint32_t reached = search_or_divide(space, queue, division, answer);
-    answer.found = reached != no_node;
+    answer.found = reached != search::no_node;
     note_settled(answer, [&](std::uint32_t k) {
         const auto& node = nodes.at(k);
         return Settled{grid.cell(k), grid.cell(node.parent), value_of(node.g)};
@@ -176,7 +176,7 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
     JumpPoints<rule> space(grid, order, nodes);
     space.start(start, scratch.buckets, answer.effort);
     const std::uint32_t reached = search_or_divide(space, scratch.buckets, division, answer);
-    answer.found = reached != no_node;
+    answer.found = reached != search::no_node;
     note_settled(answer, [&](std::uint32_t place) {
         const auto& node = nodes[place];
         return Settled{grid.cell(node.cell), grid.cell(nodes[node.parent].cell), node.g.value()};
@@ -201,7 +201,7 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
     std::reverse(cells.begin(), cells.end());
 }
 
-}  // namespace search
+}  // namespace grid_search
 
 // The way from start to goal, both free cells of the grid. parts: of this grid, or null for none. look() is
 // called now and then, and may throw.
@@ -217,13 +217,13 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
     answer.parts = 0;
     answer.effort = {};
     answer.effort.order = answer.settled ? &answer.order : nullptr;
-    const search::Division division{grid, parts, start, goal, query.corners == Corners::always, look};
+    const grid_search::Division division{grid, parts, start, goal, query.corners == Corners::always, look};
     if (division.is_known() && division.proves(answer)) return;
     const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
-        search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen, division,
-                         answer);
+        grid_search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen,
+                              division, answer);
     };
-    scratch.buckets.begin(search::bucket_width * query.least_cost);
+    scratch.buckets.begin(grid_search::bucket_width * query.least_cost);
     switch (query.planner) {
         case GridPlanner::best_first:
             if (query.costs)
@@ -233,7 +233,7 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
                 run(StepParents<StepLength>{}, scratch.steps, scratch.buckets, false);
             break;
         case GridPlanner::focal: {
-            FocalQueue queue(query.bound, grid.numbers());
+            search::FocalQueue queue(query.bound, grid.numbers());
             if (query.costs)
                 run(StepParents<StepCost>{StepCost(query.costs, grid.columns())}, scratch.lengths, queue,
                     true);
@@ -245,16 +245,16 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
         case GridPlanner::jump_points:
             switch (query.corners) {
                 case Corners::never:
-                    search::by_jumps<Corners::never>(grid, order, start, scratch, division, answer);
+                    grid_search::by_jumps<Corners::never>(grid, order, start, scratch, division, answer);
                     break;
                 case Corners::one:
-                    search::by_jumps<Corners::one>(grid, order, start, scratch, division, answer);
+                    grid_search::by_jumps<Corners::one>(grid, order, start, scratch, division, answer);
                     break;
                 case Corners::always:
-                    search::by_jumps<Corners::always>(grid, order, start, scratch, division, answer);
+                    grid_search::by_jumps<Corners::always>(grid, order, start, scratch, division, answer);
                     break;
                 case Corners::four:
-                    search::by_jumps<Corners::four>(grid, order, start, scratch, division, answer);
+                    grid_search::by_jumps<Corners::four>(grid, order, start, scratch, division, answer);
                     break;
             }
             break;

@@ -47,7 +47,7 @@ class Roadmap {
 
   private:
     RoadmapKey key_;
-    Buckets near_;
+    search::Buckets near_;
     double radius_ = 0;
     std::vector<Located> nodes_;
     std::vector<std::pair<std::int32_t, std::int32_t>> pairs_;  // tested, the larger first
@@ -127,7 +127,7 @@ class RoadmapSearch {
         return is_new;
     }
     bool is_goal(std::uint32_t node) const { return node == goal_; }
-    void expand(std::uint32_t node, PriorityQueue& queue) {
+    void expand(std::uint32_t node, search::PriorityQueue& queue) {
         if (node == start_) {
             for (const std::int32_t to : from_start_) reach(std::uint32_t(to), node, queue);
             return;
@@ -182,7 +182,7 @@ class RoadmapSearch {
             if (sees_goal_[i]) add(i, goal_);
     }
 
-    void reach(std::uint32_t to, std::uint32_t from, PriorityQueue& queue) {
+    void reach(std::uint32_t to, std::uint32_t from, search::PriorityQueue& queue) {
         const double cost = cost_[from] + distance(at(from), at(to));
         if (!(cost < cost_[to])) return;
         cost_[to] = cost, parent_[to] = from;
@@ -191,15 +191,15 @@ class RoadmapSearch {
     void search() {
         const std::size_t count = std::size_t(roadmap_.size()) + 2;
         cost_.assign(count, std::numeric_limits<double>::infinity());
-        parent_.assign(count, no_node);
+        parent_.assign(count, search::no_node);
         settled_.assign(count, 0);
-        PriorityQueue queue;
+        search::PriorityQueue queue;
         cost_[start_] = 0;
         queue.push({distance(problem_.start.at, problem_.goal.at), 0, start_});
-        Effort effort;
-        if (best_first(*this, queue, effort) == no_node) return;
+        search::Effort effort;
+        if (search::best_first(*this, queue, effort) == search::no_node) return;
         Route& route = answer_.route;
-        for (std::uint32_t n = goal_; n != no_node; n = parent_[n]) route.path.push_back(at(n));
+        for (std::uint32_t n = goal_; n != search::no_node; n = parent_[n]) route.path.push_back(at(n));
         std::reverse(route.path.begin(), route.path.end());
         route.status = Status::found;
         route.length = length_of(route.path);
@@ -207,6 +207,6 @@ class RoadmapSearch {
 };
 
 // What is kept with a world: the roadmap asked last.
-using KeptRoadmap = LastMade<RoadmapKey, Roadmap>;
+using KeptRoadmap = search::LastMade<RoadmapKey, Roadmap>;
 
 }  // namespace cspace::navigation::sampling

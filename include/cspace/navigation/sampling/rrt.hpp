@@ -58,7 +58,7 @@ class Tree {
     const Growth& growth_;
     Trace* trace_;
     Samples draws_;
-    Buckets near_;
+    search::Buckets near_;
     std::vector<Node> nodes_;
     std::int32_t last_ = -1;  // the node before the goal
     std::int64_t looks_ = 0;  // segments tested

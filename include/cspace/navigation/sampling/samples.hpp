@@ -74,7 +74,7 @@ class Samples {
   private:
     const maps::PolygonWorld& world_;
     Index component_;
-    Draws draws_;
+    search::Draws draws_;
     double area_ = 0;
     Point low_, high_;
     std::vector<Index> triangles_;

@@ -28,8 +28,8 @@ class VisibilitySearch {
         Open open{*this, trace};
         queue_.clear();
         for (const auto& edge : at_start_) open.relax(edge.to, edge.length, none, queue_);
-        Effort effort;
-        const bool arrives = best_first(open, queue_, effort) != no_node;
+        search::Effort effort;
+        const bool arrives = search::best_first(open, queue_, effort) != search::no_node;
         stats_.nodes = std::int64_t(effort.settled);
         if (arrives) return finish();
         return Route{Status::unreachable, {}, std::numeric_limits<double>::infinity(), stats_};
@@ -56,13 +56,13 @@ class VisibilitySearch {
             return true;
         }
         bool is_goal(std::uint32_t node) const { return Index(node) == search.graph_.size(); }
-        void expand(std::uint32_t node, PriorityQueue& queue) {
+        void expand(std::uint32_t node, search::PriorityQueue& queue) {
             const State s = search.state_of(Index(node));
             for (const auto& edge : search.graph_.edges_of(Index(node)))
                 relax(edge.to, s.g + edge.length, Index(node), queue);
             if (s.to_goal < far) relax(search.graph_.size(), s.g + s.to_goal, Index(node), queue);
         }
-        void relax(Index n, double g, Index parent, PriorityQueue& queue) {
+        void relax(Index n, double g, Index parent, search::PriorityQueue& queue) {
             State& s = search.state_of(n);
             ++search.stats_.edges;
             if (s.closed || g >= s.g) return;
@@ -77,7 +77,7 @@ class VisibilitySearch {
     View view_;
     std::vector<State> state_;
     std::uint32_t query_ = 0;
-    PriorityQueue queue_;
+    search::PriorityQueue queue_;
     std::vector<VisibilityGraph::Edge> at_start_, at_goal_;
     Point start_, goal_;
     Stats stats_;

@@ -253,7 +253,7 @@ struct Roadmap::Search {
                           map.diagram_.place(curve.at(s.t1)), std::abs(value[std::size_t(node)])});
     }
 
-    void push(Index node, Index from, double before, const Stretch& s, PriorityQueue& queue) {
+    void push(Index node, Index from, double before, const Stretch& s, search::PriorityQueue& queue) {
         ++stats.edges;
         const Bisector& curve = map.arc(s.arc).curve;
         const double low = std::min(s.t0, s.t1), high = std::max(s.t0, s.t1);
@@ -267,13 +267,13 @@ struct Roadmap::Search {
         const double left = wish.widest ? 0 : distance(at(node), to.lead.back());
         queue.push({after + left, 0, std::uint32_t(node)});
     }
-    void leave(Index from, double before, Index k, double t, PriorityQueue& queue) {
+    void leave(Index from, double before, Index k, double t, search::PriorityQueue& queue) {
         const Arc& arc = map.arc(k);
         if (t != arc.begin || from == none) push(arc.from, from, before, {k, t, arc.begin}, queue);
         if (t != arc.end || from == none) push(arc.to, from, before, {k, t, arc.end}, queue);
         if (k == to.arc) push(goal(), from, before, {k, t, to.t}, queue);
     }
-    void expand(std::uint32_t node, PriorityQueue& queue) {
+    void expand(std::uint32_t node, search::PriorityQueue& queue) {
         const Index v = Index(node);
         for (Index i = map.first_[node]; i < map.first_[node + 1]; ++i) {
             const Index k = map.around_[std::size_t(i)];
@@ -288,10 +288,10 @@ struct Roadmap::Search {
 inline double Roadmap::search(const Landing& from, const Landing& to, Wish wish,
                               std::vector<Stretch>* stretches, Way& way, Trace* trace) const {
     Search space(*this, to, wish, way.route.stats, trace);
-    PriorityQueue queue;
-    Effort effort;
+    search::PriorityQueue queue;
+    search::Effort effort;
     space.leave(none, wish.widest ? -std::numeric_limits<double>::infinity() : 0, from.arc, from.t, queue);
-    best_first(space, queue, effort);
+    search::best_first(space, queue, effort);
     if (stretches) {
         for (Index v = space.goal(); v != none; v = space.parent[std::size_t(v)])
             stretches->push_back(space.came[std::size_t(v)]);

@@ -1,0 +1,43 @@
+"""A header opens the namespace of its room, and the umbrella header reaches every one."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+from house import tree
+
+FOLDER = tree.ROOT / "include/cspace"
+UMBRELLA = FOLDER / "cspace.hpp"
+HEADERS = sorted(path for path in FOLDER.rglob("*.hpp") if path != UMBRELLA)
+ISA = "inline CSPACE_ISA"
+# Mathematics is the vocabulary of every room; the thresholds of all rooms stand in one header.
+OTHERS = {"math": "cspace", "tolerances.hpp": "cspace::tolerance"}
+
+
+def namespace_of(room: str) -> str:
+    return OTHERS.get(room, f"cspace::{room}")
+
+
+@pytest.mark.parametrize("path", HEADERS, ids=lambda path: str(path.relative_to(FOLDER)))
+def test_headers_open_the_namespace_of_their_room(path):
+    own = namespace_of(path.relative_to(FOLDER).parts[0])
+    text = path.read_text(encoding="utf-8")
+    opened = re.findall(r"^(?:inline )?namespace ([\w: ]*?) ?\{", text, re.M)
+    for name in (name for name in opened if name.startswith("cspace")):
+        inner = name.removeprefix(own).removeprefix("::")
+        assert name.startswith(own), f"{path}: opens {name}, the room is {own}"
+        if own == "cspace":
+            assert inner in ("", ISA), f"{path}: opens {name}, the room is {own}"
+        else:
+            assert re.fullmatch(rf"({ISA})?|\w+(::{ISA})?", inner), f"{path}: opens {name}"
+    outside = re.sub(r"^namespace cspace.*?^}  // namespace cspace", "", text, flags=re.M | re.S)
+    assert not re.search(r"^(using|namespace|inline|template|struct|class)\b", outside, re.M), (
+        f"{path}: declares something outside of {own}"
+    )
+
+
+def test_the_umbrella_header_includes_every_header():
+    included = [target for _, target in tree.includes(UMBRELLA)]
+    assert included == [f'"cspace/{path.relative_to(FOLDER).as_posix()}"' for path in HEADERS]
