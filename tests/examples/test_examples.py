@@ -68,7 +68,7 @@ def test_it_runs_and_makes_its_pictures(path, tmp_path):
 
 
 def test_the_arm_of_the_example_in_cpp_is_that_of_the_catalogue():
-    text = (ROOT / "examples/cpp/main.cpp").read_text(encoding="utf-8")
+    text = (ROOT / "examples/cpp/reach.cpp").read_text(encoding="utf-8")
     axes, points, tip = (
         [float(x) for x in re.findall(r"-?\d+(?:\.\d+)?", re.search(pattern, text, re.S)[1])]
         for pattern in (r"axes\[\] = (.*?);", r"points\[\] = (.*?);", r"chain\.tip = (.*?);")

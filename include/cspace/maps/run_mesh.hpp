@@ -36,7 +36,7 @@ class RunMesh {
     static constexpr bool is_vast = true;
 
     explicit RunMesh(const BitGrid& grid)
-        : grid_(grid), shift_(std::bit_width(std::uint32_t(grid.columns()))) {}
+        : grid_(grid), shift_(int(std::bit_width(std::uint32_t(grid.columns())))) {}
     // Whether the points of a grid can be numbered.
     static bool fits(const BitGrid& grid) {
         return (std::int64_t(grid.rows()) + 1) << std::bit_width(std::uint32_t(grid.columns())) <=

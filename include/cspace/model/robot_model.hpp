@@ -25,7 +25,8 @@ class RobotModel {
         for (const Body& body : bodies_) mass_ += body.mass;
         for (std::size_t k = 0; k < joints_.size(); ++k) joints_[k].carried_mass = bodies_[k + 1].mass;
         for (std::size_t k = joints_.size(); k-- > 0;) {
-            if (joints_[k].parent >= 0) joints_[joints_[k].parent].carried_mass += joints_[k].carried_mass;
+            if (joints_[k].parent >= 0)
+                joints_[std::size_t(joints_[k].parent)].carried_mass += joints_[k].carried_mass;
         }
         for (const Frame& frame : frames_) add_chain(frame);
     }
@@ -34,7 +35,7 @@ class RobotModel {
         return {joints_.data(), frames_.data(), bodies_.data(), int(joints_.size()), int(frames_.size()), n_,
                 mass_};
     }
-    const Chain& chain(int frame) const { return chains_[frame]; }
+    const Chain& chain(int frame) const { return chains_[std::size_t(frame)]; }
     int n_frames() const { return int(frames_.size()); }
     int n_joints() const { return int(joints_.size()); }
     int n_coordinates() const { return n_; }
@@ -42,8 +43,8 @@ class RobotModel {
 
   private:
     void add_chain(const Frame& frame) {
-        std::vector<int> path;
-        for (int k = frame.joint; k >= 0; k = joints_[k].parent) path.push_back(k);
+        std::vector<const Joint*> path;
+        for (int k = frame.joint; k >= 0; k = path.back()->parent) path.push_back(&joints_[std::size_t(k)]);
         std::reverse(path.begin(), path.end());
 
         auto reduced = std::make_unique<ChainJoint[]>(path.size() + 1);
@@ -51,15 +52,15 @@ class RobotModel {
                     int(path.size()),
                     n_,
                     int(path.size()) == n_,
-                    path.empty() ? frame.T_joint_frame : joints_[path[0]].T_parent_joint,
+                    path.empty() ? frame.T_joint_frame : path[0]->T_parent_joint,
                     1.0,
                     0.0};
         double carried = 0.0;  // the turn ψ of the link before
-        for (int i = 0; i < chain.n; ++i) {
-            const Joint& joint = joints_[path[i]];
-            const Posed& next = i + 1 < chain.n ? joints_[path[i + 1]].T_parent_joint : frame.T_joint_frame;
+        for (std::size_t i = 0; i < path.size(); ++i) {
+            const Joint& joint = *path[i];
+            const Posed& next = i + 1 < path.size() ? path[i + 1]->T_parent_joint : frame.T_joint_frame;
             reduced[i] = reduce_joint(joint, next, carried);
-            chain.ordered = chain.ordered && joint.coordinate == i && joint.ratio == 1.0;
+            chain.ordered = chain.ordered && joint.coordinate == int(i) && joint.ratio == 1.0;
         }
         chain.cos_last = std::cos(carried);
         chain.sin_last = std::sin(carried);

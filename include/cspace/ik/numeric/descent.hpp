@@ -170,7 +170,8 @@ bool end_lane(const DescentRows& rows, std::size_t row, int l, const Descent<V>&
     rows.steps[row] = std::int32_t(lane(d.steps, l));
     rows.position[row] = position;
     rows.rotation[row] = rotation;
-    for (int j = 0; j < rows.path->n; ++j) rows.q[row * std::size_t(rows.path->n) + j] = lane(d.q[j], l);
+    for (int j = 0; j < rows.path->n; ++j)
+        rows.q[row * std::size_t(rows.path->n) + std::size_t(j)] = lane(d.q[j], l);
     return reached;
 }
 

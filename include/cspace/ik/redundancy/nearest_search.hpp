@@ -3,6 +3,8 @@
 // best distance found so far. This bound reduces the search from a nearby seed to a few samples.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/redundancy/narrow_valleys.hpp"
 #include "cspace/ik/redundancy/nearest_proof.hpp"
 #include "cspace/ik/redundancy/turning_points.hpp"
@@ -105,7 +107,7 @@ inline void settle_all(const Redundant& arm, const Posed& goal, const double* se
                         : arm.chain.n == 7 ? settle_abreast<7, Pack<4>>
                                            : settle_abreast<0, Pack<4>>;
     for (int first = 0; first < count; first += lanes)
-        settle(arm, arm.rank, goal, seed, starts + first, min(lanes, count - first), best);
+        settle(arm, arm.rank, goal, seed, starts + first, std::min(lanes, count - first), best);
 }
 
 // Refines the starts whose valley may contain a point below the best one. `also`: an additional start, on the

@@ -2,6 +2,8 @@
 // joints.
 #pragma once
 
+#include <algorithm>
+
 #include "cspace/ik/redundancy/basis.hpp"
 #include "cspace/ik/redundancy/locked_joints.hpp"
 #include "cspace/ik/redundancy/split_chain.hpp"
@@ -158,7 +160,7 @@ inline void choose_locks(Redundant& arm) {
     for (int k = 0; k < bases.count; ++k) {
         if (arm.rank == 6 && !are_neighbours(bases.joints[k])) continue;
         const LockedArm locked = lock_outside(arm, bases.joints[k], typical, false);
-        const int rank = locked.at_ends ? rank_of(locked.arm) : min(rank_of(locked.arm), 2);
+        const int rank = locked.at_ends ? rank_of(locked.arm) : std::min(rank_of(locked.arm), 2);
         const int score = 2 * rank + locked.at_ends;
         if (rank < 2 || score <= best_score) continue;
         best = k;

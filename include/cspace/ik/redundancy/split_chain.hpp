@@ -3,6 +3,7 @@
 // derivatives therefore do not couple the halves, and both halves are computed together, one per lane.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <limits>
 
@@ -91,7 +92,7 @@ inline Halves make_halves(const Chain& chain, double length) {
     Halves best;
     if (chain.n < 2 || chain.n > 2 * longest) return best;
     double least = std::numeric_limits<double>::infinity();
-    for (int front = max(1, chain.n - longest); front <= min(longest, chain.n - 1); ++front)
+    for (int front = std::max(1, chain.n - longest); front <= std::min(longest, chain.n - 1); ++front)
         for (const int beside : {front - 1, front})
             for (int i = 0; i < chain.n; ++i) {
                 const Vec3d h = chain.axis[beside], p = chain.point[beside];

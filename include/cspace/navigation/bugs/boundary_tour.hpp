@@ -20,7 +20,7 @@ class Round {
   public:
     Nearest free, blocked;  // the nearest points from which the line to the goal is free, and is not
 
-    Round(Point goal, Hand hand, const Touch& hit) : goal_(goal), hand_(hand), hit_(hit) {
+    Round(Point goal, const Touch& hit) : goal_(goal), hit_(hit) {
         if (hit.is_corner()) return;
         count_turn(hit.in);
     }
@@ -46,7 +46,6 @@ class Round {
 
   private:
     Point goal_;
-    Hand hand_;
     Touch hit_;
     double length_ = 0;
     int turns_ = 0;

@@ -19,7 +19,7 @@ class Bug1 {
         double nearest = std::numeric_limits<double>::infinity();
         while (!walker.advance({robot.position(), goal_})) {
             walker.begin_follow();
-            Round round(goal_, hand_, robot.touch());
+            Round round(goal_, robot.touch());
             if (walk_around(walker, round)) {
                 walker.end_follow();
                 return walker.finish(Status::found);

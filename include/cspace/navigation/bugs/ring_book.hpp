@@ -25,7 +25,7 @@ class RingBook {
         std::map<int, bool> judged;
         for (const auto& [name, corner] : after_) {
             if (judged[name]) continue;
-            Round round(goal, Hand::right, corner);
+            Round round(goal, corner);
             const Touch* at = &corner;
             for (std::size_t walked = 0; at && walked <= after_.size(); ++walked) {
                 judged[at->in.name] = true;

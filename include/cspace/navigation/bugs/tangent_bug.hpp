@@ -122,7 +122,7 @@ class TangentBug {
         const Touch hit = robot_.touch();
         double nearest = to_goal(hit.at);
         seen_nearer_.reset();
-        Round round(goal_, hand, hit);
+        Round round(goal_, hit);
         for (bool first = true;; first = false) {
             const Wall piece = ahead(robot_.touch(), hand);
             const Point from = robot_.position();

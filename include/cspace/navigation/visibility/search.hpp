@@ -14,7 +14,7 @@ namespace cspace::navigation {
 class VisibilitySearch {
   public:
     explicit VisibilitySearch(const maps::PolygonWorld& world)
-        : world_(world), graph_(world.space), view_(world.space), state_(std::size_t(graph_.size()) + 1) {}
+        : graph_(world.space), view_(world.space), state_(std::size_t(graph_.size()) + 1) {}
 
     const VisibilityGraph& graph() const { return graph_; }
 
@@ -72,7 +72,6 @@ class VisibilitySearch {
         }
     };
     static constexpr double far = std::numeric_limits<double>::infinity();
-    const maps::PolygonWorld& world_;
     VisibilityGraph graph_;
     View view_;
     std::vector<State> state_;

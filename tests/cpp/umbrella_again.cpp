@@ -1,0 +1,3 @@
+#include "umbrella.hpp"
+
+umbrella::Answers umbrella::answers_elsewhere() { return answers(); }
