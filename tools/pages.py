@@ -1,5 +1,5 @@
-"""Writes the generated parts of docs/: the index of rooms, the index of the lectures, the example in C++, the
-options of planners.
+"""Writes the generated parts of docs/: the index of rooms, the index of the lectures, the examples in C++,
+the options of planners.
 
 Usage: python tools/pages.py [--check]
 """
@@ -88,9 +88,13 @@ def generated() -> dict[Path, str]:
         DOCS / "index.md": {"rooms": rooms()},
         DOCS / "lectures.md": {"lectures": lectures()},
         DOCS / "planners.md": {"options": options()},
-        DOCS / "export.md": {
-            "examples/cpp/CMakeLists.txt": source("examples/cpp/CMakeLists.txt", "cmake"),
-            "examples/cpp/main.cpp": source("examples/cpp/main.cpp", "cpp"),
+        DOCS / "cpp.md": {
+            path: source(path, language)
+            for path, language in (
+                ("examples/cpp/CMakeLists.txt", "cmake"),
+                ("examples/cpp/reach.cpp", "cpp"),
+                ("examples/cpp/shortest_path.cpp", "cpp"),
+            )
         },
     }
     return {page: filled(page, of_page) for page, of_page in parts.items()}
