@@ -55,15 +55,17 @@ def source(path: str, language: str) -> str:
 
 
 def options() -> str:
-    """Of each planner a table of its options, as its function declares and documents them."""
+    """Of each planner a table of its options, as the fields of its class declare them."""
     from cspace.navigation import PLANNERS
 
     lines, without = [], []
     for planner in PLANNERS.values():
+        kind = type(planner).__name__
         if not planner.options:
-            without.append(f"`{planner.name}`")
+            without.append(f"`{planner.name}` (`{kind}`)")
             continue
-        lines += [f"## {planner.name}", "", planner.summary[0].upper() + planner.summary[1:] + ".", ""]
+        summary = planner.summary[0].upper() + planner.summary[1:]
+        lines += [f"## {planner.name}", "", f"{summary}. Class: `cs.navigation.{kind}`.", ""]
         lines += ["| option | type | default | unit | meaning |", "|---|---|---|---|---|"]
         for each in planner.options.values():
             default = "" if each.default is None else f"`{each.default}`"

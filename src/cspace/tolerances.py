@@ -6,28 +6,35 @@ from typing import Final
 
 __all__ = [
     "AXIS_LENGTH",
+    "BAR_ROUNDING",
     "CALIBRATION_ANGLE",
     "CALIBRATION_BYTES",
     "CALIBRATION_DISTANCE",
+    "CAR_POSES",
     "CELLS_PER_CORNER",
     "DESCENT_LOOKS",
     "DESCRIPTION_BYTES",
     "DESCRIPTION_DEPTH",
     "DH_COINCIDENT",
     "DH_PARALLEL",
+    "DISC_FITS",
     "DOUBLE_SOLUTION",
     "FARTHEST",
     "FARTHEST_CELL",
     "FARTHEST_POINT",
     "FINEST_CELL",
+    "FINEST_LEVEL",
+    "FINE_SIDES",
     "FRAME_SNAP",
     "GIMBAL_LOCK",
     "HALF_TURN",
     "HARMONIC_CYCLES",
+    "HARMONIC_FIELDS",
     "HARMONIC_RESIDUAL",
     "INERTIA_SYMMETRY",
     "LARGEST_NUMBER",
     "LAST_ROW_ERROR",
+    "LEAST_INFLUENCE",
     "LEAST_REACH",
     "MAP_BYTES",
     "MAP_CELLS",
@@ -35,10 +42,14 @@ __all__ = [
     "MESHED_CORNERS",
     "MJCF_DEPTH",
     "MJCF_SAME_AXIS",
+    "MOST_DERIVED",
+    "MOST_SAMPLES",
     "MOST_WINDINGS",
+    "NAVIGATION_FUNCTIONS",
     "NAVIGATION_SQUARES",
     "NAVIGATION_STEPS",
     "NUMERIC_TOLERANCE",
+    "ON_GOAL_WALL",
     "ON_LIMIT",
     "ON_WALL",
     "PLANAR_AXES",
@@ -53,12 +64,14 @@ __all__ = [
     "SAMPLE_STEP",
     "SERVED",
     "SETTLED",
+    "SIMULATION_STEPS",
     "SINGULAR_ROUNDING",
     "SINGULAR_VALUE",
     "SLIGHT_MISS",
     "TANGENT_PLACE",
     "TOML_BYTES",
     "TRACK_BEYOND",
+    "TRACK_POSES",
     "UNIFORM_DEPTH",
     "UNLIMITED",
     "WEAK_DIRECTION",
@@ -294,3 +307,48 @@ UNIFORM_DEPTH: Final = 9
 """The same for squares of one size, of which there are 4ᵏ: a quarter of a million."""
 QUADTREE_CELLS: Final = 4_000_000
 """Most squares of a tree, some hundreds of megabytes; the answer stays open beyond."""
+
+MOST_DERIVED: Final = 8
+"""Most worlds grown by a radius or converted that are kept with a world: making one takes milliseconds."""
+
+FINE_SIDES: Final = 1024
+"""Sides of the polygons around corners where 32 sides have closed the path of a disc or stopped its descent:
+they exceed the disc by 5e-6 of the radius."""
+
+DISC_FITS: Final = 1e-9
+"""Share of a radius by which the clearance of a path must exceed it to show that a disc fits: clearances
+carry some roundings of the coordinates."""
+
+MOST_SAMPLES: Final = 10**8
+"""Most samples, and nearest neighbours, of a planner: their nodes fit into 32 bits, and a tree of so many
+takes some gigabytes."""
+
+FINEST_LEVEL: Final = 20
+"""Deepest level of a quadtree: the core numbers a million squares along a side."""
+
+HARMONIC_FIELDS: Final = 2
+"""Most harmonic fields that are kept with a grid: each takes about fifty bytes per cell."""
+
+NAVIGATION_FUNCTIONS: Final = 8
+"""Most navigation functions that are kept with a world: a proof takes up to a third of a second."""
+
+ON_GOAL_WALL: Final = 1e-9
+"""Clearance of a goal, in sides of the world, up to which it counts as on a wall, where a navigation function
+is 1: nearer, the function is too steep for a proof."""
+
+LEAST_INFLUENCE: Final = 1e-9
+"""Least reach of walls in the potential of A*, in cells, in place of zero: its inverse stays finite, and no
+cell is so near to a wall."""
+
+BAR_ROUNDING: Final = 1e-9
+"""By how much of a cell a bar may miss a multiple of the cell side and still count as one: 3 × 0.1 differs
+from 0.3 by rounding."""
+
+SIMULATION_STEPS: Final = 1e7
+"""Most steps of a run of a vehicle: a row of seven numbers each."""
+
+CAR_POSES: Final = 20.0
+"""Poses of a path of a car in each turning radius: a chord leaves its arc by 3e-4 of the radius."""
+
+TRACK_POSES: Final = 50.0
+"""The same of a curve that a vehicle follows: a chord leaves its arc by 5e-5 of the radius."""

@@ -9,11 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from inspect import signature
 from typing import Any
 
 from cspace.navigation import PLANNERS
-from cspace.navigation.planners import module_of
 
 
 @dataclass(frozen=True)
@@ -55,7 +53,7 @@ class Row:
     @cached_property
     def draws(self):
         """Whether the planner draws samples."""
-        return "rng" in signature(module_of(self.planner).plan).parameters
+        return "rng" in PLANNERS[self.planner].options
 
 
 YES, NO = "yes", "no"

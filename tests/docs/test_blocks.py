@@ -64,7 +64,7 @@ def test_python_blocks_run(page, tmp_path, monkeypatch):
     for block in blocks(page):
         if block.language == "python":
             source = "\n" * block.line + block.text
-            exec(compile(source, str(page), "exec"), namespace)  # the page is ours
+            exec(compile(source, str(page), "exec", dont_inherit=True), namespace)  # the page is ours
             ran += 1
     assert ran
     assert open_figures() == [], "a page saves the pictures that it draws, which also closes them"

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import inspect
+import dataclasses
 
 import numpy as np
 import pytest
 
 import cspace as cs
 from cspace.navigation import PLANNERS
-from cspace.navigation.planners import module_of
 
 YARD = [[(2, 2), (5, 2), (5, 5), (2, 5)], [(6, 1), (8.5, 1.5), (7, 4)]]
 OFF = {"costs", "hand", "neighbours"}
@@ -19,8 +18,9 @@ ALL = [(name, option) for name, row in PLANNERS.items() for option in row.option
 
 @pytest.mark.parametrize(("planner", "option"), ALL, ids=[f"{p}.{o.name}" for p, o in ALL])
 def test_every_option_is_told(planner, option):
-    parameter = inspect.signature(module_of(planner).plan).parameters[option.name]
-    assert option.default is parameter.default
+    (field,) = (f for f in dataclasses.fields(PLANNERS[planner]) if f.name == option.name)
+    assert option.default is field.default
+    assert option.type.split(" | ")[0] == field.type.split(" | ")[0]
     assert option.type
     assert option.meaning.endswith(".")
     assert not any(word in option.meaning for word in ("route.evidence", "Error", "status", "as for"))

@@ -9,22 +9,17 @@ may stop at a side of such a polygon but not at the arc; polygons with more side
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 from cspace.errors import InputError
-from cspace.navigation.planners import module_of
+from cspace.maps import PolygonWorld
+from cspace.navigation.checks import check_ends
+from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route, new_route
-from cspace.navigation.voronoi import voronoi
-from cspace.tolerances import ON_WALL
+from cspace.navigation.voronoi import Voronoi
+from cspace.tolerances import DISC_FITS, FINE_SIDES, ON_WALL
 
-if TYPE_CHECKING:
-    from cspace.maps import PolygonWorld
-
-__all__ = ["DiscFits", "fitted", "plan_disc"]
-
-FINE: Final = 1024
-"""Sides of the polygons where 32 sides have closed a path or stopped a descent: they exceed the disc by
-5e-6 of the radius."""
+__all__ = ["DiscFits", "fit_world", "plan_disc"]
 
 
 class DiscFits(NamedTuple):
@@ -44,9 +39,9 @@ class DiscFits(NamedTuple):
         )
 
 
-def fitted(world: PolygonWorld, grown: PolygonWorld, radius: float, start: Any, goal: Any) -> PolygonWorld:
-    """The grown world, or a finer one if the disc fits at start and goal; InputError where it does not fit."""
-    ends = [world.check_free(start, "start"), world.check_free(goal, "goal")]
+def fit_world(world: PolygonWorld, grown: PolygonWorld, radius: float, start: Any, goal: Any) -> PolygonWorld:
+    """The grown world, or a finer one if the disc fits at start and goal; InputError where it does not."""
+    ends = check_ends(world, start, goal)
     if all(grown.is_free(end) for end in ends):
         return grown
     xmin, ymin, xmax, ymax = world.bounds
@@ -64,31 +59,20 @@ def plan_disc(
     world: PolygonWorld,
     grown: PolygonWorld,
     radius: float,
-    planner: str,
+    planner: PlanePlanner,
     ends: tuple[Any, Any],
-    options: dict[str, Any],
 ) -> Route:
     """The route of a disc among polygons; `grown` is the world grown by its radius [m]."""
-    plan = module_of(planner).plan
-    route: Route = plan(fitted(world, grown, radius, *ends), *ends, **options)
+    route = planner.plan(fit_world(world, grown, radius, *ends), *ends)
     if route.status == "local_minimum":  # at a side of the polygon, but not at the arc
-        route = plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
+        route = planner.plan(world.inflate(radius, sides=FINE_SIDES, keep=ends), *ends)
     if route.status != "unreachable":
         return route
-    widest = voronoi.plan(world, *ends)
-    if not widest or (clearance := widest.evidence.least_clearance) <= radius * (1 + 1e-9):
+    widest = Voronoi().plan(world, *ends)
+    if not widest or (clearance := widest.evidence.least_clearance) <= radius * (1 + DISC_FITS):
         return route
-    fine: Route = plan(world.inflate(radius, sides=FINE, keep=ends), *ends, **options)
+    fine = planner.plan(world.inflate(radius, sides=FINE_SIDES, keep=ends), *ends)
     if fine.status != "unreachable":
         return fine
-    return new_route(
-        route.world,
-        planner,
-        route.options,
-        (route.start, route.goal),
-        "undetermined",
-        route.path,
-        route.length,
-        route.stats,
-        DiscFits(clearance, radius),
-    )
+    ends, walked = (route.start, route.goal), (route.path, route.length, route.stats)
+    return new_route(route.world, route._asked, ends, "undetermined", *walked, DiscFits(clearance, radius))

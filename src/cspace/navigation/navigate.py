@@ -3,25 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from typing import TYPE_CHECKING, Any, Final, TypeAlias
+from typing import Any, Final, TypeAlias
 
 from numpy.typing import ArrayLike
 
 from cspace.arrays import one_number
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid, PolygonWorld
-from cspace.navigation.planners import Planner, module_of, planner_named
-from cspace.search.options import check_options
-
-if TYPE_CHECKING:
-    from cspace.navigation.route import Route
+from cspace.navigation.disc_robot import plan_disc
+from cspace.navigation.planner import PlanePlanner
+from cspace.navigation.planners import PLANNERS, find_planner
+from cspace.navigation.route import Route
+from cspace.tolerances import MOST_DERIVED
 
 __all__ = ["World", "navigate"]
 
 NO_RADIUS: Final = 0.0
 """The robot is a point."""
-MOST_DERIVED: Final = 8
-"""Worlds grown by a radius or converted that are kept with a world: making one takes milliseconds."""
 
 World: TypeAlias = PolygonWorld | OccupancyGrid
 """Every kind of world that `navigate` takes: each has a `kind`, "polygons" or "grid", and can be inflated."""
@@ -31,7 +29,7 @@ def navigate(
     world: World,
     start: ArrayLike,
     goal: ArrayLike,
-    planner: str = "any_angle",
+    planner: str | PlanePlanner = "any_angle",
     *,
     radius: float = NO_RADIUS,
     resolution: float | None = None,
@@ -42,37 +40,34 @@ def navigate(
     world: a PolygonWorld or an OccupancyGrid; a planner of the other kind gets it converted. resolution [m]:
     the side of the cells that polygons become for planners over cells, which `route.reason` tells; by default
     about 1/200 of the longer side of the bounds, as `PolygonWorld.to_grid` chooses it. start, goal: (2,) [m].
-    planner: a name of `cs.navigation.PLANNERS`. radius [m] of the robot: 0 for a point, else obstacles are
-    grown by it first. options: those of the planner. The Route is truthy if a path was found, and says why
-    where not; where start and goal are the same point its path is that point, (1, 2).
+    planner: a name of `cs.navigation.PLANNERS`, or a PlanePlanner such as `AStar(metric="manhattan")`.
+    radius [m] of the robot: 0 for a point, else obstacles are grown by it first. options: those of the
+    planner. The Route is truthy if a path was found, and says why where not; where start and goal are the
+    same point its path is that point, (1, 2).
     Raises UnknownNameError on an unknown planner, InputTypeError on an unknown option or no world, InputError
     on points that are not finite, outside the bounds or inside an obstacle.
     """
-    row = planner_named(planner)
-    plan = module_of(planner).plan
-    kind = getattr(world, "kind", None)
-    given = world
-    if kind != row.world or radius is not NO_RADIUS or resolution is not None:
-        world = _prepared(world, kind, row, radius, resolution)
-    if options:
-        check_options(planner, row.options, options)
+    chosen = PLANNERS.get(planner) if type(planner) is str and not options else None
+    if chosen is None:
+        chosen = find_planner(planner, options)
+    given, kind = world, getattr(world, "kind", None)
+    if kind != chosen.world or radius is not NO_RADIUS or resolution is not None:
+        world = _prepare_world(world, kind, chosen, radius, resolution)
     try:
         if world is not given and isinstance(given, PolygonWorld) and isinstance(world, PolygonWorld):
-            from cspace.navigation.disc_robot import plan_disc
-
-            route = plan_disc(given, world, float(radius), planner, (start, goal), options)
+            route = plan_disc(given, world, float(radius), chosen, (start, goal))
         else:
-            route = plan(world, start, goal, **options)
+            route = chosen.plan(world, start, goal)
     except InputError as error:
         if not str(error).startswith(("start (", "goal (")):
             raise
-        raise InputError(f"{error}{_made_of(given, world, radius)}") from None
+        raise InputError(f"{error}{_describe_conversion(given, world, radius)}") from None
     if world is not given:
         vars(route)["given_world"] = given
     return route
 
 
-def _made_of(given: World, world: World, radius: float) -> str:
+def _describe_conversion(given: World, world: World, radius: float) -> str:
     """What was done to the world in which an end is not free."""
     said = f"; obstacles are grown by the robot's radius, {radius:g} m" if radius else ""
     if given.kind == "polygons" and isinstance(world, OccupancyGrid):
@@ -80,37 +75,40 @@ def _made_of(given: World, world: World, radius: float) -> str:
     return said
 
 
-def _prepared(world: World, kind: str | None, row: Planner, radius: float, resolution: float | None) -> World:
+def _prepare_world(
+    world: World, kind: str | None, planner: PlanePlanner, radius: float, resolution: float | None
+) -> World:
     """The world grown by the robot's radius and of the kind that the planner works in."""
     if kind not in {"polygons", "grid"}:
         raise InputTypeError(
             f"world must be a PolygonWorld or an OccupancyGrid, got an object of type {type(world).__name__}"
         )
+    key = planner.world, planner.takes_cells
     if radius is NO_RADIUS and resolution is None:
-        ready: World | None = vars(world).get("_derived", {}).get((row.world, row.takes_cells))
+        ready: World | None = vars(world).get("_derived", {}).get(key)
         if ready is not None:
             return ready
     if (grown := one_number(radius, "radius")) < 0:
         raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
     if grown:
-        world = _derived(world, ("grown", grown), lambda: world.inflate(grown))
+        world = _derive_world(world, ("grown", grown), lambda: world.inflate(grown))
     side = None if resolution is None else one_number(resolution, "resolution")
     if side is not None and side <= 0:
         raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
     if kind == "grid" and side is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
-    if kind == row.world:
+    if kind == planner.world:
         return world
     if isinstance(world, OccupancyGrid):
-        if row.takes_cells and module_of(row.name).takes_cells(world):
+        if planner.takes_cells and planner.takes_grid(world):
             return world
-        polygons = _derived(world, "polygons", lambda: PolygonWorld.from_grid(world))
-        return _derived(world, (row.world, row.takes_cells), lambda: polygons)
-    return _derived(world, ("grid", side), lambda: world.to_grid(side))
+        polygons = _derive_world(world, "polygons", lambda: PolygonWorld.from_grid(world))
+        return _derive_world(world, key, lambda: polygons)
+    return _derive_world(world, ("grid", side), lambda: world.to_grid(side))
 
 
-def _derived(world: World, key: Hashable, make: Callable[[], World]) -> World:
-    """What was made from a world, kept with it for the next question."""
+def _derive_world(world: World, key: Hashable, make: Callable[[], World]) -> World:
+    """What `make` makes of a world, kept with it for the next query."""
     kept: dict[Hashable, World] = vars(world).setdefault("_derived", {})
     if key not in kept:
         if len(kept) >= MOST_DERIVED:

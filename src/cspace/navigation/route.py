@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import attribute_error
-from cspace.navigation.planners import module_of
-from cspace.navigation.text import counted
+from cspace.navigation.text import count_things
 
 if TYPE_CHECKING:
     from cspace.search.trace import Trace
@@ -50,10 +49,15 @@ class Route(_core.RouteBase):
         """The verdict as one sentence, with what backs it."""
         if self and len(self.path) == 1:
             return "start and goal are the same point"
-        said: str = getattr(self._evidence, "reason", None) or module_of(self.planner).reason(self)
+        said: str = getattr(self._evidence, "reason", None) or self._asked.explain_route(self)
         if self.world.kind == "grid" and self._given_world.kind == "polygons":
             said += f"; polygons became cells of {self.world.resolution:g} m"
         return said
+
+    @property
+    def _asked(self) -> Any:
+        """The planner with the options in force, which the compiled core keeps."""
+        return self._options
 
     @property
     def stats(self) -> Stats:
@@ -68,15 +72,16 @@ class Route(_core.RouteBase):
     @property
     def trace(self) -> Trace:
         """What the planner did, event after event; made by asking it once more with a record kept."""
-        if (made := self.__dict__.get("trace")) is None:
-            made = self.__dict__["trace"] = module_of(self.planner).trace(self)
+        if "trace" not in self.__dict__:
+            self.__dict__["trace"] = self._asked.trace_route(self)
+        made: Trace = self.__dict__["trace"]
         return made
 
     @property
     def options(self) -> dict[str, Any]:
         """The options of the planner with the values in force: those that were given, and the defaults as
         they came out for this world."""
-        return dict(self._options or {})
+        return dict(self._asked.values)
 
     @property
     def clearance(self) -> float:
@@ -102,12 +107,14 @@ class Route(_core.RouteBase):
     def __reduce__(self) -> tuple[Any, ...]:
         """What it was made from: copies and pickles are made from that again."""
         ends, found = (self.start, self.goal), (self.status, self.path, self.length)
-        made = (self.world, self.planner, self.options, ends, *found, self.stats, self.evidence)
+        made = (self.world, self._asked, ends, *found, self.stats, self.evidence)
         return new_route, made, {"given_world": self._given_world}
 
     def __repr__(self) -> str:
         if self:
-            return f"<Route {self.planner}: found, {self.length:.6g} m, {counted(len(self.path), 'point')}>"
+            return (
+                f"<Route {self.planner}: found, {self.length:.6g} m, {count_things(len(self.path), 'point')}>"
+            )
         return f"<Route {self.planner}: {self.status}>"
 
 
@@ -116,8 +123,7 @@ _core._route_class(Route)
 
 def new_route(
     world: Any,
-    planner: str,
-    options: dict[str, Any] | None,
+    planner: Any,
     ends: tuple[Array, Array],
     status: str,
     path: Array,
@@ -125,8 +131,10 @@ def new_route(
     stats: Stats,
     evidence: Any = None,
 ) -> Route:
-    """A route from what a planner found. path: (m, 2) [m]; ends: start and goal, (2,) each."""
+    """A route from what a planner with the options in force found. path: (m, 2) [m]; ends: start and goal,
+    (2,) each."""
+    verdict = STATUSES.index(status)
     made: Route = _core._route_make(
-        world, planner, options, *ends, STATUSES.index(status), path, length, *stats, evidence
+        world, planner.name, planner, *ends, verdict, path, length, *stats, evidence
     )
     return made

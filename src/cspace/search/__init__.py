@@ -1,6 +1,7 @@
-"""Shared by all planners: their options and the trace of a search."""
+"""Shared by all planners: their base class, their options and the trace of a search."""
 
-from cspace.search.options import Option
+from cspace.search.options import Option, draw_seed, option, options_of
+from cspace.search.planner import Planner
 from cspace.search.trace import Trace
 
-__all__ = ["Option", "Trace"]
+__all__ = ["Option", "Planner", "Trace", "draw_seed", "option", "options_of"]

@@ -1,28 +1,21 @@
-"""Planner options: parsed from the signature and the docstring of each planner's function, their only
-source."""
+"""Options of planners: the fields of a frozen dataclass, each declared by `option` with its rule."""
 
 from __future__ import annotations
 
-import inspect
-import re
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+import operator
+from collections.abc import Iterable, Mapping
+from dataclasses import MISSING, Field, dataclass, field, fields
 from functools import cache
+from math import inf
 from types import MappingProxyType
-from typing import Any, Final
+from typing import Any
 
-from cspace.errors import InputTypeError, suggest
+import numpy as np
 
-__all__ = ["Option", "check_options", "options_of"]
+from cspace.arrays import as_floats, as_generator
+from cspace.errors import InputError, InputTypeError, suggest
 
-COMPOSED: Final = {"costs", "rng"}
-"""Options that are not one number or word."""
-
-ENTRY: Final = re.compile(r"(?:^|(?<=\. ))(\w+(?:, \w+)*)(?: \(([^)]*)\))?(?: \[([^\]]*)\])?: ")
-"""Names in a docstring, with a shape or a unit, followed by a colon and their meaning."""
-
-ELSEWHERE: Final = "as for A*."
-"""The text for an option that has the same meaning as for A*."""
+__all__ = ["Option", "draw_seed", "option", "options_of"]
 
 
 @dataclass(frozen=True)
@@ -31,58 +24,112 @@ class Option:
 
     name: str
     type: str
-    """The annotation in the function's signature: "float", "int", "str", "bool" or another type."""
+    """The annotation of the field: "float", "int", "str", "bool" or another type."""
     default: Any
     """None where the default depends on the world or the option is off; the meaning states which."""
-    unit: str
+    unit: str = ""
     """ "m" and the like; empty for words and for numbers without a unit."""
-    meaning: str
+    meaning: str = ""
     """What the option does, the values it accepts and its default behaviour."""
+    choices: tuple[str, ...] = ()
+    """The words it accepts; empty where any are."""
+    subject: str = ""
+    """What an unknown word is called in the error; the option's name if empty."""
+    minimum: float = -inf
+    above: float = -inf
+    maximum: float = inf
+    """The accepted numbers: at least `minimum`, greater than `above`, at most `maximum`."""
+    may_be_infinite: bool = False
+
+    def check_value(self, value: Any) -> Any:
+        """The value in the option's type. Raises InputTypeError for another type, InputError for a number out
+        of range, UnknownNameError for an unknown word. An array (…) is left to the planner."""
+        kinds = self.type.split(" | ")
+        if value is None and self.default is None:
+            return None
+        if "Generator" in kinds:
+            return value if isinstance(value, np.random.Generator) else draw_seed(value)
+        if kinds[0] not in {"bool", "float", "int", "str"}:
+            return value
+        several = hasattr(value, "__len__") and not isinstance(value, (str, bytes))
+        if getattr(value, "ndim", several):
+            raise InputTypeError(f"option {self.name!r} is a {type(value).__name__}; it must be one value")
+        if kinds[0] == "bool":
+            if not isinstance(value, (bool, np.bool_)):
+                raise InputTypeError(f"{self.name} must be True or False, got {value!r}")
+            return bool(value)
+        if kinds[0] == "str":
+            if self.choices and not (isinstance(value, str) and value in self.choices):
+                raise suggest(self.subject or self.name, value, self.choices)
+            return value
+        number = self._whole(value) if kinds[0] == "int" else self._real(value)
+        if not (self.minimum <= number <= self.maximum and number > self.above):
+            shown = number if isinstance(number, int) else f"{number:g}"
+            raise InputError(f"{self.name} is {shown}; it must be {self._range()}")
+        return number
+
+    def _whole(self, value: Any) -> int:
+        try:
+            if not isinstance(value, bool):
+                return operator.index(value)
+        except TypeError:
+            pass
+        raise InputTypeError(f"{self.name} is a {type(value).__name__}; it must be a whole number")
+
+    def _real(self, value: Any) -> float:
+        return inf if self.may_be_infinite and value == inf else float(as_floats(value, self.name))
+
+    def _range(self) -> str:
+        """The accepted numbers in words, and None where it stands for the default."""
+        return self._numbers() + (", or None for the default" if self.default is None else "")
+
+    def _numbers(self) -> str:
+        if self.maximum < inf:
+            return f"{self.minimum} to {self.maximum}"
+        unit = f" [{self.unit}]" if self.unit else ""
+        if self.may_be_infinite:
+            return f"{'more than zero' if self.above == 0 else 'zero or more'}{unit}, or inf"
+        return f"positive{unit}" if self.above == 0 else f"{self.minimum or 'zero'} or more{unit}"
+
+
+def option(
+    default: Any,
+    meaning: str,
+    *,
+    unit: str = "",
+    choices: Iterable[str] = (),
+    subject: str = "",
+    minimum: float = -inf,
+    above: float = -inf,
+    maximum: float = inf,
+    may_be_infinite: bool = False,
+) -> Any:
+    """A field of a planner: its default, meaning, unit and the rule for its values, as in Option."""
+    rule = {"minimum": minimum, "above": above, "maximum": maximum, "may_be_infinite": may_be_infinite}
+    words = {"unit": unit, "meaning": meaning, "choices": tuple(choices), "subject": subject}
+    return field(default=default, metadata=words | rule)
 
 
 @cache
-def options_of(plan: Callable[..., Any], a_star: Callable[..., Any]) -> Mapping[str, Option]:
-    """The options of a planner's function by name, in signature order; a_star: the function of A*, to which
-    other planners refer."""
-    parameters = [p for p in inspect.signature(plan).parameters.values() if p.kind is p.KEYWORD_ONLY]
-    told = {name: (unit, meaning) for name, unit, meaning in _entries(inspect.getdoc(plan) or "")}
-    found = {}
-    for p in parameters:
-        unit, meaning = told.get(p.name, ("", ""))
-        if meaning.startswith(ELSEWHERE) and plan is not a_star:
-            meaning = options_of(a_star, a_star)[p.name].meaning
-        found[p.name] = Option(p.name, _type_of(p), p.default, unit, meaning)
-    return MappingProxyType(found)
+def options_of(planner: type[Any]) -> Mapping[str, Option]:
+    """The options of a class of planners by name, in the order of its fields."""
+    return MappingProxyType({each.name: _option_of(each) for each in fields(planner)})
 
 
-def check_options(planner: str, known: Mapping[str, Option], options: dict[str, Any]) -> None:
-    """Raises InputTypeError for an unknown option, for several values where one is expected, or for a value
-    other than True and False of a boolean option."""
-    for name, value in options.items():
-        if name not in known:
-            raise InputTypeError(str(suggest("option", name, known, owner=f"planner {planner!r}")))
-        several = hasattr(value, "__len__") and not isinstance(value, (str, bytes))
-        if name not in COMPOSED and getattr(value, "ndim", several):
-            raise InputTypeError(f"option {name!r} is a {type(value).__name__}; it must be one value")
-        if isinstance(known[name].default, bool) and value not in (True, False):
-            raise InputTypeError(f"option {name!r} is {value!r}; it must be True or False")
+def _option_of(declared: Field[Any]) -> Option:
+    """The option of a field; None in its type only marks the default."""
+    kind: Any = declared.type  # a string where annotations are postponed
+    text: str = kind if isinstance(kind, str) else getattr(kind, "__name__", str(kind))
+    default = None if declared.default is MISSING else declared.default
+    text = text.removesuffix(" | None") if default is None else text
+    return Option(declared.name, text.replace("np.random.", ""), default, **declared.metadata)
 
 
-def _type_of(parameter: inspect.Parameter) -> str:
-    """The annotation, without None where None only marks the default."""
-    text = str(parameter.annotation).replace("np.random.", "")
-    return text.removesuffix(" | None") if parameter.default is None else text
-
-
-def _entries(doc: str) -> Iterator[tuple[str, str, str]]:
-    """Name, unit and meaning of each entry of a docstring. A paragraph that begins with an entry contains
-    only entries."""
-    for paragraph in doc.split("\n\n"):
-        text = " ".join(paragraph.split())
-        matches = list(ENTRY.finditer(text))
-        if not matches or matches[0].start():
-            continue
-        ends = [match.start() for match in matches[1:]] + [len(text)]
-        for match, end in zip(matches, ends, strict=True):
-            for name in match[1].split(", "):
-                yield name, match[3] or "", text[match.end() : end].strip()
+def draw_seed(rng: int | np.random.Generator | None) -> int:
+    """64 bits from an int, a Generator or None; InputError for an int that does not fit."""
+    if isinstance(rng, (int, np.integer)) and not isinstance(rng, bool) and 0 <= rng < 2**64:
+        return int(rng)
+    generator = as_generator(rng)
+    if rng is None or isinstance(rng, np.random.Generator):
+        return int(generator.integers(2**64, dtype=np.uint64))
+    raise InputError(f"rng is {rng}; a seed must be below 2**64")

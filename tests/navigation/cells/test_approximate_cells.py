@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.errors import InputError, UnknownNameError
+from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.navigation import approximate_cells
 from oracles.segments import enters
 
@@ -155,9 +155,11 @@ def test_options_that_make_no_sense():
     world = gate(5, 6)
     with pytest.raises(UnknownNameError, match="manhattan"):
         ask(world, (1, 1), (2, 2), metric="manhatten")
-    for options in ({"depth": -1}, {"depth": 2.5}, {"max_depth": 99}, {"min_size": -1.0}):
-        with pytest.raises(InputError):
+    for options in ({"depth": -1}, {"max_depth": 99}, {"min_size": -1.0}):
+        with pytest.raises(InputError, match="it must be"):
             ask(world, (1, 1), (2, 2), **options)
+    with pytest.raises(InputTypeError, match="depth is a float; it must be a whole number"):
+        ask(world, (1, 1), (2, 2), depth=2.5)
 
 
 def test_a_tree_that_is_kept_answers_as_one_made_anew():

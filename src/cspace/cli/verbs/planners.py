@@ -10,7 +10,7 @@ from cspace.cli.exits import Exit
 from cspace.cli.output import Cell, Output, Table
 
 if TYPE_CHECKING:
-    from cspace.navigation import Option, Planner
+    from cspace.navigation import Option, PlanePlanner
 
 __all__ = ["EXAMPLES", "arguments", "run", "typed"]
 
@@ -29,9 +29,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print one row per planner, or per option of those that are named."""
     from cspace.navigation import PLANNERS
-    from cspace.navigation.planners import planner_named
+    from cspace.navigation.planners import find_planner
 
-    rows = [planner_named(name) for name in args.names] or list(PLANNERS.values())
+    rows = [find_planner(name) for name in args.names] or list(PLANNERS.values())
     if out.as_json:
         out.document({"schema": "cspace.planners/1", "planners": [document(row) for row in rows]})
     elif args.names:
@@ -46,7 +46,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     return Exit.DONE
 
 
-def show_options(row: Planner, out: Output) -> None:
+def show_options(row: PlanePlanner, out: Output) -> None:
     """A planner and a table of its options."""
     out.heading(f"{row.name}: {row.summary}")
     if not row.options:
@@ -70,7 +70,7 @@ def typed(value: Any) -> Any:
     return value
 
 
-def document(row: Planner) -> dict[str, Any]:
+def document(row: PlanePlanner) -> dict[str, Any]:
     """A planner for machines."""
     options = [
         {

@@ -1,3 +1,5 @@
 """Any-angle planning: shortest paths through convex polygons and over cells."""
 
-__all__: list[str] = []
+from cspace.navigation.any_angle.any_angle import AnyAngle
+
+__all__ = ["AnyAngle"]

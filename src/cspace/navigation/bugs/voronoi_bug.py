@@ -20,23 +20,22 @@ missed, it never reports that the goal is unreachable.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from math import hypot, inf
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array
 from cspace.errors import InputError
+from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.sampling.problem import seed_of
-from cspace.navigation.text import counted
-from cspace.search.trace import Trace
+from cspace.navigation.text import count_things
+from cspace.search import draw_seed, option
 from cspace.tolerances import SCAN_NOISE
 
-__all__ = ["VoronoiBugEvidence", "plan", "reason", "trace"]
-
-WORDS: Final = ("away", "trace", "roll", "back", "go")
+__all__ = ["VoronoiBug", "VoronoiBugEvidence"]
 
 
 class VoronoiBugEvidence(NamedTuple):
@@ -58,81 +57,73 @@ class VoronoiBugEvidence(NamedTuple):
     (x, y) of the loop where the line to the goal enters the wall; else None."""
 
 
-def plan(
-    world: Any,
-    start: Any,
-    goal: Any,
-    *,
-    range: float = inf,
-    noise: float = 0.0,
-    rng: int | np.random.Generator | None = None,
-) -> Route:
-    """The path of a robot with a range sensor from start to goal (2,) [m] in a PolygonWorld.
-
-    range [m]: of the sensor, more than 0; inf is limited only by walls. noise [m]: the standard deviation
-    of a reading, at most a fifth of the range; 0 gives exact readings. rng: seed, Generator or None, used
-    only with noise; `route.options` keeps the seed.
+@dataclass(frozen=True, eq=False)
+class VoronoiBug(PlanePlanner):
+    """Voronoi Bug: explores the generalised Voronoi diagram with a range sensor (Choset & Burdick 1995).
 
     The robot stays just within its range of the walls that it follows. route.path is the path travelled
     even where no path exists; route.evidence is a VoronoiBugEvidence; route.stats counts meet points and
-    branches. Raises InputError for a range that is not positive and for noise that is negative or too
-    large. The status is "undetermined" where rounding hides the connections between branches, and with
+    branches. The status is "undetermined" where rounding hides the connections between branches, and with
     noise where the goal has not been seen.
+
+    The trace contains the motion, step by step: "away" from the nearest wall, "trace" between two, "roll"
+    along one, "back" over known positions, "go" straight to the goal; its value is the least distance from
+    walls along that branch [m], NaN without a branch.
     """
-    reach = inf if range == inf else float(as_floats(range, "range"))
-    if not reach > 0:
-        raise InputError(f"range is {reach:g}; it must be more than zero [m], or inf")
-    deviation = float(as_floats(noise, "noise"))
-    if deviation:
-        _check_noise(deviation, reach, world)
-    options = {"range": reach, "noise": deviation, "rng": seed_of(rng) if deviation else 0}
-    made: Route | None
-    asked = world, "voronoi_bug", options, VoronoiBugEvidence, world._core, *options.values()
-    made = _core._voronoi_bug(*asked, start, goal)
-    if made is None:
-        ends = world.check_free(start, "start"), world.check_free(goal, "goal")
-        made = _core._voronoi_bug(*asked, *ends)
-        assert made is not None
-    return made
 
+    name = "voronoi_bug"
+    summary = "a robot that sees walls up to a distance: as far from two of them"
+    sensing = "range"
+    events = ("away", "trace", "roll", "back", "go")
 
-def _check_noise(deviation: float, reach: float, world: Any) -> None:
-    """InputError for noise above a fifth of the sensor's range."""
-    xmin, ymin, xmax, ymax = world.bounds
-    most = SCAN_NOISE * min(reach, hypot(xmax - xmin, ymax - ymin))
-    if not 0 <= deviation <= most:
-        raise InputError(
-            f"noise is {deviation:g}; it must lie between 0 and {most:g} m, a fifth of the farthest reading"
-        )
-
-
-def trace(route: Route) -> Trace:
-    """The motion, step by step: "away" from the nearest wall, "trace" between two, "roll" along one, "back"
-    over known positions, "go" straight to the goal. start, end: (k, 2) [m]. value [m]: the least distance
-    from walls along that branch, NaN without a branch."""
-    return Trace(
-        WORDS,
-        *_core._voronoi_bug_trace(route.world._core, *route.options.values(), route.start, route.goal),
+    range: float = option(
+        inf,
+        "of the sensor, more than 0; inf is limited only by walls.",
+        unit="m",
+        above=0,
+        may_be_infinite=True,
+    )
+    noise: float = option(
+        0.0,
+        "the standard deviation of a reading, at most a fifth of the range; 0 gives exact readings.",
+        unit="m",
+    )
+    rng: int | np.random.Generator | None = option(
+        None, "seed, Generator or None, used only with noise; `route.options` keeps the seed."
     )
 
+    def _fill_in(self, world: Any) -> VoronoiBug:
+        xmin, ymin, xmax, ymax = world.bounds
+        most = SCAN_NOISE * min(self.range, hypot(xmax - xmin, ymax - ymin))
+        if not 0 <= self.noise <= most:
+            rule = f"it must lie between 0 and {most:g} m, a fifth of the farthest reading"
+            raise InputError(f"noise is {self.noise:g}; {rule}")
+        return self._in_force(rng=draw_seed(self.rng) if self.noise else 0)
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    found: VoronoiBugEvidence = route.evidence
-    branches = counted(found.branches, "branch", "branches")
-    took = f"{branches} and {counted(len(found.meets), 'meet point')}"
-    if route:
-        return f"arrived after {route.length:.6g} m, {took}"
-    if route.options["noise"]:
-        scans = counted(found.scans, "scan")
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        given = world, self.name, self, VoronoiBugEvidence, world._core
+        return _core._voronoi_bug(*given, *self.values.values(), start, goal)
+
+    def _record(self, route: Route) -> Any:
+        ends = route.start, route.goal
+        return _core._voronoi_bug_trace(route.world._core, *self.values.values(), *ends)
+
+    def explain_route(self, route: Route) -> str:
+        found: VoronoiBugEvidence = route.evidence
+        branches = count_things(found.branches, "branch", "branches")
+        took = f"{branches} and {count_things(len(found.meets), 'meet point')}"
+        if route:
+            return f"arrived after {route.length:.6g} m, {took}"
+        if self.noise:
+            scans = count_things(found.scans, "scan")
+            return (
+                f"gave up after {route.length:.6g} m, {took}, {scans}: a sensor with noise did not "
+                "show the goal, which proves nothing"
+            )
+        if found.shut is None:
+            return f"gave up after {route.length:.6g} m, {took}: rounding hides how branches hang together"
+        ring, (x, y) = found.shut
         return (
-            f"gave up after {route.length:.6g} m, {took}, {scans}: a sensor with noise did not "
-            "show the goal, which proves nothing"
+            f"{took} are exhausted without sight of the goal, and it lies beyond the ring of walls {ring}: "
+            f"at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
         )
-    if found.shut is None:
-        return f"gave up after {route.length:.6g} m, {took}: rounding hides how branches hang together"
-    ring, (x, y) = found.shut
-    return (
-        f"{took} are exhausted without sight of the goal, and it lies beyond the ring of walls {ring}: "
-        f"at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
-    )

@@ -11,10 +11,10 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.navigation.curves import Curve
 from cspace.navigation.route import Stats
+from cspace.navigation.text import count_things
+from cspace.tolerances import CAR_POSES
 
 __all__ = ["CarRoute"]
-
-SAMPLES_PER_RADIUS: Final = 20.0
 
 REASONS: Final = (
     "found",
@@ -55,7 +55,7 @@ class CarRoute:
         """Poses along the path, (m, 3), a twentieth of the turning radius apart; (0, 3) without one."""
         if self.curve is None:
             return np.empty((0, 3))
-        return self.curve.sample(self.curve.radius / SAMPLES_PER_RADIUS)
+        return self.curve.sample(self.curve.radius / CAR_POSES)
 
     @property
     def path(self) -> Array:
@@ -67,8 +67,8 @@ class CarRoute:
         """The verdict as one sentence."""
         if self.curve is None:
             return REASONS[self._cause]
-        k = len(self.curve.cusps)
-        gears = f"{k} change{'' if k == 1 else 's'} of direction" if k else "one direction"
+        changes = len(self.curve.cusps)
+        gears = count_things(changes, "change") + " of direction" if changes else "one direction"
         return f"found, {self.length:.6g} m in {gears}"
 
     def __repr__(self) -> str:

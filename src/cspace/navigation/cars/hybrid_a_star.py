@@ -10,6 +10,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.navigation.cars.car_route import CarRoute
+from cspace.navigation.checks import need_grid, need_number
 from cspace.navigation.curves import Curve
 from cspace.navigation.following.vehicles import Car
 from cspace.navigation.route import STATUSES, Stats
@@ -58,35 +59,31 @@ def hybrid_a_star(
 
     Dolgov, Thrun, Montemerlo and Diebel 2010.
     """
-    if not isinstance(grid, _core.GridBase):
-        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    need_grid(grid)
     if not isinstance(reverse, bool | np.bool_):
         raise InputTypeError(f"reverse is {reverse!r}; give True or False")
     car = Car() if vehicle is None else vehicle
     if not isinstance(car, Car):
         raise InputTypeError(f"vehicle is a {type(car).__name__}; give a Car")
-    turning = car.turning_radius if radius is None else number(radius, "radius", car.turning_radius)
-    side = max(turning / 8, grid.resolution) if box is None else number(box, "box", grid.resolution / 16)
-    gear = turning / 2 if gear_cost is None else number(gear_cost, "gear_cost", 0.0)
-    lattice = [side, number(headings, "headings", 4.0), number(reverse_cost, "reverse_cost", 1.0), gear]
-    ends = [number(max_nodes, "max_nodes", 1.0), number(weight, "weight", 0.0)]
+    turning = car.turning_radius if radius is None else need_number(radius, "radius", car.turning_radius)
+    side = max(turning / 8, grid.resolution) if box is None else need_number(box, "box", grid.resolution / 16)
+    gear = turning / 2 if gear_cost is None else need_number(gear_cost, "gear_cost", 0.0)
+    lattice = [
+        side,
+        need_number(headings, "headings", 4.0),
+        need_number(reverse_cost, "reverse_cost", 1.0),
+        gear,
+    ]
+    ends = [need_number(max_nodes, "max_nodes", 1.0), need_number(weight, "weight", 0.0)]
     settings = np.array([turning, *lattice, *ends])
     body = np.array(car._footprint)
-    a, b = (clear_pose(grid, body, pose, name) for pose, name in ((start, "start"), (goal, "goal")))
+    a, b = (check_pose(grid, body, pose, name) for pose, name in ((start, "start"), (goal, "goal")))
     status, cause, pieces, *stats = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)
     curve = Curve(a, b, turning, tuple(pieces)) if status == 0 else None
     return CarRoute(grid, car, a, b, curve, STATUSES[status], Stats(*stats), cause)
 
 
-def number(value: Any, name: str, least: float) -> float:
-    """A number not below its smallest useful value, or InputError."""
-    given = as_floats(value, name, largest=LARGEST_NUMBER)
-    if given.ndim or given < least:
-        raise InputError(f"{name} is {value!r}; give one number, at least {least:g}")
-    return float(given)
-
-
-def clear_pose(grid: Any, body: Array, pose: Any, name: str) -> Array:
+def check_pose(grid: Any, body: Array, pose: Any, name: str) -> Array:
     """A pose (3,) at which the vehicle touches nothing."""
     p = np.ascontiguousarray(as_floats(pose, name, last=(3,), largest=LARGEST_NUMBER))
     if p.ndim != 1:

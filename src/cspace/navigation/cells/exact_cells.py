@@ -10,51 +10,47 @@ this sequence of cells, not in all of free space.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
-from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.navigation.text import counted
-from cspace.search.trace import Trace
+from cspace.maps import PolygonWorld
+from cspace.navigation.planner import PlanePlanner
+from cspace.navigation.route import Route
+from cspace.navigation.text import count_things
 
-if TYPE_CHECKING:
-    from cspace.maps import PolygonWorld
-    from cspace.navigation.route import Route
-
-__all__ = ["exact_cells", "plan", "reason", "trace"]
-
-_WORDS = ("enter",)
+__all__ = ["ExactCells", "exact_cells"]
 
 
-def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
-    """A path from start to goal (2,) [m] through the trapezoids of a PolygonWorld.
+@dataclass(frozen=True, eq=False)
+class ExactCells(PlanePlanner):
+    """A path through the trapezoids of a PolygonWorld.
 
     The trace contains the event "enter": the point of the door through which a cell is entered; its value
     is the path length [m] to it.
     """
-    route: Route | None = _core._exact_cells(world, world._core, "exact_cells", None, start, goal)
-    if route is None:
-        ends = world.check_free(start, "start"), world.check_free(goal, "goal")
-        route = _core._exact_cells(world, world._core, "exact_cells", None, *ends)
-        assert route is not None
-    return route
 
+    name = "exact_cells"
+    summary = "a path through trapezoids between the corners, pulled taut"
+    events = ("enter",)
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    cells = counted(len(exact_cells(route.world)[0]), "cell")
-    if route:
-        return f"a chain of cells leads from start to goal; the shortest path inside it, of {cells} in all"
-    return f"no chain of the {cells} leads from start to goal, and they fill free space"
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        return _core._exact_cells(world, world._core, self.name, self, start, goal)
 
+    def explain_route(self, route: Route) -> str:
+        cells = count_things(len(exact_cells(route.world)[0]), "cell")
+        if route:
+            return (
+                f"a chain of cells leads from start to goal; the shortest path inside it, of {cells} in all"
+            )
+        return f"no chain of the {cells} leads from start to goal, and they fill free space"
 
-def trace(route: Route) -> Trace:
-    """The cells in the order in which the search entered them."""
-    return Trace(_WORDS, *_core._exact_cells_trace(route.world._core, route.start, route.goal))
+    def _record(self, route: Route) -> Any:
+        return _core._exact_cells_trace(route.world._core, route.start, route.goal)
 
 
 def exact_cells(world: PolygonWorld) -> tuple[Array, npt.NDArray[np.int32]]:

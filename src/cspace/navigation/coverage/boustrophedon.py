@@ -11,14 +11,14 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, suggest
+from cspace.navigation.checks import need_grid
+from cspace.navigation.text import count_things
+from cspace.tolerances import BAR_ROUNDING
 
 __all__ = ["Coverage", "coverage"]
 
 ALONG: Final = ("x", "y")
-ROUNDING: Final = 1e-9
-"""Tolerance in cells for a width that is a multiple of the cell size: 3 × 0.1 differs from 0.3 by rounding.
-"""
 
 Labels = npt.NDArray[np.int32]
 
@@ -62,8 +62,8 @@ class Coverage:
     @property
     def reason(self) -> str:
         """The verdict as one sentence."""
-        k = len(self.order)
-        how = f"{k} region{'' if k == 1 else 's'}, {self.length:.6g} m, overlap {self.overlap:.2g}"
+        regions = count_things(len(self.order), "region")
+        how = f"{regions}, {self.length:.6g} m, overlap {self.overlap:.2g}"
         if self:
             return f"every one of {self.free} free cells is swept: {how}"
         return f"{self.free - self.reached} of {self.free} free cells cannot be reached from the start: {how}"
@@ -92,24 +92,23 @@ def coverage(grid: Any, start: Any, width: float | None = None, *, along: str | 
 
     Choset and Pignon 1997.
     """
-    if not isinstance(grid, _core.GridBase):
-        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    need_grid(grid)
     if along is not None and along not in ALONG:
         raise suggest("axis", along, ALONG)
-    row, column = free_cell(grid, start)
-    half = half_width(grid, width)
+    row, column = locate_free_cell(grid, start)
+    half = count_half_width(grid, width)
     found = [
         (axis, _core._cover(grid, row, column, half, axis == "x")) for axis in ([along] if along else ALONG)
     ]
     axis, told = min(found, key=lambda one: len(one[1][0]))
     cells, regions, order, passes, reached, free, lanes, leftover = told
     side = float(grid.resolution)
-    points = corners(cells)[:, ::-1] * side + 0.5 * side + [grid._x, grid._y]
+    points = find_corners(cells)[:, ::-1] * side + 0.5 * side + [grid._x, grid._y]
     bar = (2 * half + 1) * side
     return Coverage(grid, points, regions, order[0], passes, axis, bar, reached, free, lanes, leftover)
 
 
-def free_cell(grid: Any, point: Any) -> tuple[int, int]:
+def locate_free_cell(grid: Any, point: Any) -> tuple[int, int]:
     """Row and column of a point in a free cell."""
     p = as_floats(point, "start", last=(2,))
     if p.ndim != 1:
@@ -121,18 +120,18 @@ def free_cell(grid: Any, point: Any) -> tuple[int, int]:
     return row, column
 
 
-def half_width(grid: Any, width: float | None) -> int:
+def count_half_width(grid: Any, width: float | None) -> int:
     """The number of cells that the bar extends to either side of the robot's cell."""
     if width is None:
         return 0
     bar = as_floats(width, "width")
     cells = float(bar) / grid.resolution if bar.ndim == 0 else 0.0
-    if cells < 1 - ROUNDING:
+    if cells < 1 - BAR_ROUNDING:
         raise InputError(f"width is {width!r}; a bar is at least a cell wide, {grid.resolution:g} m")
-    return int(min(floor((cells - 1) / 2 + ROUNDING), max(grid.rows, grid.columns)))
+    return int(min(floor((cells - 1) / 2 + BAR_ROUNDING), max(grid.rows, grid.columns)))
 
 
-def corners(cells: npt.NDArray[np.int32]) -> Array:
+def find_corners(cells: npt.NDArray[np.int32]) -> Array:
     """The cells (n, 2) at which a path turns, including both ends."""
     moves = np.diff(cells, axis=0)
     turns = np.flatnonzero((moves[1:] != moves[:-1]).any(axis=1)) + 1

@@ -11,6 +11,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.navigation.checks import need_positive
 
 __all__ = ["Curve", "Segment"]
 
@@ -91,9 +92,7 @@ class Curve:
     def sample(self, spacing: float) -> Array:
         """Poses along the curve at most `spacing` [m] apart, (n, 3), including both ends and those of every
         segment."""
-        step = as_floats(spacing, "spacing")
-        if step.ndim or step <= 0:
-            raise InputError(f"spacing is {spacing!r}; give a length above zero, in metres")
+        step = need_positive(spacing, "spacing", "give a length above zero, in metres")
         parts, begin = [np.zeros(1)], 0.0
         for end in self._ends.tolist():
             count = max(1, int(np.ceil((end - begin) / step)))

@@ -9,6 +9,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError
+from cspace.navigation.checks import need_positive
 from cspace.navigation.curves.curve import Curve
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -26,7 +27,7 @@ def dubins(start: Any, goal: Any, radius: float) -> Curve:
 
     Dubins 1957; Shkel and Lumelsky 2001.
     """
-    return shortest(False, start, goal, radius)
+    return find_curve(False, start, goal, radius)
 
 
 def reeds_shepp(start: Any, goal: Any, radius: float) -> Curve:
@@ -38,7 +39,7 @@ def reeds_shepp(start: Any, goal: Any, radius: float) -> Curve:
 
     Reeds and Shepp 1990; Sussmann and Tang 1991.
     """
-    return shortest(True, start, goal, radius)
+    return find_curve(True, start, goal, radius)
 
 
 def dubins_distance(start: Any, goal: Any, radius: float) -> Any:
@@ -46,7 +47,7 @@ def dubins_distance(start: Any, goal: Any, radius: float) -> Any:
 
     start, goal (..., 3): x, y [m], theta [rad]; leading axes broadcast. Raises InputError as dubins does.
     """
-    return distances(False, start, goal, radius)
+    return measure_curves(False, start, goal, radius)
 
 
 def reeds_shepp_distance(start: Any, goal: Any, radius: float) -> Any:
@@ -54,15 +55,15 @@ def reeds_shepp_distance(start: Any, goal: Any, radius: float) -> Any:
 
     start, goal (..., 3): x, y [m], theta [rad]; leading axes broadcast. Raises InputError as dubins does.
     """
-    return distances(True, start, goal, radius)
+    return measure_curves(True, start, goal, radius)
 
 
-def shortest(reverses: bool, start: Any, goal: Any, radius: Any) -> Curve:
+def find_curve(reverses: bool, start: Any, goal: Any, radius: Any) -> Curve:
     """The curve of one start and one goal."""
     told = _core._car_shortest(reverses, start, goal, radius)
     if told is None:  # not plain numbers: raises an error or converts them
-        r = turning_radius(radius)
-        ends = car_poses(start, "start", r), car_poses(goal, "goal", r)
+        r = check_radius(radius)
+        ends = check_poses(start, "start", r), check_poses(goal, "goal", r)
         for pose, name in zip(ends, ("start", "goal"), strict=True):
             if pose.ndim != 1:
                 raise InputError(f"{name} has shape {pose.shape}, expected (3,): x, y, theta")
@@ -70,12 +71,12 @@ def shortest(reverses: bool, start: Any, goal: Any, radius: Any) -> Curve:
     return Curve(*told)
 
 
-def distances(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
+def measure_curves(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
     """The lengths of the curves of broadcast starts and goals."""
     if (length := _core._car_distance(reverses, start, goal, radius)) is not None:
         return length
-    r = turning_radius(radius)
-    a, b = car_poses(start, "start", r), car_poses(goal, "goal", r)
+    r = check_radius(radius)
+    a, b = check_poses(start, "start", r), check_poses(goal, "goal", r)
     batch = leading_axes(start=a.shape[:-1], goal=b.shape[:-1])
     rows = [np.ascontiguousarray(np.broadcast_to(p, (*batch, 3)).reshape(-1, 3)) for p in (a, b)]
     out = np.empty(len(rows[0]))
@@ -83,18 +84,14 @@ def distances(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
     return out.reshape(batch) if batch else float(out[0])
 
 
-def turning_radius(radius: Any) -> float:
+def check_radius(radius: Any) -> float:
     """A turning radius [m]; InputError unless it is one positive number."""
-    r = as_floats(radius, "radius", largest=LARGEST_NUMBER)
-    if r.ndim or not r > 0:
-        raise InputError(
-            f"radius is {radius!r}; a turning radius is one length above zero, in metres"
-            " (a robot that turns on the spot needs no such curve)"
-        )
-    return float(r)
+    as_floats(radius, "radius", largest=LARGEST_NUMBER)
+    rule = "a turning radius is one length above zero, in metres"
+    return need_positive(radius, "radius", f"{rule} (a robot that turns on the spot needs no such curve)")
 
 
-def car_poses(poses: Any, name: str, radius: float) -> Array:
+def check_poses(poses: Any, name: str, radius: float) -> Array:
     """Poses (..., 3) of x, y, theta; refuses coordinates so large that rounding would decide the curve."""
     array = as_floats(poses, name, last=(3,))
     if array.ndim == 1:

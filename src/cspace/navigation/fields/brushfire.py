@@ -13,24 +13,21 @@ path along the diagram is therefore as wide as any path over the cells.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Final
+from typing import Any, Final
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputTypeError, suggest
-from cspace.navigation.grid.search import checked_ends
-from cspace.search.trace import Trace
+from cspace.navigation.checks import check_ends, need_grid
+from cspace.navigation.planner import PlanePlanner
+from cspace.navigation.route import Route
+from cspace.search import option
 
-if TYPE_CHECKING:
-    from cspace.navigation.route import Route
-
-__all__ = ["BrushfireDiagram", "brushfire_diagram", "plan", "reason", "trace"]
+__all__ = ["Brushfire", "BrushfireDiagram", "brushfire_diagram"]
 
 PREFER: Final = ("clearance", "length")
-WORDS: Final = ("burn", "meet", "keep")
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,50 +51,54 @@ class BrushfireDiagram:
 
 def brushfire_diagram(grid: Any) -> BrushfireDiagram:
     """The diagram of an OccupancyGrid (rows, columns): InputTypeError for other worlds."""
-    if not isinstance(grid, _core.GridBase):
-        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    need_grid(grid)
     core = _core_of(grid)
     return BrushfireDiagram(core.clearance(), core.labels(), core.cells().view(np.bool_), *core.branches())
 
 
-def plan(world: Any, start: Any, goal: Any, *, prefer: str = "clearance") -> Route:
+@dataclass(frozen=True, eq=False)
+class Brushfire(PlanePlanner):
     """A path over the cells of a grid that maximises the clearance.
-
-    start, goal: (2,) [m] in free cells. prefer: on the diagram, "clearance" maximises the least clearance
-    over all paths by sides of cells, and is the shortest of those on the diagram; "length" is the shortest
-    path on the diagram.
 
     From start and goal the path ascends the clearance to the diagram. A diagonal step is allowed where both
     adjacent cells are free. route.evidence["least_clearance"] [m] is that of the centres of the cells on
-    the path. UnknownNameError for another preference.
+    the path.
+
+    The trace contains the fires: "burn" reaches a cell from the nearest point of a wall, "meet" is a cell
+    where fires meet, "keep" a cell that connects the diagram; its value is the clearance [m].
     """
-    if prefer not in PREFER:
-        raise suggest("choice of prefer=", prefer, PREFER)
-    ends = checked_ends(world, start, goal)
-    options = {"prefer": prefer}
-    route: Route = _core_of(world).route(world, "brushfire", options, *ends, prefer == PREFER[0])
-    return route
+
+    name = "brushfire"
+    summary = "the widest way over cells, along the diagram of waves from walls"
+    world = "grid"
+    events = ("burn", "meet", "keep")
+
+    prefer: str = option(
+        "clearance",
+        'on the diagram, "clearance" maximises the least clearance over all paths by sides of cells, and is '
+        'the shortest of those on the diagram; "length" is the shortest path on the diagram.',
+        choices=PREFER,
+        subject="choice of prefer=",
+    )
+
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        given = world, self.name, self, *check_ends(world, start, goal)
+        return _core_of(world).route(*given, self.prefer == "clearance")
+
+    def explain_route(self, route: Route) -> str:
+        if not route:
+            return "no way leads to the goal: start and goal lie in different parts of the diagram"
+        least: float = route.evidence["least_clearance"]
+        wide = "; no way over cells keeps farther" if self.prefer == "clearance" else ""
+        return f"the centres of its cells keep {least:.6g} m from walls{wide}"
+
+    def _record(self, route: Route) -> Any:
+        return _core_of(route.world).trace()
 
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    if not route:
-        return "no way leads to the goal: start and goal lie in different parts of the diagram"
-    least: float = route.evidence["least_clearance"]
-    wide = "; no way over cells keeps farther" if route.options["prefer"] == PREFER[0] else ""
-    return f"the centres of its cells keep {least:.6g} m from walls{wide}"
-
-
-def trace(route: Route) -> Trace:
-    """The fires: "burn" reaches a cell from the nearest point of a wall, "meet" is a cell where fires meet,
-    "keep" a cell that connects the diagram. start, end: (k, 2) [m]; value [m]: the clearance."""
-    return Trace(WORDS, *_core_of(route.world).trace())
-
-
-def _core_of(grid: Any) -> _core.BrushfireCore:
-    """The fields that the core has computed for a grid, cached with it."""
+def _core_of(grid: Any) -> Any:
+    """The BrushfireCore of a grid, cached with it."""
     kept = vars(grid)
     if "_brushfire" not in kept:
         kept["_brushfire"] = _core.BrushfireCore(grid)
-    core: _core.BrushfireCore = kept["_brushfire"]
-    return core
+    return kept["_brushfire"]

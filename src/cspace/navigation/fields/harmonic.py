@@ -10,29 +10,22 @@ stores the logarithm of the probability, to a relative error that does not depen
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputTypeError
-from cspace.navigation.fields.potential_a_star import clearance_field
-from cspace.navigation.grid.search import checked_ends
-from cspace.navigation.route import Stats, new_route
-from cspace.navigation.text import counted
-from cspace.search.trace import Trace
-from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_RESIDUAL
+from cspace.navigation.checks import check_ends, need_grid
+from cspace.navigation.fields.clearance import clearance_field
+from cspace.navigation.planner import NO_EVENTS, PlanePlanner
+from cspace.navigation.route import Route, Stats, new_route
+from cspace.navigation.text import count_things
+from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_FIELDS, HARMONIC_RESIDUAL
 
-if TYPE_CHECKING:
-    from cspace.navigation.route import Route
-
-__all__ = ["HarmonicEvidence", "harmonic", "plan", "reason", "trace"]
-
-WORDS: Final = ("descend",)
-MOST_KEPT: Final = 2
-"""The number of fields cached with a grid; each takes about fifty bytes per cell."""
+__all__ = ["Harmonic", "HarmonicEvidence", "harmonic"]
 
 
 class HarmonicEvidence(NamedTuple):
@@ -51,26 +44,54 @@ UNSOLVED: Final = HarmonicEvidence(0.0, 0, 0)
 """Whether walls are known to separate start from goal."""
 
 
-def plan(world: Any, start: Any, goal: Any) -> Route:
+@dataclass(frozen=True, eq=False)
+class Harmonic(PlanePlanner):
     """Descent along the harmonic potential from start to goal, from cell to cell, past no blocked corner.
 
-    start, goal: (2,) [m] in free cells. The first query for a goal solves the whole field, further queries
-    only descend it; where walls separate start from goal, no solution is needed. An interrupt stops the
-    solver. route.evidence is a HarmonicEvidence. "undetermined" where the equation was not solved
-    accurately enough for the descent to arrive.
+    The first query for a goal solves the whole field, further queries only descend it; where walls separate
+    start from goal, no solution is needed. An interrupt stops the solver. route.evidence is a
+    HarmonicEvidence. "undetermined" where the equation was not solved accurately enough for the descent to
+    arrive. The trace contains the steps "descend" between centres of cells; its value is −log of the
+    probability at the end.
     """
-    ends = checked_ends(world, start, goal)
-    began = time.perf_counter()
-    if _core._walls_divide(world, *ends):
-        stats = Stats(0, 0, time.perf_counter() - began)
-        return new_route(
-            world, "harmonic", {}, ends, "unreachable", np.empty((0, 2)), np.inf, stats, UNSOLVED
-        )
-    field = _field(world, ends[1])
-    seconds = time.perf_counter() - began
-    evidence = HarmonicEvidence(field.residual, field.cycles, field.rests)
-    made: Route = field.route(world, world, "harmonic", {}, *ends, seconds, evidence)
-    return made
+
+    name = "harmonic"
+    summary = "down Laplace's equation over cells, whose only rest is the goal"
+    world = "grid"
+    events = ("descend",)
+
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        ends = check_ends(world, start, goal)
+        began = time.perf_counter()
+        if _core._walls_divide(world, *ends):
+            stats = Stats(0, 0, time.perf_counter() - began)
+            return new_route(world, self, ends, "unreachable", np.empty((0, 2)), np.inf, stats, UNSOLVED)
+        field = _field_of(world, ends[1])
+        seconds = time.perf_counter() - began
+        evidence = HarmonicEvidence(field.residual, field.cycles, field.rests)
+        planner: Any = self
+        return field.route(world, world, self.name, planner, *ends, seconds, evidence)
+
+    def explain_route(self, route: Route) -> str:
+        evidence: HarmonicEvidence = route.evidence
+        if evidence == UNSOLVED:
+            return (
+                "no way leads to the goal: walls divide it from the start, as is known without the potential"
+            )
+        if route.status == "unreachable":
+            cells = count_things(route.stats.nodes, "cell")
+            return f"no way leads to the goal: the start is not among the {cells} connected with it"
+        cycles = count_things(evidence.cycles, "cycle")
+        solved = f"solved to a share of {evidence.residual:.2g} in {cycles}"
+        if not route:
+            rests = count_things(evidence.rests, "cell")
+            return f"the potential rests on {rests} beside the goal; it was {solved}"
+        return f"went down a harmonic potential without rest but the goal, {solved}, for {route.length:.6g} m"
+
+    def _record(self, route: Route) -> Any:
+        if route.evidence == UNSOLVED:
+            return NO_EVENTS
+        return _field_of(route.world, route.goal).trace(route.world, route.start)
 
 
 def harmonic(grid: Any, goal: ArrayLike) -> Array:
@@ -81,42 +102,17 @@ def harmonic(grid: Any, goal: ArrayLike) -> Array:
     1 − exp(−field), which rounds to 1 where the field is above 37; it increases with the field.
     InputTypeError for worlds other than grids.
     """
-    if not isinstance(grid, _core.GridBase):
-        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
-    _, end = checked_ends(grid, goal, goal)
-    found: Array = _field(grid, end).heights(grid)
+    need_grid(grid)
+    found: Array = _field_of(grid, grid.check_free(goal, "goal")).heights(grid)
     return found
 
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    evidence: HarmonicEvidence = route.evidence
-    if evidence == UNSOLVED:
-        return "no way leads to the goal: walls divide it from the start, as is known without the potential"
-    if route.status == "unreachable":
-        cells = counted(route.stats.nodes, "cell")
-        return f"no way leads to the goal: the start is not among the {cells} connected with it"
-    solved = f"solved to a share of {evidence.residual:.2g} in {counted(evidence.cycles, 'cycle')}"
-    if not route:
-        return f"the potential rests on {counted(evidence.rests, 'cell')} beside the goal; it was {solved}"
-    return f"went down a harmonic potential without rest but the goal, {solved}, for {route.length:.6g} m"
-
-
-def trace(route: Route) -> Trace:
-    """The steps "descend": start, end (k, 2) [m] are centres of cells; value: −log of the probability at
-    the end."""
-    world = route.world
-    if route.evidence == UNSOLVED:
-        return Trace(WORDS, np.empty(0, np.int8), np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
-    return Trace(WORDS, *_field(world, route.goal).trace(world, route.start))
-
-
-def _field(grid: Any, goal: Array) -> _core.HarmonicField:
+def _field_of(grid: Any, goal: Array) -> _core.HarmonicField:
     """The field of a goal, cached with the grid."""
     kept: dict[tuple[float, ...], _core.HarmonicField] = vars(grid).setdefault("_harmonic", {})
     key = tuple(map(float, goal))
     if key not in kept:
-        while len(kept) >= MOST_KEPT:
+        while len(kept) >= HARMONIC_FIELDS:
             kept.pop(next(iter(kept)))
         kept[key] = _core.HarmonicField(grid, clearance_field(grid), goal, HARMONIC_RESIDUAL, HARMONIC_CYCLES)
     return kept[key]

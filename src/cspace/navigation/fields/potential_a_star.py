@@ -15,106 +15,73 @@ paths 5 to 23 % longer.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final
+from dataclasses import dataclass
+from typing import Any, Final
 
 import numpy as np
 
-from cspace import _core
-from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, suggest
-from cspace.navigation.grid.search import CORNERS, checked_ends
-from cspace.navigation.grid.search import reason as reason
-from cspace.search.trace import Trace
+from cspace.arrays import Array
+from cspace.navigation.checks import check_ends
+from cspace.navigation.fields.clearance import clearance_field
+from cspace.navigation.grid.search import CORNERS, SearchPlanner, corners_option
+from cspace.navigation.route import Route
+from cspace.search import option
+from cspace.tolerances import LEAST_INFLUENCE
 
-if TYPE_CHECKING:
-    from cspace.navigation.route import Route
-
-__all__ = ["clearance_field", "plan", "reason", "trace"]
+__all__ = ["PotentialAStar"]
 
 MODES: Final = ("exact", "bounded", "greedy")
-WORDS: Final = ("settle",)
 
 
-def plan(
-    world: Any,
-    start: Any,
-    goal: Any,
-    *,
-    mode: str = "bounded",
-    k_r: float | None = None,
-    rho_0: float | None = None,
-    scale: float = 1.0,
-    weight: float = 1.5,
-    corners: str = "never",
-) -> Route:
+@dataclass(frozen=True, eq=False)
+class PotentialAStar(SearchPlanner):
     """A path over the cells of a grid, found by A* or greedy search with a potential as heuristic.
 
-    start, goal: (2,) [m] in free cells. mode: "exact", "bounded" or "greedy". rho_0 [m]: the distance of
-    influence of walls, four cells by default. k_r [m³]: repulsion; by default the value with which cells
-    next to walls are rho_0 higher; 0 gives plain A*. scale: s, the factor of the potential before it is
-    compared. weight: w, the bound on path length relative to the shortest, for "bounded" alone. corners: as
-    for A*.
-
-    The repulsion is capped at the diagonal of the grid. InputError for numbers out of range.
+    The repulsion is capped at the diagonal of the grid. The trace contains the event "settle": the segment
+    from a cell's parent to the cell; its value is the cell's potential [m].
     """
-    options: dict[str, Any] = {"mode": mode, **_repulsion(world, k_r, rho_0)}
-    options |= {"scale": scale, "weight": weight, "corners": corners}
-    ends = checked_ends(world, start, goal)
-    settings, rule = _settings(world, **options)
-    made: Route = clearance_field(world).potential_route(
-        world, world, "potential_a_star", options, *ends, settings, rule
+
+    name = "potential_a_star"
+    summary = "over cells, by a search that counts on a potential"
+
+    mode: str = option("bounded", '"exact", "bounded" or "greedy".', choices=MODES)
+    k_r: float | None = option(
+        None,
+        "repulsion; by default the value with which cells next to walls are rho_0 higher; 0 gives plain A*.",
+        unit="m³",
+        minimum=0,
     )
-    return made
+    rho_0: float | None = option(
+        None, "the distance of influence of walls, four cells by default.", unit="m", minimum=0
+    )
+    scale: float = option(1.0, "s, the factor of the potential before it is compared.", minimum=0)
+    weight: float = option(
+        1.5, 'w, the bound on path length relative to the shortest, for "bounded" alone.', minimum=1
+    )
+    corners: str = corners_option()
 
+    def _fill_in(self, world: Any) -> PotentialAStar:
+        side = float(world.resolution)
+        far = 4 * side if self.rho_0 is None else self.rho_0
+        if self.k_r is not None:
+            return self._in_force(rho_0=far)
+        reach = far / side
+        gain = reach / (0.5 * (2 - 1 / reach) ** 2) if reach > 0.5 else 0.0
+        return self._in_force(k_r=gain * side**3, rho_0=far)
 
-def trace(route: Route) -> Trace:
-    """The cells in the order of their expansion, each from its parent: start, end (k, 2) [m]; value: their
-    potential [m]."""
-    world = route.world
-    settings, rule = _settings(world, **route.options)
-    found = clearance_field(world).potential_trace(world, route.start, route.goal, settings, rule)
-    return Trace(WORDS, *found)
+    def _settings_of(self, world: Any) -> tuple[Array, int]:
+        """Gain, rho_0 and cap in cells, scale, weight, whether greedy: (6,); and the corner rule's number."""
+        side, given = float(world.resolution), self.values
+        cap = float(np.hypot(*world.shape))
+        bound = self.weight if self.mode == "bounded" else 1.0
+        gain, reach = given["k_r"] / side**3, max(given["rho_0"] / side, LEAST_INFLUENCE)
+        row = gain, reach, cap, self.scale, bound, self.mode == "greedy"
+        return np.array(row, dtype=np.float64), CORNERS[self.corners]
 
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        given = world, world, self.name, self, *check_ends(world, start, goal)
+        return clearance_field(world).potential_route(*given, *self._settings_of(world))
 
-def clearance_field(grid: Any) -> _core.ClearanceField:
-    """The distances of the cells of a grid from walls, cached with it."""
-    kept = vars(grid)
-    if "_clearance" not in kept:
-        kept["_clearance"] = _core.ClearanceField(grid)
-    field: _core.ClearanceField = kept["_clearance"]
-    return field
-
-
-def _settings(
-    world: Any, mode: str, k_r: float, rho_0: float, scale: float, weight: float, corners: str
-) -> tuple[Array, int]:
-    """Gain, rho_0 and cap in cells, scale, weight, whether greedy: (6,); and the corner rule's number."""
-    if mode not in MODES:
-        raise suggest("mode", mode, MODES)
-    if not isinstance(corners, str) or corners not in CORNERS:
-        raise suggest("corner rule", corners, CORNERS)
-    side = float(world.resolution)
-    reach, gain = rho_0 / side, k_r / side**3
-    s, w = number_of("scale", scale, 0.0), number_of("weight", weight, 1.0)
-    cap = float(np.hypot(*world.shape))
-    bound = w if mode == "bounded" else 1.0
-    return np.array([gain, max(reach, 1e-9), cap, s, bound, float(mode == "greedy")]), CORNERS[corners]
-
-
-def _repulsion(world: Any, k_r: float | None, rho_0: float | None) -> dict[str, float]:
-    """k_r [m³] and rho_0 [m], as given or by default."""
-    side = float(world.resolution)
-    far = number_of("rho_0", 4 * side if rho_0 is None else rho_0, 0.0)
-    if k_r is not None:
-        return {"k_r": number_of("k_r", k_r, 0.0), "rho_0": far}
-    reach = far / side
-    gain = reach / (0.5 * (2 - 1 / reach) ** 2) if reach > 0.5 else 0.0
-    return {"k_r": gain * side**3, "rho_0": far}
-
-
-def number_of(name: str, value: Any, least: float) -> float:
-    """One finite number not below its lower bound; InputError names it."""
-    number = float(as_floats(value, name).reshape(())) if np.size(value) == 1 else np.nan
-    if not number >= least:
-        raise InputError(f"{name} is {value!r}; it must be one number of {least:g} or more")
-    return number
+    def _record(self, route: Route) -> Any:
+        given = route.world, route.start, route.goal
+        return clearance_field(route.world).potential_trace(*given, *self._settings_of(route.world))

@@ -13,7 +13,8 @@ saddles, one for each obstacle, and a push moves them off.
 from __future__ import annotations
 
 import time
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,19 +23,21 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.maps import PolygonWorld
-from cspace.navigation.route import Stats, new_route
-from cspace.navigation.text import counted
-from cspace.search.trace import Trace
-from cspace.tolerances import FARTHEST_POINT, NAVIGATION_SQUARES, NAVIGATION_STEPS, ON_WALL
+from cspace.navigation.checks import check_ends
+from cspace.navigation.planner import NO_EVENTS, PlanePlanner
+from cspace.navigation.route import Route, Stats, new_route
+from cspace.navigation.text import count_things
+from cspace.search import option
+from cspace.tolerances import (
+    FARTHEST_POINT,
+    NAVIGATION_FUNCTIONS,
+    NAVIGATION_SQUARES,
+    NAVIGATION_STEPS,
+    ON_GOAL_WALL,
+    ON_WALL,
+)
 
-if TYPE_CHECKING:
-    from cspace.navigation.route import Route
-
-__all__ = ["NavigationEvidence", "NavigationFunction", "navigation_function", "plan", "reason", "trace"]
-
-WORDS: Final = ("descend",)
-MOST_KEPT: Final = 8
-"""The number of navigation functions cached with a world."""
+__all__ = ["NavigationEvidence", "NavigationFunction", "RimonKoditschek", "navigation_function"]
 
 
 class NavigationEvidence(NamedTuple):
@@ -121,78 +124,73 @@ class NavigationFunction:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What it was made for: the data that pickle stores."""
-        return _again, (*self._made_for, self.goal)
+        return _make_again, (*self._made_for, self.goal)
 
     def __repr__(self) -> str:
         proven = "proven" if self.is_proven else "not proven"
-        among = counted(self.obstacles, "obstacle")
+        among = count_things(self.obstacles, "obstacle")
         return f"<NavigationFunction: kappa {self.kappa:g}, {among}, one minimum {proven}>"
 
 
-def plan(world: Any, start: Any, goal: Any, *, kappa: float | None = None) -> Route:
+@dataclass(frozen=True, eq=False)
+class RimonKoditschek(PlanePlanner):
     """Descent on a navigation function from start to goal.
-
-    start, goal: (2,) [m]. kappa: the power of the function; by default the least power of two with which
-    the goal is proven to be the only minimum.
 
     The world around the goal must be a star world: every obstacle, and the outer boundary, has a point from
     which all of it is visible, and no two touch. Otherwise, or if the goal touches a wall, the status is
-    "undetermined" and the reason states which. route.evidence is a NavigationEvidence. InputError for a
-    kappa that is not positive.
+    "undetermined" and the reason states which. route.evidence is a NavigationEvidence. The trace contains
+    the steps "descend"; its value is φ after the step.
     """
-    power = _power(kappa)
-    ends = world.check_free(start, "start"), world.check_free(goal, "goal")
-    options = {"kappa": kappa}
-    began = time.perf_counter()
-    function, fault = _kept(world, ends[1], power)
-    seconds = time.perf_counter() - began
-    if function is None:
-        stats, evidence = Stats(0, 0, seconds), NavigationEvidence(None, 0, fault)
-        if np.array_equal(*ends):
-            return new_route(
-                world, "rimon_koditschek", options, ends, "found", ends[0][None], 0.0, stats, evidence
-            )
-        apart = not set(world._core.components_at(*ends[0])) & set(world._core.components_at(*ends[1]))
-        status = "unreachable" if apart else "undetermined"
-        return new_route(
-            world, "rimon_koditschek", options, ends, status, np.empty((0, 2)), np.inf, stats, evidence
-        )
-    options["kappa"] = function.kappa
-    made: Route = function._core.route(
-        world._core,
-        world,
-        "rimon_koditschek",
-        options,
-        *ends,
-        seconds,
-        lambda pushes: NavigationEvidence(function, pushes, fault),
+
+    name = "rimon_koditschek"
+    summary = "down a function whose only minimum is the goal, among stars"
+    events = ("descend",)
+
+    kappa: float | None = option(
+        None,
+        "the power of the function; by default the least power of two with which the goal is proven to be "
+        "the only minimum.",
+        above=0,
     )
-    return made
 
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        ends = check_ends(world, start, goal)
+        began = time.perf_counter()
+        function, fault = _find_function(world, ends[1], self.kappa or 0.0)
+        seconds = time.perf_counter() - began
+        if function is None:
+            stats, evidence = Stats(0, 0, seconds), NavigationEvidence(None, 0, fault)
+            if np.array_equal(*ends):
+                return new_route(world, self, ends, "found", ends[0][None], 0.0, stats, evidence)
+            apart = not set(world._core.components_at(*ends[0])) & set(world._core.components_at(*ends[1]))
+            status = "unreachable" if apart else "undetermined"
+            return new_route(world, self, ends, status, np.empty((0, 2)), np.inf, stats, evidence)
+        core: Any = function._core
+        given = world._core, world, self.name, self._in_force(kappa=function.kappa), *ends, seconds
+        return core.route(*given, lambda pushes: NavigationEvidence(function, pushes, fault))
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    evidence: NavigationEvidence = route.evidence
-    if route.status == "unreachable":
-        return "start and goal lie in parts of free space that no way connects"
-    if evidence.fault:
-        return evidence.fault
-    function = evidence.function
-    assert function is not None
-    minimum = "with a single minimum, which is proven" if function.is_proven else "whose minima are not known"
-    said = f"a navigation function with kappa {function.kappa:g}, {minimum}"
-    if not route:
-        return f"the descent came to no end within {NAVIGATION_STEPS} steps, of {said}"
-    pushed = f", pushed off {counted(evidence.pushes, 'saddle')}" if evidence.pushes else ""
-    return f"went down {said}, for {route.length:.6g} m{pushed}"
+    def explain_route(self, route: Route) -> str:
+        evidence: NavigationEvidence = route.evidence
+        if route.status == "unreachable":
+            return "start and goal lie in parts of free space that no way connects"
+        if evidence.fault:
+            return evidence.fault
+        function = evidence.function
+        assert function is not None
+        minima = (
+            "with a single minimum, which is proven" if function.is_proven else "whose minima are not known"
+        )
+        said = f"a navigation function with kappa {function.kappa:g}, {minima}"
+        if not route:
+            return f"the descent came to no end within {NAVIGATION_STEPS} steps, of {said}"
+        pushed = f", pushed off {count_things(evidence.pushes, 'saddle')}" if evidence.pushes else ""
+        return f"went down {said}, for {route.length:.6g} m{pushed}"
 
-
-def trace(route: Route) -> Trace:
-    """The steps "descend": start, end (k, 2) [m]; value: φ after the step."""
-    function = route.evidence.function
-    if function is None or route.status == "unreachable":
-        return Trace(WORDS, np.empty(0, np.int8), np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
-    return Trace(WORDS, *function._core.trace(route.world._core, route.start))
+    def _record(self, route: Route) -> Any:
+        function = route.evidence.function
+        if function is None or route.status == "unreachable":
+            return NO_EVENTS
+        return function._core.trace(route.world._core, route.start)
 
 
 def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = None) -> NavigationFunction:
@@ -203,9 +201,9 @@ def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = No
     or are not star-shaped, where the goal is not in the interior of free space, or where no kappa was
     proven.
     """
-    power = _power(kappa)
+    power = RimonKoditschek(kappa).kappa or 0.0
     if isinstance(world, PolygonWorld):
-        function, fault = _kept(world, world.check_free(goal, "goal"), power)
+        function, fault = _find_function(world, world.check_free(goal, "goal"), power)
         if function is None:
             raise InputError(fault)
         return function
@@ -218,21 +216,12 @@ def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = No
     return NavigationFunction(core, None, at, (discs, power))
 
 
-def _again(world: Any, power: float, goal: Array) -> NavigationFunction:
+def _make_again(world: Any, power: float, goal: Array) -> NavigationFunction:
     """The same function, built again."""
     if isinstance(world, tuple):
         outlines, bounds = world
         world = PolygonWorld(outlines, bounds, repair=True)
     return navigation_function(world, goal, kappa=power or None)
-
-
-def _power(kappa: float | None) -> float:
-    if kappa is None:
-        return 0.0
-    power = float(as_floats(kappa, "kappa").reshape(())) if np.size(kappa) == 1 else np.nan
-    if not power > 0:
-        raise InputError(f"kappa is {kappa!r}; it must be one positive number, or None to have it found")
-    return power
 
 
 def _check_discs(discs: Array, goal: Array) -> None:
@@ -264,33 +253,32 @@ def _check_discs(discs: Array, goal: Array) -> None:
         raise InputError(f"goal {goal.tolist()} is not in the interior of free space; move it off the walls")
 
 
-def _kept(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
+def _find_function(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
     """The navigation function of a goal, or None and the obstruction; cached with the world."""
     kept = vars(world).setdefault("_navigation_functions", {})
     key = (*map(float, goal), power)
     if key not in kept:
-        while len(kept) >= MOST_KEPT:
+        while len(kept) >= NAVIGATION_FUNCTIONS:
             kept.pop(next(iter(kept)))
-        kept[key] = _made(world, goal, power)
+        kept[key] = _make_function(world, goal, power)
     found: tuple[NavigationFunction | None, str] = kept[key]
     return found
 
 
-def _made(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
+def _make_function(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
     fault = _core.NavigationCore.fault(world._core, goal)
     if fault:
-        return None, _said(world, *fault)
+        return None, _explain_fault(world, *fault)
     core = _core.NavigationCore.of_polygons(world._core, goal, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if core.kappa:
         return NavigationFunction(core, world._core, goal, (world.__reduce__()[1], power)), ""
-    if world.clearance(goal) <= 1e-9 * max(
-        world.bounds[2] - world.bounds[0], world.bounds[3] - world.bounds[1]
-    ):
+    xmin, ymin, xmax, ymax = world.bounds
+    if world.clearance(goal) <= ON_GOAL_WALL * max(xmax - xmin, ymax - ymin):
         return None, "the goal touches a wall, where a navigation function is 1; move it off the wall"
     return None, "no power kappa was proven to leave a single minimum; planner='harmonic' needs none"
 
 
-def _said(world: Any, kind: int, x: float, y: float) -> str:
+def _explain_fault(world: Any, kind: int, x: float, y: float) -> str:
     """Why a world is not a star world, with the obstacle that has a corner at (x, y)."""
     owner = ""
     for number, rings in enumerate(vars(world).get("_outlines", ())):

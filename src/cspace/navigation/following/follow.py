@@ -9,10 +9,11 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.navigation.checks import need_grid, need_positive
 from cspace.navigation.curves import Curve
 from cspace.navigation.following.run import OUTCOMES, Run
 from cspace.navigation.following.vehicles import Car, Unicycle
-from cspace.tolerances import LARGEST_NUMBER
+from cspace.tolerances import LARGEST_NUMBER, SIMULATION_STEPS, TRACK_POSES
 
 __all__ = ["CONTROLLERS", "follow"]
 
@@ -29,9 +30,6 @@ OPTIONS: Final[dict[str, dict[str, Any]]] = {
 CONTROLLERS: Final = tuple(OPTIONS)
 """The controllers, in the order of the compiled core."""
 
-SAMPLES_PER_RADIUS: Final = 50.0
-MOST_STEPS: Final = 1e7
-"""Steps of one run: a row of seven numbers each."""
 Runs = list[tuple[int, int]]
 """The row at which each run begins, and whether it is driven forwards (1) or backwards (−1)."""
 
@@ -77,30 +75,38 @@ def follow(
     an option that it does not have, or a vehicle that it cannot drive.
     """
     body = Unicycle() if vehicle is None else vehicle
-    rows, runs = track_of(path)
+    rows, runs = read_track(path)
     check_controller(controller, body, runs)
-    fast = body.max_speed if speed is None else min(positive(speed, "speed"), body.max_speed)
-    steering, far = tuning(controller, body, fast, options)
-    step = positive(time_step, "time_step")
+    fast = body.max_speed if speed is None else min(need_positive(speed, "speed"), body.max_speed)
+    if world is not None:
+        need_grid(world, "world")
+    steering, far = tune_controller(controller, body, fast, options)
+    step = need_positive(time_step, "time_step")
     length = float(np.hypot(*np.diff(rows[:, :2], axis=0).T).sum())
-    limit = 10 * length / fast + 60 if time_limit is None else positive(time_limit, "time_limit")
-    if limit > MOST_STEPS * step:
-        raise InputError(
-            f"time_step is {step:g} s, time_limit {limit:g} s; give numbers for at most {MOST_STEPS:g} steps"
-        )
+    limit = 10 * length / fast + 60 if time_limit is None else need_positive(time_limit, "time_limit")
+    if limit > SIMULATION_STEPS * step:
+        rule = f"give numbers for at most {SIMULATION_STEPS:g} steps"
+        raise InputError(f"time_step is {step:g} s, time_limit {limit:g} s; {rule}")
     window = 2 * far + 4 * fast * step
-    settings = [step, limit, fast, window, positive(tolerance, "tolerance"), positive(patience, "patience")]
+    settings = [
+        step,
+        limit,
+        fast,
+        window,
+        need_positive(tolerance, "tolerance"),
+        need_positive(patience, "patience"),
+    ]
     points = np.ascontiguousarray(rows[:, :2])
     outcome, table = _core._follow(
-        *(points, runs, np.array(body._limits), start_of(start, rows, runs), np.array(settings)),
-        *(CONTROLLERS.index(controller), steering, grid_of(world), np.array(body._footprint)),
+        *(points, runs, np.array(body._limits), read_start(start, rows, runs), np.array(settings)),
+        *(CONTROLLERS.index(controller), steering, world, np.array(body._footprint)),
     )
     times: Array = step * np.arange(len(table), dtype=np.float64)
     parts = (table[:, :3], table[:, 3:5], table[:, 5], table[:, 6])
     return Run(body, controller, times, *parts, OUTCOMES[outcome], points[-1])
 
 
-def tuning(
+def tune_controller(
     controller: str, vehicle: Unicycle | Car, speed: float, options: dict[str, Any]
 ) -> tuple[Array, float]:
     """The numbers (7,) of a controller, and how far ahead of the vehicle it looks [m]."""
@@ -116,28 +122,13 @@ def tuning(
     weights = as_floats(given.pop("weights", (1.0, 1.0, 1.0)), "weights")
     if weights.shape != (3,) or not (weights >= 0).all() or not weights.any():
         raise InputError(f"weights is {options['weights']!r}; give three numbers of zero or more")
-    numbers = {name: positive(value, name) for name, value in given.items()}
+    numbers = {name: need_positive(value, name) for name, value in given.items()}
     if controller == "dynamic_window":
         keeps = vehicle._footprint[3] + numbers["margin"]
         order = [keeps, numbers["lookahead"], numbers["sensor_range"], numbers["rays"], *weights.tolist()]
         return np.array(order), numbers["lookahead"]
     order = list(numbers.values())
     return np.array(order + [0.0] * (7 - len(order))), numbers.get("lookahead", 2 * wheelbase)
-
-
-def grid_of(world: Any) -> Any:
-    """The grid of a world, None without one; InputTypeError for anything else."""
-    if world is None or isinstance(world, _core.GridBase):
-        return world
-    raise InputTypeError(f"world is a {type(world).__name__}; give an OccupancyGrid (or world.to_grid())")
-
-
-def positive(value: Any, name: str) -> float:
-    """A number above zero, or InputError."""
-    number = as_floats(value, name)
-    if number.ndim or number <= 0:
-        raise InputError(f"{name} is {value!r}; give one number above zero")
-    return float(number)
 
 
 def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> None:
@@ -161,14 +152,14 @@ def check_controller(controller: str, vehicle: Unicycle | Car, runs: Runs) -> No
         raise InputError("part of the path is driven backwards, and max_reverse of the vehicle is 0")
 
 
-def track_of(path: Any) -> tuple[Array, Runs]:
+def read_track(path: Any) -> tuple[Array, Runs]:
     """The points (m, 2) or poses (m, 3) of a path without repeated ones, and its runs."""
     if hasattr(path, "path"):
         if not path:
             raise InputError(f"the path to follow was not found: {path.reason}")
         path = getattr(path, "curve", path.path)
     if isinstance(path, Curve):
-        path = path.sample(path.radius / SAMPLES_PER_RADIUS)
+        path = path.sample(path.radius / TRACK_POSES)
     rows = as_floats(path, "path", largest=LARGEST_NUMBER)
     if rows.ndim != 2 or rows.shape[1] not in (2, 3):
         raise InputError(f"path has shape {rows.shape}, expected points (m, 2) or poses (m, 3)")
@@ -186,7 +177,7 @@ def track_of(path: Any) -> tuple[Array, Runs]:
     return rows, [(k, int(signs[k])) for k in begins]
 
 
-def start_of(start: Any, rows: Array, runs: Runs) -> Array:
+def read_start(start: Any, rows: Array, runs: Runs) -> Array:
     """Pose, speed and turn (5,) at which a run begins."""
     if start is None:
         dx, dy = runs[0][1] * (rows[1, :2] - rows[0, :2])

@@ -8,7 +8,8 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import as_floats, leading_axes
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError
+from cspace.navigation.checks import need_grid
 from cspace.tolerances import LARGEST_NUMBER
 
 __all__ = ["cast_rays"]
@@ -25,8 +26,7 @@ def cast_rays(grid: Any, points: Any, angles: Any, max_range: float = np.inf) ->
     Raises InputTypeError for a value that is not an OccupancyGrid, InputError for a value that is not a
     point or angle, or a max_range that is not above zero. Amanatides and Woo 1987.
     """
-    if not isinstance(grid, _core.GridBase):
-        raise InputTypeError(f"grid is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+    need_grid(grid)
     places = as_floats(points, "points", last=(2,), largest=LARGEST_NUMBER)
     turns = as_floats(angles, "angles", largest=LARGEST_NUMBER)
     most = as_floats(max_range, "max_range", finite=False)

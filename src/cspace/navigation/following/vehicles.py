@@ -30,7 +30,7 @@ class Unicycle:
     radius: float = 0.2
 
     def __post_init__(self) -> None:
-        check(self)
+        check_limits(self)
 
     @property
     def _limits(self) -> list[float]:
@@ -65,7 +65,7 @@ class Car:
     rear: float = 0.9
 
     def __post_init__(self) -> None:
-        check(self)
+        check_limits(self)
         if self.max_steering >= pi / 2:
             raise InputError(f"max_steering is {self.max_steering:g}; wheels turn by less than π/2 rad")
 
@@ -86,7 +86,7 @@ class Car:
         return [self.rear, self.length - self.rear, 0.5 * self.width, 0.0]
 
 
-def check(vehicle: Unicycle | Car) -> None:
+def check_limits(vehicle: Unicycle | Car) -> None:
     """InputError for a limit that is no number above zero."""
     for field in fields(vehicle):
         name = field.name

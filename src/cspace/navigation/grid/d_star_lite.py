@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,12 +16,13 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid
 from cspace.maps.occupancy_grid import outside
-from cspace.navigation.grid.search import METRICS, WORDS, checked_ends, metric_of
+from cspace.navigation.checks import check_ends, need_grid
+from cspace.navigation.grid.search import METRICS, GridPlanner
 from cspace.navigation.route import STATUSES, Route, Stats, new_route
-from cspace.navigation.text import counted
-from cspace.search.trace import Trace
+from cspace.navigation.text import count_things
+from cspace.search import option
 
-__all__ = ["DStarLite", "plan", "reason", "trace"]
+__all__ = ["DStarLite", "DStarLiteSearch"]
 
 
 class DStarLite:
@@ -41,13 +43,13 @@ class DStarLite:
         metric: str = "octile",
         corners: str = "never",
     ) -> None:
-        if metric_of(metric, corners)[1] == METRICS["euclidean"]:
-            raise InputError("metric is 'euclidean'; D* Lite counts steps: 'octile' or 'manhattan'")
-        self._begin(grid, checked_ends(grid, start, goal), {"metric": metric, "corners": corners})
+        planner = DStarLiteSearch(metric, corners)
+        need_grid(grid, "world")
+        self._begin(grid, check_ends(grid, start, goal), planner)
 
-    def _begin(self, grid: OccupancyGrid, ends: tuple[Array, Array], options: dict[str, str]) -> None:
-        self._grid, self._ends, self._options = grid, ends, options
-        self._core = _core.GridReplanner(grid, metric_of(**options)[0], *ends[0], *ends[1])
+    def _begin(self, grid: OccupancyGrid, ends: tuple[Array, Array], planner: DStarLiteSearch) -> None:
+        self._grid, self._ends, self._planner = grid, ends, planner
+        self._core = _core.GridReplanner(grid, planner._settings.corners, *ends[0], *ends[1])
         self._route: Route | None = None
         self._settled = np.empty((0, 2), np.int32)
         self._busy = threading.Lock()
@@ -100,7 +102,7 @@ class DStarLite:
         """
         with self._busy:
             if self._route is None:
-                self._route = self._replanned()
+                self._route = self._replan()
             return self._route
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -109,52 +111,66 @@ class DStarLite:
             cells = np.empty(self._grid.shape, np.uint8)
             self._core.unpack(cells)
             changed = np.argwhere(cells.view(np.bool_) != self._grid.blocked)
-            return _again, (self._grid, self._ends, self._options, changed.astype(np.int32))
+            return _make_again, (self._grid, self._ends, self._planner, changed.astype(np.int32))
 
-    def _replanned(self) -> Route:
+    def _replan(self) -> Route:
         began = time.perf_counter()
         status, path, length, nodes, edges, self._settled = self._core.replan()
         stats = Stats(nodes, edges, time.perf_counter() - began)
-        ends, options = self._ends, self._options
-        return new_route(self._grid, "d_star_lite", options, ends, STATUSES[status], path, length, stats)
+        return new_route(self._grid, self._planner, self._ends, STATUSES[status], path, length, stats)
 
     def __repr__(self) -> str:
         (x0, y0), (x1, y1) = self._ends
         return f"<DStarLite from ({x0:g}, {y0:g}) to ({x1:g}, {y1:g}) over {self._grid!r}>"
 
 
-def _again(
-    grid: OccupancyGrid, ends: tuple[Array, Array], options: dict[str, str], changed: npt.NDArray[np.int32]
+def _make_again(
+    grid: OccupancyGrid,
+    ends: tuple[Array, Array],
+    planner: DStarLiteSearch,
+    changed: npt.NDArray[np.int32],
 ) -> DStarLite:
     """A planner with the same ends and cells; changed: (k, 2) cells that are not as in the grid."""
     made = DStarLite.__new__(DStarLite)
-    made._begin(grid, ends, options)
+    made._begin(grid, ends, planner)
     blocked = grid.blocked[tuple(changed.T)]
     made._core.set(changed[blocked], False)
     made._core.set(changed[~blocked], True)
     return made
 
 
-def plan(world: Any, start: Any, goal: Any, *, metric: str = "octile", corners: str = "never") -> Route:
+@dataclass(frozen=True, eq=False)
+class DStarLiteSearch(GridPlanner):
     """The shortest path over the cells of a grid, searched from the goal: D* Lite before anything has
-    changed.
+    changed."""
 
-    start, goal: (2,) [m] in free cells. metric: "octile" or "manhattan". corners: as for A*.
-    """
-    return DStarLite(world, start, goal, metric=metric, corners=corners).route
+    name = "d_star_lite"
+    summary = "the shortest way over cells, mended when they change"
 
+    metric: str = option("octile", '"octile" or "manhattan".', choices=METRICS)
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    cells = route.stats.nodes
-    if route:
-        return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"
-    return f"no way leads to the goal, as is known after settling {counted(cells, 'cell')} more"
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        if self.metric == "euclidean":
+            raise InputError("metric is 'euclidean'; D* Lite counts steps: 'octile' or 'manhattan'")
 
+    def plan(self, world: Any, start: ArrayLike, goal: ArrayLike) -> Route:
+        return self._replanner(world, start, goal).route
 
-def trace(route: Route) -> Trace:
-    """The cells in the order in which a fresh search settles them."""
-    planner = DStarLite(route.world, route.start, route.goal, **route.options)
-    assert planner.route is not None
-    at = route.world.center_of(planner._settled)
-    return Trace(WORDS, np.zeros(len(at), np.int8), at, at, np.zeros(len(at)))
+    def _replanner(self, world: Any, start: Any, goal: Any) -> DStarLite:
+        made = DStarLite.__new__(DStarLite)
+        made._begin(world, check_ends(world, start, goal), self)
+        return made
+
+    def explain_route(self, route: Route) -> str:
+        if route:
+            return super().explain_route(route)
+        cells = count_things(route.stats.nodes, "cell")
+        return f"no way leads to the goal, as is known after settling {cells} more"
+
+    def _record(self, route: Route) -> Any:
+        """The cells in the order in which a fresh search settles them."""
+        fresh = self._replanner(route.world, route.start, route.goal)
+        assert fresh.route is not None
+        at = route.world.center_of(fresh._settled)
+        return np.zeros(len(at), np.int8), at, at, np.zeros(len(at))

@@ -6,24 +6,26 @@ parents.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError, suggest
-from cspace.maps import OccupancyGrid
+from cspace.errors import InputError
+from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import counted
-from cspace.search.trace import Trace
+from cspace.navigation.text import count_things
+from cspace.search import option
 
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-__all__ = ["CORNERS", "METRICS", "WORDS", "Settings", "at_least_one", "checked_ends", "metric_of"]
-__all__ += ["over_costs", "positive_costs", "reason", "search", "traced"]
+__all__ = ["CORNERS", "METRICS", "CostPlanner", "GridPlanner", "SearchPlanner", "Settings"]
+__all__ += ["corners_option"]
 
 CORNERS: Final = {"never": 0, "one": 1, "always": 2}
 """When a diagonal step is allowed: both cells beside it are free, one is, always."""
@@ -33,7 +35,6 @@ METRICS: Final = {"octile": 0, "manhattan": 1, "euclidean": 2}
 distance."""
 
 FOUR_MOVES: Final = 3
-WORDS: Final = ("settle",)
 
 
 class Settings(NamedTuple):
@@ -58,88 +59,99 @@ LAZY_THETA_STAR: Final = 4
 WAVES: Final = 5
 
 
-def metric_of(metric: str, corners: str) -> tuple[int, int]:
-    """The numeric values of the corner rule and the metric; UnknownNameError suggests the nearest name."""
-    try:
-        number, rule = METRICS[metric], CORNERS[corners]
-        return (FOUR_MOVES if number == 1 else rule), number
-    except (KeyError, TypeError):
-        if not isinstance(metric, str) or metric not in METRICS:
-            raise suggest("metric", metric, METRICS) from None
-        raise suggest("corner rule", corners, CORNERS) from None
+def corners_option(
+    meaning: str = 'whether a diagonal step may pass blocked cells: "never", with "one" beside it, "always".',
+) -> Any:
+    """The option for the corners of blocked cells."""
+    return option("never", meaning, choices=CORNERS, subject="corner rule")
 
 
-def positive_costs(world: Any, costs: ArrayLike | None) -> tuple[Array | None, float]:
-    """Costs of the cells, (rows, columns), and the least; InputError on a wrong shape or one that is not
-    positive."""
-    if costs is None:
-        return None, 1.0
-    array = np.ascontiguousarray(as_floats(costs, "costs"))
-    if array.shape != world.shape:
-        raise InputError(f"costs has shape {array.shape}; the grid has {world.shape} cells")
-    least = float(array.min())
-    if least <= 0:
-        row, column = map(int, np.argwhere(array == least)[0])
-        rule = "a cell costs more than nothing; blocked cells belong into the grid"
-        raise InputError(f"costs[{row}, {column}] is {least:g}; {rule}")
-    return array, least
+@dataclass(frozen=True, eq=False)
+class SearchPlanner(PlanePlanner):
+    """A planner that is a setting of the compiled search. The trace contains the event "settle": the segment
+    from a cell's parent to the cell; its value is the path length [m], or cost [m · cost], to it."""
+
+    world: ClassVar[str] = "grid"
+    events: ClassVar[tuple[str, ...]] = ("settle",)
+
+    @cached_property
+    def _settings(self) -> Settings:
+        return self._make_settings()
+
+    def _make_settings(self) -> Settings:
+        """The settings without the costs of cells."""
+        raise NotImplementedError
+
+    def _settings_in(self, world: Any) -> Settings:
+        """The settings for a world."""
+        return self._settings
+
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        settings = self._settings_in(world)
+        return _core._grid_route(world, start, goal, self.name, self, *settings)
+
+    def explain_route(self, route: Route) -> str:
+        cells = route.stats.nodes
+        if route:
+            return f"found a way of {route.length:.6g} m after settling {count_things(cells, 'cell')}"
+        if route.evidence is not None:
+            parts = f"the {route.evidence['parts']} connected parts of the free cells"
+            return f"no way leads to the goal: it lies in another of {parts}"
+        expanded = count_things(cells, "expansion")
+        return f"no way leads to the goal: after {expanded} nothing that can be reached is left"
+
+    def _record(self, route: Route) -> Any:
+        world, settings = route.world, self._settings_in(route.world)
+        found = _core._grid_order(world, route.start, route.goal, self.name, None, *settings)
+        cells: npt.NDArray[np.int32] = found[0]
+        at, parent = world.center_of(cells[:, :2]), world.center_of(cells[:, 2:])
+        return np.zeros(len(cells), np.int8), parent, at, found[1]
 
 
-def over_costs(
-    settings: Settings, world: Any, metric: str, corners: str, costs: ArrayLike | None
-) -> Settings:
-    """The settings of a planner with its options metric=, corners= and costs= (rows, columns) put in."""
-    array, least = positive_costs(world, costs)
-    rule, number = metric_of(metric, corners)
-    return settings._replace(corners=rule, metric=number, costs=array, least_cost=least)
+@dataclass(frozen=True, eq=False)
+class GridPlanner(SearchPlanner):
+    """A search by steps from cell to cell."""
+
+    metric: str = option(
+        "octile",
+        '"octile" (eight moves), "manhattan" (four), or "euclidean" (eight, with the straight line as the '
+        "remaining distance).",
+        choices=METRICS,
+    )
+    corners: str = corners_option()
+
+    kind: ClassVar[int] = BEST_FIRST
+    """The number of the search in the core."""
+
+    def _make_settings(self) -> Settings:
+        rule = FOUR_MOVES if self.metric == "manhattan" else CORNERS[self.corners]
+        return Settings(self.kind, rule, METRICS[self.metric], **self._weigh_nodes())
+
+    def _weigh_nodes(self) -> dict[str, Any]:
+        """The factors of the order of expansion that differ from those of A*."""
+        return {}
 
 
-def at_least_one(value: float, name: str) -> float:
-    """A factor of the best way; InputError where it is below 1."""
-    if (factor := float(as_floats(value, name))) < 1:
-        raise InputError(f"{name} is {factor:g}; it must be 1 or more")
-    return factor
+@dataclass(frozen=True, eq=False)
+class CostPlanner(GridPlanner):
+    """A search over the cells of a grid that may have costs. With costs, route.evidence["cost"] is what the
+    way costs."""
 
-
-def search(
-    world: Any, start: Any, goal: Any, name: str, options: dict[str, Any], settings: Settings
-) -> Route:
-    """Asks the compiled search; start, goal (2,) [m]."""
-    made: Route | None = _core._grid_route(world, start, goal, name, options, *settings)
-    if made is None:
-        ends = checked_ends(world, start, goal)
-        made = _core._grid_route(world, *ends, name, options, *settings)
-        assert made is not None
-    return made
-
-
-def checked_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
-    """Start and goal as points (2,) [m] in free cells; InputError names the one that is not."""
-    if not isinstance(world, OccupancyGrid):
-        raise InputTypeError(f"world must be an OccupancyGrid, got an object of type {type(world).__name__}")
-    return world.check_free(start, "start"), world.check_free(goal, "goal")
-
-
-def reason(route: Route) -> str:
-    """The verdict of a planner of this family, as one sentence."""
-    cells = route.stats.nodes
-    if route:
-        return f"found a way of {route.length:.6g} m after settling {counted(cells, 'cell')}"
-    if route.evidence is not None:
-        parts = route.evidence["parts"]
-        return (
-            f"no way leads to the goal: it lies in another of the {parts} connected parts of the free cells"
-        )
-    return (
-        f"no way leads to the goal: after {counted(cells, 'expansion')} nothing that can be reached is left"
+    costs: ArrayLike | None = option(
+        None,
+        "of the cells (rows, columns), each more than 0; with None a way costs its length, else a step costs "
+        "its length times the mean of its two cells.",
     )
 
-
-def traced(route: Route, settings: Settings) -> Trace:
-    """The cells in the order of their expansion, each from its parent: start, end (k, 2) [m]; value [m], or
-    [m · cost], is the path so far."""
-    world = route.world
-    found = _core._grid_order(world, route.start, route.goal, route.planner, None, *settings)
-    cells: npt.NDArray[np.int32] = found[0]
-    at, parent = world.center_of(cells[:, :2]), world.center_of(cells[:, 2:])
-    return Trace(WORDS, np.zeros(len(cells), np.int8), parent, at, found[1])
+    def _settings_in(self, world: Any) -> Settings:
+        if self.costs is None:
+            return self._settings
+        array = np.ascontiguousarray(as_floats(self.costs, "costs"))
+        if array.shape != world.shape:
+            raise InputError(f"costs has shape {array.shape}; the grid has {world.shape} cells")
+        least = float(array.min())
+        if least <= 0:
+            row, column = map(int, np.argwhere(array == least)[0])
+            rule = "a cell costs more than nothing; blocked cells belong into the grid"
+            raise InputError(f"costs[{row}, {column}] is {least:g}; {rule}")
+        return self._settings._replace(costs=array, least_cost=least)

@@ -1,5 +1,5 @@
-"""Random points of free space, joined where they see each other."""
+"""Random points of free space, joined where they are mutually visible."""
 
-from cspace.navigation.sampling.problem import Sampled
+from cspace.navigation.sampling.planners import PRM, RRT, RRTStar, Sampled
 
-__all__ = ["Sampled"]
+__all__ = ["PRM", "RRT", "RRTStar", "Sampled"]

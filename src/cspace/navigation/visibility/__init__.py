@@ -1,5 +1,9 @@
-"""The visibility graph: corners that see each other."""
+"""The visibility graph: corners that are mutually visible."""
 
-from cspace.navigation.visibility.visibility_graph import VisibilityGraph, visibility_graph
+from cspace.navigation.visibility.visibility_graph import (
+    VisibilityGraph,
+    VisibilityGraphSearch,
+    visibility_graph,
+)
 
-__all__ = ["VisibilityGraph", "visibility_graph"]
+__all__ = ["VisibilityGraph", "VisibilityGraphSearch", "visibility_graph"]

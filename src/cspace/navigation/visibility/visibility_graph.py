@@ -9,25 +9,21 @@ search by A* with the straight line to the goal as estimate joins start and goal
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.navigation.text import counted, divided
-from cspace.navigation.worlds import need_polygons
-from cspace.search.trace import Trace
+from cspace.maps import PolygonWorld
+from cspace.navigation.checks import need_polygons
+from cspace.navigation.planner import PlanePlanner
+from cspace.navigation.route import Route
+from cspace.navigation.text import count_things, explain_division
 
-if TYPE_CHECKING:
-    from cspace.maps import PolygonWorld
-    from cspace.navigation.route import Route
-
-__all__ = ["VisibilityGraph", "plan", "reason", "trace", "visibility_graph"]
-
-_WORDS = ("expand",)
+__all__ = ["VisibilityGraph", "VisibilityGraphSearch", "visibility_graph"]
 
 
 class VisibilityGraph(NamedTuple):
@@ -40,33 +36,29 @@ class VisibilityGraph(NamedTuple):
     first."""
 
 
-def plan(world: PolygonWorld, start: ArrayLike, goal: ArrayLike) -> Route:
-    """The shortest path from start to goal (2,) [m] through a PolygonWorld.
+@dataclass(frozen=True, eq=False)
+class VisibilityGraphSearch(PlanePlanner):
+    """The shortest path through a PolygonWorld.
 
     The trace holds the event "expand": the last edge of the shortest path to a corner; its value is that
-    way's length [m].
+    path's length [m].
     """
-    route: Route | None = _core._visibility(world, world._core, "visibility_graph", None, start, goal)
-    if route is None:
-        ends = world.check_free(start, "start"), world.check_free(goal, "goal")
-        route = _core._visibility(world, world._core, "visibility_graph", None, *ends)
-        assert route is not None
-    return route
 
+    name = "visibility_graph"
+    summary = "the shortest path over corners that see each other"
+    events = ("expand",)
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    if route:
-        nodes = len(visibility_graph(route.world).corners)
-        return (
-            f"the shortest path, over {max(len(route.path) - 2, 0)} of the graph's {counted(nodes, 'corner')}"
-        )
-    return divided(route.world.components)
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        return _core._visibility(world, world._core, self.name, self, start, goal)
 
+    def explain_route(self, route: Route) -> str:
+        if not route:
+            return explain_division(route.world)
+        corners = count_things(len(visibility_graph(route.world).corners), "corner")
+        return f"the shortest path, over {max(len(route.path) - 2, 0)} of the graph's {corners}"
 
-def trace(route: Route) -> Trace:
-    """The corners in the order in which they were expanded."""
-    return Trace(_WORDS, *_core._visibility_trace(route.world._core, route.start, route.goal))
+    def _record(self, route: Route) -> Any:
+        return _core._visibility_trace(route.world._core, route.start, route.goal)
 
 
 def visibility_graph(world: PolygonWorld) -> VisibilityGraph:

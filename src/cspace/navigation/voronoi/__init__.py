@@ -1,5 +1,5 @@
 """The Voronoi diagram of free space: points as far from two walls."""
 
-from cspace.navigation.voronoi.voronoi import VoronoiDiagram, voronoi_diagram
+from cspace.navigation.voronoi.voronoi import Voronoi, VoronoiDiagram, voronoi_diagram
 
-__all__ = ["VoronoiDiagram", "voronoi_diagram"]
+__all__ = ["Voronoi", "VoronoiDiagram", "voronoi_diagram"]

@@ -10,27 +10,25 @@ asked before it is used.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Final, NamedTuple
+from dataclasses import dataclass
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, suggest
-from cspace.navigation.text import divided
-from cspace.navigation.worlds import need_polygons
-from cspace.search.trace import Trace
+from cspace.arrays import Array
+from cspace.maps import PolygonWorld
+from cspace.navigation.checks import need_polygons
+from cspace.navigation.planner import PlanePlanner
+from cspace.navigation.route import Route
+from cspace.navigation.text import explain_division
+from cspace.search import option
 from cspace.tolerances import DIAGRAM_CHORD
 
-if TYPE_CHECKING:
-    from cspace.maps import PolygonWorld
-    from cspace.navigation.route import Route
-
-__all__ = ["VoronoiDiagram", "VoronoiEvidence", "plan", "reason", "trace", "voronoi_diagram"]
+__all__ = ["Voronoi", "VoronoiDiagram", "VoronoiEvidence", "voronoi_diagram"]
 
 PREFER: Final = ("clearance", "length")
-WORDS: Final = ("retract", "widen", "expand")
 
 
 class VoronoiEvidence(NamedTuple):
@@ -60,75 +58,65 @@ class VoronoiDiagram(NamedTuple):
     lost arcs."""
 
 
-def plan(
-    world: PolygonWorld,
-    start: Any,
-    goal: Any,
-    *,
-    prefer: str = "clearance",
-    tolerance: float | None = None,
-) -> Route:
-    """The way from start to goal (2,) [m] over the Voronoi diagram of a PolygonWorld.
+@dataclass(frozen=True, eq=False)
+class Voronoi(PlanePlanner):
+    """The way over the Voronoi diagram of a PolygonWorld; route.evidence is a VoronoiEvidence.
 
-    prefer: "clearance" for the shortest of all ways on the diagram whose least clearance, that of start and
-    goal counted, is as large as on any way: where an end is the narrowest place, for the shortest that is
-    nowhere narrower. "length" for the shortest whatever its clearance. tolerance [m]: how far the polyline
-    may lie from parabolas, by default a ten thousandth of the world's longer side, and never more than a
-    hundredth of the clearance.
-
-    route.evidence is a VoronoiEvidence. UnknownNameError for another preference, InputError on a tolerance
-    that is not positive.
+    The trace contains the search: "retract" leads from start and goal up to the diagram, its value [m] the
+    clearance there; "widen" reaches a vertex by the widest path, its value [m] that path's least clearance;
+    "expand" by the shortest, its value [m] that path's length.
     """
-    if prefer not in PREFER:
-        raise suggest("choice of prefer=", prefer, PREFER)
-    chord = chord_of(world, tolerance)
-    asked = prefer == PREFER[0], chord
-    given = ("voronoi", {"prefer": prefer, "tolerance": chord}, VoronoiEvidence, world._core)
-    route: Route | None = _core._voronoi(world, *given, start, goal, *asked)
-    if route is None:
-        ends = world.check_free(start, "start"), world.check_free(goal, "goal")
-        route = _core._voronoi(world, *given, *ends, *asked)
-        assert route is not None
-    return route
 
+    name = "voronoi"
+    summary = "the widest way, along points as far from two walls"
+    events = ("retract", "widen", "expand")
 
-def reason(route: Route) -> str:
-    """The verdict as one sentence."""
-    if route:
-        found: VoronoiEvidence = route.evidence
-        wide = "; no way keeps farther" if route.options["prefer"] == PREFER[0] else ""
-        way = f"{found.least_clearance:.6g} m from walls, {found.on_diagram:.6g} m on the diagram"
-        return f"it keeps {way}{wide}"
-    if route.status == "undetermined":
-        return "rounding has lost part of the diagram: walls lie closer to each other than numbers tell"
-    return divided(route.world.components)
+    prefer: str = option(
+        "clearance",
+        '"clearance" for the shortest of all ways on the diagram whose least clearance, that of start and '
+        "goal counted, is as large as on any way: where an end is the narrowest place, for the shortest that "
+        'is nowhere narrower. "length" for the shortest whatever its clearance.',
+        choices=PREFER,
+        subject="choice of prefer=",
+    )
+    tolerance: float | None = option(
+        None,
+        "how far the polyline may lie from parabolas, by default a ten thousandth of the world's longer "
+        "side, and never more than a hundredth of the clearance.",
+        unit="m",
+        above=0,
+    )
 
+    def _fill_in(self, world: Any) -> Voronoi:
+        if self.tolerance is not None:
+            return self
+        left, low, right, high = world.bounds
+        return self._in_force(tolerance=float(DIAGRAM_CHORD * max(right - left, high - low)))
 
-def trace(route: Route) -> Trace:
-    """The search: "retract" leads from start and goal up to the diagram, its value [m] the clearance there;
-    "widen" reaches a vertex by the widest way, its value [m] that way's least clearance; "expand" by the
-    shortest, its value [m] that way's length. start, end: (k, 2) [m]."""
-    options = route.options
-    asked = options["prefer"] == PREFER[0], options["tolerance"]
-    return Trace(WORDS, *_core._voronoi_trace(route.world._core, route.start, route.goal, *asked))
+    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+        given = world, self.name, self, VoronoiEvidence, world._core, start, goal
+        return _core._voronoi(*given, self.prefer == "clearance", self.tolerance)
+
+    def explain_route(self, route: Route) -> str:
+        if route:
+            found: VoronoiEvidence = route.evidence
+            wide = "; no way keeps farther" if self.prefer == "clearance" else ""
+            way = f"{found.least_clearance:.6g} m from walls, {found.on_diagram:.6g} m on the diagram"
+            return f"it keeps {way}{wide}"
+        if route.status == "undetermined":
+            return "rounding has lost part of the diagram: walls lie closer to each other than numbers tell"
+        return explain_division(route.world)
+
+    def _record(self, route: Route) -> Any:
+        given = route.world._core, route.start, route.goal
+        return _core._voronoi_trace(*given, self.prefer == "clearance", self.tolerance)
 
 
 def voronoi_diagram(world: PolygonWorld, tolerance: float | None = None) -> VoronoiDiagram:
     """The Voronoi diagram of the free space of a PolygonWorld, kept with the world.
 
-    tolerance [m]: how far polylines may lie from parabolas, as in `plan`.
+    tolerance [m]: how far polylines may lie from parabolas, as for the planner "voronoi".
     """
     need_polygons(world)
-    made = VoronoiDiagram(*_core._voronoi_diagram(world._core, chord_of(world, tolerance)))
-    return made
-
-
-def chord_of(world: PolygonWorld, tolerance: float | None) -> float:
-    """The tolerance [m] as given, or that of the world; InputError where it is not positive."""
-    if tolerance is None:
-        left, low, right, high = world.bounds
-        return float(DIAGRAM_CHORD * max(right - left, high - low))
-    chord = float(as_floats(tolerance, "tolerance"))
-    if not chord > 0:
-        raise InputError(f"tolerance is {chord:g}; it must be positive [m]")
-    return chord
+    chord: Any = Voronoi(tolerance=tolerance)._fill_in(world).tolerance
+    return VoronoiDiagram(*_core._voronoi_diagram(world._core, chord))

@@ -1,0 +1,47 @@
+"""Checks of worlds, end points and numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from cspace import _core
+from cspace.arrays import Array, as_floats
+from cspace.errors import InputError, InputTypeError
+from cspace.maps import PolygonWorld
+from cspace.tolerances import LARGEST_NUMBER
+
+__all__ = ["check_ends", "need_grid", "need_number", "need_polygons", "need_positive"]
+
+
+def need_polygons(world: Any) -> None:
+    """InputTypeError for anything but a PolygonWorld."""
+    if not isinstance(world, PolygonWorld):
+        remedy = "give a PolygonWorld; PolygonWorld.from_grid(grid) makes one of a grid"
+        raise InputTypeError(f"world is an object of type {type(world).__name__}; {remedy}")
+
+
+def need_grid(grid: Any, name: str = "grid") -> None:
+    """InputTypeError for anything but an OccupancyGrid."""
+    if not isinstance(grid, _core.GridBase):
+        raise InputTypeError(f"{name} is a {type(grid).__name__}; give an OccupancyGrid (or world.to_grid())")
+
+
+def check_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
+    """Start and goal as points (2,) [m] in free space; InputError names the one that is not."""
+    return world.check_free(start, "start"), world.check_free(goal, "goal")
+
+
+def need_positive(value: Any, name: str, rule: str = "give one number above zero") -> float:
+    """A number above zero, or InputError."""
+    number = as_floats(value, name)
+    if number.ndim or not number > 0:
+        raise InputError(f"{name} is {value!r}; {rule}")
+    return float(number)
+
+
+def need_number(value: Any, name: str, least: float) -> float:
+    """A number not below its smallest useful value, or InputError."""
+    number = as_floats(value, name, largest=LARGEST_NUMBER)
+    if number.ndim or number < least:
+        raise InputError(f"{name} is {value!r}; give one number, at least {least:g}")
+    return float(number)

@@ -1,0 +1,96 @@
+"""Planner: the base of all planners, a frozen dataclass whose fields are its options."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+import numpy as np
+
+from cspace.errors import InputTypeError, attribute_error, suggest
+from cspace.search.options import Option, options_of
+
+__all__ = ["Planner"]
+
+Same = TypeVar("Same", bound="Planner")
+
+
+class _OldName:
+    """An attribute that has another name, which the error gives."""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, planner: object, owner: type) -> None:
+        raise attribute_error(planner, self.name)
+
+
+@dataclass(frozen=True, eq=False)
+class Planner:
+    """A planner with its options.
+
+    A subclass is a dataclass(frozen=True) whose fields are declared by `option`. Values are checked when the
+    planner is made: UnknownNameError for an unknown word, InputError or InputTypeError for a wrong value.
+    """
+
+    name: ClassVar[str] = ""
+    """The word that selects it; the name of the class unless given."""
+    summary: ClassVar[str] = ""
+    """A line on what it does."""
+
+    if not TYPE_CHECKING:  # type checkers report such names themselves; __getattr__ would slow every access
+        line, sees = _OldName(), _OldName()
+
+    def __init_subclass__(cls) -> None:
+        cls.name = vars(cls).get("name", cls.__name__)
+
+    def __post_init__(self) -> None:
+        for name, each in self.options.items():
+            if (value := getattr(self, name)) is not each.default:
+                object.__setattr__(self, name, each.check_value(value))
+
+    @property
+    def options(self) -> Mapping[str, Option]:
+        """Its options by name: the type, default, unit, meaning and rule of each."""
+        own: Any = type(self)
+        return options_of(own)
+
+    @cached_property
+    def values(self) -> Mapping[str, Any]:
+        """The values of its options by name."""
+        return {name: getattr(self, name) for name in self.options}
+
+    def with_options(self: Same, options: Mapping[str, Any]) -> Same:
+        """The same planner with other options; InputTypeError for an unknown name, else as for new ones."""
+        for name in options:
+            if name not in self.options:
+                raise InputTypeError(
+                    str(suggest("option", name, self.options, owner=f"planner {self.name!r}"))
+                )
+        return type(self)(**{**self.values, **options})
+
+    def _in_force(self: Same, **values: Any) -> Same:
+        """A copy in which values that depend on the world, and seeds, are as used. They are not checked, and
+        the last copy is kept."""
+        kept = vars(self).get("_kept")
+        if kept is None or kept[0] != values:
+            made = object.__new__(type(self))
+            vars(made).update(self.values, **values)
+            kept = vars(self)["_kept"] = values, made
+        found: Same = kept[1]
+        return found
+
+    def __getstate__(self) -> dict[str, Any]:
+        """The options, without what is cached with them."""
+        return dict(self.values)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the other is of the same class with equal values, arrays included."""
+        if type(self) is not type(other) or not isinstance(other, Planner):
+            return NotImplemented
+        return all(map(np.array_equal, self.values.values(), other.values.values()))
+
+    def __hash__(self) -> int:
+        return hash((type(self), *(value for value in self.values.values() if not np.ndim(value))))
