@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import cspace as cs
-from cspace.navigation.any_angle import any_angle
 from data import shared_data
 from oracles.segments import enters
+
+any_angle = cs.navigation.AnyAngle()
 
 NOISE = (500, 400)
 """A grid of random cells with so many corners that no polygons are made of it."""
@@ -48,7 +49,7 @@ def test_every_line_of_the_grids(name):
 def test_grids_of_many_corners_are_searched_as_they_are_and_agree_with_their_polygons():
     rng = np.random.default_rng(2)
     grid = noise(rng, resolution=0.05, origin=(-3.0, 0.7))
-    assert any_angle.takes_cells(grid)
+    assert any_angle.takes_grid(grid)
     polygons = cs.PolygonWorld.from_grid(grid)
     verdicts = set()
     for cells in rng.integers(0, NOISE, (60, 2, 2)):
