@@ -6,12 +6,13 @@ from typing import Final
 
 __all__ = [
     "AXIS_LENGTH",
-    "BAR_ROUNDING",
     "CALIBRATION_ANGLE",
     "CALIBRATION_BYTES",
     "CALIBRATION_DISTANCE",
     "CAR_POSES",
     "CELLS_PER_CORNER",
+    "CELL_ROUNDING",
+    "DEFAULT_CELLS",
     "DESCENT_LOOKS",
     "DESCRIPTION_BYTES",
     "DESCRIPTION_DEPTH",
@@ -44,13 +45,17 @@ __all__ = [
     "MJCF_SAME_AXIS",
     "MOST_DERIVED",
     "MOST_SAMPLES",
+    "MOST_SIDES",
     "MOST_WINDINGS",
     "NAVIGATION_FUNCTIONS",
     "NAVIGATION_SQUARES",
     "NAVIGATION_STEPS",
     "NUMERIC_TOLERANCE",
+    "OFFSET_PIECE",
+    "OFFSET_SLACK",
     "ON_GOAL_WALL",
     "ON_LIMIT",
+    "ON_ONE_LINE",
     "ON_WALL",
     "PLANAR_AXES",
     "PURE_TRANSLATION_ANGLE",
@@ -69,6 +74,7 @@ __all__ = [
     "SINGULAR_VALUE",
     "SLIGHT_MISS",
     "TANGENT_PLACE",
+    "TIGHT_GAP",
     "TOML_BYTES",
     "TRACK_BEYOND",
     "TRACK_POSES",
@@ -340,8 +346,8 @@ LEAST_INFLUENCE: Final = 1e-9
 """Least reach of walls in the potential of A*, in cells, in place of zero: its inverse stays finite, and no
 cell is so near to a wall."""
 
-BAR_ROUNDING: Final = 1e-9
-"""By how much of a cell a bar may miss a multiple of the cell side and still count as one: 3 × 0.1 differs
+CELL_ROUNDING: Final = 1e-9
+"""By how much of a cell a length may miss a multiple of the cell side and still count as one: 3 × 0.1 differs
 from 0.3 by rounding."""
 
 SIMULATION_STEPS: Final = 1e7
@@ -352,3 +358,25 @@ CAR_POSES: Final = 20.0
 
 TRACK_POSES: Final = 50.0
 """The same of a curve that a vehicle follows: a chord leaves its arc by 5e-5 of the radius."""
+
+MOST_SIDES: Final = 1 << 20
+"""Most sides of a polygon in place of a disc: its sides are then as far apart as the directions of walls are
+told apart, and it exceeds the disc by 5e-12 of the radius."""
+
+TIGHT_GAP: Final = 1e-9
+"""By how much of its width a gap may be narrower than a disc and still count as one that the disc just
+passes: coordinates carry a few roundings."""
+
+OFFSET_SLACK: Final = 1e-10
+"""Distance, in sides of the world, by which a point of an offset boundary may be nearer to walls than the
+radius, and gaps between its pieces: a hundred times ON_WALL, as pieces end where circles meet."""
+
+OFFSET_PIECE: Final = 1e-12
+"""Length of a piece of an offset boundary, of its wall or arc, below which it is rounding."""
+
+ON_ONE_LINE: Final = 1e-15
+"""Distance of corners from a line, in diameters of a polygon, up to which it has no area: a few roundings."""
+
+DEFAULT_CELLS: Final = 200
+"""Cells along the longer side of the bounds unless given: gaps of a two-hundredth of the world count as
+narrow."""

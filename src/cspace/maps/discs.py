@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError
-from cspace.tolerances import FARTHEST_POINT
+from cspace.tolerances import FARTHEST_POINT, MOST_SIDES
 
-__all__ = ["disc_outlines"]
-
-MOST_SIDES: Final = 1 << 20
+__all__ = ["circumscribe_discs"]
 
 
-def disc_outlines(centers: Any, radii: Any, sides: int) -> list[Array]:
+def circumscribe_discs(centers: Any, radii: Any, sides: int) -> list[Array]:
     """A regular circumscribed polygon (sides, 2) [m] of each disc; its first side faces the x direction."""
     at = as_floats(centers, "centers", last=(2,), largest=FARTHEST_POINT)
     reach = as_floats(radii, "radii", largest=FARTHEST_POINT)

@@ -9,23 +9,23 @@ from cspace import files
 from cspace.errors import MapError
 from cspace.tolerances import MAP_BYTES
 
-__all__ = ["map_bytes", "map_path", "map_text"]
+__all__ = ["check_map_path", "read_map_bytes", "read_map_text"]
 
 
-def map_path(path: Any) -> str:
+def check_map_path(path: Any) -> str:
     """The path as text; InputTypeError for any other type."""
     return files.path_of(path, "a map file is given by its path")
 
 
-def map_bytes(path: str | os.PathLike[str]) -> bytes:
+def read_map_bytes(path: str | os.PathLike[str]) -> bytes:
     """The bytes of a map file; MapError names the path of a file that is missing, too large or not
     readable."""
-    return files.read_regular(map_path(path), "map", MAP_BYTES, MapError)
+    return files.read_regular(check_map_path(path), "map", MAP_BYTES, MapError)
 
 
-def map_text(path: str | os.PathLike[str]) -> str:
-    """The text of a map file in UTF-8; MapError as in map_bytes, and with the position of an invalid byte."""
+def read_map_text(path: str | os.PathLike[str]) -> str:
+    """The text of a map file in UTF-8; MapError as in read_map_bytes, or with the invalid byte."""
     try:
-        return map_bytes(path).decode("utf-8-sig")
+        return read_map_bytes(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise MapError(f"byte {error.start}: a map file is UTF-8 text", path=map_path(path)) from None
+        raise MapError(f"byte {error.start}: a map file is UTF-8 text", path=check_map_path(path)) from None

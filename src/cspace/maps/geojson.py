@@ -10,7 +10,7 @@ from typing import Any
 from cspace.arrays import Array
 from cspace.errors import MapError
 from cspace.files import write_text
-from cspace.maps.files import map_path, map_text
+from cspace.maps.files import check_map_path, read_map_text
 
 __all__ = ["read_geojson", "write_geojson"]
 
@@ -22,9 +22,9 @@ def read_geojson(source: str | os.PathLike[str] | dict[str, Any]) -> tuple[list[
     if isinstance(source, dict):
         path, found = None, source
     else:
-        path = map_path(source)
-        found = _parsed(path)
-    obstacles = list(_polygons(found, path, "the object"))
+        path = check_map_path(source)
+        found = _parse_file(path)
+    obstacles = list(_find_polygons(found, path, "the object"))
     box = found.get("bbox")
     return obstacles, box if isinstance(box, list) and len(box) == 4 else None
 
@@ -37,9 +37,9 @@ def write_geojson(
     write_text(path, json.dumps({"type": "MultiPolygon", "bbox": bounds, "coordinates": rings}) + "\n")
 
 
-def _parsed(path: str) -> dict[str, Any]:
+def _parse_file(path: str) -> dict[str, Any]:
     try:
-        found = json.loads(map_text(path))
+        found = json.loads(read_map_text(path))
     except RecursionError:
         raise MapError("is no GeoJSON: nested without end", path=path) from None
     except json.JSONDecodeError as error:
@@ -51,34 +51,34 @@ def _parsed(path: str) -> dict[str, Any]:
     return found
 
 
-def _polygons(thing: Any, path: str | None, where: str) -> Iterator[list[Any]]:
+def _find_polygons(thing: Any, path: str | None, where: str) -> Iterator[list[Any]]:
     """The rings of each polygon in a GeoJSON object; geometries without area are skipped."""
     kind = thing.get("type") if isinstance(thing, dict) else None
     if kind == "FeatureCollection":
-        for i, feature in enumerate(_list(thing, "features", path, where)):
-            yield from _polygons(feature, path, f"feature {i}")
+        for i, feature in enumerate(_get_list(thing, "features", path, where)):
+            yield from _find_polygons(feature, path, f"feature {i}")
     elif kind == "GeometryCollection":
-        for i, geometry in enumerate(_list(thing, "geometries", path, where)):
-            yield from _polygons(geometry, path, f"{where}, geometry {i}")
+        for i, geometry in enumerate(_get_list(thing, "geometries", path, where)):
+            yield from _find_polygons(geometry, path, f"{where}, geometry {i}")
     elif kind == "Feature":
         if thing.get("geometry") is not None:
-            yield from _polygons(thing["geometry"], path, where)
+            yield from _find_polygons(thing["geometry"], path, where)
     elif kind == "Polygon":
-        yield _plane(_list(thing, "coordinates", path, where), path, where)
+        yield _drop_heights(_get_list(thing, "coordinates", path, where), path, where)
     elif kind == "MultiPolygon":
-        for i, rings in enumerate(_list(thing, "coordinates", path, where)):
-            yield _plane(rings, path, f"{where}, polygon {i}")
+        for i, rings in enumerate(_get_list(thing, "coordinates", path, where)):
+            yield _drop_heights(rings, path, f"{where}, polygon {i}")
     elif kind not in _SKIPPED:
         raise MapError(f"{where} has the type {kind!r}, which GeoJSON does not know", path=path)
 
 
-def _list(thing: dict[str, Any], name: str, path: str | None, where: str) -> list[Any]:
+def _get_list(thing: dict[str, Any], name: str, path: str | None, where: str) -> list[Any]:
     if not isinstance(found := thing.get(name), list):
         raise MapError(f"{where} has no list of {name!r}", path=path)
     return found
 
 
-def _plane(rings: Any, path: str | None, where: str) -> list[Any]:
+def _drop_heights(rings: Any, path: str | None, where: str) -> list[Any]:
     """The rings with the height coordinates removed."""
     try:
         made = [[[point[0], point[1]] for point in ring] for ring in rings]

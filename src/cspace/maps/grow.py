@@ -13,11 +13,12 @@ from typing import Any, Final
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.maps.outlines import Outline
+from cspace.tolerances import MOST_SIDES, TIGHT_GAP
 
-__all__ = ["grown"]
+__all__ = ["grow_outlines"]
 
 TURN: Final = 2**40
 """Directions are quantised to integers, this many per revolution: those that differ by rounding become
@@ -28,16 +29,16 @@ BLOCK: Final = 64
 Directions = npt.NDArray[np.int64]
 
 
-def grown(
-    outlines: list[Outline], bounds: Array, radius: float, sides: int, keep: Array
+def grow_outlines(
+    outlines: list[Outline], bounds: Array, reach: float, sides: int, keep: Array
 ) -> tuple[list[Outline], Array]:
-    """The sum of the obstacles and polygons around the disc, inside shrunk bounds.
+    """The sum of the obstacles and polygons around a disc of radius `reach` [m], inside shrunk bounds.
 
     keep: (k, 2), positions of the centre in whose direction the corner polygons add nothing to the exact
     sum. The sum of a polygon and a disc is the union of the polygon, the disc at each corner and a strip
     along each edge.
     """
-    reach = _radius(radius, sides)
+    _check_sides(sides)
     xmin, ymin, xmax, ymax = map(float, bounds)
     if not (xmin + reach < xmax - reach and ymin + reach < ymax - reach):
         raise InputError(
@@ -46,8 +47,8 @@ def grown(
     rings = [ring for obstacle in outlines for ring in obstacle]
     corners = np.vstack([np.empty((0, 2)), *rings])
     nexts = np.vstack([np.empty((0, 2)), *(np.roll(ring, -1, axis=0) for ring in rings)])
-    ahead = _direction(nexts - corners)
-    across = _tight(corners, nexts, ahead, reach, sides, keep)
+    ahead = _quantise_directions(nexts - corners)
+    across = _find_tight_directions(corners, nexts, ahead, reach, sides, keep)
     axes = np.arange(4) * (TURN // 4)  # normals of the bounds
     even = np.concatenate([axes, np.rint(np.arange(sides) * (TURN / sides)).astype(np.int64)])
     first = 0
@@ -59,31 +60,28 @@ def grown(
             walls = np.array([ahead[here], ahead[before]])
             quarter = np.concatenate([walls + TURN // 4, walls - TURN // 4])
             touches = np.unique(np.concatenate([even, quarter, across[here]]) % TURN)
-            discs.append((touches, corners[here] + _around(reach, touches)))
+            discs.append((touches, corners[here] + _circumscribe_disc(reach, touches)))
         made += [[corner] for _, corner in discs]
         for k, here in enumerate(at):
-            made.append([_beside(int(ahead[here]), discs[k], discs[(k + 1) % len(ring)])])
+            made.append([_make_strip(int(ahead[here]), discs[k], discs[(k + 1) % len(ring)])])
         first += len(ring)
     return [*outlines, *made], np.array([xmin + reach, ymin + reach, xmax - reach, ymax - reach])
 
 
-def _radius(radius: Any, sides: Any) -> float:
-    if (reach := float(as_floats(radius, "radius"))) < 0:
-        raise InputError(f"radius is {reach:g}; it must be zero or more [m]")
+def _check_sides(sides: Any) -> None:
     if isinstance(sides, bool) or not isinstance(sides, (int, np.integer)):
         raise InputTypeError(f"sides is a {type(sides).__name__}; it must be a whole number")
-    if not 4 <= sides <= TURN // 2**20:
-        raise InputError(f"sides is {sides}; a polygon around a disc has 4 to {TURN // 2**20} here")
-    return reach
+    if not 4 <= sides <= MOST_SIDES:
+        raise InputError(f"sides is {sides}; a polygon around a disc has 4 to {MOST_SIDES} here")
 
 
-def _direction(vectors: Array) -> Directions:
+def _quantise_directions(vectors: Array) -> Directions:
     """Angles of vectors (n, 2), counterclockwise from x."""
     angle = np.arctan2(vectors[:, 1], vectors[:, 0])
     return np.rint(angle * (TURN / (2 * np.pi))).astype(np.int64) % TURN
 
 
-def _around(radius: float, touches: Directions) -> Array:
+def _circumscribe_disc(radius: float, touches: Directions) -> Array:
     """The polygon (m, 2) whose sides touch a disc in directions (m,): side i precedes corner i."""
     wide = np.diff(touches, append=touches[:1]) % TURN
     middle = (touches + wide / 2) * (2 * np.pi / TURN)
@@ -92,7 +90,7 @@ def _around(radius: float, touches: Directions) -> Array:
     return corners
 
 
-def _beside(ahead: int, one: tuple[Directions, Array], other: tuple[Directions, Array]) -> Array:
+def _make_strip(ahead: int, one: tuple[Directions, Array], other: tuple[Directions, Array]) -> Array:
     """The strip along an edge (4, 2) that leads `ahead` from one corner to the next, between the corner
     polygons. Its sides end at the polygon sides that touch in the two directions normal to the edge."""
     right, left = (ahead - TURN // 4) % TURN, (ahead + TURN // 4) % TURN
@@ -100,13 +98,13 @@ def _beside(ahead: int, one: tuple[Directions, Array], other: tuple[Directions, 
     return np.array([one[1][i], other[1][k - 1], other[1][n], one[1][j - 1]])
 
 
-def _tight(
+def _find_tight_directions(
     corners: Array, nexts: Array, ahead: Directions, radius: float, sides: int, keep: Array
 ) -> list[Directions]:
     """For each corner the directions of objects between which the disc just fits: other corners, walls and
     the positions of `keep`."""
     found: list[list[Directions]] = [[np.empty(0, np.int64)] for _ in corners]
-    near, far = 2 * radius * (1 - 1e-9), 2 * radius / np.cos(np.pi / sides)
+    near, far = 2 * radius * (1 - TIGHT_GAP), 2 * radius / np.cos(np.pi / sides)
     low, high = np.minimum(corners, nexts) - far, np.maximum(corners, nexts) + far
     for first in range(0, len(corners), BLOCK):
         some = corners[first : first + BLOCK]
@@ -115,7 +113,7 @@ def _tight(
         back = some[:, None] - begin
         apart = np.hypot(back[..., 0], back[..., 1])
         for i, j in zip(*np.nonzero((apart >= near) & (apart <= far)), strict=True):
-            found[first + i].append(_direction(-back[i, j : j + 1]))
+            found[first + i].append(_quantise_directions(-back[i, j : j + 1]))
         share = np.einsum("ijk,jk->ij", back, along) / np.einsum("jk,jk->j", along, along)
         off = np.abs(along[:, 0] * back[..., 1] - along[:, 1] * back[..., 0]) / np.hypot(*along.T)
         tight = (share > 0) & (share < 1) & (off >= near) & (off <= far)
@@ -125,5 +123,5 @@ def _tight(
     for p in keep:
         apart = np.hypot(*(p - corners).T)
         for i in np.flatnonzero((apart > 0) & (apart <= far / 2)):
-            found[i].append(_direction((p - corners[i])[None]))
+            found[i].append(_quantise_directions((p - corners[i])[None]))
     return [np.concatenate(each) for each in found]

@@ -12,10 +12,10 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import MapError, MissingExtraError
-from cspace.maps.files import map_bytes, map_path
+from cspace.maps.files import check_map_path, read_map_bytes
 from cspace.tolerances import MAP_CELLS
 
-__all__ = ["pgm_of", "read_image"]
+__all__ = ["encode_pgm", "read_image"]
 
 PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 
@@ -26,15 +26,15 @@ def read_image(path: str | os.PathLike[str]) -> Array:
     Colours are averaged; fully transparent pixels are NaN. Raises MapError for a file that cannot be read,
     MissingExtraError for PNG without pillow.
     """
-    name, data = map_path(path), map_bytes(path)
+    name, data = check_map_path(path), read_map_bytes(path)
     if data.startswith(PNG_SIGNATURE):
-        return _png(data, name)
+        return _read_png(data, name)
     if data[:2] in (b"P2", b"P5"):
-        return _pgm(data, name)
+        return _read_pgm(data, name)
     raise MapError("this is neither PGM (P2, P5) nor PNG; save the image as one of them", path=name)
 
 
-def pgm_of(grey: npt.NDArray[np.uint8]) -> bytes:
+def encode_pgm(grey: npt.NDArray[np.uint8]) -> bytes:
     """A binary PGM file of grey values (rows, columns), top row first."""
     rows, columns = grey.shape
     return b"P5\n%d %d\n255\n" % (columns, rows) + grey.tobytes()
@@ -46,7 +46,7 @@ def _check_size(columns: int, rows: int, name: str) -> None:
         raise MapError(message, path=name)
 
 
-def _pgm(data: bytes, name: str) -> Array:
+def _read_pgm(data: bytes, name: str) -> Array:
     """The grey values of a PGM file: a header of three numbers, with comments, then numbers as text or as
     bytes."""
     token = re.compile(rb"(?:\s|#[^\n]*(?:\n|$))*(\d{1,10})")
@@ -61,7 +61,7 @@ def _pgm(data: bytes, name: str) -> Array:
     if not 1 <= white <= 65535:
         raise MapError(f"byte {at}: the largest grey is {white}; it must be 1 … 65535", path=name)
     if data[:2] == b"P2":
-        grey = _text_pixels(data[at:], rows * columns, at, name)
+        grey = _read_text_pixels(data[at:], rows * columns, at, name)
     else:
         wide = np.dtype(">u2") if white > 255 else np.dtype(np.uint8)
         if (there := len(data) - at - 1) < rows * columns * wide.itemsize:
@@ -74,7 +74,7 @@ def _pgm(data: bytes, name: str) -> Array:
     return grey.reshape(rows, columns) / white
 
 
-def _text_pixels(text: bytes, count: int, at: int, name: str) -> Array:
+def _read_text_pixels(text: bytes, count: int, at: int, name: str) -> Array:
     words = re.sub(rb"#[^\n]*", b"", text).split()
     if len(words) != count:
         raise MapError(f"byte {at}: {len(words)} pixels follow; the size says {count}", path=name)
@@ -84,7 +84,7 @@ def _text_pixels(text: bytes, count: int, at: int, name: str) -> Array:
     return np.array([int(word) for word in words], float)
 
 
-def _png(data: bytes, name: str) -> Array:
+def _read_png(data: bytes, name: str) -> Array:
     """The grey values of a PNG file; pillow keeps 16 bits per pixel of grey, and 8 per channel of colours."""
     try:
         from PIL.PngImagePlugin import PngImageFile
@@ -93,14 +93,14 @@ def _png(data: bytes, name: str) -> Array:
     try:
         with PngImageFile(io.BytesIO(data)) as image:
             _check_size(*image.size, name)
-            return _grey(image)
+            return _average_colours(image)
     except MapError:
         raise
     except Exception as error:  # damaged files raise OSError, SyntaxError, ValueError, struct.error …
         raise MapError(f"the PNG file cannot be read: {error}", path=name) from None
 
 
-def _grey(image: Any) -> Array:
+def _average_colours(image: Any) -> Array:
     """The mean of the colours of each pixel, 0 … 1; NaN where it is transparent."""
     if image.mode.startswith("I"):
         deep = np.asarray(image, dtype=float)

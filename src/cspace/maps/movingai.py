@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError, MapError
-from cspace.maps.files import map_bytes, map_path
+from cspace.maps.files import check_map_path, read_map_bytes
 from cspace.tolerances import MAP_CELLS
 
 __all__ = ["Scenarios", "read_movingai", "read_scenarios"]
@@ -55,8 +55,8 @@ class Scenarios(NamedTuple):
 
 def read_movingai(path: str | os.PathLike[str]) -> npt.NDArray[np.bool_]:
     """Which cells of a `.map` file are blocked, (rows, columns); the first line of the file is row 0."""
-    name = map_path(path)
-    lines = map_bytes(path).split(b"\n")
+    name = check_map_path(path)
+    lines = read_map_bytes(path).split(b"\n")
     if lines[0].split() != [b"type", b"octile"]:
         raise MapError("a MovingAI map begins with the line 'type octile'", path=name, line=1)
     sizes: dict[bytes, int] = {}
@@ -75,10 +75,10 @@ def read_movingai(path: str | os.PathLike[str]) -> npt.NDArray[np.bool_]:
             path=name,
             line=min(at + 1, len(lines)),
         )
-    return _cells(lines[at + 1 :], sizes[b"height"], sizes[b"width"], name, at + 2)
+    return _read_cells(lines[at + 1 :], sizes[b"height"], sizes[b"width"], name, at + 2)
 
 
-def _cells(lines: list[bytes], rows: int, columns: int, name: str, first: int) -> npt.NDArray[np.bool_]:
+def _read_cells(lines: list[bytes], rows: int, columns: int, name: str, first: int) -> npt.NDArray[np.bool_]:
     """The cells of the lines; first: the number of the first line in the file."""
     rest = [line.rstrip(b"\r") for line in lines]
     while rest and not rest[-1].strip():
@@ -105,8 +105,8 @@ def _cells(lines: list[bytes], rows: int, columns: int, name: str, first: int) -
 def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
     """The queries of a `.scen` file: start (k, 2), goal (k, 2), length (k,); MapError names the line at
     fault."""
-    name = map_path(path)
-    lines = map_bytes(path).decode("utf-8", "replace").split("\n")
+    name = check_map_path(path)
+    lines = read_map_bytes(path).decode("utf-8", "replace").split("\n")
     if lines[0].split() not in VERSIONS:
         raise MapError("a scenario file begins with the line 'version 1'", path=name, line=1)
     rows: list[tuple[int, int, int, int]] = []

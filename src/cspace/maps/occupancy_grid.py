@@ -13,13 +13,16 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.maps.paths import as_path
+from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
 
 __all__ = ["OccupancyGrid"]
 
 RULES: Final = ("cells", "centers")
 """The part of the grid that inflation keeps clear of obstacles."""
+FREE: Final = 0
+OUTSIDE: Final = 2
+"""The kinds of positions: in a free cell, in a blocked cell (1), or outside the grid."""
 
 
 class OccupancyGrid(_core.GridBase):
@@ -40,22 +43,18 @@ class OccupancyGrid(_core.GridBase):
         side = float(as_floats(resolution, "resolution").reshape(()) if np.size(resolution) == 1 else np.nan)
         if not 0 < side < np.inf:
             raise InputError(f"resolution is {resolution!r}; it must be one positive number [m]")
-        corner = as_floats(origin, "origin", last=(2,))
-        if corner.ndim != 1:
-            raise InputError(f"origin has shape {corner.shape}, expected (2,)")
-        cells = _cells(blocked)
-        reach = max(cells.shape) * side + float(np.abs(corner).max())
+        corner = as_point(origin, "origin")
+        cells = _read_cells(blocked)
+        reach = max(cells.shape) * side + max(map(abs, corner))
         if reach > FARTHEST_CELL * side:
-            message = (
-                f"origin {tuple(map(float, corner))} is {reach / side:.3g} cells from the farthest cell; "
-            )
+            message = f"origin {corner} is {reach / side:.3g} cells from the farthest cell; "
             raise InputError(message + f"float64 tells cells apart up to {FARTHEST_CELL:g} of them")
         if side < FINEST_CELL or reach > FARTHEST_POINT:
             raise InputError(
                 f"resolution is {side:g} and the farthest cell {reach:.3g} m away; cells have sides of "
                 f"{FINEST_CELL:g} m at least and lie within {FARTHEST_POINT:g} m"
             )
-        super().__init__(cells, side, float(corner[0]), float(corner[1]))
+        super().__init__(cells, side, *corner)
 
     @classmethod
     def from_movingai(
@@ -136,11 +135,7 @@ class OccupancyGrid(_core.GridBase):
         A point on a border belongs to the free one of the adjacent cells; if several are free, to the one
         with the higher coordinates. InputError for a point outside the grid.
         """
-        x, y = _point(point)
-        place, row, column = self._locate(x, y)
-        if place == OUTSIDE:
-            raise outside(self, "point", x, y)
-        return row, column
+        return self._find_cell(point, "point")[3:]
 
     def center_of(self, cell: ArrayLike) -> Array:
         """The centre of cells (..., 2), given as row and column: points (..., 2) [m]."""
@@ -166,16 +161,20 @@ class OccupancyGrid(_core.GridBase):
 
     def check_free(self, point: ArrayLike, subject: str) -> Array:
         """The point (2,) [m]; InputError if it is not finite, outside of the grid or in a blocked cell."""
-        given = as_floats(point, subject, last=(2,))
-        if given.ndim != 1:
-            raise InputError(f"{subject} has shape {given.shape}, expected (2,)")
-        x, y = map(float, given)
-        place, row, column = self._locate(x, y)
-        if place == OUTSIDE:
-            raise outside(self, subject, x, y)
+        x, y, place, row, column = self._find_cell(point, subject)
         if place != FREE:
             raise InputError(f"{subject} ({x:g}, {y:g}) lies in cell ({row}, {column}), which is blocked")
         return np.array([x, y])
+
+    def _find_cell(self, point: ArrayLike, subject: str) -> tuple[float, float, int, int, int]:
+        """x and y of a point (2,) [m], the kind of its position, its row and column; InputError outside."""
+        x, y = as_point(point, subject)
+        place, row, column = self._locate(x, y)
+        if place == OUTSIDE:
+            x0, y0, x1, y1 = self.bounds
+            spans = f"x {x0:g} … {x1:g}, y {y0:g} … {y1:g} [m]"
+            raise InputError(f"{subject} ({x:g}, {y:g}) is outside of the grid, which spans {spans}")
+        return x, y, place, row, column
 
     def inflate(self, radius: float, *, clear: str = "cells") -> OccupancyGrid:
         """The grid for the centre of a circular robot of a radius [m]: obstacles, and the outside, are
@@ -187,9 +186,7 @@ class OccupancyGrid(_core.GridBase):
         be at the centres of free cells. Squared distances are compared as integers in half cells; where the
         square of the radius in half cells is an integer up to rounding, that integer is used.
         """
-        grown = one_number(radius, "radius")
-        if grown < 0:
-            raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
+        grown = check_inflation(radius)
         if clear not in RULES:
             raise suggest("choice of clear=", clear, RULES)
         made = OccupancyGrid.__new__(OccupancyGrid)
@@ -220,26 +217,7 @@ class OccupancyGrid(_core.GridBase):
         )
 
 
-FREE: Final = 0
-OUTSIDE: Final = 2
-"""The kinds of positions: in a free cell, in a blocked cell (1), or outside the grid."""
-
-
-def outside(grid: OccupancyGrid, subject: str, x: float, y: float) -> InputError:
-    """The error for a point outside of a grid."""
-    x0, y0, x1, y1 = grid.bounds
-    spans = f"x {x0:g} … {x1:g}, y {y0:g} … {y1:g} [m]"
-    return InputError(f"{subject} ({x:g}, {y:g}) is outside of the grid, which spans {spans}")
-
-
-def _point(point: ArrayLike) -> tuple[float, float]:
-    array = as_floats(point, "point", last=(2,))
-    if array.ndim != 1:
-        raise InputError(f"point has shape {array.shape}, expected (2,)")
-    return float(array[0]), float(array[1])
-
-
-def _cells(blocked: Any) -> npt.NDArray[np.uint8]:
+def _read_cells(blocked: Any) -> npt.NDArray[np.uint8]:
     """The cells as bytes 0 and 1, (rows, columns)."""
     cells = np.asarray(blocked)
     if cells.dtype != np.bool_:

@@ -9,20 +9,16 @@ kept.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Any, Final, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, one_number
 from cspace.errors import InputError
-from cspace.tolerances import ON_WALL
+from cspace.tolerances import OFFSET_PIECE, OFFSET_SLACK
 
-__all__ = ["Offset", "OffsetCurve", "offset_of"]
-
-ROUNDINGS: Final = 100
-"""The tolerance in multiples of ON_WALL: for a boundary point nearer to walls than the radius, and for gaps
-between ends of pieces, which are intersections of circles."""
+__all__ = ["Offset", "OffsetCurve", "find_offset"]
 
 Clearance = Callable[[Array], Any]
 
@@ -100,7 +96,7 @@ class _Tracks(NamedTuple):
         return bent
 
 
-def offset_of(walls: list[Array], clearance: Clearance, wide: float, radius: float) -> Offset:
+def find_offset(walls: list[Array], clearance: Clearance, wide: float, radius: float) -> Offset:
     """The free space of a disc's centre; InputError for a radius that is not positive [m].
 
     walls: rings (n, 2) [m] with free space on their left; clearance: of points (m, 2) [m], from all walls;
@@ -111,13 +107,15 @@ def offset_of(walls: list[Array], clearance: Clearance, wide: float, radius: flo
         raise InputError(f"radius is {reach:g}; it must be positive [m]")
     if reach > wide:
         return Offset(reach, [])  # no point in the bounds is that far from them
-    slack = ROUNDINGS * ON_WALL * wide
-    tracks = _tracks(walls, reach)
-    pieces = [piece for k in range(len(tracks.size)) for piece in _kept(clearance, tracks, k, reach, slack)]
-    return Offset(reach, _linked(tracks, pieces, reach, slack))
+    slack = OFFSET_SLACK * wide
+    tracks = _make_tracks(walls, reach)
+    pieces = [
+        piece for k in range(len(tracks.size)) for piece in _keep_pieces(clearance, tracks, k, reach, slack)
+    ]
+    return Offset(reach, _link_pieces(tracks, pieces, reach, slack))
 
 
-def _tracks(walls: list[Array], radius: float) -> _Tracks:
+def _make_tracks(walls: list[Array], radius: float) -> _Tracks:
     """Walls are rings with free space on their left."""
     rows = []
     nothing = (np.nan, np.nan)
@@ -140,13 +138,13 @@ def _tracks(walls: list[Array], radius: float) -> _Tracks:
     return _Tracks(table[:, :2], table[:, 2:4], table[:, 4], table[:, 5:7], table[:, 7])
 
 
-def _kept(
+def _keep_pieces(
     clearance: Clearance, tracks: _Tracks, k: int, radius: float, slack: float
 ) -> Iterator[tuple[int, float, float]]:
     """The pieces of a track, as (track, from, to), with no wall nearer than the radius."""
     size = float(tracks.size[k])
-    fine = 1e-12 * size
-    cuts = np.unique(np.concatenate([[0.0, size], np.clip(_cuts(tracks, k, radius), 0.0, size)]))
+    fine = OFFSET_PIECE * size
+    cuts = np.unique(np.concatenate([[0.0, size], np.clip(_find_cuts(tracks, k, radius), 0.0, size)]))
     cuts = cuts[np.concatenate([[True], np.diff(cuts) > fine])]
     free = clearance(tracks.at(k, (cuts[1:] + cuts[:-1]) / 2, radius)) >= radius - slack
     edges = np.flatnonzero(np.diff(np.concatenate([[0], free.astype(np.int8), [0]])))
@@ -154,7 +152,7 @@ def _kept(
         yield k, float(cuts[first]), float(cuts[last])
 
 
-def _cuts(tracks: _Tracks, k: int, radius: float) -> Array:
+def _find_cuts(tracks: _Tracks, k: int, radius: float) -> Array:
     """Where other tracks cross a track: lengths along a segment, clockwise angles along an arc."""
     lines, arcs = np.isnan(tracks.angle), ~np.isnan(tracks.angle)
     u, p = tracks.along[lines], tracks.start[lines]
@@ -162,15 +160,15 @@ def _cuts(tracks: _Tracks, k: int, radius: float) -> Array:
         if lines[k]:
             start, along = tracks.start[k], tracks.along[k]
             away = p - start
-            by_lines = _cross(away, u) / _cross(along, u)
+            by_lines = _cross_product(away, u) / _cross_product(along, u)
             off = tracks.center[arcs] - start
-            half = np.sqrt(radius**2 - _cross(along, off) ** 2)
+            half = np.sqrt(radius**2 - _cross_product(along, off) ** 2)
             by_arcs = off @ along + np.array([[1.0], [-1.0]]) * half
             found: Array = np.concatenate([by_lines, by_arcs.ravel()])
             return found[np.isfinite(found)]
         center = tracks.center[k]
         away = p - center
-        half = np.sqrt(radius**2 - _cross(u, away) ** 2)
+        half = np.sqrt(radius**2 - _cross_product(u, away) ** 2)
         feet = away - np.einsum("ij,ij->i", away, u)[:, None] * u
         off = tracks.center[arcs] - center
         apart = np.hypot(*off.T)
@@ -184,12 +182,12 @@ def _cuts(tracks: _Tracks, k: int, radius: float) -> Array:
         return within
 
 
-def _cross(a: Array, b: Array) -> Array:
+def _cross_product(a: Array, b: Array) -> Array:
     crossed: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
     return crossed
 
 
-def _linked(
+def _link_pieces(
     tracks: _Tracks, pieces: list[tuple[int, float, float]], radius: float, slack: float
 ) -> list[OffsetCurve]:
     """Closed curves of pieces; each piece is followed by the piece that starts nearest to its end."""
@@ -208,11 +206,11 @@ def _linked(
                 break
             chain.append(int(np.argmin(apart)))
             left[chain[-1]] = False
-        curves.append(_curve(tracks, [pieces[i] for i in chain], ends[chain]))
+        curves.append(_make_curve(tracks, [pieces[i] for i in chain], ends[chain]))
     return curves
 
 
-def _curve(tracks: _Tracks, pieces: list[tuple[int, float, float]], ends: Array) -> OffsetCurve:
+def _make_curve(tracks: _Tracks, pieces: list[tuple[int, float, float]], ends: Array) -> OffsetCurve:
     track = np.array([k for k, _, _ in pieces], np.int64)
     part: npt.NDArray[np.float64] = np.array([(begin, end) for _, begin, end in pieces])
     return OffsetCurve(ends[:, 0], ends[:, 1], tracks.center[track], tracks.angle[track, None] - part)

@@ -11,7 +11,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST_POINT
 
-__all__ = ["Outline", "bounds_of", "check_bounds", "read_outlines"]
+__all__ = ["Outline", "check_bounds", "find_bounds", "read_outlines"]
 
 Outline = list[Array]
 """One obstacle: its outline (n, 2) [m], then holes."""
@@ -23,13 +23,13 @@ def read_outlines(obstacles: Iterable[Any]) -> list[Outline]:
         raise InputTypeError(
             f"obstacles must be a list of (n, 2) arrays, got an object of type {type(obstacles).__name__}"
         )
-    return [_rings(obstacle, f"obstacle {k}") for k, obstacle in enumerate(obstacles)]
+    return [_read_rings(obstacle, f"obstacle {k}") for k, obstacle in enumerate(obstacles)]
 
 
-def _rings(obstacle: Any, subject: str) -> Outline:
+def _read_rings(obstacle: Any, subject: str) -> Outline:
     if not isinstance(obstacle, np.ndarray) and _is_list_of_rings(obstacle):
-        return [_ring(ring, f"{subject}, ring {i}") for i, ring in enumerate(obstacle)]
-    return [_ring(obstacle, subject)]
+        return [_read_ring(ring, f"{subject}, ring {i}") for i, ring in enumerate(obstacle)]
+    return [_read_ring(obstacle, subject)]
 
 
 def _is_list_of_rings(obstacle: Any) -> bool:
@@ -40,7 +40,7 @@ def _is_list_of_rings(obstacle: Any) -> bool:
         return False
 
 
-def _ring(points: Any, subject: str) -> Array:
+def _read_ring(points: Any, subject: str) -> Array:
     ring = as_floats(points, subject, last=(2,), largest=FARTHEST_POINT)
     if ring.ndim != 2:
         raise InputError(f"{subject} has shape {ring.shape}, expected (n, 2): a row of x and y per corner")
@@ -67,7 +67,7 @@ def check_bounds(bounds: Any) -> Array:
     return np.array(given)
 
 
-def bounds_of(outlines: list[Outline]) -> Array:
+def find_bounds(outlines: list[Outline]) -> Array:
     """The bounding box of all points, extended by a quarter of its longer side (4,); the unit square if
     there are no points."""
     if not outlines:

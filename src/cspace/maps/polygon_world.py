@@ -11,16 +11,16 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, one_number
+from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.maps.discs import disc_outlines
+from cspace.maps.discs import circumscribe_discs
 from cspace.maps.geojson import read_geojson, write_geojson
-from cspace.maps.grow import grown
+from cspace.maps.grow import grow_outlines
 from cspace.maps.occupancy_grid import OccupancyGrid
-from cspace.maps.offset import Offset, offset_of
-from cspace.maps.outlines import Outline, bounds_of, check_bounds, read_outlines
-from cspace.maps.paths import as_path
-from cspace.maps.rasterize import rasterized
+from cspace.maps.offset import Offset, find_offset
+from cspace.maps.outlines import Outline, check_bounds, find_bounds, read_outlines
+from cspace.maps.points import as_path, as_point, check_inflation
+from cspace.maps.rasterize import rasterize_world
 from cspace.maps.repair import GeometryError, check_area, describe_crossings
 from cspace.maps.text import read_polygons, write_polygons
 from cspace.tolerances import ON_WALL
@@ -54,9 +54,9 @@ class PolygonWorld:
         self, obstacles: Iterable[Any], bounds: ArrayLike | None = None, *, repair: bool = False
     ) -> None:
         self._outlines = read_outlines(obstacles)
-        self._bounds = check_bounds(bounds) if bounds is not None else bounds_of(self._outlines)
+        self._bounds = check_bounds(bounds) if bounds is not None else find_bounds(self._outlines)
         said = check_area(self._outlines, repair)
-        self._core = _build(self._outlines, self._bounds)
+        self._core = _build_core(self._outlines, self._bounds)
         self._repairs = (*said, *describe_crossings(self._core, repair))
 
     @classmethod
@@ -90,7 +90,7 @@ class PolygonWorld:
         Each disc becomes a regular circumscribed polygon, which exceeds it by at most radius · (1 / cos(π /
         sides) − 1). InputError for a radius that is not positive, and for fewer than four sides.
         """
-        return cls(disc_outlines(centers, radii, sides), bounds)
+        return cls(circumscribe_discs(centers, radii, sides), bounds)
 
     @classmethod
     def from_grid(cls, grid: OccupancyGrid) -> PolygonWorld:
@@ -138,7 +138,7 @@ class PolygonWorld:
     def walls(self) -> list[Array]:
         """The boundary of free space as closed rings (n, 2) [m], with free space on their left."""
         points, following, ring, _ = self._core.walls()
-        return [points[_in_order(following, first)] for first in np.unique(ring, return_index=True)[1]]
+        return [points[_follow_ring(following, first)] for first in np.unique(ring, return_index=True)[1]]
 
     def save_geojson(self, path: str | PathLike[str]) -> None:
         """Writes obstacles and bounds as GeoJSON; the file is replaced atomically."""
@@ -187,9 +187,9 @@ class PolygonWorld:
         """
         wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
         places = as_floats(keep, "keep", last=(2,)).reshape(-1, 2) if np.size(keep) else np.empty((0, 2))
-        if 0 <= one_number(radius, "radius") <= ON_WALL * wide:
+        if (reach := check_inflation(radius)) <= ON_WALL * wide:
             return self  # less than the rounding of its corners
-        obstacles, bounds = grown(self._outlines, self._bounds, radius, sides, places)
+        obstacles, bounds = grow_outlines(self._outlines, self._bounds, reach, sides, places)
         return PolygonWorld(obstacles, bounds, repair=True)
 
     def offset(self, radius: float) -> Offset:
@@ -199,7 +199,7 @@ class PolygonWorld:
         that is not positive.
         """
         wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
-        return offset_of(self.walls, self.clearance, wide, radius)
+        return find_offset(self.walls, self.clearance, wide, radius)
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
         """Cells of a side `resolution` [m], with cell (0, 0) in the lower left corner of the bounds.
@@ -209,15 +209,12 @@ class PolygonWorld:
         more than 1e-12 of the world's side), a wall without thickness touches it, or it extends beyond the
         bounds. A resolution that divides both sides of the bounds loses no free space.
         """
-        blocked, side = rasterized(self._core, self._bounds, resolution)
+        blocked, side = rasterize_world(self._core, self._bounds, resolution)
         return OccupancyGrid(blocked, side, self._bounds[:2])
 
     def check_free(self, point: ArrayLike, subject: str) -> Array:
         """The point (2,) [m]; InputError if it is not finite, outside the bounds or inside an obstacle."""
-        given = as_floats(point, subject, last=(2,))
-        if given.shape != (2,):
-            raise InputError(f"{subject} has shape {given.shape}, expected (2,)")
-        x, y = map(float, given)
+        x, y = as_point(point, subject)
         if self._core.components_at(x, y):
             return np.array([x, y])
         where = f"{subject} ({x:g}, {y:g})"
@@ -235,14 +232,14 @@ class PolygonWorld:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """Obstacles and bounds: the data that pickle stores."""
-        return _again, (self._outlines, self._bounds)
+        return _make_again, (self._outlines, self._bounds)
 
     def __repr__(self) -> str:
         corners = sum(len(ring) for rings in self._outlines for ring in rings)
         return f"PolygonWorld({len(self._outlines)} obstacles, {corners} corners, bounds={self.bounds})"
 
 
-def _build(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore:
+def _build_core(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore:
     rings = [(ring, owner) for owner, rings in enumerate(outlines) for ring in rings]
     points = np.vstack([np.empty((0, 2)), *(ring for ring, _ in rings)])
     ends = np.cumsum([len(ring) for ring, _ in rings], dtype=np.int32)
@@ -254,11 +251,11 @@ def _build(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore:
     return core
 
 
-def _again(outlines: list[Outline], bounds: Array) -> PolygonWorld:
+def _make_again(outlines: list[Outline], bounds: Array) -> PolygonWorld:
     return PolygonWorld(outlines, bounds, repair=True)
 
 
-def _in_order(following: Any, first: int) -> list[int]:
+def _follow_ring(following: Any, first: int) -> list[int]:
     """The edges of a ring, starting at a given one."""
     found, at = [first], int(following[first])
     while at != first:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from typing import Final
 
 import numpy as np
 import numpy.typing as npt
@@ -11,16 +10,12 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, one_number
 from cspace.errors import InputError
-from cspace.tolerances import MAP_CELLS
+from cspace.tolerances import CELL_ROUNDING, DEFAULT_CELLS, MAP_CELLS
 
-__all__ = ["rasterized"]
-
-FEWEST: Final = 200
-"""Default number of cells along the longer side of the bounds: gaps of a two-hundredth of the world count
-as narrow."""
+__all__ = ["rasterize_world"]
 
 
-def rasterized(
+def rasterize_world(
     core: _core.PolygonCore, bounds: Array, resolution: float | None
 ) -> tuple[npt.NDArray[np.bool_], float]:
     """Which cells (rows, columns) are blocked, and their side [m]; cell (0, 0) is at the lower left of the
@@ -28,14 +23,16 @@ def rasterized(
     xmin, ymin, xmax, ymax = map(float, bounds)
     wide = max(xmax - xmin, ymax - ymin)
     if resolution is None:
-        side = wide / _parts(min(xmax - xmin, ymax - ymin) / wide)
+        side = wide / _choose_parts(min(xmax - xmin, ymax - ymin) / wide)
     else:
         side = one_number(resolution, "resolution")
     if not side > 0:
         raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
     if not wide / side <= MAP_CELLS:
         raise InputError(f"resolution {side:g} makes more than {MAP_CELLS:g} cells along one side")
-    rows, columns = (math.ceil((high - low) / side - 1e-9) for low, high in ((ymin, ymax), (xmin, xmax)))
+    rows, columns = (
+        math.ceil((high - low) / side - CELL_ROUNDING) for low, high in ((ymin, ymax), (xmin, xmax))
+    )
     if rows * columns > MAP_CELLS:
         raise InputError(
             f"resolution {side:g} makes {rows} × {columns} cells; at most {MAP_CELLS:g} make sense"
@@ -45,11 +42,11 @@ def rasterized(
     return blocked.view(np.bool_), side
 
 
-def _parts(flatness: float) -> int:
+def _choose_parts(flatness: float) -> int:
     """The number of cells along the longer side of the bounds; `flatness` is the ratio of the shorter side
     to it. It is 200 or up to half as many more, chosen for the smallest remainder of the shorter side; more
     where the shorter side is no longer than a cell."""
-    first = max(FEWEST, math.ceil(1 / max(flatness, 1 / MAP_CELLS)))
+    first = max(DEFAULT_CELLS, math.ceil(1 / max(flatness, 1 / MAP_CELLS)))
     rows = flatness * np.arange(first, first + first // 2 + 1)
-    left_over = rows + 1e-9 - np.floor(rows + 1e-9)
-    return first + int(np.argmax(left_over <= left_over.min() + 1e-8))
+    left_over = rows + CELL_ROUNDING - np.floor(rows + CELL_ROUNDING)
+    return first + int(np.argmax(left_over <= left_over.min() + 10 * CELL_ROUNDING))

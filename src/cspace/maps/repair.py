@@ -9,6 +9,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError
+from cspace.tolerances import ON_ONE_LINE
 
 __all__ = ["GeometryError", "check_area", "describe_crossings"]
 
@@ -37,7 +38,7 @@ def _is_on_one_line(ring: Array) -> bool:
     away = ring - ring[0]
     far = away[np.argmax(np.sum(away**2, axis=1))]
     distance = np.abs(far[0] * away[:, 1] - far[1] * away[:, 0])
-    return bool(np.all(distance <= 1e-15 * float(far @ far)))
+    return bool(np.all(distance <= ON_ONE_LINE * float(far @ far)))
 
 
 def describe_crossings(core: _core.PolygonCore, repair: bool) -> list[str]:

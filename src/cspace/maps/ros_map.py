@@ -14,8 +14,8 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import InputError, MapError
 from cspace.files import whole_file, write_text
-from cspace.maps.files import map_path, map_text
-from cspace.maps.images import pgm_of, read_image
+from cspace.maps.files import check_map_path, read_map_text
+from cspace.maps.images import encode_pgm, read_image
 
 __all__ = ["RosMap", "read_ros", "write_ros"]
 
@@ -39,18 +39,18 @@ def read_ros(path: str | os.PathLike[str]) -> RosMap:
     A cell is occupied where its darkness exceeds occupied_thresh, free where it is below free_thresh,
     unknown between and where the image is transparent. Fields other than those of map_server are ignored.
     """
-    name = map_path(path)
-    fields = _fields(map_text(path), name)
+    name = check_map_path(path)
+    fields = _read_fields(read_map_text(path), name)
     for field in NEEDED:
         if field not in fields and not (field == "negate" and "occupied_thresh" in fields):
             raise MapError(f"the field '{field}:' is missing", path=name)
     mode = str(fields.get("mode", ("trinary", 0))[0])
     if mode != "trinary":
         raise MapError(f"mode {mode!r} has cells that are half free; only 'trinary' is read", path=name)
-    resolution = _number(fields, "resolution", name)
+    resolution = _get_number(fields, "resolution", name)
     if not 0 < resolution < math.inf:
         raise MapError("resolution must be positive [m]", path=name, line=fields["resolution"][1])
-    occupied, free = _number(fields, "occupied_thresh", name), _number(fields, "free_thresh", name)
+    occupied, free = _get_number(fields, "occupied_thresh", name), _get_number(fields, "free_thresh", name)
     if not 0 <= free <= occupied <= 1:
         message = f"free_thresh {free:g} and occupied_thresh {occupied:g} must be 0 <= free <= occupied <= 1"
         raise MapError(message, path=name, line=fields["occupied_thresh"][1])
@@ -58,10 +58,14 @@ def read_ros(path: str | os.PathLike[str]) -> RosMap:
     if not isinstance(image, str) or not image:
         raise MapError("image must be the path of a PGM or PNG file", path=name, line=fields["image"][1])
     grey = read_image(os.path.join(os.path.dirname(name), image))
-    return RosMap(_kinds(grey, _negate(fields, name), occupied, free), resolution, _origin(fields, name))
+    return RosMap(
+        _classify_cells(grey, _get_negate(fields, name), occupied, free),
+        resolution,
+        _get_origin(fields, name),
+    )
 
 
-def _kinds(grey: Array, negate: bool, occupied: float, free: float) -> npt.NDArray[np.uint8]:
+def _classify_cells(grey: Array, negate: bool, occupied: float, free: float) -> npt.NDArray[np.uint8]:
     """The kinds of cells by their darkness, the lowest row of the image first."""
     darkness = (grey if negate else 1 - grey)[::-1]
     kinds = np.full(grey.shape, 2, np.uint8)
@@ -74,19 +78,19 @@ def write_ros(
     path: str | os.PathLike[str], blocked: npt.NDArray[np.bool_], resolution: float, x: float, y: float
 ) -> None:
     """Writes a map of cells (rows, columns): a YAML file at the path, and a PGM image next to it."""
-    name = map_path(path)
+    name = check_map_path(path)
     stem, ending = os.path.splitext(name)
     if ending not in {".yaml", ".yml"}:
         raise InputError(f"path is {name!r}; a map of ROS ends in .yaml, its image is written beside it")
     image = stem + ".pgm"
     with whole_file(image) as draft:
-        draft.write_bytes(pgm_of(np.where(blocked[::-1], np.uint8(0), np.uint8(254))))
-    text = f"image: {_quoted(os.path.basename(image))}\nmode: trinary\nresolution: {resolution!r}\n"
+        draft.write_bytes(encode_pgm(np.where(blocked[::-1], np.uint8(0), np.uint8(254))))
+    text = f"image: {_quote_name(os.path.basename(image))}\nmode: trinary\nresolution: {resolution!r}\n"
     text += f"origin: [{x!r}, {y!r}, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
     write_text(name, text)
 
 
-def _quoted(text: str) -> str:
+def _quote_name(text: str) -> str:
     """A file name as a YAML scalar."""
     return text if re.fullmatch(r"[\w.-]+", text, re.ASCII) else "'" + text.replace("'", "''") + "'"
 
@@ -95,16 +99,16 @@ def _quoted(text: str) -> str:
 _Fields = dict[str, tuple[Any, int]]
 
 
-def _fields(document: str, name: str) -> _Fields:
+def _read_fields(document: str, name: str) -> _Fields:
     """The fields of a single-level YAML map file: numbers, texts and lists of them."""
     fields: _Fields = {}
     open_list: list[Any] | None = None
     for number, line in enumerate(document.splitlines(), 1):
-        text = _without_comment(line)
+        text = _strip_comment(line)
         if not text.strip() or text.strip() in {"---", "..."} or text.startswith("%"):
             continue
         if (item := re.fullmatch(r"\s*-\s+(.*\S)\s*", text)) and open_list is not None:
-            open_list.append(_scalar(item.group(1)))
+            open_list.append(_read_scalar(item.group(1)))
             continue
         pair = re.fullmatch(r"(\s*)([A-Za-z_][\w.-]*)\s*:(?:\s+(.*?))?\s*", text)
         if pair is None:
@@ -121,19 +125,19 @@ def _fields(document: str, name: str) -> _Fields:
         elif value.startswith("["):
             if not value.endswith("]"):
                 raise MapError("a list in brackets ends in its line", path=name, line=number)
-            fields[field] = ([_scalar(part) for part in value[1:-1].split(",") if part.strip()], number)
+            fields[field] = ([_read_scalar(part) for part in value[1:-1].split(",") if part.strip()], number)
         else:
-            fields[field] = (_scalar(value), number)
+            fields[field] = (_read_scalar(value), number)
     return fields
 
 
-def _without_comment(line: str) -> str:
+def _strip_comment(line: str) -> str:
     """The line up to a # that follows a blank and is outside quotes."""
     found = TEXT.match(line)
     return found.group() if found else ""
 
 
-def _scalar(text: str) -> str | float:
+def _read_scalar(text: str) -> str | float:
     text = text.strip()
     if len(text) >= 2 and text[0] == text[-1] == "'":
         return text[1:-1].replace("''", "'")
@@ -144,21 +148,21 @@ def _scalar(text: str) -> str | float:
     return text
 
 
-def _number(fields: _Fields, field: str, name: str) -> float:
+def _get_number(fields: _Fields, field: str, name: str) -> float:
     value, line = fields[field]
     if not isinstance(value, float) or not math.isfinite(value):
         raise MapError(f"{field} must be a finite number", path=name, line=line)
     return value
 
 
-def _negate(fields: _Fields, name: str) -> bool:
+def _get_negate(fields: _Fields, name: str) -> bool:
     value, line = fields.get("negate", (0.0, 0))
     if value in (0.0, 1.0, "true", "false", "True", "False"):
         return value in (1.0, "true", "True")
     raise MapError("negate must be 0 or 1", path=name, line=line)
 
 
-def _origin(fields: _Fields, name: str) -> tuple[float, float]:
+def _get_origin(fields: _Fields, name: str) -> tuple[float, float]:
     value, line = fields["origin"]
     if not isinstance(value, list) or len(value) not in (2, 3):
         raise MapError("origin must be a list [x, y, yaw]", path=name, line=line)

@@ -8,14 +8,14 @@ from typing import Any
 from cspace.arrays import Array
 from cspace.errors import MapError
 from cspace.files import write_text
-from cspace.maps.files import map_path, map_text
+from cspace.maps.files import check_map_path, read_map_text
 
 __all__ = ["read_polygons", "write_polygons"]
 
 
 def read_polygons(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] | None]:
     """The obstacles, each a list of rings, and the bounds if a line gives them."""
-    name, lines = map_path(path), map_text(path).splitlines()
+    name, lines = check_map_path(path), read_map_text(path).splitlines()
     obstacles: list[list[list[list[float]]]] = []
     bounds: list[float] | None = None
     ring: list[list[float]] | None = None
@@ -29,9 +29,9 @@ def read_polygons(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] 
                 raise MapError("a hole before any polygon", path=name, line=number)
             ring, is_hole = None, True
         elif words[0] == "bounds":
-            bounds = _numbers(words[1:], 4, name, number)
+            bounds = _read_numbers(words[1:], 4, name, number)
         else:
-            point = _numbers(words, 2, name, number)
+            point = _read_numbers(words, 2, name, number)
             if ring is None:
                 ring = []
                 if is_hole:
@@ -55,7 +55,7 @@ def write_polygons(
     write_text(path, "\n".join(["bounds " + " ".join(map(repr, bounds)) + "\n", *rings]))
 
 
-def _numbers(words: list[str], count: int, path: str, line: int) -> list[float]:
+def _read_numbers(words: list[str], count: int, path: str, line: int) -> list[float]:
     try:
         numbers = [float(word) for word in words]
     except ValueError:

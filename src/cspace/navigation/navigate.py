@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from cspace.arrays import one_number
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid, PolygonWorld
+from cspace.maps.points import check_inflation
 from cspace.navigation.disc_robot import plan_disc
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.planners import PLANNERS, find_planner
@@ -88,9 +89,7 @@ def _prepare_world(
         ready: World | None = vars(world).get("_derived", {}).get(key)
         if ready is not None:
             return ready
-    if (grown := one_number(radius, "radius")) < 0:
-        raise InputError(f"radius is {grown:g}; it must be zero or more [m]")
-    if grown:
+    if grown := check_inflation(radius):
         world = _derive_world(world, ("grown", grown), lambda: world.inflate(grown))
     side = None if resolution is None else one_number(resolution, "resolution")
     if side is not None and side <= 0:

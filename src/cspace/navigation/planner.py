@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.maps.paths import as_path
+from cspace.maps.points import as_path
 from cspace.navigation.checks import check_ends
 from cspace.navigation.route import Route, Stats, new_route
 from cspace.search import Planner, Trace

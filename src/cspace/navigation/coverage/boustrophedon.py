@@ -14,7 +14,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
 from cspace.navigation.checks import need_grid
 from cspace.navigation.text import count_things
-from cspace.tolerances import BAR_ROUNDING
+from cspace.tolerances import CELL_ROUNDING
 
 __all__ = ["Coverage", "coverage"]
 
@@ -95,7 +95,7 @@ def coverage(grid: Any, start: Any, width: float | None = None, *, along: str | 
     need_grid(grid)
     if along is not None and along not in ALONG:
         raise suggest("axis", along, ALONG)
-    row, column = locate_free_cell(grid, start)
+    row, column = grid.cell_of(grid.check_free(start, "start"))
     half = count_half_width(grid, width)
     found = [
         (axis, _core._cover(grid, row, column, half, axis == "x")) for axis in ([along] if along else ALONG)
@@ -108,27 +108,15 @@ def coverage(grid: Any, start: Any, width: float | None = None, *, along: str | 
     return Coverage(grid, points, regions, order[0], passes, axis, bar, reached, free, lanes, leftover)
 
 
-def locate_free_cell(grid: Any, point: Any) -> tuple[int, int]:
-    """Row and column of a point in a free cell."""
-    p = as_floats(point, "start", last=(2,))
-    if p.ndim != 1:
-        raise InputError(f"start has shape {p.shape}, expected (2,): x, y")
-    place, row, column = grid._locate(*p.tolist())
-    if place:
-        where = "in a blocked cell" if place == 1 else "outside the grid"
-        raise InputError(f"start ({p[0]:g}, {p[1]:g}) lies {where}; give a point of a free one")
-    return row, column
-
-
 def count_half_width(grid: Any, width: float | None) -> int:
     """The number of cells that the bar extends to either side of the robot's cell."""
     if width is None:
         return 0
     bar = as_floats(width, "width")
     cells = float(bar) / grid.resolution if bar.ndim == 0 else 0.0
-    if cells < 1 - BAR_ROUNDING:
+    if cells < 1 - CELL_ROUNDING:
         raise InputError(f"width is {width!r}; a bar is at least a cell wide, {grid.resolution:g} m")
-    return int(min(floor((cells - 1) / 2 + BAR_ROUNDING), max(grid.rows, grid.columns)))
+    return int(min(floor((cells - 1) / 2 + CELL_ROUNDING), max(grid.rows, grid.columns)))
 
 
 def find_corners(cells: npt.NDArray[np.int32]) -> Array:

@@ -88,11 +88,10 @@ class NavigationFunction:
         return self._core.obstacles
 
     @property
-    def saddles(self) -> Array:
+    def saddles(self) -> Any:
         """The stationary points that are not minima: (k, 2) [m]; one for each obstacle where there is a
         single minimum."""
-        found: Array = self._core.saddles()
-        return found
+        return self._core.saddles()
 
     def __call__(self, points: ArrayLike) -> Any:
         """φ at points (..., 2) [m]: (...), between 0 and 1; 1 in obstacles and outside. It rounds to 1 in

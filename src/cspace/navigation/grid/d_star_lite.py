@@ -15,7 +15,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid
-from cspace.maps.occupancy_grid import outside
+from cspace.maps.points import as_point
 from cspace.navigation.checks import check_ends, need_grid
 from cspace.navigation.grid.search import METRICS, GridPlanner
 from cspace.navigation.route import STATUSES, Route, Stats, new_route
@@ -81,12 +81,8 @@ class DStarLite:
 
     def move(self, point: ArrayLike) -> None:
         """The robot is at a point (2,) [m] now; InputError outside of the grid."""
-        array = as_floats(point, "point", last=(2,))
-        if array.ndim != 1:
-            raise InputError(f"point has shape {array.shape}, expected (2,)")
-        x, y = map(float, array)
-        if self._grid._locate(x, y)[0] == 2:
-            raise outside(self._grid, "point", x, y)
+        x, y = as_point(point, "point")
+        self._grid.cell_of((x, y))
         with self._busy:
             self._core.move(x, y)
             self._ends = (np.array([x, y]), self._ends[1])
