@@ -9,52 +9,20 @@ from types import MappingProxyType
 from typing import Any, Final
 
 from cspace.errors import InputTypeError, suggest
-from cspace.navigation.any_angle import AnyAngle
-from cspace.navigation.bugs import Bug1, Bug2, TangentBug, VoronoiBug
-from cspace.navigation.cells import ApproximateCellsSearch, ExactCells
-from cspace.navigation.fields import (
-    Brushfire,
-    FastMarching,
-    Harmonic,
-    PotentialAStar,
-    PotentialField,
-    RimonKoditschek,
-)
-from cspace.navigation.grid import (
-    AStar,
-    Dijkstra,
-    DStarLiteSearch,
-    FocalSearch,
-    GreedyBestFirst,
-    JumpPointSearch,
-    ThetaStar,
-    Wavefront,
-    WeightedAStar,
-)
+from cspace.navigation import any_angle, bugs, cells, fields, grid, sampling, visibility, voronoi
 from cspace.navigation.planner import PlanePlanner
-from cspace.navigation.sampling import PRM, RRT, RRTStar
-from cspace.navigation.visibility import VisibilityGraphSearch
-from cspace.navigation.voronoi import Voronoi
 
 __all__ = ["PLANNERS", "find_planner"]
 
-_BUGS = (Bug1, Bug2, TangentBug, VoronoiBug)
-_POLYGONS = (VisibilityGraphSearch, Voronoi, AnyAngle, ExactCells, ApproximateCellsSearch)
-_FIELDS = (Brushfire, PotentialField, PotentialAStar, RimonKoditschek, Harmonic, FastMarching)
-_GRID = (Dijkstra, AStar, WeightedAStar, FocalSearch, GreedyBestFirst, JumpPointSearch, ThetaStar, Wavefront)
-_CLASSES: tuple[type[PlanePlanner], ...] = (
-    *_BUGS,
-    *_POLYGONS,
-    *_FIELDS,
-    *_GRID,
-    DStarLiteSearch,
-    PRM,
-    RRT,
-    RRTStar,
+_EXPORTS = (
+    getattr(room, name)
+    for room in (bugs, visibility, voronoi, any_angle, cells, fields, grid, sampling)
+    for name in room.__all__
 )
-
-PLANNERS: Final[Mapping[str, PlanePlanner]] = MappingProxyType({each.name: each() for each in _CLASSES})
-"""Every planner of the library with its default options, by name."""
+PLANNERS: Final[Mapping[str, PlanePlanner]] = MappingProxyType(
+    {each.name: each() for each in _EXPORTS if isinstance(each, type) and issubclass(each, PlanePlanner)}
+)
+"""Every planner that a room exports, with its default options, by name."""
 
 
 @lru_cache(maxsize=64, typed=True)
@@ -77,7 +45,6 @@ def find_planner(planner: object, options: Mapping[str, Any] = MappingProxyType(
     if isinstance(planner, type) and issubclass(planner, PlanePlanner):
         raise InputTypeError(f"planner is the class {planner.__name__}; give an object: {planner.__name__}()")
     if callable(getattr(planner, "plan", None)):
-        raise InputTypeError(
-            f"planner is an object of type {type(planner).__name__}; derive the class from PlanePlanner"
-        )
+        kind = type(planner).__name__
+        raise InputTypeError(f"planner is an object of type {kind}; derive its class from PlanePlanner")
     raise suggest("planner", planner, PLANNERS)
