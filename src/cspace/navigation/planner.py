@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -18,7 +17,6 @@ __all__ = ["PlanePlanner"]
 NO_EVENTS = (np.empty(0, np.int8), np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
 
 
-@dataclass(frozen=True, eq=False)
 class PlanePlanner(Planner):
     """A planner of the plane: `plan(world, start, goal)` returns a Route, start and goal (2,) [m].
 

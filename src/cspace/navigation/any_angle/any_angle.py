@@ -10,7 +10,6 @@ preprocessing.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from cspace import _core
@@ -23,7 +22,6 @@ from cspace.tolerances import CELLS_PER_CORNER, MESHED_CORNERS, RUN_CELLS
 __all__ = ["AnyAngle"]
 
 
-@dataclass(frozen=True, eq=False)
 class AnyAngle(PlanePlanner):
     """The shortest path through a PolygonWorld, or over an OccupancyGrid.
 

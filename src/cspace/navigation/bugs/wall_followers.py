@@ -43,7 +43,6 @@ class BugEvidence(NamedTuple):
     line to the goal enters the wall; else None."""
 
 
-@dataclass(frozen=True, eq=False)
 class WallFollower(PlanePlanner):
     """A robot without a map that follows walls in a PolygonWorld.
 
@@ -95,7 +94,6 @@ class ContactBug(WallFollower):
     )
 
 
-@dataclass(frozen=True, eq=False)
 class Bug1(ContactBug):
     """Bug 1: circumnavigates each obstacle and leaves it at the point nearest to the goal (Lumelsky &
     Stepanov 1987).
@@ -112,7 +110,6 @@ class Bug1(ContactBug):
     kind = 0
 
 
-@dataclass(frozen=True, eq=False)
 class Bug2(ContactBug):
     """Bug 2: follows the M-line from start to goal, and walls back to it (Lumelsky & Stepanov 1987).
 

@@ -10,7 +10,6 @@ this sequence of cells, not in all of free space.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -26,7 +25,6 @@ from cspace.navigation.text import count_things
 __all__ = ["ExactCells", "exact_cells"]
 
 
-@dataclass(frozen=True, eq=False)
 class ExactCells(PlanePlanner):
     """A path through the trapezoids of a PolygonWorld.
 

@@ -10,7 +10,6 @@ stores the logarithm of the probability, to a relative error that does not depen
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
@@ -44,7 +43,6 @@ UNSOLVED: Final = HarmonicEvidence(0.0, 0, 0)
 """Whether walls are known to separate start from goal."""
 
 
-@dataclass(frozen=True, eq=False)
 class Harmonic(PlanePlanner):
     """Descent along the harmonic potential from start to goal, from cell to cell, past no blocked corner.
 

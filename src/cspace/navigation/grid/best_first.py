@@ -26,7 +26,6 @@ __all__ = ["AStar", "Dijkstra", "FocalSearch", "GreedyBestFirst", "JumpPointSear
 __all__ += ["WeightedAStar"]
 
 
-@dataclass(frozen=True, eq=False)
 class AStar(CostPlanner):
     """A*: expands the open node with the smallest f = g + h. The path over the cells of a grid is the
     shortest, with costs the cheapest (Hart, Nilsson & Raphael 1968)."""
@@ -35,7 +34,6 @@ class AStar(CostPlanner):
     summary = "the shortest way over cells, or with costs the cheapest"
 
 
-@dataclass(frozen=True, eq=False)
 class Dijkstra(CostPlanner):
     """Dijkstra's search: A* without an estimate of the remaining distance (Dijkstra 1959)."""
 
@@ -79,7 +77,6 @@ class FocalSearch(CostPlanner):
         return {"bound": self.bound}
 
 
-@dataclass(frozen=True, eq=False)
 class GreedyBestFirst(GridPlanner):
     """Greedy best-first search: expands the open node with the least estimate of the remaining distance. The
     path is found soon and may have any length (Pearl 1984)."""
@@ -91,7 +88,6 @@ class GreedyBestFirst(GridPlanner):
         return {"g_weight": 0.0}
 
 
-@dataclass(frozen=True, eq=False)
 class JumpPointSearch(GridPlanner):
     """Jump point search: A* that goes straight from one cell at which a shortest path may have to turn to the
     next, and looks at far fewer cells (Harabor & Grastien 2011, 2014).

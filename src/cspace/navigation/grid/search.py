@@ -66,7 +66,6 @@ def corners_option(
     return option("never", meaning, choices=CORNERS, subject="corner rule")
 
 
-@dataclass(frozen=True, eq=False)
 class SearchPlanner(PlanePlanner):
     """A planner that is a setting of the compiled search. The trace contains the event "settle": the segment
     from a cell's parent to the cell; its value is the path length [m], or cost [m · cost], to it."""

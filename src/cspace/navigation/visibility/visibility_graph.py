@@ -9,7 +9,6 @@ search by A* with the straight line to the goal as estimate joins start and goal
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -36,7 +35,6 @@ class VisibilityGraph(NamedTuple):
     first."""
 
 
-@dataclass(frozen=True, eq=False)
 class VisibilityGraphSearch(PlanePlanner):
     """The shortest path through a PolygonWorld.
 
