@@ -60,3 +60,10 @@ file(GLOB library_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/librar
 add_library(cspace_library STATIC ${library_files})
 set_target_properties(cspace_library PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
 target_link_libraries(cspace_library PUBLIC cspace_kernels PRIVATE cspace_flags)
+# Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
+# decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
+if(NOT MSVC)
+  set(exact_files ${library_files})
+  list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation)_")
+  set_source_files_properties(${exact_files} PROPERTIES COMPILE_OPTIONS "-ffp-contract=off")
+endif()

@@ -29,7 +29,6 @@ void bind_navigation_grid(nanobind::module_& m);
 void bind_navigation_any_angle(nanobind::module_& m);
 void bind_navigation_polygons(nanobind::module_& m);
 void bind_navigation_voronoi(nanobind::module_& m);
-void bind_navigation_bugs_voronoi(nanobind::module_& m);
 void bind_navigation_sampling(nanobind::module_& m);
 void bind_maps_polygon_world(nanobind::module_& m);
 void bind_navigation_grid_replanning(nanobind::module_& m);

@@ -1,17 +1,21 @@
-// An occupancy grid as Python holds it: cspace.maps.OccupancyGrid is the subclass of its class.
+// How planners' bindings reach the compiled half of an OccupancyGrid, and what searches over it may raise.
 #pragma once
 
 #include <nanobind/nanobind.h>
 
-#include "cspace/maps/bit_grid.hpp"
-#include "cspace/maps/grid_frame.hpp"
-#include "cspace/maps/grid_parts.hpp"
+#include <new>
 
-struct GridWorld {
-    cspace::maps::BitGrid bits;
-    cspace::maps::GridFrame frame;
-    cspace::maps::LazyParts parts{};
-};
+#include "library/maps_grid.hpp"
+
+using cspace::maps::GridWorld;
+
+// The grid behind a Python object; null, with an error set, for other objects.
+inline GridWorld* grid_of(PyObject* value) {
+    if (nanobind::isinstance<GridWorld>(value) && nanobind::inst_ready(value))
+        return nanobind::inst_ptr<GridWorld>(value);
+    PyErr_SetString(PyExc_TypeError, "a search takes a grid");
+    return nullptr;
+}
 
 // For searches that run long: raises what Python's signal handlers raise, Ctrl-C among it. Any code may run
 // in them.
@@ -19,11 +23,22 @@ inline void heed_interrupts() {
     nanobind::gil_scoped_acquire held;
     if (PyErr_CheckSignals()) throw nanobind::python_error();
 }
-// Sets the error of a search that found no memory.
-inline PyObject* refuse_memory(const cspace::maps::BitGrid& grid) {
-    return PyErr_Format(
-        PyExc_MemoryError,
-        "no memory is left for a search over %d x %d cells: a search takes up to 100 bytes per "
-        "cell that it comes to; make the cells larger",
-        grid.rows(), grid.columns());
+
+// What a raw entry returns whose search may throw.
+template <class Search>
+PyObject* search_grid(const GridWorld& grid, const Search& search) {
+    try {
+        return search();
+    } catch (const std::bad_alloc&) {
+        return PyErr_Format(
+            PyExc_MemoryError,
+            "no memory is left for a search over %d x %d cells: a search takes up to 100 bytes per "
+            "cell that it comes to; make the cells larger",
+            grid.rows(), grid.columns());
+    } catch (const std::invalid_argument& refused) {
+        PyErr_SetString(PyExc_ValueError, refused.what());
+    } catch (nanobind::python_error& raised) {
+        raised.restore();
+    }
+    return nullptr;
 }

@@ -1,37 +1,34 @@
-// The compiled half of cspace.maps.PolygonWorld, and how planners' bindings reach it.
+// How planners' raw entries reach the compiled half of a PolygonWorld.
 #pragma once
 
-#include <memory>
-
 #include "bindings.hpp"
-#include "cspace/maps/polygon_world.hpp"
-#include "cspace/navigation/any_angle/polyanya.hpp"
-#include "cspace/navigation/bugs/surroundings.hpp"
-#include "cspace/navigation/bugs/walls.hpp"
-#include "cspace/navigation/cells/cell_stage.hpp"
-#include "cspace/navigation/cells/exact_cells.hpp"
-#include "cspace/navigation/sampling/prm.hpp"
-#include "cspace/navigation/visibility/search.hpp"
-#include "cspace/navigation/voronoi/roadmap.hpp"
+#include "library/maps_polygon_world.hpp"
+#include "navigation_route.hpp"
 
-struct PolygonCore {
-    explicit PolygonCore(cspace::maps::Outlines outlines) : world(std::move(outlines)) {}
+// The core behind a Python object; null, with an error set, for other objects.
+inline const cspace::maps::PolygonCore* polygon_core_of(PyObject* value) {
+    using cspace::maps::PolygonCore;
+    if (nanobind::isinstance<PolygonCore>(value)) return nanobind::inst_ptr<PolygonCore>(value);
+    PyErr_SetString(PyExc_TypeError, "the core of a PolygonWorld");
+    return nullptr;
+}
 
-    cspace::maps::PolygonWorld world;
-    double tolerance = 0;  // how deep in an obstacle rounding may have put a point that lies on a wall [m]
-    // Made when first asked; used with the GIL held.
-    std::unique_ptr<cspace::navigation::Walls> felt;           // what robots touch
-    std::unique_ptr<cspace::navigation::Surroundings> sensed;  // what robots see that keep away from it
-    std::unique_ptr<cspace::navigation::Polyanya> shortest;
-    std::unique_ptr<cspace::navigation::VisibilitySearch> visibility;
-    std::unique_ptr<cspace::navigation::ExactCells> cells;
-    std::unique_ptr<cspace::navigation::voronoi::Roadmap> voronoi;
-    // The last of each kind, which options shape; threads may ask for them at once.
-    cspace::navigation::CellStages quadtree;
-    cspace::navigation::sampling::KeptRoadmap roadmap;
+// What a raw entry of a planner is asked: a way between two points of a world.
+struct PolygonQuestion {
+    const cspace::maps::PolygonCore* core = nullptr;
+    cspace::Point start, goal;
+
+    // False with an error set, or with ends that need a closer look.
+    bool read(PyObject* owner, PyObject* start_given, PyObject* goal_given) {
+        core = polygon_core_of(owner);
+        return core && read_point(start_given, start) && read_point(goal_given, goal);
+    }
 };
 
-// The core behind a Python object; null for other objects.
-inline PolygonCore* polygon_core_of(PyObject* value) {
-    return nanobind::isinstance<PolygonCore>(value) ? nanobind::inst_ptr<PolygonCore>(value) : nullptr;
+// What a raw entry returns where it has no answer: null if an error is set, else None.
+inline PyObject* no_answer() { return PyErr_Occurred() ? nullptr : Py_NewRef(Py_None); }
+// The same for the trace of a question that has no answer.
+inline PyObject* no_trace() {
+    if (!PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "a trace takes a question with an answer");
+    return nullptr;
 }

@@ -37,7 +37,6 @@ NB_MODULE(_core, m) {
     bind_navigation_fields_harmonic(m);
     bind_navigation_fields_function(m);
     bind_navigation_voronoi(m);
-    bind_navigation_bugs_voronoi(m);
     bind_navigation_sampling(m);
     bind_maps_polygon_world(m);
     bind_navigation_grid_replanning(m);

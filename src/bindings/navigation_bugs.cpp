@@ -1,89 +1,96 @@
-// Robots in a polygon world that follow walls, as raw entries.
-#include "navigation_bugs.hpp"
+// Robots without a map in a polygon world, as raw entries: a run is worth a few microseconds.
+#include "library/navigation_bugs.hpp"
 
-#include "cspace/navigation/bugs/bug_1.hpp"
-#include "cspace/navigation/bugs/bug_2.hpp"
-#include "cspace/navigation/bugs/range_robot.hpp"
-#include "cspace/navigation/bugs/tangent_bug.hpp"
+#include "maps_polygon_world.hpp"
 
 using namespace cspace;
-using namespace cspace::maps;
 using namespace cspace::navigation;
 
 namespace {
 
-enum Kind { bug_1_kind, bug_2_kind, tangent_bug_kind };
-enum Word : std::int8_t { go_word, hit_word, follow_word, leave_word };
+// (ring, (x, y)) of where the line to the goal enters the walls that shut it off; None where none do.
+PyObject* tuple_of(const ShutOff& shut) {
+    if (shut.ring < 0) return Py_NewRef(Py_None);
+    return Py_BuildValue("(i(dd))", shut.ring, shut.at.x, shut.at.y);
+}
 
-// Options: kind, hand (0 left, 1 right, 2 either), range.
-struct WallFollower {
-    using Answer = Trip;
-    static constexpr int options = 3;
-    int kind, hand;
-    double range;
+// kind, hand (0 left, 1 right, 2 either), range
+struct WallBug {
+    WallFollower robot{};
+    WallWalk walk;
 
     bool read(PyObject* const* args) {
-        kind = int(PyLong_AsLong(args[0]));
-        hand = int(PyLong_AsLong(args[1]));
-        range = PyFloat_AsDouble(args[2]);
+        robot = {int(PyLong_AsLong(args[0])), int(PyLong_AsLong(args[1])), PyFloat_AsDouble(args[2])};
         return !PyErr_Occurred();
     }
-
-    Trip answer(const PolygonCore& core, Point start, Point goal) const {
-        const nanobind::gil_scoped_release free;
-        const Hand side = hand == 0 ? Hand::left : Hand::right;
-        if (kind == tangent_bug_kind) {
-            RangeRobot robot(*core.felt, start, range);
-            return tangent_bug(robot, goal, hand == 2 ? std::optional<Hand>() : side);
-        }
-        ContactRobot robot(*core.felt, start);
-        return kind == bug_1_kind ? bug_1(robot, goal, side) : bug_2(robot, goal, side);
+    bool run(const PolygonQuestion& q, Trace* trace) {
+        return follow_walls(*q.core, robot, q.start, q.goal, walk, trace);
     }
-
-    // What the walk was made of, in its order: straight ways between stretches along walls.
-    static Trace trace(const Trip& trip, Point goal) {
-        Trace events;
-        const std::vector<Point>& path = trip.route.path;
-        std::size_t at = 0;
-        const auto steps = [&](std::int8_t word, std::size_t end) {
-            for (double walked = 0; at < end; ++at) {
-                walked += distance(path[at], path[at + 1]);
-                events.push_back({word, path[at], path[at + 1],
-                                  word == follow_word ? walked : distance(path[at + 1], goal)});
-            }
-        };
-        const auto point = [&](std::int8_t word) {
-            events.push_back({word, path[at], path[at], distance(path[at], goal)});
-        };
-        for (const Follow& follow : trip.follows) {
-            steps(go_word, follow.first);
-            point(hit_word);
-            steps(follow_word, follow.last);
-            point(leave_word);
-        }
-        steps(go_word, path.size() - 1);
-        return events;
-    }
-
     // hits, leaves, walked, rings, shut
-    static PyObject* evidence(const Trip& trip, const Walls& walls) {
-        std::vector<double> hits, leaves, walked;
-        std::vector<std::int64_t> rings;
-        for (const Follow& f : trip.follows) {
-            const Point hit = trip.route.path[f.first], leave = trip.route.path[f.last];
-            hits.insert(hits.end(), {hit.x, hit.y});
-            leaves.insert(leaves.end(), {leave.x, leave.y});
-            walked.push_back(f.walked);
-            rings.push_back(walls.ring(f.hit.in.name));
-        }
-        return Py_BuildValue("(NNNNN)", rows(hits, 2, NPY_DOUBLE), rows(leaves, 2, NPY_DOUBLE),
-                             rows(walked, 1, NPY_DOUBLE), rows(rings, 1, NPY_INT64), shut_of(trip, walls));
+    PyObject* evidence() const {
+        return Py_BuildValue("(NNNNN)", rows_of(walk.hits), rows_of(walk.leaves),
+                             rows_of(walk.walked, 1, NPY_DOUBLE), rows_of(walk.rings, 1, NPY_INT64),
+                             tuple_of(walk.shut));
     }
 };
 
-// _bug(world, planner, options, evidence, core, kind, hand, range, start, goal)
-PyMethodDef methods[] = {{"_bug", fast(Walk<WallFollower>::route), METH_FASTCALL, nullptr},
-                         {"_bug_trace", fast(Walk<WallFollower>::trace), METH_FASTCALL, nullptr},
+// range, noise (0 for a sensor without), seed
+struct VoronoiBug {
+    DiagramTracer robot{};
+    DiagramWalk walk;
+
+    bool read(PyObject* const* args) {
+        robot = {PyFloat_AsDouble(args[0]), PyFloat_AsDouble(args[1]), PyLong_AsUnsignedLongLong(args[2])};
+        return !PyErr_Occurred();
+    }
+    bool run(const PolygonQuestion& q, Trace* trace) {
+        return trace_diagram(*q.core, robot, q.start, q.goal, walk, trace);
+    }
+    // meets, branches, dead_ends, clearance, scans, shut
+    PyObject* evidence() const {
+        return Py_BuildValue("(NLLdLN)", rows_of(walk.meets), static_cast<long long>(walk.branches),
+                             static_cast<long long>(walk.dead_ends), walk.clearance,
+                             static_cast<long long>(walk.scans), tuple_of(walk.shut));
+    }
+};
+
+// (core, three options, start, goal); false with an error set, or where an end needs a closer look.
+template <class Bug>
+bool run(Bug& bug, PolygonQuestion& q, PyObject* const* args, Py_ssize_t count, Trace* trace) {
+    if (count != 6) return PyErr_SetString(PyExc_TypeError, "too few arguments or too many"), false;
+    if (!bug.read(args + 1) || !q.read(args[0], args[4], args[5])) return false;
+    const nanobind::gil_scoped_release free;
+    return bug.run(q, trace);
+}
+
+// (world, planner, options, evidence, core, …, start, goal) → route, or None where an end needs a closer
+// look. evidence: what evidence is made with.
+template <class Bug>
+PyObject* route(PyObject*, PyObject* const* args, Py_ssize_t count) {
+    Bug bug;
+    PolygonQuestion q;
+    const Watch watch;
+    if (!run(bug, q, args + 4, count - 4, nullptr)) return no_answer();
+    PyObject* made = make_route(args[0], args[1], args[2], q.start, q.goal, bug.walk.route, watch.seconds());
+    PyObject* parts = made ? bug.evidence() : nullptr;
+    PyObject* evidence = parts ? PyObject_CallObject(args[3], parts) : nullptr;
+    Py_XDECREF(parts);
+    return add_evidence(made, evidence);
+}
+
+// (core, …, start, goal) → the arrays of its trace
+template <class Bug>
+PyObject* trace(PyObject*, PyObject* const* args, Py_ssize_t count) {
+    Bug bug;
+    PolygonQuestion q;
+    Trace events;
+    return run(bug, q, args, count, &events) ? trace_arrays(events) : no_trace();
+}
+
+PyMethodDef methods[] = {{"_bug", fast(route<WallBug>), METH_FASTCALL, nullptr},
+                         {"_bug_trace", fast(trace<WallBug>), METH_FASTCALL, nullptr},
+                         {"_voronoi_bug", fast(route<VoronoiBug>), METH_FASTCALL, nullptr},
+                         {"_voronoi_bug_trace", fast(trace<VoronoiBug>), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
 }  // namespace

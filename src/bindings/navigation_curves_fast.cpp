@@ -3,9 +3,8 @@
 #include <cmath>
 
 #include "bindings.hpp"
-#include "cspace/navigation/curves/dubins.hpp"
-#include "cspace/navigation/curves/reeds_shepp.hpp"
-#include "numpy_api.hpp"
+#include "library/navigation_curves.hpp"
+#include "navigation_route.hpp"
 
 namespace nb = nanobind;
 using namespace cspace::navigation;
@@ -60,8 +59,7 @@ struct Question {
 PyObject* distance(PyObject*, PyObject* const* args, Py_ssize_t count) {
     Question q;
     if (!q.read(args, count)) Py_RETURN_NONE;
-    return PyFloat_FromDouble(q.reverses ? reeds_shepp_distance(q.start, q.goal, q.radius)
-                                         : dubins_distance(q.start, q.goal, q.radius));
+    return PyFloat_FromDouble(curve_length(q.reverses, q.start, q.goal, q.radius));
 }
 
 PyObject* pose_array(const CarPose& pose) {
@@ -77,8 +75,7 @@ PyObject* pose_array(const CarPose& pose) {
 PyObject* shortest(PyObject*, PyObject* const* args, Py_ssize_t count) {
     Question q;
     if (!q.read(args, count)) Py_RETURN_NONE;
-    const Curve curve =
-        q.reverses ? reeds_shepp_curve(q.start, q.goal, q.radius) : dubins_curve(q.start, q.goal, q.radius);
+    const Curve curve = find_shortest_curve(q.reverses, q.start, q.goal, q.radius);
     PyObject* pieces = PyTuple_New(curve.count);
     if (!pieces) return nullptr;
     for (int k = 0; k < curve.count; ++k) {
@@ -89,12 +86,8 @@ PyObject* shortest(PyObject*, PyObject* const* args, Py_ssize_t count) {
     return Py_BuildValue("(NNdN)", pose_array(q.start), pose_array(q.goal), q.radius, pieces);
 }
 
-template <PyObject* (*function)(PyObject*, PyObject* const*, Py_ssize_t)>
-PyCFunction as_function() {
-    return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(function));
-}
-PyMethodDef methods[] = {{"_car_distance", as_function<distance>(), METH_FASTCALL, nullptr},
-                         {"_car_shortest", as_function<shortest>(), METH_FASTCALL, nullptr},
+PyMethodDef methods[] = {{"_car_distance", fast(distance), METH_FASTCALL, nullptr},
+                         {"_car_shortest", fast(shortest), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
 }  // namespace

@@ -1,9 +1,5 @@
 // Navigation functions of star and sphere worlds, and descents in them.
-#include <limits>
-#include <optional>
-
-#include "cspace/navigation/fields/navigation_function.hpp"
-#include "maps_polygon_world.hpp"
+#include "library/navigation_fields_polygons.hpp"
 #include "navigation_fields.hpp"
 
 namespace nb = nanobind;
@@ -13,122 +9,69 @@ using namespace cspace::navigation;
 
 namespace {
 
-using Points = Array<const double, nb::shape<-1, 2>>;
 using Discs = Array<const double, nb::shape<-1, 3>>;
-using Function = NavigationFunction;
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
-
-Point point_of(const fields::PointRow& row) { return {row.data()[0], row.data()[1]}; }
-Function::Limits limits_of(std::int64_t squares, std::int64_t steps) {
-    Function::Limits limits;
-    limits.squares = squares, limits.steps = steps;
-    return limits;
-}
+using Function = StarFunction;
 
 // What stands in the way of a star world around a point: (kind, x, y), kind 1 for a ring that is no star and
 // 2 for one that touches another; None for nothing.
-nb::object fault_of(const PolygonCore& core, fields::PointRow goal) {
-    const maps::Settled at = core.world.settle(point_of(goal), core.tolerance);
-    const StarWorld stars(core.world.walls, core.world.space.component[std::size_t(at.triangles.at(0))]);
-    if (stars.fault == StarWorld::none) return nb::none();
-    return nb::make_tuple(int(stars.fault), stars.where.x, stars.where.y);
+nb::object fault_of(const PolygonCore& core, PointRow goal) {
+    const StarFault fault = find_star_fault(core, point_of(goal));
+    if (fault.kind == 0) return nb::none();
+    return nb::make_tuple(fault.kind, fault.where.x, fault.where.y);
 }
-Function* of_polygons(const PolygonCore& core, fields::PointRow goal, double kappa, std::int64_t squares,
+Function* of_polygons(const PolygonCore& core, PointRow goal, double kappa, std::int64_t squares,
                       std::int64_t steps) {
-    nb::gil_scoped_release free;
-    const maps::Settled at = core.world.settle(point_of(goal), core.tolerance);
-    StarWorld stars(core.world.walls, core.world.space.component[std::size_t(at.triangles.at(0))]);
-    SphereWorld model = stars.model();
-    return new Function(std::move(model), std::move(stars), at.at, kappa, limits_of(squares, steps));
+    const nb::gil_scoped_release free;
+    return new Function(core, point_of(goal), kappa, squares, steps);
 }
 // The first disc is the room.
-Function* of_discs(Discs discs, fields::PointRow goal, double kappa, std::int64_t squares,
-                   std::int64_t steps) {
-    const double* d = discs.data();
-    SphereWorld world{{{d[0], d[1]}, d[2]}, {}};
-    for (std::size_t k = 1; k < discs.shape(0); ++k)
-        world.obstacles.push_back({{d[3 * k], d[3 * k + 1]}, d[3 * k + 2]});
-    const Point to = point_of(goal);
-    nb::gil_scoped_release free;
-    return new Function(std::move(world), std::nullopt, to, kappa, limits_of(squares, steps));
+Function* of_discs(Discs discs, PointRow goal, double kappa, std::int64_t squares, std::int64_t steps) {
+    const nb::gil_scoped_release free;
+    return new Function({reinterpret_cast<const Function::Disc*>(discs.data()), discs.shape(0)},
+                        point_of(goal), kappa, squares, steps);
 }
 
-// V at points of free space; infinite elsewhere.
 nb::object log_odds(const Function& function, const PolygonCore* core, Points points) {
     std::vector<double> found;
     {
-        nb::gil_scoped_release free;
-        const auto* p = reinterpret_cast<const Point*>(points.data());
-        for (std::size_t k = 0; k < points.shape(0); ++k) {
-            const bool is_free = !core || core->world.settle(p[k], core->tolerance).is_free();
-            found.push_back(is_free ? function.log_odds(p[k]) : infinity);
-        }
+        const nb::gil_scoped_release free;
+        found = function.log_odds(core, points_of(points));
     }
-    const std::size_t count = found.size();
-    return fields::table(std::move(found), count, 0);
+    return table(std::move(found));
 }
 nb::object phi(const Function& function, Row logs) {
     std::vector<double> found(logs.data(), logs.data() + logs.shape(0));
     for (double& v : found) v = function.phi(v);
-    const std::size_t count = found.size();
-    return fields::table(std::move(found), count, 0);
-}
-nb::object saddles(const Function& function) {
-    std::vector<double> found;
-    for (const Point p : function.proof().saddles) {
-        const Point at = function.from_model(p);
-        found.push_back(at.x), found.push_back(at.y);
-    }
-    const std::size_t count = found.size() / 2;
-    return fields::table(std::move(found), count, 2);
+    return table(std::move(found));
 }
 
-Function::Descent descend(const Function& function, const PolygonCore& core, Point start) {
-    Function::Descent made = function.descend(core.world.settle(start, core.tolerance).at);
-    made.route.path.front() = start;
-    return made;
-}
 // seconds: what making the function took.
 nb::object route(const Function& function, const PolygonCore& core, nb::handle world, nb::handle planner,
-                 nb::handle options, fields::PointRow start, fields::PointRow goal, double seconds,
-                 nb::handle evidence) {
-    const fields::Watch watch;
-    const auto from = core.world.settle(point_of(start), core.tolerance);
-    const auto to = core.world.settle(point_of(goal), core.tolerance);
-    Function::Descent made;
-    if (core.world.shared_component(from, to) == maps::none) {
-        made.route.status = Status::unreachable;
-    } else if (function.kappa() > 0) {
-        nb::gil_scoped_release free;
-        made = descend(function, core, point_of(start));
-        if (made.route.status == Status::found) made.route.path.back() = point_of(goal);
+                 nb::handle options, PointRow start, PointRow goal, double seconds, nb::handle evidence) {
+    const Watch watch;
+    Route found;
+    std::int64_t saddles;
+    {
+        const nb::gil_scoped_release free;
+        found = function.find_route(core, point_of(start), point_of(goal), saddles);
     }
-    made.route.stats.edges += function.proof().squares;
-    nb::object route =
-        fields::made_route(world, planner, options, start, goal, made.route, watch.seconds() + seconds);
-    fields::set_evidence(route, evidence(made.saddles));
-    return route;
+    nb::object made =
+        fields::made_route(world, planner, options, start, goal, found, watch.seconds() + seconds);
+    fields::set_evidence(made, evidence(saddles));
+    return made;
 }
-nb::object trace(const Function& function, const PolygonCore& core, fields::PointRow start) {
-    const Function::Descent made = descend(function, core, point_of(start));
+nb::object trace(const Function& function, const PolygonCore& core, PointRow start) {
     Trace events;
-    const std::vector<Point>& path = made.route.path;
-    for (std::size_t k = 1; k < path.size(); ++k)
-        events.push_back({0, path[k - 1], path[k], function.phi(made.values[k])});
+    function.trace_descent(core, point_of(start), events);
     return fields::arrays_of(events);
 }
-nb::object path(const Function& function, fields::PointRow start) {
-    Function::Descent made;
+nb::object path(const Function& function, PointRow start) {
+    std::vector<Point> found;
     {
-        nb::gil_scoped_release free;
-        made = function.descend(point_of(start));
+        const nb::gil_scoped_release free;
+        found = function.find_path(point_of(start));
     }
-    if (made.route.status != Status::found) return nb::none();
-    std::vector<double> found;
-    for (const Point p : made.route.path) found.push_back(p.x), found.push_back(p.y);
-    const std::size_t count = found.size() / 2;
-    return fields::table(std::move(found), count, 2);
+    return found.empty() ? nb::none() : point_table(found);
 }
 
 constexpr const char* trace_type =
@@ -157,10 +100,10 @@ void bind_navigation_fields_function(nb::module_& m) {
             "Of discs (n, 3): x, y, radius; the first is the room.")
         .def_prop_ro("kappa", &Function::kappa, "The power; zero where none was proven.")
         .def_prop_ro("is_proven", &Function::is_proven, "Whether the goal is proven to be the only minimum.")
-        .def_prop_ro(
-            "obstacles", [](const Function& f) { return f.discs().obstacles.size(); }, "How many.")
-        .def("saddles", saddles, nb::sig("def saddles(self) -> NDArray[numpy.float64]"),
-             "Where they are (k, 2).")
+        .def_prop_ro("obstacles", &Function::obstacles, "How many.")
+        .def(
+            "saddles", [](const Function& function) { return point_table(function.saddles()); },
+            nb::sig("def saddles(self) -> NDArray[numpy.float64]"), "Where they are (k, 2).")
         .def("log_odds", log_odds,
              nb::sig(
                  "def log_odds(self, core: PolygonCore | None, points: ArrayLike) -> NDArray[numpy.float64]"),

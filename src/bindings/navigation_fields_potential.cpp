@@ -1,10 +1,5 @@
 // The potential of a polygon world, and descents in it.
-#include <limits>
-#include <optional>
-
-#include "cspace/navigation/fields/descent.hpp"
-#include "cspace/navigation/fields/start_directions.hpp"
-#include "maps_polygon_world.hpp"
+#include "library/navigation_fields_polygons.hpp"
 #include "navigation_fields.hpp"
 
 namespace nb = nanobind;
@@ -14,83 +9,46 @@ using namespace cspace::navigation;
 
 namespace {
 
+// k, k_r, rho_0, cone, the longest step, the most evaluations of the potential.
 using GainRow = Array<const double, nb::shape<6>>;
-using Points = Array<const double, nb::shape<-1, 2>>;
-
-// k, k_r, rho_0, cone, the longest step, the most looks at the potential.
-struct Settings {
-    Gains gains;
-    double longest;
-    std::int64_t budget;
-};
-Settings settings_of(const GainRow& row) {
-    const double* s = row.data();
-    return {{s[0], s[1], s[2], s[3]}, s[4], std::int64_t(s[5])};
-}
-Point point_of(const fields::PointRow& row) { return {row.data()[0], row.data()[1]}; }
-
-void make(NearWalls* at, const PolygonCore& core, double reach) {
-    new (at) NearWalls(core.world.walls, reach);
-}
-
-Descent descend(const NearWalls& walls, const PolygonCore& core, Point start, Point goal,
-                const Settings& settings) {
-    const maps::Settled from = core.world.settle(start, core.tolerance);
-    const Potential potential(walls, settings.gains, start == goal ? from.at : goal);
-    const double near = std::max(2 * core.tolerance, 1e-7 * settings.gains.rho_0);
-    const std::vector<Point> inward = find_start_directions(core.world.space, from, walls, near);
-    Descent made = DescentRun(walls, potential, settings.longest, settings.budget).run(from.at, inward);
-    made.route.path.front() = start;
-    return made;
-}
 
 // The evidence is what evidence(rest, force, saddles) makes of how it ended.
-nb::object route(const NearWalls& walls, const PolygonCore& core, nb::handle world, nb::handle planner,
-                 nb::handle options, fields::PointRow start, fields::PointRow goal, GainRow row,
-                 nb::handle evidence) {
-    const fields::Watch watch;
-    Descent made;
+nb::object route(const RepellingWalls& walls, const PolygonCore& core, nb::handle world, nb::handle planner,
+                 nb::handle options, PointRow start, PointRow goal, GainRow settings, nb::handle evidence) {
+    const Watch watch;
+    DescentFinding made;
     {
-        nb::gil_scoped_release free;
-        made = descend(walls, core, point_of(start), point_of(goal), settings_of(row));
+        const nb::gil_scoped_release free;
+        made = walls.descend(core, point_of(start), point_of(goal), settings.data(), nullptr);
     }
     nb::object route = fields::made_route(world, planner, options, start, goal, made.route, watch.seconds());
-    fields::set_evidence(route, evidence(int(made.rest), made.force, made.saddles));
+    fields::set_evidence(route, evidence(made.rest, made.force, made.saddles));
     return route;
 }
 
-nb::object trace(const NearWalls& walls, const PolygonCore& core, fields::PointRow start,
-                 fields::PointRow goal, GainRow row) {
-    const Descent made = descend(walls, core, point_of(start), point_of(goal), settings_of(row));
+nb::object trace(const RepellingWalls& walls, const PolygonCore& core, PointRow start, PointRow goal,
+                 GainRow settings) {
     Trace events;
-    const std::vector<Point>& path = made.route.path;
-    for (std::size_t k = 1; k < path.size(); ++k) events.push_back({0, path[k - 1], path[k], made.values[k]});
-    if (made.rest != Rest::goal) events.push_back({1, path.back(), path.back(), made.values.back()});
+    walls.descend(core, point_of(start), point_of(goal), settings.data(), &events);
     return fields::arrays_of(events);
 }
 
-nb::object values(const NearWalls& walls, const PolygonCore& core, fields::PointRow goal, Points points,
-                  GainRow row) {
+nb::object values(const RepellingWalls& walls, const PolygonCore& core, PointRow goal, Points points,
+                  GainRow settings) {
     std::vector<double> found;
     {
-        nb::gil_scoped_release free;
-        const Potential potential(walls, settings_of(row).gains, point_of(goal));
-        const auto* p = reinterpret_cast<const Point*>(points.data());
-        for (std::size_t k = 0; k < points.shape(0); ++k)
-            found.push_back(core.world.settle(p[k], core.tolerance).is_free()
-                                ? potential.value(p[k])
-                                : std::numeric_limits<double>::infinity());
+        const nb::gil_scoped_release free;
+        found = walls.values(core, point_of(goal), points_of(points), settings.data());
     }
-    const std::size_t count = found.size();
-    return fields::table(std::move(found), count, 0);
+    return table(std::move(found));
 }
 
 }  // namespace
 
 void bind_navigation_fields_potential(nb::module_& m) {
-    nb::class_<NearWalls>(m, "NearWalls", "The walls of a PolygonWorld, sorted by where they repel.")
-        .def("__init__", make, "core"_a, "reach"_a)
-        .def_prop_ro("reach", &NearWalls::reach, "How far walls repel [m].")
+    nb::class_<RepellingWalls>(m, "NearWalls", "The walls of a PolygonWorld, sorted by where they repel.")
+        .def(nb::init<const PolygonCore&, double>(), "core"_a, "reach"_a)
+        .def_prop_ro("reach", &RepellingWalls::reach, "How far walls repel [m].")
         .def("route", route,
              nb::sig("def route(self, core: PolygonCore, world: Any, planner: str, options: dict[str, Any], "
                      "start: ArrayLike, goal: ArrayLike, settings: ArrayLike, evidence: Any) -> Any"),

@@ -1,12 +1,7 @@
 // D* Lite over an occupancy grid of its own.
-#include <cstring>
-
-#include "arrays.hpp"
-#include "bindings.hpp"
-#include "cspace/navigation/grid/d_star_lite.hpp"
-#include "cspace/navigation/grid/grid_route.hpp"
+#include "library/navigation_replanning.hpp"
 #include "maps_grid.hpp"
-#include "numpy_api.hpp"
+#include "maps_points.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -17,94 +12,44 @@ namespace {
 
 using Cells = Array<const std::int32_t, nb::shape<-1, 2>>;
 
-struct Replanner {
-    DStarLite search;
-    maps::GridFrame frame;
-    Point start, goal;
-};
-
-maps::Cell cell_of(const GridWorld& world, Point p) {
-    maps::Cell cell = {0, 0};
-    if (world.frame.locate(world.bits, p, cell) == maps::CellState::outside)
-        throw nb::value_error("a point within the grid");
-    return cell;
-}
-
-void new_replanner(Replanner* at, const GridWorld& world, int corners, double x0, double y0, double x1,
+void new_replanner(GridReplanner* at, const GridWorld& world, int corners, double x0, double y0, double x1,
                    double y1) {
-    if (corners < 0 || corners >= corner_rules) throw nb::value_error("a corner rule that the core knows");
-    const Point start = {x0, y0}, goal = {x1, y1};
-    new (at)
-        Replanner{{world.bits, static_cast<Corners>(corners), cell_of(world, start), cell_of(world, goal)},
-                  world.frame,
-                  start,
-                  goal};
+    new (at) GridReplanner(world, corners, {x0, y0}, {x1, y1});
 }
 
-void set_cells(Replanner& planner, Cells cells, bool blocked) {
-    for (std::size_t k = 0; k < cells.shape(0); ++k) {
-        const maps::Cell cell = {cells(k, 0), cells(k, 1)};
-        if (!planner.search.grid().contains(cell)) throw nb::value_error("cells within the grid");
-    }
-    nb::gil_scoped_release free;
-    for (std::size_t k = 0; k < cells.shape(0); ++k) planner.search.set({cells(k, 0), cells(k, 1)}, blocked);
-}
-
-void move_to(Replanner& planner, double x, double y) {
-    maps::Cell cell = {0, 0};
-    if (planner.frame.locate(planner.search.grid(), {x, y}, cell) == maps::CellState::outside)
-        throw nb::value_error("a point within the grid");
-    planner.start = {x, y};
-    planner.search.move(cell);
-}
-
-PyObject* array_of(npy_intp rows, npy_intp columns, int type, const void* from, std::size_t bytes) {
-    npy_intp shape[2] = {rows, columns};
-    PyObject* array = PyArray_SimpleNew(2, shape, type);
-    if (!array) throw nb::python_error();
-    if (rows) std::memcpy(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)), from, bytes);
-    return array;
+void set_cells(GridReplanner& planner, Cells cells, bool blocked) {
+    const nb::gil_scoped_release free;
+    planner.set_cells({cells.data(), 2 * cells.shape(0)}, blocked);
 }
 
 // (status, path (m, 2), length, nodes, edges, settled cells (k, 2))
-nb::tuple replan(Replanner& planner) {
-    GridAnswer answer;
-    std::vector<std::uint32_t> order;
+nb::tuple replan(GridReplanner& planner) {
     std::vector<std::int32_t> settled;
     Route route;
     {
-        nb::gil_scoped_release free;
-        answer.effort.order = &order;
-        answer.found = planner.search.replan(answer.effort);
-        if (answer.found) planner.search.way(answer.cells);
-        draw_route(planner.frame, planner.start, planner.goal, answer, route);
-        for (const std::uint32_t number : order) {
-            const maps::Cell cell = planner.search.grid().cell(number);
-            settled.insert(settled.end(), {cell.row, cell.column});
-        }
+        const nb::gil_scoped_release free;
+        route = planner.replan(settled);
     }
-    const auto count = npy_intp(route.path.size());
-    return nb::make_tuple(
-        int(route.status),
-        nb::steal(array_of(count, 2, NPY_DOUBLE, route.path.data(), sizeof(Point) * std::size_t(count))),
-        route.length, route.stats.nodes, route.stats.edges,
-        nb::steal(array_of(npy_intp(order.size()), 2, NPY_INT32, settled.data(), 8 * order.size())));
+    const std::size_t count = settled.size() / 2;
+    return nb::make_tuple(int(route.status), point_table(route.path), route.length, route.stats.nodes,
+                          route.stats.edges, table(std::move(settled), count, 2));
 }
 
-void unpack(const Replanner& planner, Array<std::uint8_t, nb::ndim<2>> into) {
-    const maps::BitGrid& grid = planner.search.grid();
-    if (int(into.shape(0)) != grid.rows() || int(into.shape(1)) != grid.columns())
+void unpack(const GridReplanner& planner, Array<std::uint8_t, nb::ndim<2>> into) {
+    if (int(into.shape(0)) != planner.rows() || int(into.shape(1)) != planner.columns())
         throw nb::value_error("an array of the shape of the grid");
-    grid.unpack(into.data());
+    planner.unpack(into.data());
 }
 
 }  // namespace
 
 void bind_navigation_grid_replanning(nb::module_& m) {
-    nb::class_<Replanner>(m, "GridReplanner", "The compiled half of cspace.navigation.DStarLite.")
+    nb::class_<GridReplanner>(m, "GridReplanner", "The compiled half of cspace.navigation.DStarLite.")
         .def("__init__", new_replanner, "world"_a, "corners"_a, "x0"_a, "y0"_a, "x1"_a, "y1"_a)
         .def("set", set_cells, "cells"_a, "blocked"_a, "Cells (k, 2) become blocked or free.")
-        .def("move", move_to, "x"_a, "y"_a, "The robot has moved.")
+        .def(
+            "move", [](GridReplanner& planner, double x, double y) { planner.move_to({x, y}); }, "x"_a, "y"_a,
+            "The robot has moved.")
         .def("replan", replan, "Status, path, length, nodes, edges, and the cells settled, in their order.")
         .def("unpack", unpack, "into"_a, "Writes a byte per cell.");
 }

@@ -38,25 +38,22 @@ void destroy(PyObject* self) {
     Py_DECREF(type);
 }
 
-PyObject* array_of(const double* numbers, int dimensions, npy_intp* shape) {
-    PyObject* array = PyArray_SimpleNew(dimensions, shape, NPY_DOUBLE);
-    if (array && shape[0])
-        std::memcpy(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)), numbers,
-                    sizeof(double) * std::size_t(dimensions == 1 ? shape[0] : shape[0] * shape[1]));
+PyObject* array_of(const Point* points, const npy_intp* shape, int dimensions) {
+    PyObject* array = PyArray_SimpleNew(dimensions, const_cast<npy_intp*>(shape), NPY_DOUBLE);
+    const std::size_t bytes = array ? PyArray_NBYTES(reinterpret_cast<PyArrayObject*>(array)) : 0;
+    if (bytes) std::memcpy(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)), points, bytes);
     return array;
 }
 PyObject* get_path(PyObject* self, void*) {
-    npy_intp shape[2] = {route_of(self)->count, 2};
-    return array_of(route_of(self)->path, 2, shape);
+    const npy_intp shape[2] = {route_of(self)->count, 2};
+    return array_of(route_of(self)->path, shape, 2);
 }
-PyObject* get_start(PyObject* self, void*) {
-    npy_intp shape[1] = {2};
-    return array_of(route_of(self)->start, 1, shape);
+PyObject* point_array(const Point& point) {
+    const npy_intp two = 2;
+    return array_of(&point, &two, 1);
 }
-PyObject* get_goal(PyObject* self, void*) {
-    npy_intp shape[1] = {2};
-    return array_of(route_of(self)->goal, 1, shape);
-}
+PyObject* get_start(PyObject* self, void*) { return point_array(route_of(self)->start); }
+PyObject* get_goal(PyObject* self, void*) { return point_array(route_of(self)->goal); }
 PyObject* get_length(PyObject* self, void*) { return PyFloat_FromDouble(route_of(self)->length); }
 PyObject* get_verdict(PyObject* self, void*) { return PyLong_FromLong(long(route_of(self)->status)); }
 PyObject* get_numbers(PyObject* self, void*) {
@@ -91,7 +88,7 @@ PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
                        {Py_tp_doc, const_cast<char*>("The compiled half of cspace.navigation.Route.")},
                        {0, nullptr}};
 PyType_Spec spec = {
-    "cspace._core.RouteBase", offsetof(RouteObject, path), sizeof(double),
+    "cspace._core.RouteBase", offsetof(RouteObject, path), sizeof(Point),
     Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_DISALLOW_INSTANTIATION, slots};
 
 bool is_points(PyObject* value) {
@@ -106,22 +103,22 @@ bool is_points(PyObject* value) {
 PyObject* route_make(PyObject*, PyObject* args) {
     PyObject *world, *planner, *options, *start, *goal, *path, *evidence;
     int status;
-    double length, seconds, ends[4];
+    double length, seconds;
+    Point ends[2];
     long long nodes, edges;
     if (!PyArg_ParseTuple(args, "OUOOOiOdLLdO", &world, &planner, &options, &start, &goal, &status, &path,
                           &length, &nodes, &edges, &seconds, &evidence))
         return nullptr;
-    if (!is_points(path) || !read_point(start, ends) || !read_point(goal, ends + 2) || status < 0 ||
+    if (!is_points(path) || !read_point(start, ends[0]) || !read_point(goal, ends[1]) || status < 0 ||
         status > int(Status::local_minimum)) {
         PyErr_SetString(PyExc_TypeError, "_route_make takes points as float64 arrays and a status it knows");
         return nullptr;
     }
     auto* array = reinterpret_cast<PyArrayObject*>(path);
-    RouteObject* made = new_route(world, planner, options == Py_None ? nullptr : options, ends, ends + 2,
-                                  static_cast<Status>(status), int(PyArray_DIM(array, 0)));
+    RouteObject* made = new_route(world, planner, options, ends[0], ends[1], static_cast<Status>(status),
+                                  int(PyArray_DIM(array, 0)));
     if (!made) return nullptr;
-    if (made->count)
-        std::memcpy(made->path, PyArray_DATA(array), sizeof(double) * 2 * std::size_t(made->count));
+    if (made->count) std::memcpy(made->path, PyArray_DATA(array), sizeof(Point) * std::size_t(made->count));
     made->length = length;
     made->seconds = seconds;
     made->stats = {nodes, edges};
@@ -158,53 +155,64 @@ bool read_number(PyObject* item, double* number) {
 
 }  // namespace
 
-bool read_point(PyObject* value, double* point) {
+bool read_point(PyObject* value, Point& point) {
     if (PyTuple_CheckExact(value) && PyTuple_GET_SIZE(value) == 2)
-        return read_number(PyTuple_GET_ITEM(value, 0), point) &&
-               read_number(PyTuple_GET_ITEM(value, 1), point + 1);
+        return read_number(PyTuple_GET_ITEM(value, 0), &point.x) &&
+               read_number(PyTuple_GET_ITEM(value, 1), &point.y);
     if (!PyArray_Check(value)) return false;
     auto* array = reinterpret_cast<PyArrayObject*>(value);
     if (PyArray_TYPE(array) != NPY_DOUBLE || PyArray_NDIM(array) != 1 || PyArray_DIM(array, 0) != 2 ||
         !PyArray_ISCARRAY_RO(array))
         return false;
-    std::memcpy(point, PyArray_DATA(array), 2 * sizeof(double));
-    return std::isfinite(point[0]) && std::isfinite(point[1]);
+    std::memcpy(&point, PyArray_DATA(array), sizeof point);
+    return std::isfinite(point.x) && std::isfinite(point.y);
 }
 
-RouteObject* new_route(PyObject* world, PyObject* planner, PyObject* options, const double* start,
-                       const double* goal, Status status, int count) {
+RouteObject* new_route(PyObject* world, PyObject* planner, PyObject* options, Point start, Point goal,
+                       Status status, int count) {
     if (!route_type) {
         PyErr_SetString(PyExc_ImportError, "cspace.navigation.route has not named the class of routes");
         return nullptr;
     }
-    auto* made = reinterpret_cast<RouteObject*>(route_type->tp_alloc(route_type, 2 * Py_ssize_t(count)));
+    auto* made = reinterpret_cast<RouteObject*>(route_type->tp_alloc(route_type, count));
     if (!made) return nullptr;
     made->world = Py_NewRef(world);
     made->planner = Py_NewRef(planner);
-    made->options = options ? Py_NewRef(options) : nullptr;
-    std::copy(start, start + 2, made->start);
-    std::copy(goal, goal + 2, made->goal);
+    made->options = options && options != Py_None ? Py_NewRef(options) : nullptr;
+    made->start = start, made->goal = goal;
     made->status = status;
     made->count = count;
     made->length = std::numeric_limits<double>::infinity();
     return made;
 }
 
-PyObject* make_route(PyObject* world, PyObject* planner, PyObject* options, const double* start,
-                     const double* goal, const Route& route, double seconds) {
+PyObject* make_route(PyObject* world, PyObject* planner, PyObject* options, Point start, Point goal,
+                     const Route& route, double seconds) {
     // Who is at the goal already stays: a path of one point, whatever the planner's own way to say so is.
-    const bool stays = route.status == Status::found && start[0] == goal[0] && start[1] == goal[1];
+    const bool stays = route.status == Status::found && start == goal;
     const std::size_t count = stays ? 1 : route.path.size();
     RouteObject* made = new_route(world, planner, options, start, goal, route.status, int(count));
     if (!made) return nullptr;
-    for (std::size_t i = 0; i < count; ++i) {
-        made->path[2 * i] = stays ? start[0] : route.path[i].x;
-        made->path[2 * i + 1] = stays ? start[1] : route.path[i].y;
-    }
+    std::copy_n(stays ? &start : route.path.data(), count, made->path);
     made->length = stays ? 0 : route.length;
     made->seconds = seconds;
     made->stats = route.stats;
     return reinterpret_cast<PyObject*>(made);
+}
+
+PyObject* add_evidence(PyObject* route, PyObject* evidence) {
+    if (route && evidence) {
+        route_of(route)->evidence = evidence;
+        return route;
+    }
+    Py_XDECREF(route);
+    Py_XDECREF(evidence);
+    return nullptr;
+}
+
+PyObject* rows_of(const std::vector<Point>& points, int each) {
+    npy_intp shape[2] = {npy_intp(points.size()) / each, 2 * each};
+    return array_of(points.data(), shape, 2);
 }
 
 PyObject* trace_arrays(const Trace& trace) {

@@ -46,10 +46,7 @@ constexpr unsigned onward(Corners rule, unsigned around, int d) {
         }
     }
     if (rule == Corners::never && is_diagonal(d)) open &= bit_of(d) | bit_of(d + 1) | bit_of(d - 1);
-    unsigned allowed = 0;
-    for (int k = 0; k < 8; ++k)
-        if ((open & bit_of(k)) && moves::allowed(rule, around, k)) allowed |= bit_of(k);
-    return allowed;
+    return open & allowed_moves[std::size_t(rule)][around];
 }
 
 using OnwardTable = std::array<std::array<std::uint8_t, 512>, 8>;

@@ -1,0 +1,26 @@
+#include "navigation_coverage.hpp"
+
+#include "cspace/navigation/coverage/cover.hpp"
+#include "maps_grid_state.hpp"
+
+namespace cspace::navigation {
+
+CoverageFinding cover_grid(const maps::GridWorld& world, int row, int column, int half, bool along_rows) {
+    const maps::BitGrid& grid = world.state().bits;
+    if (grid.blocked(row, column) || !grid.contains({row, column}) || half < 0)
+        throw std::invalid_argument("a free cell, and a bar");
+    Coverage made = cover(grid, {row, column}, half, along_rows);
+    std::vector<std::int32_t> path;
+    path.reserve(2 * made.path.size());
+    for (const maps::Cell cell : made.path) path.push_back(cell.row), path.push_back(cell.column);
+    return {std::move(path),
+            std::move(made.region),
+            std::move(made.order),
+            std::move(made.passes),
+            made.reached,
+            made.free,
+            made.lanes,
+            made.leftover};
+}
+
+}  // namespace cspace::navigation
