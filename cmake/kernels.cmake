@@ -60,10 +60,17 @@ file(GLOB library_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/librar
 add_library(cspace_library STATIC ${library_files})
 set_target_properties(cspace_library PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden)
 target_link_libraries(cspace_library PUBLIC cspace_kernels PRIVATE cspace_flags)
+if(NOT MSVC)
+  target_compile_options(cspace_library PRIVATE -ffunction-sections -fdata-sections)  # so that the linker drops what nobody calls
+endif()
 # Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
 # decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
 if(NOT MSVC)
   set(exact_files ${library_files})
   list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation)_")
   set_source_files_properties(${exact_files} PROPERTIES COMPILE_OPTIONS "-ffp-contract=off")
+endif()
+if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # as in src/bindings
+  target_precompile_headers(cspace_library PRIVATE <algorithm> <array> <atomic> <cmath> <functional> <map> <memory> <mutex>
+                                                   <optional> <queue> <span> <string> <utility> <vector>)
 endif()

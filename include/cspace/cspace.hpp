@@ -223,6 +223,7 @@
 #include "cspace/navigation/following/range_sensor.hpp"
 #include "cspace/navigation/following/track.hpp"
 #include "cspace/navigation/following/vehicle.hpp"
+#include "cspace/navigation/grid/answer.hpp"
 #include "cspace/navigation/grid/d_star_lite.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/grid_search.hpp"

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "cspace/navigation/grid/grid_route.hpp"
+#include "cspace/navigation/grid/search.hpp"
 #include "maps_grid_state.hpp"
 
 namespace cspace::navigation {
@@ -42,10 +43,10 @@ class Borrowed {
     std::unique_ptr<Scratch> own_;
 };
 
-// Calls use(answer) with what a search finds; false where an end lies in no free cell.
-template <class Use>
+// Writes what a search finds, and the cells that it settles if they are asked for; false where an end lies in
+// no free cell.
 bool search_cells(maps::GridWorld::State& world, const GridQuestion& question, Look look,
-                  std::vector<Settled>* settled, const Use& use) {
+                  std::vector<Settled>* settled, GridFinding& finding) {
     maps::Cell from, to;
     if (!world.find_cell(question.start, from) || !world.find_cell(question.goal, to)) return false;
     const GridQuery query{static_cast<GridPlanner>(question.planner),
@@ -60,7 +61,10 @@ bool search_cells(maps::GridWorld::State& world, const GridQuestion& question, L
     auto& [nodes, answer] = borrowed.get();
     answer.settled = settled;
     find_way(world.bits, from, to, query, nodes, answer, &world.parts, look);
-    use(answer);
+    draw_route(world.frame, question.start, question.goal, answer, finding.route);
+    finding.found = answer.found;
+    finding.cost = answer.cost, finding.least = answer.least;
+    finding.parts = answer.parts;
     return true;
 }
 
@@ -75,18 +79,14 @@ bool GridQuestion::has_bounds() const { return costs || planner == int(GridPlann
 
 bool find_grid_route(const maps::GridWorld& world, const GridQuestion& question, Look look,
                      GridFinding& finding) {
-    return search_cells(world.state(), question, look, nullptr, [&](const GridAnswer& answer) {
-        draw_route(world.state().frame, question.start, question.goal, answer, finding.route);
-        finding.found = answer.found;
-        finding.cost = answer.cost, finding.least = answer.least;
-        finding.parts = answer.parts;
-    });
+    return search_cells(world.state(), question, look, nullptr, finding);
 }
 
 bool list_settled_cells(const maps::GridWorld& world, const GridQuestion& question, Look look,
                         std::vector<std::int32_t>& cells, std::vector<double>& g) {
     std::vector<Settled> settled;
-    if (!search_cells(world.state(), question, look, &settled, [](const GridAnswer&) {})) return false;
+    GridFinding finding;
+    if (!search_cells(world.state(), question, look, &settled, finding)) return false;
     for (const auto& [cell, parent, way] : settled) {
         cells.insert(cells.end(), {cell.row, cell.column, parent.row, parent.column});
         g.push_back(world.resolution() * way);

@@ -13,22 +13,20 @@ using maps::Settled;
 
 namespace {
 
-Route find_route(PolygonCore::State& core, PolygonPlanner planner, Settled& from, Settled& to, Trace* trace) {
-    switch (planner) {
-        case PolygonPlanner::any_angle: {
-            const maps::ConvexMesh& mesh = core.world.mesh();
-            for (Settled* end : {&from, &to})
-                for (Index& t : end->triangles) t = mesh.of_triangle[std::size_t(t)];
-            return core.polyanya.get<Polyanya>(mesh).solve(from.at, from.triangles, to.at, to.triangles,
-                                                           trace);
-        }
-        case PolygonPlanner::visibility:
-            return core.visibility.get<VisibilitySearch>(core.world).solve(from, to, trace);
-        case PolygonPlanner::exact_cells:
-            return core.exact_cells.get<ExactCells>(core.world).solve(from.at, to.at, trace);
-    }
-    return {};
+Route find_any_angle(PolygonCore::State& core, Settled& from, Settled& to, Trace* trace) {
+    const maps::ConvexMesh& mesh = core.world.mesh();
+    for (Settled* end : {&from, &to})
+        for (Index& t : end->triangles) t = mesh.of_triangle[std::size_t(t)];
+    return core.polyanya.get<Polyanya>(mesh).solve(from.at, from.triangles, to.at, to.triangles, trace);
 }
+Route find_by_visibility(PolygonCore::State& core, Settled& from, Settled& to, Trace* trace) {
+    return core.visibility.get<VisibilitySearch>(core.world).solve(from, to, trace);
+}
+Route find_by_cells(PolygonCore::State& core, Settled& from, Settled& to, Trace* trace) {
+    return core.exact_cells.get<ExactCells>(core.world).solve(from.at, to.at, trace);
+}
+// By the numbers of PolygonPlanner.
+constexpr decltype(&find_any_angle) planners[] = {find_any_angle, find_by_visibility, find_by_cells};
 
 }  // namespace
 
@@ -39,7 +37,7 @@ bool find_polygon_route(const PolygonCore& core, PolygonPlanner planner, Point s
     if (!from.is_free() || !to.is_free()) return false;
     route.status = Status::unreachable;
     if (state.world.shared_component(from, to) == maps::none) return true;
-    route = find_route(state, planner, from, to, trace);
+    route = planners[int(planner)](state, from, to, trace);
     if (!(from.at == start && to.at == goal)) restore_ends(route, start, goal);
     return true;
 }

@@ -5,6 +5,7 @@
 #include "check.hpp"
 #include "cspace/navigation/fields/fast_marching.hpp"
 #include "cspace/navigation/fields/potential_search.hpp"
+#include "cspace/navigation/grid/search.hpp"
 #include "random.hpp"
 
 using namespace cspace;

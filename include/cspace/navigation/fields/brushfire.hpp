@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cspace/navigation/fields/diagram.hpp"
-#include "cspace/navigation/grid/search.hpp"
+#include "cspace/navigation/grid/answer.hpp"
 #include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {

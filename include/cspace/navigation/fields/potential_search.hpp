@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "cspace/navigation/fields/clearance.hpp"
+#include "cspace/navigation/grid/answer.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
 #include "cspace/navigation/grid/order.hpp"
-#include "cspace/navigation/grid/search.hpp"
 #include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "cspace/maps/grid_frame.hpp"
-#include "cspace/navigation/grid/search.hpp"
+#include "cspace/navigation/grid/answer.hpp"
+#include "cspace/navigation/grid/order.hpp"
 #include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {
