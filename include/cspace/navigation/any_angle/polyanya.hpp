@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "cspace/maps/convex_mesh.hpp"
+#include "cspace/math/isa.hpp"
 #include "cspace/math/predicates.hpp"
 #include "cspace/navigation/any_angle/vertex_table.hpp"
 #include "cspace/navigation/route.hpp"
@@ -190,7 +191,7 @@ class IntervalSearch {
     }
 
     // The least length from r through the interval to the goal.
-    double estimate(Point r, Point left, Point right) const {
+    CSPACE_INLINE double estimate(Point r, Point left, Point right) const {
         Point t = goal_;
         const Point along = left - right;
         const double t_side = cross(along, t - right);
