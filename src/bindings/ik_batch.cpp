@@ -1,4 +1,4 @@
-// robot.ik of many goals in one call.
+// solver.solve of many goals in one call.
 #include <algorithm>
 
 #include "ik_shared.hpp"
@@ -11,13 +11,13 @@ constexpr Py_ssize_t most_threads = 1024;
 
 // What a call for many goals works on.
 struct Batch {
-    PyObject *robot, *goals, *q, *count, *status;
+    PyObject *solver, *goals, *q, *count, *status;
     Py_ssize_t threads;
 };
 bool read_batch(PyObject* args, const char* function, npy_intp numbers, Batch& b) {
-    if (!PyArg_ParseTuple(args, "OOOOOn", &b.robot, &b.goals, &b.q, &b.count, &b.status, &b.threads))
+    if (!PyArg_ParseTuple(args, "OOOOOn", &b.solver, &b.goals, &b.q, &b.count, &b.status, &b.threads))
         return false;
-    const ik::BuiltArm* arm = arm_of(b.robot);
+    const ik::BuiltArm* arm = arm_of(b.solver);
     const npy_intp n = PyArray_Check(b.count) ? PyArray_SIZE(reinterpret_cast<PyArrayObject*>(b.count)) : -1;
     if (arm && arm->room && (numbers != 3 || arm->has_few_joints) && n >= 0 &&
         is_doubles(b.goals, numbers * n) && is_doubles(b.q, n * arm->room * arm->dof) &&
@@ -25,7 +25,7 @@ bool read_batch(PyObject* args, const char* function, npy_intp numbers, Batch& b
         is_writable(b.count) && is_writable(b.status))
         return true;
     PyErr_Format(PyExc_TypeError,
-                 "%s takes a robot with a solver and contiguous arrays: float64, count int64, status uint8",
+                 "%s takes a solver and contiguous arrays: float64, count int64, status uint8",
                  function);
     return false;
 }
@@ -43,21 +43,21 @@ PyObject* solve_all(const Batch& b, SolveRows solve) {
                                int(std::clamp<Py_ssize_t>(b.threads, 1, most_threads))};
     std::size_t refused;
     Py_BEGIN_ALLOW_THREADS;
-    refused = solve(*arm_of(b.robot), rows);
+    refused = solve(*arm_of(b.solver), rows);
     Py_END_ALLOW_THREADS;
     return PyLong_FromSize_t(refused);
 }
 
 }  // namespace
 
-// _ik_many(robot, goals (n, 4, 4), q (n, k_max, dof), count (n,), status (n,), threads) → index of the first
+// _ik_many(solver, goals (n, 4, 4), q (n, k_max, dof), count (n,), status (n,), threads) → index of the first
 // goal that is no pose, or n
 PyObject* ik_many(PyObject*, PyObject* args) {
     Batch b;
     return read_batch(args, "_ik_many", 16, b) ? solve_all(b, ik::solve_goals) : nullptr;
 }
 
-// _ik_positions(robot, points (n, 3), q (n, k_max, dof), count (n,), status (n,), threads) → index of the
+// _ik_positions(solver, points (n, 3), q (n, k_max, dof), count (n,), status (n,), threads) → index of the
 // first point that is not finite or too far away, or n
 PyObject* ik_positions(PyObject*, PyObject* args) {
     Batch b;

@@ -35,20 +35,20 @@ nb::object to_python(const Value& value) {
     }
 }
 
-nb::object numbers(nb::handle robot) {
-    const ik::BuiltArm* arm = arm_of(robot.ptr());
-    if (!arm || !arm->room) throw nb::type_error("_ik_numbers takes a robot with a solver");
-    const auto [solver, plan] = ik::plan_numbers(*arm);
-    return nb::make_tuple(solver, to_python(plan));
+nb::object numbers(nb::handle solver) {
+    const ik::BuiltArm* arm = arm_of(solver.ptr());
+    if (!arm || !arm->room) throw nb::type_error("_ik_numbers takes a solver");
+    const auto [kind, plan] = ik::plan_numbers(*arm);
+    return nb::make_tuple(kind, to_python(plan));
 }
 
-nb::object outline(nb::handle robot) {
-    const ik::BuiltArm* arm = arm_of(robot.ptr());
+nb::object outline(nb::handle solver) {
+    const ik::BuiltArm* arm = arm_of(solver.ptr());
     return arm ? to_python(ik::plan_outline(*arm)) : nb::dict();
 }
 
-double determinant(nb::handle robot, const std::vector<double>& goal, int formulation, double a0) {
-    const ik::BuiltArm* arm = arm_of(robot.ptr());
+double determinant(nb::handle solver, const std::vector<double>& goal, int formulation, double a0) {
+    const ik::BuiltArm* arm = arm_of(solver.ptr());
     if (!arm || !ik::has_hidden_determinant(*arm) || goal.size() != 16)
         throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
     return ik::hidden_determinant(*arm, goal.data(), formulation, a0);
@@ -57,9 +57,9 @@ double determinant(nb::handle robot, const std::vector<double>& goal, int formul
 }  // namespace
 
 void bind_ik_description(nb::module_& m) {
-    m.def("_ik_numbers", &numbers, "robot"_a,
-          "How a robot is solved (closed, general, few_joints, any) and the numbers of its plan.");
-    m.def("_ik_plan", &outline, "robot"_a, "What the solver of a robot rests on.");
-    m.def("_ik_determinant", &determinant, "robot"_a, "goal"_a, "formulation"_a, "a0"_a,
+    m.def("_ik_numbers", &numbers, "solver"_a,
+          "How the arm of a solver is solved (closed, general, few_joints, any) and the numbers of its plan.");
+    m.def("_ik_plan", &outline, "solver"_a, "What a solver rests on.");
+    m.def("_ik_determinant", &determinant, "solver"_a, "goal"_a, "formulation"_a, "a0"_a,
           "The determinant of a general arm at one hidden angle.");
 }

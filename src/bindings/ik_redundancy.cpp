@@ -1,6 +1,7 @@
 // Arms with redundant joints: plain checked arrays in, filled arrays out.
 #include "library/ik_redundancy.hpp"
 
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
@@ -9,7 +10,6 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "ik_chains.hpp"
 #include "ik_shared.hpp"
 
 namespace nb = nanobind;
@@ -20,16 +20,15 @@ namespace {
 
 using ik::RedundantSolver;
 
-void make_solver(RedundantSolver* at, Matrix axes, Matrix points, Array<const bool, nb::ndim<1>> prismatic,
-                 Goal T_zero, Row lower, Row upper, Row weight) {
-    const int n = int(axes.shape(0));
-    if (n < 1 || n > ik::max_joints || axes.shape(1) != 3 || points.shape(1) != 3 ||
-        int(points.shape(0)) != n || int(prismatic.shape(0)) != n)
-        throw nb::value_error("one to sixteen joints, with as many axes, points and types");
-    const ik::Chain chain = chain_from(n, axes.data(), points.data(), prismatic.data(), T_zero.data());
-    for (const Row& row : {lower, upper, weight})
-        if (int(row.shape(0)) != n) throw nb::value_error("limits and weights need one number per joint");
-    new (at) RedundantSolver(chain, lower.data(), upper.data(), weight.data());
+ik::Solver& solver_from(nb::handle object) {
+    ik::Solver* solver = solver_of(object.ptr());
+    if (!solver) throw nb::type_error("a solver comes first");
+    return *solver;
+}
+RedundantSolver& redundant_of(nb::handle object) { return solver_from(object).redundant(); }
+SolverObject& slots_of(nb::handle object) {
+    solver_from(object);
+    return *reinterpret_cast<SolverObject*>(object.ptr());
 }
 
 void require_sizes(bool fit) {
@@ -37,10 +36,11 @@ void require_sizes(bool fit) {
 }
 
 // Fills q (N, room, n) with NaN behind the solutions; the solutions themselves stand for what they show.
-void solve_rows(RedundantSolver& solver, const std::vector<int>& locked_joint, Matrix at, Goals goals,
+void solve_rows(nb::handle object, const std::vector<int>& locked_joint, Matrix at, Goals goals,
                 Row unconstrained, Array<double, nb::ndim<3>> q, Array<std::int8_t, nb::ndim<2>> branch,
                 Array<bool, nb::ndim<2>> self_motion, Array<std::int64_t, nb::ndim<1>> count,
                 Array<std::uint8_t, nb::ndim<1>> status, int threads) {
+    RedundantSolver& solver = redundant_of(object);
     const ik::LockedArm& locked = solver.lock(locked_joint);
     const std::size_t n = std::size_t(solver.chain().n), N = goals.shape(0), room = q.shape(1);
     require_sizes(at.shape(1) == n && (at.shape(0) == N || at.shape(0) == 1) && q.shape(0) == N &&
@@ -53,19 +53,11 @@ void solve_rows(RedundantSolver& solver, const std::vector<int>& locked_joint, M
                           branch.data(), self_motion.data(), count.data(), status.data(), threads});
 }
 
-void nearest_rows(const RedundantSolver& solver, Goals goals, Matrix seeds, Array<double, nb::ndim<2>> q,
-                  Array<bool, nb::ndim<1>> found, int threads) {
-    const std::size_t n = std::size_t(solver.chain().n), N = goals.shape(0);
-    require_sizes(seeds.shape(1) == n && (seeds.shape(0) == N || seeds.shape(0) == 1) && q.shape(0) == N &&
-                  q.shape(1) == n && found.shape(0) == N);
-    const nb::gil_scoped_release release;
-    solver.find_nearest(goals.data(), N, seeds.data(), seeds.shape(0) != 1, q.data(), found.data(), threads);
-}
-
 // Per interval: (lower, upper, branch, what ends it below, at which side, what ends it above, at which side),
 // and a configuration inside; and whether none is missing.
 using IntervalRow = std::tuple<double, double, int, int, int, int, int, std::vector<double>>;
-std::tuple<std::vector<IntervalRow>, bool> intervals_of(RedundantSolver& solver, int parameter, Goal goal) {
+std::tuple<std::vector<IntervalRow>, bool> intervals_of(nb::handle object, int parameter, Goal goal) {
+    RedundantSolver& solver = redundant_of(object);
     bool complete;
     std::vector<ik::FeasibleInterval> found;
     {
@@ -79,66 +71,65 @@ std::tuple<std::vector<IntervalRow>, bool> intervals_of(RedundantSolver& solver,
     return {std::move(rows), complete};
 }
 
-// All solutions at the values of one locked joint: q (m, 16, n), NaN behind them.
-bool sweep_rows(RedundantSolver& solver, int parameter, Goal goal, Row at, Row values,
-                Array<double, nb::ndim<3>> q, Array<std::int8_t, nb::ndim<2>> branch,
-                Array<std::int64_t, nb::ndim<1>> count) {
-    const std::size_t n = std::size_t(solver.chain().n), m = values.shape(0);
-    constexpr std::size_t room = ik::max_solutions;
-    require_sizes(at.shape(0) == n && q.shape(0) == m && q.shape(1) == room && q.shape(2) == n &&
-                  branch.shape(0) == m && branch.shape(1) == room && count.shape(0) == m);
-    return solver.sweep(parameter, goal.data(), at.data(), values.data(), m, q.data(), branch.data(),
-                        count.data());
+// near= is answered by the compiled entry from now on.
+void serve_near(nb::handle object, nb::handle about) {
+    PyObject*& slot = slots_of(object).nearest_about;
+    if (!slot) slot = about.inc_ref().ptr();
+}
+// locked= with these joints is answered by the compiled entry from now on.
+void serve_locked(nb::handle object, const std::vector<int>& locked_joint, nb::handle about) {
+    SolverObject& slots = slots_of(object);
+    LockedSet made = {0, &slots.solver->redundant().lock(locked_joint)};
+    for (const int joint : locked_joint) made.joints |= 1u << joint;
+    for (const LockedSet& known : slots.locked_sets)
+        if (known.joints == made.joints) return;
+    if (!slots.locked_about) slots.locked_about = about.inc_ref().ptr();
+    slots.locked_sets.push_back(made);
+}
+
+using Spans = Array<const double, nb::shape<-1, 2>>;
+std::vector<ik::Span> united(const Spans& intervals) {
+    std::vector<ik::Span> out;
+    for (std::size_t k = 0; k < intervals.shape(0); ++k)
+        out.emplace_back(intervals.data()[2 * k], intervals.data()[2 * k + 1]);
+    return ik::unite_intervals(std::move(out));
 }
 
 }  // namespace
 
 void bind_ik_redundancy(nb::module_& m) {
-    nb::class_<RedundantSolver>(m, "RedundantSolver", "Inverse kinematics of an arm with joints to spare.")
-        .def("__init__", &make_solver, "axes"_a, "points"_a, "prismatic"_a, "T_zero"_a, "lower"_a, "upper"_a,
-             "weight"_a, "Builds the solver from screws at zero, limits, and weights of distances (n,).")
-        .def_prop_ro("locked", &RedundantSolver::default_locked,
-                     "The joints held unless others are named, ascending.")
-        .def_prop_ro("redundancy_degree", &RedundantSolver::redundant_joints,
-                     "Joints beyond those that the tip needs to move as it can.")
-        .def("redundancy_degree_with", &RedundantSolver::redundant_with, "locked"_a,
-             "How many dimensions stay free with joints held.")
-        .def_prop_ro("closed_form", &RedundantSolver::has_closed_form,
-                     "Whether the joints that move have a closed form.")
-        .def(
-            "serve_near",
-            [](nb::handle self, nb::handle robot, nb::handle about) {
-                if (!PyObject_TypeCheck(robot.ptr(), robot_type)) throw nb::type_error("a robot comes first");
-                ik_set_near(robot.ptr(), &nb::cast<const RedundantSolver&>(self), self.ptr(), about.ptr());
-            },
-            "robot"_a, "about"_a,
-            "Answers near= of this robot from now on, for one goal without other keywords.")
-        .def(
-            "serve_locked",
-            [](nb::handle self, nb::handle robot, const std::vector<int>& locked_joint, nb::handle about) {
-                if (!PyObject_TypeCheck(robot.ptr(), robot_type)) throw nb::type_error("a robot comes first");
-                const nb::object names = robot.attr("joint_names");
-                auto& solver = nb::cast<RedundantSolver&>(self);
-                if (!PyTuple_CheckExact(names.ptr()) || int(nb::len(names)) != solver.chain().n)
-                    throw nb::type_error("the solver is that of the robot's joints");
-                ik_add_locked(robot.ptr(), self.ptr(), names.ptr(), about.ptr(), locked_joint,
-                              &solver.lock(locked_joint));
-            },
-            "robot"_a, "locked"_a, "about"_a,
-            "Answers locked= with these joints from now on, for one goal without other keywords.")
-        .def(
-            "room",
-            [](RedundantSolver& solver, const std::vector<int>& locked_joint) {
-                return solver.room_for(solver.lock(locked_joint));
-            },
-            "locked"_a, "Rows that the solutions of a goal may need.")
-        .def("solve", &solve_rows, "locked"_a, "at"_a, "goals"_a, "unconstrained"_a, "q"_a, "branch"_a,
-             "self_motion"_a, "count"_a, "status"_a, "threads"_a,
-             "Every solution with joints held at their values.")
-        .def("nearest", &nearest_rows, "goals"_a, "seeds"_a, "q"_a, "found"_a, "threads"_a,
-             "The nearest configuration to each seed.")
-        .def("intervals", &intervals_of, "parameter"_a, "goal"_a,
-             "The feasible intervals of one locked joint.")
-        .def("sweep", &sweep_rows, "parameter"_a, "goal"_a, "at"_a, "values"_a, "q"_a, "branch"_a, "count"_a,
-             "Every solution at many values of one locked joint; whether none is missing.");
+    m.def(
+        "_ik_default_locked", [](nb::handle solver) { return redundant_of(solver).default_locked(); },
+        "solver"_a, "The redundant joints that are locked unless others are named, ascending.");
+    m.def(
+        "_ik_redundancy_degree",
+        [](nb::handle solver, const std::vector<int>& locked) {
+            RedundantSolver& arm = redundant_of(solver);
+            return locked.empty() ? arm.redundant_joints() : arm.redundant_with(locked);
+        },
+        "solver"_a, "locked"_a, "How many dimensions a goal leaves free with these joints locked.");
+    m.def(
+        "_ik_has_closed_form", [](nb::handle solver) { return redundant_of(solver).has_closed_form(); },
+        "solver"_a, "Whether the joints that move have a closed form.");
+    m.def("_ik_serve_near", &serve_near, "solver"_a, "about"_a,
+          "Answers near= from now on, for one goal without other keywords.");
+    m.def("_ik_serve_locked", &serve_locked, "solver"_a, "locked"_a, "about"_a,
+          "Answers locked= with these joints from now on, for one goal without other keywords.");
+    m.def(
+        "_ik_locked_room",
+        [](nb::handle solver, const std::vector<int>& locked) {
+            RedundantSolver& arm = redundant_of(solver);
+            return arm.room_for(arm.lock(locked));
+        },
+        "solver"_a, "locked"_a, "Rows that the solutions of a goal may need with these joints locked.");
+    m.def("_ik_locked_rows", &solve_rows, "solver"_a, "locked"_a, "at"_a, "goals"_a, "unconstrained"_a, "q"_a,
+          "branch"_a, "self_motion"_a, "count"_a, "status"_a, "threads"_a,
+          "Every solution with joints locked at their values.");
+    m.def("_ik_intervals", &intervals_of, "solver"_a, "parameter"_a, "goal"_a,
+          "The feasible intervals of one joint.");
+    m.def("_ik_union", [](Spans intervals) { return united(intervals); }, "intervals"_a,
+          "Intervals (k, 2) as disjoint ones, ascending.");
+    m.def(
+        "_ik_spread", [](Spans intervals, int n) { return ik::spread_values(united(intervals), n); },
+        "intervals"_a, "n"_a, "The middles of n equal parts of all that intervals (k, 2) cover.");
 }

@@ -12,7 +12,7 @@ PyTypeObject* base_type = nullptr;       // SolutionsBase
 
 }  // namespace
 
-SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, int dof, ik::Status status) {
+SolutionsObject* new_solutions(PyObject* solver, const double* goal, int count, int dof, ik::Status status) {
     if (!solutions_type) {
         PyObject* room = PyImport_ImportModule("cspace.ik.solutions");
         if (!room) return nullptr;
@@ -25,7 +25,7 @@ SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, i
     auto* made = reinterpret_cast<SolutionsObject*>(
         solutions_type->tp_alloc(solutions_type, count * dof + (2 * count + 7) / 8));
     if (!made) return nullptr;
-    made->robot = Py_NewRef(robot);
+    made->solver = Py_NewRef(solver);
     std::memcpy(made->goal, goal, sizeof made->goal);
     made->count = count;
     made->dof = dof;
@@ -36,16 +36,16 @@ SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, i
 
 namespace {
 
-// A robot may hold its own results as an attribute, so results take part in the search for cycles.
+// A solver may hold its own results as an attribute, so results take part in the search for cycles.
 int traverse(PyObject* self, visitproc visit, void* arg) {
     Py_VISIT(Py_TYPE(self));
-    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->robot);
+    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->solver);
     Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->note);
     Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->about);
     return 0;
 }
 int clear(PyObject* self) {
-    Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->robot);
+    Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->solver);
     Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->note);
     Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->about);
     return 0;
@@ -78,8 +78,8 @@ PyObject* get_goal(PyObject* self, void*) {
     for (int i = 0; i < (is_position ? 3 : 16); ++i) out[i] = goal[is_position ? 4 * i + 3 : i];
     return array;
 }
-PyObject* get_robot(PyObject* self, void*) {
-    return Py_NewRef(reinterpret_cast<SolutionsObject*>(self)->robot);
+PyObject* get_solver(PyObject* self, void*) {
+    return Py_NewRef(reinterpret_cast<SolutionsObject*>(self)->solver);
 }
 PyObject* get_note(PyObject* self, void*) {
     PyObject* note = reinterpret_cast<SolutionsObject*>(self)->note;
@@ -112,14 +112,14 @@ int truth(PyObject* self) { return reinterpret_cast<SolutionsObject*>(self)->cou
 PyGetSetDef attributes[] = {
     {"q", get_q, nullptr, "The configurations (k, dof) [rad, m].", nullptr},
     {"goal", get_goal, nullptr, "The goal T_base_tip (4, 4).", nullptr},
-    {"robot", get_robot, nullptr, "The robot that was asked.", nullptr},
+    {"solver", get_solver, nullptr, "The solver that was asked.", nullptr},
     {"_note", get_note, nullptr, "Why rows are missing, if a filter removed them.", nullptr},
     {"_about", get_about, nullptr, "What there is to say about a goal that is no pose, or None.", nullptr},
     {"_verdict", get_verdict, nullptr, "The status as a number; 8 more if solutions may be missing.",
      nullptr},
     {"_branch_numbers", get_branch_numbers, nullptr, "Which branch of the closed form each row comes from.",
      nullptr},
-    {"_is_self_motion", get_is_self_motion, nullptr, "Which rows stand for a family.", nullptr},
+    {"_is_self_motion", get_is_self_motion, nullptr, "Which rows stand for a self-motion.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
                        {Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
@@ -144,18 +144,19 @@ int ik_add_result_type(PyObject* module) {
     return 0;
 }
 
-// _ik_make(robot, goal (4, 4), status, q (k, dof), branches (k), families (k), note, about=None) → solutions
+// _ik_make(solver, goal (4, 4), status, q (k, dof), branches (k), self_motion (k), note, about=None) →
+// solutions
 PyObject* ik_make(PyObject*, PyObject* args) {
-    PyObject *robot, *goal, *q, *branches, *self_motions, *note, *about = Py_None;
+    PyObject *solver, *goal, *q, *branches, *self_motions, *note, *about = Py_None;
     int status;
-    if (!PyArg_ParseTuple(args, "OOiOO!O!O|O", &robot, &goal, &status, &q, &PyTuple_Type, &branches,
+    if (!PyArg_ParseTuple(args, "OOiOO!O!O|O", &solver, &goal, &status, &q, &PyTuple_Type, &branches,
                           &PyTuple_Type, &self_motions, &note, &about))
         return nullptr;
     const Py_ssize_t k = PyTuple_GET_SIZE(branches);
     const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
     const npy_intp dof = shaped ? PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 1) : -1;
-    if (!PyObject_TypeCheck(robot, robot_type) || status < 0 || (status & ~ik::incomplete) > last_status) {
-        PyErr_SetString(PyExc_TypeError, "_ik_make takes a robot and a status it knows");
+    if (!solver_of(solver) || status < 0 || (status & ~ik::incomplete) > last_status) {
+        PyErr_SetString(PyExc_TypeError, "_ik_make takes a solver and a status it knows");
         return nullptr;
     }
     if (!shaped || k > 1 << 24 || PyTuple_GET_SIZE(self_motions) != k || !is_doubles(q, k * dof) ||
@@ -163,7 +164,7 @@ PyObject* ik_make(PyObject*, PyObject* args) {
         PyErr_SetString(PyExc_TypeError, "_ik_make takes contiguous float64 arrays and tuples of one length");
         return nullptr;
     }
-    SolutionsObject* made = new_solutions(robot, data_of(goal), int(k), int(dof),
+    SolutionsObject* made = new_solutions(solver, data_of(goal), int(k), int(dof),
                                           static_cast<ik::Status>(status & ~ik::incomplete));
     if (!made) return nullptr;
     made->complete = !(status & ik::incomplete);

@@ -10,14 +10,14 @@ using namespace cspace;
 
 namespace {
 
-// The arm of a call whose first argument is a robot and the others rows of joints; null with an error set.
-const ik::BuiltArm* arm_for(const char* function, PyObject* robot, std::initializer_list<PyObject*> rows,
+// The arm of a call whose first argument is a solver and the others rows of joints; null with an error set.
+const ik::BuiltArm* arm_for(const char* function, PyObject* solver, std::initializer_list<PyObject*> rows,
                             npy_intp k) {
-    const ik::BuiltArm* arm = arm_of(robot);
+    const ik::BuiltArm* arm = arm_of(solver);
     bool fits = arm && arm->room && k >= 0;
     for (PyObject* row : rows) fits = fits && is_doubles(row, k * arm->dof);
     if (fits) return arm;
-    PyErr_Format(PyExc_TypeError, "%s takes a robot with a solver and contiguous float64 rows of its joints",
+    PyErr_Format(PyExc_TypeError, "%s takes a solver and contiguous float64 rows of its joints",
                  function);
     return nullptr;
 }
@@ -31,13 +31,13 @@ PyObject* array_of(const std::vector<double>& values, npy_intp rows, npy_intp co
 
 }  // namespace
 
-// _ik_direction(robot, q (n,), whole_pose) → the unit joint velocity (n,) of the self-motion through q, or
+// _ik_direction(solver, q (n,), whole_pose) → the unit joint velocity (n,) of the self-motion through q, or
 // None
 PyObject* ik_direction(PyObject*, PyObject* args) {
-    PyObject *robot, *at;
+    PyObject *solver, *at;
     int whole_pose;
-    if (!PyArg_ParseTuple(args, "OOp", &robot, &at, &whole_pose)) return nullptr;
-    const ik::BuiltArm* arm = arm_for("_ik_direction", robot, {at}, 1);
+    if (!PyArg_ParseTuple(args, "OOp", &solver, &at, &whole_pose)) return nullptr;
+    const ik::BuiltArm* arm = arm_for("_ik_direction", solver, {at}, 1);
     if (!arm) return nullptr;
     double d[ik::max_joints];
     if (!ik::self_motion_direction(*arm, data_of(at), whole_pose, d)) Py_RETURN_NONE;
@@ -47,13 +47,13 @@ PyObject* ik_direction(PyObject*, PyObject* args) {
     return out;
 }
 
-// _ik_follow(robot, q (n,), direction (n,), whole_pose) → (configurations (m, n), tangents (m, n), end): the
+// _ik_follow(solver, q (n,), direction (n,), whole_pose) → (configurations (m, n), tangents (m, n), end): the
 // family through q from there on
 PyObject* ik_follow(PyObject*, PyObject* args) {
-    PyObject *robot, *at, *direction;
+    PyObject *solver, *at, *direction;
     int whole_pose;
-    if (!PyArg_ParseTuple(args, "OOOp", &robot, &at, &direction, &whole_pose)) return nullptr;
-    const ik::BuiltArm* arm = arm_for("_ik_follow", robot, {at, direction}, 1);
+    if (!PyArg_ParseTuple(args, "OOOp", &solver, &at, &direction, &whole_pose)) return nullptr;
+    const ik::BuiltArm* arm = arm_for("_ik_follow", solver, {at, direction}, 1);
     if (!arm) return nullptr;
     const ik::SelfMotionCurve curve =
         ik::follow_self_motion(*arm, data_of(at), data_of(direction), whole_pose);
@@ -62,17 +62,17 @@ PyObject* ik_follow(PyObject*, PyObject* args) {
                          curve.end);
 }
 
-// _ik_onto(robot, q (n,), near (k, n), along (k, n), whole_pose) → (configurations (k, n), tangents (k, n)):
+// _ik_onto(solver, q (n,), near (k, n), along (k, n), whole_pose) → (configurations (k, n), tangents (k, n)):
 // each row of `near` brought onto the family through q, NaN where that failed
 PyObject* ik_onto(PyObject*, PyObject* args) {
-    PyObject *robot, *at, *near, *along;
+    PyObject *solver, *at, *near, *along;
     int whole_pose;
-    if (!PyArg_ParseTuple(args, "OOOOp", &robot, &at, &near, &along, &whole_pose)) return nullptr;
-    const ik::BuiltArm* arm = arm_for("_ik_onto", robot, {at}, 1);
+    if (!PyArg_ParseTuple(args, "OOOOp", &solver, &at, &near, &along, &whole_pose)) return nullptr;
+    const ik::BuiltArm* arm = arm_for("_ik_onto", solver, {at}, 1);
     if (!arm) return nullptr;
     const npy_intp n = arm->dof;
     const npy_intp k = PyArray_Check(near) ? PyArray_SIZE(reinterpret_cast<PyArrayObject*>(near)) / n : -1;
-    if (!arm_for("_ik_onto", robot, {near, along}, k)) return nullptr;
+    if (!arm_for("_ik_onto", solver, {near, along}, k)) return nullptr;
     std::vector<double> rows(data_of(near), data_of(near) + k * n),
         tangents(data_of(along), data_of(along) + k * n);
     ik::project_on_self_motion(*arm, data_of(at), whole_pose, int(k), rows.data(), tangents.data());

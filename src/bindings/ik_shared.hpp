@@ -1,23 +1,21 @@
-// What the files of robot.ik share: the solver behind a robot, the result type, and how plain arrays are
-// read.
+// What the files of inverse kinematics share: the solver behind an object, the result type, and how plain
+// arrays are read.
 #pragma once
 
 #include <vector>
 
-#include "library/ik_arm.hpp"
-#include "robot.hpp"
+#include "ik_solver.hpp"
 
-// --- the solver ----------------------------------------------------------------------------------------
-// The solver of a robot that has one; null for every other object.
-inline const cspace::ik::BuiltArm* arm_of(PyObject* robot) {
-    if (!PyObject_TypeCheck(robot, robot_type)) return nullptr;
-    return static_cast<const cspace::ik::BuiltArm*>(reinterpret_cast<RobotObject*>(robot)->ik.get());
+// The plan of the arm of a solver; null for every other object.
+inline const cspace::ik::BuiltArm* arm_of(PyObject* object) {
+    cspace::ik::Solver* solver = solver_of(object);
+    return solver ? &solver->arm() : nullptr;
 }
 
 // --- the result ----------------------------------------------------------------------------------------
 // Followed in memory by count rows of dof angles, count branch numbers and count flags (families).
 struct SolutionsObject {
-    PyObject_VAR_HEAD PyObject* robot;
+    PyObject_VAR_HEAD PyObject* solver;
     PyObject* note;   // why rows are missing, where a filter removed them; or null
     PyObject* about;  // of a goal that is no pose or leaves freedom: cspace.ik.context.About; or null
     double goal[16];
@@ -32,7 +30,7 @@ inline std::int8_t* branches_of(SolutionsObject* s) {
 inline std::int8_t* self_motions_of(SolutionsObject* s) { return branches_of(s) + s->count; }
 
 // A complete result without note whose rows are still to be written; null with an error set.
-SolutionsObject* new_solutions(PyObject* robot, const double* goal, int count, int dof,
+SolutionsObject* new_solutions(PyObject* solver, const double* goal, int count, int dof,
                                cspace::ik::Status status);
 
 // --- plain arrays --------------------------------------------------------------------------------------
@@ -50,20 +48,14 @@ inline bool is_writable(PyObject* array) {
     return PyArray_ISWRITEABLE(reinterpret_cast<PyArrayObject*>(array));
 }
 
-// --- near= and locked= (ik_near.cpp, ik_locked_joints.cpp)
-// -------------------------------------------------------
-namespace cspace::ik {
-class RedundantSolver;
-struct LockedArm;
-}  // namespace cspace::ik
-void ik_set_near(PyObject* robot, const cspace::ik::RedundantSolver* arm, PyObject* solver, PyObject* about);
-PyObject* ik_serve_near(PyObject*, PyObject* args);
-PyObject* ik_near(PyObject* robot, const double* goal, PyObject* seed);
-void ik_add_locked(PyObject* robot, PyObject* solver, PyObject* names, PyObject* about,
-                   const std::vector<int>& locked_joint, const cspace::ik::LockedArm* locked);
-PyObject* ik_locked(PyObject* robot, const double* goal, PyObject* locked);
+// --- one goal with one keyword: near= or locked= ----------------------------------------------------------
+// Null without an error for what is not answered there.
+PyObject* ik_near(PyObject* solver, const double* goal, PyObject* seed);
+PyObject* ik_locked(PyObject* solver, const double* goal, PyObject* locked);
 
 // --- the functions of each file ------------------------------------------------------------------------
+// ik_solver.cpp
+PyObject* ik_build(PyObject*, PyObject* args);
 // ik_result.cpp
 int ik_add_result_type(PyObject* module);
 PyObject* ik_make(PyObject*, PyObject* args);

@@ -5,7 +5,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "robot.hpp"
+#include "kinematics.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -21,9 +21,9 @@ void require(bool fits) {
 }
 
 ik::TaskRows rows_from(nb::handle robot, const Matrix& tasks, const Matrix& postures, const LimitRows& limits,
-                       std::size_t q_size, const Errors& errors) {
-    if (!PyObject_TypeCheck(robot.ptr(), robot_type)) throw nb::type_error("a robot comes first");
-    auto* object = reinterpret_cast<RobotObject*>(robot.ptr());
+                   std::size_t q_size, const Errors& errors) {
+    if (!PyObject_TypeCheck(robot.ptr(), kinematics_type)) throw nb::type_error("a robot comes first");
+    auto* object = reinterpret_cast<KinematicsObject*>(robot.ptr());
     require(object->model != nullptr);
     const std::size_t n = std::size_t(object->model->n_coordinates());
     require(tasks.shape(1) == ik::task_width && postures.shape(1) == 2 * n + 1 && q_size == n &&

@@ -3,7 +3,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "robot_chain.hpp"
+#include "kinematics_chain.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

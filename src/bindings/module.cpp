@@ -12,10 +12,13 @@ NB_MODULE(_core, m) {
     bind_math(m);
     bind_navigation_curves(m);
     bind_navigation_curves_fast(m);
-    bind_robot(m);
+    bind_kinematics(m);
     bind_spatial_rotations(m);
     bind_ik_subproblems(m);
+    bind_ik_solver(m);
+    bind_robot(m);
     bind_ik(m);
+    bind_ik_goals(m);
     bind_ik_numeric(m);
     bind_ik_redundancy(m);
     bind_ik_arm_angle(m);

@@ -1,250 +1,76 @@
-#define CSPACE_FILLS_NUMPY_API
-#include "robot.hpp"
-
-#include <cstring>
-#include <new>
-#include <string>
-
+// The type behind cspace.Robot: its kinematics, and the solver that its `ik` asks.
 #include "bindings.hpp"
-#include "kernels/kinematics.hpp"
-#include "robot_load.hpp"
-#include "robot_rows.hpp"
-
-using namespace cspace;
-
-PyTypeObject* robot_type = nullptr;
-
-// --- reading arguments ---------------------------------------------------------------------------------
-bool robot_read_configuration(const RobotObject* robot, PyObject* value, double* copy, const double*& q) {
-    if (!PyArray_CheckExact(value)) return false;
-    auto* array = reinterpret_cast<PyArrayObject*>(value);
-    const int n = robot->model->n_coordinates();
-    if (PyArray_TYPE(array) != NPY_DOUBLE || PyArray_NDIM(array) != 1 || PyArray_DIM(array, 0) != n ||
-        n > robot_stack_joints || !PyArray_ISBEHAVED_RO(array)) {
-        return false;
-    }
-    const npy_intp stride = PyArray_STRIDE(array, 0);
-    const char* data = PyArray_BYTES(array);
-    q = reinterpret_cast<const double*>(data);
-    if (stride == sizeof(double)) return true;
-    for (int i = 0; i < n; ++i) copy[i] = *reinterpret_cast<const double*>(data + i * stride);
-    q = copy;
-    return true;
-}
-
-// "function() got an unexpected …" becomes "method() got an unexpected …"; any other error stays as it is.
-static void name_method(const char* function, const char* method) {
-    PyObject *type, *value, *traceback;
-    PyErr_Fetch(&type, &value, &traceback);
-    PyObject* text = type == PyExc_TypeError && value ? PyObject_Str(value) : nullptr;
-    const char* said = text ? PyUnicode_AsUTF8(text) : nullptr;
-    const std::size_t length = std::strlen(function);
-    if (said && !std::strncmp(said, function, length) && !std::strncmp(said + length, "()", 2)) {
-        PyObject* errors = PyImport_ImportModule("cspace.errors");  // which knows names that people bring
-        PyObject* error = errors ? PyObject_CallMethod(errors, "keyword_error", "N",
-                                                       PyUnicode_FromFormat("%s%s", method, said + length))
-                                 : nullptr;
-        if (error) PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error)), error);
-        Py_XDECREF(error);
-        Py_XDECREF(errors);
-        Py_DECREF(type);
-        Py_XDECREF(value);
-        Py_XDECREF(traceback);
-    } else {
-        PyErr_Restore(type, value, traceback);
-    }
-    Py_XDECREF(text);
-}
-
-PyObject* robot_call_python(const char* module, const char* function, const char* method, PyObject* self,
-                            PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    PyObject* room = PyImport_ImportModule(module);
-    if (!room) return nullptr;
-    PyObject* callee = PyObject_GetAttrString(room, function);
-    Py_DECREF(room);
-    if (!callee) return nullptr;
-    const Py_ssize_t given = nargs + (kwnames ? PyTuple_GET_SIZE(kwnames) : 0);
-    auto** all = static_cast<PyObject**>(PyMem_Malloc(sizeof(PyObject*) * (given + 1)));
-    PyObject* result = nullptr;
-    if (all) {
-        all[0] = self;
-        for (Py_ssize_t i = 0; i < given; ++i) all[i + 1] = args[i];
-        result = PyObject_Vectorcall(callee, all, nargs + 1, kwnames);
-        PyMem_Free(all);
-    } else {
-        PyErr_NoMemory();
-    }
-    Py_DECREF(callee);
-    if (!result) name_method(function, method);
-    return result;
-}
+#include "ik_solver.hpp"
 
 namespace {
 
-// What a single call needs, if it is one: `call(q)` or `call(q, frame)`, the frame by position or by name.
-struct Single {
-    const model::Chain* chain = nullptr;
-    const double* q = nullptr;
-    double copy[robot_stack_joints];
+struct RobotObject {
+    KinematicsObject kinematics;
+    PyObject* solver;  // null until the first call of ik; never replaced
 };
-bool read_single(const RobotObject* robot, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames,
-                 Single& call) {
-    if (!robot->model || nargs < 1) return false;
-    int frame = robot->tip;
-    const Py_ssize_t given = nargs + (kwnames ? PyTuple_GET_SIZE(kwnames) : 0);
-    if (given > 2) return false;
-    if (given == 2) {
-        if (kwnames && nargs == 1 &&
-            PyUnicode_CompareWithASCIIString(PyTuple_GET_ITEM(kwnames, 0), "frame") != 0) {
-            return false;
-        }
-        if (!PyUnicode_CheckExact(args[1])) return false;
-        PyObject* number = PyDict_GetItemWithError(robot->frame_index, args[1]);
-        if (!number) {
-            PyErr_Clear();
-            return false;
-        }
-        frame = int(PyLong_AsLong(number));
-    }
-    if (frame < 0) return false;
-    call.chain = &robot->model->chain(frame);
-    return call.chain->n <= robot_stack_joints && robot_read_configuration(robot, args[0], call.copy, call.q);
-}
+RobotObject* robot_of(PyObject* self) { return reinterpret_cast<RobotObject*>(self); }
 
-// Scratch memory of one configuration: two sines and an axis per joint.
-struct alignas(64) Stack {
-    double values[8 * (robot_stack_joints + 4)];
-};
-
-PyObject* new_array(npy_intp rows, npy_intp columns) {
-    npy_intp shape[2] = {rows, columns};
-    return PyArray_SimpleNew(2, shape, NPY_DOUBLE);
-}
-double* data_of(PyObject* array) {
-    return static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)));
-}
-
-constexpr const char* words = "cspace.kinematics";
-
-// --- methods -------------------------------------------------------------------------------------------
-PyObject* fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    auto* robot = reinterpret_cast<RobotObject*>(self);
-    Single call;
-    if (read_single(robot, args, nargs, kwnames, call)) {
-        PyObject* T = new_array(4, 4);
-        if (!T) return nullptr;
-        Stack stack;
-        if (kernels::chain_pose(*call.chain, call.q, data_of(T), &stack)) return T;
-        Py_DECREF(T);
-    }
-    return robot_call_python(words, "forward_kinematics", "fk", self, args, nargs, kwnames);
-}
-
-PyObject* jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    auto* robot = reinterpret_cast<RobotObject*>(self);
-    Single call;
-    if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
-        PyObject* J = new_array(6, robot->model->n_coordinates());
-        if (!J) return nullptr;
-        Stack stack;
-        if (kernels::chain_jacobian(*call.chain, call.q, nullptr, data_of(J), &stack)) return J;
-        Py_DECREF(J);
-    }
-    return robot_call_python(words, "jacobian", "jacobian", self, args, nargs, kwnames);
-}
-
-PyObject* fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    auto* robot = reinterpret_cast<RobotObject*>(self);
-    Single call;
-    if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
-        PyObject* T = new_array(4, 4);
-        PyObject* J = new_array(6, robot->model->n_coordinates());
-        PyObject* both = T && J ? PyTuple_New(2) : nullptr;
-        Stack stack;
-        if (both && kernels::chain_jacobian(*call.chain, call.q, data_of(T), data_of(J), &stack)) {
-            PyTuple_SET_ITEM(both, 0, T);
-            PyTuple_SET_ITEM(both, 1, J);
-            return both;
-        }
-        Py_XDECREF(T);
-        Py_XDECREF(J);
-        Py_XDECREF(both);
-        if (PyErr_Occurred()) return nullptr;
-    }
-    return robot_call_python(words, "fk_jacobian", "fk_jacobian", self, args, nargs, kwnames);
-}
-
-PyObject* dof(PyObject* self, void*) {
-    auto* robot = reinterpret_cast<RobotObject*>(self);
-    if (!robot->model) return PyLong_FromLong(0);
-    return PyLong_FromLong(robot->model->n_coordinates() + (robot->floating ? 6 : 0));
-}
-
-// --- the type ------------------------------------------------------------------------------------------
-// It holds no reference that could come back to it (a dict of strings and integers), so it takes no part in
-// the search for cycles; a Python subclass does, through its own dictionary.
-PyObject* create(PyTypeObject* type, PyObject*, PyObject*) {
-    auto* robot = reinterpret_cast<RobotObject*>(type->tp_alloc(type, 0));
-    if (!robot) return nullptr;
-    new (&robot->model) std::unique_ptr<const model::RobotModel>();
-    new (&robot->ik) std::shared_ptr<void>();
-    new (&robot->near) std::shared_ptr<void>();
-    new (&robot->locked) std::shared_ptr<void>();
-    robot->frame_index = nullptr;
-    robot->tip = -1;
-    robot->floating = false;
-    return reinterpret_cast<PyObject*>(robot);
-}
-void destroy(PyObject* self) {
-    auto* robot = reinterpret_cast<RobotObject*>(self);
-    PyTypeObject* type = Py_TYPE(self);
-    Py_CLEAR(robot->frame_index);
-    robot->ik.~shared_ptr();
-    robot->near.~shared_ptr();
-    robot->locked.~shared_ptr();
-    robot->model.~unique_ptr();
-    type->tp_free(self);
-    Py_DECREF(type);
-}
-
-template <class F>
-PyCFunction as_method(F* f) {
-    return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(f));
-}
-
-PyMethodDef methods[] = {
-    {"fk", as_method(&fk), METH_FASTCALL | METH_KEYWORDS, robot_fk_doc},
-    {"jacobian", as_method(&jacobian), METH_FASTCALL | METH_KEYWORDS, robot_jacobian_doc},
-    {"fk_jacobian", as_method(&fk_jacobian), METH_FASTCALL | METH_KEYWORDS, robot_fk_jacobian_doc},
-    {"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, robot_ik_doc},
-    {"_chain_rows", as_method(&robot_chain_rows), METH_FASTCALL, robot_chain_rows_doc},
-    {"_tree_rows", as_method(&robot_tree_rows), METH_FASTCALL, robot_tree_rows_doc},
-    {nullptr, nullptr, 0, nullptr}};
-PyGetSetDef attributes[] = {
-    {"dof", &dof, nullptr, "Number of velocities: one per coordinate, and six more for a floating base.",
-     nullptr},
-    {nullptr, nullptr, nullptr, nullptr, nullptr}};
-PyType_Slot slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create)},
-                       {Py_tp_init, reinterpret_cast<void*>(&robot_load)},
-                       {Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
-                       {Py_tp_methods, methods},
-                       {Py_tp_getset, attributes},
-                       {Py_tp_doc, const_cast<char*>("The compiled half of cspace.Robot.")},
-                       {0, nullptr}};
-PyType_Spec spec = {"cspace._core.RobotBase", sizeof(RobotObject), 0,
-                    Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE, slots};
-
-int fill_numpy_api() {
-    import_array1(-1);
+int traverse(PyObject* self, visitproc visit, void* arg) {
+    Py_VISIT(Py_TYPE(self));
+    Py_VISIT(robot_of(self)->solver);
     return 0;
 }
+int clear(PyObject* self) {
+    Py_CLEAR(robot_of(self)->solver);
+    return 0;
+}
+void free_robot(PyObject* self) {
+    PyObject_GC_UnTrack(self);
+    clear(self);
+    free_kinematics(self);
+}
+
+// The property `solver` of the Python class builds the solver and leaves it in `_solver`.
+PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+    PyObject* solver = Py_XNewRef(robot_of(self)->solver);
+    if (!solver) solver = PyObject_GetAttrString(self, "solver");
+    if (!solver) return nullptr;
+    PyObject* answer = nullptr;
+    if (PyObject_TypeCheck(solver, solver_type))
+        answer = solver_solve(solver, "ik", args, nargs, kwnames);
+    else
+        PyErr_SetString(PyExc_TypeError, "the solver of a robot is a cspace.ik.Solver");
+    Py_DECREF(solver);
+    return answer;
+}
+PyObject* get_solver(PyObject* self, void*) {
+    PyObject* solver = robot_of(self)->solver;
+    return Py_NewRef(solver ? solver : Py_None);
+}
+int set_solver(PyObject* self, PyObject* value, void*) {
+    if (!value || !PyObject_TypeCheck(value, solver_type)) {
+        PyErr_SetString(PyExc_TypeError, "the solver of a robot is a cspace.ik.Solver");
+        return -1;
+    }
+    if (!robot_of(self)->solver) robot_of(self)->solver = Py_NewRef(value);
+    return 0;
+}
+
+PyMethodDef robot_methods[] = {{"ik", as_method(&robot_ik), METH_FASTCALL | METH_KEYWORDS, solve_doc},
+                               {nullptr, nullptr, 0, nullptr}};
+PyGetSetDef robot_attributes[] = {
+    {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},
+    {nullptr, nullptr, nullptr, nullptr, nullptr}};
+PyType_Slot robot_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_kinematics)},
+                             {Py_tp_dealloc, reinterpret_cast<void*>(&free_robot)},
+                             {Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
+                             {Py_tp_clear, reinterpret_cast<void*>(&clear)},
+                             {Py_tp_methods, robot_methods},
+                             {Py_tp_getset, robot_attributes},
+                             {Py_tp_doc, const_cast<char*>("The compiled half of cspace.Robot.")},
+                             {0, nullptr}};
+PyType_Spec robot_spec = {"cspace._core.RobotBase", sizeof(RobotObject), 0,
+                          Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_HAVE_GC, robot_slots};
 
 }  // namespace
 
 void bind_robot(nanobind::module_& m) {
-    if (fill_numpy_api() < 0) throw nanobind::python_error();
-    PyObject* type = PyType_FromSpec(&spec);
-    if (!type) throw nanobind::python_error();
-    robot_type = reinterpret_cast<PyTypeObject*>(Py_NewRef(type));
-    m.attr("RobotBase") = nanobind::steal(type);
+    PyObject* type = PyType_FromSpecWithBases(&robot_spec, reinterpret_cast<PyObject*>(kinematics_type));
+    if (!type || PyModule_AddObjectRef(m.ptr(), "RobotBase", type) < 0) throw nanobind::python_error();
+    Py_DECREF(type);
 }

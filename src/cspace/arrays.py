@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy.typing as npt
 
 from cspace.errors import InputError, InputTypeError
 
-__all__ = ["Array", "as_floats", "as_generator", "leading_axes", "one_number"]
+__all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -43,6 +44,19 @@ def as_floats(
             f"{subject} {_entry(array, tuple(map(int, beyond[0])))}; at most ±{largest:g} makes sense"
         )
     return array
+
+
+def as_arrays(
+    values: Mapping[str, tuple[Any, tuple[int, ...]]], *, largest: float | None = None
+) -> dict[str, Array]:
+    """Several arguments at once: from subject to (value, trailing axes), arrays whose leading axes fit together.
+
+    Raises InputTypeError and InputError as of as_floats and leading_axes.
+    """
+    out = {name: as_floats(v, name, last=last, largest=largest) for name, (v, last) in values.items()}
+    if len(out) > 1:
+        leading_axes(**{name: a.shape[: a.ndim - len(values[name][1])] for name, a in out.items()})
+    return out
 
 
 def one_number(value: Any, subject: str, *, largest: float | None = None) -> float:

@@ -13,19 +13,20 @@ from cspace import kinematics, model
 from cspace._core import RobotBase
 from cspace.arrays import Array
 from cspace.errors import InputTypeError
+from cspace.kinematics import KinematicModel
 from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
 
 if TYPE_CHECKING:
     from cspace.export import Export
-    from cspace.ik import IkPlan, NumericSolution, Redundancy, SampledSolutions, TaskSolution, Track
+    from cspace.ik import IkPlan, NumericSolution, Redundancy, SampledSolutions, Solver, TaskSolution, Track
 
     Seed = int | np.random.Generator | None
 
 __all__ = ["Robot"]
 
 
-class Robot(RobotBase):
+class Robot(RobotBase, KinematicModel):
     """A robot: a kinematic chain or tree with its poses, velocities, inverse kinematics and export.
 
     description: links and joints. base, tip: links. With a tip, or when the joints form a chain anyway, the
@@ -66,21 +67,8 @@ class Robot(RobotBase):
             kinematics.mount(assembly, description.name, self._T_world_base)
         if self._T_tip_tool is not None:
             kinematics.add_tool(assembly, description.name, self._T_tip_tool)
-        super().__init__(assembly)
-        self._assembly = assembly
+        super().__init__(assembly, description.name)
         self.description = description
-        self.name = description.name
-        self.base, self.tip, self.floating = assembly.base, assembly.tip, assembly.floating
-        self.leaves = assembly.leaves
-        self.frames = tuple(assembly.frame_index)
-        self.joint_names, self.joint_types = assembly.coordinates, assembly.coordinate_types
-        self.limits = assembly.limits
-        self.mass = float(assembly.mass.sum())
-
-    _ik_room = 0  # rows that the solutions of a goal may need; 0 before a solver is built
-    _ik_direct = False  # whether a goal determines the joints, known once a solver is built
-    _ik_reach = float("inf")  # largest distance of a goal point from the base [m]
-    _ik_uncounted: tuple[int, ...] = ()  # virtual joints of a goal, which count in no distance
 
     @classmethod
     def from_urdf(
@@ -208,13 +196,17 @@ class Robot(RobotBase):
     workspace = kinematics.workspace
 
     @property
-    def chain(self) -> Chain:
-        """The path from base to tip as screws at zero, tool and mounting included.
+    def solver(self) -> Solver:
+        """The inverse kinematics of the chain from base to tip, built when first read.
 
-        axes (n, 3), points (n, 3) [m], joint_types, T_zero (4, 4), coordinates: see cspace.model.Chain.
-        Raises InputError for a tree without tip.
+        Raises NoClosedFormError for mimic joints, a floating base, no joint or more than sixteen; InputError
+        for a tree without a tip.
         """
-        return kinematics.screws(self._assembly, self.name)
+        if self._solver is None:
+            from cspace.ik import solver_of_robot
+
+            self._solver = solver_of_robot(self)
+        return self._solver
 
     def ik_plan(self, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
         """How ik solves this arm: the geometry found, the steps, and the equations with the arm's numbers.

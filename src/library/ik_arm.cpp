@@ -146,6 +146,17 @@ NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double st
     return out;
 }
 
+void nearest_to_goals(const BuiltArm& built, const double* goals, std::size_t n, double stiffness, double* q,
+                      int threads) {
+    over_rows(n, threads, 1, 1, [&](std::size_t from, std::size_t to) {
+        for (std::size_t i = from; i < to; ++i) {
+            const NearestMiss best = nearest_to_goal(built, goals + 16 * i, stiffness);
+            std::copy(best.q, best.q + built.dof, q + std::size_t(built.dof) * i);
+        }
+        return true;
+    });
+}
+
 NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal) {
     PositionSolutions found;
     kernels::ik_position(built.arm->plan.chain, goal, true, found);

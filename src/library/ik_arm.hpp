@@ -57,6 +57,9 @@ struct NearestMiss {
     double rotation;  // [rad]
 };
 NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness);
+// The configurations alone, q (n, dof).
+void nearest_to_goals(const BuiltArm& built, const double* goals, std::size_t n, double stiffness, double* q,
+                      int threads);
 NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal);
 
 // Whether the lengths and directions of the axes alone rule the goal out.

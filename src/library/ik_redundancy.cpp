@@ -52,7 +52,8 @@ struct RedundantSolver::State {
     Redundant arm;
     double unit;  // [m]
     std::mutex mutex;
-    std::unique_ptr<RedundantSolver> scaled;  // the same arm with lengths in its unit
+    std::unique_ptr<RedundantSolver> scaled;    // the same arm with lengths in its unit
+    std::unique_ptr<RedundantSolver> unlimited;  // the same arm without limits
     std::map<std::vector<int>, std::unique_ptr<LockedArm>> plans;
     std::unique_ptr<LimitArms> limits;
 
@@ -71,6 +72,21 @@ struct RedundantSolver::State {
             scaled = std::make_unique<RedundantSolver>(chain, lower, upper, arm.weight);
         }
         return *scaled;
+    }
+    bool looks() const {
+        bool any = false;
+        for (int j = 0; j < arm.chain.n; ++j) any |= leads_ahead(arm.chain, arm.weight, arm.lower, j);
+        return any;
+    }
+    RedundantSolver& without_limits() {
+        const std::lock_guard<std::mutex> guard(mutex);
+        if (!unlimited) {
+            double lower[max_joints], upper[max_joints];
+            std::fill(lower, lower + max_joints, -std::numeric_limits<double>::infinity());
+            std::fill(upper, upper + max_joints, std::numeric_limits<double>::infinity());
+            unlimited = std::make_unique<RedundantSolver>(arm.chain, lower, upper, arm.weight);
+        }
+        return *unlimited;
     }
     const LimitArms& limit_arms() {
         const std::lock_guard<std::mutex> guard(mutex);
@@ -237,6 +253,97 @@ bool RedundantSolver::sweep(int parameter, const double* goal, const double* at,
         }
     }
     return complete;
+}
+
+std::vector<Span> unite_intervals(std::vector<Span> intervals) {
+    std::sort(intervals.begin(), intervals.end());
+    std::vector<Span> out;
+    for (const Span& next : intervals) {
+        if (out.empty() || next.first > out.back().second)
+            out.push_back(next);
+        else
+            out.back().second = std::max(out.back().second, next.second);
+    }
+    return out;
+}
+
+std::vector<double> spread_values(const std::vector<Span>& disjoint, int n) {
+    double whole = 0;
+    for (const Span& part : disjoint) whole += part.second - part.first;
+    std::vector<double> out;
+    double end = 0;  // how much of the whole the parts up to this one cover
+    std::size_t k = 0;
+    if (!disjoint.empty()) end = disjoint[0].second - disjoint[0].first;
+    for (int i = 0; i < n && !disjoint.empty(); ++i) {
+        const double along = (i + 0.5) / n * whole;
+        while (k + 1 < disjoint.size() && end <= along) {
+            ++k;
+            end += disjoint[k].second - disjoint[k].first;
+        }
+        out.push_back(disjoint[k].second - (end - along));
+    }
+    return out;
+}
+
+SampledGoal RedundantSolver::sample(const double* goal, int n) {
+    const int parameter = default_locked().front();
+    SampledGoal out;
+    bool complete;
+    std::vector<FeasibleInterval> found = intervals(parameter, goal, complete);
+    out.feasible = !found.empty();
+    if (found.empty()) found = state_->without_limits().intervals(parameter, goal, complete);
+    out.has_intervals = !found.empty();
+    out.complete = complete;
+    std::vector<Span> spans;
+    for (const FeasibleInterval& interval : found) spans.emplace_back(interval.lower, interval.upper);
+    const std::vector<double> values = spread_values(unite_intervals(std::move(spans)), n);
+    const std::size_t dof = std::size_t(chain().n);
+    const std::vector<double> at(dof, 0.0);
+    std::vector<SweptRows> rows(values.size());
+    if (!rows.empty())
+        kernels::ik_sweep(lock({parameter}), parameter, pose_of(goal), at.data(), values.data(),
+                          int(values.size()), rows.data());
+    for (const SweptRows& swept : rows) {
+        out.complete = out.complete && swept.complete;
+        for (int k = 0; k < swept.count; ++k) {
+            out.q.insert(out.q.end(), swept.q[k], swept.q[k] + dof);
+            out.branch.push_back(std::int8_t(swept.branch[k]));
+        }
+    }
+    out.values = int(values.size());
+    return out;
+}
+
+// A joint that leads ahead begins as far out as the goal is, and the others where they look at a point up to
+// `steps` times closer.
+void RedundantSolver::start_of_search(const double* goal, double steps, double* start) const {
+    constexpr double near_by = 300;  // [m]
+    const Redundant& arm = state_->arm;
+    for (int j = 0; j < arm.chain.n; ++j) {
+        const bool bounded = std::isfinite(arm.lower[j]) && std::isfinite(arm.upper[j]);
+        start[j] = bounded ? 0.5 * arm.lower[j] + 0.5 * arm.upper[j] : 0.0;
+    }
+    if (!state_->looks()) return;
+    const double away = std::hypot(goal[3], goal[7], goal[11]);
+    if (away > near_by) {
+        double closer[16], from[max_joints], q[max_joints];
+        std::copy(goal, goal + 16, closer);
+        for (const int k : {3, 7, 11}) closer[k] /= std::min(steps, away / near_by * 2);
+        start_of_search(closer, steps, from);
+        if (find_nearest_turned(closer, from, q)) std::copy(q, q + arm.chain.n, start);
+    }
+    for (int j = 0; j < arm.chain.n; ++j)
+        if (leads_ahead(arm.chain, arm.weight, arm.lower, j)) start[j] = away;
+}
+
+bool RedundantSolver::find_near_middle(const double* goal, double* q) const {
+    double start[max_joints];
+    for (const double steps : {100.0, 10.0, 30.0}) {
+        start_of_search(goal, steps, start);
+        if (find_nearest_turned(goal, start, q)) return true;
+        if (!state_->looks()) break;
+    }
+    return false;
 }
 
 bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, Solutions& found,

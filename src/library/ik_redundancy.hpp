@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "cspace/ik/solution.hpp"
@@ -21,6 +22,27 @@ struct FeasibleInterval {
     int end[2], side[2];
     std::vector<double> q;
 };
+
+// All branches of one goal at values of a redundant joint.
+struct SampledGoal {
+    std::vector<double> q;  // rows of dof
+    std::vector<std::int8_t> branch;
+    int values = 0;              // at which branches are listed
+    bool feasible = false;       // whether these values keep all limits
+    bool has_intervals = false;  // whether some value reaches the goal, limits aside
+    bool complete = false;       // whether no interval and no branch is missing
+};
+
+// Intervals as disjoint ones, ascending; and the middles of n equal parts of all that they cover.
+using Span = std::pair<double, double>;
+std::vector<Span> unite_intervals(std::vector<Span> intervals);
+std::vector<double> spread_values(const std::vector<Span>& disjoint, int n);
+
+// Whether a joint stands for the distance to a point that the tool looks at: a goal's own prismatic joint that
+// begins at zero.
+inline bool leads_ahead(const Chain& chain, const double* weight, const double* lower, int joint) {
+    return chain.prismatic[joint] && weight[joint] == 0 && lower[joint] == 0;
+}
 
 class RedundantSolver {
   public:
@@ -71,7 +93,17 @@ class RedundantSolver {
     bool sweep(int parameter, const double* goal, const double* at, const double* values, std::size_t m,
                double* q, std::int8_t* branch, std::int64_t* count);
 
+    // All branches at n values of the default locked joint, spread over its feasible intervals; where none is
+    // feasible, over the values that reach the goal.
+    SampledGoal sample(const double* goal, int n);
+
+    // A configuration that reaches a goal, near the middle of the limits (0 for joints without). To look at a
+    // point far away, the search first looks at a closer one in the same direction.
+    bool find_near_middle(const double* goal, double* q) const;
+
   private:
+    void start_of_search(const double* goal, double steps, double* start) const;
+
     struct State;
     std::unique_ptr<State> state_;
 };

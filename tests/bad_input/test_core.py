@@ -58,14 +58,15 @@ def read_only(array):
 )
 def test_a_batch_refuses_arrays_it_cannot_fill(arm, wrong):
     with pytest.raises(TypeError, match="_ik_many takes"):
-        _core._ik_many(arm, np.stack([GOAL] * 100), *answers(100, **wrong), 1)
+        _core._ik_many(arm.solver, np.stack([GOAL] * 100), *answers(100, **wrong), 1)
 
 
-def test_what_is_no_robot_is_refused(arm):
+def test_what_is_no_solver_is_refused(arm):
     assert _core._ik_geometry(object()) is None
-    arrays = np.zeros((6, 3)), np.zeros((6, 3)), np.zeros(6), np.eye(4)
+    rows = [np.zeros(6)] * 4
+    arrays = np.zeros((6, 3)), np.zeros((6, 3)), rows[0], np.eye(4), *rows[1:], 1.0
     parts = GOAL, 1, np.zeros((1, 6)), (0,), (False,), None
-    for other in (object(), 5, None, Solutions):
+    for other in (object(), 5, None, Solutions, arm):
         for call, arguments in [
             (_core._ik_build, arrays),
             (_core._ik_single, (GOAL,)),
@@ -79,11 +80,11 @@ def test_what_is_no_robot_is_refused(arm):
             (_core._ik_many, (np.stack([GOAL]), *answers(1), 1)),
             (_core._ik_make, parts),
         ]:
-            with pytest.raises(TypeError, match=r"robot|arm of up to three"):
+            with pytest.raises(TypeError, match=r"solver|arm of up to three"):
                 call(other, *arguments)
     with pytest.raises(TypeError, match="status"):
-        _core._ik_make(arm, GOAL, 99, *parts[2:])
-    for other in (5, int, object, _core.RobotBase):
+        _core._ik_make(arm.solver, GOAL, 99, *parts[2:])
+    for other in (5, int, object, _core.KinematicsBase):
         with pytest.raises(TypeError, match="subclass of SolutionsBase"):
             _core._ik_results(other)
     assert type(arm.ik(GOAL)) is Solutions
@@ -109,7 +110,7 @@ def test_answers_that_do_not_fit_are_refused():
 def test_names_of_frames_that_are_not_there_are_refused(arm, number):
     parts = {name: getattr(arm._assembly, name) for name in dir(arm._assembly) if name[0] != "_"}
     with pytest.raises((TypeError, OverflowError)):
-        _core.RobotBase(SimpleNamespace(**(parts | {"frame_index": {"a": number}})))
+        _core.KinematicsBase(SimpleNamespace(**(parts | {"frame_index": {"a": number}})))
 
 
 def test_threads_that_ask_first_at_once_share_one_solver():
@@ -158,7 +159,7 @@ def test_answers_outlive_their_robot_and_can_be_copied_and_sent(arm):
     found = arm.ik(GOAL)
     del arm
     gc.collect()
-    assert found.robot.name == "ur5e"
+    assert found.solver.name == "ur5e"
     assert found.residual.max() < 1e-9
 
 
@@ -172,5 +173,5 @@ def test_curves_and_points_refuse_rows_of_another_size(arm):
         (_core._ik_onto, (q, rows.tolist(), rows, True)),
         (_core._ik_positions, (np.zeros((3, 3)), *answers(3), 1)),  # an arm of six joints
     ]:
-        with pytest.raises(TypeError, match="takes a robot"):
-            call(arm, *arguments)
+        with pytest.raises(TypeError, match=r"takes a(n arm of up to three joints| solver)"):
+            call(arm.solver, *arguments)

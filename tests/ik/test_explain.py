@@ -14,8 +14,6 @@ from cspace.errors import InputError, UnknownNameError
 from cspace.ik import ik_plan
 from cspace.ik.explain.goal_parts import goal_of_parts
 from cspace.ik.explain.locked_joints import Split
-from cspace.ik.goals.solve_partial import whole_arm
-from cspace.ik.prepare import prepare
 from cspace.model import from_screws
 from cspace.robot import Robot
 from ik import geometries
@@ -57,15 +55,13 @@ def expect_true(robot, rng, locked_at=None, **question):
 
 def solved_by_steps(robot, plan, locked_at, question):
     """The arm that the steps of a plan belong to: without locked joints, with those of the goal."""
+    solver = robot.solver
     if "goal_parts" in question:
-        robot = whole_arm(robot, goal_of_parts(question["goal_parts"], question.get("tool_axis", "z")))
-        prepare(robot)
+        solver = solver.extend(goal_of_parts(question["goal_parts"], question.get("tool_axis", "z")))
     if not plan.locked:
-        return robot
-    joints = tuple(robot.joint_names.index(name) for name in plan.locked)
-    others = Split(robot, joints, {k: (locked_at or {}).get(k, 0.0) for k in joints}).others()
-    prepare(others)
-    return others
+        return solver
+    joints = tuple(solver.joint_names.index(name) for name in plan.locked)
+    return Split(solver, joints, {k: (locked_at or {}).get(k, 0.0) for k in joints}).others()
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -98,8 +94,8 @@ def test_every_class_of_six_joints(word, square):
     rng = np.random.default_rng([ord(letter) for letter in word])
     robot = geometries.random_arm(geometries.CLASSES[word], rng, square=square)
     plan = expect_true(robot, rng)
-    form = _core._ik_plan(robot)["form"]
-    order = slice(None, None, -1) if _core._ik_geometry(robot)["reversed"] else slice(None)
+    form = _core._ik_plan(robot.solver)["form"]
+    order = slice(None, None, -1) if _core._ik_geometry(robot.solver)["reversed"] else slice(None)
     assert [each.parallel for each in plan.relations][order] == form["parallel"]
     assert [each.meet and not each.parallel for each in plan.relations][order] == form["meeting"]
     assert np.prod([step.ways for step in plan.steps]) == plan.branches == 8
@@ -160,13 +156,13 @@ def test_the_hidden_angle_of_an_arm_with_two_slides_is_a_root_of_degree_four(kin
     assert "degree 4" in robot.ik_plan().to_text().replace("\n", " ")
     for q in configurations(robot, rng):
         goal = robot.fk(q).ravel().tolist()
-        for number, joints, backwards in _core._ik_plan(robot)["loop"]["order"]:
-            f = [_core._ik_determinant(robot, goal, number, a) for a in 2 * np.pi * np.arange(32) / 32]
+        for number, joints, backwards in _core._ik_plan(robot.solver)["loop"]["order"]:
+            f = [_core._ik_determinant(robot.solver, goal, number, a) for a in 2 * np.pi * np.arange(32) / 32]
             harmonics = np.abs(np.fft.rfft(f))
             noise = 1e-9 * harmonics.max()
             assert harmonics[5:].max() < noise
             hidden = -q[joints[0]] if backwards else q[joints[0]]
-            assert abs(_core._ik_determinant(robot, goal, number, hidden)) < 10 * noise
+            assert abs(_core._ik_determinant(robot.solver, goal, number, hidden)) < 10 * noise
 
 
 def test_an_arm_that_is_solved_through_its_neighbours_says_so():
@@ -175,7 +171,7 @@ def test_an_arm_that_is_solved_through_its_neighbours_says_so():
     tip = cs.pose([0.3, 0.2, 0.5])
     robot = Robot(from_screws([y, z, x, y, x, z], points, tip, joint_types="RPRRRR"))
     plan = expect_true(robot, np.random.default_rng(4))
-    assert _core._ik_plan(robot)["loop"]["perturbed_arms"]
+    assert _core._ik_plan(robot.solver)["loop"]["perturbed_arms"]
     assert "Two neighbours of the arm" in plan.to_text()
     assert "neighbour" not in load("jaco2").ik_plan().to_text()
 
@@ -195,20 +191,20 @@ def test_the_hidden_angle_of_a_general_arm_is_a_root_of_degree_eight(name):
     plan = expect_true(robot, rng)
     assert plan.family == "general"
     assert plan.branches == 16
-    loop = _core._ik_plan(robot)["loop"]
+    loop = _core._ik_plan(robot.solver)["loop"]
     assert f"{len(loop['order'])} of the twelve" in plan.to_text().replace("\n", " ")
     around = 2 * np.pi * np.arange(64) / 64
     for q in configurations(robot, rng):
         goal = robot.fk(q).ravel().tolist()
         for number, joints, backwards in loop["order"]:
-            f = [_core._ik_determinant(robot, goal, number, a) for a in around]
+            f = [_core._ik_determinant(robot.solver, goal, number, a) for a in around]
             harmonics = np.abs(np.fft.rfft(f))
             noise = 1e-8 * harmonics.max()  # formulations next to vanishing ones enlarge rounding
             assert harmonics[9:].max() < noise
             hidden = -q[joints[0]] if backwards else q[joints[0]]
-            assert abs(_core._ik_determinant(robot, goal, number, hidden)) < 10 * noise
+            assert abs(_core._ik_determinant(robot.solver, goal, number, hidden)) < 10 * noise
     with pytest.raises(TypeError, match="general arm"):
-        _core._ik_determinant(load("ur5e"), goal, 0, 0.0)
+        _core._ik_determinant(load("ur5e").solver, goal, 0, 0.0)
 
 
 def test_an_arm_with_joints_to_spare_says_which_are_held_and_what_its_axes_share():

@@ -50,7 +50,7 @@ def expect_the_same_list(robot, likeness, q):
     like, T = likeness.robot, robot.fk(q)
     found, other = robot.ik(T), like.ik(likeness.to_goal(T))
     for answer in (found, other):
-        assert answer.residual.max(initial=0) <= 1e-9 * max(1.0, size_of(answer.robot))
+        assert answer.residual.max(initial=0) <= 1e-9 * max(1.0, size_of(answer.solver))
     expect_all(robot, found, q[None])
     expect_all(robot, found, likeness.from_q(other.q))
     expect_all(like, other, likeness.to_q(np.vstack([q, found.q])))

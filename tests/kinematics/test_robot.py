@@ -159,7 +159,7 @@ def test_without_masses_there_is_no_centre_of_mass():
 
 def test_the_compiled_half_defends_itself():
     """What Python never passes must not crash either."""
-    bare = _core.RobotBase.__new__(_core.RobotBase)
+    bare = _core.KinematicsBase.__new__(_core.KinematicsBase)
     assert bare.dof == 0
     with pytest.raises((AttributeError, TypeError)):
         bare.fk(np.zeros(6))
@@ -181,7 +181,7 @@ def test_the_compiled_half_defends_itself():
     assembly = copy.copy(robot._assembly)
     assembly.parent = np.array([-1, 0, 1, 5, 3, 4])
     with pytest.raises(ValueError, match="do not fit together"):
-        _core.RobotBase(assembly)
+        _core.KinematicsBase(assembly)
 
 
 def test_many_calls_leave_no_memory_and_no_references_behind():
@@ -227,8 +227,8 @@ def test_robots_are_freed():
 
     make(5)
     gc.collect()
-    before = sys.getrefcount(Robot), sys.getrefcount(_core.RobotBase)
+    before = sys.getrefcount(Robot), sys.getrefcount(_core.KinematicsBase)
     last = make(50)
     gc.collect()
     assert last() is None
-    assert (sys.getrefcount(Robot), sys.getrefcount(_core.RobotBase)) == before
+    assert (sys.getrefcount(Robot), sys.getrefcount(_core.KinematicsBase)) == before

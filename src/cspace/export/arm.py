@@ -13,8 +13,8 @@ from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, shown
 from cspace.export.plain import in_ascii
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
-from cspace.ik.locked_joints import between_others, joint_number, lock_joints, without_locked
-from cspace.ik.prepare import MAX_SETTLED, prepare
+from cspace.ik.locked_joints import between_others, joint_number
+from cspace.ik.solver import MAX_SETTLED, HasSolver, Solver, as_solver
 
 __all__ = ["ExportedArm", "exported_arm"]
 
@@ -82,29 +82,28 @@ class ExportedArm:
         return ", ".join(re.sub(r"[^\w .:/-]|/(?=/)", "", in_ascii(self.joint_names[k])) for k in self.locked)
 
 
-def exported_arm(robot: Any, name: str | None, locked: Any = None) -> ExportedArm:
+def exported_arm(robot: HasSolver, name: str | None, locked: Any = None) -> ExportedArm:
     """The robot as the exports see it. locked: names or numbers of the joints whose values the caller gives.
 
     Raises NoClosedFormError and InputError.
     """
-    prepare(robot)
-    chosen = checked_locked_joints(robot, locked)
+    solver = as_solver(robot)
+    chosen = checked_locked_joints(solver, locked)
     if not chosen:
-        kind, plan = numbers_of(robot)
-        return described(robot, name, kind, plan)
-    if between_others(len(robot.joint_names), chosen):
-        return described(robot, name, "locked", {}, locked=chosen)
-    others = without_locked(robot, dict.fromkeys(chosen, 0.0))
-    prepare(others)
+        kind, plan = numbers_of(solver)
+        return described(solver, name, kind, plan)
+    if between_others(len(solver.joint_names), chosen):
+        return described(solver, name, "locked", {}, locked=chosen)
+    others = solver.lock(dict.fromkeys(chosen, 0.0))
     kind, plan = numbers_of(others)
-    return described(robot, name, kind, plan, locked=chosen, moving=described(others, "moving", kind, plan))
+    return described(solver, name, kind, plan, locked=chosen, moving=described(others, "moving", kind, plan))
 
 
-def numbers_of(robot: Any) -> tuple[str, dict[str, Any]]:
+def numbers_of(solver: Solver) -> tuple[str, dict[str, Any]]:
     """How an arm is solved, and its numbers; NoClosedFormError if some joints do the work of others."""
-    if not robot._ik_direct:
-        raise NoClosedFormError(explain_missing_form(robot))
-    return _core._ik_numbers(robot)
+    if solver.is_redundant:
+        raise NoClosedFormError(explain_missing_form(solver))
+    return _core._ik_numbers(solver)
 
 
 def vector(v: Array) -> dict[str, float]:
@@ -112,18 +111,18 @@ def vector(v: Array) -> dict[str, float]:
     return {axis: float(x) for axis, x in zip("xyz", v, strict=True)}
 
 
-def checked_locked_joints(robot: Any, locked: Any) -> tuple[int, ...]:
+def checked_locked_joints(solver: Solver, locked: Any) -> tuple[int, ...]:
     """The joints to hold, by number, ascending: those named, else the solver's own choice."""
-    joints = len(robot.joint_names)
+    joints = len(solver.joint_names)
     if locked is None:
-        return () if robot._ik_direct else tuple(lock_joints(robot, {}).solver.locked)
+        return solver.redundant_joints if solver.is_redundant else ()
     if isinstance(locked, (str, int)):
         locked = [locked]
     if isinstance(locked, Mapping) or not isinstance(locked, Iterable):
         raise InputTypeError(
             f"locked is a {type(locked).__name__}, expected names of joints: each call gives their values"
         )
-    chosen = [joint_number(robot, key, "locked") for key in locked]
+    chosen = [joint_number(solver, key, "locked") for key in locked]
     if len(set(chosen)) < len(chosen):
         raise InputError("locked names a joint twice")
     if not 1 <= joints - len(chosen) <= MAX_SETTLED:
@@ -134,7 +133,7 @@ def checked_locked_joints(robot: Any, locked: Any) -> tuple[int, ...]:
 
 
 def described(
-    robot: Any,
+    solver: Solver,
     name: str | None,
     kind: str,
     plan: dict[str, Any],
@@ -142,18 +141,18 @@ def described(
     moving: ExportedArm | None = None,
 ) -> ExportedArm:
     """The words and numbers of an arm."""
-    chain = robot.chain
+    chain = solver.chain
     return ExportedArm(
-        identifier=checked(name) if name is not None else identifier_from(robot.name),
-        title=in_ascii(" ".join(str(robot.name).split()).replace("*/", "")) or "arm",
+        identifier=checked(name) if name is not None else identifier_from(solver.name),
+        title=in_ascii(" ".join(str(solver.name).split()).replace("*/", "")) or "arm",
         kind=kind,
         plan=plan,
         dof=len(chain.joint_types),
         room=8 if kind == "few_joints" else 16,
-        joint_names=tuple(robot.joint_names),
+        joint_names=tuple(solver.joint_names),
         joint_types=str(chain.joint_types),
-        lower=[float(x) for x in robot.limits.lower],
-        upper=[float(x) for x in robot.limits.upper],
+        lower=[float(x) for x in solver.limits.lower],
+        upper=[float(x) for x in solver.limits.upper],
         axes=chain.axes,
         points=chain.points,
         T_zero=chain.T_zero,

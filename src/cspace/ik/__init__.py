@@ -25,7 +25,7 @@ from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.self_motion.self_motion import SelfMotion
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.ik.solve import inverse_kinematics
+from cspace.ik.solver import HasSolver, Solver, solver_of_robot
 from cspace.ik.tracking import Branch, Track, track
 
 __all__ = [
@@ -34,6 +34,7 @@ __all__ = [
     "Condition",
     "DirectionTask",
     "Geometry",
+    "HasSolver",
     "IkPlan",
     "Interval",
     "InvariantDirection",
@@ -49,6 +50,7 @@ __all__ = [
     "SelfMotion",
     "Solutions",
     "SolutionsBatch",
+    "Solver",
     "Step",
     "TaskSolution",
     "Track",
@@ -57,9 +59,9 @@ __all__ = [
     "ik_numeric",
     "ik_plan",
     "ik_tasks",
-    "inverse_kinematics",
     "redundancy",
     "resolved_rate",
+    "solver_of_robot",
     "subproblems",
     "swivel",
     "task_velocity",

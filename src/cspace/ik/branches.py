@@ -18,13 +18,16 @@ slide. link: the tip lies ahead of or behind the last axis, along the slide.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point, place
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["branch_labels"]
 
@@ -39,15 +42,15 @@ Words = Callable[[Placed, int], str]
 """The name of one configuration, from where the arm is and the number of its branch."""
 
 
-def branch_labels(robot: Any, q: Array, numbers: tuple[int, ...]) -> tuple[str, ...]:
+def branch_labels(solver: Solver, q: Array, numbers: tuple[int, ...]) -> tuple[str, ...]:
     """One label per configuration of q (k, dof), from the branches `numbers` of the closed form."""
-    seen = _core._ik_geometry(robot)
+    seen = _core._ik_geometry(solver)
     if seen is None or any(n < 0 for n in numbers):
         return ("",) * len(numbers)
-    words = None if seen["general"] else words_of(robot.chain, seen)
+    words = None if seen["general"] else words_of(solver.chain, seen)
     if words is None:
         return tuple(f"branch {n + 1}" for n in numbers)
-    chain = robot.chain
+    chain = solver.chain
     return tuple(words(place(chain, row), n) for row, n in zip(q, numbers, strict=True))
 
 

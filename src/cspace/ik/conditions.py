@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import CspaceError
+
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["Condition", "NoClosedFormError", "conditions", "explain_missing_form"]
 
@@ -49,7 +52,7 @@ def common_point(axes: Array, points: Array) -> tuple[Array, float]:
     return cast(Array, p), float(np.linalg.norm(away, axis=1).max())
 
 
-def arm_length(robot: Any) -> float:
+def arm_length(robot: KinematicModel) -> float:
     """The longest distance between neighbouring axes or to the tip [m], 1 if all meet; the scale of
     tolerances.
     """
@@ -59,7 +62,7 @@ def arm_length(robot: Any) -> float:
     return float(max(steps)) or 1.0
 
 
-def conditions(robot: Any) -> tuple[Condition, ...]:
+def conditions(robot: KinematicModel) -> tuple[Condition, ...]:
     """Every condition that a closed form could rest on, measured."""
     axes, points = robot.chain.axes, robot.chain.points
     allowed = _core.AXIS_RELATION * arm_length(robot)
@@ -78,7 +81,7 @@ def conditions(robot: Any) -> tuple[Condition, ...]:
     return tuple(out)
 
 
-def best_conditioning(robot: Any) -> float:
+def best_conditioning(robot: KinematicModel) -> float:
     """The largest, over some configurations, of the Jacobian's smallest singular value (lengths over the
     arm's length).
     """
@@ -96,7 +99,7 @@ def how_many_joints(n: int) -> str:
     return "1 joint" if n == 1 else f"{n} joints"
 
 
-def explain_missing_form(robot: Any) -> str:
+def explain_missing_form(robot: KinematicModel) -> str:
     """Why `robot` has no closed form, as a sentence: the first reason that rules it out."""
     kinds = robot.chain.joint_types
     subject = (

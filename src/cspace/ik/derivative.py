@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.conditions import arm_length
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["derivative"]
 
@@ -17,7 +20,7 @@ rounding leaves 1e-16, and the derivative's own digits are lost long before.
 """
 
 
-def derivative(robot: Any, q: Array, position_only: bool = False) -> Array:
+def derivative(solver: Solver, q: Array, position_only: bool = False) -> Array:
     """dq per twist of the goal: the pseudo-inverse of the Jacobian, (..., dof, 6).
 
     q: (..., dof) [rad, m], rows of NaN allowed. A goal that moves by the base twist [v; ω] (v the velocity of
@@ -26,17 +29,17 @@ def derivative(robot: Any, q: Array, position_only: bool = False) -> Array:
     NaN where the solution is singular. position_only: the goal is a point, and ω makes no difference.
     """
     scale = np.ones(6)
-    scale[:3] /= arm_length(robot)
-    out = np.full((*q.shape[:-1], robot.dof, 6), np.nan)
+    scale[:3] /= arm_length(solver)
+    out = np.full((*q.shape[:-1], solver.dof, 6), np.nan)
     real = np.isfinite(q).all(axis=-1)
     if not real.any():
         return out
-    J = scale[:, None] * robot.jacobian(q[real])
+    J = scale[:, None] * solver.jacobian(q[real])
     rows = 3 if position_only else 6
     U, sigma, Vt = np.linalg.svd(J[:, :rows], full_matrices=False)
     regular = sigma[:, -1] > SINGULAR * sigma[:, 0]
     inverse = np.einsum("kji,kj,klj->kil", Vt, 1 / np.where(regular[:, None], sigma, np.nan), U)
-    found = np.zeros((len(J), robot.dof, 6))
+    found = np.zeros((len(J), solver.dof, 6))
     found[..., :rows] = inverse * scale[:rows]
     found[~regular] = np.nan
     out[real] = found

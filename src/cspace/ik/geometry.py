@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
-
 from cspace import _core
 from cspace.ik.conditions import Condition, NoClosedFormError, conditions, explain_missing_form
-from cspace.ik.prepare import prepare
+from cspace.ik.solver import HasSolver, Solver, as_solver
 
 __all__ = ["Geometry", "geometry"]
 
@@ -59,25 +57,25 @@ class Geometry:
         return f"{self.family} ({self.detail}{end})"
 
 
-def geometry(robot: Any) -> Geometry:
-    """The closed form that serves `robot`, or why there is none; a value that is not a robot raises
-    InputTypeError."""
-    missing = ""
+def geometry(robot: HasSolver) -> Geometry:
+    """The closed form of a Robot or a Solver, or why there is none.
+
+    Raises InputTypeError for what is neither.
+    """
     try:
-        prepare(robot)
+        solver = as_solver(robot)
     except NoClosedFormError as error:
-        missing = str(error)
-    tested = conditions(robot) if len(robot.chain.axes) >= 3 else ()
-    if missing:
-        return Geometry("none", "", False, 0.0, tested, missing)
-    if not robot._ik_direct:
-        return redundant_geometry(robot, tested)
-    seen = _core._ik_geometry(robot)
+        tested = conditions(robot) if len(robot.chain.axes) >= 3 else ()  # type: ignore[attr-defined]
+        return Geometry("none", "", False, 0.0, tested, str(error))
+    tested = conditions(solver) if len(solver.chain.axes) >= 3 else ()
+    if solver.is_redundant:
+        return redundant_geometry(solver, tested)
+    seen = _core._ik_geometry(solver)
     if seen["general"]:
-        return Geometry("general", "", False, 0.0, tested, f"{explain_missing_form(robot)}. {GENERAL}")
+        return Geometry("general", "", False, 0.0, tested, f"{explain_missing_form(solver)}. {GENERAL}")
     if seen["family"] < 0:
         shared = FIRST_THREE.get(seen["first_three"], "up to three joints")
-        return Geometry("fewer than six joints", f"{robot.chain.joint_types}, {shared}", False, 0.0, tested)
+        return Geometry("fewer than six joints", f"{solver.joint_types}, {shared}", False, 0.0, tested)
     family = FAMILIES[seen["family"]]
     detail = FIRST_THREE[seen["first_three"]] if seen["family"] == 1 else PARALLEL[seen["family"]]
     if seen["virtual_joints"]:
@@ -85,14 +83,12 @@ def geometry(robot: Any) -> Geometry:
     return Geometry(family, detail, bool(seen["reversed"]), float(seen["deviation"]), tested)
 
 
-def redundant_geometry(robot: Any, tested: tuple[Condition, ...]) -> Geometry:
+def redundant_geometry(solver: Solver, tested: tuple[Condition, ...]) -> Geometry:
     """Of an arm with redundant joints: which of them are locked, and how the others are solved."""
-    from cspace.ik.locked_joints import lock_joints
-
-    solver = lock_joints(robot, {}).solver
-    if not solver.locked:
+    if not solver.redundant_joints:
         detail = "no closed form, and the general method finds no good condition: descents from many starts"
         return Geometry("redundant", detail, False, 0.0, tested)
-    names = ", ".join(robot.joint_names[k] for k in solver.locked)
-    method = "a closed form of the others" if solver.closed_form else "the general method for the others"
+    names = ", ".join(solver.joint_names[k] for k in solver.redundant_joints)
+    closed = _core._ik_has_closed_form(solver)
+    method = "a closed form of the others" if closed else "the general method for the others"
     return Geometry("redundant", f"{names} held, {method}", False, 0.0, tested)

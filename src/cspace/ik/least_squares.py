@@ -1,41 +1,58 @@
-"""Where nothing reaches a goal: the configuration that misses it least."""
+"""Where nothing reaches a goal: the configuration of least error."""
 
 from __future__ import annotations
 
-from typing import Any, cast
+from dataclasses import replace
 
 import numpy as np
 
 from cspace import _core
-from cspace.ik.context import About
-from cspace.ik.goals.solve_partial import own_columns
-from cspace.ik.solutions import NEAREST, Solutions, nearest_to_goal, position_goal
+from cspace.ik.solutions import NEAREST, UNREACHABLE, Solutions, nearest_to_goal, position_goal
+from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.wrapping import wrap
 
-__all__ = ["least_squares_answer"]
+__all__ = ["least_squares_answer", "least_squares_batch"]
 
 
-def least_squares_answer(robot: Any, found: Solutions) -> Solutions:
-    goal = found.goal
+def least_squares_answer(found: Solutions) -> Solutions:
+    """The configuration of least error for one goal that nothing reaches."""
+    solver, goal = found.solver, found.goal
     if found._partial is not None:
-        return least_squares_partial(robot, found)
+        return least_squares_partial(found)
     if goal.shape == (3,):
-        q, missing = _core._ik_nearest_position(robot, goal)
+        q, missing = _core._ik_nearest_position(solver, goal)
         goal, text = position_goal(goal), f"{missing:.4g} m"
     else:
-        q, away, turned = _core._ik_nearest_pose(robot, goal, 1.0)
+        q, away, turned = _core._ik_nearest_pose(solver, goal, 1.0)
         text = f"{away:.4g} m and {np.degrees(turned):.4g}°"
-    q = wrap(q, robot.joint_types)
+    q = wrap(q, solver.joint_types)
     note = f"nothing reaches the goal; the nearest configuration misses it by {text}"
-    return cast(Solutions, _core._ik_make(robot, goal, NEAREST, q[None, :], (-1,), (False,), note))
+    return Solutions.of(solver, goal, NEAREST, q[None, :], (-1,), (False,), note)
 
 
-def least_squares_partial(robot: Any, found: Solutions) -> Solutions:
-    """The nearest configuration of the longer arm, without the goal's joints."""
-    about, goal = found._about, found._partial
+def least_squares_partial(found: Solutions) -> Solutions:
+    """Of a partial goal: the configuration of the arm with the goal's joints, without these joints."""
+    about, goal = found._about, found._about.goal
     q, _, miss = nearest_to_goal(found)
-    q = wrap(q, about.whole.joint_types)[None]
+    q = wrap(q, about.extended.joint_types)[None]
     note = f"nothing reaches {goal.text}; the nearest configuration misses it by {miss}"
-    own = np.ascontiguousarray(q[:, own_columns(robot, goal)])
-    about = About(goal, about.whole, q, about.freedom)
-    return cast(Solutions, _core._ik_make(robot, found.goal, NEAREST, own, (-1,), (False,), note, about))
+    about = replace(about, q=q)
+    return Solutions.of(found.solver, found.goal, NEAREST, goal.own_joints(q), (-1,), (False,), note, about)
+
+
+def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:
+    """The batch with the configuration of least error for each goal that nothing reaches."""
+    bad = np.argwhere(found._status == UNREACHABLE)
+    if not len(bad):
+        return found
+    q, count, verdict = found.q.copy(), found.count.copy(), found._verdict.copy()
+    if found._partial is None and found.goal.shape[found.count.ndim :] == (4, 4):
+        goals = np.ascontiguousarray(found.goal[tuple(bad.T)])
+        rows = wrap(_core._ik_nearest_poses(found.solver, goals, 1.0, threads), found.solver.joint_types)
+    else:
+        rows = np.array([least_squares_answer(found[tuple(index)]).q[0] for index in bad])
+    if not q.shape[-2]:
+        q = np.full((*q.shape[:-2], 1, q.shape[-1]), np.nan)
+    q[(*bad.T, 0)] = rows
+    count[tuple(bad.T)], verdict[tuple(bad.T)] = 1, NEAREST
+    return SolutionsBatch(found.solver, found.goal, q, count, verdict, found._partial, found.freedom, found._locked)

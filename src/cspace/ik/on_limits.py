@@ -7,7 +7,7 @@ since the error lies along a direction in which the tip does not move to first o
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from cspace.arrays import Array
 from cspace.ik.wrapping import Flags, into_limits, violations
 from cspace.model import Limits
 from cspace.tolerances import DOUBLE_SOLUTION, SAME_TIP
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["settle_on_limits"]
 
@@ -24,15 +27,15 @@ WEAK = 1e-5
 """Singular value, relative to the largest, of a direction that is left alone: the double solution's own."""
 
 
-def settle_on_limits(robot: Any, q: Array, limits: Limits, rows: slice) -> Array:
+def settle_on_limits(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:
     """Configurations (..., dof), those beyond a limit by DOUBLE_SOLUTION or less replaced by the one on the
     limit if it reaches the same goal. rows: of the Jacobian that the goal counts.
 
     An arm with more joints than rows could be brought onto a limit anywhere, locked joints among them: its
     configurations stay as they are.
     """
-    bounds = robot.joint_types, limits.lower, limits.upper
-    if robot.dof > rows.stop:
+    bounds = solver.joint_types, limits.lower, limits.upper
+    if solver.dof > rows.stop:
         return q
     outside = np.nonzero(~into_limits(q, *bounds, SAME_TIP)[1])
     excess = violations(q[outside], *bounds, SAME_TIP)
@@ -41,21 +44,21 @@ def settle_on_limits(robot: Any, q: Array, limits: Limits, rows: slice) -> Array
         return q
     settled = q.copy()
     for index in zip(*(axis[close] for axis in outside), strict=True):
-        settled[index] = settle_row(robot, q[index], limits, rows)
+        settled[index] = settle_row(solver, q[index], limits, rows)
     return settled
 
 
-def settle_row(robot: Any, q: Array, limits: Limits, rows: slice) -> Array:
+def settle_row(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:
     """The configuration (dof,) on the limits that q breaks, or q where it does not reach the same goal.
 
     Newton's method in the joints that are not on a limit.
     """
-    bounds = robot.joint_types, limits.lower, limits.upper
-    T, x, locked = robot.fk(q), q, np.zeros(len(q), dtype=bool)
+    bounds = solver.joint_types, limits.lower, limits.upper
+    T, x, locked = solver.fk(q), q, np.zeros(len(q), dtype=bool)
     for _ in range(STEPS):
         x, locked = onto_limits(x, locked, *bounds)
-        J = robot.jacobian(x)[rows]
-        miss = displacement(robot.fk(x), T)[rows]
+        J = solver.jacobian(x)[rows]
+        miss = displacement(solver.fk(x), T)[rows]
         size = max(1.0, float(np.abs(J).max()))
         if np.abs(miss).max() <= SAME_TIP * size and into_limits(x, *bounds, SAME_TIP)[1]:
             return x

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING, Any, Final, cast
 
 import numpy as np
@@ -11,16 +11,20 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, attribute_error
 from cspace.ik.branches import branch_labels
+from cspace.ik.context import About
 from cspace.ik.derivative import derivative
 from cspace.ik.goals.given import one_configuration
+from cspace.ik.locked_joints import locked_in_words
 from cspace.ik.on_limits import settle_on_limits
-from cspace.ik.prepare import prepare
 from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
 from cspace.ik.wrapping import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
 from cspace.tolerances import SLIGHT_MISS
 
 if TYPE_CHECKING:
+    from cspace.ik.goals.partial import PartialGoal
+    from cspace.ik.solver import Solver
+    from cspace.kinematics import KinematicModel
     from cspace.model import Limits
 
 __all__ = ["Solutions"]
@@ -63,6 +67,31 @@ class Solutions(_core.SolutionsBase):
 
     __slots__ = ()
 
+    @classmethod
+    def of(
+        cls,
+        solver: Solver,
+        goal: Array,
+        verdict: int,
+        q: Array,
+        branches: Iterable[int],
+        self_motion: Iterable[bool],
+        note: str | None = None,
+        about: About | None = None,
+    ) -> Solutions:
+        """A result from its parts: rows q (k, dof), and the branch number and kind of each."""
+        made = _core._ik_make(
+            solver,
+            np.ascontiguousarray(goal),
+            verdict,
+            np.ascontiguousarray(q, dtype=np.float64),
+            tuple(int(b) for b in branches),
+            tuple(bool(f) for f in self_motion),
+            note,
+            about,
+        )
+        return cast(Solutions, made)
+
     @property
     def status(self) -> str:
         """ "exact", "singular" (some rows stand for a family), "unreachable" or "least_squares"."""
@@ -83,8 +112,8 @@ class Solutions(_core.SolutionsBase):
     def residual(self) -> Array:
         """How far fk(q) is from the goal, (k,): the larger of the position error [m] and the angle [rad]."""
         if self._partial is not None:
-            return cast(Array, self._partial.residual(self.robot.fk(self.q)))
-        return pose_errors(self.robot, self.q, self.goal)
+            return cast(Array, self._partial.residual(self.solver.fk(self.q)))
+        return pose_errors(self.solver, self.q, self.goal)
 
     @property
     def goal_parts(self) -> dict[str, Any]:
@@ -96,8 +125,8 @@ class Solutions(_core.SolutionsBase):
         return {"position" if self.goal.shape == (3,) else "pose": self.goal}
 
     @property
-    def _partial(self) -> Any:
-        return None if self._about is None else self._about.goal
+    def _partial(self) -> PartialGoal | None:
+        return None if self._about is None else cast("PartialGoal | None", self._about.goal)
 
     @property
     def freedom(self) -> tuple[str, ...]:
@@ -112,16 +141,16 @@ class Solutions(_core.SolutionsBase):
         to first order. NaN where a solution is singular. Made when read.
         """
         if self._partial is not None:
-            own = slice(len(self._partial.before), len(self._partial.before) + self.robot.dof)
-            return derivative(self._about.whole, self._about.q)[:, own]
-        return derivative(self.robot, self.q, self.goal.shape == (3,))
+            moves = derivative(self._about.extended, self._about.q)
+            return np.swapaxes(self._partial.own_joints(np.swapaxes(moves, 1, 2)), 1, 2)
+        return derivative(self.solver, self.q, self.goal.shape == (3,))
 
     @property
     def branch(self) -> tuple[str, ...]:
         """A name for each solution: shoulder, elbow and wrist where the arm has them, else its branch
         number.
         """
-        return branch_labels(self.robot, self.q, self._branch_numbers)
+        return branch_labels(self.solver, self.q, self._branch_numbers)
 
     @property
     def out_of_reach(self) -> float:
@@ -131,10 +160,10 @@ class Solutions(_core.SolutionsBase):
         if self._status != UNREACHABLE:
             return 0.0
         if self.goal.shape == (3,):
-            return float(_core._ik_nearest_position(self.robot, self.goal)[1])
+            return float(_core._ik_nearest_position(self.solver, self.goal)[1])
         if self._partial is not None:
             return nearest_to_goal(self, ORIENTATION_FIRST)[1]
-        return float(_core._ik_nearest_pose(self.robot, self.goal, ORIENTATION_FIRST)[1])
+        return float(_core._ik_nearest_pose(self.solver, self.goal, ORIENTATION_FIRST)[1])
 
     @property
     def reason(self) -> str:
@@ -144,6 +173,8 @@ class Solutions(_core.SolutionsBase):
         if self._status == UNREACHABLE:
             return unreachable_reason(self)
         text = how_many(len(self)) + " the goal"
+        if self._about is not None and self._about.values:
+            return f"{text}, {spread_in_words(self._about)}" + ("" if self.complete else f"; {UNCERTIFIED}")
         if self.freedom:
             text = (
                 f"{len(self)} of the configurations that reach the goal, which leaves {named(self.freedom)}"
@@ -160,10 +191,10 @@ class Solutions(_core.SolutionsBase):
         """The one-parameter families among the solutions, empty unless the pose is singular."""
         rows = [row for row, is_self_motion in enumerate(self._is_self_motion) if is_self_motion]
         if self._partial is not None:
-            whole = self._about.whole
-            return tuple(self_motion_at(whole, row, self._about.q[row], True) for row in rows)
+            extended = self._about.extended
+            return tuple(self_motion_at(extended, row, self._about.q[row], True) for row in rows)
         whole_pose = self.goal.shape == (4, 4)
-        return tuple(self_motion_at(self.robot, row, self.q[row], whole_pose) for row in rows)
+        return tuple(self_motion_at(self.solver, row, self.q[row], whole_pose) for row in rows)
 
     if not TYPE_CHECKING:  # type checkers report such names themselves
 
@@ -182,8 +213,8 @@ class Solutions(_core.SolutionsBase):
         limits: the robot's own unless given. A joint that rounding takes past a limit is set to it, so q is
         inside exactly. windings: every combination of multiples of 2π that fits, not only one.
         """
-        bounds = bounds_of(self.robot, limits)
-        kinds = self.robot.joint_types
+        bounds = bounds_of(self.solver, limits)
+        kinds = self.solver.joint_types
         if not isinstance(windings, (bool, np.bool_)):
             raise InputTypeError(f"windings must be True or False, got {type(windings).__name__}")
         settled = self._settled(bounds)
@@ -199,7 +230,7 @@ class Solutions(_core.SolutionsBase):
 
     def _settled(self, limits: Limits) -> Array:
         """The solutions (k, dof), those that rounding takes past a limit set to it."""
-        return settle_on_limits(self.robot, self.q, limits, slice(6 if self.goal.shape == (4, 4) else 3))
+        return settle_on_limits(self.solver, self.q, limits, slice(6 if self.goal.shape == (4, 4) else 3))
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Solutions:
         """The one solution nearest to q (dof,), each revolute joint taken by the turn that brings it closest.
@@ -208,12 +239,12 @@ class Solutions(_core.SolutionsBase):
         would leave the robot's limits are not taken where another one stays inside. Of a family the
         representative counts; its `nearest` says which member comes nearest.
         """
-        seed = one_configuration(self.robot, q, "q")
+        seed = one_configuration(self.solver, q, "q")
         choice(metric, "metric", METRICS)
         if not self:
             return self
-        limits = self.robot.limits
-        moved = nearest_winding(self.q, seed, self.robot.joint_types, limits.lower, limits.upper)
+        limits = self.solver.limits
+        moved = nearest_winding(self.q, seed, self.solver.joint_types, limits.lower, limits.upper)
         gap = np.abs(moved - seed)
         distance = gap.max(axis=1) if metric == "max" else np.linalg.norm(gap, axis=1)
         row = int(np.argmin(distance))
@@ -237,16 +268,16 @@ class Solutions(_core.SolutionsBase):
 
     def wrapped(self) -> Solutions:
         """The same solutions with revolute joints in (−π, π]."""
-        return self._take(np.arange(len(self)), wrap(self.q, self.robot.joint_types), self._note)
+        return self._take(np.arange(len(self)), wrap(self.q, self.solver.joint_types), self._note)
 
     def violations(self, limits: Limits | None = None) -> tuple[dict[str, float], ...]:
         """Per solution, the joints that no multiple of 2π brings into the limits, and by how much [rad, m].
 
         Empty for exactly the solutions that `within` keeps.
         """
-        bounds = bounds_of(self.robot, limits)
-        excess = violations(self._settled(bounds), self.robot.joint_types, bounds.lower, bounds.upper)
-        names = self.robot.joint_names
+        bounds = bounds_of(self.solver, limits)
+        excess = violations(self._settled(bounds), self.solver.joint_types, bounds.lower, bounds.upper)
+        names = self.solver.joint_names
         return tuple({name: float(e) for name, e in zip(names, row, strict=True) if e > 0} for row in excess)
 
     @property
@@ -254,23 +285,20 @@ class Solutions(_core.SolutionsBase):
         return self.goal if self.goal.shape == (4, 4) else position_goal(self.goal)
 
     def _take(self, rows: Any, q: Array, note: str | None) -> Solutions:
-        branches = tuple(self._branch_numbers[row] for row in rows)
-        self_motions = tuple(self._is_self_motion[row] for row in rows)
-        made = _core._ik_make(
-            self.robot,
+        return Solutions.of(
+            self.solver,
             self._goal_pose,
             self._verdict,
-            np.ascontiguousarray(q, dtype=np.float64),
-            branches,
-            self_motions,
+            q,
+            (self._branch_numbers[row] for row in rows),
+            (self._is_self_motion[row] for row in rows),
             note,
-            None if self._about is None else self._about.take(rows),
+            None if self._about is None else self._about.take(rows, len(rows) == len(self)),
         )
-        return cast(Solutions, made)
 
     def __reduce__(self) -> tuple[Any, ...]:
         numbers = (self._branch_numbers, self._is_self_motion, self._note, self._about)
-        return again, (self.robot, self._goal_pose, self._verdict, self.q, *numbers)
+        return Solutions.of, (self.solver, self._goal_pose, self._verdict, self.q, *numbers)
 
     def __repr__(self) -> str:
         lines = [f"Solutions({self.status}: {self.reason})"]
@@ -282,30 +310,24 @@ class Solutions(_core.SolutionsBase):
         return "\n".join(lines)
 
 
-def again(robot: Any, *parts: Any) -> Solutions:
-    """A result out of its pickle."""
-    prepare(robot)
-    return cast(Solutions, _core._ik_make(robot, *parts))
-
-
-def bounds_of(robot: Any, limits: Limits | None) -> Limits:
+def bounds_of(solver: KinematicModel, limits: Limits | None) -> Limits:
     """The limits that count: the robot's own unless others are given, which must have as many joints."""
-    bounds: Limits = robot.limits if limits is None else limits
+    bounds: Limits = solver.limits if limits is None else limits
     sizes = [getattr(getattr(bounds, side, None), "shape", None) for side in ("lower", "upper")]
     if None in sizes:
         raise InputTypeError(f"limits is a {type(limits).__name__}, expected cspace.model.Limits")
-    if sizes != [(robot.dof,)] * 2:
-        raise InputError(f"limits are for {sizes[0]} joints, {robot.name} has ({robot.dof},)")
+    if sizes != [(solver.dof,)] * 2:
+        raise InputError(f"limits are for {sizes[0]} joints, {solver.name} has ({solver.dof},)")
     return bounds
 
 
-def pose_errors(robot: Any, q: Array, goal: Array) -> Array:
+def pose_errors(solver: KinematicModel, q: Array, goal: Array) -> Array:
     """Per configuration the larger of the position error [m] and the rotation angle [rad] between fk(q) and
     goal.
     """
     if q.size == 0:
         return np.zeros(q.shape[:-1])
-    T = robot.fk(q)
+    T = solver.fk(q)
     if goal.shape[-1] == 3:
         return cast(Array, np.linalg.norm(T[..., :3, 3] - goal, axis=-1))
     away = np.linalg.norm(T[..., :3, 3] - goal[..., :3, 3], axis=-1)
@@ -332,25 +354,34 @@ def position_goal(p: Array) -> Array:
     return T
 
 
+def spread_in_words(about: About) -> str:
+    """At which values of the redundant joint branches are listed."""
+    where = "its feasible intervals" if about.feasible else "the values that reach it, none of them within limits"
+    values = f"{about.values} value{'s' if about.values > 1 else ''}"
+    return f"at {values} of {about.freedom[0]} spread over {where}"
+
+
 def unreachable_reason(found: Solutions) -> str:
-    name = found.robot.name
+    name = found.solver.name
+    if found._about is not None and found._about.locked:
+        return f"nothing reaches the goal with {locked_in_words(found.solver, found._about.own_locked)}"
     if found._partial is not None:
         q, _, miss = nearest_to_goal(found)
-        left = float(found._partial.residual(found.robot.fk(own_part(found, q))))
+        left = float(found._partial.residual(found.solver.fk(found._partial.own_joints(q))))
         return (
             f"{name} cannot reach {found._partial.text}: the nearest configuration misses it by {miss}"
             + hint_for_slight_miss(left)
         )
     if found.goal.shape == (3,):
         return f"out of reach: the goal would have to move {found.out_of_reach:.4g} m for {name} to reach it"
-    _, missing, turned = _core._ik_nearest_pose(found.robot, found.goal, ORIENTATION_FIRST)
+    _, missing, turned = _core._ik_nearest_pose(found.solver, found.goal, ORIENTATION_FIRST)
     if turned > min(ORIENTATION_KEPT, missing):
         return (
-            f"{name} ({found.robot.dof} joints) cannot take this orientation: the nearest configuration "
+            f"{name} ({found.solver.dof} joints) cannot take this orientation: the nearest configuration "
             f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"
             + hint_for_slight_miss(max(turned, missing))
         )
-    short = "" if found.robot.dof >= POSE_ASKS else f" ({found.robot.dof} joints, where poses ask for 6)"
+    short = "" if found.solver.dof >= POSE_ASKS else f" ({found.solver.dof} joints, where poses ask for 6)"
     return (
         f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
         f"for {name}{short} to reach it" + (hint_for_slight_miss(missing) if short else "")
@@ -364,38 +395,32 @@ def hint_for_slight_miss(miss: float) -> str:
     return ", which the rounded numbers of a robot may cause; least_squares=True answers with the nearest"
 
 
-def own_part(found: Solutions, q: Array) -> Array:
-    """A configuration of the longer arm of a partial goal, without the goal's joints."""
-    first = len(found._partial.before)
-    return q[first : first + found.robot.dof]
-
-
 def nearest_to_goal(found: Solutions, radian: float = 1.0) -> tuple[Array, float, str]:
     """Of a partial goal out of reach: the configuration of the longer arm that misses it least; by how far
     [m], and by how much in words. radian: how many metres one weighs where what is missed is compared.
     """
-    whole, goal = found._about.whole, found._partial
+    extended, goal = found._about.extended, found._about.goal
 
     def size(q: Array) -> float:
-        distances, angles = goal.misses(found.robot.fk(own_part(found, q)))
+        distances, angles = goal.misses(found.solver.fk(goal.own_joints(q)))
         return float(max(distances, default=0.0) + radian * max(angles, default=0.0))
 
     q = min(
-        (_core._ik_nearest_pose(whole, found.goal, weight)[0] for weight in (1.0, ORIENTATION_FIRST)),
+        (_core._ik_nearest_pose(extended, found.goal, weight)[0] for weight in (1.0, ORIENTATION_FIRST)),
         key=size,
     )
-    T = found.robot.fk(own_part(found, q))
+    T = found.solver.fk(goal.own_joints(q))
     return q, float(max(goal.misses(T)[0], default=0.0)), goal.distance_in_words(T)
 
 
 def limits_reason(found: Solutions, q: Array, limits: Limits) -> str:
-    excess = violations(q, found.robot.joint_types, limits.lower, limits.upper)
+    excess = violations(q, found.solver.joint_types, limits.lower, limits.upper)
     best = int(np.argmin(excess.max(axis=1)))
     joint = int(np.argmax(excess[best]))
-    unit = "rad" if found.robot.joint_types[joint] == "R" else "m"
+    unit = "rad" if found.solver.joint_types[joint] == "R" else "m"
     return (
         f"{how_many(len(found))} the goal, none within limits; the nearest one has "
-        f"{found.robot.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
+        f"{found.solver.joint_names[joint]} out by {excess[best, joint]:.4g} {unit}"
     )
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -13,10 +16,10 @@ from cspace.errors import InputError, attribute_error
 from cspace.ik.context import About
 from cspace.ik.derivative import derivative
 from cspace.ik.on_limits import settle_on_limits
-from cspace.ik.prepare import prepare
 from cspace.ik.solutions import (
     INCOMPLETE,
     METRICS,
+    NEAREST,
     UNREACHABLE,
     VERDICTS,
     Solutions,
@@ -29,9 +32,37 @@ from cspace.kinematics.batch import choice
 from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
+    from cspace.ik.goals.partial import PartialGoal
+    from cspace.ik.solver import Solver
     from cspace.model import Limits
 
-__all__ = ["SolutionsBatch"]
+__all__ = ["PartialRows", "SolutionsBatch"]
+
+
+@dataclass(frozen=True, eq=False)
+class PartialRows:
+    """What the answers to many partial goals carry: about the goals, rows as found, q (..., k, dof), and of the
+    arm with the goals' joints, extended (..., k, n), and which of them stand for a self-motion (..., k).
+    """
+
+    about: About
+    q: Array
+    extended: Array
+    self_motion: npt.NDArray[np.bool_]
+
+    @property
+    def goal(self) -> PartialGoal:
+        """The goals."""
+        return cast("PartialGoal", self.about.goal)
+
+    def one(self, solver: Solver, index: Any, verdict: int) -> Solutions:
+        """The solutions of the goal at an index."""
+        k = int(np.isfinite(self.q[index][:, 0]).sum())
+        about = replace(self.about, goal=self.goal.take(index), q=self.extended[index][:k])
+        flags = self.self_motion[index][:k]
+        return Solutions.of(
+            solver, about.goal.T, verdict, self.q[index][:k], range(k), flags, None, about  # type: ignore[union-attr]
+        )
 
 
 class SolutionsBatch:
@@ -45,21 +76,23 @@ class SolutionsBatch:
 
     def __init__(
         self,
-        robot: Any,
+        solver: Solver,
         goal: Array,
         q: Array,
         count: npt.NDArray[np.int64],
         verdict: npt.NDArray[np.uint8],
-        partial: Any = None,
+        partial: PartialRows | None = None,
         freedom: tuple[str, ...] = (),
+        locked: Mapping[int, Any] = MappingProxyType({}),
     ) -> None:
-        self.robot = robot
+        self.solver = solver
         self.goal = goal
         self.q = q
         self.count = count
         self._verdict = verdict
-        self._partial = partial  # solve_partial.Many, where the goals are no poses
+        self._partial = partial  # where the goals are partial
         self.freedom = freedom
+        self._locked = dict(locked)
 
     if not TYPE_CHECKING:  # type checkers report such names themselves
 
@@ -98,18 +131,17 @@ class SolutionsBatch:
         out = np.full(self.q.shape[:-1], np.nan)
         real = self._real
         if self._partial is not None:
-            for index in np.argwhere(real):
-                one = self._partial.goal.take(tuple(index[:-1]))
-                out[tuple(index)] = one.residual(self.robot.fk(self.q[tuple(index)]))
+            goals = self._partial.goal.take(np.nonzero(real)[:-1])
+            out[real] = goals.residual(self.solver.fk(self.q[real]))
             return out
-        out[real] = pose_errors(self.robot, self.q[real], goal[real])
+        out[real] = pose_errors(self.solver, self.q[real], goal[real])
         return out
 
     @property
     def derivative(self) -> Array:
         """dq per base twist [v; ω] of each goal, (..., k_max, dof, 6), NaN padded, as of `Solutions`."""
         if self._partial is None:
-            return derivative(self.robot, self.q, self.goal.shape[self.count.ndim :] == (3,))
+            return derivative(self.solver, self.q, self.goal.shape[self.count.ndim :] == (3,))
         out = np.full((*self.q.shape, 6), np.nan)
         for index in np.ndindex(self.count.shape):  # the joints of each goal are known to its own answer
             out[index][: self.count[index]] = self[index].derivative
@@ -147,52 +179,57 @@ class SolutionsBatch:
         goal = np.ascontiguousarray(self.goal[index])
         rows = self.q[index][: int(self.count[index])]
         if self._partial is not None:
-            return self._row_of_partial(index, rows)
-        prepare(self.robot)  # a robot out of a pickle comes without its solver
-        if not self.robot._ik_direct or self.freedom:
-            return self._row_of_redundant(goal, int(verdict), np.ascontiguousarray(rows))
+            return self._row_of_partial(index, int(verdict), rows)
+        if self.solver.is_redundant or self.freedom or self._locked or int(verdict) == NEAREST:
+            return self._row_of_redundant(index, goal, int(verdict), rows)
         is_pose = goal.shape == (4, 4)
-        full = _core._ik_single(self.robot, goal) if is_pose else _core._ik_position(self.robot, goal)
+        full = _core._ik_single(self.solver, goal) if is_pose else _core._ik_position(self.solver, goal)
         if len(full) == len(rows) and np.array_equal(full.q, rows):
             return cast(Solutions, full)
         branches = tuple(
             int(full._branch_numbers[int(np.argmin(np.abs(np.sin((full.q - row) / 2)).max(axis=1)))])
             for row in rows
         )
-        made = _core._ik_make(
-            self.robot,
+        return Solutions.of(
+            self.solver,
             goal if is_pose else position_goal(goal),
             int(verdict),
-            np.ascontiguousarray(rows),
+            rows,
             branches,
             (False,) * len(rows),
             None if len(rows) or not len(full) else "solutions exist, the filters left none",
         )
-        return cast(Solutions, made)
 
-    def _row_of_redundant(self, goal: Array, verdict: int, rows: Array) -> Solutions:
+    def _row_of_redundant(self, index: Any, goal: Array, verdict: int, rows: Array) -> Solutions:
         """One goal's rows as a result, without the names of their branches."""
         k = len(rows)
-        about = About(freedom=self.freedom)
-        made = _core._ik_make(self.robot, goal, verdict, rows, (-1,) * k, (False,) * k, None, about)
-        return cast(Solutions, made)
+        locked = {
+            joint: np.broadcast_to(value, self.count.shape)[index] for joint, value in self._locked.items()
+        }
+        about = About(freedom=self.freedom, locked=locked)
+        goal = goal if goal.shape == (4, 4) else position_goal(goal)
+        return Solutions.of(self.solver, goal, verdict, rows, (-1,) * k, (False,) * k, None, about)
 
     def within(self, limits: Limits | None = None) -> SolutionsBatch:
         """The solutions inside the limits, each revolute joint first moved by a multiple of 2π to fit.
 
         A joint that rounding takes past a limit is set to it, so q is inside exactly.
         """
-        bounds = bounds_of(self.robot, limits)
+        bounds = bounds_of(self.solver, limits)
         rows = slice(3 if self.goal.shape[self.count.ndim :] == (3,) else 6)
-        settled = settle_on_limits(self.robot, self.q, bounds, rows)
-        moved, fits = into_limits(settled, self.robot.joint_types, bounds.lower, bounds.upper)
+        settled = settle_on_limits(self.solver, self.q, bounds, rows)
+        moved, fits = into_limits(settled, self.solver.joint_types, bounds.lower, bounds.upper)
         return self._keep(moved, fits & self._real)
 
     def wrapped(self) -> SolutionsBatch:
         """The same solutions with revolute joints in (−π, π]."""
-        q = wrap(self.q, self.robot.joint_types)
+        q = wrap(self.q, self.solver.joint_types)
+        return self._with(q, self.count)
+
+    def _with(self, q: Array, count: npt.NDArray[np.int64]) -> SolutionsBatch:
+        """The same goals with other rows."""
         return SolutionsBatch(
-            self.robot, self.goal, q, self.count, self._verdict, self._partial, self.freedom
+            self.solver, self.goal, q, count, self._verdict, self._partial, self.freedom, self._locked
         )
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Array:
@@ -201,23 +238,33 @@ class SolutionsBatch:
         """
         choice(metric, "metric", METRICS)
         seed = self._seed(q)[..., None, :]
-        limits = self.robot.limits
-        moved = nearest_winding(self.q, seed, self.robot.joint_types, limits.lower, limits.upper)
+        limits = self.solver.limits
+        moved = nearest_winding(self.q, seed, self.solver.joint_types, limits.lower, limits.upper)
         gap = np.abs(moved - seed)
         distance = gap.max(axis=-1) if metric == "max" else np.linalg.norm(gap, axis=-1)
         row = np.argmin(np.where(self._real, distance, np.inf), axis=-1)
         return np.take_along_axis(moved, row[..., None, None], axis=-2)[..., 0, :]
 
-    def _row_of_partial(self, index: Any, rows: Array) -> Solutions:
-        """One goal is asked again, for what the rows do not say, and its answer cut to the rows."""
-        full = self._partial.one(self.robot, index)
-        gaps = short_way(full.q[None] - rows[:, None], self.robot.joint_types)
+    def _nearest_alone(self, q: Any) -> SolutionsBatch:
+        """The batch with the solution nearest to q alone, for each goal that has one."""
+        rows = self.nearest(q)[..., None, :]
+        return self._with(rows, np.isfinite(rows[..., 0, 0]).astype(np.int64))
+
+    def _row_of_partial(self, index: Any, verdict: int, rows: Array) -> Solutions:
+        """The rows of one goal as a result; filters may have moved them or left some out."""
+        assert self._partial is not None
+        if verdict == NEAREST:
+            from cspace.ik.least_squares import least_squares_answer
+
+            return least_squares_answer(self._partial.one(self.solver, index, UNREACHABLE))
+        full = self._partial.one(self.solver, index, verdict)
+        gaps = short_way(full.q[None] - rows[:, None], self.solver.joint_types)
         kept = np.abs(gaps).max(axis=2).argmin(axis=1) if len(rows) else np.zeros(0, dtype=int)
-        return cast(Solutions, full._take(kept, rows, full._note))
+        return full._take(kept, rows, None)
 
     def _seed(self, q: Any) -> Array:
         """One configuration per goal, (..., dof), from as many as given or one for all."""
-        dof = self.robot.dof
+        dof = self.solver.dof
         seed = as_floats(q, "q", last=(dof,), largest=FARTHEST)
         whole = (*self.count.shape, dof)
         try:
@@ -232,14 +279,12 @@ class SolutionsBatch:
         sorted_q = np.take_along_axis(q, order[..., None], axis=-2)
         count = keep.sum(axis=-1)
         sorted_q[np.arange(q.shape[-2]) >= count[..., None]] = np.nan
-        return SolutionsBatch(
-            self.robot, self.goal, sorted_q, count, self._verdict, self._partial, self.freedom
-        )
+        return self._with(sorted_q, count)
 
     def __repr__(self) -> str:
         reached = int(np.count_nonzero(self.count))
         unreachable = int(np.count_nonzero(self._status == UNREACHABLE))
         return (
-            f"SolutionsBatch({self.robot.name}: {self.count.size} goals, {reached} with solutions, "
+            f"SolutionsBatch({self.solver.name}: {self.count.size} goals, {reached} with solutions, "
             f"{unreachable} unreachable, {int(self.count.sum())} configurations)"
         )

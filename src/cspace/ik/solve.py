@@ -1,11 +1,10 @@
-"""The words around inverse kinematics: what is asked, whether it makes sense, who answers."""
+"""Which method answers a goal: the closed form, locked joints, or a search along the self-motion."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import Any, cast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -13,7 +12,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.buffer_pool import pooled_array
-from cspace.errors import InputTypeError
+from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.given import (
     checked_poses,
     goal_array,
@@ -24,29 +23,31 @@ from cspace.ik.goals.given import (
     points_in_base,
     too_far,
 )
-from cspace.ik.goals.partial import KEYWORDS, PartialGoal, check_tool_axis, is_open, partial_goal
-from cspace.ik.goals.solve_partial import met_by_open_joints, own_columns, solve_partial
-from cspace.ik.least_squares import least_squares_answer
-from cspace.ik.locked_joints import by_name, locked_values
-from cspace.ik.prepare import check_chain, prepare
+from cspace.ik.goals.partial import KEYWORDS, PartialGoal
+from cspace.ik.goals.parts import check_tool_axis, is_open, partial_goal
+from cspace.ik.least_squares import least_squares_answer, least_squares_batch
+from cspace.ik.redundancy.solve import solve_freedom
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.kinematics.batch import check_robot, thread_count
+from cspace.kinematics.batch import thread_count
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
 
-__all__ = ["inverse_kinematics"]
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
+
+__all__ = ["solve"]
 
 MAX_POSITION_JOINTS = 3
-"""Up to so many joints are settled by the place of the tip alone."""
+"""A point determines up to so many joints."""
 Counts = npt.NDArray[np.int64]
 Verdicts = npt.NDArray[np.uint8]
 Answer = Solutions | SolutionsBatch
 
 
 @dataclass(frozen=True)
-class Wish:
-    """Which of the solutions: the keywords of `inverse_kinematics` of these names."""
+class Options:
+    """Which of the solutions: the keywords of `Solver.solve` of these names."""
 
     near: Any
     locked: Any
@@ -56,13 +57,13 @@ class Wish:
     threads: int
 
     @property
-    def holds(self) -> bool:
-        """Whether something is locked, or sampled at a number of values of one's own."""
+    def sets_freedom(self) -> bool:
+        """Whether some joints are locked, or sampled at a number of values."""
         return self.locked is not None or self.samples is not None
 
 
-def inverse_kinematics(
-    robot: Any,
+def solve(
+    solver: Solver,
     goal: Any = None,
     *,
     position: Any = None,
@@ -79,43 +80,16 @@ def inverse_kinematics(
     samples: int | None = None,
     least_squares: bool = False,
     threads: int | None = None,
-) -> Solutions | SolutionsBatch:
-    """Every configuration q with fk(q) = goal.
-
-    goal: T_base_tip, (4, 4) or (..., 4, 4), or anything `as_pose` takes. Instead of it, parts of a pose,
-    alone or together: position: of the tip [m], (3,) or (..., 3), None for coordinates that do not matter,
-    or (..., 2) for an arm in the plane; rotation (3, 3); direction (3,): where the tool axis points.
-    position goes with rotation, direction, angle_to=(axis of the base, angle to it of the tool axis [rad]),
-    and in the plane with angle: of the tip [rad]. look_at (3,): a point on the tool axis, ahead of the tip.
-    ray=(p, d): the line of the tool axis, through p along d. tool_axis: in the tip, "x", "-z" or any (3,).
-
-    near: (dof,), a configuration; the answer is the one solution nearest to it, and leading joints that a
-    singular pose leaves free take its values. Limits choose among a joint's multiples of 2π, not among
-    solutions, and with redundant joints count for nothing. locked: locked joints at given values, by name
-    or number, {"joint7": 0.3}; arrays of values are solved together with the goals. swivel: of an arm with
-    two spherical joints, the angle of its elbow about the line from shoulder to wrist [rad] (see
-    `cs.ik.swivel`), or many. samples: of an arm with one redundant joint, at how many of its values
-    branches are listed (16 unless given). least_squares: where nothing reaches the goal, the answer is the
-    configuration that misses least (a radian weighs like the arm's characteristic length). threads: for a
-    batch, all cores unless given; the answer does not depend on it.
-
-    An arm with more than six joints, or some of which do the work of others, leaves freedom, which
-    `freedom` of the answer names. With locked= for all redundant joints every solution of the others is
-    listed; with near= the nearest of all; else, with one redundant joint, all branches at values of it
-    spread over its feasible intervals, and with more the configuration nearest to the middle of the limits.
-
-    Returns `Solutions` for one goal, `SolutionsBatch` for many. An unreachable goal is an answer (falsy,
-    with the reason); a goal that is not a pose raises InputError; joints that mimic others, a floating base
-    or more than sixteen joints raise NoClosedFormError.
-    """
-    check_robot(robot)
-    workers = thread_count(threads, (1,)) or os.cpu_count() or 1
+) -> Answer:
+    """Every configuration q with fk(q) = goal; see Solver.solve, which documents the keywords."""
+    workers = (os.cpu_count() or 1) if threads is None else thread_count(threads, (1,)) or os.cpu_count() or 1
     if not isinstance(least_squares, (bool, np.bool_)):
         raise InputTypeError(f"least_squares must be True or False, got {type(least_squares).__name__}")
-    wish = Wish(near, locked, swivel, samples, bool(least_squares), workers)
+    options = Options(near, locked, swivel, samples, bool(least_squares), workers)
     if angle is not None:
-        goal, position = planar_poses(robot, goal, position, angle), None
-    position = open_in_space(robot, position)
+        goal, position = planar_poses(solver, goal, position, angle), None
+    if is_open(position):
+        position = open_in_space(solver, position)
     named = (position, rotation, direction, look_at, ray, angle_to)
     given = {name: value for name, value in zip(KEYWORDS, named, strict=True) if value is not None}
     check_tool_axis(tool_axis, given)
@@ -125,161 +99,111 @@ def inverse_kinematics(
             " such as robot.ik(position=p)"
         )
     if goal is not None:
-        return answer_poses(robot, goal, wish)
-    if is_plain_position(robot, given):
-        given["position"] = points_in_base(robot, position)
-        if not wish.holds and swivel is None:
-            return answer_points(robot, given["position"], wish)
-    return answer_partial(robot, partial_goal(given, tool_axis), wish)
+        return answer_poses(solver, goal, options)
+    if is_plain_position(solver, given):
+        given["position"] = points_in_base(solver, position)
+        if not options.sets_freedom and swivel is None:
+            return answer_points(solver, given["position"], options)
+    if swivel is not None:
+        raise InputTypeError("swivel= needs a full pose; lock joints with locked= instead")
+    parts = partial_goal(given, tool_axis)
+    if not (parts.before or parts.behind):
+        return answer_poses(solver, parts.T, options, parts)
+    return choose(solver, solve_freedom(solver, parts, parts.T, options), options)
 
 
-def answer_poses(robot: Any, goal: Any, wish: Wish) -> Answer:
-    prepare(robot)
+def answer_poses(solver: Solver, goal: Any, options: Options, parts: PartialGoal | None = None) -> Answer:
     T = goal_array(goal)
-    if wish.swivel is not None:
-        return at_swivel(robot, T, wish)
-    if wish.holds or not robot._ik_direct:
-        return redundant(robot, T, wish)
-    found = solve_many(robot, T, wish.threads) if T.ndim > 2 else solve_one(robot, T, wish.near)
-    return chosen(robot, found, wish)
+    if options.swivel is not None:
+        return answer_swivel(solver, T, options)
+    if options.sets_freedom or solver.is_redundant or parts is not None:
+        return choose(solver, solve_freedom(solver, parts, checked_poses(T), options), options)
+    found = solve_many(solver, T, options.threads) if T.ndim > 2 else solve_one(solver, T, options.near)
+    return choose(solver, found, options)
 
 
-def answer_points(robot: Any, p: Array, wish: Wish) -> Answer:
-    prepare(robot)
+def answer_points(solver: Solver, p: Array, options: Options) -> Answer:
     if p.ndim > 1:
-        return chosen(robot, solve_positions(robot, p, wish.threads), wish)
-    found = cast(Solutions, _core._ik_position(robot, p))
-    if wish.near is not None and found.self_motions:
-        found = found._along_self_motions(one_configuration(robot, wish.near, "near"))
-    return chosen(robot, found, wish)
+        return choose(solver, solve_positions(solver, p, options.threads), options)
+    found = cast(Solutions, _core._ik_position(solver, p))
+    if options.near is not None and found.self_motions:
+        found = found._along_self_motions(one_configuration(solver, options.near, "near"))
+    return choose(solver, found, options)
 
 
-def answer_partial(robot: Any, goal: PartialGoal, wish: Wish) -> Answer:
-    if wish.swivel is not None:
-        raise InputTypeError("swivel= goes with a full pose; lock joints with locked=")
-    if wish.holds and goal.T.ndim > 2:
-        raise InputTypeError("locked= and samples= go with one goal where parts of a pose are asked for")
-    if wish.near is not None and goal.T.ndim > 2:
-        count = int(np.prod(goal.T.shape[:-2]))
-        raise InputTypeError(
-            f"near= goes with one goal where parts of a pose are asked for, got {count}; call ik for each"
-        )
-
-    def ask(whole: Any, T: Array) -> Answer:
-        prepare(whole)
-        if wish.holds or not whole._ik_direct:
-            return redundant(whole, T, of_whole(robot, goal, whole, wish))
-        return solve_many(whole, T, wish.threads) if T.ndim > 2 else solve_one(whole, T, None)
-
-    check_chain(robot)
-    return chosen(robot, solve_partial(robot, goal, ask), wish)
-
-
-def chosen(robot: Any, found: Answer, wish: Wish) -> Answer:
-    """Of all solutions those that are wished for."""
+def choose(solver: Solver, found: Answer, options: Options) -> Answer:
+    """Of all solutions those that the options name."""
+    if options.least_squares and options.locked:
+        raise InputTypeError("least_squares= cannot be combined with locked=, because it moves every joint")
     if isinstance(found, SolutionsBatch):
-        if wish.near is not None or wish.least_squares:
-            raise InputTypeError("near= and least_squares= are for one goal; a batch has .nearest(q)")
-        return found
-    if wish.least_squares and not found:
-        return closest(robot, found, wish)
-    return found if wish.near is None else found.nearest(wish.near)
+        if options.near is not None:
+            found = found._nearest_alone(options.near)
+        return least_squares_batch(found, options.threads) if options.least_squares else found
+    if options.near is not None:
+        found = found.nearest(options.near)
+    return least_squares_answer(found) if options.least_squares and not found else found
 
 
-def at_swivel(robot: Any, T: Array, wish: Wish) -> Answer:
+def answer_swivel(solver: Solver, T: Array, options: Options) -> Answer:
     from cspace.ik.redundancy.arm_angle import solve_swivel
 
-    if wish.holds or wish.least_squares:
-        raise InputTypeError("swivel= goes with near= alone: it holds what is to spare")
-    return solve_swivel(robot, checked_poses(T), wish.swivel, wish.near)
+    if options.sets_freedom or options.least_squares:
+        raise InputTypeError(
+            "swivel= can only be combined with near=, because it fixes the redundant degree of freedom"
+        )
+    return choose(solver, solve_swivel(solver, checked_poses(T), options.swivel), options)
 
 
-def redundant(robot: Any, T: Array, wish: Wish) -> Answer:
-    from cspace.ik.redundancy.solve import redundant_answer
-
-    options = {"locked": wish.locked, "samples": wish.samples, "near": wish.near, "threads": wish.threads}
-    found = redundant_answer(robot, checked_poses(T), **options)
-    if isinstance(found, SolutionsBatch):
-        if wish.least_squares:
-            raise InputTypeError("least_squares= is for one goal")
-        return found
-    return closest(robot, found, wish) if wish.least_squares and not found else found
-
-
-def closest(robot: Any, found: Solutions, wish: Wish) -> Solutions:
-    if wish.locked:
-        raise InputTypeError("least_squares= does not go with locked=: it moves every joint")
-    return least_squares_answer(robot, found)
-
-
-def is_plain_position(robot: Any, given: dict[str, Any]) -> bool:
+def is_plain_position(solver: Solver, given: dict[str, Any]) -> bool:
     """Whether a goal is a whole point for an arm of up to three joints, which are solved directly."""
-    short = len(robot.chain.joint_types) <= MAX_POSITION_JOINTS
-    return short and list(given) == ["position"] and not is_open(given["position"])
+    few = len(solver.joint_types) <= MAX_POSITION_JOINTS
+    return few and list(given) == ["position"] and not is_open(given["position"])
 
 
-def of_whole(robot: Any, goal: PartialGoal, whole: Any, wish: Wish) -> Wish:
-    """The wish in terms of the arm with the joints that stand for what the goal leaves open: these begin
-    where they bring the seed closest to the goal, and joints are locked by name, for their numbers are
-    others."""
-    from cspace.ik.redundancy.solve import count_redundancy
-
-    locked, near = wish.locked, None
-    if isinstance(locked, Mapping):
-        locked = by_name(robot, locked)
-    leaves_freedom = locked is None or count_redundancy(whole, locked_values(whole, locked)) > 0
-    if wish.near is not None and leaves_freedom:  # else all are listed, and the nearest is picked among them
-        seed = as_floats(wish.near, "near", last=(robot.dof,), largest=FARTHEST)
-        near = met_by_open_joints(whole, own_columns(robot, goal), seed, goal.T)
-    return replace(wish, locked=locked, near=near, least_squares=False)
-
-
-def solve_one(robot: Any, T: Array, near: Any) -> Solutions:
+def solve_one(solver: Solver, T: Array, near: Any) -> Solutions:
     if near is None:
-        found = _core._ik_single(robot, T)
+        found = _core._ik_single(solver, T)
         if found is None:
             raise too_far("goal", T[:3, 3])
         return cast(Solutions, found)
-    seed = one_configuration(robot, near, "near")
+    seed = one_configuration(solver, near, "near")
     if is_far(T[:3, 3]):
         raise too_far("goal", T[:3, 3])
-    bounds = (np.ascontiguousarray(side) for side in (robot.limits.lower, robot.limits.upper))
-    _core._ik_serve_near(robot, *bounds)
-    found = cast(Solutions, _core._ik_near_singular(robot, T, seed))
+    found = cast(Solutions, _core._ik_near_singular(solver, T, seed))
     return found._with_member(seed) if found.self_motions else found
 
 
-def solve_many(robot: Any, T: Array, workers: int) -> SolutionsBatch:
+def solve_many(solver: Solver, T: Array, workers: int) -> SolutionsBatch:
     leading = T.shape[:-2]
-    answers = room_for(robot, leading)
-    bad = _core._ik_many(robot, T.reshape(-1, 4, 4), *answers, workers)
+    answers = new_rows(solver, leading)
+    bad = _core._ik_many(solver, T.reshape(-1, 4, 4), *answers, workers)
     if bad < len(answers[0]):
-        as_pose(T, "goal")  # finds the words for what is wrong
+        as_pose(T, "goal")  # raises where the goal is not a pose
         index = tuple(map(int, np.unravel_index(bad, leading)))
         raise too_far(f"goal {index}", T[index][:3, 3])
-    return shaped(robot, T, leading, answers)
+    return to_batch(solver, T, leading, answers)
 
 
-def solve_positions(robot: Any, p: Array, workers: int) -> SolutionsBatch:
+def solve_positions(solver: Solver, p: Array, workers: int) -> SolutionsBatch:
     leading = p.shape[:-1]
-    answers = room_for(robot, leading)
-    bad = _core._ik_positions(robot, p.reshape(-1, 3), *answers, workers)
+    answers = new_rows(solver, leading)
+    bad = _core._ik_positions(solver, p.reshape(-1, 3), *answers, workers)
     if bad < len(answers[0]):
         index = tuple(map(int, np.unravel_index(bad, leading)))
         raise too_far(f"position {index}", p[index])
-    return shaped(robot, p, leading, answers)
+    return to_batch(solver, p, leading, answers)
 
 
-def room_for(robot: Any, leading: tuple[int, ...]) -> tuple[Array, Counts, Verdicts]:
+def new_rows(solver: Solver, leading: tuple[int, ...]) -> tuple[Array, Counts, Verdicts]:
     """Arrays for the answers to n goals: q (n, k_max, dof), count (n,), verdict (n,)."""
     n = int(np.prod(leading))
-    q = pooled_array((n, robot._ik_room, robot.dof))
+    q = pooled_array((n, solver.max_solutions, solver.dof))
     return q, np.empty(n, dtype=np.int64), np.empty(n, dtype=np.uint8)
 
 
-def shaped(
-    robot: Any, goal: Array, leading: tuple[int, ...], answers: tuple[Array, Counts, Verdicts]
+def to_batch(
+    solver: Solver, goal: Array, leading: tuple[int, ...], answers: tuple[Array, Counts, Verdicts]
 ) -> SolutionsBatch:
     q, count, verdict = answers
-    q = q.reshape(*leading, robot._ik_room, robot.dof)
-    return SolutionsBatch(robot, goal, q, count.reshape(leading), verdict.reshape(leading))
+    q = q.reshape(*leading, solver.max_solutions, solver.dof)
+    return SolutionsBatch(solver, goal, q, count.reshape(leading), verdict.reshape(leading))

@@ -1,10 +1,11 @@
 """Kinematics: where every frame of a robot is, how it moves with the joints, and where it loses a freedom."""
 
-from cspace.kinematics.assembly import Assembly, add_tool, assemble, mount, screws
+from cspace.kinematics.assembly import Assembly, add_tool, assemble, assemble_chain, mount, screws
 from cspace.kinematics.center_of_mass import center_of_mass, center_of_mass_jacobian
 from cspace.kinematics.configurations import random_configurations
 from cspace.kinematics.forward import forward_kinematics, forward_kinematics_all
 from cspace.kinematics.jacobian import fk_jacobian, jacobian, jacobian_dot
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.manipulability import (
     Ellipsoid,
     distance_to_singularity,
@@ -18,10 +19,12 @@ from cspace.kinematics.workspace import Workspace, workspace
 __all__ = [
     "Assembly",
     "Ellipsoid",
+    "KinematicModel",
     "Singularity",
     "Workspace",
     "add_tool",
     "assemble",
+    "assemble_chain",
     "center_of_mass",
     "center_of_mass_jacobian",
     "distance_to_singularity",

@@ -15,7 +15,7 @@ from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, t
 
 Numbers = npt.NDArray[np.intp]
 
-__all__ = ["Assembly", "add_tool", "assemble", "mount", "screws"]
+__all__ = ["Assembly", "add_tool", "assemble", "assemble_chain", "mount", "screws"]
 
 
 @dataclass
@@ -97,6 +97,11 @@ def assemble(
     return _from_chain(chain(description, start, end), description, free)
 
 
+def assemble_chain(source: Chain) -> Assembly:
+    """The assembly of a chain alone, whose links have no mass."""
+    return _from_chain(source, None, False)
+
+
 def _from_tree(source: Tree, description: Description, floating: bool) -> Assembly:
     turned = _turned(source.axes)
     carriers = source.parent
@@ -121,7 +126,7 @@ def _from_tree(source: Tree, description: Description, floating: bool) -> Assemb
     )
 
 
-def _from_chain(source: Chain, description: Description, floating: bool) -> Assembly:
+def _from_chain(source: Chain, description: Description | None, floating: bool) -> Assembly:
     n = len(source.axes)
     T_base_joint = np.array([np.eye(4), *_turned(source.axes)])
     T_base_joint[1:, :3, 3] = source.points
@@ -147,12 +152,12 @@ def _from_chain(source: Chain, description: Description, floating: bool) -> Asse
     )
 
 
-def _coordinates(source: Tree | Chain, description: Description) -> dict[str, Any]:
+def _coordinates(source: Tree | Chain, description: Description | None) -> dict[str, Any]:
     """What a tree and a chain say about their coordinates in the same words."""
     law = source.coordinates
     kinds = dict(zip(source.joint_names, source.joint_types, strict=True))
     for name in law.names:  # a joint may follow one that is not in the chain
-        if name not in kinds:
+        if name not in kinds and description is not None:
             kinds[name] = "P" if description.joint(name).type == "prismatic" else "R"
     return {
         "coordinates": law.names,
@@ -166,7 +171,7 @@ def _coordinates(source: Tree | Chain, description: Description) -> dict[str, An
 
 
 def _lumps(
-    description: Description,
+    description: Description | None,
     frames: Mapping[str, object],
     frame_joint: Numbers,
     T_joint_frame: Array,
@@ -175,7 +180,7 @@ def _lumps(
     """Mass (n + 1,) and centre of mass (n + 1, 3) of what the base and each joint carry."""
     mass, moment = np.zeros(n + 1), np.zeros((n + 1, 3))
     for name, joint, T in zip(frames, frame_joint, T_joint_frame, strict=True):
-        inertial = description.link(name).inertial
+        inertial = None if description is None else description.link(name).inertial
         if inertial is not None:
             mass[joint + 1] += inertial.mass
             moment[joint + 1] += inertial.mass * (T[:3, :3] @ inertial.com + T[:3, 3])

@@ -5,41 +5,19 @@ from __future__ import annotations
 import math
 import operator
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 
-from cspace._core import RobotBase
 from cspace.arrays import Array, as_floats
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.model import Chain, Limits
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial import as_pose
 
-__all__ = ["Batch", "Machine", "frame_number", "output", "rows_of", "thread_count", "whole_number"]
+__all__ = ["Batch", "frame_number", "output", "rows_of", "thread_count", "whole_number"]
 
 MOST_THREADS = 1024
-
-
-class Machine(Protocol):
-    """What these functions need of a robot: its compiled half and its names."""
-
-    name: str
-    mass: float
-    joint_names: tuple[str, ...]
-    frames: tuple[str, ...]
-    leaves: tuple[str, ...]
-    tip: str | None
-    floating: bool
-    joint_types: str
-    limits: Limits
-
-    @property
-    def chain(self) -> Chain: ...
-    @property
-    def dof(self) -> int: ...
-    def _chain_rows(self, *arguments: Any) -> bool: ...
-    def _tree_rows(self, *arguments: Any) -> bool: ...
 
 
 @dataclass(frozen=True)
@@ -58,7 +36,7 @@ class Batch:
 
 
 def rows_of(
-    robot: Machine,
+    robot: KinematicModel,
     q: Any,
     *,
     T_world_base: Any = None,
@@ -119,14 +97,14 @@ def refuse_infinite(batch: Batch) -> None:
 
 def check_robot(robot: object) -> None:
     """Raise InputTypeError for what is no robot, such as its name."""
-    if not isinstance(robot, RobotBase):
+    if not isinstance(robot, KinematicModel):
         raise InputTypeError(
             f"this function takes a robot first, got {type(robot).__name__};"
             " cspace.load_robot(name) makes one"
         )
 
 
-def frame_number(robot: Machine, frame: str | None) -> int:
+def frame_number(robot: KinematicModel, frame: str | None) -> int:
     """The number of a frame among `robot.frames`, of the tip if None.
 
     Raises UnknownNameError for a name that is not there, InputError where a tree leaves the choice.
@@ -175,7 +153,7 @@ def choice(value: Any, subject: str, known: tuple[str, ...]) -> str:
 
 
 def _row_vectors(
-    value: Any, subject: str, n: int, what: str, robot: Machine, *, finite: bool = True
+    value: Any, subject: str, n: int, what: str, robot: KinematicModel, *, finite: bool = True
 ) -> Array:
     array = as_floats(value, subject, finite=finite)
     if array.ndim == 0 or array.shape[-1] != n:

@@ -6,14 +6,15 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.errors import InputError
-from cspace.kinematics.batch import Batch, Machine, output, refuse_infinite, rows_of
+from cspace.kinematics.batch import Batch, output, refuse_infinite, rows_of
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
 __all__ = ["center_of_mass", "center_of_mass_jacobian"]
 
 
 def center_of_mass(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     *,
     T_world_base: PoseLike | None = None,
@@ -36,7 +37,7 @@ def center_of_mass(
 
 
 def center_of_mass_jacobian(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     *,
     T_world_base: PoseLike | None = None,
@@ -61,7 +62,7 @@ def center_of_mass_jacobian(
     return J
 
 
-def _compute(robot: Machine, batch: Batch, center: Array | None, columns: Array | None) -> None:
+def _compute(robot: KinematicModel, batch: Batch, center: Array | None, columns: Array | None) -> None:
     if robot.mass == 0.0:
         raise InputError(f"no link of {robot.name} has a mass; its description holds no inertial data")
     if not robot._tree_rows(batch.q, batch.T_world_base, None, center, columns, batch.threads):

@@ -5,14 +5,15 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.kinematics.batch import Batch, Machine, frame_number, output, refuse_infinite, rows_of
+from cspace.kinematics.batch import Batch, frame_number, output, refuse_infinite, rows_of
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
 __all__ = ["forward_kinematics", "forward_kinematics_all"]
 
 
 def forward_kinematics(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,
@@ -34,7 +35,7 @@ def forward_kinematics(
 
 
 def forward_kinematics_all(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     *,
     T_world_base: PoseLike | None = None,
@@ -54,7 +55,7 @@ def forward_kinematics_all(
 
 
 def compute_chain(
-    robot: Machine,
+    robot: KinematicModel,
     frame: int,
     batch: Batch,
     *,

@@ -6,7 +6,8 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.errors import InputTypeError
-from cspace.kinematics.batch import Machine, choice, frame_number, output, rows_of
+from cspace.kinematics.batch import choice, frame_number, output, rows_of
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.forward import compute_chain
 from cspace.spatial.checks import PoseLike
 
@@ -17,7 +18,7 @@ AXES = ("base", "tip")
 
 
 def jacobian(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,
@@ -41,7 +42,7 @@ def jacobian(
 
 
 def fk_jacobian(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,
@@ -69,7 +70,7 @@ def fk_jacobian(
 
 
 def jacobian_dot(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     qd: ArrayLike,
     frame: str | None = None,

@@ -10,7 +10,8 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.kinematics.batch import Machine, choice, frame_number, rows_of
+from cspace.kinematics.batch import choice, frame_number, rows_of
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.forward import compute_chain
 from cspace.kinematics.jacobian import AXES, jacobian
 from cspace.spatial.checks import PoseLike
@@ -61,7 +62,7 @@ def row_numbers(rows: str | Iterable[str]) -> list[int]:
 
 
 def singular_values(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,
@@ -95,7 +96,7 @@ def singular_values(
 
 
 def manipulability(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,
@@ -130,7 +131,7 @@ def manipulability(
 
 
 def distance_to_singularity(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,
@@ -165,7 +166,7 @@ def distance_to_singularity(
 
 
 def manipulability_ellipsoid(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.errors import InputError
-from cspace.kinematics.batch import Machine
 from cspace.kinematics.jacobian import jacobian
 from cspace.kinematics.manipulability import ROWS, row_numbers
 from cspace.spatial.checks import PoseLike
@@ -55,7 +55,7 @@ class Singularity:
 
 
 def singularity(
-    robot: Machine,
+    robot: KinematicModel,
     q: ArrayLike,
     frame: str | None = None,
     *,

@@ -8,7 +8,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.kinematics.assembly import turned_to
-from cspace.kinematics.batch import Machine, frame_number, whole_number
+from cspace.kinematics.batch import frame_number, whole_number
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.configurations import Seed, random_configurations
 from cspace.kinematics.forward import forward_kinematics
 from cspace.kinematics.planar_boundary import TURN, PlanarArm, boundary
@@ -41,7 +42,7 @@ class Workspace:
 
 
 def workspace(
-    robot: Machine,
+    robot: KinematicModel,
     n: int = 10_000,
     frame: str | None = None,
     *,

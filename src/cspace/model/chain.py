@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import MappingProxyType
 
 import numpy as np
@@ -12,9 +12,11 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model.description import Description
 from cspace.model.elementary import Coordinates, Elementary, coordinates_of, elementary_joints
-from cspace.model.joint import Joint, Limits
+from cspace.model.joint import LIMIT_FIELDS, Joint, Limits
+from cspace.model.screws import twists
 from cspace.model.transforms import inverse
 from cspace.model.values import frozen
+from cspace.spatial import exp_se3
 
 __all__ = ["Chain", "chain", "default_tip", "path", "rigid_group", "zero_poses"]
 
@@ -52,6 +54,123 @@ class Chain:
     def limits(self) -> Limits:
         """The limits of the coordinates."""
         return self.coordinates.limits
+
+    def with_limits(self, limits: Limits) -> Chain:
+        """The chain with other limits of its coordinates. Raises InputError for another number of them."""
+        if len(limits) != self.dof:
+            raise InputError(f"limits are for {len(limits)} joints, {self.name} has {self.dof}")
+        return replace(self, coordinates=replace(self.coordinates, limits=limits))
+
+    def lock(self, values: Mapping[int, float]) -> Chain:
+        """The chain of the other joints, with these joints (by number) at fixed values [rad or m].
+
+        Raises InputError for a chain with mimic joints.
+        """
+        T, axes, points = np.eye(4), self.axes.copy(), self.points.copy()
+        for k, (h, p) in enumerate(zip(self.axes, self.points, strict=True)):
+            axes[k], points[k] = T[:3, :3] @ h, T[:3, :3] @ p + T[:3, 3]
+            if k in values:
+                T = T @ exp_se3(values[k] * twists(h[None], p[None], self.joint_types[k])[0])
+        moving = [k for k in range(len(axes)) if k not in values]
+        names, kinds = self.joint_names, self.joint_types
+        return self._changed(
+            tuple(names[k] for k in moving),
+            "".join(kinds[k] for k in moving),
+            axes[moving],
+            points[moving],
+            T @ self.T_zero,
+            [row[moving] for row in self._limit_rows],
+        )
+
+    def prepend(
+        self, name: str, joint_type: str, axis: Array, lower: float = -np.inf, upper: float = np.inf
+    ) -> Chain:
+        """The chain with one more joint before its base, about or along axis (3,) through the base's origin.
+
+        joint_type: "R" or "P". Raises InputError for a chain with mimic joints.
+        """
+        return self._changed(
+            (name, *self.joint_names),
+            joint_type + self.joint_types,
+            np.vstack([axis, self.axes]),
+            np.vstack([np.zeros(3), self.points]),
+            self.T_zero,
+            [np.append(e, row) for e, row in zip(_ends(lower, upper), self._limit_rows, strict=True)],
+        )
+
+    def append(
+        self, name: str, joint_type: str, axis: Array, lower: float = -np.inf, upper: float = np.inf
+    ) -> Chain:
+        """The chain with one more joint behind its tip, about or along axis (3,), in the tip, through its
+        origin; the tip frame moves with it.
+
+        joint_type: "R" or "P". Raises InputError for a chain with mimic joints.
+        """
+        T = self.T_zero
+        return self._changed(
+            (*self.joint_names, name),
+            self.joint_types + joint_type,
+            np.vstack([self.axes, T[:3, :3] @ axis]),
+            np.vstack([self.points, T[:3, 3]]),
+            T,
+            [np.append(row, e) for e, row in zip(_ends(lower, upper), self._limit_rows, strict=True)],
+        )
+
+    def turn_tip(self, R: Array) -> Chain:
+        """The chain with its tip turned by R (3, 3), seen in the tip."""
+        T = self.T_zero.copy()
+        T[:3, :3] = T[:3, :3] @ R
+        return replace(self, T_zero=frozen(T), frames={**self.frames, self.tip: (len(self.axes), T)})
+
+    def reversed(self) -> Chain:
+        """The chain from tip to base: its joints in the opposite order, its pose the inverse.
+
+        Raises InputError for a chain with mimic joints.
+        """
+        T, order = inverse(self.T_zero), slice(None, None, -1)
+        turned = self._changed(
+            self.joint_names[order],
+            self.joint_types[order],
+            -self.axes[order] @ T[:3, :3].T,
+            self.points[order] @ T[:3, :3].T + T[:3, 3],
+            T,
+            [row[order] for row in self._limit_rows],
+        )
+        frames = {self.tip: (0, np.eye(4)), self.base: (len(self.axes), T)}
+        return replace(turned, base=self.tip, tip=self.base, frames=frames)
+
+    def __getstate__(self) -> dict[str, object]:
+        return {**self.__dict__, "frames": dict(self.frames)}
+
+    @property
+    def _limit_rows(self) -> list[Array]:
+        return [getattr(self.limits, field) for field in LIMIT_FIELDS]
+
+    def _changed(
+        self, names: tuple[str, ...], kinds: str, axes: Array, points: Array, T_zero: Array, limits: list[Array]
+    ) -> Chain:
+        """A chain of other joints between the same links, each with a coordinate of its own."""
+        if self.dof != len(self.joint_names):
+            raise InputError(f"chain {self.name!r} has mimic joints; only a chain without them can change")
+        n = len(names)
+        rows = np.arange(n, dtype=np.intp), np.ones(n), np.zeros(n)
+        return Chain(
+            name=self.name,
+            base=self.base,
+            tip=self.tip,
+            joint_names=names,
+            joint_types=kinds,
+            axes=frozen(np.ascontiguousarray(axes)),
+            points=frozen(np.ascontiguousarray(points)),
+            T_zero=frozen(np.ascontiguousarray(T_zero)),
+            coordinates=Coordinates(names, *rows, Limits(*limits)),
+            frames=MappingProxyType({self.base: (0, np.eye(4)), self.tip: (n, T_zero)}),
+        )
+
+
+def _ends(lower: float, upper: float) -> list[float]:
+    """The limits of one joint in the order of LIMIT_FIELDS."""
+    return [lower, upper] + [np.inf] * (len(LIMIT_FIELDS) - 2)
 
 
 def zero_poses(description: Description, base: str | None = None) -> dict[str, Array]:

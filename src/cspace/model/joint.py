@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Final
 
 import numpy as np
@@ -183,6 +184,11 @@ class Limits:
 
     def __len__(self) -> int:
         return int(self.lower.size)
+
+    @cached_property
+    def range(self) -> Array:
+        """lower and upper as rows, (2, dof)."""
+        return frozen(np.array([self.lower, self.upper]))
 
     def __repr__(self) -> str:
         """A row per coordinate; a dash where there is no limit, no column for what nothing limits."""

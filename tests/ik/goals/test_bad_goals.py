@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from cspace.errors import InputError, InputTypeError
-from cspace.ik import NoClosedFormError, geometry, inverse_kinematics
+from cspace.ik import NoClosedFormError, geometry, redundancy
 from cspace.model import Description, Joint, Link, Mimic, from_screws
 from cspace.robot import Robot
 from ik.arms import load
@@ -128,7 +128,7 @@ def test_seeds_at_the_edge_of_the_numbers_keep_finite_answers(robot, goal):
 
 @pytest.mark.parametrize("robot", ["ur5e", None, np.eye(4)], ids=["a name", "nothing", "a pose"])
 def test_what_is_no_robot_is_refused_with_the_remedy(robot):
-    for call in (lambda: geometry(robot), lambda: inverse_kinematics(robot, np.eye(4))):
+    for call in (lambda: geometry(robot), lambda: redundancy(robot, np.eye(4))):
         with pytest.raises(InputTypeError, match=rf"{type(robot).__name__}.*load_robot"):
             call()
 
@@ -146,22 +146,15 @@ def test_no_threads_are_as_many_as_there_are_processors(robot, goal):
     np.testing.assert_array_equal(robot.ik(goal[None], threads=0).q, robot.ik(goal[None], threads=1).q)
 
 
-def test_a_seed_for_a_batch_is_refused_with_the_remedy(robot, goal):
-    with pytest.raises(InputTypeError, match=r"\.nearest"):
-        robot.ik(goal[None], near=np.zeros(6))
-    with pytest.raises(InputTypeError):
-        robot.ik(goal[None], least_squares=True)
-
-
 @pytest.mark.parametrize("name", ["ur5e", "panda", "al5d", "planar_3r", "simplified_puma"])
-@pytest.mark.parametrize("seeds", [(), (4,), (3,), (2, 4)])
-@pytest.mark.parametrize("parts", ["position", "direction", "position direction", "look_at", "ray"])
-def test_a_seed_for_many_partial_goals_is_refused_with_the_remedy(name, seeds, parts):
+@pytest.mark.parametrize("seeds", [(3,), (2, 4), (5, 1)])
+@pytest.mark.parametrize("parts", ["goal", "position", "direction", "position direction", "look_at", "ray"])
+def test_seeds_that_do_not_fit_a_batch_are_refused(name, seeds, parts):
     robot = load(name)
     T = robot.fk(random_q(np.random.default_rng(0), 4, robot.dof))
     p, d = T[:, :3, 3], T[:, :3, 2]
-    values = {"position": p, "direction": d, "look_at": p + 0.1 * d, "ray": (p, d)}
-    with pytest.raises(InputTypeError, match=r"one goal.*(call ik for each|\.nearest)"):
+    values = {"goal": T, "position": p, "direction": d, "look_at": p + 0.1 * d, "ray": (p, d)}
+    with pytest.raises(InputError, match=r"expected \(\d,\) for all goals or \(4, \d\), one for each"):
         robot.ik(**{part: values[part] for part in parts.split()}, near=np.zeros((*seeds, robot.dof)))
 
 

@@ -137,11 +137,11 @@ def test_goals_out_of_limits_are_sampled_limits_aside():
 
 def test_arms_with_none_or_more_to_spare_are_told_so():
     ur = cs.load_robot("ur5e")
-    with pytest.raises(InputError, match="0 joints to spare"):
+    with pytest.raises(InputError, match="0 redundant joints"):
         ur.redundancy(ur.fk(np.zeros(6)))
     pr2 = cs.load_robot("pr2_right_torso")
     q = pr2.random_configuration(rng=1)
-    with pytest.raises(InputError, match="2 joints to spare"):
+    with pytest.raises(InputError, match="2 redundant joints"):
         pr2.redundancy(pr2.fk(q))
     found = pr2.redundancy(pr2.fk(q), locked={0: q[0]})
     assert found
@@ -151,7 +151,7 @@ def test_arms_with_none_or_more_to_spare_are_told_so():
 def test_a_joint_that_the_goal_settles_is_no_parameter():
     iiwa = cs.load_robot("iiwa14")
     T = iiwa.fk([0.3, 0.7, -0.2, -1.2, 0.3, 0.9, 0.6])
-    with pytest.raises(InputError, match=r"settled by the goal, at -1\.2 rad, 1\.2 rad"):
+    with pytest.raises(InputError, match=r"determined by the goal, at -1\.2 rad, 1\.2 rad"):
         iiwa.redundancy(T, parameter="iiwa_joint_4")
     assert iiwa.redundancy(T, parameter="iiwa_joint_1")
 

@@ -141,7 +141,7 @@ def test_answers_survive_pickling():
         ({6: 0.1, "panda_joint7": 0.2}, InputError, "twice"),
         ({1.5: 0.1}, InputTypeError, "name or number"),
         ([0.1], InputTypeError, "dict"),
-        (dict.fromkeys(range(7), 0.0), InputError, "none is left"),
+        (dict.fromkeys(range(7), 0.0), InputError, "at least one must stay free"),
     ],
 )
 def test_what_cannot_be_locked_is_refused(locked, error, words):

@@ -4,7 +4,7 @@ include/cspace/ik/redundancy/arm_angle.hpp.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, numbers, turned, vector
 from cspace.ik.redundancy.arm_angle import swivel
 from cspace.math import Equation, TrigPolynomial
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["swivel_steps", "swivel_values"]
 
@@ -132,19 +135,19 @@ def equal(left: Vector, right: Vector, *, but: Equation) -> tuple[Equation, ...]
     return tuple(each for each in pairs if each.left - each.right not in said)
 
 
-def swivel_values(robot: Any, q: Array, T: Array) -> dict[str, Any]:
+def swivel_values(solver: Solver, q: Array, T: Array) -> dict[str, Any]:
     """The numeric values of angles, goal, K and M; K from the swivel, not from the joints that make it.
 
     Where the wrist lies on axis 1 there is no half-plane to measure from, and the numbers are NaN.
     """
-    chain = robot.chain
+    chain = solver.chain
     S, E, W = points_of(chain)
     in_tip = np.linalg.inv(chain.T_zero) @ np.append(W, 1.0)
     l = (T @ in_tip)[..., :3] - S
     R4 = about(chain.axes[ELBOW], q[..., ELBOW])
     bent = E - S + R4 @ (W - E)
     here = frame_towards(bent, np.broadcast_to(E - S, bent.shape))
-    K = frame_at(chain.axes[0], l, swivel(robot, q)) @ np.swapaxes(here, -1, -2)
+    K = frame_at(chain.axes[0], l, swivel(solver, q)) @ np.swapaxes(here, -1, -2)
     M = np.swapaxes(K @ R4, -1, -2) @ T[..., :3, :3] @ chain.T_zero[:3, :3].T
     out = joint_values(chain.joint_types, q) | goal_values(T)
     for name, R in (("k", K), ("m", M)):

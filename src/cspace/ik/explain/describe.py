@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.ik.conditions import NoClosedFormError, arm_length, common_point, explain_missing_form
+from cspace.ik.conditions import arm_length, common_point, explain_missing_form
 from cspace.ik.explain.few_joints import few_joint_steps, few_joint_values
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form
@@ -20,7 +20,9 @@ from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.explain.survey import invariant_directions, invariant_points, relations
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
 from cspace.ik.geometry import FIRST_THREE
-from cspace.ik.prepare import prepare
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["refused_plan", "settled_plan", "survey_of"]
 
@@ -36,12 +38,12 @@ SUMMARIES = {
 }
 
 
-def survey_of(robot: Any) -> dict[str, Any]:
+def survey_of(robot: KinematicModel) -> dict[str, Any]:
     """What an explanation says of every arm: its joints, its length, what its axes share."""
     chain = robot.chain
     measurable = chain.dof == len(chain.joint_types) and len(chain.joint_types) > 0
     length = arm_length(robot) if measurable else 1.0
-    if measurable and robot._ik_room:
+    if isinstance(robot, _core.SolverBase):
         length = _core._ik_geometry(robot)["length"]
     return {
         "robot": robot.name,
@@ -53,16 +55,12 @@ def survey_of(robot: Any) -> dict[str, Any]:
     }
 
 
-def settled_plan(robot: Any, common: dict[str, Any], numbers: tuple[int, ...] | None = None) -> IkPlan:
+def settled_plan(solver: Solver, common: dict[str, Any], numbers: tuple[int, ...] | None = None) -> IkPlan:
     """An arm of up to six joints. numbers: by which (from 1) the user knows them, 1, 2, … unless given."""
-    try:
-        prepare(robot)
-    except NoClosedFormError as error:
-        return refused_plan(common, str(error))
-    if not robot._ik_direct:
-        return refused_plan(common, explain_missing_form(robot))
-    chain = robot.chain
-    seen, inside = _core._ik_geometry(robot), _core._ik_plan(robot)
+    if solver.is_redundant:
+        return refused_plan(common, explain_missing_form(solver))
+    chain = solver.chain
+    seen, inside = _core._ik_geometry(solver), _core._ik_plan(solver)
     common = {**common, "length": seen["length"]}
     if "form" in inside and seen["family"] in SUMMARIES:
         return form_plan(Form.of(seen, inside["form"]), seen, common, numbers)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,8 +14,11 @@ from cspace.errors import InputTypeError, suggest
 from cspace.ik.explain.page import Rows
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import vector
-from cspace.ik.goals.partial import KEYWORDS, PartialGoal, is_open, partial_goal
-from cspace.ik.goals.solve_partial import own_columns, whole_arm
+from cspace.ik.goals.partial import KEYWORDS, PartialGoal
+from cspace.ik.goals.parts import is_open, partial_goal
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["goal_of_parts", "plan_of_parts"]
 
@@ -53,13 +56,13 @@ def goal_of_parts(goal_parts: Any, tool_axis: Any) -> PartialGoal:
     return partial_goal({name: values[name] for name in KEYWORDS if name in values}, tool_axis)
 
 
-def plan_of_parts(robot: Any, goal: PartialGoal, plan_of: Callable[[Any], IkPlan]) -> IkPlan:
+def plan_of_parts(solver: Solver, goal: PartialGoal, plan_of: Callable[[Solver], IkPlan]) -> IkPlan:
     """How goals of this kind are met. plan_of: how poses of an arm are."""
-    joints = len(robot.joint_names)
+    joints = len(solver.joint_names)
     whole_point = goal.kind == "position" and not is_open(goal.value["position"])
     if not (goal.before or goal.behind) or (whole_point and joints <= DIRECT):
-        return plan_of(robot)
-    whole = whole_arm(robot, goal)
+        return plan_of(solver)
+    whole = solver.extend(goal)
     plan = plan_of(whole)
     added = len(goal.before) + len(goal.behind)
     notes = [
@@ -77,8 +80,8 @@ def plan_of_parts(robot: Any, goal: PartialGoal, plan_of: Callable[[Any], IkPlan
             "Between the last two joints there is a fixed turn, the angle that is asked for: "
             f"{goal.tilt:.6g} rad here."
         )
-    own = own_columns(robot, goal)
-    behind = np.linalg.inv(robot.chain.T_zero) @ whole.chain.T_zero
+    own = slice(len(goal.before), len(goal.before) + solver.dof)
+    behind = np.linalg.inv(solver.chain.T_zero) @ whole.chain.T_zero
 
     def values(q: Array, T: Array) -> dict[str, Any]:
         return dict(plan._values(padded(q, own, whole.dof), T @ behind)) if plan._values else {}
@@ -93,7 +96,7 @@ def plan_of_parts(robot: Any, goal: PartialGoal, plan_of: Callable[[Any], IkPlan
         other_ways={},
         _values=values if plan._values else None,
         _other_values=None,
-        _dof=robot.dof,
+        _dof=solver.dof,
     )
 
 
@@ -117,7 +120,7 @@ def padded(q: Array, own: slice, dof: int) -> Array:
     return out
 
 
-def goal_joints(goal: PartialGoal, whole: Any) -> Rows:
+def goal_joints(goal: PartialGoal, whole: Solver) -> Rows:
     """Which motions stand for what the goal leaves open."""
     rows = []
     for i, (kind, axis) in enumerate((*goal.before, *goal.behind)):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -17,11 +17,12 @@ from cspace.ik.explain.describe import ONE_CALL, settled_plan
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Rows
 from cspace.ik.explain.plan import IkPlan
-from cspace.ik.locked_joints import between_others, lock_joints, value_in_words, without_locked
-from cspace.ik.prepare import MAX_SETTLED
-from cspace.ik.redundancy.arm_angle import swivel_solver
+from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 from cspace.spatial import exp_se3
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["locked_plan"]
 
@@ -38,28 +39,28 @@ class Split:
     """Which joints are locked and which move, by number from 0. at: values of the locked ones between
     others."""
 
-    robot: Any
+    solver: Solver
     locked: tuple[int, ...]
     at: dict[int, float]
 
     @property
     def moving(self) -> tuple[int, ...]:
         """The joints that move."""
-        return tuple(k for k in range(len(self.robot.joint_names)) if k not in self.locked)
+        return tuple(k for k in range(len(self.solver.joint_names)) if k not in self.locked)
 
     @property
     def between(self) -> tuple[int, ...]:
         """The locked joints between others: they change a link."""
-        return between_others(len(self.robot.joint_names), self.locked)
+        return between_others(len(self.solver.joint_names), self.locked)
 
-    def others(self) -> Any:
+    def others(self) -> Solver:
         """The arm of the joints that move; the locked ones at the ends at zero, which leaves the plan
         alone."""
-        return without_locked(self.robot, {k: self.at[k] if k in self.between else 0.0 for k in self.locked})
+        return self.solver.lock({k: self.at[k] if k in self.between else 0.0 for k in self.locked})
 
     def frame(self, k: int) -> Array:
         """A frame (4, 4) on the axis of a joint at an end, z along it: in the base, or in the tip."""
-        chain = self.robot.chain
+        chain = self.solver.chain
         z = chain.axes[k]
         x = np.cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
         x /= np.linalg.norm(x)
@@ -74,7 +75,7 @@ class Split:
 
     def goal(self, q: Array, T: Array) -> Array:
         """The goals (..., 4, 4) of the joints that move."""
-        chain, tip = self.robot.chain, self.robot.chain.T_zero
+        chain, tip = self.solver.chain, self.solver.chain.T_zero
         before, after = np.eye(4), np.eye(4)
         for k in self.locked:
             if k in self.between:
@@ -91,20 +92,20 @@ class Split:
         return np.asarray(np.linalg.inv(before) @ T @ behind, dtype=np.float64)
 
 
-def locked_plan(robot: Any, locked: Mapping[int, float], common: dict[str, Any]) -> IkPlan:
+def locked_plan(solver: Solver, locked: Mapping[int, float], common: dict[str, Any]) -> IkPlan:
     """An arm with redundant joints, or with locked joints. locked: joints that the user holds, and where."""
-    locked_arm = lock_joints(robot, dict(locked))
-    redundancy_degree = locked_arm.solver.redundancy_degree
-    default = tuple(locked_arm.free[k] for k in locked_arm.solver.locked)
-    at = {**{k: typical(robot, k) for k in default}, **locked}
-    split = Split(robot, tuple(sorted(at)), at)
+    others = solver.lock(dict(locked))
+    redundancy_degree = others.redundancy_degree()
+    default = tuple(solver.joint_names.index(others.joint_names[k]) for k in others.redundant_joints)
+    at = {**{k: typical(solver, k) for k in default}, **locked}
+    split = Split(solver, tuple(sorted(at)), at)
     others = split.others()
     bare = {**common, "joints": tuple(others.joint_names), "relations": (), "invariant_points": ()}
     inner = settled_plan(others, {**bare, "invariant_directions": ()}, tuple(k + 1 for k in split.moving))
-    steps = swivel_of(robot) if not locked else ()
+    steps = swivel_of(solver) if not locked else ()
     tables = dict(inner.tables)
     if redundancy_degree == 1 and not locked:
-        tables = {"What may be held": choices(robot, default), **tables}
+        tables = {"What may be held": choices(solver, default), **tables}
     notes = [*reasons(split, default), *numbering(split), *inner.notes]
     ends = [k for k in split.locked if k not in split.between]
     first = (locked_step(split, ends),) if inner else ()
@@ -112,30 +113,30 @@ def locked_plan(robot: Any, locked: Mapping[int, float], common: dict[str, Any])
         **{**common, "length": inner.length},
         family="redundant" if redundancy_degree else "locked",
         summary=summary(split, default, redundancy_degree, inner),
-        branches=inner.branches if inner else robot._ik_room,
+        branches=inner.branches if inner else solver.max_solutions,
         notes=tuple(notes),
         tables=tables,
         matrices={**{f"M{k + 1}": split.frame(k) for k in ends}, **inner.matrices},
         constants=inner.constants,
         steps=(*first, *inner.steps),
-        locked=tuple(robot.joint_names[k] for k in split.locked),
+        locked=tuple(solver.joint_names[k] for k in split.locked),
         counted=f"{inner.counted}, for each value of {names_of(split, split.locked)}",
         calls=answers(split, default, others) if redundancy_degree else ONE_CALL,
         other_ways={"By the swivel (`swivel=`)": steps} if steps else {},
         _values=values_of(split, inner),
-        _other_values=partial(swivel_values, robot) if steps else None,
+        _other_values=partial(swivel_values, solver) if steps else None,
     )
 
 
 def names_of(split: Split, joints: tuple[int, ...]) -> str:
     """`joint_1` and `joint_2`."""
-    names = [f"`{split.robot.joint_names[k]}`" for k in joints]
+    names = [f"`{split.solver.joint_names[k]}`" for k in joints]
     return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else names[0]
 
 
-def typical(robot: Any, k: int) -> float:
+def typical(solver: Solver, k: int) -> float:
     """The value of a joint at which nothing special is expected."""
-    lower, upper = float(robot.limits.lower[k]), float(robot.limits.upper[k])
+    lower, upper = float(solver.limits.lower[k]), float(solver.limits.upper[k])
     if not np.isfinite([lower, upper]).all():
         lower, upper = -1.0, 1.0
     return lower + (0.2 + 0.6 * (GOLDEN * (k + 1) % 1.0)) * (upper - lower)
@@ -143,7 +144,7 @@ def typical(robot: Any, k: int) -> float:
 
 def summary(split: Split, default: tuple[int, ...], redundancy_degree: int, inner: IkPlan) -> str:
     """The method as one sentence."""
-    n, robot = len(split.robot.joint_names), split.robot
+    n, solver = len(split.solver.joint_names), split.solver
     moving = len(split.moving)
     if redundancy_degree and moving == MAX_SETTLED:
         more = f"{n} joints, {n - MAX_SETTLED} more than the {MAX_SETTLED} that a pose settles"
@@ -153,7 +154,7 @@ def summary(split: Split, default: tuple[int, ...], redundancy_degree: int, inne
         more = f"{n} joints, some of them held"
     how = inner.summary if inner else "nothing solves exactly: members are found by descents from 48 starts"
     return (
-        f"{more}. {names_of(split, split.locked)} {stand(split)}; the other {moving} of {robot.name}: {how}"
+        f"{more}. {names_of(split, split.locked)} {stand(split)}; the other {moving} of {solver.name}: {how}"
     )
 
 
@@ -182,7 +183,7 @@ def reasons(split: Split, default: tuple[int, ...]) -> list[str]:
             f"{names_of(split, default)}: {cause}."
         )
     if split.between:
-        values = {k: value_in_words(split.robot, k, split.at[k]) for k in split.between}
+        values = {k: value_in_words(split.solver, k, split.at[k]) for k in split.between}
         at = ", ".join(f"$q_{k + 1}$ = {value}" for k, value in values.items())
         out.append(
             f"A joint held between others changes a link: the numbers below are for {at}. Other values give "
@@ -196,16 +197,16 @@ def numbering(split: Split) -> list[str]:
     moving = split.moving
     if moving == tuple(range(len(moving))):
         return []
-    listed = ", ".join(f"`{split.robot.joint_names[k]}`" for k in moving)
+    listed = ", ".join(f"`{split.solver.joint_names[k]}`" for k in moving)
     return [f"Joints 1 to {len(moving)} of the steps are those that move: {listed}."]
 
 
-def choices(robot: Any, default: tuple[int, ...]) -> Rows:
+def choices(solver: Solver, default: tuple[int, ...]) -> Rows:
     """For every joint that may be locked how the six others are solved."""
     rows = []
-    for k, name in enumerate(robot.joint_names):
-        split = Split(robot, (k,), {k: typical(robot, k)})
-        others = settled_plan(split.others(), bare_common(robot))
+    for k, name in enumerate(solver.joint_names):
+        split = Split(solver, (k,), {k: typical(solver, k)})
+        others = settled_plan(split.others(), bare_common(solver))
         place = "between others" if split.between else "at an end"
         kind = others.family if others else "descents from many starts"
         count = str(others.branches) if others else "a sample"
@@ -213,11 +214,11 @@ def choices(robot: Any, default: tuple[int, ...]) -> Rows:
     return Rows(("joint", "place", "the six others", "solutions up to", "by default"), rows)
 
 
-def bare_common(robot: Any) -> dict[str, Any]:
+def bare_common(solver: Solver) -> dict[str, Any]:
     """For plans of which only the family is asked."""
     return {
-        "robot": robot.name,
-        "joints": tuple(f"{i}" for i in range(len(robot.joint_names))),
+        "robot": solver.name,
+        "joints": tuple(f"{i}" for i in range(len(solver.joint_names))),
         "length": 1.0,
         "relations": (),
         "invariant_points": (),
@@ -225,11 +226,11 @@ def bare_common(robot: Any) -> dict[str, Any]:
     }
 
 
-def answers(split: Split, default: tuple[int, ...], others: Any) -> tuple[str, ...]:
+def answers(split: Split, default: tuple[int, ...], others: Solver) -> tuple[str, ...]:
     """How a goal is answered that leaves freedom."""
     locked = names_of(split, default)
     one = len(default) == 1
-    name = str(split.robot.joint_names[default[0]])
+    name = str(split.solver.joint_names[default[0]])
     usual = (
         f"all branches at 16 values of {locked}, spread over its feasible intervals"
         if one
@@ -254,7 +255,7 @@ def answers(split: Split, default: tuple[int, ...], others: Any) -> tuple[str, .
     return tuple(out)
 
 
-def intervals(others: Any, name: str) -> str:
+def intervals(others: Solver, name: str) -> str:
     """How the feasible intervals are found."""
     limits = (
         "every other joint is locked at each of its limits, and what is left is solved: all points where a "
@@ -275,7 +276,7 @@ def intervals(others: Any, name: str) -> str:
     )
 
 
-def folds_known(others: Any, name: str) -> bool:
+def folds_known(others: Solver, name: str) -> bool:
     """Whether the folds of the locked joint are roots of polynomials."""
     kind, plan = _core._ik_numbers(others)
     if kind != "closed" or not plan["on_lanes"] or plan["virtual_joints"] or not plan["wrist"]:
@@ -284,19 +285,19 @@ def folds_known(others: Any, name: str) -> bool:
     return bool(first["kind"] == FIRST_MEET and max(abs(last["ca4"]), abs(last["ca5"])) < SQUARE)
 
 
-def swivel_of(robot: Any) -> tuple[Step, ...]:
+def swivel_of(solver: Solver) -> tuple[Step, ...]:
     """The steps by the swivel, for an arm that has one."""
     try:
-        swivel_solver(robot)
+        _ = solver.swivel_solver
     except InputError:
         return ()
-    return swivel_steps(robot.chain)
+    return swivel_steps(solver.chain)
 
 
 # --- the goal of the others -------------------------------------------------------------------------------
 def locked_step(split: Split, ends: list[int]) -> Step:
     """What locked joints at the ends do to the goal."""
-    chain, number = split.robot.chain, [f"$q_{k + 1}$" for k in split.locked]
+    chain, number = split.solver.chain, [f"$q_{k + 1}$" for k in split.locked]
     words = ""
     if ends:
         words += (
@@ -358,7 +359,7 @@ def values_of(split: Split, inner: IkPlan) -> Any:
         out = dict(inner._values(q[..., list(split.moving)], goal)) if inner._values else {}
         out |= goal_entries("whole", T) | goal_entries("inner", goal)
         out |= {f"held_{k + 1}": q[..., k] for k in split.between}
-        kinds = split.robot.chain.joint_types
+        kinds = split.solver.chain.joint_types
         out |= {f"{'t' if kinds[k] == 'R' else 'q'}_{AHEAD + k + 1}": q[..., k] for k in split.locked}
         return out
 

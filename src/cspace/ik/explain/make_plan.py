@@ -12,15 +12,15 @@ from cspace.ik.explain.describe import refused_plan, settled_plan, survey_of
 from cspace.ik.explain.goal_parts import goal_of_parts, plan_of_parts
 from cspace.ik.explain.locked_joints import locked_plan
 from cspace.ik.explain.plan import IkPlan
-from cspace.ik.goals.partial import check_tool_axis
+from cspace.ik.goals.parts import POINTED, check_tool_axis
 from cspace.ik.locked_joints import locked_values
-from cspace.ik.prepare import check_chain, prepare
-from cspace.kinematics.batch import check_robot
+from cspace.ik.solver import HasSolver, Solver, as_solver
+from cspace.kinematics import KinematicModel
 
 __all__ = ["ik_plan"]
 
 
-def ik_plan(robot: Any, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
+def ik_plan(robot: HasSolver, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
     """How `robot.ik` solves an arm: the geometry found, the steps, the equations with its numbers.
 
     goal_parts: the parts of a pose that goals will have, by the keywords of `robot.ik`: "position", or
@@ -34,35 +34,27 @@ def ik_plan(robot: Any, *, goal_parts: Any = None, locked: Any = None, tool_axis
     says why. Raises InputTypeError for a value that is not a robot and for goals that are none, InputError
     for joints that the arm does not have.
     """
-    check_robot(robot)
+    if not isinstance(robot, KinematicModel):
+        as_solver(robot)  # raises
+    try:
+        solver = as_solver(robot)
+    except NoClosedFormError as error:
+        check_tool_axis(tool_axis, () if goal_parts is None else POINTED)
+        return refused_plan(survey_of(robot), str(error))
     if goal_parts is not None:
         if locked is not None:
-            raise InputTypeError("locked= goes with a full pose: leave goal_parts= out")
-        goal = goal_of_parts(goal_parts, tool_axis)
-        return plan_of_parts(robot, goal, plan_of_poses) if is_chain(robot) else plan_of_poses(robot)
+            raise InputTypeError("locked= can only be combined with a full pose; leave goal_parts= out")
+        return plan_of_parts(solver, goal_of_parts(goal_parts, tool_axis), plan_of_poses)
     check_tool_axis(tool_axis, ())
-    return plan_of_poses(robot, locked)
+    return plan_of_poses(solver, locked)
 
 
-def is_chain(robot: Any) -> bool:
-    """Whether the robot is one that robot.ik answers for."""
-    try:
-        check_chain(robot)
-    except NoClosedFormError:
-        return False
-    return True
-
-
-def plan_of_poses(robot: Any, locked: Any = None) -> IkPlan:
+def plan_of_poses(solver: Solver, locked: Any = None) -> IkPlan:
     """How full poses are answered."""
-    try:
-        prepare(robot)
-    except NoClosedFormError as error:
-        return refused_plan(survey_of(robot), str(error))
-    given = locked_values(robot, {} if locked is None else locked)
+    given = locked_values(solver, {} if locked is None else locked)
     if any(np.ndim(value) for value in given.values()):
-        raise InputTypeError("locked= takes one value per joint here: the plan is that of one arm")
+        raise InputTypeError("locked= takes one value per joint here, because a plan is that of one arm")
     values = {joint: float(value) for joint, value in given.items()}
-    if values or not robot._ik_direct:
-        return locked_plan(robot, values, survey_of(robot))
-    return settled_plan(robot, survey_of(robot))
+    if values or solver.is_redundant:
+        return locked_plan(solver, values, survey_of(solver))
+    return settled_plan(solver, survey_of(solver))

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.goals.partial import is_open
+from cspace.ik.goals.parts import is_open
 from cspace.ik.wrapping import turning
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = [
     "checked_poses",
@@ -43,13 +46,13 @@ def checked_poses(T: Array) -> Array:
     return T
 
 
-def points_in_base(robot: Any, position: Any) -> Array:
+def points_in_base(solver: Solver, position: Any) -> Array:
     """Points in the base (..., 3); points of the plane (..., 2) are lifted to the height that a planar arm
     keeps.
     """
     p = as_floats(position, "position")
     if p.ndim > 0 and p.shape[-1] == 2:
-        p = lifted(robot, p)
+        p = lifted(solver, p)
     if p.ndim == 0 or p.shape[-1] != 3:
         raise InputError(
             f"position has shape {p.shape}, expected (..., 3), or (..., 2) for an arm in the plane"
@@ -59,23 +62,23 @@ def points_in_base(robot: Any, position: Any) -> Array:
     return np.ascontiguousarray(p)
 
 
-def open_in_space(robot: Any, position: Any) -> Any:
+def open_in_space(solver: Solver, position: Any) -> Any:
     """A point of the plane with one coordinate open (None), in space; every other position as it is."""
     if not is_open(position) or len(position) != 2:
         return position
     if all(v is None for v in position):
         return (None, None, None)
-    return (*position, float(lifted(robot, np.zeros(2))[2]))
+    return (*position, float(lifted(solver, np.zeros(2))[2]))
 
 
-def planar_poses(robot: Any, goal: Any, position: Any, angle: Any) -> Array:
+def planar_poses(solver: Solver, goal: Any, position: Any, angle: Any) -> Array:
     """Poses of an arm in the plane from points (..., 2) and angles (...) of the tip's x axis."""
     if goal is not None or position is None:
         raise InputTypeError("angle= goes with position=(x, y), the place of the tip of an arm in the plane")
     p = as_floats(position, "position", last=(2,), largest=FARTHEST)
-    T_zero = robot.chain.T_zero
+    T_zero = solver.chain.T_zero
     turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
-    p = lifted(robot, p)
+    p = lifted(solver, p)
     T = np.zeros((*leading_axes(position=p.shape[:-1], angle=turn.shape), 4, 4))
     T[..., 0, 0] = T[..., 1, 1] = np.cos(turn)
     T[..., 1, 0] = np.sin(turn)
@@ -86,23 +89,23 @@ def planar_poses(robot: Any, goal: Any, position: Any, angle: Any) -> Array:
     return T
 
 
-def lifted(robot: Any, p: Array) -> Array:
+def lifted(solver: Solver, p: Array) -> Array:
     """Points (..., 2) of the plane z = constant in which an arm keeps its tip, as points (..., 3)."""
-    chain = robot.chain
+    chain = solver.chain
     along_z = np.abs(chain.axes[:, 2])
     in_plane = np.where(turning(chain.joint_types), along_z > 1 - 1e-12, along_z < 1e-6)
     if not in_plane.all():
         raise InputError(
-            f"position has shape {p.shape}, but {robot.name} does not move in a plane z = constant"
+            f"position has shape {p.shape}, but {solver.name} does not move in a plane z = constant"
         )
     return np.concatenate([p, np.full((*p.shape[:-1], 1), chain.T_zero[2, 3])], axis=-1)
 
 
-def one_configuration(robot: Any, value: Any, subject: str) -> Array:
+def one_configuration(solver: Solver, value: Any, subject: str) -> Array:
     """One configuration (dof,), contiguous."""
-    q = as_floats(value, subject, last=(robot.dof,), largest=FARTHEST)
+    q = as_floats(value, subject, last=(solver.dof,), largest=FARTHEST)
     if q.ndim != 1:
-        raise InputError(f"{subject} has shape {q.shape}, expected ({robot.dof},): one configuration")
+        raise InputError(f"{subject} has shape {q.shape}, expected ({solver.dof},): one configuration")
     return np.ascontiguousarray(q)
 
 

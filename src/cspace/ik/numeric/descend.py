@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,9 @@ from cspace.ik.numeric.problem import ask, further_starts, middle
 from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
 from cspace.kinematics.batch import choice, thread_count, whole_number
 from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE
+
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["METHODS", "ik_many_starts", "ik_numeric"]
 
@@ -26,7 +29,7 @@ NO_MORE = np.empty(0)
 
 
 def ik_numeric(
-    robot: Any,
+    robot: KinematicModel,
     goal: Any = None,
     start: Any = None,
     *,
@@ -97,7 +100,7 @@ def ik_numeric(
 
 
 def ik_many_starts(
-    robot: Any,
+    robot: KinematicModel,
     goal: Any = None,
     starts: Any = 64,
     *,
@@ -154,7 +157,7 @@ def ik_many_starts(
     )
 
 
-def _starts(robot: Any, start: Any, lead: tuple[int, ...]) -> Array:
+def _starts(robot: KinematicModel, start: Any, lead: tuple[int, ...]) -> Array:
     """Starts as rows: one for all goals (1, n), or one for each (goals, n)."""
     n = len(robot.joint_names)
     rows = as_floats(start, "start", last=(n,))
@@ -170,7 +173,7 @@ def _starts(robot: Any, start: Any, lead: tuple[int, ...]) -> Array:
     return np.ascontiguousarray(rows.reshape(math.prod(rows.shape[:-1]), n))
 
 
-def _posture(robot: Any, rest: Any, rest_weights: Any) -> Array:
+def _posture(robot: KinematicModel, rest: Any, rest_weights: Any) -> Array:
     """Rows rest and its weights (2, n), or (0, n)."""
     n = len(robot.joint_names)
     if rest is None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, T
 from cspace.kinematics.batch import check_robot, frame_number, whole_number
 from cspace.spatial.checks import one_pose
 from cspace.tolerances import FARTHEST, SERVED, SETTLED
+
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["TaskSolution", "ik_tasks", "task_velocity"]
 
@@ -33,7 +36,7 @@ class TaskSolution:
 
     def __init__(
         self,
-        robot: Any,
+        robot: KinematicModel,
         q: Array,
         T_world_base: Array,
         tasks: tuple[Task, ...],
@@ -66,7 +69,7 @@ class TaskSolution:
 
 
 def task_velocity(
-    robot: Any,
+    robot: KinematicModel,
     q: Any,
     tasks: Task | Iterable[Task],
     dt: float,
@@ -108,7 +111,7 @@ def task_velocity(
 
 
 def ik_tasks(
-    robot: Any,
+    robot: KinematicModel,
     tasks: Task | Iterable[Task],
     start: Any = None,
     *,
@@ -162,7 +165,7 @@ def ik_tasks(
     return best
 
 
-def _packed(robot: Any, tasks: Task | Iterable[Task]) -> tuple[Array, Array, tuple[Task, ...]]:
+def _packed(robot: KinematicModel, tasks: Task | Iterable[Task]) -> tuple[Array, Array, tuple[Task, ...]]:
     """The tasks as rows for the core: frames (k, TASK_WIDTH), and postures (k, 2 n + 1)."""
     listed = tuple(tasks) if isinstance(tasks, Iterable) else (tasks,)
     n = len(robot.joint_names)
@@ -193,7 +196,7 @@ def _packed(robot: Any, tasks: Task | Iterable[Task]) -> tuple[Array, Array, tup
     )
 
 
-def _configuration(robot: Any, value: Any, subject: str) -> Array:
+def _configuration(robot: KinematicModel, value: Any, subject: str) -> Array:
     n = len(robot.joint_names)
     q = as_floats(value, subject, last=(n,), largest=FARTHEST)
     if q.ndim != 1:
@@ -205,7 +208,7 @@ def _base(T_world_base: Any) -> Array:
     return np.eye(4) if T_world_base is None else one_pose(T_world_base, "T_world_base")
 
 
-def _speeds(robot: Any, velocity: Any, n: int) -> Array:
+def _speeds(robot: KinematicModel, velocity: Any, n: int) -> Array:
     """The largest speeds (n,), or (0,) for none."""
     if velocity is False:
         return NO_SPEED

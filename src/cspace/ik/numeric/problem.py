@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from cspace.kinematics.batch import check_robot, frame_number
 from cspace.model import Limits
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
+
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["Question", "ask", "bounds_of", "further_starts", "middle", "positive"]
 
@@ -38,7 +41,7 @@ class Question:
 
 
 def ask(
-    robot: Any,
+    robot: KinematicModel,
     goal: Any,
     position: Any,
     frame: str | None,
@@ -53,8 +56,7 @@ def ask(
     InputTypeError unless there is one goal; UnknownNameError for a frame that is not there.
     """
     check_robot(robot)
-    number = robot._assembly.tip_index if frame is None else -1
-    number = frame_number(robot, frame) if number < 0 else number
+    number = frame_number(robot, frame)
     if robot.floating:
         raise InputError(
             f"the base of {robot.name} floats, and no pose of a frame alone says where it should go;"
@@ -109,7 +111,7 @@ def positive(value: Any, subject: str) -> float:
     return float(number)
 
 
-def bounds_of(robot: Any, limits: Any) -> Array:
+def bounds_of(robot: KinematicModel, limits: Any) -> Array:
     """The limits of the joints as rows lower and upper (2, n), or (2, 0) for none.
 
     limits: True for the robot's own, False for none, or a Limits.
@@ -118,10 +120,7 @@ def bounds_of(robot: Any, limits: Any) -> Array:
     if limits is False:
         return np.empty((2, 0))
     if limits is True:
-        known = robot.__dict__.get("_bounds")
-        if known is None:
-            known = robot.__dict__["_bounds"] = np.array([robot.limits.lower, robot.limits.upper])
-        return cast(Array, known)
+        return robot.limits.range
     own = limits
     if not isinstance(own, Limits):
         raise InputTypeError(f"limits must be True, False or a Limits, got {type(limits).__name__}")
@@ -134,7 +133,7 @@ def bounds_of(robot: Any, limits: Any) -> Array:
     return np.array([lower, upper])
 
 
-def middle(robot: Any, bounds: Array) -> Array:
+def middle(robot: KinematicModel, bounds: Array) -> Array:
     """The configuration halfway between the limits (n,); zero, or the limit nearest to it, where one is
     missing.
     """
@@ -147,7 +146,7 @@ def middle(robot: Any, bounds: Array) -> Array:
     return np.asarray(np.where(both, halfway, np.clip(0.0, lower, upper)))
 
 
-def further_starts(robot: Any, bounds: Array, goals: Array, count: int, rng: Any) -> Array:
+def further_starts(robot: KinematicModel, bounds: Array, goals: Array, count: int, rng: Any) -> Array:
     """Configurations (count, n) all over the limits, to start from.
 
     Angles without limits lie in (−π, π]; prismatic joints without limits reach as far as the goals and the

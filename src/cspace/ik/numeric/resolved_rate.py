@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,13 +14,16 @@ from cspace.kinematics.batch import thread_count
 from cspace.kinematics.jacobian import jacobian
 from cspace.tolerances import FARTHEST, WEAK_DIRECTION
 
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
+
 __all__ = ["resolved_rate"]
 
 MOST_JOINTS = 128
 
 
 def resolved_rate(
-    robot: Any,
+    robot: KinematicModel,
     q: Any,
     twist: Any,
     *,
@@ -94,7 +97,7 @@ def _damping(value: Any) -> float:
     return float(number)
 
 
-def _speeds(robot: Any, velocity: Any) -> Array:
+def _speeds(robot: KinematicModel, velocity: Any) -> Array:
     """The largest speeds (dof,), those of a floating base unlimited; (0,) for none."""
     if velocity is False:
         return np.empty(0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 import numpy.typing as npt
@@ -12,6 +12,9 @@ import numpy.typing as npt
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.ik.wrapping import nearest_winding
+
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["NumericSolution", "SampledSolutions"]
 
@@ -33,7 +36,7 @@ class NumericSolution:
 
     __slots__ = ("_info", "_limits", "_starts", "goal", "q", "robot")
 
-    def __init__(self, robot: Any, goal: Array, q: Array, info: Array, starts: int, limits: Array) -> None:
+    def __init__(self, robot: KinematicModel, goal: Array, q: Array, info: Array, starts: int, limits: Array) -> None:
         # info (..., 5): position error, rotation error, iterations, start, ending.
         self.robot, self.goal, self.q = robot, goal, q
         self._info, self._starts, self._limits = info, starts, limits
@@ -116,7 +119,7 @@ class SampledSolutions:
     starts: how many there were. Truthy if there is one.
     """
 
-    robot: Any
+    robot: KinematicModel
     goal: Array
     q: Array
     hits: Counts

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
-from cspace.ik.redundancy.arm_angle import BRANCHES, JOINTS, swivel_solver
+from cspace.ik.redundancy.arm_angle import BRANCHES, JOINTS
 from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.wrapping import violations
 from cspace.spatial import exp_so3
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["swivel_intervals"]
 
@@ -34,50 +37,50 @@ class Sphere:
     parts: tuple[Array, Array, Array]
 
 
-def swivel_intervals(robot: Any, T: Array) -> Redundancy:
+def swivel_intervals(solver: Solver, T: Array) -> Redundancy:
     """The intervals of the swivel in which a branch keeps all limits, for one goal T (4, 4).
 
     The rotation of three joints that meet is affine in cos ψ and sin ψ, and each of them stands at a value L
     where one entry of it does: hᵦ · (e^{−L hₐ} M hᵨ) = hᵦ · hᵨ for the first, alike for the others. Between
     two neighbours of all those roots one swivel decides. M. Shimizu et al. 2008, section IV.
     """
-    places = critical_swivels(robot, T)
+    places = critical_swivels(solver, T)
     if not len(places):
         places = np.array([-np.pi])
     ends = np.append(places, places[0] + TURN)
     middles = 0.5 * (ends[:-1] + ends[1:])
-    rows = rows_at(robot, T, middles)
-    fits = keep_limits(robot, rows)
+    rows = rows_at(solver, T, middles)
+    fits = keep_limits(solver, rows)
     made = [
         interval
         for branch in range(BRANCHES)
-        for interval in of_branch(robot, T, branch, ends, rows[:, branch], fits[:, branch])
+        for interval in of_branch(solver, T, branch, ends, rows[:, branch], fits[:, branch])
     ]
     made.sort(key=lambda interval: (interval.branch, interval.lower))
-    return Redundancy(robot, T, "swivel", tuple(made), True)
+    return Redundancy(solver, T, "swivel", tuple(made), True)
 
 
-def rows_at(robot: Any, T: Array, swivels: Array) -> Array:
+def rows_at(solver: Solver, T: Array, swivels: Array) -> Array:
     """Every branch (m, 8, 7) at some swivels (m,), NaN where it is not."""
     q = np.empty((len(swivels), BRANCHES, JOINTS))
     goals = np.ascontiguousarray(np.broadcast_to(T, (len(swivels), 4, 4)))
-    swivel_solver(robot).solve(goals, np.ascontiguousarray(swivels), q)
+    solver.swivel_solver.solve(goals, np.ascontiguousarray(swivels), q)
     return q
 
 
-def keep_limits(robot: Any, rows: Array) -> Flags:
+def keep_limits(solver: Solver, rows: Array) -> Flags:
     """Which rows (m, 8, 7) are there and keep all limits, (m, 8)."""
     flat = rows.reshape(-1, JOINTS)
     there = np.isfinite(flat[:, 0])
-    lower, upper = robot.limits.lower, robot.limits.upper
-    beyond = violations(np.where(there[:, None], flat, 0.0), robot.joint_types, lower, upper)
+    lower, upper = solver.limits.lower, solver.limits.upper
+    beyond = violations(np.where(there[:, None], flat, 0.0), solver.joint_types, lower, upper)
     return np.asarray((there & (beyond <= 0).all(axis=-1)).reshape(rows.shape[:-1]))
 
 
-def critical_swivels(robot: Any, T: Array) -> Array:
+def critical_swivels(solver: Solver, T: Array) -> Array:
     """Where a joint of either spherical joint may reach a limit, or two branches meet: sorted, in (−π, π]."""
     looks = np.linspace(-np.pi, np.pi, LOOKS, endpoint=False) + 0.01
-    rows = rows_at(robot, T, looks)
+    rows = rows_at(solver, T, looks)
     found: list[Array] = []
     elbows: list[float] = []
     for look, branch in zip(*np.nonzero(np.isfinite(rows[..., 0])), strict=True):
@@ -85,15 +88,15 @@ def critical_swivels(robot: Any, T: Array) -> Array:
         if any(abs(np.sin((q[3] - other) / 2)) < ONE_PLACE for other in elbows):
             continue
         elbows.append(float(q[3]))
-        for sphere in spheres(robot, T, q, float(looks[look])):
-            found += [roots(sphere, *condition) for condition in conditions(robot, sphere)]
+        for sphere in spheres(solver, T, q, float(looks[look])):
+            found += [roots(sphere, *condition) for condition in conditions(solver, sphere)]
     values = np.sort(np.concatenate(found)) if found else np.empty(0)
     return values[np.append(True, np.diff(values) > ONE_PLACE)] if len(values) else values
 
 
-def spheres(robot: Any, T: Array, q: Array, psi: float) -> tuple[Sphere, Sphere]:
+def spheres(solver: Solver, T: Array, q: Array, psi: float) -> tuple[Sphere, Sphere]:
     """Shoulder and wrist of the branches with the elbow of q, whose swivel is psi."""
-    chain = robot.chain
+    chain = solver.chain
     turns = exp_so3(chain.axes * q[:, None])
     shoulder, elbow = turns[0] @ turns[1] @ turns[2], turns[3]
     n = wrist_of(chain, T, turns) - centre(chain, 0)
@@ -122,11 +125,11 @@ def wrist_of(chain: Any, T: Array, turns: Array) -> Array:
     return np.asarray((T @ tip)[:3])
 
 
-def conditions(robot: Any, sphere: Sphere) -> list[tuple[Array, Array, float]]:
+def conditions(solver: Solver, sphere: Sphere) -> list[tuple[Array, Array, float]]:
     """(u, v, r): uᵀ M v = r where a joint reaches a limit, or the middle one an end of its reach."""
-    a, b, c = robot.chain.axes[sphere.first : sphere.first + 3]
+    a, b, c = solver.chain.axes[sphere.first : sphere.first + 3]
     lower, upper = (
-        limit[sphere.first : sphere.first + 3] for limit in (robot.limits.lower, robot.limits.upper)
+        limit[sphere.first : sphere.first + 3] for limit in (solver.limits.lower, solver.limits.upper)
     )
     span = np.sqrt(max(1 - (a @ b) ** 2, 0.0) * max(1 - (b @ c) ** 2, 0.0))
     out = [(a, c, float((a @ b) * (b @ c) + sign * span)) for sign in (-1.0, 1.0)]
@@ -154,7 +157,7 @@ def roots(sphere: Sphere, u: Array, v: Array, r: float) -> Array:
     return np.asarray(values - TURN * np.ceil((values - np.pi) / TURN))
 
 
-def of_branch(robot: Any, T: Array, branch: int, ends: Array, rows: Array, fits: Flags) -> list[Interval]:
+def of_branch(solver: Solver, T: Array, branch: int, ends: Array, rows: Array, fits: Flags) -> list[Interval]:
     """The intervals of one branch from its cells: ends (m + 1,), rows (m, 7), fits (m,)."""
     m = len(fits)
     if fits.all():
@@ -165,22 +168,22 @@ def of_branch(robot: Any, T: Array, branch: int, ends: Array, rows: Array, fits:
         lower = float(ends[start])
         upper = float(ends[(start + count - 1) % m + 1]) + (TURN if start + count > m else 0.0)
         cause = (
-            what_ends(robot, T, branch, lower, min(BESIDE, 0.5 * (upper - lower))),
-            what_ends(robot, T, branch, upper, -min(BESIDE, 0.5 * (upper - lower))),
+            what_ends(solver, T, branch, lower, min(BESIDE, 0.5 * (upper - lower))),
+            what_ends(solver, T, branch, upper, -min(BESIDE, 0.5 * (upper - lower))),
         )
         out.append(Interval(lower, upper, branch + 1, cause, rows[(start + count // 2) % m]))
     return out
 
 
-def what_ends(robot: Any, T: Array, branch: int, end: float, inwards: float) -> str:
+def what_ends(solver: Solver, T: Array, branch: int, end: float, inwards: float) -> str:
     """The joint at a limit just inside an end, or "fold" where the branch goes on no further."""
-    inside, beyond = rows_at(robot, T, np.array([end + inwards, end - inwards]))[:, branch]
+    inside, beyond = rows_at(solver, T, np.array([end + inwards, end - inwards]))[:, branch]
     if not np.isfinite(beyond[0]):
         return "fold"
-    lower, upper = robot.limits.lower, robot.limits.upper
-    out = violations(beyond[None], robot.joint_types, lower, upper)[0]
+    lower, upper = solver.limits.lower, solver.limits.upper
+    out = violations(beyond[None], solver.joint_types, lower, upper)[0]
     joint = int(np.argmax(out))
     if not out[joint] > 0:
         return "fold"
     gaps = [abs(np.sin((inside[joint] - limit[joint]) / 2)) for limit in (lower, upper)]
-    return f"{robot.joint_names[joint]} at {'upper' if gaps[1] < gaps[0] else 'lower'} limit"
+    return f"{solver.joint_names[joint]} at {'upper' if gaps[1] < gaps[0] else 'lower'} limit"

@@ -7,19 +7,19 @@ from dataclasses import replace
 from typing import Any
 
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.goals.partial import KEYWORDS, PartialGoal, check_tool_axis, partial_goal
-from cspace.ik.goals.solve_partial import own_columns, whole_arm
+from cspace.ik.goals.partial import KEYWORDS, PartialGoal
+from cspace.ik.goals.parts import check_tool_axis, partial_goal
 from cspace.ik.locked_joints import by_name, joint_number
-from cspace.ik.prepare import prepare
 from cspace.ik.redundancy.feasible_intervals import redundancy_of_pose
 from cspace.ik.redundancy.result import Redundancy
+from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.spatial.checks import one_pose
 
 __all__ = ["redundancy"]
 
 
 def redundancy(
-    robot: Any,
+    robot: HasSolver,
     goal: Any = None,
     parameter: str | int | None = None,
     *,
@@ -40,6 +40,7 @@ def redundancy(
     joint or with more than one, and for a joint that the goal settles. For arms with two spherical joints:
     M. Shimizu et al. 2008; here for any arm.
     """
+    solver = as_solver(robot)
     given = {name: value for name, value in parts.items() if value is not None}
     unknown = sorted(given.keys() - set(KEYWORDS))
     if unknown:
@@ -48,27 +49,24 @@ def redundancy(
     if (goal is None) == (not given):
         raise InputTypeError("redundancy needs one goal: a pose, or parts of it by name, such as position=p")
     if given:
-        return redundancy_of_parts(robot, partial_goal(given, tool_axis), parameter, locked)
-    prepare(robot)
+        return redundancy_of_parts(solver, partial_goal(given, tool_axis), parameter, locked)
     T = one_pose(goal, "goal")
-    if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in robot.joint_names:
+    if isinstance(parameter, str) and parameter == "swivel" and "swivel" not in solver.joint_names:
         from cspace.ik.redundancy.arm_angle_intervals import swivel_intervals
 
         if locked is not None:
-            raise InputTypeError("the swivel is what seven joints leave free: locked= does not go with it")
-        return swivel_intervals(robot, T)
-    return redundancy_of_pose(robot, T, parameter, locked)
+            raise InputTypeError("locked= cannot be combined with the swivel, which is the only free dimension of seven joints")
+        return swivel_intervals(solver, T)
+    return redundancy_of_pose(solver, T, parameter, locked)
 
 
-def redundancy_of_parts(robot: Any, goal: PartialGoal, parameter: Any, locked: Any) -> Redundancy:
-    """That of the arm with the joints which stand for what the goal leaves open."""
+def redundancy_of_parts(solver: Solver, goal: PartialGoal, parameter: Any, locked: Any) -> Redundancy:
+    """That of the arm with the virtual joints of the goal."""
     if goal.T.ndim != 2:
         raise InputError(f"the goal has shape {goal.T.shape[:-2]}, expected one goal: ask in a loop")
-    whole, own = whole_arm(robot, goal), own_columns(robot, goal)
-    prepare(whole)
     named = parameter is None or isinstance(parameter, str)
-    joint = parameter if named else robot.joint_names[joint_number(robot, parameter, "parameter")]
-    values = by_name(robot, locked) if isinstance(locked, Mapping) else locked
-    found = redundancy_of_pose(whole, goal.T, joint, values)
-    rows = tuple(replace(interval, q=interval.q[own]) for interval in found)
-    return replace(found, robot=robot, intervals=rows)
+    joint = parameter if named else solver.joint_names[joint_number(solver, parameter, "parameter")]
+    values = by_name(solver, locked) if isinstance(locked, Mapping) else locked
+    found = redundancy_of_pose(solver.extend(goal), goal.T, joint, values)
+    rows = tuple(replace(interval, q=goal.own_joints(interval.q)) for interval in found)
+    return replace(found, solver=solver, intervals=rows)

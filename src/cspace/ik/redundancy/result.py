@@ -1,16 +1,20 @@
-"""redundant joints: where a free joint can be."""
+"""The feasible intervals of a redundant joint for one goal."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["MOST_SAMPLES", "Interval", "Redundancy"]
 
@@ -54,7 +58,7 @@ class Redundancy:
     interval shorter than that may be left out.
     """
 
-    robot: Any
+    solver: Solver
     goal: Array
     parameter: str
     intervals: tuple[Interval, ...]
@@ -80,13 +84,7 @@ class Redundancy:
 
     def union(self) -> Array:
         """Where some branch is feasible: disjoint (lower, upper), ascending, (k, 2)."""
-        out: list[list[float]] = []
-        for interval in sorted(self.intervals, key=lambda i: i.lower):
-            if out and interval.lower <= out[-1][1]:
-                out[-1][1] = max(out[-1][1], interval.upper)
-            else:
-                out.append([interval.lower, interval.upper])
-        return np.array(out, dtype=float).reshape(-1, 2)
+        return np.array(_core._ik_union(self._ends), dtype=float).reshape(-1, 2)
 
     def spread(self, n: int) -> Array:
         """n values of the parameter, (n,): the middles of n equal parts of all that is feasible."""
@@ -94,19 +92,17 @@ class Redundancy:
             raise InputTypeError(f"n is a {type(n).__name__}, expected a number of values")
         if not 1 <= n <= MOST_SAMPLES:
             raise InputError(f"n is {n}, expected 1 to {MOST_SAMPLES} values")
-        parts = self.union()
-        if not len(parts):
-            return np.empty(0)
-        ends = np.cumsum(parts[:, 1] - parts[:, 0])
-        along = (np.arange(n) + 0.5) / n * ends[-1]
-        row = np.minimum(np.searchsorted(ends, along, side="right"), len(parts) - 1)
-        return np.asarray(parts[row, 1] - (ends[row] - along))
+        return np.array(_core._ik_spread(self._ends, int(n)))
+
+    @property
+    def _ends(self) -> Array:
+        return np.array([[i.lower, i.upper] for i in self.intervals]).reshape(-1, 2)
 
     def __str__(self) -> str:
         unit = "m" if self._slides else "rad"
         if not self:
-            return f"no value of {self.parameter} lets {self.robot.name} reach the goal within its limits"
-        title = f"{self.robot.name}: feasible intervals of {self.parameter} [{unit}]"
+            return f"no value of {self.parameter} lets {self.solver.name} reach the goal within its limits"
+        title = f"{self.solver.name}: feasible intervals of {self.parameter} [{unit}]"
         if not self.complete:
             title += "; some may be missing"
         rows = [

@@ -10,15 +10,17 @@ Source: E. L. Allgower and K. Georg, Numerical Continuation Methods, 1990, for t
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.ik.prepare import prepare
 from cspace.ik.wrapping import into_limits, short_way, turning
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["Arc", "arc_through", "nearest_member"]
 
@@ -37,7 +39,7 @@ class Curve:
     one time around adds, None for a curve that does not close. q (dof,): where it was traced from.
     """
 
-    robot: Any
+    solver: Solver
     whole_pose: bool
     q: Array
     points: Array
@@ -66,7 +68,7 @@ class Curve:
         step = self.s[i + 1] - self.s[i]
         part = np.where(step > 0, (inner - self.s[i]) / np.where(step > 0, step, 1.0), 0.0)
         chord = self.points[i] + part[:, None] * (self.points[i + 1] - self.points[i])
-        exact, _ = onto(self.robot, self.q, chord, self.tangents[i], self.whole_pose)
+        exact, _ = onto(self.solver, self.q, chord, self.tangents[i], self.whole_pose)
         exact = np.where(np.isnan(exact), self.points[i], exact)  # a corner too sharp for its chord
         return exact if self.shift is None else exact + around[:, None] * self.shift
 
@@ -97,7 +99,7 @@ class Arc:
             low, high = np.where(drift < 0, -np.inf, low), np.where(drift > 0, np.inf, high)
         if self.is_loop:
             round_about = (shift != 0) | (high - low >= TURN)
-            round_about &= turning(curve.robot.joint_types)
+            round_about &= turning(curve.solver.joint_types)
             low, high = np.where(round_about, -np.pi, low), np.where(round_about, np.pi, high)
         return np.stack([low, high], axis=1)
 
@@ -124,14 +126,13 @@ class Arc:
         return self.curve.at(np.linspace(self.first, self.last, n, endpoint=not self.is_loop))
 
 
-def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc | None:
+def arc_through(solver: Solver, q: Array, direction: Array, whole_pose: bool) -> Arc | None:
     """The part of the self-motion through q within the robot's limits; None where q itself breaks them."""
-    prepare(robot)  # a robot out of a pickle comes without its solver
-    lower, upper = robot.limits.lower, robot.limits.upper
-    moved, fits = into_limits(q[None], robot.joint_types, lower, upper)
+    lower, upper = solver.limits.lower, solver.limits.upper
+    moved, fits = into_limits(q[None], solver.joint_types, lower, upper)
     if not fits[0]:
         return None
-    curve, ends = trace(robot, np.ascontiguousarray(moved[0]), direction, whole_pose)
+    curve, ends = trace(solver, np.ascontiguousarray(moved[0]), direction, whole_pose)
     last = stop(curve, lower, upper, 1, ends[1])
     first = stop(curve, lower, upper, -1, ends[0])
     if curve.shift is not None and np.isinf([first, last]).all():
@@ -139,46 +140,45 @@ def arc_through(robot: Any, q: Array, direction: Array, whole_pose: bool) -> Arc
     return Arc(curve, first, last, False)
 
 
-def nearest_member(robot: Any, q: Array, direction: Array, whole_pose: bool, seed: Array) -> Array:
+def nearest_member(solver: Solver, q: Array, direction: Array, whole_pose: bool, seed: Array) -> Array:
     """The configuration (dof,) of the self-motion through q that is nearest to a seed, limits aside, each
     revolute joint by the turn that brings it closest."""
-    prepare(robot)
     rounds, parts = 9, 33
-    curve, _ = trace(robot, np.ascontiguousarray(q), direction, whole_pose)
-    low, high = curve.beside(int(np.argmin(distances(robot, curve.points, seed))))
+    curve, _ = trace(solver, np.ascontiguousarray(q), direction, whole_pose)
+    low, high = curve.beside(int(np.argmin(distances(solver, curve.points, seed))))
     for _ in range(rounds):  # each narrows the piece between two points sixteenfold
         s = np.linspace(low, high, parts)
         points = curve.at(s)
-        k = int(np.argmin(distances(robot, points, seed)))
+        k = int(np.argmin(distances(solver, points, seed)))
         low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
-    turns = np.where(turning(robot.joint_types), np.round((points[k] - seed) / TURN), 0.0)
+    turns = np.where(turning(solver.joint_types), np.round((points[k] - seed) / TURN), 0.0)
     return np.asarray(points[k] - TURN * turns)
 
 
-def distances(robot: Any, points: Array, seed: Array) -> Array:
+def distances(solver: Solver, points: Array, seed: Array) -> Array:
     """How far configurations (k, dof) are from a seed, revolute joints the short way round, (k,)."""
-    return np.asarray(np.linalg.norm(short_way(points - seed, robot.joint_types), axis=1))
+    return np.asarray(np.linalg.norm(short_way(points - seed, solver.joint_types), axis=1))
 
 
-def trace(robot: Any, q: Array, direction: Array, whole_pose: bool) -> tuple[Curve, tuple[int, int]]:
+def trace(solver: Solver, q: Array, direction: Array, whole_pose: bool) -> tuple[Curve, tuple[int, int]]:
     """The curve through q, with the extremes of every joint among its points, and how it ends either way."""
-    ahead, along, end = _core._ik_follow(robot, q, np.ascontiguousarray(direction), whole_pose)
+    ahead, along, end = _core._ik_follow(solver, q, np.ascontiguousarray(direction), whole_pose)
     start, ends, shift = 0, (end, end), None
     if end == CLOSED:
-        shift = np.where(turning(robot.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0)
+        shift = np.where(turning(solver.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0)
     else:
-        behind, back, other = _core._ik_follow(robot, q, -np.ascontiguousarray(direction), whole_pose)
+        behind, back, other = _core._ik_follow(solver, q, -np.ascontiguousarray(direction), whole_pose)
         start, ends = len(behind) - 1, (other, end)
         ahead = np.concatenate([behind[:0:-1], ahead])
         along = np.concatenate([-back[:0:-1], along])
-    points, tangents, start = with_extremes(robot, q, ahead, along, start, whole_pose)
+    points, tangents, start = with_extremes(solver, q, ahead, along, start, whole_pose)
     steps = np.linalg.norm(np.diff(points, axis=0), axis=1)
     s = np.concatenate([[0.0], np.cumsum(steps)])
-    return Curve(robot, whole_pose, q, points, tangents, s - s[start], shift), ends
+    return Curve(solver, whole_pose, q, points, tangents, s - s[start], shift), ends
 
 
 def with_extremes(
-    robot: Any, q: Array, points: Array, tangents: Array, start: int, whole_pose: bool
+    solver: Solver, q: Array, points: Array, tangents: Array, start: int, whole_pose: bool
 ) -> tuple[Array, Array, int]:
     """The points of a curve and, between them, those where a joint turns back: its tangent changes sign."""
     turning = np.abs(tangents).max(axis=0) > AT_REST
@@ -190,7 +190,7 @@ def with_extremes(
     sign = np.sign(tangents[where, joint])
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        exact, t = onto(robot, q, before + middle[:, None] * step, tangents[where], whole_pose)
+        exact, t = onto(solver, q, before + middle[:, None] * step, tangents[where], whole_pose)
         same = np.sign(t[np.arange(len(where)), joint]) == sign
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     order = np.lexsort((low, where))
@@ -256,8 +256,7 @@ def outward(curve: Curve, way: int) -> npt.NDArray[np.float64]:
     return np.where(np.abs(t) > AT_REST, t, 0.0)
 
 
-def onto(robot: Any, q: Array, near: Array, along: Array, whole_pose: bool) -> tuple[Array, Array]:
+def onto(solver: Solver, q: Array, near: Array, along: Array, whole_pose: bool) -> tuple[Array, Array]:
     """Rows of joints brought onto the curve through q, and the tangents there."""
-    prepare(robot)  # a copy of the family's robot has no solver yet
     rows = [np.ascontiguousarray(value) for value in (q, near, along)]
-    return _core._ik_onto(robot, *rows, whole_pose)
+    return _core._ik_onto(solver, *rows, whole_pose)

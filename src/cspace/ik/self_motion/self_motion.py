@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,6 +15,9 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
 from cspace.ik.wrapping import wrap
+
+if TYPE_CHECKING:
+    from cspace.ik.solver import Solver
 
 __all__ = ["SelfMotion", "self_motion_at"]
 
@@ -35,12 +38,12 @@ class SelfMotion:
     q: Array
     direction: Array
     joints: tuple[str, ...]
-    _robot: Any = field(repr=False)
+    _solver: Any = field(repr=False)
     _whole_pose: bool = field(repr=False)
 
     @cached_property
     def _arc(self) -> Arc | None:
-        return arc_through(self._robot, self.q, self.direction, self._whole_pose)
+        return arc_through(self._solver, self.q, self.direction, self._whole_pose)
 
     @property
     def bounds(self) -> Array:
@@ -79,27 +82,27 @@ class SelfMotion:
             return np.empty((0, len(self.q)))
         endless = np.flatnonzero(np.isinf(self.bounds).any(axis=1))
         if len(endless):
-            name = self._robot.joint_names[int(endless[0])]
+            name = self._solver.joint_names[int(endless[0])]
             raise InputError(f"the family has no end, {name} moves on for ever: give the robot limits")
         q = self._arc.sample(int(n))
         goes_round = self._arc.is_loop & (np.ptp(self.bounds, axis=1) >= 2 * np.pi)
-        return np.where(goes_round, wrap(q, self._robot.joint_types), q)
+        return np.where(goes_round, wrap(q, self._solver.joint_types), q)
 
     def nearest(self, q: Array) -> Array:
         """The configuration of the family that is nearest to q (dof,), (dof,) [rad, m].
 
         Limits aside; each revolute joint by the turn that brings it closest.
         """
-        return nearest_member(self._robot, self.q, self.direction, self._whole_pose, q)
+        return nearest_member(self._solver, self.q, self.direction, self._whole_pose, q)
 
 
-def self_motion_at(robot: Any, row: int, q: Array, whole_pose: bool) -> SelfMotion:
+def self_motion_at(solver: Solver, row: int, q: Array, whole_pose: bool) -> SelfMotion:
     """The self-motion through q: the joint velocity keeping the tip's twist, or the tip's velocity, at
     zero."""
     rows = 6 if whole_pose else 3
-    found = _core._ik_direction(robot, np.ascontiguousarray(q), whole_pose)
-    direction = np.linalg.svd(robot.jacobian(q)[:rows])[2][-1] if found is None else found
+    found = _core._ik_direction(solver, np.ascontiguousarray(q), whole_pose)
+    direction = np.linalg.svd(solver.jacobian(q)[:rows])[2][-1] if found is None else found
     direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
     moving = np.abs(direction) > MOVING
-    names = tuple(itertools.compress(robot.joint_names, moving))
-    return SelfMotion(row, q, np.where(moving, direction, 0.0), names, robot, whole_pose)
+    names = tuple(itertools.compress(solver.joint_names, moving))
+    return SelfMotion(row, q, np.where(moving, direction, 0.0), names, solver, whole_pose)

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import attribute_error
 from cspace.ik.branches import branch_labels
+
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["Branch", "Track"]
 
@@ -27,7 +30,7 @@ class Branch:
     lengths over the arm's. cost: of q. Truthy if it reaches every pose.
     """
 
-    robot: Any
+    robot: KinematicModel
     poses: Array
     q: Array
     end: float
@@ -93,7 +96,7 @@ class Track:
     __slots__ = ("_note", "best", "branches", "complete", "poses", "robot")
 
     def __init__(
-        self, robot: Any, poses: Array, branches: tuple[Branch, ...], complete: bool, note: str
+        self, robot: KinematicModel, poses: Array, branches: tuple[Branch, ...], complete: bool, note: str
     ) -> None:
         self.robot, self.poses, self.branches = robot, poses, branches
         self.complete, self._note = complete, note

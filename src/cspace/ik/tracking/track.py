@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, Final
+from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
@@ -15,12 +15,15 @@ from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.numeric import ik_numeric
 from cspace.ik.numeric.problem import Question, ask, middle
 from cspace.ik.solutions import pose_errors
-from cspace.ik.solve import inverse_kinematics
+from cspace.ik.solver import as_solver
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.wrapping import turning
 from cspace.kinematics.batch import choice
 from cspace.spatial import interpolate_decoupled
 from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
+
+if TYPE_CHECKING:
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["COSTS", "track"]
 
@@ -36,7 +39,7 @@ Starts = tuple[Array, tuple[int, ...], bool, str]
 
 
 def track(
-    robot: Any,
+    robot: KinematicModel,
     poses: Any,
     start: Any = None,
     *,
@@ -104,7 +107,7 @@ def path_of(poses: Array) -> Array:
     return np.ascontiguousarray(poses)
 
 
-def open_bounds(robot: Any, question: Question) -> tuple[Array, Array]:
+def open_bounds(robot: KinematicModel, question: Question) -> tuple[Array, Array]:
     """The limits lower and upper (n,), infinite where there are none."""
     if question.limits.size:
         return question.limits[0], question.limits[1]
@@ -112,7 +115,7 @@ def open_bounds(robot: Any, question: Question) -> tuple[Array, Array]:
     return -free, free
 
 
-def strides(robot: Any, max_step: Any) -> Array:
+def strides(robot: KinematicModel, max_step: Any) -> Array:
     """How far each joint may move between neighbouring poses (n,); one number counts for those that turn."""
     steps = as_floats(max_step, "max_step", finite=False)
     n = len(robot.joint_names)
@@ -125,12 +128,12 @@ def strides(robot: Any, max_step: Any) -> Array:
     return np.asarray(steps)
 
 
-def is_redundant(robot: Any, question: Question) -> bool:
+def is_redundant(robot: KinematicModel, question: Question) -> bool:
     """Whether more than six joints move the tip."""
     return bool(_core._ik_moving(robot, question.frame) > SIX)
 
 
-def starts_of(robot: Any, question: Question, T: Array, start: Any) -> Starts:
+def starts_of(robot: KinematicModel, question: Question, T: Array, start: Any) -> Starts:
     """Where the branches begin."""
     first, n = T[0], len(robot.joint_names)
     if start is not None:
@@ -141,12 +144,12 @@ def starts_of(robot: Any, question: Question, T: Array, start: Any) -> Starts:
     if is_redundant(robot, question):
         q, numbers, complete, note = nearest_start(robot, question, first, middle(robot, question.limits))
         return q, numbers, complete, note or "; it begins nearest the middle of the limits"
-    s: Any = inverse_kinematics(robot, first)
+    s: Any = as_solver(robot).solve(first)
     note = "" if s else f"the first pose is not reached: {s.reason}"
     return np.ascontiguousarray(s.q), s._branch_numbers, s.complete and not s.self_motions, note
 
 
-def nearest_start(robot: Any, question: Question, first: Array, seed: Array) -> Starts:
+def nearest_start(robot: KinematicModel, question: Question, first: Array, seed: Array) -> Starts:
     """The solution of the first pose nearest to a configuration: itself, if it is one."""
     if pose_errors(robot, seed, first) <= NUMERIC_TOLERANCE:
         return np.ascontiguousarray(seed)[None], (-1,), False, ""
@@ -155,7 +158,7 @@ def nearest_start(robot: Any, question: Question, first: Array, seed: Array) -> 
         if d:
             return np.ascontiguousarray(d.q)[None], (-1,), False, ""
     try:
-        s: Any = inverse_kinematics(robot, first, near=seed)
+        s: Any = as_solver(robot).solve(first, near=seed)
     except NoClosedFormError:
         s = ik_numeric(robot, first, seed, rest=seed, limits=limits_of(robot, question))
     if s:
@@ -163,21 +166,21 @@ def nearest_start(robot: Any, question: Question, first: Array, seed: Array) -> 
     return np.empty((0, len(seed))), (), False, f"the first pose is not reached: {s.reason}"
 
 
-def limits_of(robot: Any, question: Question) -> Any:
+def limits_of(robot: KinematicModel, question: Question) -> Any:
     """The limits of a question as ik_numeric takes them."""
     if not question.limits.size:
         return False
     return replace(robot.limits, lower=question.limits[0], upper=question.limits[1])
 
 
-def is_out_of_reach(robot: Any, question: Question, T: Array, end: float) -> bool:
+def is_out_of_reach(robot: KinematicModel, question: Question, T: Array, end: float) -> bool:
     """Whether nothing reaches the path just beyond an end."""
     if is_redundant(robot, question):
         return False
     k = min(int(end), len(T) - 2)
     beyond = interpolate_decoupled(T[k], T[k + 1], min(end - k + TRACK_BEYOND, 1.0))
     try:
-        found: Any = inverse_kinematics(robot, beyond)
+        found: Any = as_solver(robot).solve(beyond)
     except NoClosedFormError:
         return False
     return not found
@@ -203,7 +206,7 @@ def number_of_cost(value: Any) -> float:
     return float(number)
 
 
-def cost_of(robot: Any, cost: Cost) -> Callable[[Array], float]:
+def cost_of(robot: KinematicModel, cost: Cost) -> Callable[[Array], float]:
     """The price of a branch q (m, dof)."""
     if callable(cost):
         return lambda q: number_of_cost(answer_of(cost, q))

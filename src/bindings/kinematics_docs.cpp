@@ -1,7 +1,7 @@
 // The words of the compiled methods; Python reads the signature from their first line.
-#include "robot_load.hpp"
+#include "kinematics_load.hpp"
 
-const char robot_fk_doc[] =
+const char kinematics_fk_doc[] =
     R"doc(fk($self, q, frame=None, *, T_world_base=None, out=None, threads=None)
 --
 
@@ -20,7 +20,7 @@ Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown fram
 
 Murray, Li and Sastry 1994, section 3.2.)doc";
 
-const char robot_jacobian_doc[] =
+const char kinematics_jacobian_doc[] =
     R"doc(jacobian($self, q, frame=None, *, point=None, expressed_in='base', T_world_base=None, out=None, threads=None)
 --
 
@@ -39,7 +39,7 @@ axes.
 
 Whitney 1969; Siciliano et al. 2009, section 3.1.)doc";
 
-const char robot_fk_jacobian_doc[] =
+const char kinematics_fk_jacobian_doc[] =
     R"doc(fk_jacobian($self, q, frame=None, *, point=None, expressed_in='base', T_world_base=None, out=None, threads=None)
 --
 

@@ -3,12 +3,12 @@
 
 #include <nanobind/nanobind.h>
 
-#include "robot.hpp"
+#include "kinematics.hpp"
 
 // Throws a ValueError for a frame that is not there.
 inline const cspace::model::Chain& chain_on(nanobind::handle robot, int frame) {
-    if (!PyObject_TypeCheck(robot.ptr(), robot_type)) throw nanobind::type_error("a robot comes first");
-    const auto& model = reinterpret_cast<RobotObject*>(robot.ptr())->model;
+    if (!PyObject_TypeCheck(robot.ptr(), kinematics_type)) throw nanobind::type_error("a robot comes first");
+    const auto& model = reinterpret_cast<KinematicsObject*>(robot.ptr())->model;
     if (!model || frame < 0 || frame >= model->n_frames()) throw nanobind::value_error("no such frame");
     return model->chain(frame);
 }

@@ -1,18 +1,18 @@
-#include "robot_rows.hpp"
+#include "kinematics_rows.hpp"
 
 #include <memory>
 #include <new>
 
 #include "cspace/math/threads.hpp"
 #include "kernels/kinematics.hpp"
-#include "robot.hpp"
+#include "kinematics.hpp"
 
 using namespace cspace;
 
-const char robot_chain_rows_doc[] =
+const char kinematics_chain_rows_doc[] =
     "_chain_rows(frame, q, qd, T_world_base, point, T, J, J_rate, sigma, chosen, in_tip, threads)\n\n"
     "Fills the arrays that are not None; False if a value of q is not finite.";
-const char robot_tree_rows_doc[] =
+const char kinematics_tree_rows_doc[] =
     "_tree_rows(q, T_world_base, T, center, center_columns, threads)\n\n"
     "Fills the arrays that are not None; False if a value of q is not finite.";
 
@@ -77,7 +77,7 @@ PyObject* run(const Rows& rows, npy_intp n, long threads, Kernel kernel) {
 }
 
 const model::RobotModel* loaded(PyObject* self) {
-    const auto& model = reinterpret_cast<RobotObject*>(self)->model;
+    const auto& model = reinterpret_cast<KinematicsObject*>(self)->model;
     if (!model) PyErr_SetString(PyExc_TypeError, "the robot was not initialised");
     return model.get();
 }
@@ -97,11 +97,11 @@ int count_bits(unsigned bits) {
 
 }  // namespace
 
-PyObject* robot_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
+PyObject* kinematics_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
     const model::RobotModel* model = loaded(self);
     if (!model) return nullptr;
     if (nargs != 12) return PyErr_Format(PyExc_TypeError, "_chain_rows takes 12 arguments, got %zd", nargs);
-    const bool floating = reinterpret_cast<RobotObject*>(self)->floating;
+    const bool floating = reinterpret_cast<KinematicsObject*>(self)->floating;
     const long frame = PyLong_AsLong(args[0]), chosen = PyLong_AsLong(args[9]),
                threads = PyLong_AsLong(args[11]);
     const int in_tip = PyObject_IsTrue(args[10]);
@@ -131,11 +131,11 @@ PyObject* robot_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nar
     return run(rows, read.rows, threads, kernels::chain_rows);
 }
 
-PyObject* robot_tree_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
+PyObject* kinematics_tree_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
     const model::RobotModel* model = loaded(self);
     if (!model) return nullptr;
     if (nargs != 6) return PyErr_Format(PyExc_TypeError, "_tree_rows takes 6 arguments, got %zd", nargs);
-    const bool floating = reinterpret_cast<RobotObject*>(self)->floating;
+    const bool floating = reinterpret_cast<KinematicsObject*>(self)->floating;
     const long threads = PyLong_AsLong(args[5]);
     if (PyErr_Occurred()) return nullptr;
     const int n = model->n_coordinates(), dof = n + (floating ? 6 : 0);

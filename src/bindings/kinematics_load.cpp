@@ -1,10 +1,10 @@
-#include "robot_load.hpp"
+#include "kinematics_load.hpp"
 
 #include <climits>
 #include <vector>
 
 #include "cspace/kinematics/forward.hpp"
-#include "robot.hpp"
+#include "kinematics.hpp"
 
 using namespace cspace;
 
@@ -102,12 +102,12 @@ std::unique_ptr<const model::RobotModel> read_model(PyObject* assembly, long n_j
 
 }  // namespace
 
-int robot_load(PyObject* self, PyObject* args, PyObject* kwargs) {
-    auto* robot = reinterpret_cast<RobotObject*>(self);
+int kinematics_load(PyObject* self, PyObject* args, PyObject* kwargs) {
+    auto* robot = reinterpret_cast<KinematicsObject*>(self);
     PyObject* assembly;
-    if (!PyArg_ParseTuple(args, "O:RobotBase", &assembly)) return -1;
+    if (!PyArg_ParseTuple(args, "O:KinematicsBase", &assembly)) return -1;
     if (kwargs && PyDict_GET_SIZE(kwargs) > 0) {
-        PyErr_SetString(PyExc_TypeError, "RobotBase takes an assembly and no keywords");
+        PyErr_SetString(PyExc_TypeError, "KinematicsBase takes an assembly and no keywords");
         return -1;
     }
     if (robot->model) {

@@ -1,0 +1,217 @@
+"""The solver of one arm: built from its joint axes at zero and its limits, it answers goals of every kind.
+
+A `Robot` keeps one; it can also be used without a Robot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+
+import numpy as np
+
+from cspace import _core
+from cspace.arrays import Array
+from cspace.errors import InputTypeError
+from cspace.ik.conditions import NoClosedFormError, explain_missing_form
+from cspace.kinematics import KinematicModel, assemble_chain
+from cspace.model import Chain, Limits, chain, from_screws
+
+if TYPE_CHECKING:
+    from cspace.ik.goals.partial import PartialGoal
+
+__all__ = ["HasSolver", "Solver", "as_solver", "solver_of_robot"]
+
+MAX_JOINTS = 16
+MAX_SETTLED = 6
+"""Joints that a pose determines at most."""
+MAX_SOLUTIONS = 16
+MOST_KEPT = 32
+"""Solvers kept for locked joints and for partial goals, of each: more are a loop over values, which builds its own."""
+Key = TypeVar("Key")
+
+
+class HasSolver(Protocol):
+    """A Robot or a Solver."""
+
+    @property
+    def solver(self) -> Solver: ...
+
+
+class Solver(_core.SolverBase, KinematicModel):
+    """Every configuration of one arm that reaches a goal: `solve`.
+
+    chain: the joint axes and the tip at zero, as of `robot.chain`. limits: of its joints; those of the chain
+    unless given, False for none. name: in messages, that of the chain unless given.
+
+    The solver finds its closed form, or the general method, when it is first asked (microseconds to
+    milliseconds), and keeps it; several threads may use one solver. It is also a kinematic model: `fk`,
+    `jacobian`, `dof`, `joint_names`, `joint_types`, `limits`, `chain` are those of the arm.
+
+    Raises NoClosedFormError for mimic joints, no joint or more than sixteen; InputError for limits of another
+    number of joints.
+    """
+
+    def __init__(self, chain: Chain, limits: Limits | bool | None = None, *, name: str | None = None) -> None:
+        if not isinstance(chain, Chain):
+            raise InputTypeError(
+                f"Solver takes a Chain, got {type(chain).__name__}; robot.chain is one, and"
+                " Solver.from_screws takes joint axes"
+            )
+        self._read(with_limits(chain, limits), chain.name if name is None else name)
+
+    def _read(
+        self, source: Chain, name: str, goal_joints: Sequence[int] = (), reach: float = np.inf
+    ) -> None:
+        super().__init__(assemble_chain(source), name)
+        n = len(source.joint_types)
+        if source.dof != n or not 1 <= n <= MAX_JOINTS:
+            raise NoClosedFormError(explain_missing_form(self))
+        self._goal_joints, self._reach = tuple(goal_joints), reach
+        self._locked: dict[Any, Solver] = {}
+        self._extended: dict[Any, Solver] = {}
+        weight = np.ones(n)
+        weight[list(goal_joints)] = 0.0  # a goal's own joints do not count in distances
+        _core._ik_build(
+            self,
+            np.ascontiguousarray(source.axes),
+            np.ascontiguousarray(source.points),
+            np.array([kind == "P" for kind in source.joint_types], dtype=np.float64),
+            np.ascontiguousarray(source.T_zero),
+            np.ascontiguousarray(self.limits.lower),
+            np.ascontiguousarray(self.limits.upper),
+            weight,
+            reach,
+        )
+
+    @classmethod
+    def from_screws(cls, axes: Any, points: Any, T_zero: Any, **options: Any) -> Solver:
+        """The solver of a serial arm from its joint axes at zero: axes (n, 3), points (n, 3) [m], T_zero (4, 4).
+
+        options: joint_types, lower, upper, name, joint_names and the others of model.from_screws, which also
+        names the errors.
+        """
+        return cls(chain(from_screws(axes, points, T_zero, **options)))
+
+    @property
+    def solver(self) -> Solver:
+        """The solver itself, so that a function that takes a robot also takes a solver."""
+        return self
+
+    @cached_property
+    def is_redundant(self) -> bool:
+        """Whether a pose leaves some joints free, so that joints have to be locked."""
+        return _core._ik_room(self) == 0
+
+    @property
+    def max_solutions(self) -> int:
+        """The largest number of solutions that a goal can have, with all redundant joints locked."""
+        return _core._ik_room(self) or MAX_SOLUTIONS
+
+    @cached_property
+    def redundant_joints(self) -> tuple[int, ...]:
+        """The redundant joints that are locked unless others are named, by number, ascending."""
+        return tuple(_core._ik_default_locked(self))
+
+    @cached_property
+    def swivel_solver(self) -> _core.SwivelSolver:
+        """The closed form by the swivel. Raises InputError for an arm without two spherical joints."""
+        from cspace.ik.redundancy.arm_angle import make_swivel_solver
+
+        return make_swivel_solver(self)
+
+    def redundancy_degree(self, locked: Sequence[int] = ()) -> int:
+        """The number of dimensions that a pose leaves free, with these joints locked at typical values."""
+        return _core._ik_redundancy_degree(self, sorted(locked))
+
+    def lock(self, values: Mapping[int, float]) -> Solver:
+        """The solver of the other joints, with these joints (by number) at fixed values [rad or m]."""
+        if not values:
+            return self
+
+        def build() -> Solver:
+            moving = [k for k in range(self.dof) if k not in values]
+            made = Solver.__new__(Solver)
+            goal_joints = [i for i, k in enumerate(moving) if k in self._goal_joints]
+            made._read(self.chain.lock(values), self.name, goal_joints, self._reach)
+            return made
+
+        return kept(self._locked, tuple(sorted(values.items())), build)
+
+    def extend(self, goal: PartialGoal) -> Solver:
+        """The solver of the arm with the joints that stand for what a partial goal leaves free."""
+
+        def build() -> Solver:
+            made = Solver.__new__(Solver)
+            longer = goal.extend_chain(self.chain)
+            first, n = len(goal.before), len(longer.joint_names)
+            added = [*range(first), *range(first + self.dof, n)]
+            reach = largest_reach(self.chain) if "ray" in goal.kind else np.inf
+            made._read(longer, self.name, added, reach)
+            return made
+
+        return kept(self._extended, goal.key, build)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return solver_again, (self.chain, self.name, self._goal_joints, self._reach)
+
+    def __repr__(self) -> str:
+        return f"<Solver {self.name}: {self.joint_types}, {self.base} → {self.tip}>"
+
+
+def kept(solvers: dict[Key, Solver], key: Key, build: Callable[[], Solver]) -> Solver:
+    """The solver of that key, built if it is not there; the oldest of many is dropped."""
+    found = solvers.get(key)
+    if found is None:
+        if len(solvers) >= MOST_KEPT:
+            solvers.pop(next(iter(solvers)), None)
+        found = solvers[key] = build()
+    return found
+
+
+def with_limits(source: Chain, limits: Limits | bool | None) -> Chain:
+    """A chain with the limits given, with its own for None or True, without any for False."""
+    if limits is None or limits is True:
+        return source
+    if limits is False:
+        n = source.dof
+        return source.with_limits(Limits(np.full(n, -np.inf), np.full(n, np.inf)))
+    if not isinstance(limits, Limits):
+        raise InputTypeError(
+            f"limits is a {type(limits).__name__}, expected cspace.model.Limits, or False for none"
+        )
+    return source.with_limits(limits)
+
+
+def largest_reach(source: Chain) -> float:
+    """No point of the tip is farther from the base [m]: all links in one line; infinite for prismatic joints,
+    whose limits a solution may break."""
+    if "P" in source.joint_types:
+        return float("inf")
+    corners: Array = np.vstack([np.zeros(3), source.points, source.T_zero[:3, 3]])
+    return float(np.linalg.norm(np.diff(corners, axis=0), axis=1).sum()) * (1 + 1e-9)
+
+
+def solver_of_robot(robot: KinematicModel) -> Solver:
+    """The solver of a robot's chain. Raises NoClosedFormError for a floating base too."""
+    if robot.floating:
+        raise NoClosedFormError(explain_missing_form(robot))
+    return Solver(robot.chain, robot.limits if robot.chain.dof == robot.dof else None, name=robot.name)
+
+
+def as_solver(arm: HasSolver) -> Solver:
+    """The solver of a robot, or a solver itself. Raises InputTypeError for what is neither."""
+    if not isinstance(arm, KinematicModel):
+        raise InputTypeError(
+            f"this function takes a robot or an ik.Solver first, got {type(arm).__name__};"
+            " cspace.load_robot(name) makes a robot"
+        )
+    return arm.solver
+
+
+def solver_again(source: Chain, name: str, goal_joints: tuple[int, ...], reach: float) -> Solver:
+    """A solver out of its pickle."""
+    made = Solver.__new__(Solver)
+    made._read(source, name, goal_joints, reach)
+    return made

@@ -1,0 +1,263 @@
+#include "ik_goals.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+
+#include "cspace/ik/goal.hpp"
+#include "cspace/ik/redundancy/locked_joints.hpp"
+#include "cspace/ik/redundancy/tip_jacobian.hpp"
+#include "cspace/ik/refine.hpp"
+#include "cspace/math/linear.hpp"
+#include "cspace/math/threads.hpp"
+#include "ik_self_motion.hpp"
+#include "kernels/ik_closed_form.hpp"
+#include "kernels/ik_redundancy.hpp"
+
+namespace cspace::ik {
+
+namespace {
+
+constexpr int pose_dimensions = 6, max_closed_form = 6;
+constexpr double turn = 6.283185307179586;
+constexpr double same = 1e-8;        // [rad, m] configurations closer than this are one
+constexpr double still = 1e-9;       // part of a self-motion's direction below which a joint rests
+constexpr double behind = -1e-6;     // [m] a point to look at that lies this far behind the tip is refused
+
+void append_row(GoalAnswer& out, const double* q, int n, int branch, bool self_motion) {
+    out.q.insert(out.q.end(), q, q + n);  // of the solver, until map_rows
+    out.branch.push_back(std::int8_t(branch));
+    out.self_motion.push_back(self_motion);
+    ++out.count;
+}
+
+void append_solutions(GoalAnswer& out, const Solutions& found, int n) {
+    for (int k = 0; k < found.count; ++k)
+        append_row(out, found.q[k], n, found.branch[k], found.self_motion[k]);
+    out.status = found.status;
+    out.complete = found.complete;
+}
+
+// By the closed form alone where nothing is in doubt.
+void answer_listed(const BuiltArm& built, const double* goal, GoalAnswer& out) {
+    double q[max_branches * max_closed_form];
+    std::int8_t branch[max_branches];
+    int count = 0;
+    if (kernels::ik_one(*built.arm, goal, q, branch, &count) != FastPath::settled)
+        return append_solutions(out, solve_goal(built, goal, nullptr), built.dof);
+    for (int k = 0; k < count; ++k) append_row(out, q + max_closed_form * k, max_closed_form, branch[k], false);
+    out.status = count ? Status::exact : Status::unreachable;
+}
+
+void answer_locked(const GoalRequest& request, const double* goal, const double* at, GoalAnswer& out) {
+    Solutions found;
+    kernels::ik_locked(*request.locked, read_goal(goal).T, at, nullptr, found);
+    double row[max_joints];
+    for (int k = 0; k < found.count; ++k) {
+        whole_row(*request.locked, at, found.q[k], row);
+        append_row(out, row, request.locked->whole.n, found.branch[k], found.self_motion[k]);
+    }
+    out.status = found.status;
+    out.complete = found.complete;
+}
+
+// A search among infinitely many configurations, from a seed or else from the middle of the limits, does not
+// prove that there is none.
+void answer_nearest(Solver& solver, const double* goal, const double* seed, GoalAnswer& out) {
+    double q[max_joints];
+    const RedundantSolver& arm = solver.redundant();
+    out.complete = seed ? arm.find_nearest_turned(goal, seed, q) : arm.find_near_middle(goal, q);
+    if (!out.complete) return;
+    out.status = Status::exact;
+    append_row(out, q, solver.chain().n, -1, false);
+}
+
+void answer_sampled(Solver& solver, const double* goal, int samples, GoalAnswer& out) {
+    const SampledGoal found = solver.redundant().sample(goal, samples);
+    const int n = solver.chain().n;
+    if (found.branch.empty()) {
+        answer_nearest(solver, goal, nullptr, out);
+        // Where joints almost share their work, single values may reach what no interval does.
+        if (!out.count) out.complete = !found.has_intervals && found.complete && n > pose_dimensions;
+        return;
+    }
+    for (std::size_t k = 0; k < found.branch.size(); ++k)
+        append_row(out, found.q.data() + std::size_t(n) * k, n, found.branch[k], false);
+    out.status = Status::exact;
+    out.complete = found.complete;
+    out.values = found.values;
+    out.feasible = found.feasible;
+}
+
+// Brings the joints that stand for what a partial goal leaves free (negative in `own_of`) to where they meet the
+// goal best with the other joints where they are: Gauss–Newton steps on the pose.
+void meet_goal(const Solver& solver, const Posed& goal, const int* own_of, double* q) {
+    constexpr int most_steps = 40, most = 8;
+    constexpr double settled = 1e-12, stride = 0.5, damping = 1e-9;
+    const Chain& chain = solver.chain();
+    int open[most], count = 0;
+    for (int j = 0; j < chain.n; ++j) {
+        if (own_of[j] >= 0) continue;
+        q[j] = 0;
+        if (!solver.leads_ahead(j) && count < most) open[count++] = j;
+    }
+    const double away = norm(goal.t - forward(chain, q).t);
+    for (int j = 0; j < chain.n; ++j)  // the distance to a point to look at does not depend on the direction
+        if (own_of[j] < 0 && solver.leads_ahead(j)) q[j] = away;
+    for (int step = 0; step < most_steps; ++step) {
+        TipMotion<double> motion;
+        tip_motion<0>(chain, goal, 1.0, q, motion);
+        const Vec3d turned = rotation_vector(goal.R * transpose(forward(chain, q).R));
+        const double error[6] = {motion.error[0], motion.error[1], motion.error[2],
+                                 turned.x,        turned.y,        turned.z};
+        double A[most][most] = {}, b[most] = {};
+        for (int i = 0; i < most; ++i) {
+            A[i][i] = i < count ? damping : 1;
+            for (int j = 0; i < count && j < count; ++j)
+                for (int k = 0; k < 6; ++k) A[i][j] += motion.column[open[i]][k] * motion.column[open[j]][k];
+            for (int k = 0; i < count && k < 6; ++k) b[i] += motion.column[open[i]][k] * error[k];
+        }
+        solve(A, b);
+        double reach = stride, largest = 0;
+        for (int i = 0; i < count; ++i) {
+            if (!chain.prismatic[open[i]]) reach = std::fmax(reach, std::fabs(b[i]));
+            largest = std::fmax(largest, std::fabs(b[i]));
+        }
+        for (int i = 0; i < count; ++i) q[open[i]] += b[i] * stride / reach;
+        if (largest < settled) break;
+    }
+}
+
+// The solver's joints at a seed of the user's arm.
+void seed_solver(const Solver& solver, const GoalRequest& request, const double* goal, const double* seed,
+                 double* q) {
+    int own_of[max_joints];
+    std::fill(own_of, own_of + max_joints, -1);
+    for (int j = 0; j < request.own; ++j) {
+        const int column = request.whole.column[request.first + j];
+        if (column >= 0) own_of[column] = j;
+    }
+    bool all = true;
+    for (int j = 0; j < solver.chain().n; ++j) {
+        all = all && own_of[j] >= 0;
+        if (own_of[j] >= 0) q[j] = seed[own_of[j]];
+    }
+    if (!all) meet_goal(solver, read_goal(goal).T, own_of, q);
+}
+
+// From rows of the solver to rows of the whole arm and of the user's arm.
+void map_rows(const GoalRequest& request, int n, GoalAnswer& out) {
+    const RowMap& whole = request.whole;
+    const std::vector<double> rows = std::move(out.q);
+    out.q.clear();
+    for (int k = 0; k < out.count; ++k) {
+        double row[max_joints];
+        for (int j = 0; j < whole.n; ++j)
+            row[j] = whole.column[j] < 0 ? whole.value[j] : rows[std::size_t(k * n + whole.column[j])];
+        out.q.insert(out.q.end(), row + request.first, row + request.first + request.own);
+        if (request.is_partial) out.whole.insert(out.whole.end(), row, row + whole.n);
+    }
+}
+
+bool is_same(const Solver& solver, const GoalRequest& request, const double* a, const double* b) {
+    for (int j = 0; j < request.own; ++j) {
+        const int column = request.whole.column[request.first + j];
+        double d = a[j] - b[j];
+        if (column >= 0 && !solver.chain().prismatic[column]) d -= turn * std::nearbyint(d / turn);
+        if (!(std::fabs(d) < same)) return false;
+    }
+    return true;
+}
+
+bool has_point_ahead(const Solver& solver, const RowMap& whole, const double* row) {
+    for (int j = 0; j < whole.n; ++j)
+        if (whole.column[j] >= 0 && solver.leads_ahead(whole.column[j]) && row[j] < behind) return false;
+    return true;
+}
+
+// Whether the user's own joints take part in the self-motion through a row of the solver.
+bool moves_own_joints(Solver& solver, const GoalRequest& request, const double* q) {
+    double direction[max_joints];
+    if (!self_motion_direction(solver.arm(), q, true, direction)) return true;
+    const double* own = direction + request.first;
+    return std::any_of(own, own + request.own, [](double d) { return std::fabs(d) > still; });
+}
+
+// Of a partial goal: rows that differ in the virtual joints alone are one, and a tool that looks at a point has
+// it in front.
+void keep_own_rows(Solver& solver, const GoalRequest& request, GoalAnswer& out) {
+    const std::size_t own = std::size_t(request.own), n = std::size_t(request.whole.n);
+    std::size_t kept = 0;
+    bool any_moves = false;
+    for (std::size_t k = 0; k < std::size_t(out.count); ++k) {
+        const double *whole = out.whole.data() + n * k, *q = out.q.data() + own * k;
+        bool keep = has_point_ahead(solver, request.whole, whole);
+        for (std::size_t i = 0; i < kept && keep; ++i)
+            keep = !is_same(solver, request, out.q.data() + own * i, q);
+        if (!keep) continue;
+        const bool moves =
+            out.self_motion[k] && (solver.is_redundant() || moves_own_joints(solver, request, whole));
+        std::copy(q, q + own, out.q.begin() + std::ptrdiff_t(own * kept));
+        std::copy(whole, whole + n, out.whole.begin() + std::ptrdiff_t(n * kept));
+        out.branch[kept] = std::int8_t(kept);
+        out.self_motion[kept++] = moves;
+        any_moves |= moves;
+    }
+    out.count = int(kept);
+    out.q.resize(own * kept);
+    out.whole.resize(n * kept);
+    out.branch.resize(kept);
+    out.self_motion.resize(kept);
+    out.status = any_moves ? Status::singular : kept ? Status::exact : Status::unreachable;
+    if (any_moves && solver.is_redundant()) {  // self-motions that nobody describes where joints are locked
+        out.status = Status::exact;
+        out.complete = false;
+        std::fill(out.self_motion.begin(), out.self_motion.end(), 0);
+    }
+}
+
+GoalAnswer answer_goal(Solver& solver, const GoalRequest& request, std::size_t i) {
+    const std::size_t n = std::size_t(solver.chain().n);
+    const double* goal = request.goals + 16 * i;
+    GoalAnswer out;
+    if (request.locked) {
+        answer_locked(request, goal, request.at + (request.at_each ? n * i : 0), out);
+    } else if (!solver.is_redundant()) {
+        answer_listed(solver.arm(), goal, out);
+    } else if (solver.exceeds_reach(goal)) {
+        return out;
+    } else if (request.seeds) {
+        double seed[max_joints];
+        const std::size_t stride = request.seed_each ? std::size_t(request.own) : 0;
+        seed_solver(solver, request, goal, request.seeds + stride * i, seed);
+        answer_nearest(solver, goal, seed, out);
+    } else if (solver.redundant().redundant_joints() == 1) {
+        answer_sampled(solver, goal, request.samples, out);
+    } else {
+        answer_nearest(solver, goal, nullptr, out);
+    }
+    map_rows(request, int(n), out);
+    if (request.is_partial) keep_own_rows(solver, request, out);
+    return out;
+}
+
+}  // namespace
+
+std::vector<GoalAnswer> answer_goals(Solver& solver, const GoalRequest& request) {
+    std::vector<GoalAnswer> out(request.n);
+    std::atomic<std::size_t> next = 0;
+    std::atomic<bool> stopped = false;
+    const std::size_t workers = std::clamp<std::size_t>(std::size_t(std::max(request.threads, 1)), 1,
+                                                        std::max<std::size_t>(request.n, 1));
+    over_rows(workers, int(workers), 1, 1, [&](std::size_t worker, std::size_t) {
+        for (std::size_t i = next++; i < request.n && !stopped; i = next++) {
+            out[i] = answer_goal(solver, request, i);
+            if (worker == 0 && request.n > 1 && request.is_stopped()) stopped = true;
+        }
+        return true;
+    });
+    if (stopped) out.clear();
+    return out;
+}
+
+}  // namespace cspace::ik
