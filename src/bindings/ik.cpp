@@ -1,5 +1,5 @@
-// solver.solve(T): the compiled entry. One 4×4 goal without keywords is answered here; everything else goes to
-// cspace.ik.solve, which checks it and comes back with plain arrays.
+// solver.solve(T): the compiled entry. One 4×4 goal without keywords is answered here; everything else goes
+// to cspace.ik.solve, which checks it and comes back with plain arrays.
 #include <algorithm>
 #include <cstring>
 #include <limits>
@@ -134,8 +134,7 @@ PyObject* careful(PyObject*, PyObject* args) {
     if (!PyArg_ParseTuple(args, "OOO", &solver, &goal, &unconstrained)) return nullptr;
     const ik::BuiltArm* arm = arm_of(solver);
     if (!arm || !arm->room || !is_doubles(goal, 16) || !is_doubles(unconstrained, arm->dof)) {
-        PyErr_SetString(PyExc_TypeError,
-                        "_ik_near_singular takes a solver and contiguous float64 arrays");
+        PyErr_SetString(PyExc_TypeError, "_ik_near_singular takes a solver and contiguous float64 arrays");
         return nullptr;
     }
     return answer_slowly(solver, *arm, data_of(goal), data_of(unconstrained));
@@ -148,8 +147,7 @@ PyObject* miss(PyObject*, PyObject* args) {
     if (!PyArg_ParseTuple(args, "OOd", &solver, &goal, &stiffness)) return nullptr;
     const ik::BuiltArm* arm = arm_of(solver);
     if (!arm || !is_doubles(goal, 16)) {
-        PyErr_SetString(PyExc_TypeError,
-                        "_ik_nearest_pose takes a solver and a contiguous float64 goal");
+        PyErr_SetString(PyExc_TypeError, "_ik_nearest_pose takes a solver and a contiguous float64 goal");
         return nullptr;
     }
     const ik::NearestMiss best = ik::nearest_to_goal(*arm, data_of(goal), stiffness);
@@ -166,8 +164,7 @@ PyObject* beyond(PyObject*, PyObject* args) {
     if (!PyArg_ParseTuple(args, "OO", &solver, &goal)) return nullptr;
     const ik::BuiltArm* arm = arm_of(solver);
     if (!arm || !is_doubles(goal, 16)) {
-        PyErr_SetString(PyExc_TypeError,
-                        "_ik_exceeds_reach takes a solver and a contiguous float64 goal");
+        PyErr_SetString(PyExc_TypeError, "_ik_exceeds_reach takes a solver and a contiguous float64 goal");
         return nullptr;
     }
     return PyBool_FromLong(solver_of(solver)->exceeds_reach(data_of(goal)));

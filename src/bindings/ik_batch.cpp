@@ -25,8 +25,7 @@ bool read_batch(PyObject* args, const char* function, npy_intp numbers, Batch& b
         is_writable(b.count) && is_writable(b.status))
         return true;
     PyErr_Format(PyExc_TypeError,
-                 "%s takes a solver and contiguous arrays: float64, count int64, status uint8",
-                 function);
+                 "%s takes a solver and contiguous arrays: float64, count int64, status uint8", function);
     return false;
 }
 

@@ -57,8 +57,9 @@ double determinant(nb::handle solver, const std::vector<double>& goal, int formu
 }  // namespace
 
 void bind_ik_description(nb::module_& m) {
-    m.def("_ik_numbers", &numbers, "solver"_a,
-          "How the arm of a solver is solved (closed, general, few_joints, any) and the numbers of its plan.");
+    m.def(
+        "_ik_numbers", &numbers, "solver"_a,
+        "How the arm of a solver is solved (closed, general, few_joints, any) and the numbers of its plan.");
     m.def("_ik_plan", &outline, "solver"_a, "What a solver rests on.");
     m.def("_ik_determinant", &determinant, "solver"_a, "goal"_a, "formulation"_a, "a0"_a,
           "The determinant of a general arm at one hidden angle.");

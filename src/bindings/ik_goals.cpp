@@ -103,20 +103,22 @@ nb::object to_arrays(const std::vector<ik::GoalAnswer>& answers, int n, int colu
     return nb::make_tuple(q, whole, count, verdict, self_motion);
 }
 
-nb::object answer(nb::handle solver, nb::handle asked, Goals goals, const std::vector<int>& columns, Row values,
-                  int first, bool is_partial, std::optional<Matrix> seeds, int samples,
-                  std::optional<std::vector<int>> locked, std::optional<Matrix> at, int threads, bool is_single,
-                  nb::handle about) {
+nb::object answer(nb::handle solver, nb::handle asked, Goals goals, const std::vector<int>& columns,
+                  Row values, int first, bool is_partial, std::optional<Matrix> seeds, int samples,
+                  std::optional<std::vector<int>> locked, std::optional<Matrix> at, int threads,
+                  bool is_single, nb::handle about) {
     ik::Solver *core = solver_of(asked.ptr()), *own = solver_of(solver.ptr());
     if (!core || !own) throw nb::type_error("a solver and the one asked come first");
     const std::size_t n = std::size_t(core->chain().n), N = goals.shape(0);
     const auto require_rows = [N](const std::optional<Matrix>& rows, std::size_t joints) {
         if (rows && (rows->shape(1) != joints || (rows->shape(0) != 1 && rows->shape(0) != N)))
-            throw nb::value_error("rows of joints need one number per joint and one row per goal, or one row");
+            throw nb::value_error(
+                "rows of joints need one number per joint and one row per goal, or one row");
     };
     require_rows(seeds, std::size_t(own->chain().n));
     require_rows(at, n);
-    if (first < 0 || std::size_t(first + own->chain().n) > columns.size() || samples < 1 || locked.has_value() != at.has_value() || (is_single && N != 1))
+    if (first < 0 || std::size_t(first + own->chain().n) > columns.size() || samples < 1 ||
+        locked.has_value() != at.has_value() || (is_single && N != 1))
         throw nb::value_error("samples, locked joints, values and goals do not fit together");
     const ik::GoalRequest request = {goals.data(),
                                      N,
@@ -138,8 +140,9 @@ nb::object answer(nb::handle solver, nb::handle asked, Goals goals, const std::v
         answers = ik::answer_goals(*core, request);
     }
     if (answers.size() != N) throw nb::python_error();
-    return is_single ? to_result(solver, goals.data(), answers[0], request.own, request.whole.n, is_partial, about)
-                     : to_arrays(answers, request.own, request.whole.n, is_partial);
+    return is_single
+               ? to_result(solver, goals.data(), answers[0], request.own, request.whole.n, is_partial, about)
+               : to_arrays(answers, request.own, request.whole.n, is_partial);
 }
 
 nb::object nearest_poses(nb::handle solver, Goals goals, double stiffness, int threads) {
@@ -156,8 +159,9 @@ nb::object nearest_poses(nb::handle solver, Goals goals, double stiffness, int t
 }  // namespace
 
 void bind_ik_goals(nb::module_& m) {
-    m.def("_ik_answer", &answer, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a, "is_partial"_a,
-          "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a, "is_single"_a, "about"_a,
+    m.def("_ik_answer", &answer, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
+          "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
+          "is_single"_a, "about"_a,
           "Answers goals that leave freedom: a result for one goal, arrays for many.");
     m.def("_ik_nearest_poses", &nearest_poses, "solver"_a, "goals"_a, "stiffness"_a, "threads"_a,
           "The configurations that come nearest to goals out of reach.");

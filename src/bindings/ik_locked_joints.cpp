@@ -48,8 +48,8 @@ PyObject* ik_locked(PyObject* self, const double* goal, PyObject* locked_values)
     double at[ik::max_joints] = {};
     const unsigned joints = read_locked(object->joint_names, locked_values, at);
     const std::vector<LockedSet>& known = object->locked_sets;
-    const auto set = std::find_if(known.begin(), known.end(),
-                                  [joints](const LockedSet& k) { return k.joints == joints; });
+    const auto set =
+        std::find_if(known.begin(), known.end(), [joints](const LockedSet& k) { return k.joints == joints; });
     if (!joints || set == known.end()) return nullptr;
     ik::Solutions found;
     double q[ik::max_solutions * ik::max_joints];

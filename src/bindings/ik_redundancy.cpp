@@ -127,8 +127,9 @@ void bind_ik_redundancy(nb::module_& m) {
           "Every solution with joints locked at their values.");
     m.def("_ik_intervals", &intervals_of, "solver"_a, "parameter"_a, "goal"_a,
           "The feasible intervals of one joint.");
-    m.def("_ik_union", [](Spans intervals) { return united(intervals); }, "intervals"_a,
-          "Intervals (k, 2) as disjoint ones, ascending.");
+    m.def(
+        "_ik_union", [](Spans intervals) { return united(intervals); }, "intervals"_a,
+        "Intervals (k, 2) as disjoint ones, ascending.");
     m.def(
         "_ik_spread", [](Spans intervals, int n) { return ik::spread_values(united(intervals), n); },
         "intervals"_a, "n"_a, "The middles of n equal parts of all that intervals (k, 2) cover.");

@@ -17,8 +17,7 @@ const ik::BuiltArm* arm_for(const char* function, PyObject* solver, std::initial
     bool fits = arm && arm->room && k >= 0;
     for (PyObject* row : rows) fits = fits && is_doubles(row, k * arm->dof);
     if (fits) return arm;
-    PyErr_Format(PyExc_TypeError, "%s takes a solver and contiguous float64 rows of its joints",
-                 function);
+    PyErr_Format(PyExc_TypeError, "%s takes a solver and contiguous float64 rows of its joints", function);
     return nullptr;
 }
 PyObject* array_of(const std::vector<double>& values, npy_intp rows, npy_intp columns) {

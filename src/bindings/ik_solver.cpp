@@ -36,8 +36,8 @@ PyObject* solve(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObjec
     return solver_solve(self, "solve", args, nargs, kwnames);
 }
 
-PyMethodDef solver_methods[] = {
-    {"solve", as_method(&solve), METH_FASTCALL | METH_KEYWORDS, solve_doc}, {nullptr, nullptr, 0, nullptr}};
+PyMethodDef solver_methods[] = {{"solve", as_method(&solve), METH_FASTCALL | METH_KEYWORDS, solve_doc},
+                                {nullptr, nullptr, 0, nullptr}};
 PyType_Slot solver_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_solver)},
                               {Py_tp_dealloc, reinterpret_cast<void*>(&free_solver)},
                               {Py_tp_methods, solver_methods},

@@ -21,7 +21,7 @@ void require(bool fits) {
 }
 
 ik::TaskRows rows_from(nb::handle robot, const Matrix& tasks, const Matrix& postures, const LimitRows& limits,
-                   std::size_t q_size, const Errors& errors) {
+                       std::size_t q_size, const Errors& errors) {
     if (!PyObject_TypeCheck(robot.ptr(), kinematics_type)) throw nb::type_error("a robot comes first");
     auto* object = reinterpret_cast<KinematicsObject*>(robot.ptr());
     require(object->model != nullptr);

@@ -57,7 +57,7 @@ static void name_method(const char* function, const char* method) {
 }
 
 PyObject* call_python(const char* module, const char* function, const char* method, PyObject* self,
-                            PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+                      PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     PyObject* room = PyImport_ImportModule(module);
     if (!room) return nullptr;
     PyObject* callee = PyObject_GetAttrString(room, function);
@@ -212,13 +212,14 @@ PyGetSetDef attributes[] = {
     {"dof", &dof, nullptr, "Number of velocities: one per coordinate, and six more for a floating base.",
      nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
-PyType_Slot slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_kinematics)},
-                       {Py_tp_init, reinterpret_cast<void*>(&kinematics_load)},
-                       {Py_tp_dealloc, reinterpret_cast<void*>(&free_kinematics)},
-                       {Py_tp_methods, methods},
-                       {Py_tp_getset, attributes},
-                       {Py_tp_doc, const_cast<char*>("The compiled half of cspace.kinematics.KinematicModel.")},
-                       {0, nullptr}};
+PyType_Slot slots[] = {
+    {Py_tp_new, reinterpret_cast<void*>(&create_kinematics)},
+    {Py_tp_init, reinterpret_cast<void*>(&kinematics_load)},
+    {Py_tp_dealloc, reinterpret_cast<void*>(&free_kinematics)},
+    {Py_tp_methods, methods},
+    {Py_tp_getset, attributes},
+    {Py_tp_doc, const_cast<char*>("The compiled half of cspace.kinematics.KinematicModel.")},
+    {0, nullptr}};
 PyType_Spec spec = {"cspace._core.KinematicsBase", sizeof(KinematicsObject), 0,
                     Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE, slots};
 

@@ -1,5 +1,5 @@
-// The compiled kinematics of a robot or a chain: a raw Python type, because a single call of it is worth less than a
-// microsecond.
+// The compiled kinematics of a robot or a chain: a raw Python type, because a single call of it is worth less
+// than a microsecond.
 //
 // `fk`, `jacobian` and `fk_jacobian` answer one float64 configuration here and now; whatever else they are
 // asked goes to the free functions of cspace.kinematics, which check it, find the words for what is wrong,
@@ -12,9 +12,10 @@
 #include "numpy_api.hpp"
 
 struct KinematicsObject {
-    PyObject_HEAD std::unique_ptr<const cspace::model::RobotModel> model;  // null until __init__; never replaced
-    PyObject* frame_index;                                          // dict: name of a frame → its number
-    int tip;  // the frame meant where none is named, or -1
+    PyObject_HEAD std::unique_ptr<const cspace::model::RobotModel>
+        model;              // null until __init__; never replaced
+    PyObject* frame_index;  // dict: name of a frame → its number
+    int tip;                // the frame meant where none is named, or -1
     bool floating;
 };
 
@@ -37,4 +38,4 @@ bool read_configuration(const KinematicsObject* robot, PyObject* value, double* 
 // Calls the free function of that name in a Python module, with the robot before the arguments. Complaints
 // about the arguments name the method that was called.
 PyObject* call_python(const char* module, const char* function, const char* method, PyObject* self,
-                            PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
+                      PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);

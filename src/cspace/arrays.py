@@ -49,7 +49,7 @@ def as_floats(
 def as_arrays(
     values: Mapping[str, tuple[Any, tuple[int, ...]]], *, largest: float | None = None
 ) -> dict[str, Array]:
-    """Several arguments at once: from subject to (value, trailing axes), arrays whose leading axes fit together.
+    """Several arguments at once, by subject, (value, trailing axes); their leading axes must fit together.
 
     Raises InputTypeError and InputError as of as_floats and leading_axes.
     """

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -206,7 +206,7 @@ class Robot(RobotBase, KinematicModel):
             from cspace.ik import solver_of_robot
 
             self._solver = solver_of_robot(self)
-        return self._solver
+        return cast("Solver", self._solver)
 
     def ik_plan(self, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
         """How ik solves this arm: the geometry found, the steps, and the equations with the arm's numbers.

@@ -20,9 +20,9 @@ namespace {
 
 constexpr int pose_dimensions = 6, max_closed_form = 6;
 constexpr double turn = 6.283185307179586;
-constexpr double same = 1e-8;        // [rad, m] configurations closer than this are one
-constexpr double still = 1e-9;       // part of a self-motion's direction below which a joint rests
-constexpr double behind = -1e-6;     // [m] a point to look at that lies this far behind the tip is refused
+constexpr double same = 1e-8;     // [rad, m] configurations closer than this are one
+constexpr double still = 1e-9;    // part of a self-motion's direction below which a joint rests
+constexpr double behind = -1e-6;  // [m] a point to look at that lies this far behind the tip is refused
 
 void append_row(GoalAnswer& out, const double* q, int n, int branch, bool self_motion) {
     out.q.insert(out.q.end(), q, q + n);  // of the solver, until map_rows
@@ -45,7 +45,8 @@ void answer_listed(const BuiltArm& built, const double* goal, GoalAnswer& out) {
     int count = 0;
     if (kernels::ik_one(*built.arm, goal, q, branch, &count) != FastPath::settled)
         return append_solutions(out, solve_goal(built, goal, nullptr), built.dof);
-    for (int k = 0; k < count; ++k) append_row(out, q + max_closed_form * k, max_closed_form, branch[k], false);
+    for (int k = 0; k < count; ++k)
+        append_row(out, q + max_closed_form * k, max_closed_form, branch[k], false);
     out.status = count ? Status::exact : Status::unreachable;
 }
 
@@ -89,8 +90,8 @@ void answer_sampled(Solver& solver, const double* goal, int samples, GoalAnswer&
     out.feasible = found.feasible;
 }
 
-// Brings the joints that stand for what a partial goal leaves free (negative in `own_of`) to where they meet the
-// goal best with the other joints where they are: Gauss–Newton steps on the pose.
+// Brings the joints that stand for what a partial goal leaves free (negative in `own_of`) to where they meet
+// the goal best with the other joints where they are: Gauss–Newton steps on the pose.
 void meet_goal(const Solver& solver, const Posed& goal, const int* own_of, double* q) {
     constexpr int most_steps = 40, most = 8;
     constexpr double settled = 1e-12, stride = 0.5, damping = 1e-9;
@@ -117,7 +118,7 @@ void meet_goal(const Solver& solver, const Posed& goal, const int* own_of, doubl
                 for (int k = 0; k < 6; ++k) A[i][j] += motion.column[open[i]][k] * motion.column[open[j]][k];
             for (int k = 0; i < count && k < 6; ++k) b[i] += motion.column[open[i]][k] * error[k];
         }
-        solve(A, b);
+        solve_linear(A, b);
         double reach = stride, largest = 0;
         for (int i = 0; i < count; ++i) {
             if (!chain.prismatic[open[i]]) reach = std::fmax(reach, std::fabs(b[i]));
@@ -183,8 +184,8 @@ bool moves_own_joints(Solver& solver, const GoalRequest& request, const double* 
     return std::any_of(own, own + request.own, [](double d) { return std::fabs(d) > still; });
 }
 
-// Of a partial goal: rows that differ in the virtual joints alone are one, and a tool that looks at a point has
-// it in front.
+// Of a partial goal: rows that differ in the virtual joints alone are one, and a tool that looks at a point
+// has it in front.
 void keep_own_rows(Solver& solver, const GoalRequest& request, GoalAnswer& out) {
     const std::size_t own = std::size_t(request.own), n = std::size_t(request.whole.n);
     std::size_t kept = 0;

@@ -44,7 +44,7 @@ struct GoalAnswer {
     std::vector<double> q, whole;  // rows of the user's arm and of the whole arm
     std::vector<std::int8_t> branch;
     std::vector<char> self_motion;
-    int values = 0;  // of a redundant joint at which branches are listed; 0: one configuration of many
+    int values = 0;         // of a redundant joint at which branches are listed; 0: one configuration of many
     bool feasible = false;  // whether these values keep all limits
 };
 

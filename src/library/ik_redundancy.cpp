@@ -52,7 +52,7 @@ struct RedundantSolver::State {
     Redundant arm;
     double unit;  // [m]
     std::mutex mutex;
-    std::unique_ptr<RedundantSolver> scaled;    // the same arm with lengths in its unit
+    std::unique_ptr<RedundantSolver> scaled;     // the same arm with lengths in its unit
     std::unique_ptr<RedundantSolver> unlimited;  // the same arm without limits
     std::map<std::vector<int>, std::unique_ptr<LockedArm>> plans;
     std::unique_ptr<LimitArms> limits;

@@ -38,8 +38,8 @@ using Span = std::pair<double, double>;
 std::vector<Span> unite_intervals(std::vector<Span> intervals);
 std::vector<double> spread_values(const std::vector<Span>& disjoint, int n);
 
-// Whether a joint stands for the distance to a point that the tool looks at: a goal's own prismatic joint that
-// begins at zero.
+// Whether a joint stands for the distance to a point that the tool looks at: a goal's own prismatic joint
+// that begins at zero.
 inline bool leads_ahead(const Chain& chain, const double* weight, const double* lower, int joint) {
     return chain.prismatic[joint] && weight[joint] == 0 && lower[joint] == 0;
 }

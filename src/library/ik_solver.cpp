@@ -23,8 +23,9 @@ const BuiltArm& Solver::build() {
 }
 
 RedundantSolver& Solver::redundant() {
-    std::call_once(redundant_once_,
-                   [this] { redundant_ = std::make_unique<RedundantSolver>(chain_, lower_, upper_, weight_); });
+    std::call_once(redundant_once_, [this] {
+        redundant_ = std::make_unique<RedundantSolver>(chain_, lower_, upper_, weight_);
+    });
     return *redundant_;
 }
 

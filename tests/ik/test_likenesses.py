@@ -34,7 +34,7 @@ def solve(robot, T):
 
 def near_rows(found):
     """The configurations that do not slide out of sight."""
-    robot = found.robot
+    robot = found.solver
     way = size_of(robot) + np.linalg.norm(found.goal[:3, 3] - robot.chain.points[0])
     return found.q[np.abs(found.q[:, slides_of(robot)]).max(axis=1, initial=0) < FAR * way]
 

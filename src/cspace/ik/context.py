@@ -19,11 +19,11 @@ __all__ = ["About"]
 class About:
     """What a result needs besides the solutions of one goal.
 
-    goal: of a partial goal; None for a pose. extended, q: the solver of the arm with the joints that stand for
-    what a partial goal leaves free, and its configurations, row by row. freedom: the names of the parameters
-    that the goal leaves free. locked: values of locked joints, by number. values: at how many values of the
-    parameter branches are listed, 0 where the answer is one configuration of many; feasible: whether these
-    values keep all limits.
+    goal: of a partial goal; None for a pose. extended, q: the solver of the arm with the virtual joints of a
+    partial goal, and its configurations, row by row. freedom: the names of the parameters that the goal
+    leaves free. locked: values of locked joints, by number. values: at how many values of the parameter
+    branches are listed, 0 where the answer is one configuration of many; feasible: whether these values keep
+    all limits.
     """
 
     goal: PartialGoal | None = None
@@ -36,7 +36,7 @@ class About:
 
     @property
     def own_locked(self) -> dict[int, Any]:
-        """The locked joints by their numbers in the user's arm; a partial goal's virtual joints are left out."""
+        """The locked joints by their numbers in the user's arm, without virtual joints."""
         if self.goal is None or self.extended is None:
             return dict(self.locked)
         first, last = len(self.goal.before), self.extended.dof - len(self.goal.behind)
@@ -44,6 +44,4 @@ class About:
 
     def take(self, rows: Any, is_all: bool) -> About:
         """The same for some of the solutions, or for all of them."""
-        return replace(
-            self, q=None if self.q is None else self.q[rows], values=self.values if is_all else 0
-        )
+        return replace(self, q=None if self.q is None else self.q[rows], values=self.values if is_all else 0)

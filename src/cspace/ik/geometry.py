@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import cast
+
 from cspace import _core
 from cspace.ik.conditions import Condition, NoClosedFormError, conditions, explain_missing_form
 from cspace.ik.solver import HasSolver, Solver, as_solver
+from cspace.kinematics import KinematicModel
 
 __all__ = ["Geometry", "geometry"]
 
@@ -65,7 +68,8 @@ def geometry(robot: HasSolver) -> Geometry:
     try:
         solver = as_solver(robot)
     except NoClosedFormError as error:
-        tested = conditions(robot) if len(robot.chain.axes) >= 3 else ()  # type: ignore[attr-defined]
+        model = cast(KinematicModel, robot)
+        tested = conditions(model) if len(model.chain.axes) >= 3 else ()
         return Geometry("none", "", False, 0.0, tested, str(error))
     tested = conditions(solver) if len(solver.chain.axes) >= 3 else ()
     if solver.is_redundant:

@@ -55,4 +55,4 @@ def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:
         q = np.full((*q.shape[:-2], 1, q.shape[-1]), np.nan)
     q[(*bad.T, 0)] = rows
     count[tuple(bad.T)], verdict[tuple(bad.T)] = 1, NEAREST
-    return SolutionsBatch(found.solver, found.goal, q, count, verdict, found._partial, found.freedom, found._locked)
+    return found._with(q, count, verdict)

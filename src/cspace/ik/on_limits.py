@@ -7,7 +7,7 @@ since the error lies along a direction in which the tip does not move to first o
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 

@@ -112,7 +112,7 @@ class Solutions(_core.SolutionsBase):
     def residual(self) -> Array:
         """How far fk(q) is from the goal, (k,): the larger of the position error [m] and the angle [rad]."""
         if self._partial is not None:
-            return cast(Array, self._partial.residual(self.solver.fk(self.q)))
+            return self._partial.residual(self.solver.fk(self.q))
         return pose_errors(self.solver, self.q, self.goal)
 
     @property
@@ -356,7 +356,9 @@ def position_goal(p: Array) -> Array:
 
 def spread_in_words(about: About) -> str:
     """At which values of the redundant joint branches are listed."""
-    where = "its feasible intervals" if about.feasible else "the values that reach it, none of them within limits"
+    where = "its feasible intervals"
+    if not about.feasible:
+        where = "the values that reach it, none of them within limits"
     values = f"{about.values} value{'s' if about.values > 1 else ''}"
     return f"at {values} of {about.freedom[0]} spread over {where}"
 

@@ -41,8 +41,10 @@ __all__ = ["PartialRows", "SolutionsBatch"]
 
 @dataclass(frozen=True, eq=False)
 class PartialRows:
-    """What the answers to many partial goals carry: about the goals, rows as found, q (..., k, dof), and of the
-    arm with the goals' joints, extended (..., k, n), and which of them stand for a self-motion (..., k).
+    """What the answers to many partial goals carry.
+
+    about: the goals. q (..., k, dof): rows as found; extended (..., k, n): with the goals' joints;
+    self_motion (..., k): which of them stand for a self-motion.
     """
 
     about: About
@@ -61,7 +63,14 @@ class PartialRows:
         about = replace(self.about, goal=self.goal.take(index), q=self.extended[index][:k])
         flags = self.self_motion[index][:k]
         return Solutions.of(
-            solver, about.goal.T, verdict, self.q[index][:k], range(k), flags, None, about  # type: ignore[union-attr]
+            solver,
+            about.goal.T,
+            verdict,
+            self.q[index][:k],
+            range(k),
+            flags,
+            None,
+            about,  # type: ignore[union-attr]
         )
 
 
@@ -226,10 +235,13 @@ class SolutionsBatch:
         q = wrap(self.q, self.solver.joint_types)
         return self._with(q, self.count)
 
-    def _with(self, q: Array, count: npt.NDArray[np.int64]) -> SolutionsBatch:
+    def _with(
+        self, q: Array, count: npt.NDArray[np.int64], verdict: npt.NDArray[np.uint8] | None = None
+    ) -> SolutionsBatch:
         """The same goals with other rows."""
+        verdicts = self._verdict if verdict is None else verdict
         return SolutionsBatch(
-            self.solver, self.goal, q, count, self._verdict, self._partial, self.freedom, self._locked
+            self.solver, self.goal, q, count, verdicts, self._partial, self.freedom, self._locked
         )
 
     def nearest(self, q: Any, metric: str = "euclidean") -> Array:

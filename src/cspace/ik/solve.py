@@ -10,9 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array
 from cspace.buffer_pool import pooled_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputTypeError
 from cspace.ik.goals.given import (
     checked_poses,
     goal_array,
@@ -31,7 +31,6 @@ from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.kinematics.batch import thread_count
 from cspace.spatial import as_pose
-from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
 
 import numpy as np
 
@@ -28,7 +28,7 @@ MAX_SETTLED = 6
 """Joints that a pose determines at most."""
 MAX_SOLUTIONS = 16
 MOST_KEPT = 32
-"""Solvers kept for locked joints and for partial goals, of each: more are a loop over values, which builds its own."""
+"""Solvers kept for locked joints, and as many for partial goals; a loop over more values builds its own."""
 Key = TypeVar("Key")
 
 
@@ -61,9 +61,7 @@ class Solver(_core.SolverBase, KinematicModel):
             )
         self._read(with_limits(chain, limits), chain.name if name is None else name)
 
-    def _read(
-        self, source: Chain, name: str, goal_joints: Sequence[int] = (), reach: float = np.inf
-    ) -> None:
+    def _read(self, source: Chain, name: str, goal_joints: Sequence[int] = (), reach: float = np.inf) -> None:
         super().__init__(assemble_chain(source), name)
         n = len(source.joint_types)
         if source.dof != n or not 1 <= n <= MAX_JOINTS:
@@ -87,9 +85,9 @@ class Solver(_core.SolverBase, KinematicModel):
 
     @classmethod
     def from_screws(cls, axes: Any, points: Any, T_zero: Any, **options: Any) -> Solver:
-        """The solver of a serial arm from its joint axes at zero: axes (n, 3), points (n, 3) [m], T_zero (4, 4).
+        """The solver of a serial arm from its joint axes at zero.
 
-        options: joint_types, lower, upper, name, joint_names and the others of model.from_screws, which also
+        axes (n, 3), points (n, 3) [m], T_zero (4, 4): the tip in the base with all joints at zero. options: joint_types, lower, upper, name, joint_names and the others of model.from_screws, which also
         names the errors.
         """
         return cls(chain(from_screws(axes, points, T_zero, **options)))
@@ -200,14 +198,14 @@ def solver_of_robot(robot: KinematicModel) -> Solver:
     return Solver(robot.chain, robot.limits if robot.chain.dof == robot.dof else None, name=robot.name)
 
 
-def as_solver(arm: HasSolver) -> Solver:
+def as_solver(arm: HasSolver | KinematicModel) -> Solver:
     """The solver of a robot, or a solver itself. Raises InputTypeError for what is neither."""
     if not isinstance(arm, KinematicModel):
         raise InputTypeError(
             f"this function takes a robot or an ik.Solver first, got {type(arm).__name__};"
             " cspace.load_robot(name) makes a robot"
         )
-    return arm.solver
+    return cast("HasSolver", arm).solver
 
 
 def solver_again(source: Chain, name: str, goal_joints: tuple[int, ...], reach: float) -> Solver:

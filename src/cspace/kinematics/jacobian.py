@@ -7,8 +7,8 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array
 from cspace.errors import InputTypeError
 from cspace.kinematics.batch import choice, frame_number, output, rows_of
-from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.forward import compute_chain
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
 __all__ = ["AXES", "fk_jacobian", "jacobian", "jacobian_dot"]

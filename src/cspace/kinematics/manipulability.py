@@ -11,9 +11,9 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.batch import choice, frame_number, rows_of
-from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.forward import compute_chain
 from cspace.kinematics.jacobian import AXES, jacobian
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
 __all__ = [

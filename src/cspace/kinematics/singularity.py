@@ -11,9 +11,9 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.errors import InputError
 from cspace.kinematics.jacobian import jacobian
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.manipulability import ROWS, row_numbers
 from cspace.spatial.checks import PoseLike
 from cspace.tolerances import SINGULAR_ROUNDING, SINGULAR_VALUE

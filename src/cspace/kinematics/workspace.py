@@ -9,9 +9,9 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.kinematics.assembly import turned_to
 from cspace.kinematics.batch import frame_number, whole_number
-from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.configurations import Seed, random_configurations
 from cspace.kinematics.forward import forward_kinematics
+from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.planar_boundary import TURN, PlanarArm, boundary
 from cspace.model import Chain
 from cspace.tolerances import PLANAR_AXES

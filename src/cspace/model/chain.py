@@ -147,7 +147,13 @@ class Chain:
         return [getattr(self.limits, field) for field in LIMIT_FIELDS]
 
     def _changed(
-        self, names: tuple[str, ...], kinds: str, axes: Array, points: Array, T_zero: Array, limits: list[Array]
+        self,
+        names: tuple[str, ...],
+        kinds: str,
+        axes: Array,
+        points: Array,
+        T_zero: Array,
+        limits: list[Array],
     ) -> Chain:
         """A chain of other joints between the same links, each with a coordinate of its own."""
         if self.dof != len(self.joint_names):

@@ -23,6 +23,7 @@ from cspace.ik.geometry import FIRST_THREE
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
+    from cspace.kinematics import KinematicModel
 
 __all__ = ["refused_plan", "settled_plan", "survey_of"]
 

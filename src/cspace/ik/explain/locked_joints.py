@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,11 +18,9 @@ from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Rows
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.locked_joints import between_others, value_in_words
+from cspace.ik.solver import MAX_SETTLED, Solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 from cspace.spatial import exp_se3
-
-if TYPE_CHECKING:
-    from cspace.ik.solver import Solver
 
 __all__ = ["locked_plan"]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -40,7 +40,7 @@ def ik_plan(robot: HasSolver, *, goal_parts: Any = None, locked: Any = None, too
         solver = as_solver(robot)
     except NoClosedFormError as error:
         check_tool_axis(tool_axis, () if goal_parts is None else POINTED)
-        return refused_plan(survey_of(robot), str(error))
+        return refused_plan(survey_of(cast(KinematicModel, robot)), str(error))
     if goal_parts is not None:
         if locked is not None:
             raise InputTypeError("locked= can only be combined with a full pose; leave goal_parts= out")

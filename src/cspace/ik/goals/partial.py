@@ -33,8 +33,8 @@ class PartialGoal:
     """One kind of goal, of one tool axis, for one or many values.
 
     kind: its keywords, joined by "+". T (..., 4, 4): poses that meet the goals. behind: the virtual joints
-    behind the tip, each ("R" or "P", axis in the tip), with a fixed turn before the last one, if any, as `tilt`
-    [rad]; before: those before the base. value: as the user gave it.
+    behind the tip, each ("R" or "P", axis in the tip), with a fixed turn `tilt` [rad] before the last one,
+    if any; before: those before the base. value: as the user gave it.
     """
 
     kind: str

@@ -43,13 +43,14 @@ def partial_goal(given: dict[str, Any], tool_axis: Any) -> PartialGoal:
     """
     kind = "+".join(name for name in KEYWORDS if name in given)
     if kind not in MAKERS:
+        names = " and ".join(name + "=" for name in given)
         raise InputTypeError(
-            f"{' and '.join(name + '=' for name in given)} cannot be combined; possible combinations are "
+            f"{names} cannot be combined; possible combinations are "
             + ", ".join(" and ".join(part + "=" for part in k.split("+")) for k in MAKERS)
         )
     if kind != "position" and is_open(given.get("position")):
         others = " and ".join(name + "=" for name in given if name != "position")
-        raise InputTypeError(f"position= with {others} needs all three coordinates; None is not allowed there")
+        raise InputTypeError(f"position= with {others} needs three coordinates; None is not allowed there")
     values = read_values(given, tool_axis)
     return MAKERS[kind](values, values["tool_axis"])
 

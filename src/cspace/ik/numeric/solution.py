@@ -36,7 +36,9 @@ class NumericSolution:
 
     __slots__ = ("_info", "_limits", "_starts", "goal", "q", "robot")
 
-    def __init__(self, robot: KinematicModel, goal: Array, q: Array, info: Array, starts: int, limits: Array) -> None:
+    def __init__(
+        self, robot: KinematicModel, goal: Array, q: Array, info: Array, starts: int, limits: Array
+    ) -> None:
         # info (..., 5): position error, rotation error, iterations, start, ending.
         self.robot, self.goal, self.q = robot, goal, q
         self._info, self._starts, self._limits = info, starts, limits

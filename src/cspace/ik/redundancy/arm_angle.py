@@ -27,10 +27,10 @@ def swivel(robot: HasSolver, q: Any) -> Array:
 
     ψ = atan2(n · (z × e), z · e), n = (W − S)/|W − S|, z = r − (r · n) n.
 
-    robot: a Robot or a Solver. q (..., 7) [rad] → ψ (...) [rad]. S: where axes 1, 2, 3 meet, W: where axes 5,
-    6, 7 do, e: from S to the point of axis 4 nearest to S, r: the direction of axis 1. Where W lies on axis 1 a
-    fixed direction perpendicular to it stands for r. Raises InputError for an arm that is not built so. M.
-    Shimizu et al. 2008, section II.
+    robot: a Robot or a Solver. q (..., 7) [rad] → ψ (...) [rad]. S: where axes 1, 2, 3 meet, W: where axes
+    5, 6, 7 do, e: from S to the point of axis 4 nearest to S, r: the direction of axis 1. Where W lies on
+    axis 1 a fixed direction perpendicular to it stands for r. Raises InputError for an arm that is not built
+    so. M. Shimizu et al. 2008, section II.
     """
     from cspace.ik.solver import as_solver
 

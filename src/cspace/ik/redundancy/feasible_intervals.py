@@ -58,7 +58,7 @@ def with_locked(solver: Solver, values: Mapping[int, Any], q: Array) -> Array:
 
 
 def is_bounded(solver: Solver, joint: int) -> bool:
-    """Whether the parameter has limits or is an angle: along a prismatic joint without limits the search covers
+    """Whether the parameter has limits or is an angle: of a prismatic joint without limits the search covers
     the length of the arm."""
     bounds = solver.limits.lower[joint], solver.limits.upper[joint]
     return solver.joint_types[joint] == "R" or bool(np.isfinite(bounds).all())
@@ -97,9 +97,9 @@ def intervals_of(solver: Solver, T: Array, joint: int) -> Redundancy:
             return "fold"
         return "nothing" if what == END_NOTHING else f"{names[what]} at {'upper' if side else 'lower'} limit"
 
-    made = [
-        Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), into_limits(np.array(q), *bounds)[0], slides)
-        for low, high, branch, a, sa, b, sb, q in rows
-    ]
+    made = []
+    for low, high, branch, a, sa, b, sb, q in rows:
+        inside, _ = into_limits(np.array(q), *bounds)
+        made.append(Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), inside, slides))
     made.sort(key=lambda interval: (interval.branch, interval.lower))
     return Redundancy(solver, T, names[joint], tuple(made), complete, slides)

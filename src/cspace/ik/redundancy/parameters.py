@@ -55,7 +55,9 @@ def redundancy(
         from cspace.ik.redundancy.arm_angle_intervals import swivel_intervals
 
         if locked is not None:
-            raise InputTypeError("locked= cannot be combined with the swivel, which is the only free dimension of seven joints")
+            raise InputTypeError(
+                "locked= cannot be combined with the swivel, the only free dimension of seven joints"
+            )
         return swivel_intervals(solver, T)
     return redundancy_of_pose(solver, T, parameter, locked)
 

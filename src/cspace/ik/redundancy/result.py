@@ -84,7 +84,7 @@ class Redundancy:
 
     def union(self) -> Array:
         """Where some branch is feasible: disjoint (lower, upper), ascending, (k, 2)."""
-        return np.array(_core._ik_union(self._ends), dtype=float).reshape(-1, 2)
+        return np.array(_core._ik_union(self._ends), dtype=np.float64).reshape(-1, 2)
 
     def spread(self, n: int) -> Array:
         """n values of the parameter, (n,): the middles of n equal parts of all that is feasible."""
@@ -92,11 +92,11 @@ class Redundancy:
             raise InputTypeError(f"n is a {type(n).__name__}, expected a number of values")
         if not 1 <= n <= MOST_SAMPLES:
             raise InputError(f"n is {n}, expected 1 to {MOST_SAMPLES} values")
-        return np.array(_core._ik_spread(self._ends, int(n)))
+        return np.array(_core._ik_spread(self._ends, int(n)), dtype=np.float64)
 
     @property
     def _ends(self) -> Array:
-        return np.array([[i.lower, i.upper] for i in self.intervals]).reshape(-1, 2)
+        return np.array([[i.lower, i.upper] for i in self.intervals], dtype=np.float64).reshape(-1, 2)
 
     def __str__(self) -> str:
         unit = "m" if self._slides else "rad"

@@ -115,7 +115,9 @@ def seed_rows(solver: Solver, near: Any, shape: tuple[int, ...]) -> Array:
     """near= as rows (1 or n, dof): one for all goals, or one for each."""
     seeds = as_floats(near, "near", last=(solver.dof,), largest=FARTHEST)
     if seeds.ndim > 1 and seeds.shape[:-1] != shape:
-        expected = f"({solver.dof},)" + (f" for all goals or {(*shape, solver.dof)}, one for each" if shape else "")
+        expected = f"({solver.dof},)"
+        if shape:
+            expected += f" for all goals or {(*shape, solver.dof)}, one for each"
         raise InputError(f"near has shape {seeds.shape}, expected {expected}")
     return np.ascontiguousarray(seeds.reshape(-1, solver.dof))
 
@@ -125,9 +127,7 @@ def check_samples(solver: Solver, options: Any, degree: int) -> None:
     if options.samples is None:
         return
     if options.near is not None:
-        raise InputTypeError(
-            "samples= cannot be combined with near=, which answers with one configuration"
-        )
+        raise InputTypeError("samples= cannot be combined with near=, which answers with one configuration")
     if degree != 1:
         raise InputTypeError(
             f"samples= needs one free dimension, but {solver.name} has {max(degree, 0)} here: "
@@ -146,9 +146,7 @@ def sample_count(samples: Any) -> int:
 
 
 # --- all redundant joints are locked ----------------------------------------------------------------------
-def locked_rows(
-    solver: Solver, T: Array, values: Mapping[int, Any]
-) -> tuple[tuple[int, ...], Array, Array]:
+def locked_rows(solver: Solver, T: Array, values: Mapping[int, Any]) -> tuple[tuple[int, ...], Array, Array]:
     """Leading axes of goals and values together, the goals (..., 4, 4) and rows of values (N, dof)."""
     given = {f"locked[{solver.joint_names[joint]!r}]": np.shape(v) for joint, v in values.items()}
     shape = leading_axes(goal=T.shape[:-2], **given)

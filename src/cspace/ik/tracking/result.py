@@ -5,16 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import attribute_error
 from cspace.ik.branches import branch_labels
-
-if TYPE_CHECKING:
-    from cspace.kinematics import KinematicModel
+from cspace.ik.solver import as_solver
+from cspace.kinematics import KinematicModel, singularity
 
 __all__ = ["Branch", "Track"]
 
@@ -57,7 +56,9 @@ class Branch:
         """The name of the solution it begins with, as robot.ik gives it; empty for a start of one's own."""
         if self.number < 0:
             return ""
-        return branch_labels(self.robot, self.q[:1] if len(self.q) else self.last[None], (self.number,))[0]
+        return branch_labels(
+            as_solver(self.robot), self.q[:1] if len(self.q) else self.last[None], (self.number,)
+        )[0]
 
     @property
     def reason(self) -> str:
@@ -72,7 +73,7 @@ class Branch:
         if self.cause == "unreachable":
             return "no configuration reaches what follows"
         if self.cause == "singularity":
-            joints = self.robot.singularity(self.last).joints
+            joints = singularity(self.robot, self.last).joints
             lost = f" ({', '.join(joints)} are dependent)" if len(joints) < len(self.last) else ""
             return f"the arm is singular{lost} and cannot go on"
         if self.joint is None:
