@@ -32,6 +32,7 @@ RENAMED: Final = MappingProxyType(
         "line": "summary",
         "missing": "out_of_reach",
         "price": "stats",
+        "robot": "solver",
         "sees": "sensing",
         "why": "cause",
     }

@@ -66,7 +66,7 @@ def test_within_keeps_exactly_what_a_whole_turn_brings_inside(name, kind):
     rng = np.random.default_rng([1, *map(ord, kind)])
     for seed in range(8):
         found = solutions(name, seed)
-        bounds = random_limits(rng, found.robot.dof, kind)
+        bounds = random_limits(rng, found.solver.dof, kind)
         inside = found.within(bounds)
         fits = [
             all(turns_inside(*joint, most=9) for joint in zip(row, bounds.lower, bounds.upper, strict=True))
@@ -92,7 +92,7 @@ def test_windings_are_all_copies_and_nothing_else(name, kind):
     rng = np.random.default_rng([2, *map(ord, kind)])
     for seed in range(3):
         found = solutions(name, seed)
-        bounds = random_limits(rng, found.robot.dof, kind)
+        bounds = random_limits(rng, found.solver.dof, kind)
         copies = found.within(bounds, windings=True)
         expected = every_copy(found.q, bounds) if kind != "far away" else None
         if expected is not None:
@@ -159,7 +159,7 @@ def test_nearest_against_every_winding(name, metric):
     rng = np.random.default_rng(4)
     for seed in range(6):
         found = solutions(name, seed)
-        robot = found.robot
+        robot = found.solver
         q = rng.uniform(-7, 7, robot.dof)
         one = found.nearest(q, metric)
         assert len(one) == 1

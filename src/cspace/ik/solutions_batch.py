@@ -60,18 +60,10 @@ class PartialRows:
     def one(self, solver: Solver, index: Any, verdict: int) -> Solutions:
         """The solutions of the goal at an index."""
         k = int(np.isfinite(self.q[index][:, 0]).sum())
-        about = replace(self.about, goal=self.goal.take(index), q=self.extended[index][:k])
+        goal = self.goal.take(index)
+        about = replace(self.about, goal=goal, q=self.extended[index][:k])
         flags = self.self_motion[index][:k]
-        return Solutions.of(
-            solver,
-            about.goal.T,
-            verdict,
-            self.q[index][:k],
-            range(k),
-            flags,
-            None,
-            about,  # type: ignore[union-attr]
-        )
+        return Solutions.of(solver, goal.T, verdict, self.q[index][:k], range(k), flags, None, about)
 
 
 class SolutionsBatch:

@@ -87,8 +87,9 @@ class Solver(_core.SolverBase, KinematicModel):
     def from_screws(cls, axes: Any, points: Any, T_zero: Any, **options: Any) -> Solver:
         """The solver of a serial arm from its joint axes at zero.
 
-        axes (n, 3), points (n, 3) [m], T_zero (4, 4): the tip in the base with all joints at zero. options: joint_types, lower, upper, name, joint_names and the others of model.from_screws, which also
-        names the errors.
+        axes (n, 3), points (n, 3) [m], T_zero (4, 4): the tip in the base with all joints at zero. options:
+        joint_types, lower, upper, name, joint_names and the others of model.from_screws, which also names the
+        errors.
         """
         return cls(chain(from_screws(axes, points, T_zero, **options)))
 

@@ -255,7 +255,7 @@ def test_results_are_pickled_and_copied(robot, goal):
 
 def test_a_result_keeps_its_robot_alive(goal):
     found = Robot(chain_with("continuous")).ik(goal)
-    assert found.robot.name == "odd"
+    assert found.solver.name == "odd"
     assert found.residual.max(initial=0) < 1e-9
 
 

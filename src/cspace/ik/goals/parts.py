@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_arrays
+from cspace.arrays import Array, as_arrays, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
@@ -139,6 +139,8 @@ def rotation(values: dict[str, Any], axis: Array) -> PartialGoal:
 
 def position_and_rotation(values: dict[str, Any], axis: Array) -> PartialGoal:
     p, R = values["position"], values["rotation"]
+    if p.ndim > 1 or R.ndim > 2:
+        leading_axes(position=p.shape[:-1], rotation=R.shape[:-2])
     return PartialGoal("position+rotation", pose(p, R), (), {"position": p, "rotation": R}, axis)
 
 
