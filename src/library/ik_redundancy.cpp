@@ -314,22 +314,26 @@ SampledGoal RedundantSolver::sample(const double* goal, int n) {
     return out;
 }
 
-// A joint that leads ahead begins as far out as the goal is, and the others where they look at a point up to
-// `steps` times closer.
-void RedundantSolver::start_of_search(const double* goal, double steps, double* start) const {
-    constexpr double near_by = 300;  // [m]
+// The first attempt begins in the middle of the limits, further ones around it. A joint that leads ahead
+// begins as far out as the goal is, and the others where they look at a point up to a hundred times closer.
+void RedundantSolver::start_of_search(const double* goal, int attempt, double* start) const {
+    constexpr double near_by = 300, golden = 0.6180339887498949;  // [m], and a number whose multiples spread
     const Redundant& arm = state_->arm;
     for (int j = 0; j < arm.chain.n; ++j) {
         const bool bounded = std::isfinite(arm.lower[j]) && std::isfinite(arm.upper[j]);
         start[j] = bounded ? 0.5 * arm.lower[j] + 0.5 * arm.upper[j] : 0.0;
+        if (attempt > 0 && !arm.chain.prismatic[j]) {
+            const double place = golden * (attempt + j * attempt);
+            start[j] += place - std::floor(place) - 0.5;
+        }
     }
     if (!state_->looks()) return;
     const double away = std::hypot(goal[3], goal[7], goal[11]);
     if (away > near_by) {
         double closer[16], from[max_joints], q[max_joints];
         std::copy(goal, goal + 16, closer);
-        for (const int k : {3, 7, 11}) closer[k] /= std::min(steps, away / near_by * 2);
-        start_of_search(closer, steps, from);
+        for (const int k : {3, 7, 11}) closer[k] /= std::min(attempt % 2 ? 10.0 : 100.0, away / near_by * 2);
+        start_of_search(closer, attempt, from);
         if (find_nearest_turned(closer, from, q)) std::copy(q, q + arm.chain.n, start);
     }
     for (int j = 0; j < arm.chain.n; ++j)
@@ -337,11 +341,12 @@ void RedundantSolver::start_of_search(const double* goal, double steps, double* 
 }
 
 bool RedundantSolver::find_near_middle(const double* goal, double* q) const {
-    double start[max_joints];
-    for (const double steps : {100.0, 10.0, 30.0}) {
-        start_of_search(goal, steps, start);
+    constexpr int attempts_to_look = 8;
+    const int attempts = state_->looks() ? attempts_to_look : 1;
+    for (int attempt = 0; attempt < attempts; ++attempt) {
+        double start[max_joints];
+        start_of_search(goal, attempt, start);
         if (find_nearest_turned(goal, start, q)) return true;
-        if (!state_->looks()) break;
     }
     return false;
 }

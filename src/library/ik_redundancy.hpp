@@ -102,7 +102,7 @@ class RedundantSolver {
     bool find_near_middle(const double* goal, double* q) const;
 
   private:
-    void start_of_search(const double* goal, double steps, double* start) const;
+    void start_of_search(const double* goal, int attempt, double* start) const;
 
     struct State;
     std::unique_ptr<State> state_;

@@ -49,8 +49,9 @@ def test_references_are_given_back():
     robot = load("puma560")
     T = robot.fk(np.full(6, 0.4))
     kind = type(robot.ik(T))
-    before = sys.getrefcount(robot), sys.getrefcount(kind), sys.getrefcount(T)
+    watched = (robot, robot.solver, kind, T)
+    before = [sys.getrefcount(each) for each in watched]
     results = [robot.ik(T) for _ in range(100)]
-    assert sys.getrefcount(robot) == before[0] + 100
+    assert sys.getrefcount(robot.solver) == before[1] + 100
     del results
-    assert (sys.getrefcount(robot), sys.getrefcount(kind), sys.getrefcount(T)) == before
+    assert [sys.getrefcount(each) for each in watched] == before

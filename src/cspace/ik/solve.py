@@ -23,7 +23,7 @@ from cspace.ik.goals.given import (
     points_in_base,
     too_far,
 )
-from cspace.ik.goals.partial import KEYWORDS, PartialGoal
+from cspace.ik.goals.partial import KEYWORDS
 from cspace.ik.goals.parts import check_tool_axis, is_open, partial_goal
 from cspace.ik.least_squares import least_squares_answer, least_squares_batch
 from cspace.ik.redundancy.solve import solve_freedom
@@ -106,17 +106,15 @@ def solve(
     if swivel is not None:
         raise InputTypeError("swivel= needs a full pose; lock joints with locked= instead")
     parts = partial_goal(given, tool_axis)
-    if not (parts.before or parts.behind):
-        return answer_poses(solver, parts.T, options, parts)
     return choose(solver, solve_freedom(solver, parts, parts.T, options), options)
 
 
-def answer_poses(solver: Solver, goal: Any, options: Options, parts: PartialGoal | None = None) -> Answer:
+def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
     T = goal_array(goal)
     if options.swivel is not None:
         return answer_swivel(solver, T, options)
-    if options.sets_freedom or solver.is_redundant or parts is not None:
-        return choose(solver, solve_freedom(solver, parts, checked_poses(T), options), options)
+    if options.sets_freedom or solver.is_redundant:
+        return choose(solver, solve_freedom(solver, None, checked_poses(T), options), options)
     found = solve_many(solver, T, options.threads) if T.ndim > 2 else solve_one(solver, T, options.near)
     return choose(solver, found, options)
 

@@ -139,7 +139,9 @@ class Solver(_core.SolverBase, KinematicModel):
         return kept(self._locked, tuple(sorted(values.items())), build)
 
     def extend(self, goal: PartialGoal) -> Solver:
-        """The solver of the arm with the joints that stand for what a partial goal leaves free."""
+        """The solver of the arm with the virtual joints of a partial goal."""
+        if not (goal.before or goal.behind):
+            return self
 
         def build() -> Solver:
             made = Solver.__new__(Solver)

@@ -176,8 +176,8 @@ def test_a_drill_is_sampled_at_as_many_turns_as_are_wanted():
     assert "at 3 values of goal_tool_turn_z" in s.reason
     x = robot.fk(s.q)[:, :3, 0]
     assert len({round(float(np.arctan2(*v[1::-1])), 6) for v in x}) == 3
-    with pytest.raises(InputTypeError, match="one goal"):
-        robot.ik(position=np.full((2, 3), 0.3), direction=[0, 0, -1], samples=3)
+    two = robot.ik(position=[[0.4, 0.1, 0.3], [0.3, 0.3, 0.3]], direction=[0, 0, -1], samples=3)
+    np.testing.assert_allclose(two.q[0, : two.count[0]], s.q, atol=1e-12)
     with pytest.raises(InputTypeError, match="full pose"):
         robot.ik(position=[0.4, 0.1, 0.3], direction=[0, 0, -1], swivel=0.1)
 
