@@ -1,4 +1,4 @@
-"""cs.ik.Solver: the solver of a chain without a Robot, and laws of its batches: row by row as single goals."""
+"""cs.ik.Solver: a solver without a Robot, and the law of its batches: each row is the answer to one goal."""
 
 from __future__ import annotations
 
@@ -193,10 +193,8 @@ def rooms_entered(call):
     def watch(frame, event, argument):
         if event == "c_call":
             owner = argument.__self__
-            if "_core" in (
-                getattr(owner, "__name__", ""),
-                type(owner).__module__.split(".")[-1],
-            ) or isinstance(owner, (cs.Robot, Solver)):
+            of_core = "_core" in (getattr(owner, "__name__", ""), type(owner).__module__.split(".")[-1])
+            if of_core or isinstance(owner, (cs.Robot, Solver)):
                 enter("_core")
         elif event == "return":
             back = frame.f_back

@@ -55,9 +55,9 @@ def as_rotation(value: RotationLike, subject: str = "rotation") -> Array:
     Raises InputError on a wrong shape, NaN, inf, or a matrix whose RᵀR differs from the identity by more than
     tolerances.ROTATION_ERROR or which reflects (determinant −1).
     """
-    if type(value) is np.ndarray and value.shape == (3, 3) and value.dtype == np.float64:
-        if _is_rotation(*value.ravel().tolist()):
-            return value
+    plain = type(value) is np.ndarray and value.shape == (3, 3) and value.dtype == np.float64
+    if plain and _is_rotation(*value.ravel().tolist()):
+        return value
     R, _ = _held_matrix(value, subject)
     if R.shape[-2:] == (4, 4):
         return as_pose(R, subject)[..., :3, :3]
