@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from typing import Any, cast, TypeAlias
 
 import numpy as np
 
@@ -57,7 +57,7 @@ def as_rotation(value: RotationLike, subject: str = "rotation") -> Array:
     """
     plain = type(value) is np.ndarray and value.shape == (3, 3) and value.dtype == np.float64
     if plain and _is_rotation(*value.ravel().tolist()):
-        return value
+        return cast(Array, value)
     R, _ = _held_matrix(value, subject)
     if R.shape[-2:] == (4, 4):
         return as_pose(R, subject)[..., :3, :3]
