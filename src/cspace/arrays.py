@@ -49,7 +49,9 @@ def as_floats(
 def as_arrays(
     values: Mapping[str, tuple[Any, tuple[int, ...]]], *, largest: float | None = None
 ) -> dict[str, Array]:
-    """Several arguments at once, by subject, (value, trailing axes); their leading axes must fit together.
+    """Several arguments at once, each (..., *last) with leading axes that fit together.
+
+    values: from subject to (value, last); the result: from subject to array.
 
     Raises InputTypeError and InputError as of as_floats and leading_axes.
     """

@@ -200,7 +200,7 @@ void keep_own_rows(Solver& solver, const GoalRequest& request, GoalAnswer& out) 
             out.self_motion[k] && (solver.is_redundant() || moves_own_joints(solver, request, whole));
         std::copy(q, q + own, out.q.begin() + std::ptrdiff_t(own * kept));
         std::copy(whole, whole + n, out.whole.begin() + std::ptrdiff_t(n * kept));
-        out.branch[kept] = std::int8_t(kept);
+        out.branch[kept] = request.whole.n == request.own ? out.branch[k] : std::int8_t(-1);
         out.self_motion[kept++] = moves;
         any_moves |= moves;
     }

@@ -183,20 +183,6 @@ void RedundantSolver::solve(const LockedArm& locked, const Rows& rows) const {
     });
 }
 
-void RedundantSolver::find_nearest(const double* goals, std::size_t n, const double* seeds, bool seed_each,
-                                   double* q, bool* found, int threads) const {
-    const std::size_t dof = std::size_t(chain().n);
-    over_rows(n, threads, 1, 16, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; ++i) {
-            double* const row = q + dof * i;
-            found[i] = kernels::ik_nearest(state_->arm, pose_of(goals + 16 * i),
-                                           seeds + (seed_each ? dof * i : 0), row);
-            if (!found[i]) std::fill(row, row + dof, none);
-        }
-        return true;
-    });
-}
-
 bool RedundantSolver::find_nearest_turned(const double* goal, const double* seed, double* q) const {
     const Redundant& arm = state_->arm;
     const ReadGoal<double> read = read_goal(goal);
@@ -232,27 +218,6 @@ std::vector<FeasibleInterval> RedundantSolver::intervals(int parameter, const do
     }
     complete = found->complete;
     return out;
-}
-
-bool RedundantSolver::sweep(int parameter, const double* goal, const double* at, const double* values,
-                            std::size_t m, double* q, std::int8_t* branch, std::int64_t* count) {
-    if (redundant_joints() != 1 || parameter < 0 || parameter >= chain().n)
-        throw std::invalid_argument("a sweep is that of a joint of an arm with one redundant joint");
-    const std::size_t n = std::size_t(chain().n);
-    constexpr std::size_t room = max_solutions;
-    std::vector<SweptRows> rows(m);
-    kernels::ik_sweep(lock({parameter}), parameter, pose_of(goal), at, values, int(m), rows.data());
-    bool complete = true;
-    std::fill(q, q + m * room * n, none);
-    for (std::size_t i = 0; i < m; ++i) {
-        complete = complete && rows[i].complete;
-        count[i] = rows[i].count;
-        for (int k = 0; k < rows[i].count; ++k) {
-            std::copy(rows[i].q[k], rows[i].q[k] + n, q + (room * i + std::size_t(k)) * n);
-            branch[room * i + std::size_t(k)] = std::int8_t(rows[i].branch[k]);
-        }
-    }
-    return complete;
 }
 
 std::vector<Span> unite_intervals(std::vector<Span> intervals) {

@@ -80,18 +80,12 @@ class RedundantSolver {
     };
     void solve(const LockedArm& locked, const Rows& rows) const;
 
-    // The nearest configuration to each seed; seeds (n, dof), or one row for all.
-    void find_nearest(const double* goals, std::size_t n, const double* seeds, bool seed_each, double* q,
-                      bool* found, int threads) const;
-    // The same for one goal, by multiples of 2π as close to the seed as the limits allow.
+    // The configuration nearest to a seed, by multiples of 2π as close to it as the limits allow; false where
+    // the search finds none.
     bool find_nearest_turned(const double* goal, const double* seed, double* q) const;
 
     // The feasible intervals of one locked joint, and whether none is missing.
     std::vector<FeasibleInterval> intervals(int parameter, const double* goal, bool& complete);
-
-    // All solutions at m values of one locked joint: q (m, max_solutions, dof). Whether none is missing.
-    bool sweep(int parameter, const double* goal, const double* at, const double* values, std::size_t m,
-               double* q, std::int8_t* branch, std::int64_t* count);
 
     // All branches at n values of the default locked joint, spread over its feasible intervals; where none is
     // feasible, over the values that reach the goal.

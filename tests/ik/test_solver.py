@@ -220,4 +220,5 @@ def test_a_partial_goal_enters_few_rooms(name, keywords):
     robot = cs.load_robot(name)
     asked = partial(questions(robot)[1][0], keywords)
     robot.ik(**asked)
-    assert len(rooms_entered(lambda: robot.ik(**asked))) <= 8
+    unseen = 2  # the one call of the core that answers, and the way back: it raises no event of the profiler
+    assert len(rooms_entered(lambda: robot.ik(**asked))) + unseen <= 8

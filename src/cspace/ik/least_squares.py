@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from cspace import _core
-from cspace.ik.solutions import NEAREST, UNREACHABLE, Solutions, nearest_to_goal, position_goal
-from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.solutions import NEAREST, Solutions, nearest_to_goal, position_goal
 from cspace.ik.wrapping import wrap
 
-__all__ = ["least_squares_answer", "least_squares_batch"]
+__all__ = ["least_squares_answer"]
 
 
 def least_squares_answer(found: Solutions) -> Solutions:
@@ -38,21 +37,3 @@ def least_squares_partial(found: Solutions) -> Solutions:
     note = f"nothing reaches {goal.text}; the nearest configuration misses it by {miss}"
     about = replace(about, q=q)
     return Solutions.of(found.solver, found.goal, NEAREST, goal.own_joints(q), (-1,), (False,), note, about)
-
-
-def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:
-    """The batch with the configuration of least error for each goal that nothing reaches."""
-    bad = np.argwhere(found._status == UNREACHABLE)
-    if not len(bad):
-        return found
-    q, count, verdict = found.q.copy(), found.count.copy(), found._verdict.copy()
-    if found._partial is None and found.goal.shape[found.count.ndim :] == (4, 4):
-        goals = np.ascontiguousarray(found.goal[tuple(bad.T)])
-        rows = wrap(_core._ik_nearest_poses(found.solver, goals, 1.0, threads), found.solver.joint_types)
-    else:
-        rows = np.array([least_squares_answer(found[tuple(index)]).q[0] for index in bad])
-    if not q.shape[-2]:
-        q = np.full((*q.shape[:-2], 1, q.shape[-1]), np.nan)
-    q[(*bad.T, 0)] = rows
-    count[tuple(bad.T)], verdict[tuple(bad.T)] = 1, NEAREST
-    return found._with(q, count, verdict)

@@ -15,6 +15,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, attribute_error
 from cspace.ik.context import About
 from cspace.ik.derivative import derivative
+from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.solutions import (
     INCOMPLETE,
@@ -63,7 +64,7 @@ class PartialRows:
         goal = self.goal.take(index)
         about = replace(self.about, goal=goal, q=self.extended[index][:k])
         flags = self.self_motion[index][:k]
-        return Solutions.of(solver, goal.T, verdict, self.q[index][:k], range(k), flags, None, about)
+        return Solutions.of(solver, goal.T, verdict, self.q[index][:k], (-1,) * k, flags, None, about)
 
 
 class SolutionsBatch:
@@ -258,8 +259,6 @@ class SolutionsBatch:
         """The rows of one goal as a result; filters may have moved them or left some out."""
         assert self._partial is not None
         if verdict == NEAREST:
-            from cspace.ik.least_squares import least_squares_answer
-
             return least_squares_answer(self._partial.one(self.solver, index, UNREACHABLE))
         full = self._partial.one(self.solver, index, verdict)
         gaps = short_way(full.q[None] - rows[:, None], self.solver.joint_types)

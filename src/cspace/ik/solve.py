@@ -25,10 +25,11 @@ from cspace.ik.goals.given import (
 )
 from cspace.ik.goals.partial import KEYWORDS
 from cspace.ik.goals.parts import check_tool_axis, is_open, partial_goal
-from cspace.ik.least_squares import least_squares_answer, least_squares_batch
+from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.redundancy.solve import solve_freedom
-from cspace.ik.solutions import Solutions
+from cspace.ik.solutions import NEAREST, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.wrapping import wrap
 from cspace.kinematics.batch import thread_count
 from cspace.spatial import as_pose
 
@@ -204,3 +205,21 @@ def to_batch(
     q, count, verdict = answers
     q = q.reshape(*leading, solver.max_solutions, solver.dof)
     return SolutionsBatch(solver, goal, q, count.reshape(leading), verdict.reshape(leading))
+
+
+def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:
+    """The batch with the configuration of least error for each goal that nothing reaches."""
+    bad = np.argwhere(found._status == UNREACHABLE)
+    if not len(bad):
+        return found
+    q, count, verdict = found.q.copy(), found.count.copy(), found._verdict.copy()
+    if found._partial is None and found.goal.shape[found.count.ndim :] == (4, 4):
+        goals = np.ascontiguousarray(found.goal[tuple(bad.T)])
+        rows = wrap(_core._ik_nearest_poses(found.solver, goals, 1.0, threads), found.solver.joint_types)
+    else:
+        rows = np.array([least_squares_answer(found[tuple(index)]).q[0] for index in bad])
+    if not q.shape[-2]:
+        q = np.full((*q.shape[:-2], 1, q.shape[-1]), np.nan)
+    q[(*bad.T, 0)] = rows
+    count[tuple(bad.T)], verdict[tuple(bad.T)] = 1, NEAREST
+    return found._with(q, count, verdict)

@@ -7,19 +7,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Protocol, TypeVar, cast
+from typing import Any, Protocol, TypeVar, cast
 
 import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import InputTypeError
+from cspace.errors import InputError, InputTypeError
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
+from cspace.ik.goals.partial import PartialGoal
 from cspace.kinematics import KinematicModel, assemble_chain
 from cspace.model import Chain, Limits, chain, from_screws
-
-if TYPE_CHECKING:
-    from cspace.ik.goals.partial import PartialGoal
 
 __all__ = ["HasSolver", "Solver", "as_solver", "solver_of_robot"]
 
@@ -116,9 +114,18 @@ class Solver(_core.SolverBase, KinematicModel):
     @cached_property
     def swivel_solver(self) -> _core.SwivelSolver:
         """The closed form by the swivel. Raises InputError for an arm without two spherical joints."""
-        from cspace.ik.redundancy.arm_angle import make_swivel_solver
-
-        return make_swivel_solver(self)
+        chain = self.chain
+        if chain.joint_types != "R" * 7:
+            raise InputError(f"{self.name} has no swivel, which needs seven revolute joints")
+        made = _core.SwivelSolver(
+            np.ascontiguousarray(chain.axes), np.ascontiguousarray(chain.points), np.array(chain.T_zero)
+        )
+        if not made.serves:
+            raise InputError(
+                f"{self.name} has no swivel in closed form: axes 1, 2, 3 must meet in a point, axes 5, 6, 7"
+                " in another, to rounding; lock a joint with locked= instead"
+            )
+        return made
 
     def redundancy_degree(self, locked: Sequence[int] = ()) -> int:
         """The number of dimensions that a pose leaves free, with these joints locked at typical values."""

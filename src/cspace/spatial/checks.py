@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, cast, TypeAlias
+from typing import Any, TypeAlias, cast
 
 import numpy as np
 

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes
-from cspace.errors import InputError
 from cspace.ik.solutions import EXACT, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
+from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.tolerances import FARTHEST
 
-if TYPE_CHECKING:
-    from cspace.ik.solver import HasSolver, Solver
-
-__all__ = ["make_swivel_solver", "solve_swivel", "swivel"]
+__all__ = ["solve_swivel", "swivel"]
 
 BRANCHES = 8
 JOINTS = 7
@@ -32,29 +28,11 @@ def swivel(robot: HasSolver, q: Any) -> Array:
     axis 1 a fixed direction perpendicular to it stands for r. Raises InputError for an arm that is not built
     so. M. Shimizu et al. 2008, section II.
     """
-    from cspace.ik.solver import as_solver
-
     solver = as_solver(robot).swivel_solver
     rows = as_floats(q, "q", last=(JOINTS,), largest=FARTHEST)
     out = np.empty(int(np.prod(rows.shape[:-1])))
     solver.swivels(np.ascontiguousarray(rows.reshape(-1, JOINTS)), out)
     return out.reshape(rows.shape[:-1])
-
-
-def make_swivel_solver(solver: Solver) -> _core.SwivelSolver:
-    """The closed form of an arm with two spherical joints; InputError for any other arm."""
-    chain = solver.chain
-    if chain.joint_types != "R" * JOINTS:
-        raise InputError(f"{solver.name} has no swivel, which needs seven revolute joints")
-    made = _core.SwivelSolver(
-        np.ascontiguousarray(chain.axes), np.ascontiguousarray(chain.points), np.array(chain.T_zero)
-    )
-    if not made.serves:
-        raise InputError(
-            f"{solver.name} has no swivel in closed form: axes 1, 2, 3 must meet in a point, axes 5, 6, 7"
-            " in another, to rounding; lock a joint with locked= instead"
-        )
-    return made
 
 
 def solve_swivel(solver: Solver, T: Array, angle: Any) -> Solutions | SolutionsBatch:
