@@ -1,4 +1,4 @@
-"""The arms of the benchmarks: of the catalogue, disturbed as calibration finds them, with a joint held,
+"""The arms of the benchmarks: of the catalogue, disturbed as calibration finds them, with a locked joint,
 drawn at random. Only the numbers leave this file."""
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ CALIBRATED = {
     for name, title in (("ur5e", "UR5e"), ("puma560", "PUMA 560"))
     for size in ("1e-3", "1e-4")
 }
-LOCKED = {f"iiwa14-{joint}": f"iiwa 14, joint {joint} held" for joint in (1, 2, 3, 5, 6, 7)}
+LOCKED = {f"iiwa14-{joint}": f"iiwa 14, joint {joint} locked" for joint in (1, 2, 3, 5, 6, 7)}
 """Without the fourth: between a spherical shoulder and a spherical wrist it alone sets their distance."""
 SLIDES = {
     "stanford": "Stanford arm (RRPRRR)",
@@ -43,7 +43,7 @@ def seeded(name: str) -> np.random.Generator:
 
 
 def load(name: str) -> Arm:
-    """NAME of the catalogue; NAME+SIZE disturbed; NAME-JOINT with that joint held; random:WORD drawn."""
+    """NAME of the catalogue; NAME+SIZE disturbed; NAME-JOINT with that joint locked; random:WORD drawn."""
     if name.startswith("random:"):
         return drawn(name)
     if "+" in name:
@@ -100,7 +100,7 @@ def disturbed(arm: Arm, size: float, rng: np.random.Generator, name: str) -> Arm
 
 
 def locked(arm: Arm, joint: int, angle: float, name: str) -> Arm:
-    """The arm with a joint held at an angle: all that stands behind the joint is carried along by it."""
+    """The arm with a joint locked at an angle."""
     T = motion(arm, joint, np.asarray(angle))
     axes, points = arm.axes.copy(), arm.points.copy()
     axes[joint + 1 :] = arm.axes[joint + 1 :] @ T[:3, :3].T

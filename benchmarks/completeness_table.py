@@ -1,4 +1,4 @@
-"""The part of the page that says how complete the answers are."""
+"""The part of the page on the completeness of the results."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def section(results: Results) -> str:
     table = ["| " + " | ".join(cells) + " |" for cells in lines]
     table += [line(results, size, kind) for size in SIZES for kind in KINDS]
     return f"""Each of the {len(results)} six-joint arms of the catalogue, nominal and with axes and points
-disturbed. A pose is made from a configuration, and the answer must hold that configuration, within 1e-5 or,
-beside a fold, within 1e-13 over the smallest singular value of the Jacobian. The answer's certificate says
-that nothing is missing; it is false where it is given and the configuration is not there. Of all arms the
-fewest random poses are certified on {least_certified(results)}.
+disturbed. A pose is generated from a configuration, and the result must contain this configuration, within
+1e-5, or, near a fold, within 1e-13 divided by the smallest singular value of the Jacobian. A certificate
+states that no solution is missing. It is false if the configuration is missing. The arm with the smallest
+share of certified random poses is {least_certified(results)}.
 
 {chr(10).join(table)}"""

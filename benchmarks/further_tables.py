@@ -22,7 +22,7 @@ def date(measured: Measured) -> str:
     load, cores = measured["load"], measured["machine"]["cores"]
     busy = load is not None and load > 1.25 * cores
     return f"Measured {measured['machine']['date']}" + (
-        f", while {load} processes wanted its {cores} cores." if busy else "."
+        f", while {load} processes shared its {cores} cores." if busy else "."
     )
 
 

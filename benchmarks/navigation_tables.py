@@ -140,12 +140,12 @@ def degenerate(results: Measured) -> str:
 
 def section(results: Measured) -> str:
     """Everything measured of navigation."""
-    return f"""Processor time of one call from Python, contender after contender on the same questions in one
-process, unless said otherwise; written down by `python benchmarks/navigation.py`. Of grids the
-questions are scenario lines of N. Sturtevant's maps; what a planner keeps with a map was made
-before, as peers make theirs.
+    return f"""Processor time of one call from Python. The contenders alternate on the same queries in one
+process, unless noted otherwise. Written by `python benchmarks/navigation.py`. The queries on grids are
+scenario lines of N. Sturtevant's maps. Data that a planner stores with a map was computed
+before, for all contenders.
 
-### Ways over grids
+### Shortest paths on grids
 
 {grids(results)}
 
@@ -155,31 +155,31 @@ before, as peers make theirs.
 
 ### Among polygons
 
-Disjoint hexagons; "built" is from lists of corners to a graph that can be asked. "longer / shorter"
-counts paths that differ from ours by more than 1e-9 of their length.
+The obstacles are disjoint hexagons. "built" is the time from lists of corners to a graph that can be queried.
+"longer / shorter" counts paths whose length differs from ours by more than 1e-9 of it.
 
 {polygons(results)}
 
 ### Degenerate polygons
 
-The cases of `tests/cases/polygons`: outlines that touch, overlap, repeat themselves or cross, ends on walls
-and in corners. Ours is right if six planners are, faults named among them; others were spared what they have
-no words for: faults, holes of obstacles and, pyvisgraph, bounds.
+The cases of `tests/cases/polygons`: outlines that touch, overlap, repeat themselves or cross, and ends on
+walls and in corners. The result of cspace counts as right if six planners are right, which includes reporting
+faults. Other libraries were not tested on what they cannot represent: faults, holes of obstacles and, for
+pyvisgraph, bounds.
 
 {degenerate(results)}
 
 ### Clearance, and descents of a potential
 
-Ours makes exact distances, the label of the nearest piece of wall, the cells of the diagram and its
-branches; others make what is said of them.
+cspace computes exact distances, the label of the nearest piece of wall, the cells of the diagram and its
+branches. The table states what the others compute.
 
 {fields(results)}
 
-### Random points
+### Sampling-based planners
 
-600 corners; OMPL asks a function of Python whether a state is free, here a look-up in a raster, and asks
-it in steps of a hundredth of the world along a motion, as it does by default. Whether a path is free was
-decided exactly.
+The world has 600 corners. OMPL tests states by a Python function, here a look-up in a raster, in its default
+steps of a hundredth of the world along a motion. Whether a resulting path is free was tested exactly.
 
 {sampling(results)}
 
@@ -189,8 +189,8 @@ decided exactly.
 
 ### Maps of 8,000 × 8,000 cells
 
-"rooms" and "scattered" are maps laid side by side, "coast" is one enlarged; bytes are resident memory
-over the number of cells, beside the array that the map was made from.
+"rooms" and "scattered" consist of copies of a map side by side, and "coast" is an enlarged map. Bytes are the
+resident memory divided by the number of cells, without the array from which the map was made.
 
 {large(results)}
 

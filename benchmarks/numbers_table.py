@@ -130,7 +130,7 @@ def calibrated_row(results: Results) -> Row:
     times = {arm: entry["call"]["median"] for arm, entry in found}
     text = "; ".join(f"{arms.TITLES[arm]} {time:.1f} µs" for arm, time in times.items())
     worst = max(times.values(), default=999)
-    what = "calibrated arms, iiwa with a joint held, one Python call, median"
+    what = "calibrated arms, iiwa with a locked joint, one Python call, median"
     return row(what, "≤ 30 µs", "≤ 10 µs", text, worst <= 30, worst <= 10)
 
 
@@ -176,10 +176,10 @@ def seven_times(results: Results, what: str, key: str = "median") -> dict[str, f
 
 
 def sample_row(results: Results) -> Row:
-    sweep = seven_times(results, "joint 7 held: 1000 values for a goal")
-    each = seven_times(results, "joint 7 held: a value for each goal")
+    sweep = seven_times(results, "joint 7 locked: 1000 values for a goal")
+    each = seven_times(results, "joint 7 locked: a value for each goal")
     text = "; ".join(f"{arm} {time:.2f} µs, of many goals {each[arm]:.2f} µs" for arm, time in sweep.items())
-    what = "seven joints, one held: all branches, per sample"
+    what = "seven joints, one locked: all branches, per sample"
     times = {arm: max(time, each[arm]) for arm, time in sweep.items()}
     panda, iiwa = (times.get(arms.SEVEN[arm], 9.0) for arm in ("panda", "iiwa14"))
     holds, aimed = panda <= 1 and iiwa <= 0.6, panda <= 0.15 and iiwa <= 0.1
@@ -210,7 +210,7 @@ def building_row(results: Results) -> Row:
     times = {entry["arm"]: entry["median"] for entry in results["building"].get("rows", [])}
     named = {name: times[name] for name in ("jaco2", "crx10ia", "ur5e+1e-3", "neighbours") if name in times}
     slow = {name: time for name, time in times.items() if time > 20 and name not in named}
-    titles = {**arms.TITLES, "neighbours": "an arm solved through neighbours"}
+    titles = {**arms.TITLES, "neighbours": "an arm solved through perturbed arms"}
     parts = [f"{titles.get(name, name)} {time:.1f} ms" for name, time in {**named, **slow}.items()]
     what = f"building a solver, {len(times)} arms"
     return row(what, "≤ 20 ms", "", "; ".join(parts), max(times.values(), default=99) <= 20)

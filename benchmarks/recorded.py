@@ -53,7 +53,7 @@ def main() -> None:
                     known = np.delete(known, locked, axis=1) if known.shape[1] > solved.dof else known
                 found += count(solved, T, known)
                 true += len(known)
-            label = name if locked is None else f"{name}, joint {locked + 1} held"
+            label = name if locked is None else f"{name}, joint {locked + 1} locked"
             results[label] = {"found": found, "true": true}
             print(label, f"{found}/{true}", flush=True)
     (HERE / "results/recorded.json").write_text(json.dumps(results, indent=1) + "\n")

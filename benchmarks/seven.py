@@ -1,4 +1,4 @@
-"""Seven joints: samples of a held joint, swivels, the nearest of all, feasible intervals.
+"""Seven joints: samples of a locked joint, swivels, the nearest configuration, feasible intervals.
 
 Usage: python benchmarks/seven.py [--rounds 5] [--seconds 0.3]. Writes benchmarks/results/seven.json. Goals
 are the poses of random configurations within the limits; answers are judged by the plain numpy forward
@@ -51,7 +51,7 @@ def listing(arm: Arm, what: str, step: Callable[[Array], Any], inputs: list[Arra
 
 
 def samples(arm: Arm, robot: Any, q: Array, T: Array) -> list[Question]:
-    """A joint held at many values for one goal, and at a value of its own for each of many goals."""
+    """A joint locked at many values for one goal, and at one value for each of many goals."""
     found = []
     for joint in (2, 6):
         values = np.linspace(arm.lower[joint], arm.upper[joint], VALUES)
@@ -62,7 +62,7 @@ def samples(arm: Arm, robot: Any, q: Array, T: Array) -> list[Question]:
         def each(goals: Array, joint: int = joint) -> Any:
             return robot.ik(goals, locked={joint: q[:, joint]}, threads=1)
 
-        name = f"joint {joint + 1} held"
+        name = f"joint {joint + 1} locked"
         found.append(listing(arm, f"{name}: {VALUES} values for a goal", sweep, list(T), VALUES))
         found.append(listing(arm, f"{name}: a value for each goal", each, [T], len(T)))
     return found

@@ -78,7 +78,7 @@ def index_text(robots: list[Description]) -> str:
         "PLAIN_NAMES: dict[str, str] = {",
         *(f"    {name!r}: {robot.name!r}," for robot in robots for name in plain_names(robot)),
         "}",
-        '"""Every name and alias in small letters and digits alone, with the name it stands for."""',
+        '"""Every name and alias in small letters and digits alone, with the name that it means."""',
     ]
     return "\n".join(lines) + "\n"
 

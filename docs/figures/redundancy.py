@@ -1,4 +1,4 @@
-"""Draws the figure of the page on joints to spare: `python docs/figures/redundancy.py` writes it here."""
+"""Draws the figure of the page on redundancy: `python docs/figures/redundancy.py` writes it here."""
 
 from __future__ import annotations
 

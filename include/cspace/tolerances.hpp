@@ -45,7 +45,7 @@ inline constexpr double fold_band = 1e-10;
 inline constexpr double free_joint = 1e-12;
 
 // Smallest singular value of the Jacobian (lengths over the arm's length) below which in every configuration
-// an arm has a joint to spare: rounding leaves 1e-16, and the worst of real arms reaches 1e-3 somewhere.
+// an arm is redundant: rounding leaves 1e-16, and the worst of real arms reaches 1e-3 somewhere.
 inline constexpr double always_singular = 1e-9;
 
 // A configuration is a solution if forward kinematics meets the goal within this (rad, and m over the arm's

@@ -24,7 +24,7 @@ struct Column {
         if (!array) return;
         auto* a = reinterpret_cast<PyArrayObject*>(array);
         if (PyArray_SIZE(a) != size) {
-            PyErr_Format(PyExc_ValueError, "%s holds %zd numbers, expected %zd", name, PyArray_SIZE(a), size);
+            PyErr_Format(PyExc_ValueError, "%s has %zd numbers, expected %zd", name, PyArray_SIZE(a), size);
             return;
         }
         data = static_cast<const double*>(PyArray_DATA(a));
@@ -111,7 +111,7 @@ int kinematics_load(PyObject* self, PyObject* args, PyObject* kwargs) {
         return -1;
     }
     if (robot->model) {
-        PyErr_SetString(PyExc_TypeError, "a robot does not change: make another one");
+        PyErr_SetString(PyExc_TypeError, "a robot is immutable; make another one");
         return -1;
     }
     const long n_joints = integer(assembly, "n_joints"), n_frames = integer(assembly, "n_frames"),

@@ -13,7 +13,7 @@ using cspace::maps::GridWorld;
 inline GridWorld* grid_of(PyObject* value) {
     if (nanobind::isinstance<GridWorld>(value) && nanobind::inst_ready(value))
         return nanobind::inst_ptr<GridWorld>(value);
-    PyErr_SetString(PyExc_TypeError, "a search takes a grid");
+    PyErr_SetString(PyExc_TypeError, "the first argument must be a grid");
     return nullptr;
 }
 
@@ -30,11 +30,10 @@ PyObject* search_grid(const GridWorld& grid, const Search& search) {
     try {
         return search();
     } catch (const std::bad_alloc&) {
-        return PyErr_Format(
-            PyExc_MemoryError,
-            "no memory is left for a search over %d x %d cells: a search takes up to 100 bytes per "
-            "cell that it comes to; make the cells larger",
-            grid.rows(), grid.columns());
+        return PyErr_Format(PyExc_MemoryError,
+                            "out of memory in a search over %d x %d cells, which needs up to 100 bytes per "
+                            "expanded cell; use larger cells",
+                            grid.rows(), grid.columns());
     } catch (const std::invalid_argument& refused) {
         PyErr_SetString(PyExc_ValueError, refused.what());
     } catch (nanobind::python_error& raised) {

@@ -9,7 +9,7 @@
 inline const cspace::maps::PolygonCore* polygon_core_of(PyObject* value) {
     using cspace::maps::PolygonCore;
     if (nanobind::isinstance<PolygonCore>(value)) return nanobind::inst_ptr<PolygonCore>(value);
-    PyErr_SetString(PyExc_TypeError, "the core of a PolygonWorld");
+    PyErr_SetString(PyExc_TypeError, "expected the core of a PolygonWorld");
     return nullptr;
 }
 
@@ -29,6 +29,6 @@ struct PolygonQuestion {
 inline PyObject* no_answer() { return PyErr_Occurred() ? nullptr : Py_NewRef(Py_None); }
 // The same for the trace of a question that has no answer.
 inline PyObject* no_trace() {
-    if (!PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "a trace takes a question with an answer");
+    if (!PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "a trace needs a query with a result");
     return nullptr;
 }

@@ -7,7 +7,7 @@ namespace nb = nanobind;
 // The kernels write as many values as they read.
 template <class... Others>
 void same_size(const Row& x, const Others&... others) {
-    if (((others.size() != x.size()) || ...)) throw nb::value_error("the arrays must have one length");
+    if (((others.size() != x.size()) || ...)) throw nb::value_error("the arrays must have equal lengths");
 }
 
 void bind_math(nb::module_& m) {

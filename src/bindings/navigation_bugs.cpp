@@ -57,7 +57,7 @@ struct VoronoiBug {
 // (core, three options, start, goal); false with an error set, or where an end needs a closer look.
 template <class Bug>
 bool run(Bug& bug, PolygonQuestion& q, PyObject* const* args, Py_ssize_t count, Trace* trace) {
-    if (count != 6) return PyErr_SetString(PyExc_TypeError, "too few arguments or too many"), false;
+    if (count != 6) return PyErr_SetString(PyExc_TypeError, "wrong number of arguments"), false;
     if (!bug.read(args + 1) || !q.read(args[0], args[4], args[5])) return false;
     const nanobind::gil_scoped_release free;
     return bug.run(q, trace);

@@ -13,7 +13,7 @@ using FootprintRow = Array<const double, nb::shape<4>>;
 using Flags = Array<bool, nb::ndim<1>>;
 
 void clear(const GridWorld& world, FootprintRow body, Poses poses, Flags out) {
-    if (poses.shape(0) != out.shape(0)) throw nb::value_error("a flag for every pose");
+    if (poses.shape(0) != out.shape(0)) throw nb::value_error("out must have one flag per pose");
     const nb::gil_scoped_release free;
     check_poses(world, body.data(), poses_of(poses), out.data());
 }

@@ -14,7 +14,7 @@ using Pieces = Array<const double, nb::shape<-1, 2>>;
 
 void distances(bool reverses, Poses starts, Poses goals, double radius, RowOut out) {
     if (starts.shape(0) != out.size() || goals.shape(0) != out.size())
-        throw nb::value_error("as many starts, goals and distances");
+        throw nb::value_error("starts, goals and out must have equal lengths");
     const nb::gil_scoped_release free;
     const auto from = poses_of(starts), to = poses_of(goals);
     for (std::size_t k = 0; k < out.size(); ++k)
@@ -22,7 +22,7 @@ void distances(bool reverses, Poses starts, Poses goals, double radius, RowOut o
 }
 
 void poses_along(PoseRow start, Pieces pieces, double radius, Row s, PosesOut out) {
-    if (s.size() != out.shape(0)) throw nb::value_error("a pose for every length");
+    if (s.size() != out.shape(0)) throw nb::value_error("out must have one pose per length");
     const nb::gil_scoped_release free;
     list_poses(pose_of(start), {pieces.data(), pieces.size()}, radius, {s.data(), s.size()},
                reinterpret_cast<CarPose*>(out.data()));

@@ -21,7 +21,8 @@ nb::tuple run(Points points, std::vector<std::pair<std::size_t, int>> runs, Row 
               Row settings, int controller, Row numbers, const GridWorld* world, Row footprint) {
     if (vehicle.size() != 6 || start.size() != 5 || settings.size() != 6 || numbers.size() != 7 ||
         footprint.size() != 4)
-        throw nb::value_error("numbers of a vehicle, a start, settings, a controller and a footprint");
+        throw nb::value_error(
+            "vehicle, start, settings, numbers and footprint need 6, 5, 6, 7 and 4 numbers");
     std::vector<FollowRun> parts;
     for (const auto& [first, direction] : runs) parts.push_back({first, direction});
     const FollowTask task{vehicle.data(), start.data(), settings.data(), controller,
@@ -38,7 +39,7 @@ nb::tuple run(Points points, std::vector<std::pair<std::size_t, int>> runs, Row 
 
 void ranges(const GridWorld& world, Points from, Row angles, double most, RowOut out) {
     if (from.shape(0) != out.size() || angles.size() != out.size())
-        throw nb::value_error("as many points, angles and ranges");
+        throw nb::value_error("points, angles and ranges must have matching shapes");
     const nb::gil_scoped_release free;
     cast_rays(world, points_of(from), angles.data(), most, out.data());
 }

@@ -23,12 +23,12 @@ void new_grid(GridWorld* at, Bytes blocked, double resolution, double x, double 
 }
 void unpack(const GridWorld& world, BytesOut into) {
     if (int(into.shape(0)) != world.rows() || int(into.shape(1)) != world.columns())
-        throw nb::value_error("an array of the shape of the grid");
+        throw nb::value_error("the array must have the shape of the grid");
     world.unpack(into.data());
 }
 // Which points (k, 2) lie in free cells or on their borders.
 void free_points(const GridWorld& world, Points points, Array<std::uint8_t, nb::ndim<1>> into) {
-    if (into.shape(0) != points.shape(0)) throw nb::value_error("as many answers as points");
+    if (into.shape(0) != points.shape(0)) throw nb::value_error("into must have one entry per point");
     std::uint8_t* out = into.data();
     for (const Point p : points_of(points)) *out++ = world.locate(p).state == 0;
 }
@@ -53,7 +53,7 @@ bool read_weight(PyObject* item, double& weight) {
 // least_cost: 1 if all can be used, 0 if the points cannot (which Python explains), -1 with an error set.
 int read_question(PyObject* const* args, Py_ssize_t count, GridWorld*& world, GridQuestion& q) {
     if (count != 13 || !PyUnicode_Check(args[3])) {
-        PyErr_SetString(PyExc_TypeError, "a search takes a grid, two points, a name and its ten settings");
+        PyErr_SetString(PyExc_TypeError, "expected a grid, two points, a name and ten settings");
         return -1;
     }
     if (!(world = grid_of(args[0]))) return -1;
@@ -65,7 +65,7 @@ int read_question(PyObject* const* args, Py_ssize_t count, GridWorld*& world, Gr
         !read_weight(args[10], q.bound) || !read_weight(args[12], q.least_cost) || PyErr_Occurred())
         return -1;
     if (!q.is_known()) {
-        PyErr_SetString(PyExc_ValueError, "a planner, corner rule or metric that the core does not know");
+        PyErr_SetString(PyExc_ValueError, "unknown planner, corner rule or metric");
         return -1;
     }
     if (args[11] != Py_None) {
@@ -73,7 +73,8 @@ int read_question(PyObject* const* args, Py_ssize_t count, GridWorld*& world, Gr
         if (!PyArray_Check(args[11]) || PyArray_TYPE(array) != NPY_DOUBLE || !PyArray_ISCARRAY_RO(array) ||
             PyArray_NDIM(array) != 2 || PyArray_DIM(array, 0) != world->rows() ||
             PyArray_DIM(array, 1) != world->columns()) {
-            PyErr_SetString(PyExc_TypeError, "costs as a contiguous float64 array of the shape of the grid");
+            PyErr_SetString(PyExc_TypeError,
+                            "costs must be a contiguous float64 array of the shape of the grid");
             return -1;
         }
         q.costs = static_cast<const double*>(PyArray_DATA(array));

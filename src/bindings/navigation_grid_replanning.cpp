@@ -37,7 +37,7 @@ nb::tuple replan(GridReplanner& planner) {
 
 void unpack(const GridReplanner& planner, Array<std::uint8_t, nb::ndim<2>> into) {
     if (int(into.shape(0)) != planner.rows() || int(into.shape(1)) != planner.columns())
-        throw nb::value_error("an array of the shape of the grid");
+        throw nb::value_error("the array must have the shape of the grid");
     planner.unpack(into.data());
 }
 

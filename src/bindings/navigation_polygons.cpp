@@ -13,7 +13,7 @@ namespace {
 template <PolygonPlanner planner>
 PyObject* ask(PyObject*, PyObject* const* args, Py_ssize_t count) {
     PolygonQuestion q;
-    if (count != 6) return PyErr_SetString(PyExc_TypeError, "a planner takes six arguments"), nullptr;
+    if (count != 6) return PyErr_SetString(PyExc_TypeError, "a planner needs six arguments"), nullptr;
     if (!q.read(args[1], args[4], args[5])) return no_answer();
     const Watch watch;
     Route route;
@@ -26,7 +26,7 @@ PyObject* retrace(PyObject*, PyObject* const* args, Py_ssize_t count) {
     PolygonQuestion q;
     Route route;
     Trace trace;
-    if (count != 3) return PyErr_SetString(PyExc_TypeError, "a trace takes three arguments"), nullptr;
+    if (count != 3) return PyErr_SetString(PyExc_TypeError, "a trace needs three arguments"), nullptr;
     if (q.read(args[0], args[1], args[2]))
         find_polygon_route(*q.core, planner, q.start, q.goal, route, &trace);
     return PyErr_Occurred() ? nullptr : trace_arrays(trace);

@@ -111,7 +111,7 @@ PyObject* route_make(PyObject*, PyObject* args) {
         return nullptr;
     if (!is_points(path) || !read_point(start, ends[0]) || !read_point(goal, ends[1]) || status < 0 ||
         status > int(Status::local_minimum)) {
-        PyErr_SetString(PyExc_TypeError, "_route_make takes points as float64 arrays and a status it knows");
+        PyErr_SetString(PyExc_TypeError, "_route_make: expected points as float64 arrays and a known status");
         return nullptr;
     }
     auto* array = reinterpret_cast<PyArrayObject*>(path);
@@ -129,7 +129,7 @@ PyObject* route_make(PyObject*, PyObject* args) {
 // _route_class(cls): routes are made of this class from now on.
 PyObject* route_class(PyObject*, PyObject* cls) {
     if (!PyType_Check(cls) || !PyType_IsSubtype(reinterpret_cast<PyTypeObject*>(cls), base_type)) {
-        PyErr_SetString(PyExc_TypeError, "_route_class takes a subclass of RouteBase");
+        PyErr_SetString(PyExc_TypeError, "_route_class: expected a subclass of RouteBase");
         return nullptr;
     }
     Py_XDECREF(route_type);
@@ -171,7 +171,9 @@ bool read_point(PyObject* value, Point& point) {
 RouteObject* new_route(PyObject* world, PyObject* planner, PyObject* options, Point start, Point goal,
                        Status status, int count) {
     if (!route_type) {
-        PyErr_SetString(PyExc_ImportError, "cspace.navigation.route has not named the class of routes");
+        PyErr_SetString(
+            PyExc_ImportError,
+            "cspace.navigation.route has not registered its class; import cspace.navigation first");
         return nullptr;
     }
     auto* made = reinterpret_cast<RouteObject*>(route_type->tp_alloc(route_type, count));

@@ -22,7 +22,7 @@ bool find(PolygonQuestion& q, PyObject* const* args, SamplingFinding& finding, T
 // _sampling(world, planner, options, evidence, core, start, goal, settings) → route, or None where an end
 // needs a closer look. evidence: what evidence is made with.
 PyObject* sampled(PyObject*, PyObject* const* args, Py_ssize_t count) {
-    if (count != 8) return PyErr_SetString(PyExc_TypeError, "_sampling takes eight arguments"), nullptr;
+    if (count != 8) return PyErr_SetString(PyExc_TypeError, "_sampling: expected eight arguments"), nullptr;
     PolygonQuestion q;
     SamplingFinding finding;
     const Watch watch;

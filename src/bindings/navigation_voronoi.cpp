@@ -20,7 +20,7 @@ bool find(PolygonQuestion& q, PyObject* const* args, VoronoiFinding& finding, Tr
 // _voronoi(world, planner, options, evidence, core, start, goal, widest, tolerance) → route, or None where an
 // end needs a closer look. evidence: what evidence is made with.
 PyObject* voronoi_route(PyObject*, PyObject* const* args, Py_ssize_t count) {
-    if (count != 9) return PyErr_SetString(PyExc_TypeError, "_voronoi takes nine arguments"), nullptr;
+    if (count != 9) return PyErr_SetString(PyExc_TypeError, "_voronoi: expected nine arguments"), nullptr;
     PolygonQuestion q;
     VoronoiFinding way;
     const Watch watch;

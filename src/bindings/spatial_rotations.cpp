@@ -14,7 +14,8 @@ using Matrices = Array<double, nb::shape<-1, 3, 3>>;
 // The kernels write as many matrices as they read rows.
 template <class... Inputs>
 void same_rows(const Matrices& R, const Inputs&... inputs) {
-    if (((inputs.shape(0) != R.shape(0)) || ...)) throw nb::value_error("the arrays must have as many rows");
+    if (((inputs.shape(0) != R.shape(0)) || ...))
+        throw nb::value_error("the arrays must have equally many rows");
 }
 
 }  // namespace

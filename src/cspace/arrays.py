@@ -41,7 +41,8 @@ def as_floats(
         raise InputError(f"{subject} {_entry(array, bad)}; all must be finite")
     if largest is not None and len(beyond := np.argwhere(np.abs(array) > largest)):
         raise InputError(
-            f"{subject} {_entry(array, tuple(map(int, beyond[0])))}; at most ±{largest:g} makes sense"
+            f"{subject} {_entry(array, tuple(map(int, beyond[0])))}; the largest allowed value is "
+            f"±{largest:g}"
         )
     return array
 
@@ -78,7 +79,7 @@ def leading_axes(**shapes: tuple[int, ...]) -> tuple[int, ...]:
     except ValueError:
         each = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
         raise InputError(
-            f"the leading axes of {each} do not fit together; expected as many of each, or one for all"
+            f"the leading axes of {each} do not broadcast; give equally many of each, or one for all"
         ) from None
 
 
@@ -88,7 +89,9 @@ def _converted(value: Any, subject: str) -> Array:
         array = np.asarray(value)
         numbers = array.astype(np.float64, copy=False) if array.dtype.kind in "iufO" else None
     except OverflowError:
-        raise InputError(f"{subject} holds an integer that no float64 can hold; all must be finite") from None
+        raise InputError(
+            f"{subject} contains an integer beyond the range of float64; all must be finite"
+        ) from None
     except (TypeError, ValueError) as error:
         raise InputTypeError(f"{subject} must be numbers, got {type(value).__name__}: {error}") from None
     if _holds_truth(array) or _holds_truth(value):
@@ -100,7 +103,7 @@ def _converted(value: Any, subject: str) -> Array:
 
 
 def _holds_truth(value: Any) -> bool:
-    """Whether a truth value is among the entries; beside numbers numpy reads it as 0 or 1."""
+    """Whether a boolean is among the entries; numpy would convert it to 0 or 1 among numbers."""
     if isinstance(value, np.ndarray):
         return value.dtype == bool or (value.dtype == object and _holds_truth(value.ravel().tolist()))
     if not isinstance(value, (list, tuple)):
@@ -110,7 +113,7 @@ def _holds_truth(value: Any) -> bool:
 
 
 def _entry(array: Array, index: tuple[int, ...]) -> str:
-    """An entry of an array in words; of a single number there is no index."""
+    """An entry of an array as text; a single number has no index."""
     return f"holds {array[index]:g}" + (f" at index {index}" if index else "")
 
 

@@ -1,4 +1,4 @@
-"""Memory of earlier batches, taken again when nobody holds it: fresh pages cost as much as computing."""
+"""Memory of earlier batches, reused when unreferenced: new pages cost as much time as computing."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def _holders(blocks: list[Array], i: int) -> int:
 
 
 _UNUSED = _holders([np.empty(1)], 0)
-"""What `_holders` says of a block that nobody but its list holds."""
+"""The value of `_holders` for a block that only its list references."""
 
 
 def _aligned(block: Array, shape: tuple[int, ...], size: int) -> Array:

@@ -61,7 +61,7 @@ class UnknownNameError(CspaceError, KeyError):
 
 
 class DescriptionError(CspaceError, ValueError):
-    """A robot description that cannot be read; carries where: the file and, if known, the line."""
+    """A robot description that cannot be read; contains the file and, if known, the line."""
 
     def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
         where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
@@ -71,7 +71,7 @@ class DescriptionError(CspaceError, ValueError):
 
 
 class MapError(CspaceError, ValueError):
-    """A map file that cannot be read; carries where: the file and, if known, the line."""
+    """A map file that cannot be read; contains the file and, if known, the line."""
 
     def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
         where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
@@ -81,7 +81,7 @@ class MapError(CspaceError, ValueError):
 
 
 class MissingExtraError(CspaceError, ImportError):
-    """An optional part is not installed; the message holds the command that installs it."""
+    """An optional part is not installed; the message contains the command that installs it."""
 
     def __init__(self, extra: str, purpose: str) -> None:
         super().__init__(f"{purpose} needs an optional part; install it with: pip install 'cspace[{extra}]'")
@@ -89,12 +89,12 @@ class MissingExtraError(CspaceError, ImportError):
         self.purpose = purpose
 
     def __reduce__(self) -> tuple[type[MissingExtraError], tuple[str, str]]:
-        """What pickle makes it from again: its two arguments, not the message."""
+        """The arguments from which pickle reconstructs it, instead of the message."""
         return type(self), (self.extra, self.purpose)
 
 
 def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = "") -> UnknownNameError:
-    """The error for an unknown name: what was asked, the nearest known names, and the list if it is short."""
+    """The error for an unknown name: the name, the most similar known names, and the list if it is short."""
     import difflib  # costs a millisecond, which `import cspace` does not pay
 
     names, asked = sorted(known), _short(str(name))
@@ -115,8 +115,7 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
 
 
 def keyword_error(text: str) -> TypeError:
-    """The error for "f() got an unexpected keyword argument 'name'": with our name for it, if there is
-    one."""
+    """The error for "f() got an unexpected keyword argument 'name'", with the new name of an old keyword."""
     name = text.rpartition(" keyword argument ")[2].partition("'")[2].partition("'")[0]
     if name not in RENAMED:
         return TypeError(text)
@@ -124,7 +123,7 @@ def keyword_error(text: str) -> TypeError:
 
 
 def attribute_error(owner: object, name: str) -> AttributeError:
-    """The error for an attribute that an object has not: with our name for it, if it has that."""
+    """The error for an unknown attribute, with the new name of an old attribute."""
     text = f"{type(owner).__name__!r} object has no attribute {name!r}"
     known = {*dir(type(owner)), *getattr(type(owner), "__annotations__", ())}
     if (ours := RENAMED.get(name)) in known:
@@ -133,7 +132,7 @@ def attribute_error(owner: object, name: str) -> AttributeError:
 
 
 def shown(value: object) -> str:
-    """A value as messages show it: texts and numbers themselves, of anything else the type."""
+    """A value for a message: texts and numbers as they are, and the type of anything else."""
     return _short(repr(value)) if isinstance(value, SHOWN) else f"an object of type {type(value).__name__}"
 
 
@@ -146,5 +145,5 @@ def _plural(noun: str) -> str:
 
 
 def _short(text: str, most: int = 80) -> str:
-    """A text that fits into a message: of a whole file given as a name, the beginning says enough."""
+    """A text shortened to fit into a message."""
     return text if len(text) <= most else text[: most - 1] + "…"

@@ -21,7 +21,7 @@ STEM: Final = 40
 
 
 def path_of(source: Any, subject: str = "a file is given by its path") -> str:
-    """The path that `source` is; InputTypeError for what is none."""
+    """`source` as a path. Raises InputTypeError for other objects."""
     try:
         return os.fsdecode(source)
     except TypeError:
@@ -47,7 +47,7 @@ def read_regular(
         if (size := os.path.getsize(name)) > most:
             raise error(f"the file holds {size} bytes; more than {most} are refused", path=name)
         with open(name, "rb") as file:
-            return file.read(most)  # no more, should the file be growing
+            return file.read(most)  # a bound for a file that grows
     except (OSError, ValueError) as fault:
         if isinstance(fault, error):
             raise
@@ -56,16 +56,16 @@ def read_regular(
 
 @contextmanager
 def whole_file(path: str | os.PathLike[str]) -> Iterator[Path]:
-    """A temporary name beside `path`, moved there when the block ends well, removed when it does not.
+    """A temporary file in the folder of `path`, renamed to `path` if the block succeeds, else removed.
 
     So the file is either complete or untouched. Raises InputError where writing is impossible.
     """
     name = path_of(path)
     if "\0" in name:
-        raise InputError(f"{name!r} cannot be written: a path holds no null character")
+        raise InputError(f"{name!r} cannot be written: a path must not contain a null character")
     target = Path(os.path.abspath(name))
     if target.exists() and not target.is_file():
-        raise InputError(f"{target} cannot be written: it is no regular file, and would be replaced by one")
+        raise InputError(f"{target} cannot be written: it is not a regular file; choose another path")
     draft = target.with_name(f".{target.stem[:STEM]}.{os.getpid()}.{next(DRAFTS)}{target.suffix}")
     try:
         yield draft

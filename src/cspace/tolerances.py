@@ -91,7 +91,7 @@ ROTATION_ERROR: Final = 1e-6
 shear or a scaled matrix does not."""
 
 ROTATION_PROJECTION: Final = 0.1
-"""Largest ‖RᵀR − I‖ that projection to the nearest rotation mends: beyond it the input is no worn rotation
+"""Largest ‖RᵀR − I‖ that projection to the nearest rotation accepts: beyond it the input is not a rotation
 but another matrix, and the nearest rotation would be an invention."""
 
 AXIS_LENGTH: Final = 1e-6
@@ -116,7 +116,7 @@ PURE_TRANSLATION_ANGLE: Final = 1e-13
 asked for: such an angle is the rounding of the matrix, and the axis would lie 1e13 translations away."""
 
 WHOLE_TURN: Final = 2.0**-52
-"""Largest |sin(θ/2)/(θ/2)|, unitless, that counts as a whole turn θ = 2π, 4π, …, where the Jacobian of the
+"""Largest |sin(θ/2)/(θ/2)|, unitless, that counts as a multiple θ = 2π, 4π, …, where the Jacobian of the
 exponential has no inverse: the rounding of θ alone gives as much."""
 
 MEAN_UNIQUENESS: Final = 1e-12
@@ -138,7 +138,7 @@ MJCF_SAME_AXIS: Final = 1e-10
 own bound, so that both read the same frame."""
 
 UNLIMITED: Final = 1e300
-"""What stands for infinity where a file format demands a finite number (rad, m, or their rates): beyond any
+"""The number that means infinity if a file format needs a finite one (rad, m, or their rates): beyond any
 machine, and read back as infinity."""
 
 CALIBRATION_ANGLE: Final = 0.05
@@ -172,7 +172,7 @@ SINGULAR_VALUE: Final = 1e-9
 cannot be told from singular ones below it, and rounding is far below."""
 
 SINGULAR_ROUNDING: Final = 1e-14
-"""Singular value of a Jacobian (as SINGULAR_VALUE) below which all are alike: what is left is rounding."""
+"""Singular value of a Jacobian (as SINGULAR_VALUE) below which all are rounding errors."""
 
 LARGEST_NUMBER: Final = 1e12
 """Largest length, mass, inertia or ratio of a robot (SI units): products of a few stay far from overflow, and
@@ -196,8 +196,8 @@ of it times the reach. Circles that touch cross at places known to the square ro
 and lie within SAME_PLACE of each other for the square root of that, 1e-5."""
 
 MOST_WINDINGS: Final = 100_000
-"""Most copies of the solutions of one goal by whole turns that are listed: limits of ±2π on six joints give
-512, and a list beyond this one is no answer any more."""
+"""Most copies of the solutions of one goal by multiples of 2π: limits of ±2π on six joints give 512. A longer
+list would not be useful."""
 
 ON_LIMIT: Final = 1e-9
 """How far beyond a limit (rad, m) a joint still counts as on it: solutions carry a rounding of about 1e-15,
@@ -217,7 +217,7 @@ FARTHEST: Final = 1e100
 
 NUMERIC_TOLERANCE: Final = 1e-9
 """Error of a descent (m of the position, rad of the rotation) that counts as reached unless given: far above
-the rounding at which descents settle, far below what any robot can tell."""
+the rounding at which descents end, far below the accuracy of any robot."""
 
 SERVED: Final = 1e-6
 """Error of a task (m, rad) up to which it counts as done unless given: what the small weight of a posture
@@ -264,7 +264,7 @@ RUN_CELLS: Final = 1 << 28
 of two, which fits into 31 bits then."""
 
 FARTHEST_CELL: Final = 1e12
-"""Farthest cell from zero, in cells: there float64 still tells a ten thousandth of a cell."""
+"""Farthest cell from zero, in cells: there float64 still resolves a ten thousandth of a cell."""
 ON_WALL: Final = 1e-12
 """How deep inside an obstacle a start or a goal may lie, in sides of the world, and still count as on its
 wall: the point of a slanted wall that someone computes is off by a few roundings."""

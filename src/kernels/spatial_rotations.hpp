@@ -3,8 +3,8 @@
 
 #include "dispatch.hpp"
 
-// Rotation matrices (n, 9), row by row. False if some row needs care: it is zero where that is no rotation,
-// not finite, or so long or short that its square leaves the range of doubles. Its matrix is then
+// Rotation matrices (n, 9), row by row. False if some row needs care: it is zero where zero is not a
+// rotation, not finite, or so long or short that its square leaves the range of doubles. Its matrix is then
 // meaningless.
 
 // q: (n, 4), of any length, order w x y z, or x y z w if scalar_last.

@@ -12,7 +12,8 @@ namespace cspace::maps {
 // Throws std::invalid_argument unless the point lies in a free cell.
 inline Cell free_cell(const GridFrame& frame, const BitGrid& grid, Point p) {
     Cell cell{};
-    if (frame.locate(grid, p, cell) != CellState::free) throw std::invalid_argument("points in free cells");
+    if (frame.locate(grid, p, cell) != CellState::free)
+        throw std::invalid_argument("start and goal must lie in free cells");
     return cell;
 }
 

@@ -15,14 +15,14 @@ namespace {
 
 Outlines outlines_from(std::span<const Point> points, std::span<const std::int32_t> ends,
                        std::span<const std::int32_t> owners, Point low, Point high) {
-    if (ends.size() != owners.size()) throw std::invalid_argument("as many ends as owners");
+    if (ends.size() != owners.size()) throw std::invalid_argument("ends and owners must have equal lengths");
     Outlines world;
     world.low = low, world.high = high;
     std::size_t begin = 0;
     for (std::size_t r = 0; r < ends.size(); ++r) {
         const auto end = std::size_t(ends[r]);
         if (end < begin || end > points.size() || owners[r] < 0)
-            throw std::invalid_argument("ends that grow");
+            throw std::invalid_argument("ends must increase");
         world.add_ring(points.subspan(begin, end - begin), owners[r]);
         begin = end;
     }

@@ -17,7 +17,7 @@ class PolygonCore {
 
     // The closed rings points[ends[r − 1]:ends[r]], each owned by an obstacle, and two corners of the bounds.
     // tolerance: how deep in an obstacle rounding may have put a point that lies on a wall [m]. Throws
-    // std::invalid_argument for ends that do not grow.
+    // std::invalid_argument for ends that do not increase.
     PolygonCore(std::span<const Point> points, std::span<const std::int32_t> ends,
                 std::span<const std::int32_t> owners, Point low, Point high, double tolerance);
     // The blocked cells of a grid, a byte each by rows.

@@ -8,7 +8,8 @@ bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal,
                           Trace* trace) {
     auto& [bits, frame, parts] = world.state();
     if (!maps::RunMesh::fits(bits))
-        throw std::invalid_argument("a grid has too many cells for a search over runs of them");
+        throw std::invalid_argument(
+            "the grid has too many cells for a search over runs of cells; use larger cells");
     GridAnyAngle search(bits, frame);
     const SettledInRuns from = search.settle(start), to = search.settle(goal);
     if (from.runs.empty() || to.runs.empty()) return false;

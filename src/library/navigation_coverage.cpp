@@ -8,7 +8,7 @@ namespace cspace::navigation {
 CoverageFinding cover_grid(const maps::GridWorld& world, int row, int column, int half, bool along_rows) {
     const maps::BitGrid& grid = world.state().bits;
     if (grid.blocked(row, column) || !grid.contains({row, column}) || half < 0)
-        throw std::invalid_argument("a free cell, and a bar");
+        throw std::invalid_argument("the start must be a free cell, and half must not be negative");
     Coverage made = cover(grid, {row, column}, half, along_rows);
     std::vector<std::int32_t> path;
     path.reserve(2 * made.path.size());

@@ -17,7 +17,7 @@ struct CoverageFinding {
     std::int64_t lanes, leftover;       // lines driven, and places that took a way of their own
 };
 // half: how many cells the bar reaches to either side. Throws std::invalid_argument for a cell that is not
-// free and for no bar.
+// free and for a negative half.
 CoverageFinding cover_grid(const maps::GridWorld& world, int row, int column, int half, bool along_rows);
 
 }  // namespace cspace::navigation

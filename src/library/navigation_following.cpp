@@ -14,10 +14,11 @@ Track track_of(std::span<const Point> points, std::span<const FollowRun> runs) {
     for (std::size_t k = 0; k < runs.size(); ++k) {
         const std::size_t first = runs[k].first,
                           end = k + 1 < runs.size() ? runs[k + 1].first : points.size() - 1;
-        if (end <= first || end >= points.size()) throw std::invalid_argument("runs of two points or more");
+        if (end <= first || end >= points.size())
+            throw std::invalid_argument("every run must have at least two points");
         track.emplace_back(points.data() + first, end - first + 1, runs[k].direction);
     }
-    if (track.empty()) throw std::invalid_argument("a run or more");
+    if (track.empty()) throw std::invalid_argument("the track must have at least one run");
     return track;
 }
 

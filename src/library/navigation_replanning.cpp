@@ -13,12 +13,11 @@ namespace {
 maps::Cell cell_at(const maps::GridFrame& frame, const maps::BitGrid& grid, Point p) {
     maps::Cell cell = {0, 0};
     if (frame.locate(grid, p, cell) == maps::CellState::outside)
-        throw std::invalid_argument("a point within the grid");
+        throw std::invalid_argument("the point must lie within the grid");
     return cell;
 }
 Corners known_rule(int corners) {
-    if (corners < 0 || corners >= corner_rules)
-        throw std::invalid_argument("a corner rule that the core knows");
+    if (corners < 0 || corners >= corner_rules) throw std::invalid_argument("unknown corner rule");
     return static_cast<Corners>(corners);
 }
 
@@ -49,7 +48,7 @@ void GridReplanner::unpack(std::uint8_t* into) const { state_->search.grid().unp
 void GridReplanner::set_cells(std::span<const std::int32_t> cells, bool blocked) {
     for (std::size_t k = 0; k < cells.size(); k += 2)
         if (!state_->search.grid().contains({cells[k], cells[k + 1]}))
-            throw std::invalid_argument("cells within the grid");
+            throw std::invalid_argument("the cells must lie within the grid");
     for (std::size_t k = 0; k < cells.size(); k += 2) state_->search.set({cells[k], cells[k + 1]}, blocked);
 }
 

@@ -13,7 +13,7 @@ namespace cspace::navigation {
 
 class GridReplanner {
   public:
-    // corners is the number of Corners. Throws std::invalid_argument for a rule that is none, and, as all
+    // corners is the number of Corners. Throws std::invalid_argument for an unknown rule, and, as all
     // here do, for points and cells outside the grid.
     GridReplanner(const maps::GridWorld& world, int corners, Point start, Point goal);
     GridReplanner(GridReplanner&&) noexcept;

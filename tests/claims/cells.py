@@ -32,7 +32,7 @@ EQUAL = 1e-9
 WRONG = "WRONG"
 NONE = "—"
 NEAR = 1.02
-"""A way that tends to the shortest is, in the middle of all questions, no longer than this many times it."""
+"""The median path of a planner that tends to the shortest is no longer than this many times it."""
 MOSTLY = 0.9
 """A way keeps to the middle if its clearance is at least this share of the largest across it, along
 half of it in half of all questions."""
@@ -66,7 +66,7 @@ def complete(row, records, fewer=()):
         return Finding(NO, said, next(r["question"] for r in missed if r["reachable"]))
     if row.draws and (lost := share_missed(fewer)) > share_missed(judged):
         lost, left = (f"{100 * share:.3g} %" for share in (lost, share_missed(judged)))
-        return Finding(SAMPLES, f"missed {lost} of the ways with few samples, {left} with many; {said}")
+        return Finding(SAMPLES, f"missed {lost} of the paths with few samples, {left} with many; {said}")
     if row.some and (lost := {r["family"] for r in records if r["status"] in ("refused", "undetermined")}):
         decided = [family for family in FAMILIES if family not in lost]
         return Finding(SOME, f"every {' and '.join(decided)} decided; {said}" if decided else said)
@@ -88,16 +88,16 @@ def counted(records):
 
 
 def shortest(row, records, fewer=()):
-    """How lengths of ways stand to those of the shortest: in the plane, over cells, or within a factor."""
+    """Lengths of paths relative to the shortest: in the plane, over cells, or within a factor."""
     ratios, moves = values(records, "ratio"), values(records, "moves")
     if not len(ratios):
         return Finding(NONE)
-    detail = f"×{spelled(np.median(ratios))} in the middle, ×{spelled(ratios.max())} at most"
+    detail = f"median ×{spelled(np.median(ratios))}, maximum ×{spelled(ratios.max())}"
     worst = max((r for r in records if "ratio" in r), key=lambda r: r["ratio"])["question"]
     if ratios.min() < 1 - EQUAL:
         return Finding(WRONG, "shorter than the shortest way", worst)
     if ratios.max() <= 1 + EQUAL:
-        return Finding(SHORTEST, f"of {len(ratios)} ways")
+        return Finding(SHORTEST, f"of {len(ratios)} paths")
     if len(moves) and moves.max() <= 1 + EQUAL and moves.min() >= 1 - EQUAL:
         return Finding(FOUR if row.planner == "wavefront" else OVER_CELLS, f"in the plane {detail}", worst)
     if row.promise and moves.max() <= row.promise * (1 + EQUAL):
@@ -116,15 +116,17 @@ def clearance(row, records):
     if not judged:
         return Finding(NONE)
     shares = np.array([r["clearance"] / r["widest"] for r in judged])
-    detail = f"{spelled(np.median(shares))} of the widest in the middle, {spelled(shares.min())} at least"
+    detail = f"median {spelled(np.median(shares))} of the widest, minimum {spelled(shares.min())}"
     worst = judged[int(shares.argmin())]["question"]
     if all(r["clearance"] >= r["widest"] - STEP for r in judged):
-        return Finding(WIDEST, f"of {len(judged)} ways, to {STEP:g} m")
+        return Finding(WIDEST, f"of {len(judged)} paths, to {STEP:g} m")
     on_cells = values(records, "of_cells")
     if len(on_cells) and on_cells.min() >= 1 - EQUAL:
-        return Finding(WIDEST_CELLS, f"of {len(on_cells)} ways; in the plane {detail}", worst)
+        return Finding(WIDEST_CELLS, f"of {len(on_cells)} paths; in the plane {detail}", worst)
     central = values(records, "middle")
-    detail += f"; half of a way has {spelled(np.median(central))} or more of the largest clearance across it"
+    detail += (
+        f"; half of a path has at least {spelled(np.median(central))} of the largest clearance across it"
+    )
     return Finding(KEPT if np.median(central) >= MOSTLY else NO, detail, worst)
 
 

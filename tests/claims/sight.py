@@ -35,7 +35,9 @@ def needs_map(row, questions, navigate=cs.navigate):
             again = ask(row, without, navigate)
             tried += 1
             if again is None or not same(route.path, again.path):
-                return Finding(YES, "its way depends on walls out of sight", f"{question.name}, obstacle {k}")
+                return Finding(
+                    YES, "its path depends on walls out of sight", f"{question.name}, obstacle {k}"
+                )
     if not tried:
         return Finding(NONE)
     shown = f"what is nearer than {row.senses:g} m" if row.senses else "what it touches"

@@ -55,7 +55,7 @@ BAD_LINES = [
         "ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --tool-axis x",
         "--tool-axis can only be combined",
     ),
-    ("ik ur5e --angle-to z 1", "--angle-to says how the tool axis leans at a place: give --xyz with it"),
+    ("ik ur5e --angle-to z 1", "--angle-to needs a position: give --xyz too"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to x w", "--angle-to takes an axis and an angle: 'w'"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle-to x 4", "expected 0 to π rad"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --direction 0 0 1 --swivel 1", "--swivel needs a full pose"),
@@ -64,7 +64,7 @@ BAD_LINES = [
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow=1", "did you mean 'elbow_joint'?"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow_joint", "not of the form NAME=VALUE"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow_joint=w", "'w' is not a number"),
-    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow_joint=1 q3=2", "--locked holds elbow_joint twice"),
+    ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --locked elbow_joint=1 q3=2", "--locked names elbow_joint twice"),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --swivel 1", "ur5e has no swivel"),
     (
         "ik iiwa14 --xyz 0.4 0 0.3 --rpy 0 3 0 --swivel 1 --locked q1=0",
@@ -96,10 +96,10 @@ BAD_LINES = [
     ("info ur5e --task lots", "no task 'lots'"),
     ("dh ur5e --convention classic", "invalid choice: 'classic'"),
     ("dh ur5e --latex --markdown", "not allowed with"),
-    ("dh ur5e --time-limit 0", "'0' is no time to wait"),
-    ("dh ur5e --time-limit 1e30", "no time to wait"),
+    ("dh ur5e --time-limit 0", "'0' is not a time limit"),
+    ("dh ur5e --time-limit 1e30", "not a time limit"),
     *(
-        (f"{line}=--", "-- is no value")
+        (f"{line}=--", "-- is not a value")
         for line in (
             "ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --plot",
             "fk ur5e 0 0 0 0 0 0 --xacro-arg",
@@ -133,7 +133,7 @@ BAD_FILES = [
      "</robot>", ":2:"),
     ("limits.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='j' type='revolute'>"
      "<parent link='a'/><child link='b'/><limit lower='1' upper='-1' effort='1' velocity='1'/></joint>\n"
-     "</robot>", "upside down"),
+     "</robot>", "reversed"),
     ("nan.urdf", "<robot name='r'><link name='a'/><link name='b'/>\n<joint name='j' type='locked'>"
      "<parent link='a'/><child link='b'/><origin xyz='nan 0 0'/></joint></robot>", "nan"),
     ("recipe.urdf", "two eggs and some flour", "recipe.urdf"),

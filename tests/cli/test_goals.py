@@ -259,7 +259,7 @@ def test_a_reason_is_in_the_unit_that_was_asked_for():
 
 def test_a_reason_names_the_option_that_answers():
     line = "ik so101 --xyz 0.2 0.05 0.1 --direction 0 0 -1"
-    assert cspace(line).out.endswith("; --least-squares answers with the nearest\n")
+    assert cspace(line).out.endswith("; --least-squares returns the nearest configuration\n")
     assert cspace(f"{line} --least-squares").code == 0
 
 

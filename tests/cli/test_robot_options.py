@@ -54,14 +54,17 @@ def test_a_bad_calibration_is_a_bad_file(tmp_path, calibration):
     assert "none.yaml: no such file" in result.err
     result = cspace("info ur10e", "--calibration", calibration)
     assert result.code == 3
-    assert f"{calibration}: this is the calibration of another arm" in result.err
+    assert f"{calibration}: this calibration is not that of" in result.err
 
 
 def test_a_gripper_taken_for_the_last_joint_is_pointed_out(tmp_path):
     path = tmp_path / "arm.urdf"
     path.write_text(GRIPPER)
     found = cspace(f"info {path}").out
-    assert "tip       moving_jaw (thumb seems to be a gripper's; --tip palm ends the arm before it)" in found
+    assert (
+        "tip       moving_jaw (thumb seems to belong to a gripper; --tip palm ends the arm before it)"
+        in found
+    )
     assert "seems" not in cspace(f"info {path} --tip moving_jaw").out
     assert "seems" not in cspace(f"info {path} --tip palm").out
 

@@ -212,7 +212,7 @@ def test_info_tells_the_geometry():
     np.testing.assert_allclose(limits, cs.load_robot("ur5e").limits.upper)
 
 
-@pytest.mark.parametrize(("name", "reason"), [("stanford", "joints slide")])
+@pytest.mark.parametrize(("name", "reason"), [("stanford", "has prismatic joints")])
 def test_info_tells_first_why_there_is_no_closed_form(name, reason):
     text = cspace(f"info {name} --json").json["geometry"]["text"]
     assert text.startswith(f"no closed form for {name}")
@@ -285,8 +285,8 @@ def test_an_explanation_of_an_arm_that_nothing_solves_is_a_negative_answer():
     [
         ("ik ur5e --explain --xyz 1 0 0", "leave --xyz out"),
         ("ik ur5e --explain --plot a.png", "leave --plot out"),
-        ("ik ur5e --xyz 1 0 0 --latex", "add --explain"),
-        ("ik ur5e --xyz 1 0 0 --goal-parts position", "add --explain"),
+        ("ik ur5e --xyz 1 0 0 --latex", "used with --explain"),
+        ("ik ur5e --xyz 1 0 0 --goal-parts position", "used with --explain"),
     ],
 )
 def test_goals_and_explanations_do_not_mix(line, words):

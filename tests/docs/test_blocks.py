@@ -1,7 +1,8 @@
 """The code on the pages runs: README and docs, top to bottom, one namespace per page.
 
-```python blocks are executed in order; ```console blocks run their `$ cspace …` lines and compare the output,
-blank space apart, where the page prints any (a line or a part of a line may be … for "whatever stands here").
+```python blocks are executed in order, and a ```text block shows what the one above it prints. ```console
+blocks run their `$ cspace …` lines and compare the output, blank space apart, where the page prints any (a
+line or a part of a line may be … for any text).
 A block with `no-run` after its language is shown only; one with `needs=PACKAGE` runs where that is installed.
 """
 
@@ -57,16 +58,21 @@ def name_of(page: Path) -> str:
 
 
 @pytest.mark.parametrize("page", has("python"), ids=name_of)
-def test_python_blocks_run(page, tmp_path, monkeypatch):
+def test_python_blocks_run(page, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     namespace: dict[str, object] = {"__name__": "page"}
-    ran = 0
+    printed: list[str] | None = None
     for block in blocks(page):
         if block.language == "python":
+            capsys.readouterr()
             source = "\n" * block.line + block.text
             exec(compile(source, str(page), "exec", dont_inherit=True), namespace)  # the page is ours
-            ran += 1
-    assert ran
+            printed = capsys.readouterr().out.splitlines()
+        elif block.language == "text":
+            assert block.text.splitlines() == printed, (
+                f"{page}:{block.line}: the block above prints otherwise"
+            )
+    assert printed is not None
     assert open_figures() == [], "a page saves the pictures that it draws, which also closes them"
 
 
@@ -132,6 +138,20 @@ def test_images_and_links_of_the_pages_exist():
         for target in re.findall(r"\]\(([^)#\s]+)(?:#[^)]*)?\)", page.read_text(encoding="utf-8")):
             if not re.match(r"[a-z]+:", target):
                 assert (page.parent / target).exists(), f"{name_of(page)} points to {target}"
+
+
+def anchors(page: Path) -> set[str]:
+    """The anchors of the headings of a page, as GitHub makes them."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(encoding="utf-8"), flags=re.M | re.S)
+    headings = re.findall(r"^#+ (.+)$", text, re.M)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+
+
+def test_links_to_headings_lead_to_headings():
+    for page in PAGES:
+        for target, anchor in re.findall(r"\]\(([^)#\s:]*)#([^)\s]+)\)", page.read_text(encoding="utf-8")):
+            there = page.parent / target if target else page
+            assert anchor in anchors(there), f"{name_of(page)} points to {target}#{anchor}"
 
 
 def test_the_runner_sees_what_is_wrong(tmp_path):

@@ -88,3 +88,15 @@ def test_the_explained_arm_is_explained_as_the_library_does(monkeypatch):
     import explained
 
     assert explained.PAGE.read_text(encoding="utf-8") == explained.page_text(), "run tools/explained.py"
+
+
+def test_the_names_on_the_page_of_exports_are_in_an_exported_header():
+    from cspace import load_robot
+
+    page = (ROOT / "docs/export.md").read_text(encoding="utf-8")
+    table = page[page.index("| in the namespace of the arm |") : page.index("**Every arm that")]
+    names = set(re.findall(r"[A-Za-z_]+", " ".join(re.findall(r"`([^`]+)`", table)))) - {"robot"}
+    names |= set(re.findall(r"panda::(\w+)", page))
+    text = load_robot("panda").export("cpp").text
+    assert {"unconstrained", "self_motion", "locked_count"} <= names
+    assert {name for name in names if not re.search(rf"\b{name}\b", text)} == set()

@@ -1,4 +1,4 @@
-"""Exports of arms with joints to spare: those held are arguments, and the answers are the library's."""
+"""Exports of redundant arms: locked joints are arguments, and the solutions are those of the library."""
 
 from __future__ import annotations
 
@@ -95,15 +95,15 @@ def test_a_python_file_finds_what_the_library_finds(name, locked):
 
 @pytest.mark.parametrize(("name", "locked"), [("panda", "panda_joint4"), ("ur5e", "elbow_joint")])
 def test_a_joint_between_others_has_no_python_file(name, locked):
-    with pytest.raises(NoClosedFormError, match=f"with {locked} held has no closed form"):
+    with pytest.raises(NoClosedFormError, match=f"with {locked} locked has no closed form"):
         cs.load_robot(name).export("python", locked=locked)
 
 
 @pytest.mark.parametrize("lang", ["cpp", "c", "python"])
-def test_files_and_examples_name_the_held_joints(lang, tmp_path):
+def test_files_and_examples_name_the_locked_joints(lang, tmp_path):
     made = cs.load_robot("panda").export(lang, name="arm")
     assert made.locked == ("panda_joint7",)
-    assert "panda_joint7 held" in made.method
+    assert "panda_joint7 locked" in made.method
     assert "panda_joint7" in made.text
     assert ("q[6]" if lang == "python" else "locked") in made.example
 
@@ -115,21 +115,21 @@ def test_the_python_example_runs(tmp_path):
     assert "configurations reach" in done.stdout, done.stderr
 
 
-def test_joints_that_cannot_be_held_are_refused():
+def test_joints_that_cannot_be_locked_are_refused():
     robot = cs.load_robot("panda")
     with pytest.raises(UnknownNameError, match="did you mean 'panda_joint7'"):
         robot.export(locked="panda_join7")
     with pytest.raises(InputError, match="twice"):
         robot.export(locked=[6, "panda_joint7"])
-    with pytest.raises(InputError, match="holds 7 of 7 joints"):
+    with pytest.raises(InputError, match="names 7 of 7 joints"):
         robot.export(locked=range(7))
-    with pytest.raises(InputError, match="holds 0 of 7"):
+    with pytest.raises(InputError, match="names 0 of 7"):
         robot.export(locked=[])
-    with pytest.raises(InputTypeError, match="each call gives their values"):
+    with pytest.raises(InputTypeError, match="arguments of each call"):
         robot.export(locked={"panda_joint7": 0.1})
 
 
-def test_names_of_held_joints_stay_in_their_comments():
+def test_names_of_locked_joints_stay_in_their_comments():
     axes = np.vstack([np.eye(3), np.eye(3), [[0, 0, 1.0]]])
     points = np.random.default_rng(3).uniform(-1, 1, (7, 3))
     points[4:6] = points[3]  # a spherical wrist: Python files hold closed forms

@@ -62,7 +62,7 @@ def test_it_finds_what_the_library_finds(name):
 @pytest.mark.parametrize("name", WITHOUT_FORM)
 def test_an_arm_without_a_closed_form_is_refused(name, tmp_path):
     robot = arms.arm(name)
-    with pytest.raises(NoClosedFormError, match=r"has no closed form; .* lang='cpp' or lang='c'") as caught:
+    with pytest.raises(NoClosedFormError, match=r"has no closed form, .* lang='cpp' or lang='c'") as caught:
         robot.export("python", tmp_path / "arm.py")
     assert str(caught.value).startswith(robot.name)
     assert list(tmp_path.iterdir()) == []

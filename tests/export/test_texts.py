@@ -138,12 +138,12 @@ def test_the_same_arm_gives_the_same_text():
 @pytest.mark.parametrize(
     ("lang", "file", "words"),
     [
-        ("c", "arm.cpp", "that of the source behind the header"),
-        ("python", "my arm.py", "names no module"),
-        ("python", "arm.txt", "names no module"),
-        ("python", "class.py", "names no module"),
-        ("cpp", 'a"b.hpp', "no #include can carry"),
-        ("cpp", "a\nb.hpp", "no #include can carry"),
+        ("c", "arm.cpp", "reserved for the second file"),
+        ("python", "my arm.py", "not that of a module"),
+        ("python", "arm.txt", "not that of a module"),
+        ("python", "class.py", "not that of a module"),
+        ("cpp", 'a"b.hpp', "not allowed in an #include"),
+        ("cpp", "a\nb.hpp", "not allowed in an #include"),
     ],
 )
 def test_files_that_could_not_be_used_are_refused(lang, file, words, tmp_path):
@@ -169,7 +169,7 @@ def test_an_arm_without_joints_is_refused(tmp_path):
 
 
 def test_an_ending_that_names_no_language_is_refused():
-    with pytest.raises(InputError, match=r"'arm.foo' names no language"):
+    with pytest.raises(InputError, match=r"'arm.foo' is not that of a language"):
         cs.load_robot("ur5e").export(path="arm.foo")
     with pytest.raises(InputTypeError, match="a file is given by its path"):
         cs.load_robot("ur5e").export("cpp", 5)

@@ -129,13 +129,13 @@ def test_a_miss_that_rounded_numbers_may_cause_says_what_to_ask():
     goal = {"position": [0.2, 0.05, 0.1], "direction": [0, 0, -1]}
     found = robot.ik(**goal)
     expect_empty(robot, found)
-    assert "rounded numbers" in found.reason
-    assert found.reason.endswith("least_squares=True answers with the nearest")
+    assert "rounded robot data" in found.reason
+    assert found.reason.endswith("least_squares=True returns the nearest configuration")
     nearest = robot.ik(**goal, least_squares=True)
     assert len(nearest) == 1
     assert nearest.residual[0] < 1e-5
     T = robot.fk([0.3, -0.4, 0.5, 0.6, 0.7])
     for turn in np.eye(3):
         found = robot.ik(T @ pose([0, 0, 0], rpy=1e-6 * turn))
-        assert found or "rounded numbers" in found.reason
-    assert "rounded numbers" not in robot.ik(position=[0.6, 0.05, 0.1], direction=[0, 0, -1]).reason
+        assert found or "rounded robot data" in found.reason
+    assert "rounded robot data" not in robot.ik(position=[0.6, 0.05, 0.1], direction=[0, 0, -1]).reason

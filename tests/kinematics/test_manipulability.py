@@ -142,7 +142,7 @@ def test_rows_and_batches_that_make_no_sense_are_refused():
             robot.manipulability(np.zeros(6), rows=rows)
     with pytest.raises(InputError, match="once"):
         robot.singular_values(np.zeros(6), rows=("vx", "vx"))
-    with pytest.raises(InputError, match="distance_to_singularity takes batches"):
+    with pytest.raises(InputError, match="distance_to_singularity accepts batches"):
         robot.singularity(np.zeros((3, 6)))
     with pytest.raises(InputError, match="no joint of arm 1 moves this frame"):
         robot.singularity(np.zeros(6), frame="link_0")

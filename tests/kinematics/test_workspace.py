@@ -172,7 +172,7 @@ def test_random_configurations_stay_within_limits_and_turn_all_the_way_without()
     assert np.abs(free.mean()) < 0.05
     assert robots.planar(1.0).random_configuration(rng=0).shape == (1,)
     slide = Robot(from_screws([[0, 0, 1]], [[0, 0, 0]], np.eye(4), joint_types="P"))
-    with pytest.raises(InputError, match="slides between -inf and inf m; an open range needs reach="):
+    with pytest.raises(InputError, match="has the limits -inf and inf m; without a finite range give reach="):
         slide.random_configuration(3)
     assert np.abs(slide.random_configuration(100, rng=1, reach=0.5)).max() <= 0.5
     with pytest.raises(InputError, match="n is 0"):

@@ -91,11 +91,11 @@ def test_movingai_maps_begin_with_row_0(tmp_path):
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
-        ("", 1, "begins with the line 'type octile'"),
-        (MAP.replace("octile", "tile"), 1, "begins with"),
+        ("", 1, "the first line of a MovingAI map must be 'type octile'"),
+        (MAP.replace("octile", "tile"), 1, "the first line"),
         (MAP.replace("height 2", "height two"), 2, "'height', 'width' and a whole number"),
-        (MAP.replace("height 2", "height 0"), 2, "a side has 1"),
-        (MAP.replace("width 3", "width 99999999999"), 3, "a side has 1"),
+        (MAP.replace("height 2", "height 0"), 2, "the number of cells of a side must be 1"),
+        (MAP.replace("width 3", "width 99999999999"), 3, "the number of cells of a side must be 1"),
         (MAP.replace("width 3\n", ""), 3, "come before the cells"),
         (MAP.replace(".G@", ".G"), 5, "this row has 2 cells; the width is 3"),
         (MAP.replace("TSW\n", ""), 6, "1 rows of cells; the height is 2"),
@@ -121,7 +121,7 @@ def test_scenarios(tmp_path):
     assert np.array_equal(lines.ends(1, grid), [(1.25, 2.75), (2.25, 3.75)])
     with pytest.raises(ValueError, match="line is 2; the file has 2 lines, numbered from 0"):
         lines.ends(2, grid)
-    with pytest.raises(ValueError, match="line 0 has cells outside of this grid of 9 × 8"):
+    with pytest.raises(ValueError, match="line 0 has cells outside this grid of 9 × 8"):
         lines.ends(0, cs.OccupancyGrid(np.zeros((9, 8), bool)))
     with pytest.raises(MapError, match=":2: expected bucket, map, width"):
         cs.maps.read_scenarios(write(tmp_path, "b.scen", "version 1\n0 a.map 1 1 0 0 0\n"))
@@ -129,7 +129,7 @@ def test_scenarios(tmp_path):
         cs.maps.read_scenarios(write(tmp_path, "b.scen", "version 1\n0 a.map 2 2 0 0 1 1\n"))
     with pytest.raises(MapError, match="version 1"):
         cs.maps.read_scenarios(write(tmp_path, "b.scen", "version x\n"))
-    with pytest.raises(MapError, match="begins with the line 'version 1'"):
+    with pytest.raises(MapError, match="the first line of a scenario file must be 'version 1'"):
         cs.maps.read_scenarios(write(tmp_path, "c.scen", ""))
 
 
@@ -162,13 +162,13 @@ def test_the_yaml_that_map_files_have(tmp_path):
         ("resolution: 0.05", "resolution: five", ":3: resolution must be a finite number"),
         ("0.0]", "0.3]", ":4: the map is turned by 0.3 rad; turn the image"),
         ("[-1.5, 2.0, 0.0]", "[-1.5]", r":4: origin must be a list \[x, y, yaw\]"),
-        ("[-1.5, 2.0, 0.0]", "[-1.5, 2.0", ":4: a list in brackets ends in its line"),
-        ("[-1.5, 2.0, 0.0]", "[-1.5, y, 0]", ":4: origin must hold finite numbers"),
+        ("[-1.5, 2.0, 0.0]", "[-1.5, 2.0", ":4: a list in brackets must end in the line"),
+        ("[-1.5, 2.0, 0.0]", "[-1.5, y, 0]", ":4: origin must contain finite numbers"),
         ("negate: 0", "negate: 2", ":5: negate must be 0 or 1"),
         ("free_thresh: 0.196", "free_thresh: 0.9", ":6: free_thresh 0.9 and occupied_thresh 0.65 must be"),
-        ("negate: 0", "mode: scale\nnegate: 0", "mode 'scale' has cells that are half free"),
+        ("negate: 0", "mode: scale\nnegate: 0", "mode 'scale' has partly free cells"),
         ("negate: 0", "negate 0", ":5: expected 'field: value'"),
-        ("negate: 0", "image: b.pgm", ":5: the field 'image:' stands here for the second time"),
+        ("negate: 0", "image: b.pgm", ":5: the field 'image:' appears for the second time"),
     ],
 )
 def test_ros_maps_that_cannot_be_read(tmp_path, old, new, message):
@@ -185,7 +185,7 @@ def test_what_is_written_is_read_again(tmp_path):
         again = cs.OccupancyGrid.from_ros(tmp_path / name)
         assert np.array_equal(again.blocked, grid.blocked)
         assert again.bounds == grid.bounds
-    with pytest.raises(ValueError, match=r"a map of ROS ends in \.yaml"):
+    with pytest.raises(ValueError, match=r"the name of a ROS map must end in \.yaml"):
         grid.save_ros(tmp_path / "a.png")
 
 
@@ -215,8 +215,8 @@ def test_pgm(tmp_path, white, kind):
         (b"P5 2 2 255\n123", "byte 14: the file ends after 3 bytes of pixels; 2 × 2 of them take 4"),
         (b"P5 2 2 70000\n123", "the largest grey is 70000"),
         (b"P5 1 1 9\n\x10", "a pixel is 16; the largest grey is 9"),
-        (b"P2 2 2 9 1 2 3", "3 pixels follow; the size says 4"),
-        (b"P2 1 1 9 x", "a pixel is 'x'; pixels are whole numbers"),
+        (b"P2 2 2 9 1 2 3", "3 pixels follow, expected 4"),
+        (b"P2 1 1 9 x", "a pixel is 'x'; pixels must be whole numbers"),
     ],
 )
 def test_pgm_that_cannot_be_read(tmp_path, data, message):

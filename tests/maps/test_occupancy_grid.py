@@ -165,11 +165,11 @@ def test_a_grid_takes_a_quarter_of_a_byte_per_cell():
     [
         (([0, 1],), ValueError, r"blocked has shape \(2,\), expected \(rows, columns\)"),
         ((np.zeros((0, 3)),), ValueError, r"blocked has shape \(0, 3\)"),
-        (([[0, 2]],), ValueError, "blocked holds 2; cells are 0"),
-        (([[0, 0.5]],), ValueError, r"blocked holds 0\.5"),
-        (([[0, np.nan]],), ValueError, "blocked holds nan"),
-        (([["a"]],), TypeError, "blocked must be truth values"),
-        ((object(),), TypeError, "blocked must be truth values"),
+        (([[0, 2]],), ValueError, "blocked contains 2; cells must be 0"),
+        (([[0, 0.5]],), ValueError, r"blocked contains 0\.5"),
+        (([[0, np.nan]],), ValueError, "blocked contains nan"),
+        (([["a"]],), TypeError, "blocked must be boolean"),
+        ((object(),), TypeError, "blocked must be boolean"),
         (([[0]], 0), ValueError, "resolution is 0; it must be one positive number"),
         (([[0]], -1.0), ValueError, "resolution is -1"),
         (([[0]], np.nan), ValueError, "resolution"),
@@ -187,9 +187,7 @@ def test_what_is_no_grid(arguments, error, message):
 
 def test_what_cannot_be_asked():
     grid = cs.OccupancyGrid([[0, 1]])
-    with pytest.raises(
-        ValueError, match=r"point \(5, 0\) is outside of the grid, which spans x 0 … 2, y 0 … 1"
-    ):
+    with pytest.raises(ValueError, match=r"point \(5, 0\) is outside the grid, which spans x 0 … 2, y 0 … 1"):
         grid.cell_of((5, 0))
     with pytest.raises(ValueError, match=r"point has shape \(1, 2\)"):
         grid.cell_of([(0, 0)])

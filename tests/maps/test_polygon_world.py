@@ -89,11 +89,11 @@ def test_what_a_repair_leaves_is_read_by_the_even_odd_rule():
         (lambda: cs.PolygonWorld([[(0, 0), (1, np.nan), (1, 1)]]), InputError, ["obstacle 0", "nan"]),
         (lambda: cs.PolygonWorld([[(0, 0, 0), (1, 1, 1)]]), InputError, ["obstacle 0", "(..., 2)"]),
         (lambda: cs.PolygonWorld([[(1, 1)]]), InputError, ["obstacle 0", "one corner"]),
-        (lambda: cs.PolygonWorld([BOX], (0, 0, 0, 1)), InputError, ["bounds", "enclose nothing"]),
+        (lambda: cs.PolygonWorld([BOX], (0, 0, 0, 1)), InputError, ["bounds", "enclose no area"]),
         (lambda: cs.PolygonWorld([BOX], (0, 0, 1)), InputError, ["bounds", "(..., 4)"]),
         (lambda: cs.PolygonWorld([[(0, 0), (1e300, 0), (0, 1)]]), InputError, ["obstacle 0", "1e+15"]),
         (lambda: cs.PolygonWorld([BOX], BOUNDS).inflate(-1), InputError, ["radius", "-1"]),
-        (lambda: cs.PolygonWorld([BOX], BOUNDS).inflate(6), InputError, ["radius", "no room"]),
+        (lambda: cs.PolygonWorld([BOX], BOUNDS).inflate(6), InputError, ["radius", "no free space"]),
         (lambda: cs.PolygonWorld([BOX], BOUNDS).to_grid(0), InputError, ["resolution", "positive"]),
         (lambda: cs.PolygonWorld([BOX], BOUNDS).to_grid(1e-9), InputError, ["resolution", "cells"]),
     ],
@@ -274,9 +274,9 @@ def test_geojson_of_every_kind(tmp_path):
     ("text", "words"),
     [
         ("{", ["map.geojson:1", "JSON"]),
-        ("[]", ["no GeoJSON object"]),
+        ("[]", ["not a GeoJSON object"]),
         ('{"type": "Blob"}', ["'Blob'"]),
-        ('{"type": ' + "1" * 5000 + "}", ["no JSON"]),
+        ('{"type": ' + "1" * 5000 + "}", ["JSON cannot be read"]),
         ('{"type": "Polygon"}', ["coordinates"]),
         ('{"type": "Polygon", "coordinates": [[1, 2]]}', ["[x, y]"]),
         ('{"type": "FeatureCollection", "features": 3}', ["features"]),
@@ -303,7 +303,7 @@ def test_polygons_from_text(tmp_path):
     with pytest.raises(MapError, match=r"map.txt:2.*two numbers"):
         cs.PolygonWorld.from_text(path)
     path.write_text("hole\n1 2\n")
-    with pytest.raises(MapError, match="before any polygon"):
+    with pytest.raises(MapError, match="before the first polygon"):
         cs.PolygonWorld.from_text(path)
     with pytest.raises(MapError, match="no such file"):
         cs.PolygonWorld.from_text(tmp_path / "none.txt")
@@ -321,7 +321,7 @@ def test_a_written_world_is_the_same_to_the_last_bit(tmp_path, form):
         assert all(map(np.array_equal, one, other))
     with pytest.raises(InputError, match="cannot be written"):
         getattr(world, f"save_{form}")(tmp_path / "none" / "yard")
-    with pytest.raises(InputError, match="no regular file"):
+    with pytest.raises(InputError, match="not a regular file"):
         getattr(world, f"save_{form}")(tmp_path)
     with pytest.raises(InputError, match="null character"):
         getattr(world, f"save_{form}")("a\0b")

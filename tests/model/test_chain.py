@@ -136,7 +136,7 @@ def test_twists_carry_each_point_of_the_axis_nowhere():
         ({"T_zero": np.ones((4, 4))}, "last row"),
         ({"joint_types": "X"}, "joint_types"),
         ({"joint_types": "RR"}, "joint_types"),
-        ({"lower": [1], "upper": [-1]}, "upside down"),
+        ({"lower": [1], "upper": [-1]}, "reversed"),
         ({"lower": [1, 2]}, "expected"),
         ({"joint_names": ["a", "b"]}, "2 names"),
     ],

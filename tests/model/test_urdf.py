@@ -179,7 +179,7 @@ def test_what_urdf_cannot_hold_is_refused():
     robot = Description("r", (Link("a"), Link("b")), (Joint("j", "revolute", "a", "b"),), (loop,))
     with pytest.raises(InputError, match="closed loops"):
         to_urdf(robot)
-    with pytest.raises(InputError, match="XML cannot hold"):
+    with pytest.raises(InputError, match="XML does not allow"):
         to_urdf(Description("r\x01", (Link("a"),)))
 
 
@@ -189,7 +189,7 @@ FAULTS = {
     "unknown joint type": ('type="fixed"', 'type="fixt"', '"flange"', "no joint type 'fixt'.*mean 'fixed'"),
     "zero axis": ("0 0 2", "0 0 0", "<axis", "axis must not be zero"),
     "short axis": ("0 0 2", "0 2", "<axis", "holds 2 numbers, expected 3"),
-    "limits upside down": ('upper="2"', 'upper="-2"', '"shoulder"', "upside down"),
+    "limits upside down": ('upper="2"', 'upper="-2"', '"shoulder"', "reversed"),
     "nan": ('xyz="0 0 1"', 'xyz="0 0 nan"', 'xyz="0 0 nan"', "must be finite"),
     "inf": ('mass value="2"', 'mass value="inf"', "inf", "must be finite"),
     "no number": ('lower="-1"', 'lower="down"', '"down"', "expected 1 number"),

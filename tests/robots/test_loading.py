@@ -123,7 +123,7 @@ def test_a_path_that_cannot_be_read_says_why(name, says, tmp_path):
         ("a.xml", b"<mujoco><body/></mujoco>", "<mujoco> has no <body>; it stands elsewhere"),
         ("a.xml", b"<html/>", "root element is <html>"),
         ("a.urdf", b'<robot name="x"><link name="a"/></robo>', "a.urdf:1: malformed XML"),
-        ("a.toml", b"a = 1", "must hold one of"),
+        ("a.toml", b"a = 1", "must contain one of"),
     ],
 )
 def test_a_file_that_is_no_robot_says_so(name, content, says, tmp_path):
@@ -136,7 +136,7 @@ def test_a_file_that_is_no_robot_says_so(name, content, says, tmp_path):
 def test_a_folder_and_a_branching_robot_and_other_types_are_refused(tmp_path):
     with pytest.raises(DescriptionError, match="this is a folder"):
         load_robot(tmp_path)
-    with pytest.raises(InputTypeError, match="name or a path, got int"):
+    with pytest.raises(InputTypeError, match="name or the path of a robot, got int"):
         load_robot(7)
     with pytest.raises(InputTypeError, match="got NoneType"):
         load_robot(None)

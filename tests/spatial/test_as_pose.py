@@ -74,13 +74,13 @@ def with_entry(row, column, value):
         (with_entry(0, 3, np.nan), r"goal holds nan at index \(0, 3\)"),
         (with_entry(1, 1, np.inf), "goal holds inf"),
         (with_entry(1, 3, -np.inf), "goal holds -inf"),
-        (with_entry(0, 0, 1e200), "no rotation: RᵀR differs from the identity by inf"),
+        (with_entry(0, 0, 1e200), "not a rotation: RᵀR differs from the identity by inf"),
         (with_entry(3, 0, 0.1), r"last row \[0.1, 0.0, 0.0, 1.0\]"),
         (T_GOOD.T, "transpose it"),
         (T_GOOD @ np.diag([1.0, 1.0, -1.0, 1.0]), "determinant −1"),
         (T_GOOD @ np.diag([1.0, 1.0, 1.001, 1.0]), "differs from the identity by 0.002.*project_rotation"),
         (T_GOOD @ np.diag([2.0, 2.0, 2.0, 1.0]), "scaled by 2: divide by it"),
-        (T_GOOD @ np.diag([1.0, 3.0, 2.0, 1.0]), "too far for a projection"),
+        (T_GOOD @ np.diag([1.0, 3.0, 2.0, 1.0]), "too far from any rotation"),
         (np.stack([T_GOOD, 2.0 * np.eye(4)]), r"goal \[1\] has the last row"),
         (np.eye(3), r"shape \(3, 3\), expected \(..., 4, 4\); cspace.pose\(matrix=R\)"),
         (T_GOOD[:3], "last row .* is missing"),
@@ -136,9 +136,9 @@ def test_no_column_is_overlooked(i, j):
     lean = np.eye(4)
     lean[i, j] += 2e-6
     for T in (T_GOOD @ lean, np.stack([T_GOOD, T_GOOD @ lean])):
-        with pytest.raises(InputError, match="no rotation"):
+        with pytest.raises(InputError, match="not a rotation"):
             cs.as_pose(T)
-        with pytest.raises(InputError, match="no rotation"):
+        with pytest.raises(InputError, match="not a rotation"):
             cs.as_rotation(T[..., :3, :3])
     lean[i, j] = np.eye(4)[i, j] + 2e-7
     assert cs.as_pose(T_GOOD @ lean).shape == (4, 4)

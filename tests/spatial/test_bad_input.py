@@ -72,7 +72,7 @@ def test_exact_numbers_are_numbers():
         (lambda: cs.rotation(matrix=np.diag([1.0, 1.0, -1.0])), "matrix has determinant −1"),
         (
             lambda: cs.rotation(matrix=1.01 * np.eye(3)),
-            "matrix is no rotation.*by 0.0201, allowed 1e-06.*project_rotation",
+            "matrix is not a rotation.*by 0.0201, allowed 1e-06.*project_rotation",
         ),
         (
             lambda: cs.pose(np.zeros((2, 3)), rpy=np.zeros((3, 3))),
@@ -83,10 +83,10 @@ def test_exact_numbers_are_numbers():
             lambda: cs.transform_points(np.zeros((5, 4, 4)) + np.eye(4), np.zeros((9, 3))),
             r"pose \(5,\) and vector \(9,\)",
         ),
-        (lambda: cs.exp_so3([1.7e308] * 3), "length overflows"),
+        (lambda: cs.exp_so3([1.7e308] * 3), "norm overflows"),
         (
             lambda: cs.project_rotation(2.0 * np.eye(3)),
-            "differs from the identity by 3, projection mends up to 0.1",
+            "differs from the identity by 3; projection accepts up to 0.1",
         ),
         (lambda: cs.project_rotation(np.diag([1.0, 1.0, -0.99])), "negative determinant"),
         (lambda: cs.project_pose(np.zeros((4, 4))), "last row"),

@@ -95,7 +95,7 @@ def test_a_pure_translation_has_no_pole_and_says_so():
     assert np.isnan(pole.point).all()
     assert pole.angle == 0.0
     assert pole.translation.tolist() == [1.0, 2.0]
-    assert pole.reason == "a pure translation by (1, 2) leaves no point in place"
+    assert pole.reason == "a pure translation by (1, 2) has no fixed point"
     some = cs.pole_of(cs.pose_2d([[1.0, 2.0], [1.0, 2.0]], theta=[0.0, np.pi]))
     assert some
     assert some.exists.tolist() == [False, True]

@@ -96,7 +96,7 @@ def test_the_projection_of_a_pose_keeps_the_translation():
 
 
 def test_a_wider_limit_must_be_asked_for():
-    with pytest.raises(cs.CspaceError, match="mends up to"):
+    with pytest.raises(cs.CspaceError, match="accepts up to"):
         cs.project_rotation(1.2 * np.eye(3))
     close(cs.project_rotation(1.2 * np.eye(3), limit=0.5), np.eye(3))
 
@@ -128,11 +128,11 @@ def test_the_projection_in_the_plane_is_that_of_the_embedded_pose():
     close(cs.embed_pose_2d(mended), cs.project_pose(space))
     close(cs.project_rotation_2d(worn[:, :2, :2]), mended[:, :2, :2])
     close(cs.project_rotation_2d(1.2 * np.eye(2), limit=0.5), np.eye(2))
-    with pytest.raises(cs.CspaceError, match="mends up to"):
+    with pytest.raises(cs.CspaceError, match="accepts up to"):
         cs.project_rotation_2d(1.2 * np.eye(2))
     with pytest.raises(cs.CspaceError, match="it is a reflection"):
         cs.project_rotation_2d(np.diag([1.0, -1.0]))
-    with pytest.raises(cs.CspaceError, match=r"last row of matrix is not \[0, 0, 1\]"):
+    with pytest.raises(cs.CspaceError, match=r"last row of matrix differs from \[0, 0, 1\]"):
         cs.project_pose_2d(np.ones((3, 3)))
 
 

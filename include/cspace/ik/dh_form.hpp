@@ -16,7 +16,7 @@ struct DhForm {
     Posed base, tool;
     double length = 1;        // characteristic length of the arm [m]
     double deviation = 0;     // largest difference between this form and the true chain [m/length, rad]
-    bool degenerate = false;  // two neighbouring axes are one line: the arm has a joint to spare
+    bool degenerate = false;  // two adjacent axes coincide: the arm is redundant
 };
 
 }  // namespace cspace::ik

@@ -1,7 +1,7 @@
 // The centre of mass of a robot and its Jacobian.
 //
 // A joint moves all that it carries as one body: with the carried mass m, its first moment s = Σ mₖ pₖ and
-// the total mass M, a joint that turns about d through o gives d × (s − m o) / M, one that slides gives m d
+// the total mass M, a revolute joint about d through o gives d × (s − m o) / M, a prismatic one gives m d
 // / M.
 #pragma once
 
@@ -10,7 +10,7 @@
 
 namespace cspace::kinematics::inline CSPACE_ISA {
 
-// The first moment of the base and of what is fixed to it.
+// The first moment of the base and of the links fixed to it.
 template <class V>
 CSPACE_INLINE Vec3<V> base_moment(const model::Tree& tree, const Pose<V>& T_world_base) {
     return tree.bodies[0].mass * (T_world_base * fill3<V>(tree.bodies[0].center));

@@ -17,7 +17,7 @@ struct FrameAxes {
 
 namespace cspace::kinematics::inline CSPACE_ISA {
 
-// The sine and cosine of each joint angle of a chain; s and c hold n rounded up to four.
+// The sine and cosine of each joint angle of a chain; s and c have n entries rounded up to four.
 // One configuration alone fills the lanes with its joints.
 template <class V>
 CSPACE_INLINE void chain_sines(const model::Chain& chain, const V* q, V* s, V* c) {
@@ -53,14 +53,14 @@ template <class V>
 CSPACE_INLINE Pose<V> to_pose(const FrameAxes<V>& frame) {
     return {from_columns(frame.x, frame.y, frame.z), frame.origin};
 }
-// Turns the frame about its own z.
+// Rotates the frame about its z axis.
 template <class V, class S>
 CSPACE_INLINE void turn_about_z(FrameAxes<V>& frame, const S& s, const S& c) {
     const Vec3<V> x = frame.x;
     frame.x = c * x + s * frame.y;
     frame.y = c * frame.y - s * x;
 }
-// Turns the frame about its own x by the α of a joint.
+// Rotates the frame about its x axis by the α of a joint.
 template <class V>
 CSPACE_INLINE void tilt(FrameAxes<V>& frame, const model::ChainJoint& joint) {
     const Vec3<V> y = frame.y;

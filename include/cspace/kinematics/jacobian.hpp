@@ -1,6 +1,6 @@
 // The geometric Jacobian: the twist [v; ω] of a point of the robot per unit of each joint velocity.
 //
-// A joint that turns about the unit direction d through the point o gives [d × (p − o); d], one that slides
+// A revolute joint about the unit direction d through the point o gives [d × (p − o); d], a prismatic one
 // along d gives [d; 0] (Whitney 1969; Siciliano et al., Robotics, 2009, section 3.1).
 #pragma once
 
@@ -60,7 +60,7 @@ CSPACE_INLINE void joint_columns(const model::Chain& chain, const Axis<V>* axes,
     }
 }
 
-// The columns of a floating base: its twist [v; ω] is taken at its own origin, `arm` away from the point p.
+// The columns of a floating base: its twist [v; ω] refers to its origin, `arm` away from the point p.
 template <class V>
 CSPACE_INLINE void base_columns(const Vec3<V>& arm, V* J, int columns, int rows) {
     const V zero = fill<V>(0.0), one = fill<V>(1.0);

@@ -1,7 +1,7 @@
 // The time derivative of the Jacobian at given joint velocities: the part of an acceleration that needs no
 // force, a = J q̈ + J̇ q̇.
 //
-// Each column is differentiated as it stands: with ḋ = ω × d for a direction carried by a link that turns
+// Each column is differentiated directly: ḋ = ω × d for a direction carried by a link that rotates
 // with ω, the derivative of [d × (p − o); d] is [ḋ × (p − o) + d × (ṗ − ȯ); ḋ].
 #pragma once
 
@@ -18,7 +18,7 @@ struct Twist {
 namespace cspace::kinematics::inline CSPACE_ISA {
 
 // The rates of all axes of a chain, and, returned, the twist of the point p at its end. base is the twist
-// of the base at p_base; qd holds the joint velocities by coordinate.
+// of the base at p_base; qd contains the joint velocities by coordinate.
 template <class V>
 CSPACE_INLINE Twist<V> axis_rates(const model::Chain& chain, const Axis<V>* axes, const Vec3<V>& p,
                                   const V* qd, const Twist<V>& base, const Vec3<V>& p_base, Axis<V>* rates) {

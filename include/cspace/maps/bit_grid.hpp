@@ -18,7 +18,7 @@ struct Cell {
     friend bool operator==(Cell, Cell) = default;
 };
 
-// Lines of bits, all zero, with a word to spare before the first and after the last.
+// Lines of bits, all zero, with an unused word before the first and after the last.
 class BitLines {
   public:
     BitLines() = default;
@@ -78,7 +78,7 @@ class BitGrid {
     std::size_t row_words() const { return by_row_.words(); }
     std::size_t column_words() const { return by_column_.words(); }
 
-    // The cell and the eight around it: bit 3 · (1 + rows above it) + 1 + columns beside it, set where
+    // The cell and the eight around it: bit 3 · (1 + rows above it) + 1 + columns right of it, set where
     // blocked.
     unsigned around(int row, int column) const {
         const unsigned at = unsigned(column);

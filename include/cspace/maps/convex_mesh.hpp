@@ -29,7 +29,7 @@ struct ConvexMesh {
     }
     Point point(Index v) const { return points[std::size_t(v)]; }
 
-    // What a search over a mesh asks: the ends of an edge, the same edge seen from across, whether the
+    // The interface of a mesh for a search: the ends of an edge, the same edge seen from across, whether the
     // polygon of an edge has others that lead on.
     using Edge = Index;
     using Polygon = Index;
@@ -39,7 +39,7 @@ struct ConvexMesh {
     Index across(Index edge) const { return twin[std::size_t(edge)]; }
     bool may_turn(Index v) const { return turns[std::size_t(v)]; }
     bool is_side(Index edge, Index p) const { return polygon[std::size_t(edge)] == p; }
-    Index name(Index edge) const { return edge; }  // tells apart those that have a corner on the same hand
+    Index name(Index edge) const { return edge; }  // distinguishes edges with a corner on the same side
     bool leads_on(Index edge) const { return doors[std::size_t(polygon[std::size_t(edge)])] > 1; }
     // Visits the edges of a polygon that lead on; all, or those other than the one it was entered by,
     // counterclockwise from there.

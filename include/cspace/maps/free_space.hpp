@@ -1,4 +1,4 @@
-// Free space as a triangulation: which triangles lie in it, which edges are walls, what is connected.
+// Free space as a triangulation: the free triangles, the edges that are walls, the components.
 #pragma once
 
 #include <numeric>
@@ -24,8 +24,8 @@ struct FreeSpace {
     bool is_free(Index t) const { return t != none && component[std::size_t(t)] != none; }
     bool is_wall(Index t, int edge) const { return mesh[t].owners[std::size_t(edge)] != none; }
 
-    // The free triangles whose closure holds a point: one, two at an edge, several at a corner; none inside
-    // obstacles.
+    // The free triangles whose closure contains a point: one, two at an edge, several at a corner; none
+    // inside obstacles.
     void triangles_at(Point p, Index near, std::vector<Index>& out) const {
         out.clear();
         const Place place = mesh.locate(p, near);

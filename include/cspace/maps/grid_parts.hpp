@@ -44,7 +44,7 @@ class GridParts {
     }
     std::int64_t count() const { return count_; }
 
-    // Whether two free cells certainly lie in different parts; not told of two outside of the largest parts.
+    // Whether two free cells certainly lie in different parts; false for two outside the largest parts.
     bool divide(Cell a, Cell b) const { return number_of(a) != number_of(b); }
     std::size_t bytes() const { return low_.bytes() + high_.bytes(); }
 
@@ -143,7 +143,7 @@ class GridParts {
     }
 };
 
-// The parts of a grid under either rule, made when they are first asked for, by whichever thread.
+// The parts of a grid under either rule, computed on first use, by any thread.
 class LazyParts {
   public:
     // How many cells a search may settle before it takes longer than making the parts; on small grids it

@@ -1,4 +1,4 @@
-// How near a polyline comes to walls, exact up to rounding: the least distance between one of its pieces and
+// The clearance of a polyline, exact up to rounding: the least distance between one of its pieces and
 // a wall, or the square of a blocked cell.
 #pragma once
 
@@ -106,7 +106,7 @@ class NearestCell {
     explicit NearestCell(const BitGrid& grid) : grid_(grid) {}
     double best = std::numeric_limits<double>::infinity();
 
-    // Looks at the cells that `far` or less beside a piece are blocked; outside of the grid all are.
+    // Tests the blocked cells within `far` of a piece; all cells outside the grid are blocked.
     void look(Piece s, double far) {
         const Box around = box_of(s);
         for (const Point p : {around.low, around.high})

@@ -10,8 +10,8 @@
 
 namespace cspace::maps {
 
-// A point of a query and the free triangles that hold it. A point that rounding has put into an obstacle, no
-// farther from a wall than `tolerance`, is taken to the free side of it.
+// A point of a query and the free triangles that contain it. A point that rounding has put into an obstacle,
+// no farther from a wall than `tolerance`, is taken to the free side of it.
 struct Settled {
     Point at;
     std::vector<Index> triangles;  // none: the point lies in an obstacle or outside the bounds

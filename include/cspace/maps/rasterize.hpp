@@ -32,7 +32,7 @@ inline bool reaches_into(const Point* corner, int count, Point low, double side)
 
 // Marks in blocked (rows × columns, row by row from the lower left corner of the bounds, cells of a side)
 // those that an obstacle reaches into by more than a slack [m], which is what rounding makes of corners, and
-// those that a wall without thickness comes as near to: one between two cells blocks both.
+// those equally near to a wall without thickness: a wall between two cells blocks both.
 inline void rasterize(const FreeSpace& space, Point origin, double side, int rows, int columns, double slack,
                       std::uint8_t* blocked) {
     const Triangulation& mesh = space.mesh;

@@ -1,5 +1,5 @@
 // Free cells of a grid as a mesh of convex polygons that is not stored: the maximal runs of free cells in the
-// rows, each a rectangle, read from the bits where a search comes to them. x and y are columns and rows, in
+// rows, each a rectangle, read from the bits when a search reaches them. x and y are columns and rows, in
 // cells.
 //
 // Two runs above each other share a door where both are free; its ends are ends of runs, so corners of
@@ -62,7 +62,7 @@ class RunMesh {
     bool is_side(const Door& d, const Run& run) const {
         return d.row() == run.row && d.begin >= run.begin && d.end <= run.end;
     }
-    // Tells apart the doors that have a corner on the same hand.
+    // Distinguishes the doors with a corner on the same side.
     Index name(const Door& d) const { return d.is_top(); }
     bool leads_on(const Door& d) const {
         const int near = d.is_top() ? d.row() + 1 : d.row() - 1, far = d.is_top() ? d.row() - 1 : d.row() + 1;

@@ -1,4 +1,4 @@
-// The sectors of free space around each point: the parts between two walls, or the whole turn.
+// The sectors of free space around each point: the parts between two walls, or the full circle.
 //
 // Where obstacles meet in a point, free space has several sectors there that do not touch: a path through one
 // does not come to the other.

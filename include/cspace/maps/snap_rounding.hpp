@@ -1,7 +1,7 @@
 // Outlines on a raster so fine that nothing sees it, their crossings among its points: what nearly coincides
 // comes to coincide (Hobby 1999, "Practical segment intersection with finite precision output"). Each segment
-// is led through the centres of all cells that hold a point of the arrangement and that it meets; led so,
-// segments cross no more.
+// is routed through the centres of all cells that it meets and that contain a point of the arrangement.
+// Segments then do not cross.
 #pragma once
 
 #include <algorithm>

@@ -2,11 +2,11 @@
 //
 // Points are inserted along a space-filling curve and made Delaunay by flips (Lawson 1977); a segment is
 // forced by flipping the edges that cross it (Sloan 1993, "A fast algorithm for generating constrained
-// Delaunay triangulations"). Every decision on which the triangles' validity rests is exact. Segments that
-// cross each other meet in a new vertex: the crossing of the two lines as they were given, rounded to the
-// nearest doubles, or an end of one of them within rounding of it. Both are bent to that vertex, and what the
-// bent parts cross is found like any other crossing. A segment is divided at the vertices on it before it is
-// bent, because afterwards they lie beside it.
+// Delaunay triangulations"). Every decision that the validity of the triangles depends on is exact. Segments
+// that cross each other meet in a new vertex: the crossing of the two lines as they were given, rounded to
+// the nearest doubles, or an end of one of them within rounding of it. Both are bent to that vertex, and what
+// the bent parts cross is found like any other crossing. A segment is divided at the vertices on it before it
+// is bent, because afterwards they no longer lie on it.
 #pragma once
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class Triangulator {
     std::vector<Owner> owners;
     std::vector<Crossing> crossings;
 
-    // Everything that will be inserted lies between low and high; `segments` says how many there are.
+    // Everything that will be inserted lies between low and high; `segments` is their number.
     Triangulator(Point low, Point high, std::size_t segments)
         : most_bends_(std::min<std::size_t>(200'000 + 50 * segments, 64 + 4 * segments * segments)),
           most_of_one_(64 + 4 * segments) {
@@ -101,7 +101,7 @@ class Triangulator {
         return Index(mesh.triangles.size() - 1);
     }
 
-    // Gives edge `e` of `t` what lies across edge `from` of the old triangle, and tells the neighbour.
+    // Gives edge `e` of `t` what lies across edge `from` of the old triangle, and updates the neighbour.
     void adopt(Index t, int e, Index across, Index owners_of_edge, Index old) {
         mesh[t].across[std::size_t(e)] = across;
         mesh[t].owners[std::size_t(e)] = owners_of_edge;
@@ -170,7 +170,7 @@ class Triangulator {
         return {t, u};
     }
 
-    // The edge e of t becomes the other diagonal of the two triangles beside it.
+    // The edge e of t becomes the other diagonal of its two triangles.
     void flip(Index t, int e) {
         const Index u = mesh[t].across[std::size_t(e)];
         const Triangle a = mesh[t], b = mesh[u];
@@ -210,7 +210,7 @@ class Triangulator {
         const Index s = b.corner[std::size_t(b.edge_to(t))];
         return surely_in_circle(at(a.corner[0]), at(a.corner[1]), at(a.corner[2]), at(s)) && is_convex(t, e);
     }
-    // Whether the two triangles beside an edge form a strictly convex quadrilateral.
+    // Whether the two triangles of an edge form a strictly convex quadrilateral.
     bool is_convex(Index t, int e) const {
         const Triangle &a = mesh[t], &b = mesh[a.across[std::size_t(e)]];
         const Point r = at(a.corner[std::size_t(e)]), s = at(b.corner[std::size_t(b.edge_to(t))]);

@@ -10,11 +10,11 @@
 
 namespace cspace {
 
-// theta[0] always holds an answer; theta[1] a second one where `two`, otherwise the first again.
+// theta[0] is always a solution; theta[1] is a second one if `two`, otherwise equal to the first.
 template <class V>
 struct CosSinRoots {
     Turn<V> theta[2];
-    V excess;  // what is missing: max(|d| − r, 0)
+    V excess;  // the error: max(|d| − r, 0)
     mask_of<V> two, free;
 };
 

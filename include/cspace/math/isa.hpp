@@ -5,7 +5,7 @@
 // keeps the copies apart for the linker; plain data shared between them lives in `cspace`.
 //
 // The copies of the library are named by the build (CSPACE_ISA=baseline, avx2, …). Code that includes the
-// headers itself has names of its own, so that the linker never takes one for the other.
+// headers itself has different names, so that the linker never confuses the two.
 #pragma once
 
 #if defined(CSPACE_ISA)

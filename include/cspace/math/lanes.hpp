@@ -206,7 +206,7 @@ template <int N>
 CSPACE_INLINE bool all(Mask<N> m) {
     return bits_of(m) == (1u << N) - 1;
 }
-// x where the mask holds, else +0.
+// x where the mask is set, else +0.
 template <class V>
 CSPACE_INLINE V where(mask_of<V> m, V x) {
     return select(m, x, fill<V>(0.0));
@@ -224,7 +224,7 @@ template <class V>
 CSPACE_INLINE V copysign(V magnitude, V sign) {
     return bit_or(abs(magnitude), sign_bit(sign));
 }
-// The nearest integer, ties to even. Adding 2⁵² leaves no room for a fraction; what is larger has none.
+// The nearest integer, ties to even. Adding 2⁵² removes the fraction; larger numbers have none.
 template <class V>
 CSPACE_INLINE V round(V x) {
     const V big = fill<V>(4503599627370496.0), magnitude = abs(x);

@@ -1,6 +1,6 @@
 // Small dense systems on lanes: in place, without allocation, without branches where V is a pack.
 //
-// The unknowns of each lane are its own, and so are its pivots. Singular lanes are told by the mask that each
+// Each lane has separate unknowns and pivots. Singular lanes are reported by the mask that each
 // function returns; their numbers are finite where the input is, and mean nothing.
 #pragma once
 

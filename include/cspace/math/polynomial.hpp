@@ -1,7 +1,7 @@
 // Every real root of a polynomial of degree one to four.
 //
 // A quadratic is solved in closed form, on lanes. For cubics and quartics the real roots of the derivative
-// cut the line into pieces on which the polynomial rises or falls throughout (Rolle): each piece holds one
+// cut the line into pieces on which the polynomial rises or falls throughout (Rolle): each piece contains one
 // simple root if the signs at its ends differ, and none otherwise. Halley's method inside such a bracket,
 // with bisection where it stalls, cannot miss a root or find one twice, however close they lie. Multiple
 // roots are roots of the derivative too: a point where the derivative vanishes and the polynomial is zero
@@ -16,7 +16,7 @@
 
 namespace cspace {
 
-// Ascending; `everywhere` if the polynomial is zero. multiplicity 2 also stands for a pair that is complex by
+// Ascending; `everywhere` if the polynomial is zero. multiplicity 2 also denotes a pair that is complex by
 // less than the band.
 struct RealRoots {
     int count = 0;
@@ -25,7 +25,7 @@ struct RealRoots {
     bool everywhere = false;
 };
 
-// x[0] ≤ x[1]. Where `real` does not hold, both are the real part of the conjugate pair.
+// x[0] ≤ x[1]. If `real` is false, both are the real part of the conjugate pair.
 template <class V>
 struct QuadraticRoots {
     V x[2];
@@ -48,7 +48,7 @@ CSPACE_INLINE V product_difference(V a, V b, V c, V d) {
     return r;
 }
 
-// a x² + b x + c with a ≠ 0. unit: a size, beside that of the root itself, against which the band is
+// a x² + b x + c with a ≠ 0. unit: a size, in addition to that of the root, against which the band is
 // measured.
 template <class V>
 CSPACE_INLINE QuadraticRoots<V> quadratic_roots(V a, V b, V c, double unit = 0.0) {
@@ -222,7 +222,7 @@ inline int root_exponent(const double* a, int n) {
 }  // namespace polynomial
 
 // The real roots of a[0] + a[1] x + … + a[n] xⁿ, n ≤ 4. Coefficients of any scale; a root beyond 2¹⁰⁰⁰ counts
-// as infinite and is left out. Roots are told apart as long as their sizes lie within 1e70 of each other.
+// as infinite and is left out. Roots are distinguished as long as their sizes lie within 1e70 of each other.
 template <int n>
 RealRoots real_roots(const double* a, double unit = 0.0) {
     if constexpr (n == 0) {

@@ -50,7 +50,8 @@ struct Expansion {
 
 inline int sign(double value) { return (value > 0) - (value < 0); }
 
-// The sign of a·b − c·d; rounding keeps the order of products, so equal ones are told apart by their rests.
+// The sign of a·b − c·d; rounding keeps the order of products, so equal ones are compared by their
+// remainders.
 inline int sign_of_difference(double a, double b, double c, double d) {
     const Pair left = two_product(a, b), right = two_product(c, d);
     return left.sum != right.sum ? sign(left.sum - right.sum) : sign(left.rest - right.rest);

@@ -1,4 +1,4 @@
-// Memory and lanes: runs of values, and rows of row-major arrays (lane k holds row k).
+// Memory and lanes: runs of values, and rows of row-major arrays (lane k contains row k).
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,8 @@
 
 namespace cspace::inline CSPACE_ISA {
 
-// --- runs: lane k holds values[k]; no alignment is needed ------------------------------------------------
+// --- runs: lane k contains values[k]; no alignment is needed
+// ------------------------------------------------
 template <class V>
 CSPACE_INLINE V load(const double* values) {
     V v{};

@@ -37,7 +37,7 @@ inline double dot_n(const double* a, const double* b, int n) {
     return sum;
 }
 
-// On entry us holds the columns of A.
+// On entry us contains the columns of A.
 template <int R, int C>
 void decompose(SmallSvd<R, C>& m) {
     for (int j = 0; j < m.columns; ++j)

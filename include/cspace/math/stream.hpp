@@ -11,7 +11,7 @@ namespace cspace::inline CSPACE_ISA {
 
 // Whether so many values leave no use for a cache.
 inline bool goes_past_cache(std::size_t size) { return size >= std::size_t(3) << 18; }  // 6 MiB
-// What `write_out` asks of memory past the caches.
+// The requirements of `write_out` for stores that bypass the caches.
 inline bool is_aligned(const double* to) { return reinterpret_cast<std::uintptr_t>(to) % 16 == 0; }
 
 // Copies `size` values, an even number, from memory aligned like the widest register.

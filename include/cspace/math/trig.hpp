@@ -22,7 +22,7 @@ namespace cspace::inline CSPACE_ISA {
 
 namespace trig {
 
-// π/2 as a double and what is missing (2⁻⁵⁴ relative, again as a double).
+// π/2 as a double and its error (2⁻⁵⁴ relative, again as a double).
 inline constexpr double half_pi = 0x1.921fb54442d18p+0, half_pi_rest = 0x1.1a62633145c07p-54;
 
 // The largest power of two up to n ≥ 1.

@@ -17,8 +17,8 @@ namespace cspace::model {
 enum class Tilt : unsigned char { none, quarter, half, any };
 
 struct ChainJoint {
-    double turn, angle;     // turn is 0 for a joint that slides
-    double slide, x, y, z;  // slide is 0 for a joint that turns
+    double turn, angle;     // turn is 0 for a prismatic joint
+    double slide, x, y, z;  // slide is 0 for a revolute joint
     double cos_alpha, sin_alpha;
     double ratio;  // of the joint to its coordinate, whatever its kind
     int coordinate;
@@ -31,7 +31,7 @@ struct Chain {
     int n_coordinates;          // of the whole robot
     bool ordered;               // joint i is coordinate i itself, and there are no others
     Posed T_base_first;         // the frame of the first joint
-    double cos_last, sin_last;  // the turn ψ that is left at the tip
+    double cos_last, sin_last;  // the remaining rotation ψ at the tip
 };
 
 }  // namespace cspace::model

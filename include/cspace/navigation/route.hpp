@@ -1,4 +1,4 @@
-// What every planner answers: a path or why there is none, and what the search cost.
+// The result of every planner: a path or the reason why there is none, and statistics of the search.
 #pragma once
 
 #include <cstdint>

@@ -1,10 +1,9 @@
-// Best-first search: of all nodes that wait, the one of least priority is settled next, and what can be
-// reached from it waits in turn (Pearl, "Heuristics", 1984; Hart, Nilsson & Raphael 1968 for A*). A planner
-// is a queue and a space:
+// Best-first search: expands the open node of least priority, and its successors become open nodes (Pearl,
+// "Heuristics", 1984; Hart, Nilsson & Raphael 1968 for A*). A planner is a queue and a space:
 //
-//   space.settle(node)         takes it for good; false where it has nothing new to say
+//   space.settle(node)         closes the node; false if it is closed already
 //   space.is_goal(node)
-//   space.expand(node, queue)  pushes what it leads to
+//   space.expand(node, queue)  pushes its successors
 #pragma once
 
 #include <cstddef>
@@ -99,8 +98,8 @@ struct Effort {
     std::uint64_t pause = std::numeric_limits<std::uint64_t>::max();  // after so many the search waits
 };
 
-// The goal that was reached; no_node where no node waits any more, or the search is to pause: it goes on
-// where it is asked again.
+// The goal that was reached; no_node if no open node remains, or the search is to pause: it continues
+// on the next call.
 template <class Space, class Queue>
 std::uint32_t best_first(Space& space, Queue& queue, Effort& effort) {
     while (!queue.empty() && effort.settled < effort.pause) {

@@ -1,5 +1,5 @@
-// A priority queue for priorities that mostly rise: what is far away waits in buckets, unsorted, and only
-// what is near is kept in a heap, which therefore is small (Denardo & Fox 1979; with a heap for the first
+// A priority queue for priorities that mostly rise: distant entries are kept in buckets, unsorted, and only
+// near ones in a heap, which therefore is small (Denardo & Fox 1979; with a heap for the first
 // bucket: Cherkassky, Goldberg & Silverstein 1999, "Buckets, heaps, lists, and monotone priority queues").
 // The buckets lie in a ring, lists through one array of entries that are used again, so that what a search
 // touches stays in the cache however far it goes. The order is that of a heap, whatever the priorities are.
@@ -63,8 +63,8 @@ class BucketQueue {
         std::uint32_t next;
     };
     static constexpr std::uint32_t none = 0xffffffff;
-    static constexpr std::size_t few = 16;                       // entries that need no buckets
-    static constexpr std::int64_t ring = 4096;                   // buckets; what is farther waits in a heap
+    static constexpr std::size_t few = 16;      // entries that need no buckets
+    static constexpr std::int64_t ring = 4096;  // buckets; entries farther away are in a heap
     static constexpr std::int64_t last = std::int64_t(1) << 52;  // no bucket has this number
 
     // From one heap to a small one and buckets.
@@ -76,7 +76,7 @@ class BucketQueue {
         for (const Waiting& entry : near_.take()) place(entry);
     }
     double bucket_of(const Waiting& entry) const { return (entry.priority - first_) * per_unit_; }
-    // The heap `near_` holds all before bucket `current_`, the ring that one and those that follow.
+    // The heap `near_` contains all before bucket `current_`, the ring that one and those that follow.
     void place(const Waiting& entry) {
         const double at = bucket_of(entry);
         if (!(at >= double(current_)) || current_ == last) return near_.push(entry);

@@ -1,5 +1,5 @@
-// What was made last, kept with what it was made for: threads may ask for it at once. Whoever was given it
-// holds it, also where another takes its place.
+// The most recent result, kept with its key. Threads may request it at the same time. A returned result stays
+// valid when another replaces it.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace cspace::search {
 template <class Key, class Made>
 class LastMade {
   public:
-    // What is kept for a key, or what make() gives: a shared pointer to something that says its bytes(). More
+    // The result for a key, or that of make(): a shared pointer to an object with bytes(). More
     // of them than `most_bytes` are not kept. Two threads that make the same at once make it twice.
     template <class Make>
     std::shared_ptr<const Made> of(const Key& key, const Make& make, std::size_t most_bytes) {

@@ -4,7 +4,7 @@
 //
 // A node that a shorter way reaches later waits once more, and taken in this order nodes may do so again and
 // again. After `patience` of them the least f goes first: then each is taken once more at most, for the queue
-// holds the next node of every best way.
+// contains the next node of every shortest path.
 #pragma once
 
 #include <cstddef>

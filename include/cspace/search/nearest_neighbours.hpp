@@ -27,7 +27,7 @@ class Buckets {
             put(std::int32_t(points_.size()) - 1);
     }
 
-    // The nearest point, of equally near ones the earliest; -1 where there is none.
+    // The nearest point, the earliest of equally near ones; -1 if there is none.
     std::int32_t nearest(Point p) const {
         const int row = row_of(p.y), column = column_of(p.x);
         std::int32_t best = -1;

@@ -1,4 +1,4 @@
-"""The command line: one file per verb, loaded only when its verb is asked for."""
+"""The command line: one file per verb, loaded only when its verb is used."""
 
 from cspace.cli.app import main
 

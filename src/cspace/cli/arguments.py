@@ -52,11 +52,11 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--json", action="store_true", help="machine-readable output: radians, metres")
         self.add_argument("--debug", action="store_true", help="show the traceback of an error")
         self.add_argument(
-            "--time-limit", type=seconds, metavar="S", help="give up after S seconds, with exit code 5"
+            "--time-limit", type=seconds, metavar="S", help="stop after S seconds, with exit code 5"
         )
 
     def print_help(self, file: Any = None) -> None:
-        """Write the help; argparse's own would say nothing if that fails, as on a full disk."""
+        """Write the help; that of argparse would not report a failure, such as a full disk."""
         (file or sys.stdout or io.StringIO()).write(self.format_help())
 
     def error(self, message: str) -> NoReturn:
@@ -95,10 +95,13 @@ def number(text: str) -> float:
 
 
 def seconds(text: str) -> float:
-    """A time [s] that is not over at once."""
+    """A positive time [s]."""
     value = number(text)
     if value <= 0.0 or value > threading.TIMEOUT_MAX:
-        raise argparse.ArgumentTypeError(f"{text.strip()!r} is no time to wait; it must be above 0")
+        raise argparse.ArgumentTypeError(
+            f"{text.strip()!r} is not a time limit; expected more than 0 s, at most "
+            f"{threading.TIMEOUT_MAX:.2g} s"
+        )
     return value
 
 
@@ -129,7 +132,9 @@ def separate_values(words: Sequence[str]) -> list[str]:
     out: list[str] = []
     for word in words:
         if NO_VALUE.fullmatch(word):
-            raise UsageError(f"{word}: -- is no value; it stands alone, before words that are no options")
+            raise UsageError(
+                f"{word}: -- is not a value; write it alone, before arguments that are not options"
+            )
         option, sign, value = word.partition("=")
         if sign and option.startswith("--") and is_list(value):
             out.append(option)
@@ -163,7 +168,7 @@ def is_number(word: str) -> bool:
 def add_robot(parser: argparse.ArgumentParser) -> None:
     """The robot: a name of the catalogue or a file, and what a file may need besides."""
     parser.add_argument("robot", metavar="ROBOT", help="a name of the catalogue (cspace robots) or a file")
-    group = parser.add_argument_group("what the robot's file may need")
+    group = parser.add_argument_group("options for robot files")
     group.add_argument(
         "--calibration", metavar="FILE", help="the joint frames of one UR arm, from ur_calibration"
     )

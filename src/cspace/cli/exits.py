@@ -28,7 +28,7 @@ class UsageError(CspaceError):
 
 
 class TimeLimitReached(BaseException):
-    """The seconds of --time-limit are over; like an interrupt, no handler of errors on the way stops it."""
+    """The time of --time-limit has elapsed; like an interrupt, no error handler catches it."""
 
 
 def exit_of(error: CspaceError) -> Exit:

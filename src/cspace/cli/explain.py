@@ -1,4 +1,4 @@
-"""`cspace ik ROBOT --explain`: how the solver of an arm works, instead of an answer to a goal."""
+"""`cspace ik ROBOT --explain`: how the solver of an arm works, instead of the solutions of a goal."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["add_explanation", "explain", "wants_explanation"]
 
 NOT_EXPLAINED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
-"""What belongs to a goal and its answer, and not to an explanation."""
+"""Options of a goal and its solutions, which an explanation does not accept."""
 
 
 def add_explanation(parser: argparse.ArgumentParser) -> None:
@@ -27,7 +27,7 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
         "--goal-parts",
         nargs="+",
         metavar="PART",
-        help="for goals of parts: position, rotation, direction, look-at, ray, angle-to (alone or together)",
+        help="for partial goals: position, rotation, direction, look-at, ray, angle-to (alone or together)",
     )
     form = group.add_mutually_exclusive_group()
     form.add_argument("--markdown", action="store_true", help="as Markdown with formulas")
@@ -35,21 +35,21 @@ def add_explanation(parser: argparse.ArgumentParser) -> None:
 
 
 def wants_explanation(args: argparse.Namespace) -> bool:
-    """Whether an explanation is asked for; words of a goal beside it or its forms without it are refused."""
+    """Whether an explanation is requested. Raises UsageError for options that do not fit."""
     if not args.explain:
         for name in ("markdown", "latex", "goal_parts"):
             if getattr(args, name):
-                raise UsageError(f"--{name} belongs to the explanation: add --explain")
+                raise UsageError(f"--{name} can only be used with --explain")
         return False
     for name in NOT_EXPLAINED:
         if getattr(args, name) is not None:
             option = "--" + name.replace("_", "-")
-            raise UsageError(f"--explain is about the arm, not about a goal: leave {option} out")
+            raise UsageError(f"--explain explains the arm and takes no goal: leave {option} out")
     return True
 
 
 def explain(args: argparse.Namespace, robot: Robot, out: Output) -> int:
-    """Print the explanation; an arm that nothing solves is a negative answer, with what its axes share."""
+    """Print the explanation; an arm without a solver is a negative answer, with the relations of its axes."""
     locked = None if args.locked is None else locked_joints(args, robot)
     goal_parts = None if args.goal_parts is None else [part.replace("-", "_") for part in args.goal_parts]
     plan = robot.ik_plan(goal_parts=goal_parts, locked=locked, tool_axis=axis_of(args))

@@ -1,4 +1,4 @@
-"""What decides where a goal leaves freedom: joints held, the swivel, samples, the configuration nearby."""
+"""Options that resolve redundancy: locked joints, the swivel, samples, the nearest configuration."""
 
 from __future__ import annotations
 
@@ -15,41 +15,42 @@ if TYPE_CHECKING:
 __all__ = ["FREEDOM_WORDS", "add_freedom", "locked_joints", "options_of"]
 
 FREEDOM_WORDS: Final = ("swivel", "samples", "near", "least_squares")
-"""The words of these that say nothing of how an arm is solved; locked joints do."""
+"""The options of these that do not affect how an arm is solved; locked joints do."""
 
 GOAL_JOINT: Final = "goal_"
-"""How the names begin of what a goal leaves open."""
+"""The beginning of the names of the motions that a partial goal leaves open."""
 
 
 def add_freedom(parser: argparse.ArgumentParser) -> None:
-    """The words of one who has more joints than the goal asks for."""
-    group = parser.add_argument_group(
-        "freedom", "of arms with joints to spare, and of goals that leave something open"
-    )
+    """Add the options for redundancy."""
+    group = parser.add_argument_group("redundancy", "for redundant arms and partial goals")
     group.add_argument(
         "--locked",
         nargs="+",
         action="extend",
         type=named_number,
         metavar="JOINT=VALUE",
-        help="joints held at values; q7 is the seventh joint, whatever its name",
+        help="joints locked at values; q7 is the seventh joint, whatever its name",
     )
-    group.add_argument("--swivel", type=number, metavar="A", help="the elbow's angle on its circle")
+    group.add_argument("--swivel", type=number, metavar="A", help="angle of the elbow on its circle")
     group.add_argument(
-        "--samples", type=int, metavar="N", help="at how many values of what is free (16 unless given)"
+        "--samples",
+        type=int,
+        metavar="N",
+        help="the number of values of the redundant parameter (default: 16)",
     )
     group.add_argument(
         "--near",
         nargs="+",
         type=number,
         metavar="Q",
-        help="a configuration: the nearest solution comes first, alone where the goal leaves freedom",
+        help="a configuration: nearest solution first, or only it if the goal leaves degrees of freedom",
     )
     group.add_argument(
         "--least-squares",
         action="store_const",
         const=True,
-        help="where nothing reaches the goal: what comes closest",
+        help="for unreachable goals: the configuration that comes closest",
     )
 
 
@@ -73,7 +74,7 @@ def locked_joints(args: argparse.Namespace, robot: Robot) -> dict[str, float]:
         of_goal = word.startswith(GOAL_JOINT)  # judged by the library, which knows what the goal leaves open
         name = word if of_goal else joint_called(word, robot)
         if name in locked:
-            raise UsageError(f"--locked holds {name} twice; give each joint one value")
+            raise UsageError(f"--locked names {name} twice; give each joint one value")
         turns = "turn" in name if of_goal else robot.joint_types[robot.joint_names.index(name)] == "R"
         locked[name] = radians(value, degrees=args.deg) if turns else value
     return locked

@@ -19,7 +19,7 @@ ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
 LINEAR: Final = ("vx", "vy", "vz")
 """The rows of the Jacobian that move a place, coordinate by coordinate."""
 POINTED: Final = ("direction", "look_at", "ray", "angle_to")
-"""What asks something of the tool axis."""
+"""Parts of a goal that constrain the tool axis."""
 GOAL_WORDS: Final = ("xyz", "xy", "angle", *ORIENTATIONS, "matrix", *POINTED)
 """Every word of a goal."""
 NO_GOAL: Final = (
@@ -30,14 +30,14 @@ NO_GOAL: Final = (
 
 @dataclass(frozen=True)
 class Goal:
-    """What is asked for: a pose T (4, 4), or parts of one by the keywords of robot.ik, with the tool axis."""
+    """A goal: a pose T (4, 4), or parts of one by the keywords of robot.ik, with the tool axis."""
 
     T: Array | None = None
     parts: dict[str, Any] = field(default_factory=dict)
     tool_axis: Any = "z"
 
     def ask(self, robot: Any, **options: Any) -> Any:
-        """The library's answer."""
+        """The result of robot.ik."""
         return robot.ik(self.T, **self.parts, tool_axis=self.tool_axis, **options)
 
     @property
@@ -60,7 +60,7 @@ class Goal:
         return None if point is None or None in point else np.array(point)
 
     def document(self) -> dict[str, Any]:
-        """The goal as JSON data, [rad] and [m]; null for what is not asked."""
+        """The goal as JSON data, [rad] and [m]; null for parts that are not given."""
         asked = {name: self.parts.get(name) for name in ("position", "rotation", "angle", *POINTED)}
         pointed = any(name in self.parts for name in POINTED)
         return {"matrix": self.T, **asked, "tool_axis": self.tool_axis if pointed else None}
@@ -76,8 +76,10 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
         words = tuple(letters.split())
         group.add_argument(*names, nargs=len(words), metavar=words, type=kind, help=text)
 
-    add("--xyz", "--position", letters="X Y Z", kind=coordinate, text=f"place [m]; {OPEN}: does not matter")
-    add("--xy", letters="X Y", text="place of an arm in the plane [m]")
+    add(
+        "--xyz", "--position", letters="X Y Z", kind=coordinate, text=f"position [m]; {OPEN}: does not matter"
+    )
+    add("--xy", letters="X Y", text="position of a planar arm [m]")
     group.add_argument("--angle", metavar="A", type=number, help="with --xy: the angle of the tip's x axis")
     add("--rpy", letters="R P Y", text="orientation: roll, pitch, yaw about fixed x, y, z")
     add("--wxyz", letters="W X Y Z", text="orientation: quaternion, real part first")
@@ -86,19 +88,22 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
         "--rotation", nargs=9, metavar="R", type=number, help="orientation: matrix, row by row"
     )
     group.add_argument("--matrix", nargs=16, metavar="M", type=number, help="the whole pose, row by row")
-    add("--direction", letters="X Y Z", text="where the tool axis points")
+    add("--direction", letters="X Y Z", text="direction of the tool axis")
     add("--look-at", letters="X Y Z", text="a point on the tool axis, ahead of the tip [m]")
     add("--ray", letters="X Y Z DX DY DZ", text="a point [m] and the direction of the line of the tool axis")
     group.add_argument(
-        "--angle-to", nargs=2, metavar=("AXIS", "A"), help="with --xyz: an axis of the base, the angle to it"
+        "--angle-to",
+        nargs=2,
+        metavar=("AXIS", "A"),
+        help="with --xyz: an axis of the base, and the angle to it",
     )
     group.add_argument(
-        "--tool-axis", nargs="+", metavar="AXIS", help="the axis of the tip that points: z, -x, or 3 numbers"
+        "--tool-axis", nargs="+", metavar="AXIS", help="the tool axis in the tip: z, -x, or 3 numbers"
     )
 
 
 def goal_of(args: argparse.Namespace) -> Goal:
-    """The goal that the words ask for. Raises UsageError for words that make none."""
+    """The goal that the options describe. Raises UsageError for options that do not describe one."""
     from cspace.spatial import as_pose
 
     given = [name for name in GOAL_WORDS if getattr(args, name) is not None]
@@ -113,7 +118,7 @@ def goal_of(args: argparse.Namespace) -> Goal:
     parts = {"position": place, "rotation": R, **pointing_of(args)}
     parts = {name: value for name, value in parts.items() if value is not None}
     if set(parts) == {"angle_to"}:
-        raise UsageError("--angle-to says how the tool axis leans at a place: give --xyz with it")
+        raise UsageError("--angle-to needs a position: give --xyz too")
     if set(parts) == {"position", "rotation"} and None not in parts["position"]:
         return Goal(as_pose(pose_at(place, R), "goal"), tool_axis=axis_of(args))
     if args.angle is not None:
@@ -122,11 +127,11 @@ def goal_of(args: argparse.Namespace) -> Goal:
 
 
 def place_of(args: argparse.Namespace) -> list[float | None] | None:
-    """The place asked for, of three coordinates or two."""
+    """The given position, of three coordinates or two."""
     if args.xyz is not None and args.xy is not None:
-        raise UsageError("--xyz and --xy both give a place: leave one out")
+        raise UsageError("--xyz and --xy both give a position: leave one out")
     if args.angle is not None and args.xy is None:
-        raise UsageError("--angle is that of an arm in the plane: give --xy with it")
+        raise UsageError("--angle is for planar arms: give --xy with it")
     if args.xy is not None:
         forms = [name for name in ORIENTATIONS if getattr(args, name) is not None]
         if forms:
@@ -136,7 +141,7 @@ def place_of(args: argparse.Namespace) -> list[float | None] | None:
 
 
 def rotation_of(args: argparse.Namespace) -> Array | None:
-    """The orientation asked for (3, 3), in one of its forms."""
+    """The given orientation (3, 3), in one of its forms."""
     from cspace.spatial import as_rotation, pose
 
     forms = [name for name in ORIENTATIONS if getattr(args, name) is not None]
@@ -154,7 +159,7 @@ def rotation_of(args: argparse.Namespace) -> Array | None:
 
 
 def pointing_of(args: argparse.Namespace) -> dict[str, Any]:
-    """What is asked of the tool axis."""
+    """The constraints on the tool axis."""
     parts: dict[str, Any] = {"direction": args.direction, "look_at": args.look_at}
     if args.ray is not None:
         parts["ray"] = (args.ray[:3], args.ray[3:])

@@ -1,4 +1,4 @@
-"""How an answer is shown: JSON for machines, plain aligned text for pipes, rich tables for people."""
+"""Output of results: JSON, aligned plain text for pipes, rich tables for terminals."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Table:
 
 
 class Output:
-    """Where a verb writes its answer; a terminal gets rich tables, a pipe plain text, --json one document."""
+    """The output of a verb: rich tables for a terminal, plain text for a pipe, one document for --json."""
 
     _told = False
 
@@ -60,7 +60,7 @@ class Output:
             reconfigure(errors="replace")
 
     def document(self, document: Mapping[str, Any]) -> None:
-        """The answer for machines: one JSON document, numbers with all their digits, NaN never."""
+        """One JSON document: numbers with all their digits, never NaN."""
         json.dump(document, self.stream, default=_plain, allow_nan=False, indent=None, ensure_ascii=False)
         self.stream.write("\n")
 
@@ -107,7 +107,7 @@ class Output:
         return f"\x1b[{STYLES[style]}m{text}\x1b[0m" if style and text and self.colours else text
 
     def _console(self) -> Any:
-        """The console of rich, which takes longer to import than most verbs to answer; None without rich."""
+        """The console of rich, whose import takes longer than most verbs; None without rich."""
         try:
             from rich.console import Console
         except ImportError:

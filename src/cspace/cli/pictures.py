@@ -14,6 +14,8 @@ FORMATS: Final = (".png", ".svg", ".pdf")
 
 
 def check_format(path: Path) -> None:
-    """Refuse a file name whose ending is no picture's, before any work is done for it."""
+    """Raise UsageError for a file name without the ending of a picture, before any computation."""
     if path.suffix.lower() not in FORMATS:
-        raise UsageError(f"cannot tell the format of {str(path)!r}; end it with one of {', '.join(FORMATS)}")
+        raise UsageError(
+            f"unknown picture format {str(path)!r}; its name must end with one of {', '.join(FORMATS)}"
+        )

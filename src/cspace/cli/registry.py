@@ -22,9 +22,9 @@ VERBS: Final[Mapping[str, str]] = MappingProxyType(
         "ik": "every joint configuration that reaches a pose",
         "jacobian": "the Jacobian, its singular values and the distance to singularity",
         "dh": "the Denavit-Hartenberg table and the link matrices",
-        "nav": "a way through a map, by one planner or by all of them side by side",
+        "nav": "a path through a map, by one planner or by all of them for comparison",
         "planners": "the planners of nav, and their options",
-        "export": "the inverse kinematics of an arm as C++, C or Python that needs nothing of cspace",
+        "export": "the inverse kinematics of an arm as C++, C or Python code that does not depend on cspace",
         "doctor": "versions, optional parts and a self-check",
     }
 )
@@ -39,7 +39,7 @@ class VerbModule(Protocol):
         """Declare the arguments of the verb."""
 
     def run(self, args: argparse.Namespace, out: Output) -> int:
-        """Do the work, write the answer to `out`, return the exit code."""
+        """Run the verb, write the result to `out`, return the exit code."""
 
 
 def load(verb: str) -> VerbModule:

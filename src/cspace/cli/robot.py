@@ -51,13 +51,14 @@ def need_chain(robot: Robot) -> None:
     """Refuse a tree where a verb speaks of one tip, naming the links that could be it."""
     if robot.tip is None:
         raise UsageError(
-            f"{robot.name} branches, so its tip has to be named: --tip with one of {', '.join(robot.leaves)},"
+            f"{robot.name} branches, so its tip must be selected: --tip with one of "
+            f"{', '.join(robot.leaves)},"
             " or any other link, such as the one that carries a gripper"
         )
 
 
 def configuration(values: Sequence[float], robot: Robot, subject: str, *, degrees: bool) -> Array:
-    """Typed values as a configuration (n,) [rad, m]; with `degrees` turning joints were typed in degrees."""
+    """Typed values as a configuration (n,) [rad, m]; with `degrees` the angles were typed in degrees."""
     n = len(robot.joint_names)
     if len(values) != n:
         names = ", ".join(robot.joint_names)
@@ -74,7 +75,7 @@ def gripper_note(args: argparse.Namespace, robot: Robot) -> str:
     joint = next(joint for joint in robot.description.joints if joint.name == last)
     if not GRIPPER.search(f"{joint.name} {joint.child}"):
         return ""
-    return f"{joint.name} seems to be a gripper's; --tip {joint.parent} ends the arm before it"
+    return f"{joint.name} seems to belong to a gripper; --tip {joint.parent} ends the arm before it"
 
 
 def angle_unit(degrees: bool) -> str:
@@ -89,7 +90,7 @@ def headings(robot: Robot) -> list[str]:
 
 
 def joint_called(word: str, robot: Robot) -> str:
-    """The joint of a name, or of a heading: q3 is the third. Raises UnknownNameError, with what is near."""
+    """The joint of a name, or of a heading: q3 is the third. Raises UnknownNameError with similar names."""
     names = robot.joint_names
     if word in names:
         return word
@@ -100,7 +101,7 @@ def joint_called(word: str, robot: Robot) -> str:
 
 
 def joint_texts(q: Array, robot: Robot, *, degrees: bool) -> list[str]:
-    """A configuration (n,) as texts: angles as asked, slides in metres."""
+    """A configuration (n,) as texts: angles in the selected unit, prismatic joints in metres."""
     return [
         f"{np.degrees(value):.3f}" if kind == "R" and degrees else f"{value:.5f}"
         for value, kind in zip(q, robot.joint_types, strict=True)

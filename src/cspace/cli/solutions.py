@@ -27,7 +27,7 @@ RADIANS: Final = re.compile(r"(\d[\d.e+-]*) rad\b")
 class Rows:
     """The solutions in the order of the table: as found, or the nearest to `near` first.
 
-    q: (k, dof), each joint moved into its limits by whole turns where they are checked. branch: k labels.
+    q: (k, dof), each joint moved into its limits by multiples of 2π if they are checked. branch: k labels.
     residual: (k,). out: per row the joints out of limits and by how much. singularity: (k,), of the rows of
     the Jacobian that are `counting`, or None where the arm moves in none of them. distance: (k,) from `near`,
     or None.
@@ -39,7 +39,7 @@ class Rows:
         from cspace.ik.wrapping import into_limits, short_way
 
         q = np.asarray(answer.q, dtype=np.float64)
-        if check:  # each joint where its limits are, if a whole turn brings it there
+        if check:  # each joint inside its limits, if a multiple of 2π brings it there
             limits = robot.limits
             q = into_limits(answer._settled(limits), robot.joint_types, limits.lower, limits.upper)[0]
         self.distance: Array | None = None
@@ -61,7 +61,7 @@ class Rows:
 
 
 def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[str, Any]) -> dict[str, Any]:
-    """The answer as JSON data, [rad] and [m]."""
+    """The solutions as JSON data, [rad] and [m]."""
     solutions = [
         {
             "q": rows.q[k].tolist(),
@@ -93,7 +93,7 @@ def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[st
 
 
 def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -> None:
-    """The answer for people: a table, or why there is none."""
+    """The solutions as a table, or the reason why there are none."""
     reason = answer.reason.replace("least_squares=True", "--least-squares")
     reason = in_degrees(reason) if degrees else reason
     out.line(f"{robot.name}: {reason}", style="bold" if answer else "yellow")
@@ -117,7 +117,7 @@ def in_degrees(sentence: str) -> str:
 
 
 def table_of(robot: Robot, rows: Rows, *, degrees: bool) -> Table:
-    """One row per solution; columns in which nothing would stand are left out."""
+    """One row per solution, without empty columns."""
     limits = ["limits"] if rows.checked else []
     branch = ["branch"] if any(rows.branch) else []
     singularity = [] if rows.singularity is None else ["singularity"]

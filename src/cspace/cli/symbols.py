@@ -26,7 +26,7 @@ def link_matrix(table: DHTable, i: int) -> Array:
 
 
 def entry_texts(table: DHTable, i: int) -> list[list[str]]:
-    """The entries (4, 4) of row i as texts in c, s of theta(i) and, for a slide, its d."""
+    """The entries (4, 4) of row i as texts in c, s of theta(i) and, for a prismatic joint, its d."""
     ca, sa = np.cos(table.alpha[i]), np.sin(table.alpha[i])
     a, d = float(table.a[i]), float(table.d[i])
     slide = f"q{i + 1}" if table.joint_types[i] == "P" else ""
@@ -61,7 +61,7 @@ def term(factor: float, symbol: str) -> str:
 
 
 def along(factor: float, d: float, slide: str) -> str:
-    """A factor times the offset d, which a slide adds to: 0.4, q3, 0.4 + q3, -q3."""
+    """A factor times the offset d, to which a prismatic joint adds q: 0.4, q3, 0.4 + q3, -q3."""
     fixed, moving = term(factor * d, ""), term(factor, slide) if slide else "0"
     if moving == "0" or fixed == "0":
         return fixed if moving == "0" else moving
@@ -69,7 +69,7 @@ def along(factor: float, d: float, slide: str) -> str:
 
 
 def angle_text(angle: float, *, degrees: bool) -> str:
-    """An angle as asked; in radians simple fractions of a turn are written with pi."""
+    """An angle in the selected unit; in radians simple fractions of 2π are written with pi."""
     if abs(angle) < ZERO:
         return "0"
     if degrees:

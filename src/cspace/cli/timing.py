@@ -20,9 +20,9 @@ CARRIER: Final = signal.SIGINT
 
 @contextmanager
 def limit(seconds: float | None) -> Iterator[None]:
-    """Raise TimeLimitReached in the block when it takes longer; None is no limit.
+    """Raise TimeLimitReached in the block when it takes longer; None means no limit.
 
-    Compiled code is not cut off: the stop comes when it returns. A true Ctrl-C does what it did before.
+    Compiled code is not interrupted: the error is raised when it returns. Ctrl-C works as before.
     """
     if seconds is None:
         yield

@@ -1,4 +1,4 @@
-"""An arm as source code: every inverse-kinematics solution without cspace, in a file of its own."""
+"""Export of the inverse kinematics of an arm as source code that does not depend on cspace."""
 
 from cspace.export.languages import LANGUAGES, Export, export
 

@@ -1,4 +1,4 @@
-"""One text from many headers of the core: every `#include "cspace/…"` in the place of its file."""
+"""Many headers of the core as one text: every `#include "cspace/…"` is replaced by its file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["amalgamate", "include_folder"]
 
 
 def include_folder() -> Path:
-    """The folder that holds cspace/version.hpp: inside the installed package, or that of the source tree."""
+    """The folder that contains cspace/version.hpp: in the installed package or in the source tree."""
     package = Path(__file__).resolve().parents[1]
     for folder in (package / "include", package.parents[1] / "include"):
         if (folder / "cspace" / "version.hpp").is_file():
@@ -21,7 +21,7 @@ def include_folder() -> Path:
 
 
 def amalgamate(entries: Iterable[str]) -> str:
-    """The headers named by `entries` and all that they include, each once, after what it includes itself."""
+    """The headers in `entries` and everything that they include, each once, after its own includes."""
     folder = include_folder()
     parts: list[str] = []
     seen: set[str] = set()

@@ -1,4 +1,4 @@
-"""What an export needs to know of a robot, taken from it once."""
+"""The data of a robot that an export needs."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from cspace.ik.solver import MAX_SETTLED, HasSolver, Solver, as_solver
 
 __all__ = ["ExportedArm", "exported_arm"]
 
-# Words that name no namespace of C++ and no prefix of C.
+# Words that cannot name a namespace in C++ or a prefix in C.
 TAKEN = frozenset(
     [
         *("alignas", "alignof", "asm", "auto", "bool", "case", "catch", "char", "const", "constexpr"),
@@ -32,19 +32,18 @@ TAKEN = frozenset(
 
 METHODS = {
     "closed": "solved in closed form",
-    "general": "solved by elimination to one joint's angle",
+    "general": "solved by elimination of all joint angles but one",
     "few_joints": "solved directly",
-    "any": "solved by a plan made when the program starts",
-    "locked": "solved by a plan made for every value of a joint held between others",
+    "any": "solved by a plan computed when the program starts",
+    "locked": "solved by a plan computed in every call, for the values of the locked joints",
 }
 
 
 @dataclass(frozen=True)
 class ExportedArm:
-    """kind: how it is solved (closed, general, short, any); plan: the numbers of that solver, named as in the
-    headers; room: rows that its solutions may need; identifier: its name as one of C++. held: the joints
-    whose values the caller gives, by number from 0; moving: the arm of the others, those held at zero, where
-    they stand at the ends.
+    """kind: a key of METHODS; plan: the numbers of that solver, named as in the headers; room: the largest
+    number of solutions; identifier: its name in C++. locked: the joints whose values are arguments, by number
+    from 0; moving: the arm of the other joints, with the locked ones at zero, if these are at the ends.
     """
 
     identifier: str
@@ -66,15 +65,15 @@ class ExportedArm:
 
     @property
     def solved(self) -> ExportedArm:
-        """The arm that the solver knows: without joints held at the ends."""
+        """The arm that the solver works on: without the locked joints at the ends."""
         return self.moving or self
 
     @property
     def method(self) -> str:
-        """How it is solved, as half a sentence."""
+        """The method of its solver, as a clause."""
         if not self.locked:
             return METHODS[self.kind]
-        return f"{METHODS[self.kind]}, with {self.locked_names} held"
+        return f"{METHODS[self.kind]}, with {self.locked_names} locked"
 
     @property
     def locked_names(self) -> str:
@@ -83,7 +82,7 @@ class ExportedArm:
 
 
 def exported_arm(robot: HasSolver, name: str | None, locked: Any = None) -> ExportedArm:
-    """The robot as the exports see it. locked: names or numbers of the joints whose values the caller gives.
+    """The robot as data for an export. locked: names or numbers of the joints whose values are arguments.
 
     Raises NoClosedFormError and InputError.
     """
@@ -100,19 +99,19 @@ def exported_arm(robot: HasSolver, name: str | None, locked: Any = None) -> Expo
 
 
 def numbers_of(solver: Solver) -> tuple[str, dict[str, Any]]:
-    """How an arm is solved, and its numbers; NoClosedFormError if some joints do the work of others."""
+    """The kind of the solver and its numbers; NoClosedFormError if the arm is redundant."""
     if solver.is_redundant:
         raise NoClosedFormError(explain_missing_form(solver))
     return _core._ik_numbers(solver)
 
 
 def vector(v: Array) -> dict[str, float]:
-    """As the headers keep it."""
+    """A vector as a field of the headers."""
     return {axis: float(x) for axis, x in zip("xyz", v, strict=True)}
 
 
 def checked_locked_joints(solver: Solver, locked: Any) -> tuple[int, ...]:
-    """The joints to hold, by number, ascending: those named, else the solver's own choice."""
+    """The joints to lock, by number, ascending: the given ones, else those that the solver chooses."""
     joints = len(solver.joint_names)
     if locked is None:
         return solver.redundant_joints if solver.is_redundant else ()
@@ -120,14 +119,17 @@ def checked_locked_joints(solver: Solver, locked: Any) -> tuple[int, ...]:
         locked = [locked]
     if isinstance(locked, Mapping) or not isinstance(locked, Iterable):
         raise InputTypeError(
-            f"locked is a {type(locked).__name__}, expected names of joints: each call gives their values"
+            f"locked is a {type(locked).__name__}, expected joint names; "
+            "their values are arguments of each call"
         )
     chosen = [joint_number(solver, key, "locked") for key in locked]
     if len(set(chosen)) < len(chosen):
-        raise InputError("locked names a joint twice")
+        raise InputError(
+            f"locked is {list(chosen)}, by number from 0, and names a joint twice; name each joint once"
+        )
     if not 1 <= joints - len(chosen) <= MAX_SETTLED:
         raise InputError(
-            f"locked holds {len(chosen)} of {joints} joints; from 1 to {MAX_SETTLED} must be left to move"
+            f"locked names {len(chosen)} of {joints} joints; 1 to {MAX_SETTLED} must remain unlocked"
         )
     return tuple(sorted(chosen))
 
@@ -140,7 +142,7 @@ def described(
     locked: tuple[int, ...] = (),
     moving: ExportedArm | None = None,
 ) -> ExportedArm:
-    """The words and numbers of an arm."""
+    """The names and numbers of an arm."""
     chain = solver.chain
     return ExportedArm(
         identifier=checked(name) if name is not None else identifier_from(solver.name),
@@ -164,13 +166,14 @@ def described(
 def checked(name: str) -> str:
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or is_taken(name):
         raise InputError(
-            f"name is {shown(name)}, expected letters, digits and single _, a letter first, and no keyword"
+            f"name is {shown(name)}, expected a letter, then letters, digits and single underscores, "
+            "and no keyword of C++ or Python"
         )
     return name
 
 
 def identifier_from(name: str) -> str:
-    """The name of a robot as an identifier: what is no letter or digit becomes _."""
+    """The name of a robot as an identifier; every other character becomes an underscore."""
     word = re.sub(r"_+", "_", re.sub(r"[^A-Za-z0-9]", "_", name)).strip("_").lower()
     if not word or not word[0].isalpha():
         word = f"arm_{word}".rstrip("_")

@@ -1,4 +1,4 @@
-"""One arm as a C99 interface and the one C++17 file behind it."""
+"""One arm as a C99 header and one C++17 file."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ __all__ = ["c_files"]
 
 
 def c_files(arm: ExportedArm, header: str) -> dict[str, str]:
-    """File names and texts: the header, and the source beside it."""
+    """File names and texts: the header and the source."""
     source = PurePath(header).with_suffix(".cpp").name
     words = {**words_of(arm), "source": source, "object": PurePath(header).with_suffix(".o").name}
     body = f'#include "{header}"\n\n{cpp_header(arm, one_file=True)}\n{filled("interface.c.in", words)}'

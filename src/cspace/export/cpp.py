@@ -16,7 +16,7 @@ from cspace.tolerances import ON_LIMIT
 __all__ = ["cpp_header", "words_of"]
 
 TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"
-"""Tables made when the program starts; made on first use they would need the run-time library of C++."""
+"""Tables are computed when the program starts; on first use they would need the C++ run-time library."""
 
 
 def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
@@ -39,7 +39,7 @@ def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
 
 
 def words_of(arm: ExportedArm) -> dict[str, Any]:
-    """The words that the templates leave open."""
+    """The values of the $words in the templates."""
     return {
         "name": arm.identifier,
         "title": arm.title,
@@ -71,7 +71,7 @@ LOCKED_WORDS = (
 
 
 def words_of_locked(arm: ExportedArm) -> dict[str, Any]:
-    """The words about joints whose values the caller gives; empty ones without such joints."""
+    """The values of the $words about locked joints; empty texts without locked joints."""
     if not arm.locked:
         return dict.fromkeys(LOCKED_WORDS, "")
     count, numbers = len(arm.locked), ", ".join(map(str, arm.locked))
@@ -105,7 +105,7 @@ def words_of_locked(arm: ExportedArm) -> dict[str, Any]:
 
 
 def chain_of(arm: ExportedArm) -> dict[str, Any]:
-    """The whole arm as the headers keep a chain."""
+    """The whole arm as a chain of the headers."""
     return {
         "n": arm.dof,
         "axis": [vector(axis) for axis in arm.axes],
@@ -122,7 +122,7 @@ def plan_of(arm: ExportedArm) -> dict[str, Any]:
 
 
 def solver(arm: ExportedArm) -> tuple[list[str], str]:
-    """Which headers of the core solve the arm, and the code that calls them."""
+    """The headers of the core that solve the arm, and the code that calls them."""
     headers = ["cspace/math/isa.hpp", "cspace/ik/goal.hpp", "cspace/ik/chain.hpp"]
     parts = ["refused", "given", f"solve_{arm.kind}"]
     if arm.kind == "few_joints":
@@ -143,7 +143,7 @@ def solver(arm: ExportedArm) -> tuple[list[str], str]:
 
 
 def renamed(text: str, words: dict[str, Any]) -> str:
-    """The namespace and the macros of the core under the name of the arm, so that nothing meets its like.
+    """The namespace and the macros of the core under the name of the arm, so that no names collide.
 
     The namespace of the instruction set holds all of the core, because C++17 knows no nested inline ones.
     """
@@ -153,6 +153,6 @@ def renamed(text: str, words: dict[str, Any]) -> str:
 
 
 def left_macros(text: str, prefix: str) -> list[str]:
-    """The macros that the text defines and leaves behind."""
+    """The macros that the text defines and does not undefine."""
     defined = set(re.findall(rf"^#define ({prefix}\w+)", text, re.M))
     return sorted(defined - set(re.findall(rf"^#undef ({prefix}\w+)", text, re.M)))

@@ -23,8 +23,8 @@ __all__ = ["LANGUAGES", "Export", "export"]
 LANGUAGES = MappingProxyType(
     {
         "cpp": "a C++17 header",
-        "c": "a C99 header and a C++17 file behind it",
-        "python": "a file that needs numpy alone, for closed forms",
+        "c": "a C99 header and a C++17 file",
+        "python": "a file that needs only numpy, for closed forms",
     }
 )
 BY_SUFFIX = MappingProxyType({".hpp": "cpp", ".hh": "cpp", ".hxx": "cpp", ".h": "c", ".py": "python"})
@@ -33,9 +33,9 @@ SUFFIXES = MappingProxyType({"cpp": ".hpp", "c": ".h", "python": ".py"})
 
 @dataclass(frozen=True)
 class Export:
-    """An arm as source code. language: one of LANGUAGES; name: of the namespace, or the prefix; method: how
-    it solves; files: the texts by file name, the one that users include first; example: a program with it;
-    held: the joints whose values its caller gives.
+    """An arm as source code. language: one of LANGUAGES; name: the namespace or the prefix; method: how the
+    arm is solved; files: the texts by file name, first the one that users include; example: a program that
+    uses it; locked: the joints whose values are arguments.
     """
 
     language: str
@@ -84,16 +84,15 @@ def export(
     name: str | None = None,
     locked: Any = None,
 ) -> Export:
-    """The inverse and forward kinematics of an arm as source code that needs nothing of cspace.
+    """The inverse and forward kinematics of an arm as source code that does not depend on cspace.
 
-    lang: "cpp", "c" or "python"; by the ending of path unless given, else "cpp". path: where to write the
-    (first) file. name: the namespace in it, or the prefix; made from the robot's name unless given.
-    locked: joints, by name or number, whose values the caller of the code gives with each goal; of an arm of
-    more than six joints the solver's own choice unless given.
+    lang: "cpp", "c" or "python"; by default the language of the ending of path, else "cpp". path: where the
+    (first) file is written. name: the namespace or the prefix in it; by default derived from the name of the
+    robot. locked: joints, by name or number, whose values are arguments of the exported function; by default
+    those that the solver chooses if the arm is redundant.
 
-    Raises UnknownNameError for a language that is none, InputError for a name, a path or joints that cannot
-    be used, NoClosedFormError for an arm that robot.ik does not solve, and for one without a closed form
-    where lang is "python".
+    Raises UnknownNameError for an unknown language, InputError for an invalid name, path or choice of joints,
+    and NoClosedFormError for an arm that robot.ik does not solve, or, with lang="python", has no closed form.
     """
     target = None if path is None else PurePath(path_of(path))
     language = language_of(lang, target)
@@ -107,14 +106,14 @@ def export(
 
 
 def language_of(lang: str | None, target: PurePath | None) -> str:
-    """The language asked for, or that of the file's ending."""
+    """The given language, or that of the file's ending."""
     if lang is None:
         if target is None:
             return "cpp"
         if target.suffix not in BY_SUFFIX:
             raise InputError(
-                f"the ending of {target.name!r} names no language; endings: {', '.join(BY_SUFFIX)}; "
-                "or say which with lang="
+                f"the ending of {target.name!r} is not that of a language; "
+                f"known endings: {', '.join(BY_SUFFIX)}; select the language with lang="
             )
         return BY_SUFFIX[target.suffix]
     if not isinstance(lang, str):
@@ -125,16 +124,23 @@ def language_of(lang: str | None, target: PurePath | None) -> str:
 
 
 def check_file_name(name: str, language: str) -> None:
-    """Refuse names that the files, which name each other, could not carry."""
+    """Raise InputError for names that an #include or an import cannot contain."""
     if not name:
         raise InputError("path is empty, expected the name of a file")
     if not name.isprintable() or set(name) & set('"\\'):
-        raise InputError(f"the file name {name!r} holds signs that no #include can carry")
+        raise InputError(
+            f"the file name {name!r} contains characters that are not allowed in an #include; "
+            "use printable characters without quotes and backslashes"
+        )
     stem, suffix = PurePath(name).stem, PurePath(name).suffix
     if language == "c" and suffix == ".cpp":
-        raise InputError(f"the file name {name!r} is that of the source behind the header; end it in .h")
+        raise InputError(
+            f"the file name {name!r} ends in .cpp, which is reserved for the second file; use the ending .h"
+        )
     if language == "python" and (not stem.isidentifier() or keyword.iskeyword(stem) or suffix != ".py"):
-        raise InputError(f"the file name {name!r} names no module; expected letters, digits, _ and .py")
+        raise InputError(
+            f"the file name {name!r} is not that of a module; expected letters, digits, underscores, then .py"
+        )
 
 
 def write_out(arm: ExportedArm, language: str, main: str) -> Export:
@@ -157,7 +163,7 @@ def method(arm: ExportedArm, language: str) -> str:
 
 
 def sample(arm: ExportedArm) -> str:
-    """A configuration without a pattern inside the limits, as a list of numbers."""
+    """An irregular configuration inside the limits, as a list of numbers."""
     values = []
     for i, (lower, upper) in enumerate(zip(arm.lower, arm.upper, strict=True)):
         low, high = max(lower, -2.0), min(upper, 2.0)

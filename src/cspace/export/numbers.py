@@ -26,7 +26,7 @@ def initialiser(value: Mapping[str, Any]) -> str:
 
 
 def literal(value: Any, name: str = "") -> str:
-    """A number, a list or a nested aggregate; text is taken as it is."""
+    """A number, a list or a nested aggregate; text is unchanged."""
     if isinstance(value, str):
         return value
     if isinstance(value, Mapping):
@@ -38,7 +38,7 @@ def literal(value: Any, name: str = "") -> str:
     if isinstance(value, int):
         return f"{ENUMS[name]}({value})" if name in ENUMS else str(value)
     if not math.isfinite(value):
-        raise InputError(f"{name} of the arm's plan is {value}, which no export can carry")
+        raise InputError(f"{name} of the arm's plan is {value}; an export can contain only finite numbers")
     return repr(float(value))
 
 

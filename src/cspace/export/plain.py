@@ -1,4 +1,4 @@
-"""Text in ASCII: compilers differ in what else they take in comments."""
+"""Text in ASCII: compilers differ in which other characters they accept in comments."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻ⁿᵏⁱᵀ", "0123456789
 
 
 def in_ascii(text: str) -> str:
-    """Greek letters by name, raised letters as powers, signs as people type them; what is left, as ?."""
+    """Greek letters by name, superscripts as powers, symbols in ASCII; every other character as ?."""
     text = re.sub("[⁰¹²³⁴-⁹⁻ⁿᵏⁱᵀ]+", lambda found: "^" + found[0].translate(RAISED), text)
     return re.sub(r"[^\x00-\x7f]", lambda found: letter(found[0]), text)
 

@@ -1,4 +1,4 @@
-"""One arm as a Python file that needs numpy alone: the arm's numbers and the closed form of its family."""
+"""One arm as a Python file that needs only numpy: the numbers of the arm and its closed form."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ PACKAGE = "cspace.export.python"
 WITH_WRIST = 1
 THREE_PARALLEL = 2
 
-# The modules of a method, in the order in which they are written down.
+# The modules of each method, in the order in which they are written.
 CLOSED = ("base", "trig_steps", "closed")
 METHODS = {
     "wrist": (*CLOSED, "pieper_position", "position_first"),
@@ -56,7 +56,7 @@ def python_file(arm: ExportedArm) -> str:
 
 
 def python_words_of_locked(arm: ExportedArm) -> dict[str, str]:
-    """The words about joints whose values the caller gives, and how the solver is called."""
+    """The values of the $words about locked joints, and the call of the solver."""
     solver = "solve_few_joints" if arm.solved.kind == "few_joints" else "solve_closed"
     if not arm.locked:
         none = dict.fromkeys(
@@ -79,9 +79,9 @@ def python_words_of_locked(arm: ExportedArm) -> dict[str, str]:
 
 
 def python_method(arm: ExportedArm) -> str:
-    """How the file solves the arm, as half a sentence."""
+    """The method of the file, as a clause."""
     how = "all solutions, directly" if arm.solved.kind == "few_joints" else "all solutions in closed form"
-    return f"{how}, with {arm.locked_names} held" if arm.locked else how
+    return f"{how}, with {arm.locked_names} locked" if arm.locked else how
 
 
 def method_of(arm: ExportedArm) -> str:
@@ -93,15 +93,15 @@ def method_of(arm: ExportedArm) -> str:
         )
     if solved.kind == "few_joints":
         return "few_joints"
-    chosen = f" with {arm.locked_names} held" if arm.locked else ""
+    chosen = f" with {arm.locked_names} locked" if arm.locked else ""
     raise NoClosedFormError(
-        f"{arm.title}{chosen} has no closed form; a Python file holds a closed form; "
+        f"{arm.title}{chosen} has no closed form, and a Python file can contain only closed forms; "
         "export it with lang='cpp' or lang='c'"
     )
 
 
 def numbers(arm: ExportedArm) -> dict[str, Any]:
-    """What the file's functions know of the arm that they solve."""
+    """The data of the arm that the functions of the file use."""
     if arm.kind == "few_joints":
         return {**chain_numbers(arm), "length": size_of(arm)}
     plan = {key: arm.plan[key] for key in arm.plan if key not in ("chain", "polish", "on_lanes")}
@@ -125,7 +125,7 @@ def size_of(arm: ExportedArm) -> float:
 
 
 def plain(value: Any) -> Any:
-    """The core's structures as numpy keeps them: poses (4, 4), vectors (3,), turns as complex numbers."""
+    """Structures of the core as arrays: poses (4, 4), vectors (3,), rotations as complex numbers."""
     if not isinstance(value, dict):
         return [plain(entry) for entry in value] if isinstance(value, list) else value
     keys = set(value)

@@ -1,4 +1,4 @@
-"""The texts that stand ready, with words left open as $word."""
+"""Templates: texts with placeholders $word."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ __all__ = ["filled", "template"]
 
 
 def template(name: str) -> str:
-    """The text as it stands."""
+    """The text of a template."""
     return (Path(__file__).parent / "templates" / name).read_text(encoding="utf-8")
 
 
 def filled(name: str, words: Mapping[str, Any]) -> str:
-    """The text with every word put in."""
+    """The text of a template with its placeholders replaced."""
     return Template(template(name)).substitute(words)

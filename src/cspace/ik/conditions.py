@@ -1,4 +1,4 @@
-"""The conditions on an arm's axes that closed forms rest on, measured, and why an arm has none."""
+"""The conditions of closed forms on the axes of an arm, measured, and the reason if an arm has none."""
 
 from __future__ import annotations
 
@@ -100,32 +100,30 @@ def how_many_joints(n: int) -> str:
 
 
 def explain_missing_form(robot: KinematicModel) -> str:
-    """Why `robot` has no closed form, as a sentence: the first reason that rules it out."""
+    """The first reason why `robot` has no closed form, as a sentence."""
     kinds = robot.chain.joint_types
     subject = (
         f"no closed form for {robot.name} ({f'{kinds}, ' if kinds else ''}{how_many_joints(len(kinds))})"
     )
     if robot.chain.dof != len(kinds):
-        return (
-            f"{subject}: joints that mimic others are not solved by this version; robot.ik_numeric(T) finds "
-            "one configuration"
-        )
+        return f"{subject}: mimic joints are not supported; robot.ik_numeric(T) finds one configuration"
     if not kinds:
         return f"{subject}: no joint moves"
     if robot.floating:
-        return f"{subject}: its base floats; a robot made without floating=True has a fixed one"
+        return f"{subject}: its base is floating; load the robot without floating=True"
     if len(kinds) > 16:
-        return f"{subject}: this version solves arms of up to sixteen joints"
+        return f"{subject}: arms with up to sixteen joints are supported"
     best = best_conditioning(robot)
     if best < _core.AXIS_RELATION:
         return (
-            f"{subject}: every configuration is singular, two of its joints do one's work (the Jacobian's "
-            f"smallest singular value is {best:.2g} at best); hold one joint still"
+            f"{subject}: every configuration is singular, because two joints have the same effect (the "
+            "largest "
+            f"smallest singular value of the Jacobian is {best:.2g}); lock one joint"
         )
     if "P" in kinds:
-        return f"{subject}: its joints slide"
+        return f"{subject}: it has prismatic joints"
     tested = "; ".join(str(c) for c in conditions(robot) if not c.holds)
     return (
-        f"{subject}: it needs the first or last three axes to meet in a point, or three neighbouring axes "
-        f"to be parallel. {tested}"
+        f"{subject}: the first or last three axes must meet in a point, or three adjacent axes must be "
+        f"parallel. {tested}"
     )

@@ -25,7 +25,7 @@ def least_squares_answer(found: Solutions) -> Solutions:
         q, away, turned = _core._ik_nearest_pose(solver, goal, 1.0)
         text = f"{away:.4g} m and {np.degrees(turned):.4g}°"
     q = wrap(q, solver.joint_types)
-    note = f"nothing reaches the goal; the nearest configuration misses it by {text}"
+    note = f"no configuration reaches the goal; the nearest one misses it by {text}"
     return Solutions.of(solver, goal, NEAREST, q[None, :], (-1,), (False,), note)
 
 
@@ -34,6 +34,6 @@ def least_squares_partial(found: Solutions) -> Solutions:
     about, goal = found._about, found._about.goal
     q, _, miss = nearest_to_goal(found)
     q = wrap(q, about.extended.joint_types)[None]
-    note = f"nothing reaches {goal.text}; the nearest configuration misses it by {miss}"
+    note = f"no configuration reaches {goal.text}; the nearest one misses it by {miss}"
     about = replace(about, q=q)
     return Solutions.of(found.solver, found.goal, NEAREST, goal.own_joints(q), (-1,), (False,), note, about)

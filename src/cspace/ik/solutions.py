@@ -1,4 +1,4 @@
-"""What inverse kinematics answers for one goal: the configurations, and everything one may ask about them."""
+"""The result of inverse kinematics for one goal: the configurations, and functions of them."""
 
 from __future__ import annotations
 
@@ -38,18 +38,18 @@ INCOMPLETE: Final = 8
 VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
 METRICS: Final = ("euclidean", "max")
 SAME_MEMBER: Final = 1e-6
-"""Distance [rad, m] from a seed within which the member of a family is the seed."""
+"""Distance [rad, m] from a seed within which a configuration of a self-motion is the seed."""
 ORIENTATION_FIRST: Final = 1e4
-"""Weight of a radian, in lengths of the arm, in the search for the way that is missing: it stays put."""
+"""Weight of a radian, in lengths of the arm, in the search for the distance: the orientation is kept."""
 ORIENTATION_KEPT: Final = 1e-3
-"""Largest angle [rad] left by that search at which the orientation counts as kept, if the way [m] is more."""
+"""Largest angle [rad] of that search at which the orientation counts as kept, if the distance [m] is more."""
 
 
 POSE_ASKS: Final = 6
 
 UNCERTIFIED: Final = (
-    "that these are all could not be certified: some nearly coincide, or share the angles by which the "
-    "solver tells them apart"
+    "completeness could not be certified, because some solutions nearly coincide, or share the angles that "
+    "distinguish them"
 )
 
 
@@ -61,7 +61,7 @@ class Solutions(_core.SolutionsBase):
     """Every configuration that reaches one goal.
 
     q: (k, dof) [rad, m], revolute joints in (−π, π]. goal: T_base_tip (4, 4). Truthy if there is a
-    solution; `status` is "exact", "singular", "unreachable" or "least_squares", and `reason` says it as one
+    solution; `status` is "exact", "singular", "unreachable" or "least_squares", and `reason` states it in one
     sentence. The filters `within`, `nearest`, `wrapped` return the same kind of object.
     """
 
@@ -94,7 +94,7 @@ class Solutions(_core.SolutionsBase):
 
     @property
     def status(self) -> str:
-        """ "exact", "singular" (some rows stand for a family), "unreachable" or "least_squares"."""
+        """ "exact", "singular" (some rows represent a self-motion), "unreachable" or "least_squares"."""
         return verdict_name(self._status)
 
     @property
@@ -103,7 +103,7 @@ class Solutions(_core.SolutionsBase):
 
     @property
     def complete(self) -> bool:
-        """Whether every solution is listed, families by a representative. A closed form always lists them
+        """Whether every solution is listed, self-motions by a representative. A closed form always lists them
         all; the general method certifies it goal by goal.
         """
         return self._status != NEAREST and not self._verdict & INCOMPLETE
@@ -117,8 +117,8 @@ class Solutions(_core.SolutionsBase):
 
     @property
     def goal_parts(self) -> dict[str, Any]:
-        """What was asked, by keyword: {"position": p, "direction": d} and the like, or {"pose": T}. The goal
-        itself is then one of the poses that meet it.
+        """The parts of the goal by keyword: {"position": p, "direction": d} and the like, or {"pose": T}. The
+        goal itself is then one of the poses that satisfy them.
         """
         if self._partial is not None:
             return dict(self._partial.value)
@@ -131,14 +131,14 @@ class Solutions(_core.SolutionsBase):
     @property
     def freedom(self) -> tuple[str, ...]:
         """The names of the parameters that the goal leaves free, one per dimension; empty if it leaves
-        none but in its families.
+        none except in self-motions.
         """
         return () if self._about is None else cast("tuple[str, ...]", self._about.freedom)
 
     @property
     def derivative(self) -> Array:
         """dq per base twist [v; ω] of the goal, (k, dof, 6): ik(exp(twist) goal) is q + derivative @ twist
-        to first order. NaN where a solution is singular. Made when read.
+        to first order. NaN where a solution is singular. Computed on access.
         """
         if self._partial is not None:
             moves = derivative(self._about.extended, self._about.q)
@@ -154,8 +154,8 @@ class Solutions(_core.SolutionsBase):
 
     @property
     def out_of_reach(self) -> float:
-        """By how much the goal is out of reach [m]: the shortest way it would have to move, orientation
-        kept.
+        """The distance [m] of the goal from the reachable poses: how far it would have to move with its
+        orientation kept.
         """
         if self._status != UNREACHABLE:
             return 0.0
@@ -167,7 +167,7 @@ class Solutions(_core.SolutionsBase):
 
     @property
     def reason(self) -> str:
-        """The verdict as one sentence."""
+        """The result as one sentence."""
         if self._note is not None:
             return self._note
         if self._status == UNREACHABLE:
@@ -182,13 +182,13 @@ class Solutions(_core.SolutionsBase):
         if self._status == SINGULAR:
             moving = sorted({name for self_motion in self.self_motions for name in self_motion.joints})
             is_pose = self.goal.shape == (4, 4) and self._partial is None
-            cause = "the pose is singular" if is_pose else "the goal leaves freedom"
-            text += f"; {cause}: {', '.join(moving)} can move while the tip stays"
+            cause = "the pose is singular" if is_pose else "the goal leaves a self-motion"
+            text += f"; {cause}: {', '.join(moving)} can move while the tip does not"
         return text if self.complete else text + "; " + UNCERTIFIED
 
     @property
     def self_motions(self) -> tuple[SelfMotion, ...]:
-        """The one-parameter families among the solutions, empty unless the pose is singular."""
+        """The one-parameter self-motions among the solutions, empty unless the pose is singular."""
         rows = [row for row, is_self_motion in enumerate(self._is_self_motion) if is_self_motion]
         if self._partial is not None:
             extended = self._about.extended
@@ -342,7 +342,7 @@ def how_many(k: int) -> str:
 
 
 def named(freedom: tuple[str, ...]) -> str:
-    """The dimensions that a goal leaves free."""
+    """The dimensions that a goal leaves free, as text."""
     k = len(freedom)
     return f"{k} dimension{'s' if k > 1 else ''} free: {', '.join(freedom)}"
 
@@ -379,11 +379,11 @@ def unreachable_reason(found: Solutions) -> str:
     _, missing, turned = _core._ik_nearest_pose(found.solver, found.goal, ORIENTATION_FIRST)
     if turned > min(ORIENTATION_KEPT, missing):
         return (
-            f"{name} ({found.solver.dof} joints) cannot take this orientation: the nearest configuration "
+            f"{name} ({found.solver.dof} joints) cannot reach this orientation: the nearest configuration "
             f"misses it by {np.degrees(turned):.4g}° and {missing:.4g} m"
             + hint_for_slight_miss(max(turned, missing))
         )
-    short = "" if found.solver.dof >= POSE_ASKS else f" ({found.solver.dof} joints, where poses ask for 6)"
+    short = "" if found.solver.dof >= POSE_ASKS else f" ({found.solver.dof} joints; a pose needs 6)"
     return (
         f"out of reach: the goal would have to move {missing:.4g} m, its orientation kept, "
         f"for {name}{short} to reach it" + (hint_for_slight_miss(missing) if short else "")
@@ -391,10 +391,10 @@ def unreachable_reason(found: Solutions) -> str:
 
 
 def hint_for_slight_miss(miss: float) -> str:
-    """What to ask where a goal that an arm of few joints was made for is missed by its rounding [m, rad]."""
+    """The remedy if an arm with few joints misses a goal only by rounding [m, rad]."""
     if miss > SLIGHT_MISS:
         return ""
-    return ", which the rounded numbers of a robot may cause; least_squares=True answers with the nearest"
+    return ", which rounded robot data may cause; least_squares=True returns the nearest configuration"
 
 
 def nearest_to_goal(found: Solutions, radian: float = 1.0) -> tuple[Array, float, str]:

@@ -176,7 +176,7 @@ class SolutionsBatch:
         verdict = self._verdict[index]
         if np.ndim(verdict):
             raise InputError(
-                f"index {index!r} picks {np.shape(verdict)} goals, expected one: use .q for slices"
+                f"index {index!r} selects {np.shape(verdict)} goals, expected one: use .q for slices"
             )
         goal = np.ascontiguousarray(self.goal[index])
         rows = self.q[index][: int(self.count[index])]

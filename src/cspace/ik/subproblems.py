@@ -54,15 +54,14 @@ __all__ = [
 
 @dataclass(frozen=True, eq=False)
 class SubproblemSolution:
-    """All answers of a subproblem (or of a batch of them); true if every problem has an exact answer.
+    """All solutions of a subproblem (or of a batch of them); true if every problem has an exact solution.
 
-    theta: (..., k) angles [rad] of up to k answers, or (..., k, m) where an answer has m angles; NaN beyond
+    theta: (..., k) angles [rad] of up to k solutions, or (..., k, m) for solutions of m angles; NaN beyond
         count.
-    count: (...) how many answers. Without an exact one there is one: the least-squares answer.
-    exact: (...) whether the answers satisfy the equation, to 1e-12 of the lengths in it.
-    free: (...) whether they belong to a family, of which theta holds representatives (an angle that does not
-        matter is 0).
-    residual: (...) the error left in the equation, in its unit.
+    count: (...) the number of solutions. Without an exact one it is 1, the least-squares solution.
+    exact: (...) whether the solutions satisfy the equation, to 1e-12 of the lengths in it.
+    free: (...) whether there are infinitely many solutions, which theta represents (an arbitrary angle is 0).
+    residual: (...) the error of the equation, in its unit.
     """
 
     theta: Array
@@ -76,15 +75,15 @@ class SubproblemSolution:
 
     @property
     def reason(self) -> str:
-        """In words: how many answers, or what is missing."""
+        """The number of solutions, or the error of the least-squares solution, as one sentence."""
         missed = np.size(self.exact) - np.count_nonzero(self.exact)
         if np.ndim(self.exact):
-            return f"{np.size(self.exact) - missed} of {np.size(self.exact)} problems have exact answers"
+            return f"{np.size(self.exact) - missed} of {np.size(self.exact)} problems have exact solutions"
         if missed:
-            return f"no exact answer: the best one leaves {float(self.residual):.3g}"
+            return f"no exact solution: the least-squares solution has the error {float(self.residual):.3g}"
         if self.free:
-            return "infinitely many answers; one of the family is given"
-        return "one answer" if self.count == 1 else f"{int(self.count)} answers"
+            return "infinitely many solutions; one of them is given"
+        return "one solution" if self.count == 1 else f"{int(self.count)} solutions"
 
 
 def axis_rows(value: Any, subject: str, last: tuple[int, ...] = (3,)) -> Array:

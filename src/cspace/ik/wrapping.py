@@ -1,4 +1,4 @@
-"""Whole turns of revolute joints: the same pose, other numbers.
+"""Multiples of 2π of revolute joints: the same pose, other joint values.
 
 q: (k, dof) configurations; kinds: one "R" or "P" per joint; lower, upper: (dof,) limits, infinite where
 absent.
@@ -111,7 +111,7 @@ def all_windings(
         ]
         if math.prod(count for _, count in turns) + len(out) > MOST_WINDINGS:
             raise InputError(
-                f"the limits leave room for more than {MOST_WINDINGS} whole-turn copies of the solutions; "
+                f"the limits contain more than {MOST_WINDINGS} copies of the solutions by multiples of 2π; "
                 "narrow them, or leave out windings=True"
             )
         choices = [[first + TURN * k for k in range(count)] for first, count in turns]

@@ -153,7 +153,7 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
 
 
 def _coordinates(source: Tree | Chain, description: Description | None) -> dict[str, Any]:
-    """What a tree and a chain say about their coordinates in the same words."""
+    """The properties of coordinates that trees and chains share."""
     law = source.coordinates
     kinds = dict(zip(source.joint_names, source.joint_types, strict=True))
     for name in law.names:  # a joint may follow one that is not in the chain
@@ -217,7 +217,9 @@ def mount(assembly: Assembly, name: str, T_world_base: Array) -> None:
     Raises InputError for a floating base.
     """
     if assembly.floating:
-        raise InputError(f"the base of {name} floats: give T_world_base= in each call instead of mounting it")
+        raise InputError(
+            f"the base of {name} is floating; give T_world_base= in each call instead of with_base"
+        )
     on_base = assembly.parent < 0
     assembly.T_parent_joint[on_base] = T_world_base @ assembly.T_parent_joint[on_base]
     fixed = assembly.frame_joint < 0
@@ -242,7 +244,8 @@ def add_tool(assembly: Assembly, name: str, T_tip_tool: Array) -> None:
     """
     if assembly.tip is None or assembly.chain is None:
         raise InputError(
-            f"{name} branches, so a tool has no place; choose a tip=: {tip_choices(assembly.leaves)}"
+            f"{name} branches, so there is no unique tip for a tool; choose a tip=: "
+            f"{tip_choices(assembly.leaves)}"
         )
     tool = "tool"
     while tool in assembly.frame_index:
@@ -269,5 +272,5 @@ def screws(assembly: Assembly, name: str) -> Chain:
 
 
 def tip_choices(leaves: tuple[str, ...]) -> str:
-    """What may be the tip of a robot that branches, in words."""
+    """The possible tips of a branching robot, as text."""
     return f"{', '.join(leaves)}, or any other link, such as the one that carries a gripper"

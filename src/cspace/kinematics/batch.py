@@ -47,7 +47,7 @@ def rows_of(
     """The arguments of a call as a Batch, their leading axes broadcast against each other.
 
     Raises InputError for a wrong shape, NaN or inf in anything but q (the loops look at q themselves; see
-    refuse_infinite), a pose that is none, or leading axes that do not fit; InputTypeError for what is no
+    refuse_infinite), an invalid pose, or leading axes that do not broadcast; InputTypeError for what is not a
     number.
     """
     check_robot(robot)
@@ -65,7 +65,7 @@ def rows_of(
         shape = np.broadcast_shapes(*leads.values())
     except ValueError:
         listed = ", ".join(f"{name} {array.shape}" for name, (array, _) in given.items())
-        raise InputError(f"the leading axes of {listed} do not fit together") from None
+        raise InputError(f"the leading axes of {listed} do not broadcast") from None
 
     def rows(name: str, *, shared: bool) -> Array | None:
         if name not in given:
@@ -96,25 +96,25 @@ def refuse_infinite(batch: Batch) -> None:
 
 
 def check_robot(robot: object) -> None:
-    """Raise InputTypeError for what is no robot, such as its name."""
+    """Raise InputTypeError for an object that is not a robot, such as its name."""
     if not isinstance(robot, KinematicModel):
         raise InputTypeError(
-            f"this function takes a robot first, got {type(robot).__name__};"
-            " cspace.load_robot(name) makes one"
+            f"the first argument must be a Robot, got {type(robot).__name__};"
+            " cspace.load_robot(name) returns one"
         )
 
 
 def frame_number(robot: KinematicModel, frame: str | None) -> int:
     """The number of a frame among `robot.frames`, of the tip if None.
 
-    Raises UnknownNameError for a name that is not there, InputError where a tree leaves the choice.
+    Raises UnknownNameError for an unknown name, InputError for a tree without a tip.
     """
     check_robot(robot)
     if frame is None:
         frame = robot.tip
     if frame is None:
         raise InputError(
-            f"{robot.name} branches, so name a frame: frame= in this call, or tip= where the robot is made;"
+            f"{robot.name} branches, so name a frame: frame= in this call, or tip= when the robot is made;"
             f" its branches end at {', '.join(robot.leaves)}"
         )
     if not isinstance(frame, str):
@@ -138,7 +138,7 @@ def output(out: Any, shape: tuple[int, ...], subject: str = "out") -> Array:
     if out.shape != shape:
         raise InputError(f"{subject} has shape {out.shape}, expected {shape}")
     if not (out.flags.c_contiguous and out.flags.writeable and out.flags.aligned):
-        raise InputError(f"{subject} must be C-contiguous and writeable; np.empty{shape} is")
+        raise InputError(f"{subject} must be C-contiguous and writeable, such as np.empty({shape})")
     return out
 
 
@@ -175,7 +175,7 @@ def thread_count(threads: Any, shape: tuple[int, ...]) -> int:
 def whole_number(value: Any, subject: str, least: int, most: int, note: str = "") -> int:
     """The value as an int between two bounds.
 
-    Raises InputTypeError for what is no whole number, InputError outside the bounds.
+    Raises InputTypeError for a value that is not an integer, InputError outside the bounds.
     """
     try:
         count = operator.index(value)

@@ -64,6 +64,6 @@ def center_of_mass_jacobian(
 
 def _compute(robot: KinematicModel, batch: Batch, center: Array | None, columns: Array | None) -> None:
     if robot.mass == 0.0:
-        raise InputError(f"no link of {robot.name} has a mass; its description holds no inertial data")
+        raise InputError(f"no link of {robot.name} has a mass; add inertial data to its description")
     if not robot._tree_rows(batch.q, batch.T_world_base, None, center, columns, batch.threads):
         refuse_infinite(batch)

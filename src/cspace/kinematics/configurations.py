@@ -23,13 +23,13 @@ def random_configurations(
     """Configurations drawn uniformly between the limits.
 
     limits: of the joints, each (n_joints,). joint_types: "R" or "P" per joint. n: how many; None gives one,
-    without a leading axis. rng: seed or generator. A turning joint without limits is drawn from (−π, π];
-    one without limits on one side from the half turn inside the other; a sliding joint without limits needs
+    without a leading axis. rng: seed or generator. A revolute joint without limits is sampled from (−π, π];
+    one with a limit on one side from the π inside it; a prismatic joint without limits needs
     reach, the length [m] drawn on the open side.
 
     Returns q (n, n_joints) or (n_joints,) [rad or m].
-    Raises InputError for a sliding joint that is open on a side and has no reach, a negative n or reach;
-    InputTypeError for what is no number.
+    Raises InputError for a prismatic joint with an open side and without reach, a negative n or reach;
+    InputTypeError for values that are not numbers.
     """
     if n is not None:
         n = whole_number(n, "n", 0, sys.maxsize)
@@ -42,7 +42,8 @@ def random_configurations(
             continue
         if span is None:
             raise InputError(
-                f"joint {i} slides between {lower[i]:g} and {upper[i]:g} m; an open range needs reach="
+                f"prismatic joint {i} has the limits {lower[i]:g} and {upper[i]:g} m; without a finite "
+                "range give reach="
             )
         if not np.isfinite(lower[i]) and not np.isfinite(upper[i]):
             lower[i], upper[i] = -span, span
@@ -51,7 +52,7 @@ def random_configurations(
         else:
             lower[i] = upper[i] - span
     shape = (lower.size,) if n is None else (n, lower.size)
-    # From the upper end downward: of a whole turn −π is left out and π is in.
+    # From the upper end downward: (−π, π] excludes −π and includes π.
     return np.asarray(upper - (upper - lower) * as_generator(rng).random(shape))
 
 

@@ -57,7 +57,7 @@ def row_numbers(rows: str | Iterable[str]) -> list[int]:
         if not isinstance(name, str) or name not in ROWS:
             raise suggest("row", name, (*ROWS, *GROUPS), owner="the Jacobian")
     if not names or len(set(names)) < len(names):
-        raise InputError(f"rows are {names}; each must be named once, and one at least")
+        raise InputError(f"rows are {names}; name at least one, and each only once")
     return [ROWS.index(name) for name in names]
 
 
@@ -75,7 +75,7 @@ def singular_values(
     """The singular values of the Jacobian.
 
     J = U Σ Vᵀ; σᵢ is the speed along uᵢ per unit of joint velocity along vᵢ. Rows in m/s and rad/s are
-    weighed alike, so with "all" a metre counts as a radian: scale lengths first if that is not meant.
+    weighted equally, so with "all" a metre counts as a radian: scale lengths first if this is not intended.
 
     q (..., n) [rad or m]. rows: "all", "linear", "angular" or names out of vx, vy, vz, wx, wy, wz, in the
     axes of expressed_in. frame, point (..., 3), T_world_base (..., 4, 4), threads: as in jacobian. The base

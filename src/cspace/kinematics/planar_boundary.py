@@ -29,7 +29,7 @@ Flags = npt.NDArray[np.bool_]
 
 @dataclass(frozen=True, eq=False)
 class PlanarArm:
-    """Links of lengths (n,) [m], each turning within ranges (n, 2): start and width of αᵢ [rad]."""
+    """Links of lengths (n,) [m], each rotating within ranges (n, 2): start and width of αᵢ [rad]."""
 
     lengths: Array
     ranges: Array
@@ -59,7 +59,7 @@ class Arc:
 
 
 def within(angle: Array, start: float, width: float) -> Flags:
-    """Whether angles lie in a range, whole turns aside; its ends count, up to rounding."""
+    """Whether angles lie in a range modulo 2π; its ends count, up to rounding."""
     if width >= TURN:
         return np.ones(np.shape(angle), dtype=bool)
     past = np.mod(angle - start + SAME_PLACE, TURN)
@@ -69,7 +69,7 @@ def within(angle: Array, start: float, width: float) -> Flags:
 def critical_arcs(arm: PlanarArm) -> list[Arc]:
     """The arcs on which the tip is where the joints away from their limits lie on a line with it."""
     n = len(arm.lengths)
-    # Per joint: held at either limit, or free; a free joint after the first free one is straight or folded.
+    # Per joint: locked at either limit, or free; a free joint after the first free one is straight or folded.
     choices = [("free", "low", "high") if width < TURN else ("free",) for _, width in arm.ranges]
     arcs = []
     for holds in product(*choices):
@@ -211,12 +211,12 @@ def _split(arc: Arc, others: list[Arc]) -> list[tuple[float, float]]:
 
 
 def _onto(arc: Arc, angle: float) -> float:
-    """The angle shifted by whole turns to the first place at or after the start of the arc."""
+    """The angle shifted by a multiple of 2π to the first value at or after the start of the arc."""
     return float(arc.start + (angle - arc.start) % TURN)
 
 
 def _side(arm: PlanarArm, arc: Arc, low: float, high: float) -> int:
-    """+1 if beside the middle of a piece only the inside is reachable, −1 only the outside, or 0."""
+    """+1 if next to the middle of a piece only the inside is reachable, −1 only the outside, or 0."""
     middle = np.array([(low + high) / 2.0])
     aside = min(10.0 * SAME_PLACE * arm.reach, 0.5 * arc.radius)
     near = [Arc(arc.center, arc.radius + shift, 0.0, TURN).at(middle)[0] for shift in (-aside, aside)]
@@ -244,6 +244,6 @@ def _joined(pieces: list[Array], gap: float) -> list[Array]:
             if distances[nearest] > gap:
                 break
             curve = np.concatenate([curve, left.pop(nearest)[1:]])
-        if np.ptp(curve, axis=0).max() > gap:  # what is smaller is left over where circles touch
+        if np.ptp(curve, axis=0).max() > gap:  # smaller curves are remainders where circles touch
             curves.append(_closed(curve))
     return curves

@@ -81,13 +81,13 @@ def singularity(
     J = jacobian(robot, q, frame, point=point, expressed_in=expressed_in, T_world_base=T_world_base)
     if J.ndim != 2:
         raise InputError(
-            f"singularity explains one configuration, got {J.shape[:-2]} of them;"
-            " distance_to_singularity takes batches"
+            f"singularity takes one configuration, got {J.shape[:-2]} of them;"
+            " distance_to_singularity accepts batches"
         )
     J = J[:, robot.dof - len(robot.joint_names) :]
     on_path = np.flatnonzero(np.abs(J).max(axis=0, initial=0.0) > 0.0)
     if on_path.size == 0:
-        raise InputError(f"no joint of {robot.name} moves this frame, so it has no freedom to lose")
+        raise InputError(f"no joint of {robot.name} moves this frame, so it has no singularity")
     J = J[chosen][:, on_path]
     U, sigma, Vt = np.linalg.svd(J)
     dependent = _dependent(J, Vt[sigma.size - 1])

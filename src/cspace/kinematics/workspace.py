@@ -24,7 +24,7 @@ class Workspace:
     """Reachable positions of a frame.
 
     points (n, 3): positions [m] in the base. q (n, n_joints): the configurations [rad or m] that reach them.
-    boundary: closed curves (m, 3) [m], the first point repeated, for a planar arm of turning joints; empty
+    boundary: closed curves (m, 3) [m], the first point repeated, for a planar arm of revolute joints; empty
     for other robots. Of one joint it is the arc of the tip, there and back. area: what they enclose [m²],
     None without a boundary.
     """
@@ -54,13 +54,13 @@ def workspace(
 
     The configurations are uniform between the limits, so the points crowd where many configurations lead to
     one place: they show reach, not density. The boundary is that of the tip of a serial arm whose joints
-    all turn about parallel axes: of up to three joints with any limits, or of any number without limits.
+    all rotate about parallel axes: of up to three joints with any limits, or of any number without limits.
 
     n: how many points. frame: its name; without it the tip. rng: seed or generator. reach [m]: range drawn
-    from where a sliding joint has no limits. threads: as in fk.
+    from if a prismatic joint has no limits. threads: as in fk.
 
     Returns a Workspace: points (n, 3), q (n, n_joints), boundary curves (m, 3).
-    Raises InputError for an n below 1 and for a sliding joint without limits and reach.
+    Raises InputError for an n below 1 and for a prismatic joint without limits and reach.
 
     Kumar and Waldron 1981.
     """

@@ -22,9 +22,9 @@ def circumscribe_discs(centers: Any, radii: Any, sides: int) -> list[Array]:
     if reach.shape not in {(), (len(at),)}:
         raise InputError(f"radii has shape {reach.shape}, expected () or ({len(at)},): one per disc")
     if not np.all(reach > 0):
-        raise InputError(f"radii has {np.min(reach):g} in it; a disc has a radius above zero [m]")
+        raise InputError(f"radii contains {np.min(reach):g}; the radius of a disc must be above zero [m]")
     if int(number := one_number(sides, "sides")) != number or not 4 <= sides <= MOST_SIDES:
-        raise InputError(f"sides is {sides}; a polygon around a disc has 4 to {MOST_SIDES} here")
+        raise InputError(f"sides is {sides}; it must be 4 to {MOST_SIDES}")
     angles = 2 * np.pi * (np.arange(int(sides)) + 0.5) / sides
     around = np.stack([np.cos(angles), np.sin(angles)], axis=1) / np.cos(np.pi / sides)
     sizes = np.broadcast_to(reach, len(at))

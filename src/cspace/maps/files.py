@@ -28,4 +28,6 @@ def read_map_text(path: str | os.PathLike[str]) -> str:
     try:
         return read_map_bytes(path).decode("utf-8-sig")
     except UnicodeDecodeError as error:
-        raise MapError(f"byte {error.start}: a map file is UTF-8 text", path=check_map_path(path)) from None
+        raise MapError(
+            f"byte {error.start}: a map file must be UTF-8 text", path=check_map_path(path)
+        ) from None

@@ -41,13 +41,13 @@ def _parse_file(path: str) -> dict[str, Any]:
     try:
         found = json.loads(read_map_text(path))
     except RecursionError:
-        raise MapError("is no GeoJSON: nested without end", path=path) from None
+        raise MapError("this is not GeoJSON: it is nested too deeply", path=path) from None
     except json.JSONDecodeError as error:
-        raise MapError(f"is no JSON: {error.msg}", path=path, line=error.lineno) from None
+        raise MapError(f"this is not JSON: {error.msg}", path=path, line=error.lineno) from None
     except ValueError as error:
-        raise MapError(f"is no JSON that can be read: {error}", path=path) from None
+        raise MapError(f"this JSON cannot be read: {error}", path=path) from None
     if not isinstance(found, dict):
-        raise MapError(f"is no GeoJSON object but a {type(found).__name__}", path=path)
+        raise MapError(f"this is not a GeoJSON object but a {type(found).__name__}", path=path)
     return found
 
 
@@ -69,7 +69,7 @@ def _find_polygons(thing: Any, path: str | None, where: str) -> Iterator[list[An
         for i, rings in enumerate(_get_list(thing, "coordinates", path, where)):
             yield _drop_heights(rings, path, f"{where}, polygon {i}")
     elif kind not in _SKIPPED:
-        raise MapError(f"{where} has the type {kind!r}, which GeoJSON does not know", path=path)
+        raise MapError(f"{where} has the type {kind!r}, which is not a GeoJSON type", path=path)
 
 
 def _get_list(thing: dict[str, Any], name: str, path: str | None, where: str) -> list[Any]:

@@ -42,7 +42,7 @@ def grow_outlines(
     xmin, ymin, xmax, ymax = map(float, bounds)
     if not (xmin + reach < xmax - reach and ymin + reach < ymax - reach):
         raise InputError(
-            f"radius {reach:g} leaves no room inside the bounds, of {xmax - xmin:g} × {ymax - ymin:g} m"
+            f"radius {reach:g} leaves no free space inside the bounds, of {xmax - xmin:g} × {ymax - ymin:g} m"
         )
     rings = [ring for obstacle in outlines for ring in obstacle]
     corners = np.vstack([np.empty((0, 2)), *rings])
@@ -72,7 +72,7 @@ def _check_sides(sides: Any) -> None:
     if isinstance(sides, bool) or not isinstance(sides, (int, np.integer)):
         raise InputTypeError(f"sides is a {type(sides).__name__}; it must be a whole number")
     if not 4 <= sides <= MOST_SIDES:
-        raise InputError(f"sides is {sides}; a polygon around a disc has 4 to {MOST_SIDES} here")
+        raise InputError(f"sides is {sides}; it must be 4 to {MOST_SIDES}")
 
 
 def _quantise_directions(vectors: Array) -> Directions:

@@ -77,10 +77,10 @@ def _read_pgm(data: bytes, name: str) -> Array:
 def _read_text_pixels(text: bytes, count: int, at: int, name: str) -> Array:
     words = re.sub(rb"#[^\n]*", b"", text).split()
     if len(words) != count:
-        raise MapError(f"byte {at}: {len(words)} pixels follow; the size says {count}", path=name)
+        raise MapError(f"byte {at}: {len(words)} pixels follow, expected {count} from the size", path=name)
     if not all(word.isdigit() and len(word) <= 5 for word in words):
         bad = next(word for word in words if not (word.isdigit() and len(word) <= 5))
-        raise MapError(f"a pixel is {ascii(bad[:20])[1:]}; pixels are whole numbers", path=name)
+        raise MapError(f"a pixel is {ascii(bad[:20])[1:]}; pixels must be whole numbers", path=name)
     return np.array([int(word) for word in words], float)
 
 

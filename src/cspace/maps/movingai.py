@@ -48,7 +48,9 @@ class Scenarios(NamedTuple):
         rows = np.array([self.start[line][::-1], self.goal[line][::-1]])
         if (rows >= grid.shape).any():
             sizes = " × ".join(map(str, grid.shape))
-            raise InputError(f"line {line} has cells outside of this grid of {sizes}; give its own map")
+            raise InputError(
+                f"line {line} has cells outside this grid of {sizes}; give the map of the scenario"
+            )
         start, goal = grid.center_of(rows)
         return start, goal
 
@@ -58,7 +60,7 @@ def read_movingai(path: str | os.PathLike[str]) -> npt.NDArray[np.bool_]:
     name = check_map_path(path)
     lines = read_map_bytes(path).split(b"\n")
     if lines[0].split() != [b"type", b"octile"]:
-        raise MapError("a MovingAI map begins with the line 'type octile'", path=name, line=1)
+        raise MapError("the first line of a MovingAI map must be 'type octile'", path=name, line=1)
     sizes: dict[bytes, int] = {}
     at = 1
     while at < len(lines) and lines[at].strip() != b"map":
@@ -66,7 +68,7 @@ def read_movingai(path: str | os.PathLike[str]) -> npt.NDArray[np.bool_]:
         if len(words) != 2 or words[0] not in (b"height", b"width") or not words[1].isdigit():
             raise MapError("expected 'height', 'width' and a whole number, or 'map'", path=name, line=at + 1)
         if len(words[1]) > 9 or not 0 < int(words[1]) <= MAP_CELLS:
-            raise MapError(f"a side has 1 … {MAP_CELLS} cells", path=name, line=at + 1)
+            raise MapError(f"the number of cells of a side must be 1 … {MAP_CELLS}", path=name, line=at + 1)
         sizes[words[0]] = int(words[1])
         at += 1
     if len(sizes) < 2 or at >= len(lines):
@@ -108,7 +110,7 @@ def read_scenarios(path: str | os.PathLike[str]) -> Scenarios:
     name = check_map_path(path)
     lines = read_map_bytes(path).decode("utf-8", "replace").split("\n")
     if lines[0].split() not in VERSIONS:
-        raise MapError("a scenario file begins with the line 'version 1'", path=name, line=1)
+        raise MapError("the first line of a scenario file must be 'version 1'", path=name, line=1)
     rows: list[tuple[int, int, int, int]] = []
     lengths: list[float] = []
     for number, line in enumerate(lines[1:], 2):

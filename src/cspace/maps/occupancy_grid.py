@@ -51,8 +51,8 @@ class OccupancyGrid(_core.GridBase):
             raise InputError(message + f"float64 tells cells apart up to {FARTHEST_CELL:g} of them")
         if side < FINEST_CELL or reach > FARTHEST_POINT:
             raise InputError(
-                f"resolution is {side:g} and the farthest cell {reach:.3g} m away; cells have sides of "
-                f"{FINEST_CELL:g} m at least and lie within {FARTHEST_POINT:g} m"
+                f"resolution is {side:g} and the farthest cell {reach:.3g} m away; the sides of cells must "
+                f"be at least {FINEST_CELL:g} m, and all cells must lie within {FARTHEST_POINT:g} m"
             )
         super().__init__(cells, side, *corner)
 
@@ -173,7 +173,7 @@ class OccupancyGrid(_core.GridBase):
         if place == OUTSIDE:
             x0, y0, x1, y1 = self.bounds
             spans = f"x {x0:g} … {x1:g}, y {y0:g} … {y1:g} [m]"
-            raise InputError(f"{subject} ({x:g}, {y:g}) is outside of the grid, which spans {spans}")
+            raise InputError(f"{subject} ({x:g}, {y:g}) is outside the grid, which spans {spans}")
         return x, y, place, row, column
 
     def inflate(self, radius: float, *, clear: str = "cells") -> OccupancyGrid:
@@ -222,18 +222,16 @@ def _read_cells(blocked: Any) -> npt.NDArray[np.uint8]:
     cells = np.asarray(blocked)
     if cells.dtype != np.bool_:
         if cells.dtype.kind not in "iuf":
-            raise InputTypeError(
-                f"blocked must be truth values, got {type(blocked).__name__} of {cells.dtype}"
-            )
+            raise InputTypeError(f"blocked must be boolean, got {type(blocked).__name__} of {cells.dtype}")
         whole = cells.astype(np.bool_)
         if not np.array_equal(whole, cells):
             bad = cells[whole != cells].flat[0]
             raise InputError(
-                f"blocked holds {bad}; cells are 0 (free) or 1 (blocked): compare with a threshold"
+                f"blocked contains {bad}; cells must be 0 (free) or 1 (blocked): compare with a threshold"
             )
         cells = whole
     if cells.ndim != 2 or 0 in cells.shape:
         raise InputError(f"blocked has shape {cells.shape}, expected (rows, columns), at least one of each")
     if cells.size > MAP_CELLS:
-        raise InputError(f"blocked has {cells.size} cells; at most {MAP_CELLS} are taken")
+        raise InputError(f"blocked has {cells.size} cells; the maximum is {MAP_CELLS}")
     return np.ascontiguousarray(cells).view(np.uint8)

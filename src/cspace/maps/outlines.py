@@ -49,7 +49,7 @@ def _read_ring(points: Any, subject: str) -> Array:
     kept = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)] if len(ring) > 1 else ring
     if len(kept) < 2:
         count = "no corners" if not len(ring) else "one corner only"
-        raise InputError(f"{subject} has {count}; a polygon needs three or more")
+        raise InputError(f"{subject} has {count}; a polygon needs at least three")
     return np.ascontiguousarray(kept, dtype=np.float64)
 
 
@@ -61,7 +61,7 @@ def check_bounds(bounds: Any) -> Array:
     xmin, ymin, xmax, ymax = map(float, given)
     if not (xmin < xmax and ymin < ymax):
         raise InputError(
-            f"bounds ({xmin:g}, {ymin:g}, {xmax:g}, {ymax:g}) enclose nothing; expected xmin, ymin, xmax, "
+            f"bounds ({xmin:g}, {ymin:g}, {xmax:g}, {ymax:g}) enclose no area; expected xmin, ymin, xmax, "
             "ymax with xmin < xmax and ymin < ymax"
         )
     return np.array(given)

@@ -247,7 +247,7 @@ def _build_core(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore
     tolerance = ON_WALL * float(np.max(bounds[2:] - bounds[:2]))
     core = _core.PolygonCore(points, ends, owners, bounds.reshape(2, 2), tolerance)
     if not core.complete:
-        raise GeometryError("the obstacles cross each other too often to be told apart; simplify them")
+        raise GeometryError("the obstacles cross each other too often to be separated; simplify them")
     return core
 
 

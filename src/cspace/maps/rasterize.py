@@ -29,14 +29,14 @@ def rasterize_world(
     if not side > 0:
         raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
     if not wide / side <= MAP_CELLS:
-        raise InputError(f"resolution {side:g} makes more than {MAP_CELLS:g} cells along one side")
+        raise InputError(
+            f"resolution {side:g} gives more than {MAP_CELLS:g} cells along one side; choose larger cells"
+        )
     rows, columns = (
         math.ceil((high - low) / side - CELL_ROUNDING) for low, high in ((ymin, ymax), (xmin, xmax))
     )
     if rows * columns > MAP_CELLS:
-        raise InputError(
-            f"resolution {side:g} makes {rows} × {columns} cells; at most {MAP_CELLS:g} make sense"
-        )
+        raise InputError(f"resolution {side:g} makes {rows} × {columns} cells; the maximum is {MAP_CELLS:g}")
     blocked = np.zeros((rows, columns), dtype=np.uint8)
     core.rasterize(side, blocked)
     return blocked.view(np.bool_), side

@@ -28,7 +28,7 @@ def check_area(outlines: Sequence[Sequence[Array]], repair: bool) -> list[str]:
                 continue
             what = f"obstacle {k} has no area: its {len(ring)} corners lie on one line"
             if not repair:
-                raise GeometryError(f"{what}; give it an area, or repair=True keeps it as a wall")
+                raise GeometryError(f"{what}; correct its corners, or keep it as a wall with repair=True")
             said.append(f"{what}; kept as a wall without thickness")
     return said
 
@@ -55,6 +55,6 @@ def describe_crossings(core: _core.PolygonCore, repair: bool) -> list[str]:
         more = f" and {len(places) - 1} more places" if len(places) > 1 else ""
         what = f"obstacle {obstacle} crosses itself at ({x:g}, {y:g}){more}"
         if not repair:
-            raise GeometryError(f"{what}; order its corners, or repair=True reads it by the even-odd rule")
+            raise GeometryError(f"{what}; order its corners, or apply the even-odd rule with repair=True")
         said.append(f"{what}; read by the even-odd rule: what its outline surrounds twice is free")
     return said

@@ -46,7 +46,9 @@ def read_ros(path: str | os.PathLike[str]) -> RosMap:
             raise MapError(f"the field '{field}:' is missing", path=name)
     mode = str(fields.get("mode", ("trinary", 0))[0])
     if mode != "trinary":
-        raise MapError(f"mode {mode!r} has cells that are half free; only 'trinary' is read", path=name)
+        raise MapError(
+            f"mode {mode!r} has partly free cells, which are not supported; use mode 'trinary'", path=name
+        )
     resolution = _get_number(fields, "resolution", name)
     if not 0 < resolution < math.inf:
         raise MapError("resolution must be positive [m]", path=name, line=fields["resolution"][1])
@@ -81,7 +83,10 @@ def write_ros(
     name = check_map_path(path)
     stem, ending = os.path.splitext(name)
     if ending not in {".yaml", ".yml"}:
-        raise InputError(f"path is {name!r}; a map of ROS ends in .yaml, its image is written beside it")
+        raise InputError(
+            f"path is {name!r}; the name of a ROS map must end in .yaml; its image is written to the same "
+            "folder"
+        )
     image = stem + ".pgm"
     with whole_file(image) as draft:
         draft.write_bytes(encode_pgm(np.where(blocked[::-1], np.uint8(0), np.uint8(254))))
@@ -117,14 +122,18 @@ def _read_fields(document: str, name: str) -> _Fields:
             continue  # inside a field that map files do not have
         field, value = pair.group(2), pair.group(3) or ""
         if field in fields:
-            raise MapError(f"the field '{field}:' stands here for the second time", path=name, line=number)
+            raise MapError(
+                f"the field '{field}:' appears for the second time; keep one", path=name, line=number
+            )
         open_list = None
         if not value:
             open_list = []
             fields[field] = (open_list, number)
         elif value.startswith("["):
             if not value.endswith("]"):
-                raise MapError("a list in brackets ends in its line", path=name, line=number)
+                raise MapError(
+                    "a list in brackets must end in the line in which it begins", path=name, line=number
+                )
             fields[field] = ([_read_scalar(part) for part in value[1:-1].split(",") if part.strip()], number)
         else:
             fields[field] = (_read_scalar(value), number)
@@ -167,7 +176,7 @@ def _get_origin(fields: _Fields, name: str) -> tuple[float, float]:
     if not isinstance(value, list) or len(value) not in (2, 3):
         raise MapError("origin must be a list [x, y, yaw]", path=name, line=line)
     if not all(isinstance(part, float) and math.isfinite(part) for part in value):
-        raise MapError("origin must hold finite numbers", path=name, line=line)
+        raise MapError("origin must contain finite numbers", path=name, line=line)
     if len(value) == 3 and value[2] != 0:
         message = f"the map is turned by {value[2]:g} rad; turn the image and give it a yaw of 0"
         raise MapError(message, path=name, line=line)

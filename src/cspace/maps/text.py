@@ -26,7 +26,9 @@ def read_polygons(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] 
             ring = None if not line.strip() else ring
         elif words[0] == "hole":
             if not obstacles:
-                raise MapError("a hole before any polygon", path=name, line=number)
+                raise MapError(
+                    "a hole before the first polygon; a hole must follow its polygon", path=name, line=number
+                )
             ring, is_hole = None, True
         elif words[0] == "bounds":
             bounds = _read_numbers(words[1:], 4, name, number)

@@ -28,7 +28,7 @@ class Equation:
 
     @classmethod
     def definition(cls, name: str, right: TrigPolynomial, unit: str = "") -> Equation:
-        """A symbol and what it stands for."""
+        """A symbol and its meaning."""
         return cls(TrigPolynomial.symbol(name), right, name, unit)
 
     def residual(self, values: Mapping[str, Any]) -> Any:

@@ -218,7 +218,7 @@ def product(a: Monomial, b: Monomial) -> list[tuple[Monomial, float]]:
 
 
 def product_of_turns(a: Turn, b: Turn) -> list[tuple[tuple[Turn, ...], float]]:
-    """cos x cos y = ½ cos(x − y) + ½ cos(x + y), and its like."""
+    """cos x cos y = ½ cos(x − y) + ½ cos(x + y), and similar."""
     (group, f, x), (_, g, y) = a, b
     plus, minus = added(x, y, 1), added(x, y, -1)
     kind = "c" if f == g else "s"

@@ -36,7 +36,7 @@ def symbol_latex(name: str) -> str:
 
 
 def turn_text(kind: str, angle: Combination) -> str:
-    """c1, s23, and cos(2 t3 − t2) where no sum of different angles stands behind it."""
+    """c1, s23, and cos(2 t3 − t2) for other sums of angles."""
     if all(times == 1 and index < 10 for index, times in angle):
         return kind + "".join(str(index) for index, _ in angle)
     return f"{'cos' if kind == 'c' else 'sin'}({sum_of_angles(angle, 't', '')})"

@@ -1,4 +1,4 @@
-"""What the attributes of an XML element say: numbers and texts, each complaint with its file and line."""
+"""Attributes of an XML element: numbers and texts; every error contains file and line."""
 
 from __future__ import annotations
 

@@ -55,8 +55,8 @@ def calibrated(description: Description, path: str | os.PathLike[str]) -> Descri
         result = rebuilt(description, joints, calibration)
     else:
         raise InputError(
-            f"the link frames of robot {description.name!r} are not those of a calibration, where each joint"
-            " turns about its own z; take a URDF of ur_description, or the arm by its name"
+            f"the link frames of robot {description.name!r} do not fit a calibration, in which each joint"
+            " rotates about its own z axis; use a URDF of ur_description, or the name of the arm"
         )
     check(description, result, joints, calibration)
     known = description.provenance
@@ -67,7 +67,7 @@ def calibrated(description: Description, path: str | os.PathLike[str]) -> Descri
 
 
 def joints_of(description: Description) -> list[Joint]:
-    """The six joints of the arm, whatever stands before their names."""
+    """The six joints of the arm, with any prefix of their names."""
     found = []
     for name in JOINTS:
         fitting = [joint for joint in description.moving_joints if joint.name.endswith(f"{name}_joint")]
@@ -115,7 +115,10 @@ def turn_of_tip(description: Description) -> Array:
     R = TOOL0_AT_ZERO.T @ chain(description).T_zero[:3, :3]
     quarter = np.round(R)
     if np.abs(R - quarter).max() > FRAME_SNAP:
-        raise InputError(f"the tip of robot {description.name!r} is turned against tool0 by no quarter turns")
+        raise InputError(
+            f"the tip of robot {description.name!r} is not rotated against tool0 by multiples of 90°; "
+            "choose another tip"
+        )
     turned = np.eye(4)
     turned[:3, :3] = quarter + 0.0
     return turned if np.any(turned != IDENTITY) else IDENTITY
@@ -132,8 +135,8 @@ def check(
         away = float(np.linalg.norm(np.cross(first.points[i] - second.points[i], second.axes[i])))
         if angle > CALIBRATION_ANGLE or away > CALIBRATION_DISTANCE:
             raise DescriptionError(
-                f"this is the calibration of another arm than {nominal.name!r}: the axis of"
-                f" {joint.name!r} is {away:.3g} m and {angle:.3g} rad off (allowed:"
+                f"this calibration is not that of {nominal.name!r}: the axis of"
+                f" {joint.name!r} deviates by {away:.3g} m and {angle:.3g} rad (allowed:"
                 f" {CALIBRATION_DISTANCE:g} m, {CALIBRATION_ANGLE:g} rad)",
                 path=calibration.path,
             )

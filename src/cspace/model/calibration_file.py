@@ -48,13 +48,13 @@ class Calibration:
 def read_calibration(path: str | os.PathLike[str]) -> Calibration:
     """The calibration in a YAML file: below `kinematics`, x, y, z [m] and roll, pitch, yaw [rad] per link.
 
-    Raises DescriptionError with file and line for what is missing, unknown, no number, or no such file.
+    Raises DescriptionError with file and line for a missing, unknown or non-numeric entry, or a missing file.
     """
     name = path_of(path)
     data = read_bytes(name)
     if len(data) > CALIBRATION_BYTES:
         raise DescriptionError(
-            f"the file holds {len(data)} bytes; more than {CALIBRATION_BYTES} are refused", path=name
+            f"the file has {len(data)} bytes; the maximum is {CALIBRATION_BYTES}", path=name
         )
     return _Reader(name, data).read()
 
@@ -155,6 +155,6 @@ class _Reader:
 
 
 def is_said(row: str) -> bool:
-    """Whether a line says anything."""
+    """Whether a line has content."""
     text = row.strip()
     return bool(text) and not text.startswith("#") and text not in ("---", "...")

@@ -231,12 +231,12 @@ def default_tip(description: Description, base: str | None = None) -> str:
     more = f" and {len(choice) - 12} more" if len(choice) > 12 else ""
     raise InputError(
         f"robot {description.name!r} branches after link {here!r};"
-        f" say which link is the tip (tip=…): {shown}{more}"
+        f" select the link that is the tip (tip=…): {shown}{more}"
     )
 
 
 def _carried(description: Description, link: str) -> list[str]:
-    """`link` and what it carries behind fixed joints alone, from it outward."""
+    """`link` and the links that fixed joints alone attach to it, from it outward."""
     group = [link]
     for here in group:
         group.extend(joint.child for joint in description.child_joints[here] if not joint.moving)

@@ -27,7 +27,7 @@ def body_freedoms(dimension: int = 3) -> int:
 
 
 def tree_freedoms(description: Description, *, floating: bool = False) -> int:
-    """The numbers that place every link of a tree: one per turn or slide, and 6 for a floating base.
+    """The numbers that place all links of a tree: 1 per revolute or prismatic joint, 6 for a floating base.
 
     Joints that mimic add none; a floating joint in the file counts 6, a planar one 3.
     """
@@ -62,18 +62,18 @@ def mobility(
         joints += [FREEDOMS[loop.type] for loop in description.loops]
     if links is None or joints is None:
         raise InputError(
-            "mobility needs a description, or links= (the ground counted) and joints= (freedoms)"
+            "mobility needs a description, or links= (including the ground) and joints= (freedoms)"
         )
     if isinstance(joints, str) or not isinstance(joints, Iterable):
         raise InputTypeError(f"joints is a list of freedoms or joint types, got {joints!r}")
     if links < 1:
-        raise InputError(f"links is {links}; a linkage has at least the ground")
+        raise InputError(f"links is {links}; it must be at least 1, the ground")
     freedoms = [_freedoms(joint, size) for joint in joints]
     return size * (links - 1 - len(freedoms)) + sum(freedoms)
 
 
 def task_word(dof: int, task: int) -> str:
-    """How an arm of `dof` freedoms stands to a task of `task` numbers.
+    """The relation of an arm with `dof` freedoms to a task of `task` numbers.
 
     "over-constrained" (dof < task), "exact" (dof = task) or "redundant" (dof > task).
     """
@@ -85,8 +85,7 @@ def task_word(dof: int, task: int) -> str:
 def _checked_description(description: object) -> Description:
     if not isinstance(description, Description):
         raise InputTypeError(
-            f"freedoms are counted of a Description, got {type(description).__name__};"
-            " a robot has one: robot.description"
+            f"expected a Description, got {type(description).__name__}; that of a robot is robot.description"
         )
     return description
 
@@ -105,5 +104,5 @@ def _freedoms(joint: Any, size: int) -> int:
         joint = FREEDOMS[joint]
     possible = isinstance(joint, Real) and joint in range(size + 1)
     if not possible:
-        raise InputError(f"a joint with {joint!r} freedoms; expected 0 to {size}")
+        raise InputError(f"a joint has {joint!r} freedoms; expected 0 to {size}")
     return int(joint)

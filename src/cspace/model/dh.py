@@ -50,7 +50,7 @@ def dh_matrix(alpha: Any, a: Any, d: Any, theta: Any, *, convention: str) -> Arr
         alpha, a, d, theta = np.broadcast_arrays(*numbers)
     except ValueError:
         shapes = ", ".join(f"{name} {x.shape}" for name, x in zip(COLUMNS, numbers, strict=True))
-        raise InputError(f"the shapes of {shapes} do not fit together") from None
+        raise InputError(f"the shapes of {shapes} do not broadcast") from None
     ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
     zero, one = np.zeros_like(ca), np.ones_like(ca)
     if standard:
@@ -98,7 +98,7 @@ class DHTable:
         store(self, "T_tool", placement(self.T_tool, "T_tool"))
         names = tuple(self.joint_names) or tuple(f"joint_{i + 1}" for i in range(n))
         if len(names) != n:
-            raise InputError(f"joint_names holds {len(names)} names, expected {n}")
+            raise InputError(f"joint_names has {len(names)} names, expected {n}")
         store(self, "joint_names", names)
 
     def __len__(self) -> int:
@@ -129,7 +129,7 @@ class DHTable:
         return T @ self.T_tool
 
     def __repr__(self) -> str:
-        """The table in words: degrees and metres, q where the joint moves."""
+        """The table as text: degrees and metres, q for the joint variable."""
         indexed = ("α_i", "a_i") if self.convention == "standard" else ("α_i-1", "a_i-1")
         cells = [("i", "joint", f"{indexed[0]} [°]", f"{indexed[1]} [m]", "d_i [m]", "θ_i [°]")]
         for i, (alpha, a, d, theta) in enumerate(self.rows.tolist()):
@@ -177,7 +177,9 @@ def from_dh(
         dh = table
     else:
         if convention is None:
-            raise InputError("say which convention the table follows: convention='standard' or 'modified'")
+            raise InputError(
+                "the convention of the table is missing; give convention='standard' or 'modified'"
+            )
         rows = _rows(table)
         types = "R" * len(rows) if joint_types is None else joint_types
         before, after = (IDENTITY if T is None else T for T in (T_base, T_tool))
@@ -207,7 +209,7 @@ def _rows(table: Any) -> Array:
 
 
 def _describe(dh: DHTable, limits: list[dict[str, Any]], name: str, base: str, tip: str) -> Description:
-    """The description of a table: each joint frame stands where its row begins to move, z along the axis."""
+    """The description of a table: the frame of each joint is at the start of its row, z along its axis."""
     if dh.convention == "modified":
         before = dh_matrix(dh.alpha, dh.a, dh.d, dh.theta_offset, convention="modified")
         after = np.broadcast_to(IDENTITY, before.shape)

@@ -35,7 +35,7 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
     - first axis: frame 0 is the base if the first axis is its z; else it stands on the first axis at the
       foot of the perpendicular from the base origin, x as near to x of the base as it can be (y if that is
       along the axis). Row 1 of a modified table then has α = a = 0;
-    - last frame: z of the tip stands in for axis n+1, and d reaches the tip where it is parallel to axis n;
+    - last frame: z of the tip serves as axis n+1, and d reaches the tip where it is parallel to axis n;
       on one line with it, x is that of the tip. What remains goes into T_tool;
     - prismatic joints have a direction and no place; the axis passes through the point of the chain.
 

@@ -17,7 +17,7 @@ __all__ = ["Coordinates", "Elementary", "coordinates_of", "elementary_joints"]
 
 @dataclass(frozen=True, eq=False)
 class Elementary:
-    """One turn or one slide: kind "R" or "P", placed by `origin` (4, 4), about or along `axis` (3,).
+    """One rotation or translation: kind "R" or "P", placed by `origin` (4, 4), about or along `axis` (3,).
 
     name: of the joint; the three parts of a planar joint are name/x, name/y and name/turn.
     joint: where it comes from, with its limits.
@@ -32,7 +32,7 @@ class Elementary:
 
 @dataclass(frozen=True, eq=False)
 class Coordinates:
-    """The independent coordinates q behind a row of joints: joint k stands at multiplier·q[index] + offset.
+    """The independent coordinates q of a row of joints: joint k has the value multiplier·q[index] + offset.
 
     names: of the coordinates, in the order in which their joints come. index (n,) integers, multiplier (n,),
     offset (n,): per joint. limits: of the coordinates.
@@ -46,9 +46,9 @@ class Coordinates:
 
 
 def elementary_joints(joint: Joint) -> tuple[Elementary, ...]:
-    """The turns and slides that a joint is made of, outermost first.
+    """The rotations and translations of which a joint consists, outermost first.
 
-    A planar joint slides along two directions of its plane, then turns about its normal; the first direction
+    A planar joint has two translations in its plane, then a rotation about its normal; the first direction
     is a coordinate axis of the joint frame made perpendicular to the normal (x for the normal z).
     Raises DescriptionError for a floating joint, which has no such coordinates.
     """
@@ -69,13 +69,13 @@ def elementary_joints(joint: Joint) -> tuple[Elementary, ...]:
     if joint.type == "fixed":
         return ()
     raise DescriptionError(
-        f"joint {joint.name!r} is floating: it has no single coordinates;"
-        f" take base={joint.child!r} and give its pose as T_world_base"
+        f"joint {joint.name!r} is floating: it has no single coordinate;"
+        f" use base={joint.child!r} and give its pose as T_world_base"
     )
 
 
 def coordinates_of(joints: tuple[Elementary, ...], by_name: Mapping[str, Joint]) -> Coordinates:
-    """The coordinates behind `joints`: a joint that mimics shares the coordinate of the joint that leads."""
+    """The coordinates of `joints`: a mimic joint shares the coordinate of its leader."""
     position: dict[str, int] = {}
     leaders: list[Elementary | Joint] = []
     index, multiplier, offset = [], [], []

@@ -13,7 +13,7 @@ __all__ = ["path_of", "read_bytes"]
 
 
 def path_of(source: Any) -> str:
-    """The path that `source` is; InputTypeError for what is none."""
+    """`source` as a path. Raises InputTypeError for other objects."""
     return files.path_of(source, "a file is given by its path, a robot also by its text")
 
 

@@ -109,9 +109,9 @@ class Joint:
     def _check_limits(self, subject: str) -> None:
         lower, upper = self.lower, self.upper
         if lower > upper:
-            raise InputError(f"limits of {subject} are upside down: lower {lower:g} is above upper {upper:g}")
+            raise InputError(f"limits of {subject} are reversed: lower {lower:g} is above upper {upper:g}")
         if lower == math.inf or upper == -math.inf:
-            raise InputError(f"limits of {subject} leave no value: lower {lower:g}, upper {upper:g}")
+            raise InputError(f"limits of {subject} allow no finite value: lower {lower:g}, upper {upper:g}")
         for name in LIMIT_FIELDS[2:]:
             value = getattr(self, name)
             if value < 0.0:
@@ -130,7 +130,7 @@ class Joint:
 
 @dataclass(frozen=True, eq=False)
 class Loop:
-    """A joint that closes a loop: it ties two links that the tree already holds.
+    """A joint that closes a loop: it connects two links that the tree already contains.
 
     type: any key of FREEDOMS. origin (4, 4): joint frame in the parent link. child_origin (4, 4): joint frame
     in the child link. axis (3,): unit direction in the joint frame. It counts in the mobility formula.
@@ -178,7 +178,7 @@ class Limits:
         if upside_down.size:
             i = int(upside_down[0])
             raise InputError(
-                f"limits of coordinate {i} are upside down:"
+                f"limits of coordinate {i} are reversed:"
                 f" lower {self.lower[i]:g} is above upper {self.upper[i]:g}"
             )
 
@@ -191,7 +191,7 @@ class Limits:
         return frozen(np.array([self.lower, self.upper]))
 
     def __repr__(self) -> str:
-        """A row per coordinate; a dash where there is no limit, no column for what nothing limits."""
+        """A row per coordinate; a dash for an absent limit, and no column without limits."""
         fields = {name: getattr(self, name) for name in LIMIT_FIELDS}
         always = ("lower", "upper")
         columns = {name: row for name, row in fields.items() if name in always or np.isfinite(row).any()}
@@ -212,5 +212,5 @@ def _limit_row(value: Any, name: str, n: int) -> Array:
     if row.shape != (n,):
         raise InputError(f"{name} limits have shape {row.shape}, expected ({n},)")
     if np.isnan(row).any():
-        raise InputError(f"{name} limits hold NaN; use inf where a limit is absent")
+        raise InputError(f"{name} limits contain NaN; use inf for an absent limit")
     return frozen(row.copy())

@@ -53,7 +53,7 @@ class Inertial:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A mesh file by reference; nothing is opened until the geometry is asked for.
+    """A mesh file by reference; the file is not opened until the geometry is needed.
 
     uri: as written in the description. scale (3,): factors along the axes of the mesh. beside: the folder of
     the description. package_paths: folders where packages are looked for first.
@@ -79,7 +79,7 @@ class Mesh:
             places = "".join(f"\n  {place}" for place in searched) or " nowhere"
             raise DescriptionError(
                 f"mesh {self.uri!r} not found; searched:{places}\n"
-                "Pass package_paths=[folder that holds the package], or set ROS_PACKAGE_PATH."
+                "Pass package_paths=[folder that contains the package], or set ROS_PACKAGE_PATH."
             )
         return path
 

@@ -1,4 +1,4 @@
-"""The matrices of an arm's links and their products as symbols, the way a lecture writes them."""
+"""The matrices of an arm's links and their products as symbols, in the notation of lectures."""
 
 from __future__ import annotations
 

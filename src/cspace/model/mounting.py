@@ -37,7 +37,7 @@ def mounted(description: Description, base: str, T_world_base: Array, name: str 
     if base not in rigid_group(description, description.root):
         raise InputError(
             f"link {base!r} moves against the root {description.root!r} of robot {description.name!r},"
-            " so the file has no place for where it is mounted; write the robot without with_base"
+            " so the file cannot contain the pose of its base; write the robot without with_base"
         )
     T_world_root = T_world_base @ inverse(zero_poses(description)[base])
     link = free_name(name, description.link_by_name)

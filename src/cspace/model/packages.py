@@ -21,7 +21,7 @@ def folders(package_paths: Any) -> tuple[str, ...]:
     """The folders of a `package_paths` argument; one folder alone would be read as a list of its letters."""
     if isinstance(package_paths, (str, bytes, os.PathLike)):
         raise InputTypeError(
-            f"package_paths is a list of folders, got {os.fsdecode(package_paths)!r}; put it in brackets"
+            f"package_paths is a list of folders, got {os.fsdecode(package_paths)!r}; write it in brackets"
         )
     try:
         return tuple(map(os.fsdecode, package_paths))

@@ -83,7 +83,7 @@ def check_joint_types(types: str, n: int, *, letters: str = "RP") -> str:
     upper = str(types).upper()
     if len(upper) != n or any(letter not in letters for letter in upper):
         allowed = ", ".join(repr(letter) for letter in letters)
-        raise InputError(f"joint_types is {types!r}; expected {n} letters out of {allowed}")
+        raise InputError(f"joint_types is {types!r}; expected {n} of the letters {allowed}")
     return upper
 
 
@@ -113,7 +113,7 @@ def _joint_names(names: Sequence[str] | None, n: int) -> list[str]:
     if names is None:
         return [f"joint_{i + 1}" for i in range(n)]
     if len(names) != n or isinstance(names, str):
-        raise InputError(f"joint_names holds {len(names)} names, expected {n}")
+        raise InputError(f"joint_names has {len(names)} names, expected {n}")
     return [str(name) for name in names]
 
 

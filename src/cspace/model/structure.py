@@ -56,7 +56,7 @@ def check_tree(robot: str, links: Sequence[Link], joints: Sequence[Joint]) -> tu
         if other is not None:
             raise ElementError(
                 f"link {joint.child!r} is the child of two joints, {other.name!r} and {joint.name!r};"
-                " a link has one parent (a closed loop is given as a loop, not as a joint)",
+                " a link has one parent (describe a closed loop by a Loop, not by a joint)",
                 "joint",
                 joint.name,
             )
@@ -68,7 +68,8 @@ def check_tree(robot: str, links: Sequence[Link], joints: Sequence[Joint]) -> tu
     if len(roots) > 1:
         shown = ", ".join(repr(root) for root in roots[:5]) + (", …" if len(roots) > 5 else "")
         raise ElementError(
-            f"robot {robot!r} has {len(roots)} roots: {shown}; every link but one is the child of a joint",
+            f"robot {robot!r} has {len(roots)} roots: {shown}; every link except one must be the child of "
+            "a joint",
             "link",
             roots[1],
         )
@@ -85,7 +86,9 @@ def _check_ends(robot: str, joint: Joint, names: set[str]) -> None:
             error = suggest("link", link, names, owner=f"robot {robot!r}")
             raise ElementError(f"{end} of joint {joint.name!r}: {error}", "joint", joint.name)
     if joint.parent == joint.child:
-        raise ElementError(f"joint {joint.name!r} ties link {joint.child!r} to itself", "joint", joint.name)
+        raise ElementError(
+            f"joint {joint.name!r} connects link {joint.child!r} with itself", "joint", joint.name
+        )
 
 
 def _depth_first(root: str, carries: dict[str, list[str]]) -> tuple[str, ...]:
@@ -129,7 +132,9 @@ def check_mimics(robot: str, joints: Sequence[Joint]) -> None:
                 error = suggest("joint", follower.mimic.joint, by_name, owner=f"robot {robot!r}")
                 raise ElementError(f"joint {follower.name!r} mimics: {error}", "joint", follower.name)
             if leader.name in seen:
-                raise ElementError(f"joint {joint.name!r} mimics itself in a circle", "joint", joint.name)
+                raise ElementError(
+                    f"joint {joint.name!r} mimics itself through a cycle of joints", "joint", joint.name
+                )
             if leader.type not in ("revolute", "continuous", "prismatic"):
                 message = f"joint {follower.name!r} mimics {leader.name!r}, which is {leader.type}"
                 raise ElementError(message, "joint", follower.name)

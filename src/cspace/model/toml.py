@@ -53,14 +53,12 @@ def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = 
     path = path_of(source)
     data = read_bytes(path)
     if len(data) > TOML_BYTES:
-        raise DescriptionError(
-            f"the file holds {len(data)} bytes; more than {TOML_BYTES} are refused", path=path
-        )
+        raise DescriptionError(f"the file has {len(data)} bytes; the maximum is {TOML_BYTES}", path=path)
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
         line = data.count(b"\n", 0, error.start) + 1
-        raise DescriptionError("this is no TOML: not UTF-8 text", path=path, line=line) from None
+        raise DescriptionError("this is not TOML: the text is not UTF-8", path=path, line=line) from None
     return _Reader(Document(text.replace("\r\n", "\n"), path), package_paths).read()
 
 
@@ -91,7 +89,7 @@ class _Reader:
         if len(forms) != 1:
             found = " and ".join(forms) or "none of them"
             raise self.document.fault(
-                f"this is no robot: it must hold one of [[joints]], [screws] and [dh]; it holds {found}"
+                f"this is not a robot: it must contain one of [[joints]], [screws] and [dh], but has {found}"
             )
         top.known((*ABOUT, *FORMS[forms[0]]))
         if top.number("format", FORMAT) != FORMAT:

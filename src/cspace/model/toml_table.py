@@ -63,7 +63,7 @@ class Table:
 
     @property
     def where(self) -> str:
-        """The table in words."""
+        """The name of the table for messages."""
         place = self.header or "the file"
         return place if self.index is None else f"{place}[{self.index}]"
 

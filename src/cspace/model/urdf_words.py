@@ -32,7 +32,7 @@ LIKENESS: Final = 0.65
 
 
 def slip_in(element: Element) -> tuple[str, Element] | None:
-    """What is misspelled in an element or its children, in words, and where; None where nothing is.
+    """A message about a misspelled name in an element or its children, and its place; else None.
 
     A name that URDF does not know is an extension, unless it is close to one that is not there.
     """

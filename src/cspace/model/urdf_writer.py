@@ -20,7 +20,7 @@ from cspace.tolerances import UNLIMITED
 __all__ = ["to_urdf"]
 
 FORBIDDEN = "[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
-"""The characters that XML 1.0 cannot hold; a text, because the pattern takes milliseconds to compile."""
+"""The characters that XML 1.0 does not allow; a text, because the pattern takes milliseconds to compile."""
 
 ESCAPES = {ord(c): f"&{name};" for c, name in {"&": "amp", "<": "lt", ">": "gt", '"': "quot"}.items()}
 ESCAPES |= {ord(c): f"&#{ord(c)};" for c in "\t\n\r"}
@@ -37,7 +37,8 @@ def to_urdf(description: Description, path: str | os.PathLike[str] | None = None
     """
     if description.loops:
         raise InputError(
-            f"robot {description.name!r} has {len(description.loops)} closed loops and URDF holds trees only;"
+            f"robot {description.name!r} has {len(description.loops)} closed loops, but URDF supports "
+            "trees only;"
             " write it as TOML"
         )
     lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<robot name={_quoted(description.name)}>"]
@@ -54,7 +55,9 @@ def to_urdf(description: Description, path: str | os.PathLike[str] | None = None
 
 def _quoted(text: str) -> str:
     if bad := re.search(FORBIDDEN, text):
-        raise InputError(f"the name {text!r} holds the character {bad.group()!r}, which XML cannot hold")
+        raise InputError(
+            f"the name {text!r} contains the character {bad.group()!r}, which XML does not allow; rename it"
+        )
     return f'"{text.translate(ESCAPES)}"'
 
 

@@ -1,4 +1,4 @@
-"""Numbers that come into a description: checked once, then read-only."""
+"""Numbers of a description: checked once, then read-only."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def name_of(value: object, subject: str) -> str:
 
 
 def number(value: Any, subject: str) -> float:
-    """A float that is not NaN; infinities pass, for limits."""
+    """A float that is not NaN; infinities are accepted, for limits."""
     try:
         result = float(value)
     except (TypeError, ValueError, OverflowError):
@@ -75,14 +75,14 @@ def sane(array: Array, subject: str) -> Array:
     """The array itself, if no number is beyond tolerances.LARGEST_NUMBER."""
     largest = max(array.ravel().tolist(), key=abs, default=0.0)
     if abs(largest) > LARGEST_NUMBER:
-        raise InputError(f"{subject} holds {largest:g}; {BEYOND}")
+        raise InputError(f"{subject} contains {largest:g}; {BEYOND}")
     return array
 
 
 def placement(value: object, subject: str) -> Array:
     """A read-only (4, 4) rigid transform, copied from `value`.
 
-    Raises InputError where the last row is not (0, 0, 0, 1) or the upper left block is no rotation.
+    Raises InputError where the last row is not (0, 0, 0, 1) or the upper left block is not a rotation.
     """
     pose = IDENTITY
     if value is pose:
@@ -96,7 +96,8 @@ def placement(value: object, subject: str) -> Array:
     error = _rotation_error(pose)
     if error > ROTATION_ERROR:
         raise InputError(
-            f"{subject} is no rigid transform: its rotation block misses RᵀR = I, det R = +1 by {error:.3g}"
+            f"{subject} is not a rigid transform: its rotation block violates RᵀR = I, det R = +1 by "
+            f"{error:.3g}"
             f" (allowed {ROTATION_ERROR:g})"
         )
     return frozen(np.array(pose))
@@ -130,7 +131,7 @@ def unit_axis(value: Any, subject: str) -> Array:
     scale = float(np.abs(vector).max())
     length = scale * math.sqrt(sum((x / scale) ** 2 for x in vector.tolist())) if scale > 0.0 else 0.0
     if length < AXIS_LENGTH:
-        raise InputError(f"{subject} is {vector.tolist()}, no direction; an axis must not be zero")
+        raise InputError(f"{subject} is {vector.tolist()}, which has no direction; an axis must not be zero")
     if abs(length - 1.0) <= 2.0**-51:  # a unit vector to rounding stays as it is, bit for bit
         return frozen(np.array(vector))
     scaled: Array = vector / length

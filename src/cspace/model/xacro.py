@@ -1,6 +1,6 @@
-"""Robots from xacro, the macro language of ROS: expanded by the package xacro, in a process of its own.
+"""Robots from xacro, the macro language of ROS: expanded by the package xacro in a separate process.
 
-Why a process: a xacro file is a program. It may count to 10^10^10 or call itself for ever, which nothing in
+Why a process: a xacro file is a program. It may count to 10^10^10 or call itself endlessly, which nothing in
 this process could stop, and the package keeps its state in global variables.
 """
 
@@ -48,7 +48,7 @@ def from_xacro(
     XACRO_ELEMENTS; InputError for an argument that the file does not have.
     """
     name = path_of(path)
-    read_bytes(name)  # a missing file is told as everywhere
+    read_bytes(name)  # raises the usual error for a missing file
     root = expanded(name, texts_of(xacro_args), folders(package_paths))
     stem = os.path.basename(name).partition(".")[0]
     if root.tag == "mujoco":
@@ -100,7 +100,7 @@ def expanded(path: str, arguments: Mapping[str, str], package_paths: Sequence[st
     if find_spec("xacro") is None:
         raise MissingExtraError("xacro", f"reading {path!r}, a xacro file,")
     if not sys.executable:
-        raise InputError(f"{path!r} is xacro, which is expanded by another Python; sys.executable names none")
+        raise InputError(f"{path!r} is xacro, which a second Python expands, but sys.executable is not set")
     places = [place for place in sys.path if place not in ("", os.curdir)]  # not the working folder
     request = {"path": places, "file": path, "arguments": arguments, "package_paths": package_paths}
     command = [sys.executable, "-c", CHILD]
@@ -109,7 +109,7 @@ def expanded(path: str, arguments: Mapping[str, str], package_paths: Sequence[st
             command, input=json.dumps(request).encode(), capture_output=True, timeout=XACRO_SECONDS
         )
     except subprocess.TimeoutExpired:
-        text = f"expanding it took longer than {XACRO_SECONDS:g} s; do its macros call each other for ever?"
+        text = f"its expansion took longer than {XACRO_SECONDS:g} s; do its macros call each other endlessly?"
         raise DescriptionError(text, path=path, line=1) from None
     try:
         answer = json.loads(done.stdout)

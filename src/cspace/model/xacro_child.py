@@ -1,4 +1,4 @@
-"""The process that expands a xacro file: runs the package xacro and tells where each element comes from."""
+"""The process that expands a xacro file: runs the package xacro and records the origin of each element."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ WATCHED = ("grab_property", "grab_macro", "process_include", "handle_macro_call"
 
 
 def main(request: dict[str, Any]) -> None:
-    """Answer one request on the standard output: the elements, or what is wrong with the file."""
+    """Write the result of one request to the standard output: the elements, or the error in the file."""
     answers, sys.stdout = sys.stdout, sys.stderr  # xacro prints
     json.dump(answer(request), answers)
 
@@ -68,7 +68,7 @@ def told(error: Exception) -> str:
 
 
 class Arguments(dict[str, str]):
-    """The arguments given, which remember the names that the file asks for."""
+    """The given arguments, which record the names that the file requests."""
 
     def __init__(self, given: dict[str, str]) -> None:
         super().__init__(given)
@@ -84,7 +84,7 @@ class Arguments(dict[str, str]):
         return super().__getitem__(name)
 
     def unused(self) -> list[str]:
-        """The names given that the file did not ask for."""
+        """The given names that the file did not request."""
         return [name for name in self.given if name not in self.asked]
 
     def complaint(self) -> str:
@@ -120,14 +120,14 @@ class Expansion:
         return root
 
     def find(self, name: str) -> str:
-        """The folder of a package: what $(find name) stands for."""
+        """The folder of a package: the value of $(find name)."""
         beside = os.path.dirname(os.path.abspath(self.file))
         folder, searched = locate_package(name, beside, self.package_paths)
         if folder is None:
             places = "".join(f"\n  {place}" for place in searched)
             raise DescriptionError(
                 f"package {name!r} not found; searched:{places}\n"
-                "Pass package_paths=[folder that holds the package], or set ROS_PACKAGE_PATH."
+                "Pass package_paths=[folder that contains the package], or set ROS_PACKAGE_PATH."
             )
         return folder
 
@@ -150,7 +150,9 @@ class Expansion:
             before, self.place = self.place, getattr(element, "place", self.place)
             self.steps += 1
             if self.steps > XACRO_ELEMENTS:
-                raise DescriptionError(f"it makes more than {XACRO_ELEMENTS} elements; this is no robot")
+                raise DescriptionError(
+                    f"the expansion has more than {XACRO_ELEMENTS} elements, which is the maximum"
+                )
             result = function(element, *rest, **options)
             if function.__name__ != "check_attrs":  # what it has checked is at work now
                 self.place = before

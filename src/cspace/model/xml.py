@@ -87,7 +87,7 @@ def parse(
     """
     if len(data) > DESCRIPTION_BYTES:
         raise DescriptionError(
-            f"the file holds {len(data)} bytes; more than {DESCRIPTION_BYTES} are refused", path=path
+            f"the file has {len(data)} bytes; the maximum is {DESCRIPTION_BYTES}", path=path
         )
     builder = _Builder(path, lines_before, depth)
     try:

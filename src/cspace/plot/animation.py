@@ -1,4 +1,4 @@
-"""Searches as GIF files: the world is drawn once, each picture adds what is new."""
+"""Searches as GIF files: the world is drawn once, and each frame adds the new elements."""
 
 from __future__ import annotations
 

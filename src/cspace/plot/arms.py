@@ -60,14 +60,14 @@ def solutions(
     ax: Any | None = None,
     title: str = "",
 ) -> list[Any]:
-    """Draw every configuration of an answer as a ghost, the one nearest to `near` (or the first) solid.
+    """Draw every solution transparently, and the one nearest to `near` (or the first) opaquely.
 
     Configurations out of limits are grey.
 
     arm: a Robot that is a chain. answer: a result of `arm.ik`, or configurations (k, dof). goal: the pose
     (4, 4) or point they reach; by default where the tip of the first one is. near: (dof,) [rad, m].
-    labels: k texts for the legend; by default the branches of the answer. within: which configurations are
-    within limits; by default what the limits of the arm say, after whole turns. Returns the artists.
+    labels: k texts for the legend; by default the branches of the solutions. within: which configurations are
+    within limits; by default according to the limits of the arm, modulo 2π. Returns the artists.
     Raises InputError if there is nothing to draw, MissingExtraError without matplotlib.
     """
     q = as_floats(getattr(answer, "q", answer), "configurations", last=(arm.dof,))
@@ -103,7 +103,7 @@ def solutions(
 
 
 def within_limits(arm: Any, q: Array) -> Any:
-    """Which of the configurations q (k, dof) are within the limits of the arm, after whole turns."""
+    """Which of the configurations q (k, dof) are within the limits of the arm, modulo 2π."""
     from cspace.ik.wrapping import into_limits
 
     return into_limits(q, arm.chain.joint_types, arm.limits.lower, arm.limits.upper)[1]
@@ -120,7 +120,7 @@ def tints_of(inside: Any, solid: int) -> list[Array]:
 
 
 def branch_names(answer: Any, inside: Any) -> list[str]:
-    """The branches of an answer as texts, or numbers; what is out of limits says so."""
+    """The branches of the solutions as texts, or numbers, with a note for those out of limits."""
     branch = getattr(answer, "branch", None)
     count = len(inside)
     texts = [""] * count if branch is None or len(branch) != count else [str(each) for each in branch]
@@ -129,7 +129,7 @@ def branch_names(answer: Any, inside: Any) -> list[str]:
 
 
 def nearest(q: Array, near: Array, arm: Any) -> int:
-    """The row of q nearest to `near`; turning joints are compared around the circle."""
+    """The row of q nearest to `near`; revolute joints are compared modulo 2π."""
     away = q - near
     turning = np.array([kind == "R" for kind in arm.chain.joint_types])
     away = np.where(turning, (away + np.pi) % (2 * np.pi) - np.pi, away)

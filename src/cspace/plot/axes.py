@@ -9,7 +9,7 @@ from cspace.errors import InputError, MissingExtraError
 __all__ = ["flat_axes", "space_axes"]
 
 SQUARE: Final = 6.4
-"""Width of a picture in space [inch], without what stands aside."""
+"""Width of a picture in space [inch], without labels at its side."""
 
 
 def need_matplotlib() -> None:
@@ -43,5 +43,5 @@ def flat_axes(ax: Any | None) -> Any:
         figure = plt.figure(figsize=(7.2, 6.0), dpi=120, layout="constrained")
         return figure.add_subplot()
     if hasattr(ax, "get_proj"):
-        raise InputError("this picture lies in a plane; give 2-D axes, as plt.subplots() makes them")
+        raise InputError("this picture needs 2-D axes; make them with plt.subplots()")
     return ax

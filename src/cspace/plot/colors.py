@@ -19,7 +19,7 @@ JOINT: Final = (0.28, 0.56, 0.88)
 BARRED: Final = (0.50, 0.51, 0.53)
 """Configurations out of limits: without a hue."""
 STAND: Final = (0.80, 0.82, 0.85)
-"""What a robot stands on where the floor is below its base."""
+"""The pillar below a robot whose base is above the floor."""
 AXES: Final = ((0.84, 0.18, 0.20), (0.18, 0.62, 0.28), (0.16, 0.38, 0.88))
 """The x, y and z axes of a frame."""
 FIRST_HUE: Final = 252.0

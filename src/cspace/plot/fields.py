@@ -18,7 +18,7 @@ __all__ = ["draw_bands", "minima", "surface"]
 PLACES: Final = 160
 """Places along a side of the world at which a field is evaluated for its picture."""
 TOP: Final = 0.85
-"""The share of free places whose heights are told apart: beyond it, next to walls, fields have no bounds."""
+"""The share of free places shown with different heights: beyond it, next to walls, fields are unbounded."""
 BANDS: Final = 24
 """Bands of equal height."""
 SAME: Final = 1e-3
@@ -79,7 +79,7 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
 
 
 def draw_bands(axes: Any, route: Any) -> list[Any]:
-    """The field as bands of equal height, and its minima beside the goal (dots)."""
+    """The field as bands of equal height, and its minima other than the goal (dots)."""
     try:
         height = height_of(route)
     except InputError:

@@ -46,5 +46,5 @@ def check_ending(path: str | Path, figure: Any, *, moves: bool) -> None:
     if Path(path).suffix.lower() not in known:
         what = "an animation" if moves else "a picture"
         raise InputError(
-            f"cannot write {str(path)!r}: end the name of {what} with {' or '.join(sorted(known))}"
+            f"cannot write {str(path)!r}: the name of {what} must end with {' or '.join(sorted(known))}"
         )

@@ -30,7 +30,7 @@ def frames(
 
     poses: (..., 4, 4) or anything that reads as such. names: one text per pose. size: length of the arrows
     [m]; by default it suits the distances. ax: 3-D axes. Returns the artists.
-    Raises InputError for what is no pose, MissingExtraError without matplotlib.
+    Raises InputError for a matrix that is not a pose, MissingExtraError without matplotlib.
     """
     T = as_pose(poses, "poses").reshape(-1, 4, 4)
     if names is not None and len(names) != len(T):
@@ -57,7 +57,7 @@ def frames(
 
 
 def write_name(axes: Any, name: str, T: Array, length: float) -> Any:
-    """A name beside the corner of a frame, away from its arrows, legible before whatever is behind it."""
+    """A name next to the origin of a frame, away from its arrows, legible on any background."""
     from matplotlib.patheffects import withStroke
 
     place = T[:3, 3] - 0.15 * length * T[:3, :3].sum(axis=1)

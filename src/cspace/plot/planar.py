@@ -20,7 +20,7 @@ WORKSPACE_SAMPLES: Final = 400
 
 
 EXACT_ENDS: Final = {"shrinkA": 0, "shrinkB": 0}
-"""Arrows that end where they are told to."""
+"""Arrows that end exactly at given points."""
 
 
 def draw(
@@ -77,7 +77,7 @@ def prepare(ax: Any, basis: Array) -> list[Any]:
 
 
 def frame_view(ax: Any, points: Array) -> None:
-    """Limits that hold the points (m, 2) and what the axes held before."""
+    """Limits that contain the points (m, 2) and the previous content of the axes."""
     ax.update_datalim(points)
     ax.margins(0.10)
     ax.autoscale_view()
@@ -184,12 +184,13 @@ def tip_points(arm: Any, q: Array, basis: Array) -> Array:
 
 
 def planar_or_refuse(arm: Any) -> Array:
-    """The plane of the arm, or an error that says which pictures there are for others."""
+    """The plane of the arm. Raises InputError for an arm that is not planar."""
     basis = planar_basis(arm.chain)
     if basis is None:
         raise InputError(
-            f"{arm.name} is not a planar arm (its turning axes are not parallel, or a slide leaves it), "
-            "and this picture lies in a plane"
+            f"{arm.name} is not a planar arm (its revolute axes are not parallel, or a prismatic joint "
+            "leaves "
+            "the plane); this picture needs a planar arm"
         )
     return basis
 
@@ -198,7 +199,7 @@ def workspace(arm: Any, *, ax: Any | None = None, title: str = "") -> list[Any]:
     """Draw where the tip of a planar arm can be within its limits, and how well it moves there.
 
     The colour is the manipulability √det(J Jᵀ) of the position, the best of all configurations found there.
-    Joints without limits turn through a full circle; unlimited slides are refused. Returns the artists.
+    Revolute joints without limits make a full circle; prismatic joints need limits. Returns the artists.
     """
     basis = planar_or_refuse(arm)
     axes = flat_axes(ax)
@@ -226,7 +227,9 @@ def grid_of(arm: Any) -> Array:
     lower = np.where(turning, np.maximum(lower, -np.pi), lower)
     upper = np.where(turning, np.minimum(upper, np.pi), upper)
     if not np.isfinite([lower, upper]).all():
-        raise InputError(f"a slide of {arm.name} has no limits: its workspace has no end to draw")
+        raise InputError(
+            f"a prismatic joint of {arm.name} has no limits, so its workspace is unbounded; set limits"
+        )
     if arm.dof <= 2:
         values = [np.linspace(a, b, 3 * WORKSPACE_SAMPLES) for a, b in zip(lower, upper, strict=True)]
         return np.stack(np.meshgrid(*values, indexing="ij"), axis=-1).reshape(-1, arm.dof)

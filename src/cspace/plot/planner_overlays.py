@@ -252,7 +252,7 @@ PREPARED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     "potential_field": draw_bands,
     "rimon_koditschek": draw_navigation_function,
 }
-"""What a planner prepares before it is asked."""
+"""What a planner computes before a query."""
 
 CELL_PLANNERS: Final = (
     *("a_star", "dijkstra", "fast_marching", "focal_search", "greedy_best_first", "potential_a_star"),

@@ -1,4 +1,4 @@
-"""From joint axes and a configuration to what is drawn: the path of each link, the place of each joint."""
+"""The drawing of an arm from its joint axes and a configuration: paths of links, poses of joints."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ SHORT: Final = 0.012
 """Pieces of a route below this share of the arm's length are left out."""
 TURNING: Final = 1.4
 SLIDING: Final = 2.2
-"""Half the length of the body of a turning and of a sliding joint, in radii of its link."""
+"""Half the length of the body of a revolute and of a prismatic joint, in radii of its link."""
 WIDTH: Final = 1.2
 """The radius of a joint's body, in radii of its link."""
 
@@ -95,7 +95,7 @@ def move(
 
 
 def size_of(points: Array, T_zero: Array) -> float:
-    """The length of the way from the base over the joints to the tip at zero [m]; it scales what is drawn."""
+    """The length [m] of the path from the base over the joints to the tip at zero: the drawing's scale."""
     way = np.concatenate([np.zeros((1, 3)), points, T_zero[None, :3, 3]])
     length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
     return length if length > 1e-9 else 1.0

@@ -18,13 +18,13 @@ __all__ = ["coverage", "drive"]
 BODIES: Final = 24
 """Outlines of the vehicle between start and goal."""
 ROUND: Final = 36
-"""Corners that stand for the outline of a disc."""
+"""Corners of the polygon that approximates the outline of a disc."""
 ARCS: Final = 40.0
 """Poses per radius along a curve."""
 
 
 def drive(drive: Any, *, ax: Any | None = None, bodies: int = BODIES) -> list[Any]:
-    """Draw a way of a vehicle: red where it drives forwards, blue backwards, its outline along the way.
+    """Draw the path of a vehicle: red forwards, blue backwards, with its outline along the path.
 
     drive: a CarRoute, which also draws its grid, a Run or a Curve. A Curve knows no vehicle: triangles show
     where it heads at start and goal. bodies: at how many poses, evenly along the way, the outline is drawn.
@@ -53,7 +53,7 @@ def drive(drive: Any, *, ax: Any | None = None, bodies: int = BODIES) -> list[An
 
 
 def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
-    """Draw a way that sweeps a grid: regions tinted, the way from dark to light as it is driven.
+    """Draw a coverage path on a grid: regions tinted, the path from dark to light in its order.
 
     Returns the artists.
     """
@@ -80,7 +80,7 @@ def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
 
 
 def poses_of(drive: Any) -> Array:
-    """The poses (n, 3) along a way, none where there is no way."""
+    """The poses (n, 3) along a path, none without a path."""
     if hasattr(drive, "poses"):
         return np.asarray(drive.poses)
     if hasattr(drive, "sample"):
@@ -97,9 +97,9 @@ def title_of(drive: Any) -> str:
 
 
 def evenly(poses: Array, count: int) -> Array:
-    """Poses spaced evenly along the way, at most `count`."""
+    """Poses spaced evenly along the path, at most `count`."""
     if count < 0:
-        raise InputError(f"bodies is {count}; give a number of outlines, zero or more")
+        raise InputError(f"bodies is {count}; it must be a number of outlines, zero or more")
     if not len(poses):
         return poses
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(poses[:, :2], axis=0).T))])
@@ -123,7 +123,7 @@ def outlines(axes: Any, vehicle: Any, poses: Array, **style: Any) -> list[Any]:
 
 
 def directed(axes: Any, poses: Array) -> list[Any]:
-    """The way of a vehicle, each step in the colour of its direction."""
+    """The path of a vehicle, each step in the colour of its direction."""
     pieces = np.stack([poses[:-1, :2], poses[1:, :2]], axis=1)
     steps = np.diff(poses[:, :2], axis=0)
     heading = np.stack([np.cos(poses[:-1, 2]), np.sin(poses[:-1, 2])], axis=1)

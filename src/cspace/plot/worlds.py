@@ -29,7 +29,7 @@ PANEL: Final = 3.6
 TITLE: Final = 0.12
 """What a title takes, over the side of a world."""
 FRAMES: Final = 60
-"""Frames in which an animation tells the search."""
+"""The number of frames of an animation of a search."""
 STILL: Final = 12
 """Frames that show the path at its end."""
 INTERVAL: Final = 80

@@ -296,4 +296,4 @@ PLAIN_NAMES: dict[str, str] = {
     'z1urdf': 'z1_urdf',
     'z1erd': 'z1_urdf',
 }
-"""Every name and alias in small letters and digits alone, with the name it stands for."""
+"""Every name and alias in small letters and digits alone, with the name that it means."""

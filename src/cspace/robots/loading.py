@@ -38,11 +38,11 @@ def load_robot(
     xacro_args: Mapping[str, Any] | None = None,
     calibration: str | os.PathLike[str] | None = None,
 ) -> Robot:
-    """A robot of the catalogue or of a file, ready to be asked.
+    """Load a robot of the catalogue or of a file.
 
     name_or_path: a name ("ur5e", see cspace.robots.names()) or the path of a URDF, xacro, MJCF or TOML file;
-    XML files are told apart by what they hold. base, tip: links between which it moves, where the file leaves
-    the choice. floating: whether the base moves freely, its six velocities before those of the joints; None:
+    XML files are distinguished by their content. base, tip: links between which it moves, if the file allows
+    several. floating: whether the base moves freely, its six velocities before those of the joints; None:
     if the file says so. package_paths: folders where packages (of package:// and $(find …)) are looked for
     first. xacro_args: values of the arguments of a xacro file, by name. calibration: the file of one UR arm's
     joint frames, see model.calibrated.
@@ -69,8 +69,9 @@ def load_description(
     """
     if not isinstance(name_or_path, (str, os.PathLike)):
         raise InputTypeError(
-            f"a robot is given by a name or a path, got {type(name_or_path).__name__}; Robot(description),"
-            " Robot.from_dh and Robot.from_screws take what is no file"
+            f"expected the name or the path of a robot, got {type(name_or_path).__name__}; "
+            "Robot(description),"
+            " Robot.from_dh and Robot.from_screws make robots without a file"
         )
     description = _nominal(name_or_path, package_paths, xacro_args)
     return description if calibration is None else calibrated(description, calibration)
@@ -108,7 +109,7 @@ def _nominal(
 def _refuse_arguments(xacro_args: Mapping[str, Any] | None, name: object) -> None:
     """Complain about arguments that nothing would read."""
     if xacro_args:
-        raise InputTypeError(f"xacro_args goes with a xacro file, which {str(name)!r} is not")
+        raise InputTypeError(f"xacro_args can only be used with a xacro file, and {str(name)!r} is not one")
 
 
 def _looks_like_a_path(text: str) -> bool:
@@ -128,7 +129,7 @@ def _check_xml(path: str, data: bytes) -> None:
     start = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")
     if not start.startswith(b"<"):
         raise DescriptionError(
-            f"this is no robot file: it starts with {start[:12]!r};"
+            f"this is not a robot file: it starts with {start[:12]!r};"
             " a robot is URDF (.urdf, .xml), xacro (.xacro), MJCF (.xml) or TOML (.toml)",
             path=path,
         )

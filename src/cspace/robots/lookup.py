@@ -16,12 +16,12 @@ __all__ = ["CatalogueRow", "catalogue_description", "find", "names", "rows", "se
 
 FOLDER: Final = Path(__file__).parent / "catalogue"
 SEPARATORS: Final = r"[\s._-]"
-"""What may stand anywhere in a robot's name."""
+"""Separators that are allowed anywhere in the name of a robot."""
 
 
 @dataclass(frozen=True)
 class CatalogueRow:
-    """What the catalogue says about a robot without opening its file.
+    """The entry of a robot in the catalogue, available without opening its file.
 
     name: as in load_robot. dof: joints that move. joints: their word, "6R" or "RRPRRR". title, vendor: in
     plain words. source, licence: of the joint frames. aliases: other names. missing: what nobody published.
@@ -52,7 +52,7 @@ def find(name: str) -> str:
     """The catalogue name of a robot called by any of its names.
 
     Capitals count as small letters; blanks, dashes, underscores and full stops do not count: "UR-5e" is ur5e.
-    Every other character counts: "ur@5e" is nobody's name. The maker may stand before: "KUKA KR 6 R900".
+    Every other character counts: "ur@5e" is not a name. The maker may come first: "KUKA KR 6 R900".
     Raises UnknownNameError with the nearest names.
     """
     _check_text(name, "a robot of the catalogue")
@@ -64,8 +64,8 @@ def find(name: str) -> str:
     text = str(suggest("robot", name, known, owner="the catalogue"))
     text = text[: text.rindex(f" {len(known)} robots")]
     raise UnknownNameError(
-        f"{text} cs.robots.names() lists all {len(ROWS)}, cs.robots.search() finds one;"
-        " the path of a .urdf or .toml file will do as well"
+        f"{text} cs.robots.names() lists all {len(ROWS)}, cs.robots.search() searches them;"
+        " the path of a .urdf or .toml file is accepted too"
     )
 
 
@@ -93,7 +93,7 @@ def plain(name: str) -> str:
 
 
 def _key(name: str) -> str:
-    """A name without capitals and separators, as PLAIN_NAMES holds it."""
+    """A name without capitals and separators, as in PLAIN_NAMES."""
     return re.sub(SEPARATORS, "", name.lower())
 
 
@@ -108,7 +108,7 @@ def _after_its_maker(key: str) -> str | None:
 
 def _check_text(value: object, subject: str) -> None:
     if not isinstance(value, str):
-        raise InputTypeError(f"{subject} is given by a text, got {type(value).__name__}")
+        raise InputTypeError(f"{subject} must be a string, got {type(value).__name__}")
 
 
 def _fit(row: CatalogueRow, word: str) -> int:
@@ -117,7 +117,7 @@ def _fit(row: CatalogueRow, word: str) -> int:
     if word in whole or plain(word) in {plain(part) for part in whole} - {""}:
         return 2
     texts = (row.name, *row.aliases, row.title, row.vendor)
-    if word.isdecimal():  # a number fits where it stands alone: 7 fits iiwa7, not kr210_r2700
+    if word.isdecimal():  # a number must be a whole word: 7 fits iiwa7, not kr210_r2700
         return int(any(re.search(rf"(?<!\d){word}(?!\d)", text) for text in texts))
     key = plain(word)
     return int(bool(key) and any(key in plain(text) for text in texts))

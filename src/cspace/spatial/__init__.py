@@ -1,4 +1,4 @@
-"""Poses: planar and spatial displacements and every way to write their rotations, as arrays."""
+"""Poses: planar and spatial displacements and all representations of their rotations, as arrays."""
 
 from cspace.spatial.checks import as_pose, as_pose_2d, as_rotation, as_rotation_2d
 from cspace.spatial.distances import (

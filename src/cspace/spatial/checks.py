@@ -13,10 +13,10 @@ from cspace.errors import InputError
 __all__ = ["PoseLike", "RotationLike", "as_pose", "as_pose_2d", "as_rotation", "as_rotation_2d", "one_pose"]
 
 PoseLike: TypeAlias = Any
-"""(..., 4, 4) numbers, or an object that holds such a matrix: `__array__`, `as_matrix()` or `.A`."""
+"""(..., 4, 4) numbers, or an object that provides such a matrix: `__array__`, `as_matrix()` or `.A`."""
 
 RotationLike: TypeAlias = Any
-"""(..., 3, 3) numbers or an object that holds them; a pose counts too, for its rotation."""
+"""(..., 3, 3) numbers or an object that provides them; a pose counts too, for its rotation."""
 
 
 def as_pose(value: PoseLike, subject: str = "pose") -> Array:
@@ -139,11 +139,11 @@ def _with_zero_translation(R: Array) -> Array:
 
 def _shape_hint(shape: tuple[int, ...]) -> str:
     if shape[-2:] == (3, 3):
-        return "; cspace.pose(matrix=R) makes a pose of a rotation, cspace.embed_pose_2d(T) of a planar pose"
+        return "; cspace.pose(matrix=R) converts a rotation, and cspace.embed_pose_2d(T) a planar pose"
     if shape[-2:] == (3, 4):
         return "; the last row [0, 0, 0, 1] is missing"
     if shape[-1:] in {(6,), (7,)}:
-        return "; cspace.pose(xyz=…, rpy=…), or wxyz= or xyzw=, makes one of numbers"
+        return "; cspace.pose(xyz=…, rpy=…), or wxyz= or xyzw=, makes a pose from numbers"
     return ""
 
 
@@ -181,14 +181,14 @@ def _check_rotation(R: Array, subject: str) -> None:
     if mirrored.any():
         where = np.argwhere(mirrored)[0]
         raise InputError(
-            f"{subject}{_at(where)} has determinant −1: it is a reflection, no rotation; "
+            f"{subject}{_at(where)} has determinant −1: it is a reflection, not a rotation; "
             "an axis is flipped, or two rows or columns are swapped"
         )
 
 
 def _why_not_a_rotation(R: Array, error: float, subject: str) -> str:
     text = (
-        f"{subject} is no rotation: RᵀR differs from the identity by {error:.3g}, "
+        f"{subject} is not a rotation: RᵀR differs from the identity by {error:.3g}, "
         f"allowed {tolerances.ROTATION_ERROR:g} (tolerances.ROTATION_ERROR)"
     )
     if error <= tolerances.ROTATION_PROJECTION:
@@ -196,7 +196,7 @@ def _why_not_a_rotation(R: Array, error: float, subject: str) -> str:
     scale = np.sqrt(np.sum(R * R) / len(R)) if np.isfinite(error) else np.nan
     if scale > 0.0 and orthogonality_error(R / scale) <= tolerances.ROTATION_ERROR:
         return text + f"; it is a rotation scaled by {scale:.6g}: divide by it"
-    return text + "; too far for a projection to the nearest rotation to make sense"
+    return text + "; this is too far from any rotation for a projection"
 
 
 def orthogonality_error(R: Array) -> Array:

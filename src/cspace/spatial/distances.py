@@ -32,7 +32,7 @@ __all__ = [
 
 
 def rotation_distance(R_a: RotationLike, R_b: RotationLike) -> Array:
-    """The angle of the turn from one rotation to another, |log(R_aᵀ R_b)|, in [0, π].
+    """The angle of the rotation from one rotation to another, |log(R_aᵀ R_b)|, in [0, π].
 
     It does not depend on the frame on either side. Small angles are accurate, unlike acos of the trace.
 
@@ -50,7 +50,7 @@ def pose_distance(T_a: PoseLike, T_b: PoseLike, *, length: float) -> Array:
     """The weighted distance of two poses, √(d² + (L θ)²).
 
     d: distance of the origins [m]. θ: angle between the rotations [rad]. L: the `length` [m] that makes a
-    radian worth a distance, such as the size of the moving body; no value suits every task: it must be said.
+    radian worth a distance, such as the size of the moving body; no default suits every task.
     A metric on poses that does not depend on the base frame; none is free of both frames (Park 1995).
 
     T_a, T_b: (..., 4, 4), broadcast → (...) [m]. Raises InputError unless length is a number ≥ 0.

@@ -1,4 +1,4 @@
-"""Between two poses: along the screw that joins them, or turning and moving independently."""
+"""Interpolation between two poses: along their screw, or of rotation and translation independently."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def interpolate(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
     """The pose at the fraction t of the screw motion from start to end: a helix at a constant twist.
 
     T(t) = T_start exp(t log(T_start⁻¹ T_end)), the shortest way round. It does not depend on the base frame.
-    If the two are half a turn apart both ways round are equally short: log_so3 says which is taken.
+    If the two are 180° apart, both directions are equally short: the rule of log_so3 applies.
 
     T_start, T_end: (..., 4, 4). t: (...), 0 at start, 1 at end, beyond them the motion goes on. All leading
     axes broadcast: one pair and t of shape (m,) give (m, 4, 4); for n pairs at m fractions pass T[:, None].
@@ -33,7 +33,7 @@ def interpolate(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
 
 
 def slerp(R_start: RotationLike, R_end: RotationLike, t: npt.ArrayLike) -> Array:
-    """The rotation at the fraction t of the shortest turn from start to end, at constant angular velocity.
+    """The rotation at the fraction t of the shortest way from start to end, at constant angular velocity.
 
     R(t) = R_start exp(t log(R_startᵀ R_end)); shapes and half turns as in interpolate. Source: Shoemake 1985.
 
@@ -49,7 +49,7 @@ def slerp(R_start: RotationLike, R_end: RotationLike, t: npt.ArrayLike) -> Array
 def interpolate_decoupled(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
     """The pose at the fraction t with the origin on a straight line and the rotation by slerp.
 
-    Which point goes straight depends on the choice of the moving frame, unlike in interpolate.
+    Which point moves on a straight line depends on the choice of the moving frame, unlike in interpolate.
 
     Shapes and half turns as in interpolate. Returns (..., 4, 4).
     """
@@ -61,7 +61,7 @@ def interpolate_decoupled(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) 
 
 
 def interpolate_2d(T_start: Any, T_end: Any, t: npt.ArrayLike) -> Array:
-    """The planar pose at the fraction t of the turn about the pole, or of the line, from start to end.
+    """The planar pose at the fraction t of the rotation about the pole, or the translation, between two.
 
     Shapes as in interpolate, with (..., 3, 3); a half turn goes counter-clockwise.
     """
@@ -78,9 +78,9 @@ def _spatial(check: Callable[[Any, str], Array], value: Any, subject: str) -> Ar
         if not _is_planar(value):
             raise
         raise InputError(
-            f"{subject} looks like a planar pose: cspace.interpolate_2d moves between planar"
-            " poses, cspace.embed_pose_2d(T) makes one spatial; cspace.pose(matrix=R) makes a pose of a"
-            " rotation"
+            f"{subject} looks like a planar pose: cspace.interpolate_2d interpolates planar"
+            " poses, cspace.embed_pose_2d(T) converts one into a spatial pose, and cspace.pose(matrix=R)"
+            " converts a rotation into a pose"
         ) from None
 
 

@@ -51,7 +51,7 @@ def right_jacobian_so3(rotvec: npt.ArrayLike) -> Array:
 def left_jacobian_inv_so3(rotvec: npt.ArrayLike) -> Array:
     """The inverse of left_jacobian_so3: I − θ/2 [u] + (1 − θ/2 cot θ/2) [u]².
 
-    rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError at whole turns, where J is singular.
+    rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError at 2π, 4π, …, where J is singular.
     """
     return _left_inv_so3(as_floats(rotvec, "rotation vector", last=(3,)))
 
@@ -59,7 +59,7 @@ def left_jacobian_inv_so3(rotvec: npt.ArrayLike) -> Array:
 def right_jacobian_inv_so3(rotvec: npt.ArrayLike) -> Array:
     """The inverse of right_jacobian_so3; the derivative of log(R exp(δ)) with respect to δ.
 
-    rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError at whole turns, where J is singular.
+    rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError at 2π, 4π, …, where J is singular.
     """
     return _left_inv_so3(-as_floats(rotvec, "rotation vector", last=(3,)))
 
@@ -83,7 +83,7 @@ def right_jacobian_se3(twist: npt.ArrayLike) -> Array:
 def left_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
     """The inverse of left_jacobian_se3, [[J⁻¹, −J⁻¹ Q J⁻¹], [0, J⁻¹]].
 
-    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at whole turns other than zero.
+    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at multiples of 2π other than zero.
     """
     return _left_inv_se3(as_floats(twist, "twist", last=(6,)))
 
@@ -91,7 +91,7 @@ def left_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
 def right_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
     """The inverse of right_jacobian_se3; the derivative of log(T exp(δ)) with respect to δ.
 
-    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at whole turns other than zero.
+    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at multiples of 2π other than zero.
     """
     return _left_inv_se3(-as_floats(twist, "twist", last=(6,)))
 
@@ -107,7 +107,7 @@ def _left_inv_so3(w: Array) -> Array:
     half = 0.5 * angle
     ratio = sinc(half)
     if (np.abs(ratio) <= tolerances.WHOLE_TURN).any():
-        raise InputError("the Jacobian has no inverse at whole turns other than zero (|w| = 2π, 4π, …)")
+        raise InputError("the Jacobian has no inverse at multiples of 2π other than zero (|w| = 2π, 4π, …)")
     return _polynomial(axis, -half, 1.0 - np.cos(half) / ratio)
 
 

@@ -43,12 +43,12 @@ def pose_2d(
 
     xy: (..., 2) [m], zero if left out. theta: heading (...) [rad], zero if left out; or matrix: (..., 2, 2).
     xytheta: both at once (..., 3), alone. Leading axes broadcast. Returns (..., 3, 3).
-    Raises InputError on numbers that are no rotation, InputTypeError if nothing or something twice is given.
+    Raises InputError if a matrix is not a rotation, InputTypeError if nothing or something twice is given.
     """
     if xytheta is not None:
         if not (xy is None and theta is None and matrix is None):
             raise InputTypeError(
-                "pose_2d() got xytheta= and another argument; xytheta= holds all three numbers"
+                "pose_2d() got xytheta= and another argument; xytheta= already contains all three numbers"
             )
         numbers = as_floats(xytheta, "xytheta", last=(3,))
         return assemble(matrix_of_angle(numbers[..., 2]), numbers[..., :2])
@@ -95,7 +95,7 @@ def transform_directions_2d(T: Any, directions: npt.ArrayLike) -> Array:
 
 
 def embed_pose_2d(T: Any) -> Array:
-    """A planar pose as a pose of space that moves in the plane z = 0 and turns about z.
+    """A planar pose as a pose of space that moves in the plane z = 0 and rotates about z.
 
     T: (..., 3, 3) → (..., 4, 4).
     """

@@ -34,18 +34,18 @@ class Pole:
 
     @property
     def reason(self) -> str:
-        """Why there is no pole, in words; empty if every displacement has one."""
+        """Why there is no pole; empty if every displacement has one."""
         if np.all(self.exists):
             return ""
         if np.ndim(self.exists) == 0:
             x, y = self.translation
-            return f"a pure translation by ({x:g}, {y:g}) leaves no point in place"
+            return f"a pure translation by ({x:g}, {y:g}) has no fixed point"
         missing = int(np.sum(~self.exists))
         return f"{missing} of {np.size(self.exists)} displacements are pure translations and have no pole"
 
 
 def pole_of(T: Any) -> Pole:
-    """The pole of a planar displacement: the point c with R c + t = c, so that T turns the plane about c.
+    """The pole of a planar displacement: the point c with R c + t = c, so that T rotates the plane about c.
 
     c = (t + cot(θ/2) t⊥)/2 with t⊥ = (−t_y, t_x). A turn up to tolerances.PURE_TRANSLATION_ANGLE counts as
     none: a pure translation has no pole, which is an answer (falsy, with `reason`), not an error. The

@@ -37,7 +37,7 @@ def pose(
 
     xyz: (..., 3) [m], zero if left out. The rotation, the identity if left out, in one of the forms of
     `rotation`: wxyz, xyzw, rpy, rotvec, axis_angle, euler, fixed, matrix. Leading axes broadcast.
-    Returns (..., 4, 4). Raises InputError on numbers that are no rotation, InputTypeError if nothing is given
+    Returns (..., 4, 4). Raises InputError if a matrix is not a rotation, InputTypeError if nothing is given
     or the rotation is given twice.
     """
     forms = dict(
@@ -75,7 +75,7 @@ def rotation(
     fixed x, y, z. rotvec: axis times angle (..., 3) [rad]. axis_angle: (axis (..., 3) of any length but zero,
     angle (...) [rad]). euler, fixed: (sequence, angles (..., 3) [rad]), such as ("ZYX", angles).
     matrix: (..., 3, 3), checked. Returns (..., 3, 3).
-    Raises InputError on numbers that are no rotation, InputTypeError if none or more than one form is given.
+    Raises InputError if a matrix is not a rotation, InputTypeError if no form or more than one is given.
     """
     forms = dict(
         wxyz=wxyz,
@@ -186,7 +186,7 @@ def _from_axis_angle(value: Any) -> Array:
     length, unit = length_and_direction(axis)
     if not (length > 0.0).all():
         raise InputError(
-            "axis is zero; a rotation axis needs a direction (the identity: any axis with angle 0)"
+            "axis is zero; a rotation axis needs a direction (for the identity give any axis and angle 0)"
         )
     return matrix_of_axis_angle(unit, angle)
 

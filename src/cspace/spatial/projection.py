@@ -76,7 +76,8 @@ def mean_rotation(R: RotationLike, weights: npt.ArrayLike | None = None) -> Arra
     values, vectors = np.linalg.eigh(np.einsum("...n,...ni,...nj->...ij", w, q, q))
     if (values[..., -1] - values[..., -2] <= tolerances.MEAN_UNIQUENESS * values[..., -1]).any():
         raise InputError(
-            "the rotations have no unique mean: they spread evenly round (two half a turn apart do)"
+            "the rotations have no unique mean: they are distributed evenly (for example, two that are "
+            "180° apart)"
         )
     return matrix_of_wxyz(vectors[..., -1])
 
@@ -96,7 +97,7 @@ def _weights(weights: Any, shape: tuple[int, ...]) -> Array:
 def _nearest_pose(M: Array, limit: float) -> Array:
     row = [0] * (M.shape[-1] - 1) + [1]
     if (np.abs(M[..., -1, :] - row) > limit).any():
-        raise InputError(f"the last row of matrix is not {row} within {limit:g}; no pose is near")
+        raise InputError(f"the last row of matrix differs from {row} by more than {limit:g}; no pose is near")
     return assemble(_nearest(M[..., :-1, :-1], "the rotation part of matrix", limit), M[..., :-1, -1])
 
 
@@ -105,12 +106,13 @@ def _nearest(M: Array, subject: str, limit: float) -> Array:
     if not (error <= limit).all():
         worst = float(np.max(error))
         raise InputError(
-            f"{subject} is no worn rotation: MᵀM differs from the identity by {worst:.3g}, projection mends "
-            f"up to {limit:g}"
+            f"{subject} is not close to a rotation: MᵀM differs from the identity by {worst:.3g}; "
+            f"projection accepts up to {limit:g}"
         )
     if (determinant(M) < 0.0).any():
         raise InputError(
-            f"{subject} has a negative determinant (near −1): it is a reflection, no rotation is near it; "
+            f"{subject} has a negative determinant (near −1): it is a reflection, and no rotation is near "
+            "it; "
             "an axis is flipped, or two rows or columns are swapped"
         )
     U, _, Vt = np.linalg.svd(M)

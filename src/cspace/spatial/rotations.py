@@ -103,7 +103,7 @@ def checked_angle_and_axis(w: Array, subject: str) -> tuple[Array, Array]:
     """Length and direction of rotation vectors; an overflowing length is refused."""
     angle, axis = length_and_direction(w)
     if not np.isfinite(angle).all():
-        raise InputError(f"{subject} is so long that its length overflows; angles must be finite")
+        raise InputError(f"{subject} is so long that its norm overflows; angles must be finite")
     return angle, axis
 
 

@@ -1,4 +1,4 @@
-"""Screws: every displacement of space is one turn about an axis and one slide along it (Chasles)."""
+"""Screws: every displacement of space is a rotation about an axis and a translation along it (Chasles)."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ class Screw:
 
 
 def screw_of(T: PoseLike) -> Screw:
-    """The screw of a displacement: the axis it leaves in place, the turn about it and the slide along it.
+    """The screw of a displacement: its invariant axis, the rotation about it and the translation along it.
 
     T = Screw.pose(). The angle lies in [0, π]; up to tolerances.PURE_TRANSLATION_ANGLE it counts as zero.
 

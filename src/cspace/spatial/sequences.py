@@ -1,4 +1,4 @@
-"""Rotations as three turns about coordinate axes: the 12 Euler and the 12 fixed-axis sequences.
+"""Rotations as three rotations about coordinate axes: the 12 Euler and the 12 fixed-axis sequences.
 
 Euler "ZYX" with angles (a, b, c) turns about the moving z, then the moving y, then the moving x:
 R = Rz(a) Ry(b) Rx(c). Fixed "XYZ" with angles (c, b, a) turns about the axes that stand still, x first:
@@ -22,11 +22,11 @@ __all__ = ["SEQUENCES", "to_euler", "to_fixed", "to_rpy"]
 SEQUENCES: Final[tuple[str, ...]] = tuple(
     i + j + k for i in "XYZ" for j in "XYZ" for k in "XYZ" if i != j and j != k
 )
-"""The twelve names: no axis twice in a row. Each is a way to turn about moving or about fixed axes."""
+"""The twelve sequences, in which no axis occurs twice in a row, for moving and for fixed axes."""
 
 
 def to_euler(R: RotationLike, sequence: str) -> Array:
-    """The angles of a rotation or pose as turns about moving axes, R = R_i(a) R_j(b) R_k(c).
+    """The angles of a rotation or pose as rotations about moving axes, R = R_i(a) R_j(b) R_k(c).
 
     The middle angle lies in [−π/2, π/2] if i, j, k differ and in [0, π] if i = k, the others in (−π, π].
     Where the middle angle puts the outer axes on one line (gimbal lock), the last angle is zero; the angles
@@ -39,7 +39,7 @@ def to_euler(R: RotationLike, sequence: str) -> Array:
 
 
 def to_fixed(R: RotationLike, sequence: str) -> Array:
-    """The angles of a rotation or pose as turns about fixed axes, the first listed applied first.
+    """The angles of a rotation or pose as rotations about fixed axes, the first listed applied first.
 
     R = R_k(c) R_j(b) R_i(a). Ranges and gimbal lock as in to_euler: the last angle listed is zero there.
 
@@ -71,8 +71,8 @@ def axes_of(sequence: str) -> tuple[int, int, int]:
         return i, j, k
     if sequence.upper() in SEQUENCES:
         raise UnknownNameError(
-            f"no sequence {sequence!r}: axes are written in capitals, {sequence.upper()!r}; that they move "
-            "or stand still is said by the name euler or fixed (lower case means fixed in scipy)"
+            f"no sequence {sequence!r}: axes are written in capitals, {sequence.upper()!r}; the "
+            "keyword is euler= for moving axes and fixed= for fixed axes (lower case means fixed in scipy)"
         )
     raise suggest("sequence", sequence, SEQUENCES)
 

@@ -121,7 +121,7 @@ def rotvec(R: Array) -> tuple[float, list[float]] | None:
 
 
 def euler(axes: tuple[int, int, int], angles: list[float]) -> Nine:
-    """R_i(a) R_j(b) R_k(c): each turn mixes two columns of what stands there."""
+    """R_i(a) R_j(b) R_k(c): each rotation mixes two columns of the product."""
     columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     for axis, angle in zip(axes, angles, strict=True):
         u, v = (axis + 1) % 3, (axis + 2) % 3

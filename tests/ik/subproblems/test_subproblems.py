@@ -200,13 +200,13 @@ def test_the_classical_names_move_the_axis_to_a_point():
 
 def test_an_answer_says_what_it_is():
     z = [0, 0, 1]
-    assert sp.subproblem_3(z, [1, 0, 0], [2, 0, 0], 2).reason == "2 answers"
+    assert sp.subproblem_3(z, [1, 0, 0], [2, 0, 0], 2).reason == "2 solutions"
     missed = sp.subproblem_3(z, [1, 0, 0], [3, 0, 0], 5)
     assert not missed
-    assert missed.reason == "no exact answer: the best one leaves 1"
+    assert missed.reason == "no exact solution: the least-squares solution has the error 1"
     assert "infinitely many" in sp.subproblem_1(z, z, z).reason
     assert (
-        sp.subproblem_1(z, [[1, 0, 0], [1, 0, 1]], [0, 1, 0]).reason == "1 of 2 problems have exact answers"
+        sp.subproblem_1(z, [[1, 0, 0], [1, 0, 1]], [0, 1, 0]).reason == "1 of 2 problems have exact solutions"
     )
     assert cs.subproblems is sp
 

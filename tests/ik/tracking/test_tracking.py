@@ -311,7 +311,7 @@ def test_bad_questions_are_refused_by_name():
     opposite = T @ np.diag([-1.0, -1.0, 1.0, 1.0])
     with pytest.raises(InputError, match=r"expected \(n, 4, 4\)"):
         robot.track(T)
-    with pytest.raises(InputError, match="poses 0 and 1 are half a turn apart"):
+    with pytest.raises(InputError, match="poses 0 and 1 are 180° apart"):
         robot.track([T, opposite])
     with pytest.raises(InputError, match="start has shape"):
         robot.track([T], np.zeros((2, 6)))
@@ -331,7 +331,7 @@ def test_bad_questions_are_refused_by_name():
 def test_costs_that_are_no_number_are_refused(answer, error):
     robot = cs.load_robot("ur5e")
     T = robot.fk(np.full(6, 0.3))
-    with pytest.raises(error, match="answer of cost="):
+    with pytest.raises(error, match="result of cost="):
         robot.track([T, T], cost=lambda q: answer)
 
 

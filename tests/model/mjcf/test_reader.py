@@ -326,7 +326,7 @@ EQUALITIES = {
     "free joint": ('<joint joint1="f" joint2="j"/>', "'f' is free"),
     "twice": ('<joint joint1="j" joint2="k"/><joint joint1="j" joint2="k"/>', "coupled twice"),
     "itself": ('<joint joint1="j" joint2="j"/>', "mimics itself"),
-    "circle": ('<joint joint1="j" joint2="k"/><joint joint1="k" joint2="j"/>', "in a circle"),
+    "circle": ('<joint joint1="j" joint2="k"/><joint joint1="k" joint2="j"/>', "through a cycle"),
     "unknown body": ('<weld body1="x"/>', "no body 'x'.*bodies: a, b, c, world"),
     "unknown site": ('<connect site1="x" site2="y"/>', "no site 'x'"),
     "no anchor": ('<connect body1="a"/>', "needs the attribute 'anchor'"),

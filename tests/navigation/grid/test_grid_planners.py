@@ -299,7 +299,7 @@ def test_walls_may_be_touched():
     [
         (((1.5, 0.5), (0.5, 0.5)), r"start \(1.5, 0.5\) lies in cell \(0, 1\), which is blocked"),
         (((0.5, 0.5), (1.5, 0.5)), r"goal \(1.5, 0.5\) lies in cell \(0, 1\), which is blocked"),
-        (((0.5, 0.5), (3.5, 0.5)), r"goal \(3.5, 0.5\) is outside of the grid, which spans x 0 … 3, y 0 … 2"),
+        (((0.5, 0.5), (3.5, 0.5)), r"goal \(3.5, 0.5\) is outside the grid, which spans x 0 … 3, y 0 … 2"),
         (((np.nan, 0.5), (0.5, 0.5)), "start .* finite"),
         (((0.5, 0.5, 1), (0.5, 0.5)), r"start has shape \(3,\), expected"),
         ((((0.5, 0.5),), (0.5, 0.5)), r"start has shape \(1, 2\), expected \(2,\)"),

@@ -1,4 +1,4 @@
-// Configurations near solutions become solutions: polished, told apart, with their twins beside folds.
+// Configurations near solutions become solutions: refined, distinguished, with their partners near folds.
 #pragma once
 
 #include <initializer_list>

@@ -2,13 +2,13 @@
 //
 // Both sides of
 //   M5 Rz(a0) M0 Rz(a1) M1 Rz(a2) M2 = Rz(−a5) M4⁻¹ Rz(−a4) M3⁻¹ Rz(−a3)
-// move the z axis and the origin alike, which a3 leaves alone: their invariants agree (invariants.hpp). Of
-// the right side, the parts along z and the two scalars do not see a5, and four combinations of them do not
-// see a4 either; the parts across z, as complex numbers, turn with a5, and one combination of them vanishes.
-// That is six equations in the nine products of (S1², S1C1, C1²) and (S2², S2C2, C2²), the sines and cosines
-// of half the angles a1 and a2, which no angle makes infinite:
+// move the z axis and the origin alike, which are invariant under a3: their invariants agree
+// (invariants.hpp). Of the right side, the parts along z and the two scalars do not see a5, and four
+// combinations of them do not see a4 either; the parts across z, as complex numbers, turn with a5, and one
+// combination of them vanishes. That is six equations in the nine products of (S1², S1C1, C1²) and (S2²,
+// S2C2, C2²), the sines and cosines of half the angles a1 and a2, which no angle makes infinite:
 //   E(a0) = level + cos a0 · across + sin a0 · quarter.
-// A joint that slides has (a², a, 1) where one that turns has (S², SC, C²), and (a², a) for (cos, sin): any
+// A prismatic joint has (a², a, 1) where a revolute one has (S², SC, C²), and (a², a) for (cos, sin): any
 // of a1, a2, a4 may.
 #pragma once
 

@@ -1,7 +1,7 @@
 // Six joints as a closed loop. With a frame on each axis, its z along the axis, the arm and its goal close
 // up:
 //   Rz(a0) M0 Rz(a1) M1 Rz(a2) M2 Rz(a3) M3 Rz(a4) M4 Rz(a5) M5 = I,
-// a joint that slides with Tz in the place of Rz.
+// a prismatic joint with Tz in the place of Rz.
 // Any joint may come first, and the loop may be read backwards: twelve formulations of one problem.
 #pragma once
 

@@ -1,5 +1,5 @@
 // Solutions that share the hidden angle or nearly do: there the twelve equations lose two ranks, and the two
-// solutions are told apart inside the plane of the two weakest vectors.
+// solutions are distinguished inside the plane of the two weakest vectors.
 #pragma once
 
 #include "cspace/ik/general/recover.hpp"

@@ -108,7 +108,7 @@ inline Solutions solve_general_carefully(const GeneralArm& arm, const Posed& goa
     arm.solve(arm, goal, out);
     const bool certain = out.complete && !out.crowded, completed = chain.n < 6;
     if (completed) out = without_virtual_joints(chain, goal, out);
-    // Of six turning joints a certified empty list is believed, unless goals beside this one had to say so.
+    // For six revolute joints a certified empty list is accepted, unless goals beside this one had to say so.
     const bool may_hide = completed || arm.plan.slides > 0;
     const bool empty = out.count == 0 && (may_hide || arm.has_perturbed || out.crowded);
     if (!out.complete || empty || (!certain && may_hide))

@@ -45,7 +45,7 @@ inline Chain with_virtual_joints(const Chain& chain, int slides, int choice) {
     return six;
 }
 
-// A wrist made of the turning joints at one end and virtual ones square to them.
+// A wrist made of the revolute joints at one end and virtual ones perpendicular to them.
 inline bool with_virtual_wrist(const Chain& chain, Chain& best) {
     if (chain.n < 4) return false;
     const Vec3d& last = chain.axis[chain.n - 1];

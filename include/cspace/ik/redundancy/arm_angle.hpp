@@ -97,7 +97,7 @@ template <class V>
 CSPACE_INLINE SphericalTurns<V> three_turns(const Vec3d* axis, const Mat3<V>& R) {
     const Care care;
     const Vec3<V> h1 = fill3<V>(axis[0]), h2 = fill3<V>(axis[1]), h3 = fill3<V>(axis[2]);
-    const Vec3d along = dot(axis[1], axis[2]) * axis[1];  // of h3, what q2 leaves alone
+    const Vec3d along = dot(axis[1], axis[2]) * axis[1];  // the part of h3 that q2 does not change
     const Vec3d lean = axis[2] - along, turned = cross(axis[1], axis[2]);
     const Vec3<V> goal = R * h3;
     const TwoAngles<V> middle = linear_equation<V>(fill<V>(dot(axis[0], lean)), fill<V>(dot(axis[0], turned)),

@@ -20,7 +20,7 @@ struct Sweep {
     const LockedArm* locked;
     int parameter;
     Posed goal;
-    double at[max_joints];  // of the other held joints
+    double at[max_joints];  // of the other locked joints
     bool on_lanes;
     MovingGoal in_chain, in_form;
 };

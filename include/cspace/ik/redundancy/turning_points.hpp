@@ -15,7 +15,7 @@ namespace cspace::ik {
 struct FoldValues {
     static constexpr int room = 256;
     int count = 0;
-    double value[room];  // of the held joint, in (−π, π]
+    double value[room];  // of the locked joint, in (−π, π]
     int branch[room];    // which branch folds there; −1: whichever vanish there
     bool exact = false;  // none is missing
 };

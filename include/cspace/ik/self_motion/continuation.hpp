@@ -13,12 +13,12 @@ namespace cspace::ik {
 struct TipConstraint {
     Posed goal;
     bool whole_pose;
-    double length;  // of the arm [m]; sliding joints count in it
+    double length;  // of the arm [m], the unit of prismatic joints
 };
 
 enum class CurveEnd {
-    closed,  // the curve came back to its start, up to whole turns
-    far,     // a slide went as far as endless_slide lengths of the arm: it goes on for ever
+    closed,  // the curve came back to its start, up to multiples of 2π
+    far,     // a prismatic joint went endless_slide lengths of the arm: the curve is unbounded
     lost,    // no step succeeded any more
 };
 

@@ -26,7 +26,7 @@ struct Track {
     std::size_t count;
     const double *lower, *upper;  // (n,)
     const double* stride;         // (n,): how far a coordinate may move from one pose to the next
-    bool whole_turns;             // a branch may begin whole turns away from its start
+    bool whole_turns;             // a branch may begin at its start plus multiples of 2π
     const double* starts;         // (branches, n)
     std::size_t branches;
     // Outputs, one per branch.

@@ -17,7 +17,7 @@
 
 namespace cspace::navigation {
 
-// A point of a query, in cells, and the runs of free cells whose closures hold it: none in a blocked cell.
+// A point of a query, in cells, and the runs of free cells whose closures contain it: none in a blocked cell.
 struct SettledInRuns {
     Point at;
     std::vector<maps::RunMesh::Run> runs;
@@ -42,7 +42,7 @@ class GridAnyAngle {
     }
 
     // start, goal [m] as they were given, and as they were settled. parts: of this grid, or null for none.
-    // look() is called now and then, and may throw.
+    // look() is called regularly, and may throw.
     Route solve(Point start, const SettledInRuns& from, Point goal, const SettledInRuns& to,
                 maps::LazyParts* parts = nullptr, Trace* trace = nullptr,
                 const std::function<void()>& look = {}) {
@@ -103,7 +103,7 @@ class GridAnyAngle {
         return std::abs(at - whole) <= tolerance ? whole : at;
     }
 
-    // The free runs of the one or two rows, and one or two columns, that hold the point.
+    // The free runs of the one or two rows, and one or two columns, that contain the point.
     void find_runs(SettledInRuns& settled) const {
         const Point p = settled.at;
         if (!(p.x >= 0 && p.x <= grid_.columns() && p.y >= 0 && p.y <= grid_.rows())) return;

@@ -37,7 +37,7 @@ class IntervalSearch {
 
     explicit IntervalSearch(const Mesh& mesh) : mesh_(mesh), best_(mesh) {}
 
-    // starts, goals: the polygons whose closures hold the start and the goal.
+    // starts, goals: the polygons whose closures contain the start and the goal.
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
                 const std::vector<Polygon>& goals, Trace* trace = nullptr) {
         constexpr auto never = [](std::uint64_t) { return std::numeric_limits<std::uint64_t>::max(); };
@@ -95,7 +95,7 @@ class IntervalSearch {
     const Mesh& mesh_;
     std::conditional_t<Mesh::is_vast, SparseTable<Arrival>, DenseTable<Arrival>> best_;
     std::uint32_t query_ = 0;
-    std::vector<Node> nodes_;  // that wait, and places of those that have been expanded
+    std::vector<Node> nodes_;  // open nodes, and free places of expanded ones
     std::vector<Index> free_;
     struct Waits {  // without a tie to look at: a twentieth of a search
         double priority;

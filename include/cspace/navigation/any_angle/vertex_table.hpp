@@ -1,4 +1,4 @@
-// What a search notes of the corners that it comes to, kept from one query to the next.
+// The data that a search stores for the corners it reaches, reused by the next query.
 #pragma once
 
 #include <bit>
@@ -8,7 +8,7 @@
 
 namespace cspace::navigation {
 
-// A place for each vertex of a mesh: what is noted there stays, and tells itself from which query it is.
+// An entry for each vertex of a mesh; an entry records the query that wrote it.
 template <class T>
 class DenseTable {
   public:

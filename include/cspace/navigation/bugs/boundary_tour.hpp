@@ -1,4 +1,4 @@
-// What a robot learns that walks a whole ring of walls: its length, whether the goal lies on its side of it,
+// What a robot learns by walking a whole boundary loop: its length, whether the goal lies on the same side,
 // and the points nearest to the goal.
 #pragma once
 
@@ -41,7 +41,7 @@ class Round {
 
     double length() const { return length_; }
 
-    // Whether the ring has the goal on the other side than the robot: by how often it winds around the goal.
+    // Whether the ring separates the goal from the robot, by its winding number around the goal.
     bool shuts_off_goal() const { return turns_ != (is_outer_ ? 1 : 0); }
 
   private:

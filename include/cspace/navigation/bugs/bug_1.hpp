@@ -1,5 +1,5 @@
 // Bug 1 (Lumelsky and Stepanov 1987): straight towards the goal; where a wall stops the robot, around the
-// whole ring of walls, then the shorter way to its point nearest to the goal, and on from there. No ring is
+// whole boundary loop, then the shorter way to its point nearest to the goal, and on from there. No loop is
 // met twice. If the line from that point to the goal enters the wall, no way exists. The path is no longer
 // than the distance from start to goal and one and a half times the perimeters of the rings met.
 #pragma once
@@ -43,7 +43,7 @@ class Bug1 {
     Point goal_;
     Hand hand_;
 
-    // Around the ring back to the hit point; true if the goal is met on the way.
+    // Around the ring back to the hit point; true if the goal is reached on the way.
     template <ContactSensor Robot>
     bool walk_around(Walker<Robot>& walker, Round& round) const {
         const Touch hit = walker.robot.touch();

@@ -1,4 +1,4 @@
-// What a robot without a map feels whose sensor tells how far the nearest walls around it are.
+// The interface of a robot without a map whose sensor measures the distances of the nearest walls.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace cspace::navigation {
 
-// A nearest point of the walls, by its direction; the site tells pieces of wall and corners apart.
+// A nearest point of the walls, by its direction; the site distinguishes pieces of wall and corners.
 using Foot = voronoi::Contact;
 
 // What else ends a glide than walls.
@@ -54,7 +54,7 @@ struct Likeness {
 // fly            straight towards the goal until a wall is as near as it keeps from walls
 // stand_at       goes back to where it has been
 //
-// Each calls look() on its way and stops when that is true.
+// Each calls look() regularly and stops when that is true.
 template <class Robot>
 concept ClearanceSensor =
     ContactSensor<Robot> &&

@@ -1,4 +1,4 @@
-// All that a robot without a map has: it feels walls, follows them by hand and knows where it is.
+// The interface of a robot without a map: it detects contact with walls, follows them and knows its position.
 #pragma once
 
 #include <concepts>

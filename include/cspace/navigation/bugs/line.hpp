@@ -1,5 +1,5 @@
-// What a robot on a straight line decides about the walls it crosses. A contact is a rounded point; what is
-// asked here is answered from the corners of the walls and the ends of the line, and so without rounding.
+// Decisions of a robot on a straight line about the walls it crosses. A contact is a rounded point; these
+// decisions use the corners of the walls and the ends of the line, and so are exact.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace cspace::navigation {
 
-// A straight piece of wall, the free space on the left of begin → end. The name tells pieces apart.
+// A straight piece of wall, the free space on the left of begin → end. The name identifies the piece.
 struct Wall {
     Point begin, end;
     int name = -1;

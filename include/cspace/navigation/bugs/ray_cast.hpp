@@ -7,7 +7,8 @@
 
 namespace cspace::navigation {
 
-// Where a robot stands: in the open (−1, −1), inside a piece of wall (the same twice), at the corner of two.
+// The position of a robot: in the open (−1, −1), inside a piece of wall (the same twice), at the corner of
+// two.
 struct Place {
     int in = -1, out = -1;
 

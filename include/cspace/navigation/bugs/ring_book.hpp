@@ -1,4 +1,4 @@
-// The rings of walls that a robot has come all around, put together from the corners that it came by.
+// The boundary loops that a robot has followed all around, assembled from the corners that it passed.
 #pragma once
 
 #include <map>

@@ -8,7 +8,8 @@
 
 namespace cspace::navigation {
 
-// A run of beams that read about the same, the nearest there are around; beams count on past a whole turn.
+// A run of beams that read about the same, the nearest there are around; beam numbers continue past a full
+// circle.
 struct Near {
     int first, last;
     Point towards;  // unit

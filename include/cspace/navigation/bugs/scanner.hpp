@@ -17,7 +17,7 @@ struct Noise {
     std::uint64_t seed = 0;
 };
 
-// What the beams read from one place: the middle of beam k lies at angle k / size of a whole turn.
+// What the beams read from one place: the middle of beam k lies at angle k / size of a full circle.
 struct Scan {
     std::vector<double> reading;  // the range where nothing returned
     double deviation = 0;         // of a reading, after averaging

@@ -1,4 +1,4 @@
-// From where a robot stands, how far it can see at most in each direction: what lies beyond is hidden for
+// The largest visible distance from a robot's position in each direction: what lies beyond is hidden for
 // sure, so no ray need be cast there.
 #pragma once
 

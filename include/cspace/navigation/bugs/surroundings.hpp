@@ -1,4 +1,4 @@
-// The walls around a robot that tells how far they are.
+// The walls around a robot that measures their distances.
 #pragma once
 
 #include "cspace/navigation/voronoi/edge_tree.hpp"

@@ -3,7 +3,7 @@
 // where all of them lie further from the goal, along the wall until a point comes into view that is nearer to
 // the goal than all of the wall followed so far. Range 0 leaves touch alone.
 //
-// The robot senses where it stops: at nodes and at corners. A ring of walls that it has followed all around
+// The robot senses where it stops: at nodes and at corners. A boundary loop that it has followed all around
 // without leaving is judged as Bug 1 judges it, so the verdict does not depend on how far the sensor sees.
 #pragma once
 

@@ -11,7 +11,7 @@
 //
 // Beyond one such curve it lies if the way to it is free: then the robot leaves from the point of the curve
 // nearest to the goal, and earlier from any point next to the goal that is nearer than where it last met
-// walls. Else it is shut off, and a ring of walls around it, or around the robot, is the proof.
+// walls. Else it is unreachable, and a boundary loop around it, or around the robot, is the proof.
 #pragma once
 
 #include "cspace/navigation/bugs/clearance_robot.hpp"

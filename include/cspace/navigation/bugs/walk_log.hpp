@@ -1,4 +1,4 @@
-// What a robot without a map tells of its way: where it touched, what it followed, where it left, and its
+// The log of a walk without a map: the points of contact, the walls followed, the points of leaving, and its
 // verdict.
 #pragma once
 

@@ -10,8 +10,8 @@ namespace cspace::navigation {
 
 struct CellOptions {
     int depth = 6;           // mixed leaves are split down to this level first,
-    int most_depth = 12;     // and where that leaves the answer open, to this one
-    bool refine = true;      // false: the answer stays open
+    int most_depth = 12;     // and, if the result is then undetermined, to this one
+    bool refine = true;      // false: the result stays undetermined
     bool uniform = false;    // free leaves are split as well
     bool manhattan = false;  // the metric of the search
     std::size_t most_cells = std::size_t(1) << 22;
@@ -67,7 +67,7 @@ class ApproximateCells {
     Trace* trace_;
     std::shared_ptr<const CellStage> stage_;
     std::vector<maps::Index> at_start_, at_goal_, part_;
-    std::vector<std::uint8_t> connecting_;  // of each root: whether its leaves hold start and goal
+    std::vector<std::uint8_t> connecting_;  // of each root: whether its leaves contain start and goal
 
     const std::vector<CellDoor>& doors() const { return stage_->doors; }
 
@@ -86,7 +86,7 @@ class ApproximateCells {
         return std::make_shared<const CellStage>(std::move(tree));
     }
 
-    // The leaves above a level that may hide a way; none where they are too many.
+    // The leaves above a level that may hide a path; none if they are too many.
     template <class Wanted>
     std::vector<maps::Index> to_split(const Quadtree& tree, Wanted wanted, int level) const {
         std::vector<maps::Index> chosen;

@@ -56,7 +56,7 @@ struct CellKey {
     friend bool operator==(const CellKey&, const CellKey&) = default;
 };
 
-// What is kept with a world: its tree, as split for the options asked last.
+// The data stored with a world: its tree, split for the most recent options.
 using CellStages = search::LastMade<CellKey, CellStage>;
 
 }  // namespace cspace::navigation

@@ -50,7 +50,7 @@ class ExactCells {
         Index door = -1;
         bool closed = false;
     };
-    // The cells as nodes of best_first: each knows the point at which the way so far enters it.
+    // The cells as nodes of best_first: each stores the point at which the path enters it.
     struct Open {
         const ExactCells& of;
         Point start;

@@ -90,7 +90,7 @@ class Quadtree {
         }
     }
 
-    // The leaves whose closed square holds a point.
+    // The leaves whose closed square contains a point.
     void leaves_at(Point p, std::vector<maps::Index>& out) const {
         std::vector<maps::Index> stack{0};
         for (out.clear(); !stack.empty();) {
@@ -131,7 +131,7 @@ class Quadtree {
     static maps::Index width(const QuadCell& cell) { return maps::Index(1) << (finest - cell.level); }
     double x(maps::Index i) const { return along(low_.x, high_.x, i); }
     double y(maps::Index j) const { return along(low_.y, high_.y, j); }
-    // A line of the tree; one that rounding puts beside the bounds lies on them.
+    // A line of the tree; one that rounding moves off the bounds lies on them.
     double along(double low, double high, maps::Index i) const {
         const double at = low + std::ldexp(side_, -finest) * i;
         return std::abs(at - high) <= std::ldexp(std::abs(low) + std::abs(high), -50) ? high : at;

@@ -19,7 +19,7 @@ struct Coverage {
     std::vector<std::int32_t> order;       // in which the regions are entered
     std::vector<std::uint32_t> passes;     // how often the bar came over each cell, row by row
     std::int64_t reached = 0, free = 0;    // cells
-    std::int64_t lanes = 0, leftover = 0;  // lines driven, and places that took a way of their own
+    std::int64_t lanes = 0, leftover = 0;  // lines driven, and places that needed a separate path
 };
 
 class Coverer {

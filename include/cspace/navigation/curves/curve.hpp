@@ -8,7 +8,7 @@
 
 namespace cspace::navigation {
 
-// Where a car stands: the middle of its rear axle [m] and its heading [rad].
+// The pose of a car: the middle of its rear axle [m] and its heading [rad].
 struct CarPose {
     double x, y, theta;
 };
@@ -24,7 +24,7 @@ struct Curve {
     int count = 0;
     Piece piece[most];
 
-    // A piece too short to move anything is left out, and one that goes on like the last belongs to it.
+    // A piece too short to move the car is omitted, and one that continues the last is merged with it.
     void add(int turn, double length, double nothing) {
         if (std::fabs(length) <= nothing) return;
         if (count > 0 && piece[count - 1].turn == turn && (piece[count - 1].length < 0) == (length < 0))

@@ -22,7 +22,7 @@ struct Word {
     double t = 0, u = 0, v = 0;
 };
 
-// An arc of [0, 2π): one that misses a whole turn by less than what the rounding can be is none.
+// An arc of [0, 2π): one that differs from 2π by no more than rounding is 0.
 inline double forward_arc(double angle, double slack) {
     constexpr double whole = 2 * std::numbers::pi;
     angle -= whole * std::floor(angle / whole);

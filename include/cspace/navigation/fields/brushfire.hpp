@@ -77,7 +77,7 @@ inline std::vector<std::uint32_t> retract(const Diagram& diagram, std::uint32_t 
     return way;
 }
 
-// A way along sides without its loops, and with diagonal steps where both cells beside them are free.
+// A path along sides without its loops, and with diagonal steps where both adjacent cells are free.
 inline void straighten(const maps::BitGrid& grid, std::vector<std::uint32_t>& way) {
     std::vector<std::uint32_t> cells;
     std::vector<std::uint32_t> sorted = way;

@@ -1,5 +1,5 @@
 // A robot that goes down a potential, step by step, until it arrives or rests; where it rests is named.
-// Along walls it does not swing from side to side: each step knows how stiff the potential is across.
+// Along walls it does not oscillate: each step uses the stiffness of the potential across.
 #pragma once
 
 #include <algorithm>
@@ -18,8 +18,8 @@ enum class Rest : std::int8_t {
     goal,
     minimum,  // no force, and the potential rises in every direction
     saddle,   // no force, and it is too flat to tell which way is down
-    crease,   // forces from several places of one ring of walls hold the robot between them
-    wall,     // on a wall from which no way was found
+    crease,   // forces from several places of one boundary loop balance each other
+    wall,     // on a wall from which no descent was found
     budget,   // no rest in so many steps
 };
 
@@ -105,7 +105,7 @@ class DescentRun {
         go(potential_.goal(), seen);
         return true;
     }
-    // A step that is clearly shorter than the clearance needs no closer look.
+    // A step that is clearly shorter than the clearance needs no exact test.
     bool is_crossed(Point to, double length) const {
         const double rounding = 1e-9 * (std::abs(at_.x) + std::abs(at_.y) + length);
         return length + rounding >= here_.clearance && walls_.is_crossed(at_, to);
@@ -126,7 +126,7 @@ class DescentRun {
             return true;
         }
     }
-    // Down in any direction, where the force says nothing.
+    // Down in any direction, where the force vanishes.
     bool fall_off() {
         for (const double share : {1e-4, 1e-3, 1e-2, 5e-2}) {
             const double radius = share * std::min(here_.clearance, scale());

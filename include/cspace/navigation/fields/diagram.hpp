@@ -67,7 +67,7 @@ class Diagram {
     Clearance clearance_;
     Pieces pieces_;
     std::vector<Fate> fate_;
-    // In memory that was of use before: fresh pages take longer than what is written to them.
+    // In reused memory: new pages take longer than writing to them.
     std::vector<std::uint32_t> mark_;
     std::vector<std::int32_t> next_;  // of cells in the diagram their place, of others the cell above
     std::vector<std::uint32_t> cells_;

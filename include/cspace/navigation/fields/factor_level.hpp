@@ -30,7 +30,7 @@ struct FactorLevel {
 namespace factors {
 
 // Of one cycle on one level. A first guess that is too large is mended at once, as all weights are
-// positive; one that is too small could ask for anything.
+// positive; one that is too small could have any value.
 inline constexpr double least_factor = 1e-60, most_factor = 4;
 
 inline double power_of_two(std::int32_t k) {
@@ -101,7 +101,7 @@ FactorLevel joined(std::int32_t size, const std::vector<std::int32_t>& row,
 }
 
 // A factor that is the same for all of an aggregate corrects too little (Braess 1995); measured in rooms,
-// corridors and scattered cells, twice as much asks for the fewest cycles.
+// corridors and scattered cells, twice as much needs the fewest cycles.
 inline void correct(double& value, double factor) {
     if (std::abs(factor - 1) < 0.3) factor = 1 + 1.9 * (factor - 1);
     value = std::max(value * factor, least_factor);

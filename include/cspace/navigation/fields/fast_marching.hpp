@@ -140,7 +140,7 @@ class FrontDescent {
     static double until_side(double at, double step, double low) {
         return step > 0 ? (low + 1 - at) / step : step < 0 ? (low - at) / step : 1;
     }
-    // Down the slope of one of the squares that hold the point: within it, or, where two squares lead to
+    // Down the slope of one of the squares that contain the point: within it, or, where two squares lead to
     // each other, along the side between them.
     bool slide() { return slide_within(false) || slide_within(true); }
     bool slide_within(bool along_side) {

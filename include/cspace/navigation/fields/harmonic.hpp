@@ -15,7 +15,7 @@ struct Undisturbed {
 
 class HarmonicField {
   public:
-    // look() is called now and then while the equation is solved; it may throw to give up.
+    // look() is called regularly while the equation is solved; it may throw to stop.
     template <class Look = Undisturbed>
     HarmonicField(const maps::BitGrid& grid, const Clearance& clearance, maps::Cell goal, double residual,
                   int most_cycles, const Look& look = {})
@@ -31,7 +31,8 @@ class HarmonicField {
     int cycles() const { return chance_.cycles(); }
     // Cells but the goal from which no step leads down: none, where the equation is solved well enough.
     std::int64_t rests() const { return rests_; }
-    // Minus the logarithm of the chance: 0 at the goal, infinite on walls and where no way leads to the goal.
+    // Minus the logarithm of the chance: 0 at the goal, infinite on walls and where no path leads to the
+    // goal.
     double height(maps::Cell cell) const {
         const std::size_t i = chance_.index(cell);
         return i == chance_.size() ? std::numeric_limits<double>::infinity() : 0.0 - chance_.log_chance(i);

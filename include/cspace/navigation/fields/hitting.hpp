@@ -1,9 +1,9 @@
-// The chance that a random walk over the cells of a grid comes to the goal before it comes to a wall: it
+// The probability that a random walk over the cells of a grid reaches the goal before a wall: it
 // solves Laplace's equation with 1 at the goal and 0 on walls, so every other cell is the mean of the four
 // beside it.
 //
-// Along a corridor it falls by a factor with every cell, soon below what a double can hold: each number has
-// an exponent of its own, and what is solved for are factors near one. The solver is an aggregation of
+// Along a corridor it falls by a factor with every cell, soon below the range of a double: each number has
+// a separate exponent, and the unknowns are factors near one. The solver is an aggregation of
 // several levels (Horton & Leutenegger 1994) on the system scaled by its own iterate: squares of two by two
 // cells share a factor, then four by four, and so on; relaxations go from the goal outwards and back.
 #pragma once
@@ -32,7 +32,7 @@ class HittingSolver {
         make_levels();
     }
 
-    // Until every cell is the mean of those beside it, but for a share of it, or so many cycles. look() is
+    // Until every cell is the mean of its neighbours up to a relative error, or so many cycles. look() is
     // called now and then, and may throw.
     template <class Look>
     void solve(double residual, int most_cycles, const Look& look) {
@@ -54,7 +54,7 @@ class HittingSolver {
     double residual() const { return residual_; }
     int cycles() const { return cycles_; }
     maps::Cell cell(std::size_t i) const { return grid_.cell(cells_[i]); }
-    // The number of a cell here, or size() where no way leads to the goal.
+    // The number of a cell here, or size() if no path leads to the goal.
     std::size_t index(maps::Cell c) const { return std::size_t(index_[grid_.number(c)]); }
     bool is_less(std::size_t i, std::size_t j) const {
         return e_[i] != e_[j] ? e_[i] < e_[j] : m_[i] < m_[j];

@@ -1,5 +1,5 @@
 // An artificial potential (Khatib 1986): the goal attracts, with ½ k d² near it and a cone beyond, and every
-// ring of walls nearer than rho_0 repels with ½ k_r (1/ρ − 1/ρ₀)².
+// boundary loop nearer than rho_0 repels with ½ k_r (1/ρ − 1/ρ₀)².
 #pragma once
 
 #include <algorithm>
@@ -165,7 +165,7 @@ class Potential {
             const double reached = dot(d, wall.along);
             Point foot = wall.begin;
             if (reached > 0) {
-                // Past its end begins the next wall, which asks the same question.
+                // The next wall begins at its end and is treated in the same way.
                 if (squared_norm(wall.along) * reach < cross(wall.along, d) * cross(wall.along, d) ||
                     dot(p - wall.end, wall.along) >= 0)
                     return;

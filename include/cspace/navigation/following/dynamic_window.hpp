@@ -98,7 +98,7 @@ class DynamicWindow {
         return set_.heading * (1 - off) + set_.way * clear + set_.velocity * c.speed / vehicle.max_speed;
     }
 
-    // How far the disc goes along its arc before it touches something seen [m]. Points are in its own frame.
+    // How far the disc goes along its arc before it touches something seen [m]. Points are in its frame.
     double free_way(const Command& c) const {
         double least = set_.range;
         if (c.speed <= standing) return least;

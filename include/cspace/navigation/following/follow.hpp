@@ -27,7 +27,7 @@ struct FollowRecord {
     Outcome outcome = Outcome::timeout;
 };
 
-// The vehicle at one place and on its way there: what is recorded.
+// The recorded state of the vehicle at one place and on its way there.
 struct Follower {
     const Track& track;
     Motion now;
@@ -49,8 +49,8 @@ struct Follower {
     double progress() const { return before + own.s; }
 };
 
-// contact(from, speed, turn rate, time) says whether the vehicle touches something on that arc; controller as
-// in controllers.hpp.
+// contact(from, speed, turn rate, time) returns whether the vehicle touches something on that arc; controller
+// as in controllers.hpp.
 template <class Controller, class Contact>
 FollowRecord follow(const Vehicle& vehicle, const Motion& start, const Track& track, Controller& controller,
                     const FollowSettings& settings, const Contact& contact) {

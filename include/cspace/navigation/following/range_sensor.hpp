@@ -2,7 +2,7 @@
 // every border computed from its number, so that no rounding adds up).
 //
 // A ray along the border of two cells is stopped where both are blocked; one through a corner where the cell
-// behind it is, or both beside it.
+// behind it is, or both next to it.
 #pragma once
 
 #include <cmath>

@@ -21,7 +21,7 @@ class Run {
 
     struct Place {
         double s;       // along the run [m]
-        double offset;  // of the point asked about, above zero to the left of the run [m]
+        double offset;  // of the given point, positive to the left of the run [m]
         Point heading;  // of the run there, a unit vector
     };
 

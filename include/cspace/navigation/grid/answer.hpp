@@ -21,7 +21,7 @@ struct GridAnswer {
     std::vector<maps::Cell> cells;  // from start to goal; between two that follow each other the way is a
                                     // row, a column or a diagonal, or, of any angle, a straight line
     double cost = 0;                // of the way, as the planner counts [cells, or cells · cost]
-    double least = 0;               // no way costs less, where the planner proves that of its answer
+    double least = 0;               // no path costs less, if the planner proves that
     search::Effort effort;
     std::int64_t parts =
         0;  // how many there are, where the ends lie in two of them, which proves the verdict

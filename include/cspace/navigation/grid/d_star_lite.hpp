@@ -31,13 +31,13 @@ class DStarLite {
     const maps::BitGrid& grid() const { return grid_; }
     maps::Cell start() const { return start_; }
     maps::Cell goal() const { return goal_; }
-    // The robot has moved. What waits was ranked for where it was, by as much as it has moved too high at
-    // most; what comes to wait from now on is ranked by so much higher.
+    // The robot has moved. The keys of open nodes were computed for its old position and are too large by at
+    // most the distance moved; keys from now on are increased by that distance.
     void move(maps::Cell start) {
         travelled_ = travelled_ + left(start_, start);
         start_ = start;
     }
-    // A cell becomes blocked or free: its steps and those beside it change.
+    // A cell becomes blocked or free: its moves and those past it change.
     void set(maps::Cell cell, bool blocked) {
         if (grid_.blocked(cell) == blocked) return;
         grid_.set(cell.row, cell.column, blocked);
@@ -47,7 +47,7 @@ class DStarLite {
                 if (grid_.contains(beside)) look_again(beside);
             }
     }
-    // Mends what the changes have broken. False where no way leads to the goal.
+    // Repairs the search after changes. False if no path leads to the goal.
     bool replan(search::Effort& effort) {
         if (grid_.blocked(start_) || grid_.blocked(goal_)) return false;
         const std::uint32_t start = grid_.number(start_);
@@ -66,7 +66,7 @@ class DStarLite {
         }
         return !at(start).rhs.is_infinite();
     }
-    // The cells of the way from the start to the goal; replan() has said that there is one.
+    // The cells of the path from the start to the goal; replan() must have returned true.
     void way(std::vector<maps::Cell>& cells) {
         cells.assign(1, start_);
         for (maps::Cell c = start_; !(c == goal_);) {
@@ -96,7 +96,7 @@ class DStarLite {
     };
     struct Node {
         Length g = Length::infinite(), rhs = Length::infinite();
-        Key key;  // under which it waits
+        Key key;  // its key in the queue
         bool waits = false;
     };
 

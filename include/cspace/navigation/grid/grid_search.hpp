@@ -1,5 +1,5 @@
-// The space of a search from cell to neighbouring cell; the parent rule says what a way costs and where it
-// comes from.
+// The space of a search from cell to neighbouring cell; the parent rule gives the cost of a path and its
+// parent.
 #pragma once
 
 #include <bit>

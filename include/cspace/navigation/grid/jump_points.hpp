@@ -188,7 +188,7 @@ class JumpPoints {
             node.pending = std::uint8_t(bit_of(d));
             node.done = 0;
         } else if (g == node.g) {
-            if (node.pending) {  // it waits already
+            if (node.pending) {  // it is open already
                 node.pending = std::uint8_t(node.pending | bit_of(d));
                 return;
             }

@@ -6,7 +6,7 @@
 
 namespace cspace::navigation {
 
-// When a diagonal step is allowed: if both cells beside it are free, if one is, always; four: no diagonal
+// When a diagonal step is allowed: if both adjacent cells are free, if one is, always; four: no diagonal
 // steps.
 enum class Corners : std::uint8_t { never, one, always, four };
 inline constexpr int corner_rules = 4;

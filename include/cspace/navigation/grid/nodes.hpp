@@ -14,7 +14,7 @@
 namespace cspace::navigation {
 
 // For searches that reach most cells of a region: pages of 4096 cells, made when they are first reached. The
-// stamp of a cell tells whether this query has reached it.
+// stamp of a cell records whether this query has reached it.
 template <class G>
 class PagedNodes {
   public:
@@ -78,7 +78,7 @@ class SparseNodes {
     }
     Node& operator[](std::uint32_t place) { return nodes_[place]; }
     const Node& operator[](std::uint32_t place) const { return nodes_[place]; }
-    // The place of a cell; one that is new gets no g, and `is_new` says so.
+    // The place of a cell; one that is new gets no g, and sets `is_new`.
     std::uint32_t find(std::uint32_t cell, bool& is_new) {
         const std::size_t mask = table_.size() - 1;
         std::size_t at = slot_of(cell);

@@ -1,6 +1,6 @@
-// The order of a search: g, the way so far, and h, what is left at least, each with its weight. Weights (1,
-// 0) make it Dijkstra's (1959), (1, 1) A* (Hart, Nilsson & Raphael 1968), (1, w) weighted A*, whose ways are
-// at most w times the shortest (Pohl 1970), (0, 1) greedy best-first search.
+// The order of a search: g, the length so far, and h, a lower bound on the rest, each with its weight.
+// Weights (1, 0) make it Dijkstra's (1959), (1, 1) A* (Hart, Nilsson & Raphael 1968), (1, w) weighted A*,
+// whose ways are at most w times the shortest (Pohl 1970), (0, 1) greedy best-first search.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Where a cell comes from: the parent rule of a search over a grid.
+// The parent rule of a search over a grid.
 #pragma once
 
 #include <bit>

@@ -40,8 +40,7 @@ struct GridQuery {
     double least_cost = 1;          // the least of them
 };
 
-// What searches remember from one query to the next, so that they need not ask for memory. Not for two
-// threads at a time.
+// Memory that searches reuse from one query to the next. Not for two threads at a time.
 struct GridScratch {
     PagedNodes<Steps> steps;
     PagedNodes<double> lengths;
@@ -62,7 +61,7 @@ namespace grid_search {
 inline constexpr double bucket_width = 0.05;  // cells, or the least cost of one: few f differ by less
 inline constexpr std::uint64_t between_looks = 1 << 17;  // cells settled: less than a twentieth of a second
 
-// What a way from cell to neighbouring cell costs.
+// The cost of a path from cell to adjacent cell.
 template <class Length>
 double summed(const std::vector<maps::Cell>& cells, const Length& length) {
     typename Length::G sum{};
@@ -94,7 +93,7 @@ struct Division {
     }
 };
 
-// Best first, unless it is proven meanwhile that no way exists.
+// Best first, unless it is proven meanwhile that no path exists.
 template <class Space, class Queue>
 std::uint32_t search_or_divide(Space& space, Queue& queue, const Division& division, GridAnswer& answer) {
     constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
@@ -167,7 +166,7 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
 
 }  // namespace grid_search
 
-// The way from start to goal, both free cells of the grid. parts: of this grid, or null for none. look() is
+// The path from start to goal, both free cells of the grid. parts: of this grid, or null for none. look() is
 // called now and then, and may throw.
 inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goal, const GridQuery& query,
                      GridScratch& scratch, GridAnswer& answer, maps::LazyParts* parts = nullptr,

@@ -1,4 +1,4 @@
-// The length of a way over a grid, exact: how many steps along rows and columns, and how many diagonal ones.
+// The length of a path over a grid, exact: how many steps along rows and columns, and how many diagonal ones.
 #pragma once
 
 #include <cstdint>

@@ -120,7 +120,7 @@ class RoadmapSearch {
         return answer_;
     }
 
-    // What best_first asks of a space.
+    // The interface of a space for best_first.
     bool settle(std::uint32_t node) {
         const bool is_new = !settled_[node];
         settled_[node] = 1;
@@ -206,7 +206,7 @@ class RoadmapSearch {
     }
 };
 
-// What is kept with a world: the roadmap asked last.
+// The data stored with a world: the most recent roadmap.
 using KeptRoadmap = search::LastMade<RoadmapKey, Roadmap>;
 
 }  // namespace cspace::navigation::sampling

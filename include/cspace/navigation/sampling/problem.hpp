@@ -1,5 +1,5 @@
-// From start to goal in one component of free space: what every sampling planner is asked, and what it says
-// beside its route.
+// From start to goal in one component of free space: the query of every sampling planner, and its results
+// in addition to the route.
 #pragma once
 
 #include "cspace/maps/polygon_world.hpp"
@@ -18,7 +18,7 @@ struct Problem {
     Index component;
     End start, goal;
 
-    // The triangle where a segment from an end comes to q, or none.
+    // The triangle where a segment from an end reaches q, or none.
     Index sight(const End& from, Point q) const {
         for (const Index t : from.triangles) {
             const Index last = end_of_sight(world.space, {from.at, t}, q);

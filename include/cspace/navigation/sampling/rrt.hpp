@@ -13,7 +13,7 @@ namespace cspace::navigation::sampling {
 struct Growth {
     std::int64_t samples = 0;
     double step = 1;          // the longest edge towards a sample [m]
-    double goal_bias = 0;     // how often the goal is drawn while no way is known
+    double goal_bias = 0;     // how often the goal is drawn while no path is known
     bool is_optimal = false;  // RRT*
     std::uint64_t seed = 0;
 };

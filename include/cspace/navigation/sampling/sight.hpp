@@ -11,7 +11,7 @@ using maps::FreeSpace;
 using maps::Index;
 using maps::none;
 
-// A point and a free triangle whose closure holds it.
+// A point and a free triangle whose closure contains it.
 struct Located {
     Point at;
     Index triangle = none;

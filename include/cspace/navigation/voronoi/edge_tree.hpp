@@ -46,7 +46,7 @@ class EdgeTree {
         }
         return true;
     }
-    // The same for a disc that shrinks: disc() says its centre and radius as they are now. Those near `from`
+    // The same for a disc that shrinks: disc() returns its current centre and radius. Those near `from`
     // come first.
     template <class Disc, class Visit>
     void visit_shrinking(Point from, const EitherSide& side, Disc disc, Visit visit) const {

@@ -54,7 +54,7 @@ struct RoundWay {
 };
 
 struct FirstMeeting {
-    double at;  // or the end that was asked for
+    double at;  // or the requested end
     Index site = none;
 };
 

@@ -1,6 +1,6 @@
 // What a Voronoi diagram of free space is the diagram of: the walls, and the points where they bend away.
 //
-// A ring of walls is a chain of sites. Edge i comes after the point that it begins at; where free space bends
+// A boundary loop is a chain of sites. Edge i comes after the point that it begins at; where free space bends
 // around that point (more than half a turn), the point is a site of its own, nearest to what lies between the
 // normals of the two edges. At corners into which free space tapers, and on straight lines, it is none.
 #pragma once

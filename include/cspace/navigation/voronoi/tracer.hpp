@@ -4,7 +4,7 @@
 // other around it, one arc leads away (topology before numbers: Sugihara & Iri 1992, "Construction of the
 // Voronoi diagram for one million generators in single-precision arithmetic"; Held 2001, "VRONI"). It ends
 // where the disc first touches a third site, or in a corner. Each component's part is connected, and has as
-// many cycles as the component has holes: that is asked of the result.
+// many cycles as the component has holes: the result is tested for that.
 #pragma once
 
 #include <unordered_map>
@@ -190,7 +190,7 @@ class Tracer {
 };
 
 // Traces the part of one component; whether it is whole: connected, as traced from one point, with one cycle
-// less than the component has rings of walls.
+// less than the number of boundary loops of the component.
 inline bool trace_component(Diagram& d, Point seed, std::int64_t rings) {
     constexpr Grain grains[] = {{1e-13, 1e-9}, {1e-15, 1e-12}, {1e-11, 1e-7}};
     const std::size_t vertices = d.vertices.size(), arcs = d.arcs.size();

@@ -38,7 +38,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     form.add_argument("--latex", action="store_true", help="print LaTeX")
     form.add_argument("--markdown", action="store_true", help="print Markdown")
     parser.add_argument(
-        "--products", action="store_true", help="also A1 A2, A1 A2 A3 … with c12 and the like"
+        "--products", action="store_true", help="also A1 A2, A1 A2 A3 … with symbols such as c12"
     )
     add_degrees(parser)
     add_chain(parser)
@@ -67,7 +67,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
 
 
 def products(links: LinkMatrices, args: argparse.Namespace) -> list[str]:
-    """The products of the link matrices in the form asked for."""
+    """The products of the link matrices in the selected form."""
     if args.latex:
         return links.product_formulas()
     if args.markdown:

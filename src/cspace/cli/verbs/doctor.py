@@ -87,7 +87,7 @@ def version_of(package: str) -> str | None:
 
 
 def check(name: str) -> dict[str, Any]:
-    """Poses of random configurations are solved; every answer has to reach its pose, one to be the start."""
+    """Solve poses of random configurations: every solution must reach its pose, and one must be the start."""
     from cspace.robots import load_robot
 
     robot = load_robot(name)

@@ -29,19 +29,21 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_robot(parser)
     parser.add_argument(
-        "--lang", metavar="LANGUAGE", help="cpp, c or python; by the ending of FILE unless given, else cpp"
+        "--lang", metavar="LANGUAGE", help="cpp, c or python (default: by the ending of FILE, else cpp)"
     )
-    parser.add_argument("-o", "--output", type=Path, metavar="FILE", help="where to write it, else shown")
     parser.add_argument(
-        "--name", help="the namespace, or the prefix; made from the robot's name unless given"
+        "-o", "--output", type=Path, metavar="FILE", help="output file (default: print the text)"
     )
+    parser.add_argument("--name", help="namespace or prefix (default: derived from the name of the robot)")
     parser.add_argument(
         "--locked",
         nargs="+",
         metavar="JOINT",
-        help="joints, or q7 for the seventh, whose values the caller of the code gives",
+        help="joints whose values are arguments of the code; q7 is the seventh",
     )
-    parser.add_argument("--example", type=Path, metavar="FILE", help="write a main program that uses it")
+    parser.add_argument(
+        "--example", type=Path, metavar="FILE", help="write a program that uses the exported code"
+    )
     add_chain(parser)
 
 
@@ -57,7 +59,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     locked = None if args.locked is None else [joint_called(word, robot) for word in args.locked]
     made = robot.export(args.lang, args.output, name=args.name, locked=locked)
     if args.output is None and len(made.files) > 1 and not out.as_json:
-        raise UsageError(f"{made.language} needs {len(made.files)} files: say where with -o FILE")
+        raise UsageError(f"{made.language} needs {len(made.files)} files: give their location with -o FILE")
     if args.example is not None:
         made.write_example(args.example)
     report(made, args, out)
@@ -71,7 +73,7 @@ def check_apart(lang: str | None, output: Path, example: Path) -> None:
     behind = [output.with_suffix(".cpp")] if language_of(lang, output) == "c" else []
     for path in (output, *behind):
         if path.resolve() == example.resolve():
-            raise UsageError(f"--example {str(example)!r} would overwrite {path.name!r}: name it otherwise")
+            raise UsageError(f"--example {str(example)!r} would overwrite {path.name!r}: choose another name")
 
 
 def report(made: Export, args: argparse.Namespace, out: Output) -> None:

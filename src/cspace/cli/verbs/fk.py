@@ -24,7 +24,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_robot(parser)
     add_joints(parser)
-    parser.add_argument("--frame", metavar="LINK", help="another frame than the tip")
+    parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")
     add_degrees(parser)
     add_chain(parser)
 

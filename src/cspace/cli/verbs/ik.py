@@ -52,7 +52,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "--limits",
         choices=("mark", "drop", "keep"),
         default="mark",
-        help="mark what is out of limits (default), drop it, or keep all as they are",
+        help="mark solutions out of limits (default), drop them, or keep all without a check",
     )
     add_explanation(parser)
     parser.add_argument("--plot", metavar="FILE", type=Path, help="write a picture (png, svg, pdf)")
@@ -79,7 +79,7 @@ def in_options(message: str) -> str:
 
 
 def answer(args: argparse.Namespace, robot: Robot, out: Output) -> int:
-    """Answer for a goal; no solution is a negative answer, with its reason."""
+    """Solve a goal; no solution is a negative answer, with its reason."""
     goal, options = goal_of(args), options_of(args, robot)
     near = None if args.near is None else configuration(args.near, robot, "--near", degrees=args.deg)
     found = solve(robot, goal, near, options)

@@ -30,21 +30,21 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
     add_robot(parser)
     add_joints(parser)
-    parser.add_argument("--frame", metavar="LINK", help="another frame than the tip")
+    parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")
     parser.add_argument(
         "--expressed-in", choices=("base", "tip"), default="base", help="the axes of the rows (default: base)"
     )
     parser.add_argument(
         "--rows",
         choices=("all", "linear", "angular"),
-        help="the rows that count for singularity (default: linear for arms that only place a point)",
+        help="the rows that count for singularity (default: linear for arms that only position a point)",
     )
     add_degrees(parser)
     add_chain(parser)
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
-    """Print the Jacobian and what it says about singularity."""
+    """Print the Jacobian and its distance to a singularity."""
     from cspace import kinematics
 
     robot = load(args)

@@ -1,4 +1,4 @@
-"""`cspace nav`: a way through a map, by one planner or by all of them side by side."""
+"""`cspace nav`: a path through a map, by one planner or by all of them for comparison."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--planner",
         default="any_angle",
-        help="a planner's name, several with commas, or all (default: any_angle)",
+        help="name of a planner, several separated by commas, or all (default: any_angle)",
     )
     parser.add_argument(
         "--option",
@@ -53,28 +53,28 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         metavar="[PLANNER.]NAME=VALUE",
         help="an option of the planners (cspace planners NAME); may be repeated",
     )
-    parser.add_argument("--seed", type=int, metavar="N", help="the seed of planners that draw samples")
+    parser.add_argument("--seed", type=int, metavar="N", help="the seed of sampling-based planners")
     parser.add_argument("--radius", type=number, default=0.0, help="radius of the robot [m] (default: 0)")
     parser.add_argument(
-        "--resolution", type=number, help="side of a cell [m], of images and where polygons become cells"
+        "--resolution", type=number, help="side of a cell [m], for images and for polygons converted to cells"
     )
     parser.add_argument(
-        "--plot", type=Path, metavar="FILE", help="save the routes side by side (.png, .svg, .pdf)"
+        "--plot", type=Path, metavar="FILE", help="draw the routes side by side (.png, .svg, .pdf)"
     )
     parser.add_argument(
-        "--animate", type=Path, metavar="FILE.gif", help="save the search of the first planner, moving"
+        "--animate", type=Path, metavar="FILE.gif", help="animate the search of the first planner"
     )
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
-    """Ask the planners and print what they answer, side by side."""
+    """Run the planners and print their results in one table."""
     given = options_given(args.option, args.seed, planners_of(args.planner))
     for path in filter(None, (args.plot, args.animate)):
         check_writable(path)
     if args.plot:
         check_format(args.plot)
     if args.animate and args.animate.suffix.lower() != ".gif":
-        raise UsageError(f"an animation is a GIF; end {str(args.animate)!r} with .gif")
+        raise UsageError(f"an animation is a GIF file, but {str(args.animate)!r} does not end with .gif")
     world = load(args.map, args.resolution)
     found, refused = answers(world, given, args)
     best, routes = ask(world, "any_angle", args, {}), [each.route for each in found]
@@ -91,7 +91,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
 
 
 def pictures(args: argparse.Namespace, routes: list[Route]) -> list[str]:
-    """Draw what was asked for; the files that were written."""
+    """Draw the requested pictures; returns the files that were written."""
     if not (args.plot or args.animate):
         return []
     from cspace import plot
@@ -104,7 +104,7 @@ def pictures(args: argparse.Namespace, routes: list[Route]) -> list[str]:
 
 
 def planners_of(text: str) -> list[str]:
-    """The planners that are asked for."""
+    """The selected planners."""
     from cspace.navigation import PLANNERS
     from cspace.navigation.planners import find_planner
 
@@ -129,12 +129,12 @@ def load(path: Path, resolution: float | None) -> Any:
     if ending == ".txt":
         return PolygonWorld.from_text(path)
     raise UsageError(
-        f"cannot tell the kind of map of {str(path)!r}; end it with .yaml, .map, .png, .pgm, .geojson or .txt"
+        f"unknown kind of map {str(path)!r}; its name must end with .yaml, .map, .png, .pgm, .geojson or .txt"
     )
 
 
 def ask(world: Any, planner: str, args: argparse.Namespace, options: dict[str, Any]) -> Route:
-    """The answer of one planner."""
+    """The result of one planner."""
     from cspace.navigation import PLANNERS, navigate
 
     becomes_cells = world.kind == "polygons" and PLANNERS[planner].world == "grid"
@@ -229,7 +229,7 @@ def show(found: list[Answer], best: Route, out: Output) -> None:
 
 
 def document(args: argparse.Namespace, answered: list[Answer], best: Route) -> dict[str, Any]:
-    """The answers for machines."""
+    """The results as one JSON document."""
     found = [
         {
             "planner": route.planner,

@@ -23,7 +23,7 @@ cspace planners --json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("names", nargs="*", metavar="PLANNER", help="show the options of these")
+    parser.add_argument("names", nargs="*", metavar="PLANNER", help="print the options of these planners")
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
@@ -64,7 +64,7 @@ def default_of(option: Option) -> str:
 
 
 def typed(value: Any) -> Any:
-    """A value of an option as JSON holds it: infinity is a word that can be typed again."""
+    """A value of an option as JSON holds it: infinity is the text "inf", which can be typed."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     return value

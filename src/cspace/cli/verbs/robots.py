@@ -1,4 +1,4 @@
-"""`cspace robots`: what the catalogue holds."""
+"""`cspace robots`: the robots of the catalogue."""
 
 from __future__ import annotations
 
@@ -20,9 +20,9 @@ cspace robots --dof 7 --json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the arguments."""
-    parser.add_argument("words", nargs="*", metavar="WORD", help="the same as after --search")
-    parser.add_argument("--search", nargs="+", metavar="WORD", default=[], help="all words have to occur")
-    parser.add_argument("--dof", type=int, metavar="N", help="only arms of N joints")
+    parser.add_argument("words", nargs="*", metavar="WORD", help="words as for --search")
+    parser.add_argument("--search", nargs="+", metavar="WORD", default=[], help="all words must occur")
+    parser.add_argument("--dof", type=int, metavar="N", help="only arms with N joints")
 
 
 def run(args: argparse.Namespace, out: Output) -> int:

@@ -159,7 +159,7 @@ def descend(arm: dict[str, Any], goal: Array, q: Array, steps: int) -> tuple[Arr
 
 
 def wrapped(arm: dict[str, Any], q: Array) -> Array:
-    """Turning joints in (-pi, pi]."""
+    """Revolute joints in (-pi, pi]."""
     return np.where(arm["slides"], q, np.pi - np.mod(np.pi - q, 2 * np.pi))
 
 

@@ -54,7 +54,7 @@ def joint_between(
 
 
 def first_joint(arm: dict[str, Any], x: Array, y: Array) -> list[float]:
-    """Values of joint 1 that give y, moved back by it, what joint 2 leaves alone of x."""
+    """Values of joint 1 that give y, moved back by it, the invariants of x under joint 2."""
     h, o = arm["axes"][1], arm["points"][1]
     normals = [across(h), np.cross(h, across(h))] if arm["slides"][1] else [h]
 

@@ -1,4 +1,4 @@
-"""Arms with three parallel axes and no other help: two equations fix two turns, a planar arm does the rest.
+"""Arms with three parallel axes and no other help: two equations give two angles, a planar arm the others.
 
 The parallel axes keep one direction n and one height: n . (a position) and n . (a direction) do not change.
 """

@@ -1,4 +1,4 @@
-"""What the solver of an arm does, step by step, in words and in equations that hold."""
+"""Explanations: the steps of the solver of an arm, as text and as equations that can be evaluated."""
 
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.make_plan import ik_plan

@@ -233,7 +233,7 @@ def slides_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
     return IkPlan(
         **{**common, "length": 1.0},
         family="orientation first",
-        summary="three turning joints make the orientation, three slides the position.",
+        summary="three revolute joints determine the orientation, three prismatic joints the position.",
         branches=ways(steps),
         counted=COMPLETED if len(common["joints"]) < 6 else "",
         notes=(*notes, loop_note(loop)),
@@ -259,7 +259,8 @@ def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
         )
     centre = common_point(arm.axes[3:], arm.points[3:])[0]
     notes.append(
-        "$t_i$ is the angle of a turning joint, $q_i$ the way of a slide; $p$ and $r_{ij}$ are position "
+        "$t_i$ is the angle of a revolute joint, $q_i$ that of a prismatic one; $p$ and $r_{ij}$ are "
+        "position "
         "and rotation of the goal, $w$ is where the wrist's centre has to be."
     )
 
@@ -288,8 +289,8 @@ def few_joint_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
     steps = few_joint_steps(chain)
     turning = chain.joint_types.count("R")
     notes = [
-        "$p$ is where the tip has to be, in the base; $t_i$ is the angle of a turning joint, $q_i$ the "
-        "way of a slide."
+        "$p$ is where the tip has to be, in the base; $t_i$ is the angle of a revolute joint, $q_i$ the "
+        "position of a prismatic joint."
     ]
     if turning > 1:
         end = "last" if chain.joint_types[-1] == "R" else "first"
@@ -300,7 +301,8 @@ def few_joint_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
         )
     elif turning == 1:
         notes.append(
-            "For a pose the turning joint takes the angle of its rotation, and the slides follow linearly."
+            "For a pose the revolute joint takes the angle of its rotation, and the prismatic joints "
+            "follow linearly."
         )
 
     def values(q: Array, T: Array) -> dict[str, Any]:

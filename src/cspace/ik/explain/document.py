@@ -83,7 +83,7 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
         out += [page.Heading("Neighbouring axes"), page.Rows(head, rows)]
     for point in plan.invariant_points:
         meet = f"meet in a point, ({vector(point.place)}) m at zero{missed(point.miss, 'm')}"
-        words = f"Axes {listed(point.joints)} {meet}: their joints leave it where it is."
+        words = f"Axes {listed(point.joints)} {meet}: their joints do not move it."
         out.append(page.Paragraph(words))
     for each in plan.invariant_directions:
         parallel = f"are parallel to ({vector(each.direction)}) at zero{missed(each.miss, 'rad')}"

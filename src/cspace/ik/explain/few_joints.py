@@ -34,13 +34,13 @@ def kept(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
 
 
 def equal(f: list[tuple[TrigPolynomial, str]], g: list[tuple[TrigPolynomial, str]]) -> tuple[Equation, ...]:
-    """Equations between what a joint keeps on both sides, those that say nothing left out."""
+    """Equations between the invariants of a joint on both sides, without trivial ones."""
     pairs = [Equation(x, y, unit=unit) for (x, unit), (y, _) in zip(f, g, strict=True)]
     return tuple(each for each in pairs if (each.left - each.right).terms)
 
 
 def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
-    """How the tip comes to a point, p unless given."""
+    """The steps that bring the tip to a point, by default p."""
     kinds, n = chain.joint_types, len(chain.joint_types)
     goal, tip = symbols("p") if goal is None else goal, numbers(chain.T_zero[:3, 3])
     if n == 1:
@@ -58,14 +58,14 @@ def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
         " and ".join(names),
         WAYS[n],
         "subproblem 5" if kinds == "RRR" else "",
-        f"Joint {middle + 1} takes one point into another exactly if it keeps what it cannot change: {what}.",
+        f"Joint {middle + 1} maps one point to another exactly if its invariants agree: {what}.",
         equal(kept(chain, middle, before), kept(chain, middle, behind)),
     )
     return [first, last_step(chain, middle, behind, before)]
 
 
 def last_step(chain: Any, i: int, x: Vector, y: Vector) -> Step:
-    """Joint i takes x to y."""
+    """Joint i maps x to y."""
     turning = chain.joint_types[i] == "R"
     carried = moved(chain, i, x)
     equations = (Equation(carried[k], y[k], unit="m") for k in range(3))
@@ -73,6 +73,6 @@ def last_step(chain: Any, i: int, x: Vector, y: Vector) -> Step:
         f"$t_{i + 1}$" if turning else f"$q_{i + 1}$",
         1,
         "subproblem 1" if turning else "",
-        f"Joint {i + 1} {'turns' if turning else 'slides'} one point into the other.",
+        f"Joint {i + 1} {'rotates' if turning else 'translates'} one point into the other.",
         tuple(each for each in equations if (each.left - each.right).terms),
     )

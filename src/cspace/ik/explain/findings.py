@@ -1,4 +1,4 @@
-"""What an explanation holds: the geometry found, the steps, the equations."""
+"""The content of an explanation: the geometry, the steps, the equations."""
 
 from __future__ import annotations
 

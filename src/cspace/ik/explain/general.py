@@ -99,26 +99,26 @@ class Loop:
         return [loop, *(self.two_sheets(t) if self.slides == 2 else self.elimination(t))]
 
     def elimination(self, t: list[str]) -> list[Step]:
-        """At most one slide: Raghavan and Roth's elimination."""
-        slides = " (a slide has its own powers where an angle has sines and cosines)" if self.slides else ""
+        """At most one prismatic joint: the elimination of Raghavan and Roth."""
+        slides = " (a prismatic joint has powers instead of sines and cosines)" if self.slides else ""
         return [
             Step(
                 t[0],
                 16,
                 "elimination",
-                f"Both sides move the z axis and the origin alike, and {t[3]} moves neither. With $l$ and "
-                "$p$ where they go, both sides have $p$, $l$, $p \\cdot p$, $p \\cdot l$, $p \\times l$ and "
-                "$(p \\cdot p) l - 2 (p \\cdot l) p$ alike: fourteen equations (Raghavan and Roth 1990). Six "
-                f"combinations of them do not see {t[4]} and {t[5]}; times sine and "
-                f"cosine of half of {t[1]} they are twelve linear equations in twelve products of {t[1]} "
-                f"and {t[2]}{slides}. Their determinant, a trigonometric polynomial of degree 8 in "
+                "Both sides map the z axis to the same direction $l$ and the origin to the same point $p$, "
+                f"and {t[3]} changes neither. Both sides agree in $p$, $l$, $p \\cdot p$, $p \\cdot l$, "
+                "$p \\times l$ and $(p \\cdot p) l - 2 (p \\cdot l) p$: fourteen equations (Raghavan and "
+                f"Roth 1990). Six combinations of them do not contain {t[4]} and {t[5]}. Multiplied by the "
+                f"sine and cosine of half of {t[1]}, they are twelve linear equations in twelve products of "
+                f"{t[1]} and {t[2]}{slides}. Their determinant, a trigonometric polynomial of degree 8 in "
                 f"{t[0]}, the hidden angle, vanishes at the solutions: up to 16.",
             ),
             Step(
                 f"{t[1]}, {t[2]}",
                 1,
                 "null vector",
-                "At a root the null vector holds the products of both.",
+                "At a root the null vector contains the products of both.",
             ),
             Step(
                 f"{t[4]}, {t[5]}, {t[3]}",

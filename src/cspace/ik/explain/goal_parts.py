@@ -51,7 +51,7 @@ def goal_of_parts(goal_parts: Any, tool_axis: Any) -> PartialGoal:
         if not isinstance(name, str) or name not in KEYWORDS:
             raise suggest("part", name, KEYWORDS, owner="a pose")
     if not names:
-        raise InputTypeError(f"asked is empty, expected some of {', '.join(KEYWORDS)}")
+        raise InputTypeError(f"goal_parts is empty, expected some of {', '.join(KEYWORDS)}")
     values = goal_parts if isinstance(goal_parts, Mapping) else {name: TYPICAL[name] for name in names}
     return partial_goal({name: values[name] for name in KEYWORDS if name in values}, tool_axis)
 

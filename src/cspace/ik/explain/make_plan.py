@@ -53,7 +53,7 @@ def plan_of_poses(solver: Solver, locked: Any = None) -> IkPlan:
     """How full poses are answered."""
     given = locked_values(solver, {} if locked is None else locked)
     if any(np.ndim(value) for value in given.values()):
-        raise InputTypeError("locked= takes one value per joint here, because a plan is that of one arm")
+        raise InputTypeError("locked= takes one value per joint here, because a plan describes one arm")
     values = {joint: float(value) for joint, value in given.items()}
     if values or solver.is_redundant:
         return locked_plan(solver, values, survey_of(solver))

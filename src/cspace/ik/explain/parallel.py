@@ -24,8 +24,8 @@ def three_parallel_steps(form: Form) -> list[Step]:
         "$t_1$",
         2,
         "subproblem 4",
-        "Joints 2, 3 and 4 do not change heights along their axes, and joints 5 and 6 leave the wrist "
-        "alone: its height depends on $t_1$ alone.",
+        "Joints 2, 3 and 4 do not change heights along their axes, and joints 5 and 6 do not move the "
+        "wrist, so its height depends only on $t_1$.",
         (Equation(goal, own, unit="m"),),
     )
     return [shoulder, *turn_steps(form, 1, (2, 3, 4)), *planar_steps(form, meeting=True)]
@@ -82,7 +82,7 @@ def planar_steps(form: Form, *, meeting: bool) -> list[Step]:
             "$t_2, t_4$",
             1,
             "subproblem 1",
-            "The bent arm is turned into place; $t_4$ is what the sum $t_{234}$ leaves.",
+            "$t_2$ rotates the bent arm to $(u, v)$; $t_4$ is the rest of the sum $t_{234}$.",
             (
                 Equation(u, a2 * c2 + a3 * c23, unit="m"),
                 Equation(v, a2 * s2 + a3 * s23, unit="m"),
@@ -146,8 +146,7 @@ def first_parallel_steps(form: Form) -> list[Step]:
             "$t_1, t_3$",
             1,
             "subproblem 1",
-            "The bent arm is turned into place; $t_3$ is what the sum $t_{123}$, the angle of the plane, "
-            "leaves.",
+            "$t_1$ rotates the bent arm to $(u, v)$; $t_3$ is the rest of $t_{123}$, the angle of the plane.",
             (
                 Equation(qx, a1 * form.cos(1) + a2 * form.cos(1, 2), unit="m"),
                 Equation(qy, a1 * form.sin(1) + a2 * form.sin(1, 2), unit="m"),
@@ -161,7 +160,7 @@ def first_parallel_steps(form: Form) -> list[Step]:
 
 
 def displaced(form: Form) -> TrigMatrix:
-    """P (Tx(a3) Rx(α3) A4 A5 Rz(t6))⁻¹: what the three parallel joints have to do."""
+    """P (Tx(a3) Rx(α3) A4 A5 Rz(t6))⁻¹: the displacement by the three parallel joints."""
     rest = TrigMatrix.shift(x=form.a[2]) @ form.about_x(3)[2]
     for i in (4, 5):
         rest = rest @ form.about_z(i)[2] @ TrigMatrix.shift(x=form.a[i - 1], z=form.d[i - 1])

@@ -25,7 +25,7 @@ def goal_turns(v: Array) -> Vector:
 
 
 def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
-    """Joints 1, 2, 3 place the centre (3,) of the wrist, joints 4, 5, 6 turn about it."""
+    """Joints 1, 2, 3 position the centre (3,) of the wrist, joints 4, 5, 6 rotate about it."""
     in_tip = (np.linalg.inv(arm.T_zero) @ np.append(centre, 1.0))[:3]
     p, offset = symbols("p"), goal_turns(in_tip)
     wanted = tuple(Equation.definition(f"w_{AXES[k]}", p[k] + offset[k], "m") for k in range(3))
@@ -38,7 +38,7 @@ def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
 
 
 def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...]) -> list[Step]:
-    """Three revolute joints make what is left of the rotation: the middle one first."""
+    """Three revolute joints give the remaining rotation: the middle one first."""
     i, j, k = turns
     h, R_tip = arm.axes, arm.T_zero[:3, :3]
     left = goal_turns(R_tip.T @ h[k])  # where the last axis points, seen behind the joints before
@@ -59,7 +59,7 @@ def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...
             names[1],
             2,
             "subproblem 4",
-            f"$g$ is where axis {k + 1} points at the goal, seen behind the joints before. Its angle with "
+            f"$g$ is the goal direction of axis {k + 1}, seen behind the joints before. Its angle with "
             f"axis {i + 1} depends on {names[1]} alone.",
             (*seen, Equation(dotted(h[i], g), dotted(h[i], middle))),
         ),
@@ -67,14 +67,14 @@ def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...
             names[0],
             1,
             "subproblem 1",
-            f"Joint {i + 1} turns axis {k + 1} to where it has to point.",
+            f"Joint {i + 1} rotates axis {k + 1} to its goal.",
             tuple(Equation(g[n], onto[n]) for n in range(3)),
         ),
         Step(
             names[2],
             1,
             "subproblem 1",
-            f"The same from the other side: where axis {i + 1} points, seen from the tip.",
+            f"The same from the other side: the direction of axis {i + 1}, seen from the tip.",
             tuple(Equation(f[n], last[n]) for n in range(3)),
         ),
     ]
@@ -90,7 +90,7 @@ def turned_back_by_goal(v: Vector, R_tip: Array) -> Vector:
 
 
 def orientation_steps(six: Screws, chain: MatrixEquation) -> list[Step]:
-    """Three turns make the orientation, then three prismatic joints the position."""
+    """Three revolute joints give the orientation, then three prismatic joints the position."""
     turns = [k for k, kind in enumerate(six.joint_types) if kind == "R"]
     slides = [f"$q_{k + 1}$" for k, kind in enumerate(six.joint_types) if kind == "P"]
     return [
@@ -99,7 +99,7 @@ def orientation_steps(six: Screws, chain: MatrixEquation) -> list[Step]:
             ", ".join(slides),
             1,
             "",
-            "With the turns known the position is linear in the slides: three equations.",
+            "With the angles known, the position is linear in the prismatic joints: three equations.",
             (chain,),
         ),
     ]

@@ -1,4 +1,4 @@
-"""What the axes of an arm share, measured: which are parallel, square or meet, and what they leave alone."""
+"""Relations of the axes of an arm, measured: parallel, perpendicular or meeting, and their invariants."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class Relation:
 
     @property
     def words(self) -> str:
-        """The relation in words."""
+        """The relation as text."""
         if self.parallel:
             return "on one line" if self.meet else "parallel"
         found = [word for word, holds in (("meet", self.meet), ("perpendicular", self.square)) if holds]
@@ -48,7 +48,7 @@ class Relation:
 
 @dataclass(frozen=True, eq=False)
 class InvariantPoint:
-    """A point that some joints leave alone: their axes meet in it. place: (3,) in the base at zero [m].
+    """A point that some joints do not move: their axes meet in it. place: (3,) in the base at zero [m].
 
     joints: their numbers from 1. miss: how far the axes pass it at most [m].
     """
@@ -60,7 +60,7 @@ class InvariantPoint:
 
 @dataclass(frozen=True, eq=False)
 class InvariantDirection:
-    """A direction that some joints leave alone: their axes are parallel to it. direction: (3,) at zero.
+    """A direction that some joints do not change: their axes are parallel to it. direction: (3,) at zero.
 
     joints: their numbers from 1. miss: the largest angle between an axis and it [rad].
     """
@@ -94,7 +94,7 @@ def relations(chain: Any, length: float) -> tuple[Relation, ...]:
 
 
 def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
-    """Where neighbouring axes meet: three in a point, or two that no such three hold."""
+    """Where adjacent axes meet: three in a point, or two that belong to no such three."""
     pairs = [each.joints for each in relations(chain, length) if each.meet and not each.parallel]
     threes = [
         (a, b, c)

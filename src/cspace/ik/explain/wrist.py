@@ -1,4 +1,4 @@
-"""Three joints place a wrist, three turn about it: the steps of include/cspace/ik/spherical_wrist.hpp."""
+"""Three joints position a wrist, three rotate it: the steps of include/cspace/ik/spherical_wrist.hpp."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ vx, vy, vz = (symbol(f"v_{axis}") for axis in "xyz")
 
 
 def wrist_constants(form: Form) -> dict[str, float]:
-    """w, where the wrist stands in the frame behind joint 3 when t_3 = 0."""
+    """w, the wrist centre in the frame behind joint 3 at t_3 = 0."""
     return {
         "w_x": form.a[2],
         "w_y": -form.sa[2] * form.d[3],
@@ -32,7 +32,7 @@ def wrist_steps(form: Form, kind: int) -> list[Step]:
         "$w$",
         1,
         "",
-        "The wrist stands at $w$ behind joint 3 and turns with $t_3$; $p$ is where it has to be.",
+        "The wrist centre is at $w$ behind joint 3 and rotates with $t_3$; $p$ is its goal.",
         (
             define("w_x", symbol("a_3"), "m"),
             define("w_y", -sa3 * symbol("d_4"), "m"),
@@ -77,7 +77,7 @@ def pan(form: Form, *, a1: bool = True) -> Step:
         "$t_1$",
         1,
         "subproblem 1",
-        "Now both sides of the first joint are known but for its angle: $p$ seen along axis 1 fixes it.",
+        "Both sides of the first joint are known now: the bearing of $p$ about axis 1 gives its angle.",
         (Equation(px, c1 * x - s1 * y, unit="m"), Equation(py, s1 * x + c1 * y, unit="m")),
     )
 
@@ -125,7 +125,7 @@ def last_parallel(form: Form) -> list[Step]:
             "$t_2$",
             1,
             "subproblem 1",
-            "The bent arm is turned until the wrist stands where it should.",
+            "The bent arm is rotated until the wrist is at its goal.",
             (
                 Equation(x, a2 * c2 + wx * c23 - wy * s23, unit="m"),
                 Equation(y, a2 * s2 + wx * s23 + wy * c23, unit="m"),
@@ -156,8 +156,8 @@ def first_meet(form: Form) -> list[Step]:
             "$t_3$",
             2,
             "subproblem 3",
-            "Joints 1 and 2 leave the point alone where their axes meet, so the distance of the wrist "
-            "from it depends on $t_3$ alone.",
+            "Joints 1 and 2 do not move the point where their axes meet, so the distance of the wrist "
+            "from it depends only on $t_3$.",
             (Equation(squared(px, py, pz), length2, unit="m²"),),
         ),
         Step(
@@ -184,8 +184,8 @@ def last_meet(form: Form) -> list[Step]:
             "$t_1$",
             2,
             "subproblem 3",
-            "Joints 2 and 3 leave the point alone where their axes meet, so the distance of the wrist "
-            "from it is fixed, and it depends on $t_1$ alone.",
+            "Joints 2 and 3 do not move the point where their axes meet, so the distance of the wrist "
+            "from it is constant. This gives an equation in $t_1$ alone.",
             (
                 Equation(
                     squared(px, py, pz, a1, d2) - 2.0 * ca1 * d2 * pz,
@@ -210,7 +210,7 @@ def last_meet(form: Form) -> list[Step]:
             "$t_2$",
             1,
             "subproblem 1",
-            "The wrist seen along axis 2 fixes the angle that is left.",
+            "The bearing of the wrist about axis 2 gives the remaining angle.",
             (
                 *behind_joint_two(form, a2=False),
                 Equation(symbol("x"), x, unit="m"),
@@ -238,7 +238,7 @@ def first_parallel(form: Form) -> list[Step]:
             "$t_2$",
             2,
             "subproblem 3",
-            "The distance of the wrist from axis 1 fixes the elbow between the two parallel axes.",
+            "The distance of the wrist from axis 1 gives the elbow angle between the two parallel axes.",
             (
                 *behind_joint_two(form),
                 Equation(squared(px, py), squared(a1, vx, vy) + 2.0 * a1 * x, unit="m²"),
@@ -309,22 +309,22 @@ def turn_steps(form: Form, before: int, sum_of: tuple[int, ...]) -> list[Step]:
             "$t_5$",
             2,
             "subproblem 4",
-            f"What is left of the orientation, $M = ({front})^T R$, is a turn of the wrist. Its third "
-            "diagonal entry, the cosine between axes 4 and 6, depends on $t_5$ alone.",
+            f"The remaining orientation, $M = ({front})^T R$, is the rotation of the wrist. Its third "
+            "diagonal entry, the cosine between axes 4 and 6, depends only on $t_5$.",
             (entry(3, 3), equals(3, 3)),
         ),
         Step(
             angle,
             1,
             "subproblem 1",
-            "The third column of $M$, where axis 6 points.",
+            "The third column of $M$ is the direction of axis 6.",
             (entry(1, 3), entry(2, 3), equals(1, 3), equals(2, 3)),
         ),
         Step(
             "$t_6$",
             1,
             "subproblem 1",
-            "The third row of $M$, where axis 4 points, seen from the tip.",
+            "The third row of $M$ is the direction of axis 4, seen from the tip.",
             (entry(3, 1), entry(3, 2), equals(3, 1), equals(3, 2)),
         ),
     ]

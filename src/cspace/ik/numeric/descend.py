@@ -124,7 +124,7 @@ def ik_many_starts(
     """
     question = ask(robot, goal, position, frame, weights, limits, tolerance)
     if question.goals.ndim != 2:
-        raise InputError(f"goal has shape {question.goals.shape}; a search from many starts takes one goal")
+        raise InputError(f"goal has shape {question.goals.shape}; ik_many_starts takes one goal")
     steps = whole_number(max_iterations, "max_iterations", 0, MOST_ITERATIONS)
     n = len(robot.joint_names)
     if isinstance(starts, (list, tuple)) or np.ndim(starts) > 0:
@@ -162,7 +162,7 @@ def _starts(robot: KinematicModel, start: Any, lead: tuple[int, ...]) -> Array:
     n = len(robot.joint_names)
     rows = as_floats(start, "start", last=(n,))
     if np.abs(rows).max(initial=0.0) > FARTHEST:
-        raise InputError(f"start holds {np.abs(rows).max():g}; at most {FARTHEST:g} makes sense")
+        raise InputError(f"start contains {np.abs(rows).max():g}; the largest allowed value is {FARTHEST:g}")
     if rows.ndim > 1:
         try:
             rows = np.broadcast_to(rows, (*lead, n))
@@ -178,7 +178,7 @@ def _posture(robot: KinematicModel, rest: Any, rest_weights: Any) -> Array:
     n = len(robot.joint_names)
     if rest is None:
         if rest_weights is not None:
-            raise InputError("rest_weights= weigh the joints of rest=, which is not given")
+            raise InputError("rest_weights= can only be combined with rest=, which is missing")
         return np.empty((0, n))
     wanted = as_floats(rest, "rest", last=(n,), largest=FARTHEST)
     weights = np.ones(n) if rest_weights is None else as_floats(rest_weights, "rest_weights", last=(n,))

@@ -62,7 +62,7 @@ class TaskSolution:
         kind = type(self.tasks[worst]).__name__
         left = f"{self.position_error[worst]:.3g} m and {np.degrees(self.rotation_error[worst]):.3g}°"
         how = "no step nearby serves better" if self.settled else "the steps ran out"
-        return f"task {worst} ({kind}) is left {left} away; {how}, after {self.iterations} steps"
+        return f"task {worst} ({kind}) misses its target by {left}; {how}, after {self.iterations} steps"
 
     def __repr__(self) -> str:
         return f"<TaskSolution of {self.robot.name}: {self.reason}>"
@@ -106,7 +106,7 @@ def task_velocity(
     if not _core._task_velocity(
         robot, rows, postures, at, base, bounds_of(robot, limits), speed, step, cost, qd, errors
     ):
-        raise InputError("the tasks and their weights are too large or too small for the arithmetic")
+        raise InputError("the tasks and their weights exceed the range of float64; scale the weights")
     return qd
 
 
@@ -174,15 +174,15 @@ def _packed(robot: KinematicModel, tasks: Task | Iterable[Task]) -> tuple[Array,
     for task in listed:
         row = getattr(task, "_row", None)
         if row is None:
-            raise InputTypeError(f"tasks hold a {type(task).__name__}; PoseTask, PostureTask … are tasks")
+            raise InputTypeError(f"tasks contain a {type(task).__name__}, expected PoseTask, PostureTask …")
         if isinstance(task, PostureTask):
             if row.size != 2 * n + 1:
-                raise InputError(f"a PostureTask holds {(row.size - 1) // 2} joints, {robot.name} has {n}")
+                raise InputError(f"a PostureTask has {(row.size - 1) // 2} joints, but {robot.name} has {n}")
             postures.append(row)
             continue
         if isinstance(task, CenterOfMassTask):
             if robot.mass == 0.0:
-                raise InputError(f"no link of {robot.name} has a mass, so a CenterOfMassTask has no meaning")
+                raise InputError(f"no link of {robot.name} has a mass, which a CenterOfMassTask needs")
         else:
             row = row.copy()
             row[1] = frame_number(robot, task.frame)

@@ -59,13 +59,13 @@ def ask(
     number = frame_number(robot, frame)
     if robot.floating:
         raise InputError(
-            f"the base of {robot.name} floats, and no pose of a frame alone says where it should go;"
+            f"the base of {robot.name} is floating, and the pose of a frame does not determine it;"
             " robot.ik_tasks(tasks) moves base and joints together"
         )
     moving = _core._ik_moving(robot, number)
     if moving > MOST_PATH:
         raise InputError(
-            f"{moving} joints of {robot.name} move the frame; descents take up to {MOST_PATH},"
+            f"{moving} joints of {robot.name} move the frame; this function accepts up to {MOST_PATH},"
             " robot.ik_tasks any number"
         )
     if (goal is None) == (position is None):
@@ -74,11 +74,11 @@ def ask(
         goals, counted = as_pose(goal, "goal"), EVERYTHING if weights is None else _weights(weights)
     else:
         if weights is not None:
-            raise InputTypeError("weights= belong to a pose; a position weighs the same in every direction")
+            raise InputTypeError("weights= can only be used with a pose; leave them out for position=")
         goals, counted = _at(as_floats(position, "position", last=(3,))), POSITION_ALONE
     far = np.abs(goals[..., :3, 3]).max(initial=0.0)
     if far > FARTHEST / 3:
-        raise InputError(f"a goal lies {far:g} m away; goals up to {FARTHEST:g} m away make sense")
+        raise InputError(f"a goal is {far:g} m away; the maximum is {FARTHEST:g} m")
     return Question(number, goals, counted, bounds_of(robot, limits), positive(tolerance, "tolerance"))
 
 
@@ -129,7 +129,7 @@ def bounds_of(robot: KinematicModel, limits: Any) -> Array:
     if lower.shape != (n,) or upper.shape != (n,):
         raise InputError(f"limits are for {lower.shape} joints, expected {n} of {robot.name}")
     if not (lower <= upper).all():
-        raise InputError("limits hold a lower one above its upper one, or NaN")
+        raise InputError("limits contain NaN, or a lower limit above the upper limit")
     return np.array([lower, upper])
 
 

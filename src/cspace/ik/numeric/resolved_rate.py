@@ -63,7 +63,7 @@ def resolved_rate(
         lead = np.broadcast_shapes(J.shape[:-2], wanted.shape[:-1], () if wish is None else wish.shape[:-1])
     except ValueError:
         raise InputError(
-            f"the leading axes of q {J.shape[:-2]}, twist {wanted.shape} and null_space do not fit together"
+            f"the leading axes of q {J.shape[:-2]}, twist {wanted.shape} and null_space do not broadcast"
         ) from None
 
     number = math.prod(lead)

@@ -97,7 +97,7 @@ class NumericSolution:
             return f"reached from {which} in {int(self.iterations)} iterations; {left} are left"
         tried = "one start" if self._starts == 1 else f"{self._starts} starts"
         how = "a local minimum" if self._whole(4) == STALLED else "where the iterations ran out"
-        text = f"not reached from {tried}: the best of them ends {left} away, at {how}"
+        text = f"not reached from {tried}: the best result misses it by {left}, at {how}"
         at_limit = self._at_limits()
         return (
             text + (f", with {', '.join(at_limit)} at a limit" if at_limit else "") + "; this proves nothing"

@@ -150,7 +150,9 @@ def _pack(task: Any, kind: int, target: Array, weights: Array, point: Array | No
 def _gain(value: Any) -> float:
     gain = positive(value, "gain")
     if gain > 1:
-        raise InputError(f"gain is {gain:g}; a step takes away a share of the error, above 0 and at most 1")
+        raise InputError(
+            f"gain is {gain:g}; it must be above 0 and at most 1, the share of the error that a step removes"
+        )
     return gain
 
 

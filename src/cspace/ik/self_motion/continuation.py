@@ -1,7 +1,7 @@
 """The curve that a family runs along, and the part of it that joint limits leave.
 
 A curve that closes is periodic once its angles are unwound: after one time around it stands `shift` further,
-a whole turn or several for joints that went round, nothing for the others. Its points are named by their arc
+a multiple of 2π for joints that made full revolutions, zero for the others. Its points are named by their arc
 length s from q, over as many times around as the limits leave.
 
 Source: E. L. Allgower and K. Georg, Numerical Continuation Methods, 1990, for the curve itself.
@@ -30,7 +30,7 @@ HALVINGS = 50
 AT_REST = 1e-9
 """Change [rad or m] of a joint that rests along a family: rounding of the steps back onto the curve."""
 MOST_TURNS = 1000
-"""Times around after which a joint counts as turning for ever."""
+"""Revolutions after which a joint counts as rotating without end."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -251,7 +251,7 @@ def crossing(curve: Curve, inside: float, outside: float, limits: tuple[Array, A
 
 
 def outward(curve: Curve, way: int) -> npt.NDArray[np.float64]:
-    """The way prismatic joints go at an end of a curve that runs on for ever; zero for joints that rest."""
+    """The directions of prismatic joints at an end of an unbounded curve; zero for joints at rest."""
     t = curve.tangents[-1 if way > 0 else 0]
     return np.where(np.abs(t) > AT_REST, t, 0.0)
 

@@ -83,7 +83,7 @@ class SelfMotion:
         endless = np.flatnonzero(np.isinf(self.bounds).any(axis=1))
         if len(endless):
             name = self._solver.joint_names[int(endless[0])]
-            raise InputError(f"the family has no end, {name} moves on for ever: give the robot limits")
+            raise InputError(f"the self-motion is unbounded: {name} has no limits; give the robot limits")
         q = self._arc.sample(int(n))
         goes_round = self._arc.is_loop & (np.ptp(self.bounds, axis=1) >= 2 * np.pi)
         return np.where(goes_round, wrap(q, self._solver.joint_types), q)

@@ -71,14 +71,14 @@ class Branch:
         if self.cause == "limit":
             return f"{self.joint} would leave its limits"
         if self.cause == "unreachable":
-            return "no configuration reaches what follows"
+            return "no configuration reaches the path beyond"
         if self.cause == "singularity":
             joints = singularity(self.robot, self.last).joints
             lost = f" ({', '.join(joints)} are dependent)" if len(joints) < len(self.last) else ""
-            return f"the arm is singular{lost} and cannot go on"
+            return f"the arm is singular{lost} and cannot continue"
         if self.joint is None:
-            return "the joints would have to jump"
-        return f"{self.joint} would move further than max_step before the next pose"
+            return "the joints would jump"
+        return f"{self.joint} would move farther than max_step before the next pose"
 
     def __repr__(self) -> str:
         label = f" ({self.name})" if self.name else ""
@@ -166,7 +166,7 @@ def all_of(n: int) -> str:
 
 
 def where(end: float, reached: int) -> str:
-    """The place of an end in words; reached: how many poses before it."""
+    """The place of an end as text; reached: the number of poses before it."""
     if reached == 0:
         return "before pose 0"
     row = min(int(end), reached - 1)

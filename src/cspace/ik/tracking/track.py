@@ -101,8 +101,8 @@ def path_of(poses: Array) -> Array:
     if len(half):
         k = int(half[0])
         raise InputError(
-            f"poses {k} and {k + 1} are half a turn apart, which leaves the way between them open;"
-            " put a pose between them"
+            f"poses {k} and {k + 1} are 180° apart, so the direction of rotation between them is not unique;"
+            " insert a pose between them"
         )
     return np.ascontiguousarray(poses)
 
@@ -193,16 +193,16 @@ def answer_of(cost: Callable[[Array], Any], q: Array) -> Any:
     except Exception as error:
         raise InputError(
             f"cost= raised {type(error).__name__} for q of shape {q.shape}: {error}; it takes q (n, dof)"
-            " and answers one number"
+            " and must return one number"
         ) from error
 
 
 def number_of_cost(value: Any) -> float:
     """What a caller's function of the configurations answers, as one number; inf rules a branch out."""
-    number = as_floats(value, "the answer of cost=", finite=False)
+    number = as_floats(value, "the result of cost=", finite=False)
     if number.ndim or np.isnan(number):
         said = f"has shape {number.shape}" if number.ndim else f"is {value!r}"
-        raise InputError(f"the answer of cost= {said}, expected one number for q (n, dof)")
+        raise InputError(f"the result of cost= {said}, expected one number for q (n, dof)")
     return float(number)
 
 

@@ -78,7 +78,7 @@ class Given:
 class Defaults:
     """The default classes of a document.
 
-    A class holds what its <default> says, and behind that what the class says in which it is nested. The
+    A class contains the values of its <default>, then those of the class in which it is nested. The
     outermost class counts for elements that name none.
     """
 
@@ -90,7 +90,7 @@ class Defaults:
             self.read_nested(section, outermost)
 
     def read_nested(self, section: Element, name: str) -> None:
-        """The classes inside a class: each begins with what the outer one says so far."""
+        """The classes inside a class: each begins with the values of the outer one so far."""
         stack = [(section, name)]
         while stack:
             section, outer = stack.pop()
@@ -125,5 +125,5 @@ class Defaults:
 
 
 def slot(element: Element) -> str:
-    """Under which tag a class holds what stands behind an element."""
+    """The tag under which a class stores the defaults of an element."""
     return "general" if element.tag in ACTUATORS else element.tag

@@ -112,7 +112,7 @@ def middles(view: View, surfaces: list[Piece], spans: list[Block | None], block:
 
 
 def outlines(keys: Any) -> tuple[Any, Any]:
-    """The pixels of the outline that show something, and all pixels beside which another number stands."""
+    """The pixels of the outline that show something, and all pixels next to a different number."""
     rim, edge = np.zeros(keys.shape, bool), np.zeros(keys.shape, bool)
     padded = np.pad(keys, 1, constant_values=-1)
     for shift in ((0, 1), (2, 1), (1, 0), (1, 2)):

@@ -30,7 +30,7 @@ class Piece(Protocol):
         """The outward unit normals (m, 3) at its points (m, 3)."""
 
     def balls(self) -> list[tuple[Array, float]]:
-        """Two balls, center (3,) and radius, whose hull holds it."""
+        """Two balls, center (3,) and radius, whose hull contains it."""
 
 
 def quadratic(form: Array, x: Array, y: Array) -> Array:

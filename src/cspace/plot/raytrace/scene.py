@@ -67,7 +67,7 @@ def artist_type() -> type[Any]:
     from matplotlib.artist import Artist
 
     class Solids(Artist):
-        """The solids of a 3-D axes; `scene` holds them."""
+        """The solids of a 3-D axes; `scene` contains them."""
 
         def __init__(self, scene: Scene) -> None:
             super().__init__()

@@ -46,7 +46,7 @@ class Rays:
 
     @property
     def parallel(self) -> bool:
-        """Whether all rays have the same way."""
+        """Whether all rays have the same direction."""
         return not self.way[:2].any()
 
     def points(self, x: Array, y: Array, t: Array) -> Array:
@@ -96,7 +96,7 @@ class View:
         return np.asarray(self.to_display.transform(project(points, self.matrix)[:, :2])) * self.scale
 
     def block_of(self, points: Array) -> Block | None:
-        """The block of pixels that holds the projected points (m, 3), or None off the image."""
+        """The block of pixels that contains the projected points (m, 3), or None off the image."""
         return block_about(self.seen(points), self.width, self.height)
 
 
