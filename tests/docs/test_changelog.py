@@ -40,7 +40,7 @@ OWNERS: dict[str, Any] = {
     "route": cs.navigation.Route,
     "world": cs.PolygonWorld,
     "self_motion": cs.ik.SelfMotion,
-    "planner": cs.navigation.Planner,
+    "planner": cs.navigation.PlanePlanner,
 }
 NOT_PYTHON = {"fk", "into_limits", "yam", "cspace"}
 """Functions of exported files, which have names of their own, a robot of a test, and the command."""
@@ -62,7 +62,7 @@ def callables() -> Iterator[Any]:
     for _, value in exports():
         yield value
         if inspect.isclass(value):
-            yield from (getattr(value, name) for name in vars(value) if not name.startswith("_"))
+            yield from (getattr(value, name, None) for name in vars(value) if not name.startswith("_"))
 
 
 def keywords() -> set[str]:

@@ -88,7 +88,7 @@ inline void find_obstacles(FreeSpace& space, Index obstacles) {
     }
 }
 
-// Numbers the components of free space: walls divide them.
+// Numbers the components of free space: walls separate them.
 inline void find_components(FreeSpace& space) {
     std::vector<Index> stack;
     std::vector<std::uint8_t> seen(space.mesh.triangles.size(), 0);

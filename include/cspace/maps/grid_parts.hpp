@@ -1,5 +1,5 @@
-// The connected parts of a grid's free cells, for the proof that no way leads from one cell to another: which
-// of the three largest parts a cell lies in, two bits per cell.
+// The connected parts of a grid's free cells, for the proof that no path leads from one cell to another:
+// which of the three largest parts a cell lies in, two bits per cell.
 //
 // Rows are swept once to join the runs of free cells that touch in neighbouring rows (Rosenfeld & Pfaltz
 // 1966; runs by sets: Wu, Otoo & Suzuki 2009), and once more to write down what the joined parts are; only

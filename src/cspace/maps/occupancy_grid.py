@@ -160,7 +160,7 @@ class OccupancyGrid(_core.GridBase):
         return self._path_clearance(points) if len(points) else np.nan
 
     def check_free(self, point: ArrayLike, subject: str) -> Array:
-        """The point (2,) [m]; InputError if it is not finite, outside of the grid or in a blocked cell."""
+        """The point (2,) [m]; InputError if it is not finite, outside the grid or in a blocked cell."""
         x, y, place, row, column = self._find_cell(point, subject)
         if place != FREE:
             raise InputError(f"{subject} ({x:g}, {y:g}) lies in cell ({row}, {column}), which is blocked")

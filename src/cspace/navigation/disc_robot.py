@@ -34,8 +34,9 @@ class DiscFits(NamedTuple):
     def reason(self) -> str:
         """The verdict as one sentence."""
         return (
-            f"polygons around corners close the way of a disc of radius {self.radius:g} m, which fits: "
-            f"some way keeps {self.clearance:.9g} m from walls; planner 'voronoi' without a radius finds it"
+            f"the disc of radius {self.radius:g} m fits, but the polygons around corners close its passage: "
+            f"a path with clearance {self.clearance:.9g} m exists; find it with "
+            "planner='voronoi' and no radius"
         )
 
 

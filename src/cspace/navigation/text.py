@@ -15,4 +15,4 @@ def count_things(number: int, noun: str, plural: str = "") -> str:
 def explain_division(world: Any) -> str:
     """Why there is no path in a PolygonWorld whose free space has several parts."""
     parts = count_things(world.components, "part")
-    return f"walls divide start from goal: no path connects the {parts} of free space"
+    return f"walls separate start from goal: no path connects the {parts} of free space"

@@ -34,7 +34,7 @@ def check_walk(route, start, goal):
         assert route.evidence.shut is None
     else:
         assert route.status == "unreachable"
-        assert "beyond it" in route.reason
+        assert "separates it from the goal" in route.reason
     trace = route.trace
     assert len(trace.only("hit")) == len(trace.only("leave")) == len(route.evidence.hits)
     assert np.allclose(trace.only("hit").start, route.evidence.hits, rtol=0, atol=1e-9)

@@ -86,7 +86,7 @@ def test_it_arrives_where_cells_join_and_no_way_is_wider():
             assert bool(route) == bool(shorter) == (best is not None)
             if not route:
                 assert route.status == "unreachable"
-                assert "no way leads to the goal" in route.reason
+                assert "no path to the goal" in route.reason
                 continue
             found += 1
             assert route.evidence["least_clearance"] >= best

@@ -119,7 +119,7 @@ def test_walls_that_divide_are_told_without_a_solution():
     route = cs.navigate(grid, (1.5, 1.5), (399.5, 399.5), "harmonic")
     assert route.status == "unreachable"
     assert route.evidence.cycles == 0
-    assert "walls divide" in route.reason
+    assert "walls separate" in route.reason
     assert len(route.trace) == 0
     assert route.stats.seconds < 0.05
 

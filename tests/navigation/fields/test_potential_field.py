@@ -57,7 +57,7 @@ def check(world, route):
         return
     assert route.evidence.kind != "budget"
     assert (route.status == "local_minimum") == (route.evidence.kind in ("minimum", "crease"))
-    assert "rests at" in route.reason
+    assert "the descent ended at" in route.reason
     at = route.path[-1]
     assert np.hypot(*(at - route.goal)) > 1e-3 * gains["rho_0"]
     here = potentials.potential(world.walls, route.goal, at, **gains)
@@ -135,9 +135,9 @@ def test_looks_that_run_out_are_told_with_what_saves_them():
     short = go(world, (1, 1), (9, 2), step=1e-5)
     assert short.status == "undetermined"
     assert short.evidence.kind == "budget"
-    assert "still going down at" in short.reason
+    assert "the descent was at" in short.reason
     assert "a longer step= than 1e-05 m" in short.reason
-    assert "rests" not in short.reason
+    assert "ended" not in short.reason
 
 
 def test_a_trap_holds_it_and_is_no_arrival():

@@ -125,12 +125,12 @@ def test_time_and_standing_still_are_told():
     run = nav.follow(LINE, time_limit=3.0)
     assert not run
     assert (run.status, run.times[-1]) == ("timeout", pytest.approx(3.0))
-    assert "left" in run.reason
+    assert "before the end" in run.reason
     slow = nav.Unicycle(max_speed=1e-6)
     assert nav.follow(LINE, vehicle=slow, patience=5.0, time_limit=100.0).status == "stuck"
     wide = nav.follow([[0, 0], [0.5, 0]], vehicle=CAR, start=(0, 2, 0))
     assert wide.status == "missed"
-    assert "beside" in wide.reason
+    assert "next to the end" in wide.reason
 
 
 def test_the_same_question_has_the_same_answer():

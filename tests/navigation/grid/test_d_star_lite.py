@@ -82,7 +82,7 @@ def test_it_is_a_planner_too():
     assert len(route.trace) == route.stats.nodes
     shut = cs.navigate(cs.OccupancyGrid([[0, 1, 0]]), (0.5, 0.5), (2.5, 0.5), planner="d_star_lite")
     assert shut.status == "unreachable"
-    assert "no way leads to the goal" in shut.reason
+    assert "no path to the goal" in shut.reason
 
 
 def test_what_cannot_be_used():
@@ -93,7 +93,7 @@ def test_what_cannot_be_used():
         planner.set_blocked([(1, 1), (0.5, 0)])
     with pytest.raises(TypeError, match="blocked must be True or False"):
         planner.set_blocked((1, 0), 2)
-    with pytest.raises(ValueError, match=r"point \(9, 0\) is outside of the grid"):
+    with pytest.raises(ValueError, match=r"point \(9, 0\) is outside the grid"):
         planner.move((9, 0))
     with pytest.raises(ValueError, match="metric is 'euclidean'"):
         DStarLite(planner.grid, (0.5, 0.5), (3.5, 2.5), metric="euclidean")

@@ -143,7 +143,7 @@ def test_ways_keep_the_clearance_they_claim(world, prefer):
         shortest = cs.navigate(world, start, goal)
         assert route.status == shortest.status
         if not route:
-            assert "walls divide" in route.reason
+            assert "walls separate" in route.reason
             continue
         assert np.array_equal(route.path[[0, -1]], [start, goal])
         assert route.length >= shortest.length - 1e-9

@@ -1,6 +1,6 @@
 // Bug 1 (Lumelsky and Stepanov 1987): straight towards the goal; where a wall stops the robot, around the
 // whole boundary loop, then the shorter way to its point nearest to the goal, and on from there. No loop is
-// met twice. If the line from that point to the goal enters the wall, no way exists. The path is no longer
+// met twice. If the line from that point to the goal enters the wall, no path exists. The path is no longer
 // than the distance from start to goal and one and a half times the perimeters of the rings met.
 #pragma once
 

@@ -1,7 +1,7 @@
 // Bug 2 (Lumelsky and Stepanov 1987, "Path-planning strategies for a point mobile automaton moving amidst
 // unknown obstacles of arbitrary shape"): along the line from start to goal; where a wall stops the robot,
 // along the wall to a point of the line that lies beyond, from which the line is free. Met again, the hit
-// point proves that no way exists. The path is no longer than the line and, for each boundary loop, as many
+// point proves that no path exists. The path is no longer than the line and, for each boundary loop, as many
 // times its perimeter as the line enters it.
 //
 // A point of the line lies beyond the hit point if it is nearer to the goal; or where two pieces of wall

@@ -30,7 +30,7 @@ class AnyAngle(PlanePlanner):
     """
 
     name = "any_angle"
-    summary = "the shortest path, through convex polygons (Polyanya)"
+    summary = "shortest path through convex polygons (Polyanya)"
     takes_cells = True
     events = ("see",)
 
@@ -49,7 +49,9 @@ class AnyAngle(PlanePlanner):
             corners = max(len(route.path) - 2, 0)
             return f"the shortest path; it turns at {count_things(corners, 'corner')} of obstacles"
         if route.world.kind == "grid":
-            return "walls divide start from goal: no path connects the parts of free space in which they lie"
+            return (
+                "walls separate start from goal: no path connects the parts of free space in which they lie"
+            )
         return explain_division(route.world)
 
     def _record(self, route: Route) -> Any:

@@ -72,7 +72,7 @@ class VoronoiBug(PlanePlanner):
     """
 
     name = "voronoi_bug"
-    summary = "a robot that sees walls up to a distance: as far from two of them"
+    summary = "traces the points equally far from two walls; range sensor"
     sensing = "range"
     events = ("away", "trace", "roll", "back", "go")
 
@@ -113,17 +113,17 @@ class VoronoiBug(PlanePlanner):
         branches = count_things(found.branches, "branch", "branches")
         took = f"{branches} and {count_things(len(found.meets), 'meet point')}"
         if route:
-            return f"arrived after {route.length:.6g} m, {took}"
+            return f"reached the goal after {route.length:.6g} m, {took}"
         if self.noise:
             scans = count_things(found.scans, "scan")
             return (
-                f"gave up after {route.length:.6g} m, {took}, {scans}: a sensor with noise did not "
-                "show the goal, which proves nothing"
+                f"stopped after {route.length:.6g} m, {took}, {scans}: "
+                "the noisy sensor did not find the goal, which is no proof"
             )
         if found.shut is None:
-            return f"gave up after {route.length:.6g} m, {took}: rounding hides how branches hang together"
+            return f"stopped after {route.length:.6g} m, {took}: rounding hides how branches are connected"
         ring, (x, y) = found.shut
         return (
-            f"{took} are exhausted without sight of the goal, and it lies beyond the ring of walls {ring}: "
-            f"at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
+            f"{took} are exhausted without sight of the goal, and boundary loop {ring} separates "
+            f"it from the robot: at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
         )

@@ -73,12 +73,14 @@ class WallFollower(PlanePlanner):
         found: BugEvidence = route.evidence
         walls = len(found.rings)
         if route:
-            return f"arrived after {route.length:.6g} m, having followed walls {count_things(walls, 'time')}"
+            return (
+                f"reached the goal after {route.length:.6g} m; followed walls {count_things(walls, 'time')}"
+            )
         if found.shut is None:
-            return f"gave up after {route.length:.6g} m: rounding hides which walls are nearer to the goal"
+            return f"stopped after {route.length:.6g} m: rounding hides which walls are nearer to the goal"
         ring, (x, y) = found.shut
         return (
-            f"the robot followed the whole ring of walls {ring}, and the goal lies beyond it: "
+            f"the robot followed the whole boundary loop {ring}, which separates it from the goal: "
             f"at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
         )
 
@@ -106,7 +108,7 @@ class Bug1(ContactBug):
     """
 
     name = "bug_1"
-    summary = "a robot that feels walls: around each, then on from its point nearest the goal"
+    summary = "walks around each obstacle and leaves at the point nearest to the goal; contact sensor"
     kind = 0
 
 
@@ -120,7 +122,7 @@ class Bug2(ContactBug):
     """
 
     name = "bug_2"
-    summary = "a robot that feels walls: along them, back to the line from start to goal"
+    summary = "follows walls back to the line from start to goal; contact sensor"
     kind = 1
 
 
@@ -137,7 +139,7 @@ class TangentBug(WallFollower):
     """
 
     name = "tangent_bug"
-    summary = "a robot that sees walls up to a distance: around what is in view"
+    summary = "follows the visible tangents of obstacles; range sensor"
     sensing = "range"
     kind = 2
 

@@ -19,8 +19,8 @@ __all__ = ["CarRoute"]
 REASONS: Final = (
     "found",
     "unreachable: not even a disc within the vehicle passes from start to goal",
-    "no way on this lattice: every pose that it reaches is settled; a smaller box may find one",
-    "gave up: more poses than max_nodes; raise it, or take a larger box",
+    "no path on this lattice: every reachable pose was expanded; try a smaller box",
+    "stopped after max_nodes poses; increase max_nodes or box",
 )
 """The reasons for the end of a search, in the order of the compiled core."""
 

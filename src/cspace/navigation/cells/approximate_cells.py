@@ -67,7 +67,7 @@ class ApproximateCellsSearch(PlanePlanner):
     """
 
     name = "approximate_cells"
-    summary = "a path through free squares, split where needed"
+    summary = "path through free squares of a quadtree"
     events = ("split", "free", "expand")
 
     depth: int = option(

@@ -33,7 +33,7 @@ class ExactCells(PlanePlanner):
     """
 
     name = "exact_cells"
-    summary = "a path through trapezoids between the corners, pulled taut"
+    summary = "path through trapezoidal cells, shortened by the funnel algorithm"
     events = ("enter",)
 
     def _search(self, world: Any, start: Any, goal: Any) -> Any:

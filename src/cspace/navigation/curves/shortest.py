@@ -101,7 +101,7 @@ def check_poses(poses: Any, name: str, radius: float) -> Array:
         far, most = np.abs(array[..., :2]).max(initial=0), np.abs(array[..., 2]).max(initial=0)
     if far > LARGEST_NUMBER * min(radius, 1.0) or most > LARGEST_NUMBER:
         raise InputError(
-            f"{name} holds {max(far, most):g}; headings and coordinates up to {LARGEST_NUMBER:g} make sense,"
-            " in turning radii too: beyond them rounding decides the curve"
+            f"{name} contains {max(far, most):g}; the maximum for headings and coordinates is "
+            f"{LARGEST_NUMBER:g}, also in turning radii, because rounding would decide the curve"
         )
     return np.ascontiguousarray(array)

@@ -69,7 +69,7 @@ class Brushfire(PlanePlanner):
     """
 
     name = "brushfire"
-    summary = "the widest way over cells, along the diagram of waves from walls"
+    summary = "widest path over cells, on the diagram of wave fronts from walls"
     world = "grid"
     events = ("burn", "meet", "keep")
 
@@ -87,9 +87,9 @@ class Brushfire(PlanePlanner):
 
     def explain_route(self, route: Route) -> str:
         if not route:
-            return "no way leads to the goal: start and goal lie in different parts of the diagram"
+            return "no path to the goal: start and goal lie in different parts of the diagram"
         least: float = route.evidence["least_clearance"]
-        wide = "; no way over cells keeps farther" if self.prefer == "clearance" else ""
+        wide = "; no path over cells keeps farther" if self.prefer == "clearance" else ""
         return f"the centres of its cells keep {least:.6g} m from walls{wide}"
 
     def _record(self, route: Route) -> Any:

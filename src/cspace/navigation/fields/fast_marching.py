@@ -34,7 +34,7 @@ class FastMarching(PlanePlanner):
     """
 
     name = "fast_marching"
-    summary = "down the times of a front from the goal, at any angle"
+    summary = "descent of the arrival times of a front from the goal, at any angle"
     world = "grid"
     events = ("arrive",)
 
@@ -54,8 +54,10 @@ class FastMarching(PlanePlanner):
     def explain_route(self, route: Route) -> str:
         if not route:
             cells = count_things(route.stats.nodes, "cell")
-            return f"no way leads to the goal: its front has come to {cells} and no farther"
-        return f"went down the times of a front that takes {route.evidence['time']:.6g} m to the start"
+            return f"no path to the goal: its front reached only {cells}"
+        return (
+            f"descended the arrival times of a front that takes {route.evidence['time']:.6g} m to the start"
+        )
 
     def _record(self, route: Route) -> Any:
         given = route.world, route.start, route.goal

@@ -54,7 +54,7 @@ class Harmonic(PlanePlanner):
     """
 
     name = "harmonic"
-    summary = "down Laplace's equation over cells, whose only rest is the goal"
+    summary = "descent of a harmonic potential over cells, without local minima"
     world = "grid"
     events = ("descend",)
 
@@ -73,18 +73,19 @@ class Harmonic(PlanePlanner):
     def explain_route(self, route: Route) -> str:
         evidence: HarmonicEvidence = route.evidence
         if evidence == UNSOLVED:
-            return (
-                "no way leads to the goal: walls divide it from the start, as is known without the potential"
-            )
+            return "no path to the goal: walls separate it from the start, as is known without the potential"
         if route.status == "unreachable":
             cells = count_things(route.stats.nodes, "cell")
-            return f"no way leads to the goal: the start is not among the {cells} connected with it"
+            return f"no path to the goal: the start is not among the {cells} connected with it"
         cycles = count_things(evidence.cycles, "cycle")
         solved = f"solved to a share of {evidence.residual:.2g} in {cycles}"
         if not route:
-            rests = count_things(evidence.rests, "cell")
-            return f"the potential rests on {rests} beside the goal; it was {solved}"
-        return f"went down a harmonic potential without rest but the goal, {solved}, for {route.length:.6g} m"
+            rests = count_things(evidence.rests, "minimum", "minima")
+            return f"the potential has {rests} other than the goal; it was {solved}"
+        return (
+            f"descended a harmonic potential whose only minimum is the goal, {solved}, for "
+            f"{route.length:.6g} m"
+        )
 
     def _record(self, route: Route) -> Any:
         if route.evidence == UNSOLVED:

@@ -42,7 +42,7 @@ class PotentialAStar(SearchPlanner):
     """
 
     name = "potential_a_star"
-    summary = "over cells, by a search that counts on a potential"
+    summary = "search over cells with a potential as heuristic"
 
     mode: str = option("bounded", '"exact", "bounded" or "greedy".', choices=MODES)
     k_r: float | None = option(

@@ -32,10 +32,10 @@ __all__ = ["PotentialField", "PotentialRest", "potential"]
 RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget")
 SAID: Final = {
     "minimum": "the potential rises in every direction",
-    "saddle": "no force is left, and the potential is too flat to tell which way is down; a start a little "
-    "aside, or another rho_0=, may tell",
-    "crease": "one ring of walls holds it from two sides",
-    "wall": "it is pressed against a wall; a larger k_r= holds it off",
+    "saddle": "the force vanishes, and the potential is too flat to find a descent; try a slightly different "
+    "start or another rho_0=",
+    "crease": "one boundary loop blocks the robot from two sides",
+    "wall": "the robot touches a wall; a larger k_r= keeps it away",
 }
 
 
@@ -65,7 +65,7 @@ class PotentialField(PlanePlanner):
     """
 
     name = "potential_field"
-    summary = "down a potential: the goal attracts, walls repel"
+    summary = "descent of an attractive and repulsive potential"
     events = ("descend", "rest")
 
     k: float = option(1.0, "attraction.", above=0)
@@ -126,16 +126,16 @@ class PotentialField(PlanePlanner):
         rest: PotentialRest = route.evidence
         if route:
             over = f", over {count_things(rest.saddles, 'saddle')}" if rest.saddles else ""
-            return f"went down the potential for {route.length:.6g} m{over}"
+            return f"descended the potential for {route.length:.6g} m{over}"
         x, y = route.path[-1]
         left = float(np.hypot(x - route.goal[0], y - route.goal[1]))
         if rest.kind == "budget":
             return (
-                f"the robot was still going down at ({x:.6g}, {y:.6g}), {left:.6g} m from the goal, when "
-                f"{DESCENT_LOOKS} looks at the potential were spent; {self._suggest_gain()}"
+                f"the descent was at ({x:.6g}, {y:.6g}), {left:.6g} m from the goal, when the limit of "
+                f"{DESCENT_LOOKS} evaluations was reached; {self._suggest_gain()}"
             )
         near = "; the goal itself is near a wall" if left < self.values["rho_0"] else ""
-        return f"the robot rests at ({x:.6g}, {y:.6g}), {left:.6g} m from the goal: {SAID[rest.kind]}{near}"
+        return f"the descent ended at ({x:.6g}, {y:.6g}), {left:.6g} m from the goal: {SAID[rest.kind]}{near}"
 
     def _suggest_gain(self) -> str:
         """The option that gets farther: the step, or the repulsion where the clearance limits steps."""

@@ -142,7 +142,7 @@ class RimonKoditschek(PlanePlanner):
     """
 
     name = "rimon_koditschek"
-    summary = "down a function whose only minimum is the goal, among stars"
+    summary = "descent of a navigation function among star-shaped obstacles"
     events = ("descend",)
 
     kappa: float | None = option(
@@ -171,7 +171,7 @@ class RimonKoditschek(PlanePlanner):
     def explain_route(self, route: Route) -> str:
         evidence: NavigationEvidence = route.evidence
         if route.status == "unreachable":
-            return "start and goal lie in parts of free space that no way connects"
+            return "start and goal lie in different components of free space"
         if evidence.fault:
             return evidence.fault
         function = evidence.function
@@ -181,9 +181,9 @@ class RimonKoditschek(PlanePlanner):
         )
         said = f"a navigation function with kappa {function.kappa:g}, {minima}"
         if not route:
-            return f"the descent came to no end within {NAVIGATION_STEPS} steps, of {said}"
+            return f"the descent did not end within {NAVIGATION_STEPS} steps, of {said}"
         pushed = f", pushed off {count_things(evidence.pushes, 'saddle')}" if evidence.pushes else ""
-        return f"went down {said}, for {route.length:.6g} m{pushed}"
+        return f"descended {said}, for {route.length:.6g} m{pushed}"
 
     def _record(self, route: Route) -> Any:
         function = route.evidence.function
@@ -211,7 +211,7 @@ def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = No
     _check_discs(discs, at)
     core = _core.NavigationCore.of_discs(discs, at, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if not core.kappa:
-        raise InputError("no kappa was proven to leave a single minimum; give kappa= to do without the proof")
+        raise InputError("no kappa was proven to leave a single minimum; give kappa= to skip the proof")
     return NavigationFunction(core, None, at, (discs, power))
 
 
@@ -232,7 +232,7 @@ def _check_discs(discs: Array, goal: Array) -> None:
     small = np.flatnonzero(discs[:, 2] <= ON_WALL * np.abs(discs).max())
     if len(small):
         raise InputError(
-            f"disc {small[0]} has radius {discs[small[0], 2]:g}; rounding swallows it beside coordinates "
+            f"disc {small[0]} has radius {discs[small[0], 2]:g}; it is below the rounding of coordinates "
             f"of {np.abs(discs).max():g}"
         )
     away = np.linalg.norm(discs[:, None, :2] - discs[None, :, :2], axis=-1)
@@ -284,6 +284,6 @@ def _explain_fault(world: Any, kind: int, x: float, y: float) -> str:
         if any(np.any(np.all(ring == (x, y), axis=1)) for ring in rings):
             owner = f" of obstacle {number}"
             break
-    at = f"the ring of walls{owner} through ({x:.9g}, {y:.9g})"
+    at = f"the boundary loop{owner} through ({x:.9g}, {y:.9g})"
     rule = "touches another" if kind == 2 else "is not star-shaped: no point sees all of it"
     return f"{at} {rule}; planner='harmonic' takes any shape"

@@ -58,12 +58,14 @@ class Run:
             return f"arrived {at}, {missing:.2g} m from the end of the path"
         if self.status == "collision":
             x, y = self.poses[-1, :2]
-            return f"touched an obstacle {at}, at ({x:.4g}, {y:.4g}); {missing:.4g} m were left"
+            return (
+                f"touched an obstacle {at}, at ({x:.4g}, {y:.4g}), {missing:.4g} m before the end of the path"
+            )
         if self.status == "missed":
-            return f"stopped {at} beside the end of the path, {missing:.2g} m from it"
+            return f"stopped {at} next to the end of the path, {missing:.2g} m from it"
         if self.status == "stuck":
-            return f"came no farther along the path {at}; {missing:.4g} m were left"
-        return f"the time ran out {at}; {missing:.4g} m were left"
+            return f"came no farther along the path {at}, {missing:.4g} m before its end"
+        return f"the time limit was reached {at}, {missing:.4g} m before the end of the path"
 
     def __repr__(self) -> str:
         return f"<Run of a {type(self.vehicle).__name__} by {self.controller}: {self.reason}>"

@@ -31,14 +31,14 @@ class AStar(CostPlanner):
     shortest, with costs the cheapest (Hart, Nilsson & Raphael 1968)."""
 
     name = "a_star"
-    summary = "the shortest way over cells, or with costs the cheapest"
+    summary = "shortest path over cells, or with costs the cheapest"
 
 
 class Dijkstra(CostPlanner):
-    """Dijkstra's search: A* without an estimate of the remaining distance (Dijkstra 1959)."""
+    """Dijkstra's search: expands the open node with the smallest g (Dijkstra 1959)."""
 
     name = "dijkstra"
-    summary = "the shortest way over cells, found without a guess of what is left"
+    summary = "shortest path over cells, without a heuristic"
 
     def _weigh_nodes(self) -> dict[str, Any]:
         return {"h_weight": 0.0}
@@ -50,7 +50,7 @@ class WeightedAStar(CostPlanner):
     `weight` times as long, or costly, as the best (Pohl 1970)."""
 
     name = "weighted_a_star"
-    summary = "a way at most so many times the shortest"
+    summary = "path within a given factor of the shortest"
 
     weight: float = option(1.5, "how many times as long the way may be, 1 or more; 1 is A*.", minimum=1)
 
@@ -68,7 +68,7 @@ class FocalSearch(CostPlanner):
     """
 
     name = "focal_search"
-    summary = "a way at most so many times the shortest, and a bound for it"
+    summary = "path within a given factor of the shortest, with a proven bound"
     kind = FOCAL
 
     bound: float = option(1.5, "how many times as long the way may be, 1 or more.", minimum=1)
@@ -78,11 +78,11 @@ class FocalSearch(CostPlanner):
 
 
 class GreedyBestFirst(GridPlanner):
-    """Greedy best-first search: expands the open node with the least estimate of the remaining distance. The
-    path is found soon and may have any length (Pearl 1984)."""
+    """Greedy best-first search: expands the open node with the smallest h. The path is found with few
+    expansions and may have any length (Pearl 1984)."""
 
     name = "greedy_best_first"
-    summary = "a way over cells that is soon found"
+    summary = "path over cells, found with few expansions"
 
     def _weigh_nodes(self) -> dict[str, Any]:
         return {"g_weight": 0.0}
@@ -97,7 +97,7 @@ class JumpPointSearch(GridPlanner):
     """
 
     name = "jump_point_search"
-    summary = "the shortest way over cells, from turn to turn"
+    summary = "shortest path over cells, from turn to turn"
     kind = JUMP_POINTS
 
 
@@ -112,7 +112,7 @@ class Wavefront(GridPlanner):
     """
 
     name = "wavefront"
-    summary = "a way of the fewest steps over cells, down the waves from the goal"
+    summary = "path with the fewest steps over cells"
     kind = WAVES
 
     metric: str = option(
@@ -129,7 +129,7 @@ class ThetaStar(SearchPlanner):
     Tovey 2010)."""
 
     name = "theta_star"
-    summary = "a short way of any angle over cells that see each other"
+    summary = "short path at any angle over mutually visible cells"
 
     corners: str = corners_option(
         "whether a sight line, or a diagonal step, may pass a corner of blocked cells: "

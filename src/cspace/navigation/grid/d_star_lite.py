@@ -80,7 +80,7 @@ class DStarLite:
             self._route = None
 
     def move(self, point: ArrayLike) -> None:
-        """The robot is at a point (2,) [m] now; InputError outside of the grid."""
+        """The robot is at a point (2,) [m] now; InputError outside the grid."""
         x, y = as_point(point, "point")
         self._grid.cell_of((x, y))
         with self._busy:
@@ -141,7 +141,7 @@ class DStarLiteSearch(GridPlanner):
     changed."""
 
     name = "d_star_lite"
-    summary = "the shortest way over cells, mended when they change"
+    summary = "shortest path over cells, repaired after map changes"
 
     metric: str = option("octile", '"octile" or "manhattan".', choices=METRICS)
 
@@ -162,7 +162,7 @@ class DStarLiteSearch(GridPlanner):
         if route:
             return super().explain_route(route)
         cells = count_things(route.stats.nodes, "cell")
-        return f"no way leads to the goal, as is known after settling {cells} more"
+        return f"no path to the goal, as is known after expanding {cells} more"
 
     def _record(self, route: Route) -> Any:
         """The cells in the order in which a fresh search settles them."""

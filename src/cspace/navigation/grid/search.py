@@ -92,12 +92,11 @@ class SearchPlanner(PlanePlanner):
     def explain_route(self, route: Route) -> str:
         cells = route.stats.nodes
         if route:
-            return f"found a way of {route.length:.6g} m after settling {count_things(cells, 'cell')}"
+            return f"found a path of {route.length:.6g} m after expanding {count_things(cells, 'cell')}"
         if route.evidence is not None:
             parts = f"the {route.evidence['parts']} connected parts of the free cells"
-            return f"no way leads to the goal: it lies in another of {parts}"
-        expanded = count_things(cells, "expansion")
-        return f"no way leads to the goal: after {expanded} nothing that can be reached is left"
+            return f"no path to the goal: it lies in another of {parts}"
+        return f"no path to the goal: no open node is left after {count_things(cells, 'expansion')}"
 
     def _record(self, route: Route) -> Any:
         world, settings = route.world, self._settings_in(route.world)
@@ -151,6 +150,6 @@ class CostPlanner(GridPlanner):
         least = float(array.min())
         if least <= 0:
             row, column = map(int, np.argwhere(array == least)[0])
-            rule = "a cell costs more than nothing; blocked cells belong into the grid"
+            rule = "costs must be positive; mark blocked cells in the grid"
             raise InputError(f"costs[{row}, {column}] is {least:g}; {rule}")
         return self._settings._replace(costs=array, least_cost=least)

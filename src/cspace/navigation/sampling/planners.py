@@ -66,10 +66,7 @@ class SamplePlanner(PlanePlanner):
             return self._explain_path(done)
         if route.status == "unreachable":
             return f"{explain_division(route.world)}; this is known from the map, without a sample"
-        return (
-            f"no path among {samples}, {nodes} and {segments} tested; that "
-            "proves nothing: one exists, and more samples= may find it"
-        )
+        return f"no path among {samples}, {nodes} and {segments} tested; a path exists; try more samples="
 
     def _explain_path(self, done: Sampled) -> str:
         raise NotImplementedError
@@ -87,7 +84,7 @@ class PRM(SamplePlanner):
     """
 
     name = "prm"
-    summary = "a roadmap of random points that see each other, and a shortest way on it"
+    summary = "shortest path on a roadmap of visible random samples"
     kind = 0
 
     samples: int = option(
@@ -124,7 +121,7 @@ class RRT(SamplePlanner):
     """
 
     name = "rrt"
-    summary = "a tree that grows towards random points until it sees the goal"
+    summary = "tree that grows towards random samples until it reaches the goal"
     kind = 1
 
     samples: int = option(20_000, "how many points may be drawn.", minimum=1, maximum=MOST_SAMPLES)
@@ -167,7 +164,7 @@ class RRTStar(RRT):
     """
 
     name = "rrt_star"
-    summary = "a tree of random points whose ways tend to the shortest"
+    summary = "tree of random samples whose paths converge to the shortest"
     kind = 2
 
     samples: int = option(5000, "how many points are drawn.", minimum=1, maximum=MOST_SAMPLES)

@@ -43,7 +43,7 @@ class VisibilityGraphSearch(PlanePlanner):
     """
 
     name = "visibility_graph"
-    summary = "the shortest path over corners that see each other"
+    summary = "shortest path over mutually visible corners"
     events = ("expand",)
 
     def _search(self, world: Any, start: Any, goal: Any) -> Any:

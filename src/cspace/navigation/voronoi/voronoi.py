@@ -35,7 +35,7 @@ class VoronoiEvidence(NamedTuple):
     """How far a way keeps from walls [m]."""
 
     least_clearance: float
-    """On the whole way. With prefer="clearance" no way from start to goal has more."""
+    """On the whole path. With prefer="clearance" no path from start to goal has more."""
     on_diagram: float
     """Between the places where the way enters and leaves the diagram."""
     at_start: float
@@ -68,7 +68,7 @@ class Voronoi(PlanePlanner):
     """
 
     name = "voronoi"
-    summary = "the widest way, along points as far from two walls"
+    summary = "widest path, on the generalized Voronoi diagram"
     events = ("retract", "widen", "expand")
 
     prefer: str = option(
@@ -100,11 +100,11 @@ class Voronoi(PlanePlanner):
     def explain_route(self, route: Route) -> str:
         if route:
             found: VoronoiEvidence = route.evidence
-            wide = "; no way keeps farther" if self.prefer == "clearance" else ""
+            wide = "; no path keeps farther" if self.prefer == "clearance" else ""
             way = f"{found.least_clearance:.6g} m from walls, {found.on_diagram:.6g} m on the diagram"
             return f"it keeps {way}{wide}"
         if route.status == "undetermined":
-            return "rounding has lost part of the diagram: walls lie closer to each other than numbers tell"
+            return "rounding has lost part of the diagram: the distance between walls is below rounding"
         return explain_division(route.world)
 
     def _record(self, route: Route) -> Any:
