@@ -109,7 +109,8 @@ PyObject* answer_keyword(PyObject* solver, PyObject* const* args, Py_ssize_t nar
 
 PyObject* solver_solve(PyObject* self, const char* method, PyObject* const* args, Py_ssize_t nargs,
                        PyObject* kwnames) {
-    const ik::BuiltArm* arm = arm_of(self);
+    ik::Solver* solver = reinterpret_cast<SolverObject*>(self)->solver.get();
+    const ik::BuiltArm* arm = solver ? &solver->arm() : nullptr;
     double copy[16];
     const double* goal = arm && arm->room && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
     PyObject* answer = goal ? answer_single(self, *arm, goal) : nullptr;

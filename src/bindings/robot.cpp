@@ -27,16 +27,15 @@ void free_robot(PyObject* self) {
 
 // The property `solver` of the Python class builds the solver and leaves it in `_solver`.
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    PyObject* solver = Py_XNewRef(robot_of(self)->solver);
-    if (!solver) solver = PyObject_GetAttrString(self, "solver");
-    if (!solver) return nullptr;
-    PyObject* answer = nullptr;
-    if (PyObject_TypeCheck(solver, solver_type))
-        answer = solver_solve(solver, "ik", args, nargs, kwnames);
-    else
-        PyErr_SetString(PyExc_TypeError, "the solver of a robot is a cspace.ik.Solver");
-    Py_DECREF(solver);
-    return answer;
+    if (!robot_of(self)->solver) {
+        PyObject* made = PyObject_GetAttrString(self, "solver");
+        if (!made) return nullptr;
+        Py_DECREF(made);
+    }
+    PyObject* solver = robot_of(self)->solver;
+    if (solver) return solver_solve(solver, "ik", args, nargs, kwnames);
+    PyErr_SetString(PyExc_TypeError, "the solver of a robot is a cspace.ik.Solver");
+    return nullptr;
 }
 PyObject* get_solver(PyObject* self, void*) {
     PyObject* solver = robot_of(self)->solver;

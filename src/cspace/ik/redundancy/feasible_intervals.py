@@ -41,11 +41,13 @@ def redundancy_of_pose(solver: Solver, T: Array, parameter: Any, locked: Any) ->
         joint = usual
     else:
         joint = others.joint_names.index(solver.joint_names[free_joint(solver, parameter, values)])
-    found = replace(intervals_of(others, T, joint), solver=solver)
+    found = intervals_of(others, T, joint)
     if not found and joint != usual:
         check_moves(others, T, joint)
-    rows = tuple(replace(interval, q=with_locked(solver, values, interval.q)) for interval in found)
-    return replace(found, intervals=rows, complete=found.complete and is_bounded(others, joint))
+    if values:
+        rows = tuple(replace(interval, q=with_locked(solver, values, interval.q)) for interval in found)
+        found = replace(found, solver=solver, intervals=rows)
+    return found if is_bounded(others, joint) else replace(found, complete=False)
 
 
 def with_locked(solver: Solver, values: Mapping[int, Any], q: Array) -> Array:
