@@ -76,7 +76,7 @@ const double* goal_in_place(PyObject* value, double* copy) {
     return copy;
 }
 
-// Null without an error for a goal that is no pose.
+// Null without an error for an invalid goal.
 PyObject* answer_single(PyObject* solver, const ik::BuiltArm& arm, const double* goal) {
     double q[ik::max_branches * 6];
     std::int8_t branch[ik::max_branches];
@@ -212,7 +212,7 @@ PyObject* position_miss(PyObject*, PyObject* args) {
     return Py_BuildValue("Nd", q, best.position);
 }
 
-// _ik_single(solver, goal (4, 4)) → solutions, or None for a goal that is no pose
+// _ik_single(solver, goal (4, 4)) → solutions, or None for an invalid goal
 PyObject* single(PyObject*, PyObject* args) {
     PyObject *solver, *goal;
     if (!PyArg_ParseTuple(args, "OO", &solver, &goal)) return nullptr;

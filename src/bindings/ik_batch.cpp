@@ -50,7 +50,7 @@ PyObject* solve_all(const Batch& b, SolveRows solve) {
 }  // namespace
 
 // _ik_many(solver, goals (n, 4, 4), q (n, k_max, dof), count (n,), status (n,), threads) → index of the first
-// goal that is no pose, or n
+// goal that is not a pose, or n
 PyObject* ik_many(PyObject*, PyObject* args) {
     Batch b;
     return read_batch(args, "_ik_many", 16, b) ? solve_all(b, ik::solve_goals) : nullptr;

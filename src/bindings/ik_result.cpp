@@ -114,7 +114,7 @@ PyGetSetDef attributes[] = {
     {"goal", get_goal, nullptr, "The goal T_base_tip (4, 4).", nullptr},
     {"solver", get_solver, nullptr, "The solver that was asked.", nullptr},
     {"_note", get_note, nullptr, "Why rows are missing, if a filter removed them.", nullptr},
-    {"_about", get_about, nullptr, "What there is to say about a goal that is no pose, or None.", nullptr},
+    {"_about", get_about, nullptr, "What there is to say about an invalid goal, or None.", nullptr},
     {"_verdict", get_verdict, nullptr, "The status as a number; 8 more if solutions may be missing.",
      nullptr},
     {"_branch_numbers", get_branch_numbers, nullptr, "Which branch of the closed form each row comes from.",

@@ -17,7 +17,7 @@ inline const cspace::ik::BuiltArm* arm_of(PyObject* object) {
 struct SolutionsObject {
     PyObject_VAR_HEAD PyObject* solver;
     PyObject* note;   // why rows are missing, where a filter removed them; or null
-    PyObject* about;  // of a goal that is no pose or leaves freedom: cspace.ik.context.About; or null
+    PyObject* about;  // of an invalid goal or leaves freedom: cspace.ik.context.About; or null
     double goal[16];
     int count, dof;
     cspace::ik::Status status;

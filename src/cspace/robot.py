@@ -56,7 +56,7 @@ class Robot(RobotBase, KinematicModel):
     ) -> None:
         if not isinstance(description, Description):
             raise InputTypeError(
-                f"Robot takes a Description, got {type(description).__name__}; load_robot takes names and"
+                f"Robot needs a Description, got {type(description).__name__}; load_robot takes names and"
                 " paths, Robot.from_urdf, from_dh, from_screws and from_toml what their names say"
             )
         self._made_from = (description, base, tip, floating)

@@ -41,7 +41,7 @@ BAD_LINES = [
     ("ik ur5e --matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 --look-at 1 0 0", "leave --look-at out"),
     ("ik ur5e --xy 0.4 0.1 --rpy 0 0 0", "instead of --rpy give --angle, or --xyz"),
     ("ik ur5e --xyz 0.4 0.1 0.3 --angle 1", "give --xy with it"),
-    ("ik ur5e --xy 0.4 0.1 --angle 1", "does not move in a plane"),
+    ("ik ur5e --xy 0.4 0.1 --angle 1", "is not a planar arm"),
     ("ik ur5e --xyz 0.4 any 0.3 --rpy 0 0 0", "--position with --rotation needs three coordinates"),
     ("ik ur5e --xyz any any any", "position has None for all three coordinates"),
     ("ik ur5e --xyz 0.4 0.1 every", "'every' is not a number"),

@@ -6,7 +6,6 @@ from __future__ import annotations
 import fnmatch
 import re
 import sys
-import warnings
 
 import pytest
 
@@ -63,14 +62,6 @@ def test_no_phrase_is_banned(row):
     pattern = phrase(row["text"])
     for name, text, _ in FILES:
         assert not pattern.search(text), f"{name}: {row['text']!r}; write {row['write']!r}"
-
-
-def test_phrases_that_wait_for_their_sentence_are_reported():
-    """Phrases that still stand in prose: one that has become rare is mended and then banned."""
-    for row in TABLE["pending"]:
-        pattern = phrase(row["text"])
-        if count := sum(len(pattern.findall(text)) for _, text, _ in FILES):
-            warnings.warn(f"{row['text']!r} stands {count} times; write {row['write']!r}", stacklevel=1)
 
 
 def test_a_banned_word_is_found():

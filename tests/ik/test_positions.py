@@ -139,7 +139,7 @@ def test_what_another_number_of_goals_or_another_arm_can_do_is_refused():
     robot, points = load("planar_2r"), np.ones((3, 2))
     with pytest.raises(InputError, match="one for each"):
         robot.ik(position=points, near=np.zeros((2, 2)))
-    with pytest.raises(InputError, match="does not move in a plane"):
+    with pytest.raises(InputError, match="is not a planar arm"):
         load("simplified_puma").ik(position=points)
 
 

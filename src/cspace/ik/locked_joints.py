@@ -32,7 +32,7 @@ def joint_number(solver: KinematicModel, key: Any, subject: str) -> int:
         return int(names.index(key))
     if isinstance(key, bool) or not isinstance(key, (int, np.integer)):
         raise InputTypeError(
-            f"{subject} names a joint by a {type(key).__name__}, expected its name or number"
+            f"{subject} contains a {type(key).__name__}; name joints by their name or number"
         )
     if not -len(names) <= key < len(names):
         raise InputError(f"{subject} has joint {key}, but {solver.name} has joints 0 to {len(names) - 1}")
@@ -49,7 +49,7 @@ def locked_values(solver: KinematicModel, locked: Any) -> dict[int, Any]:
     for key, value in locked.items():
         joint = joint_number(solver, key, "locked")
         if joint in out:
-            raise InputError(f"locked names {solver.joint_names[joint]!r} twice")
+            raise InputError(f"locked names {solver.joint_names[joint]!r} twice; give each joint one value")
         out[joint] = as_floats(value, f"locked[{key!r}]", largest=FARTHEST)
     if len(out) >= len(solver.joint_names):
         raise InputError(f"locked names every joint of {solver.name}; at least one must stay free to move")

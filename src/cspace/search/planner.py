@@ -24,7 +24,7 @@ class _OldName:
         self.name = name
 
     def __get__(self, planner: object, owner: type) -> None:
-        raise attribute_error(planner, self.name)
+        raise attribute_error(owner if planner is None else planner, self.name)
 
 
 @dataclass(frozen=True, eq=False)

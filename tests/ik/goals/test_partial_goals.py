@@ -282,7 +282,7 @@ def test_filters_keep_what_was_asked():
         ({"direction": [0, 0, 0]}, InputError, "direction is zero"),
         ({"direction": [0, 0, 1], "look_at": [1, 0, 0]}, InputTypeError, "cannot be combined"),
         ({"position": (None, None, None)}, InputError, "at least one of them"),
-        ({"position": (0.1, None)}, InputError, "does not move in a plane"),
+        ({"position": (0.1, None)}, InputError, "is not a planar arm"),
         ({"position": (0.1, None, 0), "rotation": np.eye(3)}, InputTypeError, "needs three coordinates"),
         ({"position": (0.1, None, 0), "direction": [0, 0, 1]}, InputTypeError, "needs three coordinates"),
         ({"position": [0.1, np.nan, 0.2], "direction": [0, 0, 1]}, InputError, "finite"),
@@ -301,7 +301,7 @@ def test_filters_keep_what_was_asked():
         ({"ray": (np.ones((2, 3)), np.ones((3, 3)))}, InputError, r"ray\[0\] \(2,\), ray\[1\] \(3,\)"),
         ({"position": [0.1, 0, 0.2], "angle_to": ("x", [0.1, 0.2])}, InputError, "one angle"),
         ({"position": [0.1, 0, 0.2], "angle_to": (np.eye(3), 0.1)}, InputError, r"angle_to\[0\] has shape"),
-        ({"angle": 0.3}, InputTypeError, "angle= goes with position="),
+        ({"angle": 0.3}, InputTypeError, "angle= can only be combined"),
         ({}, InputTypeError, "one goal"),
     ],
 )

@@ -74,7 +74,7 @@ def open_in_space(solver: Solver, position: Any) -> Any:
 def planar_poses(solver: Solver, goal: Any, position: Any, angle: Any) -> Array:
     """Poses of an arm in the plane from points (..., 2) and angles (...) of the tip's x axis."""
     if goal is not None or position is None:
-        raise InputTypeError("angle= goes with position=(x, y), the place of the tip of an arm in the plane")
+        raise InputTypeError("angle= can only be combined with position=(x, y) of a planar arm")
     p = as_floats(position, "position", last=(2,), largest=FARTHEST)
     T_zero = solver.chain.T_zero
     turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
@@ -96,7 +96,7 @@ def lifted(solver: Solver, p: Array) -> Array:
     in_plane = np.where(turning(chain.joint_types), along_z > 1 - 1e-12, along_z < 1e-6)
     if not in_plane.all():
         raise InputError(
-            f"position has shape {p.shape}, but {solver.name} does not move in a plane z = constant"
+            f"position has shape {p.shape}, but {solver.name} is not a planar arm; give three coordinates"
         )
     return np.concatenate([p, np.full((*p.shape[:-1], 1), chain.T_zero[2, 3])], axis=-1)
 
@@ -115,4 +115,4 @@ def is_far(p: Array) -> Any:
 
 
 def too_far(subject: str, p: Array) -> InputError:
-    return InputError(f"{subject} lies at {p.tolist()} m; goals up to {FARTHEST:g} m away make sense")
+    return InputError(f"{subject} lies at {p.tolist()} m; the largest distance is {FARTHEST:g} m")

@@ -47,7 +47,7 @@ def solve_swivel(solver: Solver, T: Array, angle: Any) -> Solutions | SolutionsB
         return batch_of(solver, goals, q, shape)
     real = np.isfinite(q[0, :, 0])
     rows, numbers = q[0, real], np.flatnonzero(real)
-    note = None if len(rows) else "nothing reaches the goal, whatever the swivel: its wrist is out of reach"
+    note = None if len(rows) else "no swivel reaches the goal, because the wrist centre is out of reach"
     verdict = EXACT if len(rows) else UNREACHABLE
     return Solutions.of(solver, goals, verdict, rows, numbers, (False,) * len(rows), note)
 

@@ -85,7 +85,9 @@ def check_moves(solver: Solver, T: Array, joint: int) -> None:
 def free_joint(solver: Solver, parameter: Any, locked: Mapping[int, Any]) -> int:
     joint = joint_number(solver, parameter, "parameter")
     if joint in locked:
-        raise InputError(f"parameter {solver.joint_names[joint]!r} is locked by locked=; take a free joint")
+        raise InputError(
+            f"parameter {solver.joint_names[joint]!r} is locked by locked=; choose another joint"
+        )
     return joint
 
 

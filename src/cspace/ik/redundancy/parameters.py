@@ -44,7 +44,9 @@ def redundancy(
     given = {name: value for name, value in parts.items() if value is not None}
     unknown = sorted(given.keys() - set(KEYWORDS))
     if unknown:
-        raise InputTypeError(f"redundancy has no keyword {unknown[0]!r}; of a goal it takes {list(KEYWORDS)}")
+        raise InputTypeError(
+            f"redundancy() has no keyword {unknown[0]!r}; the parts of a goal are {list(KEYWORDS)}"
+        )
     check_tool_axis(tool_axis, given)
     if (goal is None) == (not given):
         raise InputTypeError("redundancy needs one goal: a pose, or parts of it by name, such as position=p")
@@ -65,7 +67,7 @@ def redundancy(
 def redundancy_of_parts(solver: Solver, goal: PartialGoal, parameter: Any, locked: Any) -> Redundancy:
     """That of the arm with the virtual joints of the goal."""
     if goal.T.ndim != 2:
-        raise InputError(f"the goal has shape {goal.T.shape[:-2]}, expected one goal: ask in a loop")
+        raise InputError(f"the goal has shape {goal.T.shape[:-2]}, expected one goal; call it in a loop")
     named = parameter is None or isinstance(parameter, str)
     joint = parameter if named else solver.joint_names[joint_number(solver, parameter, "parameter")]
     values = by_name(solver, locked) if isinstance(locked, Mapping) else locked

@@ -29,8 +29,8 @@ class Interval:
     branch: its number, as in the names of solutions; for arms without a closed form, and with a parameter of
     one's own choice, the pieces of the self-motion between its turns are numbered instead. None is longer
     than 2π. ends: what ends it below and above: a joint at a limit ("elbow at lower limit"), a "fold", where
-    the branch meets another one and both vanish, or "nothing" for a whole turn and where a longer piece is
-    cut. q (dof,): a configuration inside it.
+    the branch meets another one and both vanish, or "nothing" for a full revolution and where a longer piece
+    is cut. q (dof,): a configuration inside it.
     """
 
     lower: float
@@ -79,7 +79,7 @@ class Redundancy:
         aside."""
         number = as_floats(value, "value", largest=FARTHEST)
         if number.ndim:
-            raise InputError(f"value has shape {number.shape}, expected one number: ask in a loop")
+            raise InputError(f"value has shape {number.shape}, expected one number; call it in a loop")
         return tuple(interval.branch for interval in self.intervals if value in interval)
 
     def union(self) -> Array:
@@ -101,7 +101,7 @@ class Redundancy:
     def __str__(self) -> str:
         unit = "m" if self._slides else "rad"
         if not self:
-            return f"no value of {self.parameter} lets {self.solver.name} reach the goal within its limits"
+            return f"{self.solver.name} reaches the goal within its limits for no value of {self.parameter}"
         title = f"{self.solver.name}: feasible intervals of {self.parameter} [{unit}]"
         if not self.complete:
             title += "; some may be missing"

@@ -61,7 +61,7 @@ def solve_freedom(
         if any(np.ndim(value) for value in values.values()):
             raise InputTypeError(
                 "locked= takes one value per joint while dimensions stay free; lock all redundant joints,"
-                " or ask in a loop"
+                " or call it in a loop"
             )
         asked = whole.lock({joint: float(value) for joint, value in values.items()})
     freedom = tuple(asked.joint_names[k] for k in asked.redundant_joints) if degree > 0 else ()
