@@ -1,5 +1,4 @@
-"""The words of the reader: what `words.toml` bans stands in no identifier, and in no sentence but those
-pending."""
+"""The words of the reader: what `words.toml` bans stands in no identifier and in no sentence."""
 
 from __future__ import annotations
 
