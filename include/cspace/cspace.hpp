@@ -153,6 +153,7 @@
 #include "cspace/math/trig_polynomial.hpp"
 #include "cspace/math/turn.hpp"
 #include "cspace/math/vec.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "cspace/model/chain.hpp"
 #include "cspace/model/reduce_joint.hpp"
 #include "cspace/model/robot_model.hpp"

@@ -70,8 +70,7 @@ inline void refine_few_joints(const Chain& chain, const Posed& goal, double leng
         measure_error(chain, goal, length, q, error);
         if (size_of_error(error) <= tolerance::exact) continue;
         refine(chain, goal, length, q, error, 10);
-        for (int i = 0; i < chain.n; ++i)
-            out.q[k][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
+        for (int i = 0; i < chain.n; ++i) out.q[k][i] = wrap_joint(chain, i, q[i]);
     }
 }
 
@@ -182,8 +181,7 @@ CSPACE_ONCE NearestPose nearest_to_goal(const Arm& arm, const Posed& goal, doubl
         best.cost = cost;
         best.position = error.position;
         best.rotation = error.rotation;
-        for (int i = 0; i < n; ++i)
-            best.q[i] = plan.chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
+        for (int i = 0; i < n; ++i) best.q[i] = wrap_joint(plan.chain, i, q[i]);
     }
     return best;
 }

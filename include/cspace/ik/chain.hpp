@@ -1,8 +1,8 @@
 // Serial chain: the joint axes of an arm at zero, from which the inverse kinematics solvers are built.
 #pragma once
 
-#include "cspace/math/trig.hpp"
 #include "cspace/math/vec.hpp"
+#include "cspace/math/wrapping.hpp"
 
 namespace cspace::ik {
 
@@ -22,6 +22,16 @@ struct Chain {
 namespace cspace::ik::inline CSPACE_ISA {
 
 CSPACE_INLINE Posed identity_pose() { return {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}}; }
+
+// The difference of two values of joint i, of a revolute joint the short way round.
+template <class V>
+CSPACE_INLINE V joint_difference(const Chain& chain, int i, V difference) {
+    return chain.prismatic[i] ? difference : short_way(difference);
+}
+// The value of joint i, of a revolute joint in (−π, π].
+inline double wrap_joint(const Chain& chain, int i, double q) {
+    return chain.prismatic[i] ? q : wrap_angle(q);
+}
 
 // The displacement of joint i by q.
 inline Posed joint_motion(const Chain& chain, int i, double q) {

@@ -42,12 +42,12 @@ inline void add_ends(FreeSums& out, const ThreeParallel& arm, double x, double y
     const TwoAngles<double> ends = linear_equation<double>(a, b, r, arm.length * arm.length, care, {1, 0});
     if (!ends.ok) return;
     const double one = angle_of(ends.root[0]), other = angle_of(ends.root[1]);
-    const double gap = std::fabs(std::remainder(other - one, 2 * pi));
+    const double gap = std::fabs(short_way(other - one));
     const double inside = min(0.02, 0.1 * min(gap, 2 * pi - gap));
     for (const double end : {one, other}) {
         for (const double sum : {end - inside, end + inside})
-            insert_sorted(out, sum, std::fabs(std::remainder(sum - unconstrained, 2 * pi)));
-        insert_sorted(out, end, 4 + std::fabs(std::remainder(end - unconstrained, 2 * pi)));
+            insert_sorted(out, sum, std::fabs(short_way(sum - unconstrained)));
+        insert_sorted(out, end, 4 + std::fabs(short_way(end - unconstrained)));
     }
 }
 

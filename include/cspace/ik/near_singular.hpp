@@ -42,10 +42,7 @@ inline double miss_of(const Chain& chain, const Posed& goal, double length, cons
 inline double miss_between(const Chain& chain, const Posed& goal, double length, const double* a,
                            const double* b) {
     double q[max_joints], dq[max_joints];
-    for (int i = 0; i < chain.n; ++i) {
-        const double step = b[i] - a[i];
-        q[i] = a[i] + 0.5 * (chain.prismatic[i] ? step : std::remainder(step, 2 * pi));
-    }
+    for (int i = 0; i < chain.n; ++i) q[i] = a[i] + 0.5 * joint_difference(chain, i, b[i] - a[i]);
     PoseError error;
     measure_error(chain, goal, length, q, error);
     double least = size_of_error(error);
@@ -81,8 +78,7 @@ CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed
         if (are_one(chain, goal, length, out.q[k], q, gap, near, size)) return;
     }
     const int n = out.count++;
-    for (int i = 0; i < chain.n; ++i)
-        out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(std::remainder(q[i], 2 * pi));
+    for (int i = 0; i < chain.n; ++i) out.q[n][i] = wrap_joint(chain, i, q[i]);
     out.branch[n] = static_cast<signed char>(branch);
     out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
 }
@@ -135,7 +131,7 @@ inline bool is_free(const Plan& plan, const Posed& goal_form, const Care& care, 
     for (int k = 0; k < max_branches; ++k) {
         if (b.ok[k] != moved.ok[k]) return true;
         for (int j = 0; j < 6 && b.ok[k]; ++j)
-            if (std::fabs(std::remainder(b.t[k][j] - moved.t[k][j], 2 * pi)) > 1e-3) return true;
+            if (std::fabs(short_way(b.t[k][j] - moved.t[k][j])) > 1e-3) return true;
     }
     return false;
 }

@@ -196,11 +196,4 @@ CSPACE_INLINE WristAngles<V> wrist(const Wrist& w, const Vec3<V>& z, const Vec3<
     return {{up.t4, down.t4}, {up.t5, down.t5}, {up.t6, down.t6}, view.ok, view.doubt};
 }
 
-// Brings an angle that is off by at most one turn back into (−π, π].
-template <class V>
-CSPACE_INLINE V wrap_once(V t) {
-    t = select(t > pi, t - 2 * pi, t);
-    return select(t <= fill<V>(-pi), t + 2 * pi, t);
-}
-
 }  // namespace cspace::ik::inline CSPACE_ISA

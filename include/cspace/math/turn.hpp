@@ -31,11 +31,6 @@ CSPACE_INLINE V angle_of(const Turn<V>& t) {
     const V a = atan2(t.s, t.c);
     return select(a <= -pi, fill<V>(pi), a);
 }
-// The difference of two angles the short way round, in [−π, π].
-template <class V>
-CSPACE_INLINE V short_way(V difference) {
-    return difference - 2 * pi * round(difference * (1 / (2 * pi)));
-}
 template <class V>
 CSPACE_INLINE Turn<V> operator+(const Turn<V>& a, const Turn<V>& b) {
     return {a.c * b.c - a.s * b.s, a.s * b.c + a.c * b.s};

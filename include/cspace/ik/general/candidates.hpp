@@ -96,7 +96,7 @@ inline void admit_polished(Solutions& out, const GeneralPlan& plan, const Posed&
     }
     if (out.count == max_solutions) return;
     const int n = out.count++;
-    for (int i = 0; i < 6; ++i) out.q[n][i] = chain.prismatic[i] ? q[i] : wrap_once(short_way(q[i]));
+    for (int i = 0; i < 6; ++i) out.q[n][i] = wrap_joint(chain, i, q[i]);
     out.branch[n] = static_cast<signed char>(n);
     out.self_motion[n] = false;
 }

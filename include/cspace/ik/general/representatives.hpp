@@ -29,8 +29,7 @@ inline int leading_joint(const double* direction, int n) {
 }
 
 inline double from_value(const Chain& chain, const Representative& r, const double* q) {
-    const double d = q[r.joint] - r.value;
-    return chain.prismatic[r.joint] ? d : short_way(d);
+    return joint_difference(chain, r.joint, q[r.joint] - r.value);
 }
 
 inline void offer_member(const Chain& chain, Representative& r, const double* q, const double* t) {
@@ -118,7 +117,7 @@ inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, cons
             });
         if (is_crossing(chain, constraint, r.q) && !is_crossing(chain, constraint, start)) continue;
         for (int i = 0; i < chain.n; ++i) {
-            out.q[k][i] = chain.prismatic[i] ? r.q[i] : wrap_once(short_way(r.q[i]));
+            out.q[k][i] = wrap_joint(chain, i, r.q[i]);
             out.direction[k][i] = r.direction[i];
         }
     }

@@ -15,8 +15,7 @@ inline bool is_one_solution(const Path& path, const Task& task, const Rows& rows
                             const double* a, const double* b) {
     double apart = 0, halfway[max_joints];
     for (int j = 0; j < path.n; ++j) {
-        const double step =
-            path.slides[j] ? (b[j] - a[j]) / path.length : std::remainder(b[j] - a[j], 2 * pi);
+        const double step = path.slides[j] ? (b[j] - a[j]) / path.length : short_way(b[j] - a[j]);
         apart = std::fmax(apart, std::fabs(step));
         halfway[j] = a[j] + 0.5 * step * unit_of(path, j);
     }

@@ -86,7 +86,7 @@ inline int count_intervals(const Tracer& tracer, double value) {
     for (int k = 0; k < tracer.out->count; ++k) {
         const Interval& interval = tracer.out->interval[k];
         const double middle = 0.5 * (interval.lower + interval.upper);
-        const double off = std::fabs(joint_way(tracer.arm->chain, tracer.parameter, middle, value)) -
+        const double off = std::fabs(joint_difference(tracer.arm->chain, tracer.parameter, value - middle)) -
                            0.5 * (interval.upper - interval.lower);
         if (std::fabs(off) < near_end && interval.end[0] != end_none) return -1;
         count += off < 0;

@@ -47,11 +47,6 @@ inline void orient_tangent(CurvePoint& at, const double* along, int n) {
     for (int i = 0; i < n; ++i) at.tangent[i] = -at.tangent[i];
 }
 
-// The displacement from one value of a joint to another, by the shorter way for revolute joints.
-inline double joint_way(const Chain& chain, int i, double from, double to) {
-    return chain.prismatic[i] ? to - from : short_way(to - from);
-}
-
 // Position of a solution on the chord of a step, from 0 to 1; −1 if it is off the chord. A chord deviates
 // from the curve by less than the width of the tube, and no other arc enters the tube: see step_along.
 inline double part_of_chord(const Chain& chain, const double* from, const double* to, const double* q) {
@@ -63,7 +58,7 @@ inline double part_of_chord(const Chain& chain, const double* from, const double
     }
     const double off = tube * std::sqrt(length2);
     for (int i = 0; i < chain.n; ++i) {
-        gap[i] = joint_way(chain, i, from[i], q[i]);
+        gap[i] = joint_difference(chain, i, q[i] - from[i]);
         if (std::fabs(gap[i]) > std::fabs(way[i]) + off) return -1;
         along += gap[i] * way[i];
     }
@@ -140,8 +135,8 @@ inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slac
     }
     if (worst < 0) return -1;
     const double q = to.q[worst];
-    side = std::fabs(joint_way(arm.chain, worst, arm.upper[worst], q)) <
-           std::fabs(joint_way(arm.chain, worst, arm.lower[worst], q));
+    side = std::fabs(joint_difference(arm.chain, worst, q - arm.upper[worst])) <
+           std::fabs(joint_difference(arm.chain, worst, q - arm.lower[worst]));
     return worst;
 }
 
@@ -152,7 +147,7 @@ inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) 
     double along[max_joints];
     for (int j = 0; j < arm.chain.n; ++j) along[j] = at.tangent[j];
     for (int k = 0; k < 12; ++k) {
-        const double gap = joint_way(arm.chain, i, at.q[i], limit);
+        const double gap = joint_difference(arm.chain, i, limit - at.q[i]);
         double step = gap / (std::fabs(at.tangent[i]) > 1e-9 ? at.tangent[i] : 1e-9);
         step = max(-0.1, min(0.1, step));
         for (int j = 0; j < arm.chain.n; ++j)
@@ -206,7 +201,7 @@ inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint&
     const int passed = point_passed(tracer, at, next);
     if (passed < 0) return stop;
     const LimitPoint& point = tracer.points->point[passed];
-    for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_way(chain, i, at.q[i], point.q[i]);
+    for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_difference(chain, i, point.q[i] - at.q[i]);
     put_on_curve(tracer, next);
     orient_tangent(next, at.tangent, chain.n);
     side = point.side;

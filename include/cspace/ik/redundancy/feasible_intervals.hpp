@@ -59,8 +59,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 // The value itself, or the value plus a multiple of 2π that lies in the domain or just above it.
 inline double into_domain(const Domain& domain, bool slides, double value) {
     if (slides) return value;
-    const double turns = std::floor((value - domain.lower) * (1 / (2 * pi)));
-    const double moved = value - 2 * pi * turns;
+    const double moved = wrap_above(value, domain.lower);
     // Rounding below the lower end is not a turn above it.
     return moved - domain.lower > 2 * pi - limit_slack ? domain.lower : moved;
 }

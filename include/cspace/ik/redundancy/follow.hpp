@@ -79,7 +79,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
         }
         if (is_far(tracer, next.q)) return add(next.q[p], end_none, 0) ? ArcEnd::open : ArcEnd::lost;
         if (k > 0 && part_of_chord(arm.chain, at.q, next.q, origin.q) >= 0) {
-            turns.closing = next.q[p] + joint_way(arm.chain, p, next.q[p], origin.q[p]);
+            turns.closing = next.q[p] + joint_difference(arm.chain, p, origin.q[p] - next.q[p]);
             return ArcEnd::closed;
         }
         at = next;
@@ -100,7 +100,7 @@ inline void add_interval(Tracer& tracer, const Critical& low, const Critical& hi
     if (tracer.arm->chain.prismatic[p]) return;
     const bool stopped = is_stopped(*tracer.arm, p);
     const double home = stopped ? 0.5 * (tracer.arm->lower[p] + tracer.arm->upper[p]) : 0;
-    const double turns = 2 * pi * std::round((0.5 * (low.value + high.value) - home) / (2 * pi));
+    const double turns = nearest_multiple(0.5 * (low.value + high.value) - home);
     made.lower -= turns;
     made.upper -= turns;
 }

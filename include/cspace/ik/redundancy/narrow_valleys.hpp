@@ -32,7 +32,7 @@ template <class Difference>
 CSPACE_INLINE Pack<4> squared_way(const Redundant& arm, const Difference& difference) {
     Pack<4> sum = fill<Pack<4>>(0.0);
     for (int i = 0; i < arm.chain.n; ++i) {
-        const Pack<4> gap = difference(i), way = arm.chain.prismatic[i] ? gap : short_way(gap);
+        const Pack<4> way = joint_difference(arm.chain, i, difference(i));
         sum = mul_add(arm.weight[i] * way, way, sum);
     }
     return sum;
@@ -115,10 +115,9 @@ inline bool lies_between(const Chain& chain, const CurveSample& a, const CurveSa
                          const double* q) {
     double along = 0, length2 = 0, off2 = 0, gap[max_joints], way[max_joints];
     for (int i = 0; i < chain.n; ++i) {
-        const bool slides = chain.prismatic[i];
-        const double from = a.q[i][branch], to = b.q[i][branch];
-        gap[i] = slides ? q[i] - from : short_way(q[i] - from);
-        way[i] = slides ? to - from : short_way(to - from);
+        const double from = a.q[i][branch];
+        gap[i] = joint_difference(chain, i, q[i] - from);
+        way[i] = joint_difference(chain, i, b.q[i][branch] - from);
         along += gap[i] * way[i];
         length2 += way[i] * way[i];
     }

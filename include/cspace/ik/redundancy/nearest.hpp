@@ -13,10 +13,7 @@ template <int N = 0, class V>
 CSPACE_INLINE void from_seed(const Chain& chain, const double* seed, const double* weight, const V* q,
                              V* gap) {
     const int n = size_or<N>(chain.n);
-    for (int i = 0; i < n; ++i) {
-        const V difference = q[i] - fill<V>(seed[i]);
-        gap[i] = weight[i] * (chain.prismatic[i] ? difference : short_way(difference));
-    }
+    for (int i = 0; i < n; ++i) gap[i] = weight[i] * joint_difference(chain, i, q[i] - fill<V>(seed[i]));
 }
 
 // H d for the Hessian of the Lagrangian ½ Σ w (q − seed)² − λ · pose(q). The pose's second derivative by q_i

@@ -245,8 +245,7 @@ inline void nearest_by_descent(const Redundant& arm, const Posed& goal, const do
 // Returns false if no configuration reaches the goal. q: revolute joints in (−π, π].
 inline bool nearest_configuration(const Redundant& arm, const Posed& goal, const double* seed, double* q) {
     if (arm.halves.exist && nearest_by_proof(arm.halves, goal, arm.length, seed, q)) {
-        for (int i = 0; i < arm.chain.n; ++i)
-            if (!arm.chain.prismatic[i]) q[i] = wrap_once(short_way(q[i]));
+        for (int i = 0; i < arm.chain.n; ++i) q[i] = wrap_joint(arm.chain, i, q[i]);
         return true;
     }
     Nearest best;
@@ -258,8 +257,7 @@ inline bool nearest_configuration(const Redundant& arm, const Posed& goal, const
     }
     if (!std::isfinite(best.distance)) nearest_by_descent(arm, goal, seed, best);
     if (!std::isfinite(best.distance)) return false;
-    for (int i = 0; i < arm.chain.n; ++i)
-        q[i] = arm.chain.prismatic[i] ? best.q[i] : wrap_once(short_way(best.q[i]));
+    for (int i = 0; i < arm.chain.n; ++i) q[i] = wrap_joint(arm.chain, i, best.q[i]);
     return true;
 }
 

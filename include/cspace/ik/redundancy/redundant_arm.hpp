@@ -57,10 +57,7 @@ inline bool is_allowed(const Redundant& arm, const double* q) {
 // The largest joint difference, by the shorter way for revolute joints.
 inline double joint_gap(const Chain& chain, const double* a, const double* b) {
     double most = 0;
-    for (int i = 0; i < chain.n; ++i) {
-        const double gap = a[i] - b[i];
-        most = max(most, std::fabs(chain.prismatic[i] ? gap : short_way(gap)));
-    }
+    for (int i = 0; i < chain.n; ++i) most = max(most, std::fabs(joint_difference(chain, i, a[i] - b[i])));
     return most;
 }
 

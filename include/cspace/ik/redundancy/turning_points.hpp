@@ -63,7 +63,7 @@ inline void add_fold(FoldValues& out, double value, int branch) {
         out.exact = false;
         return;
     }
-    out.value[out.count] = wrap_once(short_way(value));
+    out.value[out.count] = wrap_angle(value);
     out.branch[out.count++] = branch;
 }
 // The folds of an idealised form are close to those of the arm, at a slightly different value for each pair
@@ -136,8 +136,7 @@ CSPACE_ONCE FoldValues fold_values(const Redundant& whole, const Sweep& sweep) {
 inline int sort_folds(const FoldValues& folds, double start, double* sorted) {
     const int n = folds.count;
     for (int k = 0; k < n; ++k) {
-        const double turns = std::floor((folds.value[k] - start) * (1 / (2 * pi)));
-        const double value = folds.value[k] - 2 * pi * turns;
+        const double value = wrap_above(folds.value[k], start);
         int at = k;
         for (; at > 0 && sorted[at - 1] > value; --at) sorted[at] = sorted[at - 1];
         sorted[at] = value;

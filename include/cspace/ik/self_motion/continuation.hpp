@@ -144,8 +144,7 @@ inline bool start_is_next(const Chain& chain, const TipConstraint& constraint, c
                           double* lift) {
     double gap[max_joints];
     for (int i = 0; i < chain.n; ++i) {
-        const double raw = start[i] - q[i];
-        const double d = chain.prismatic[i] ? raw : std::remainder(raw, 2 * pi);
+        const double d = joint_difference(chain, i, start[i] - q[i]);
         lift[i] = q[i] + d;
         gap[i] = d / unit_of(chain, i, constraint.length);
     }

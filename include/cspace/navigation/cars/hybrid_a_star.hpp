@@ -146,7 +146,7 @@ class HybridAStar {
     // The box of a pose: of place and heading.
     std::uint64_t key(const CarPose& pose) const {
         const maps::GridFrame& frame = world_.frame();
-        const double turn = 2 * std::numbers::pi, theta = pose.theta - turn * std::floor(pose.theta / turn);
+        const double turn = 2 * std::numbers::pi, theta = wrap_above(pose.theta, 0);
         const auto x = std::uint64_t((pose.x - frame.origin.x) / set_.box + 1);
         const auto y = std::uint64_t((pose.y - frame.origin.y) / set_.box + 1);
         const auto h = std::uint64_t(theta / turn * set_.headings + 0.5) % std::uint64_t(set_.headings);

@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "cspace/math/wrapping.hpp"
+
 namespace cspace::navigation {
 
 // The pose of a car: the middle of its rear axle [m] and its heading [rad].
@@ -48,12 +50,6 @@ inline CarPose drive(const CarPose& from, const Piece& piece, double radius) {
             from.theta + 2 * half};
 }
 
-// An angle the short way round, in [−π, π]; of half a turn to the left.
-inline double short_angle(double angle) {
-    constexpr double turn = 2 * std::numbers::pi;
-    return angle - turn * std::ceil(angle / turn - 0.5);
-}
-
 // A goal seen from a start with lengths in turning radii, and the ways between the circles of both: from the
 // left or right circle of the start to the left or right one of the goal.
 struct Task {
@@ -72,7 +68,7 @@ inline Task task_between(const CarPose& start, const CarPose& goal, double radiu
     const double c = std::cos(start.theta), s = std::sin(start.theta);
     const double x = dx * c + dy * s, y = dy * c - dx * s;
     Task task;
-    task.turn = short_angle(goal.theta - start.theta);
+    task.turn = wrap_angle(goal.theta - start.theta);
     task.distance = std::sqrt(x * x + y * y);
     const double far = std::max(std::max(std::fabs(start.x), std::fabs(start.y)),
                                 std::max(std::fabs(goal.x), std::fabs(goal.y)));

@@ -25,7 +25,7 @@ struct Word {
 // An arc of [0, 2π): one that differs from 2π by no more than rounding is 0.
 inline double forward_arc(double angle, double slack) {
     constexpr double whole = 2 * std::numbers::pi;
-    angle -= whole * std::floor(angle / whole);
+    angle = wrap_above(angle, 0);
     return whole - angle <= slack ? 0 : angle;
 }
 

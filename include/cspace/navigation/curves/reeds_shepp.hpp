@@ -134,8 +134,8 @@ class Words {
 
     void consider(Shape shape, double t, double u, double v, double middle, double quarter = 0) {
         if (middle >= best_.length) return;
-        t = short_angle(t);
-        v = short_angle(v);
+        t = wrap_angle(t);
+        v = wrap_angle(v);
         const double length = std::fabs(t) + middle + std::fabs(v);
         if (length < best_.length - slack_) best_ = {length, shape, mirrored_, t, u, v, quarter * half_pi};
     }

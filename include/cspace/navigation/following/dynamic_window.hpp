@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "cspace/math/wrapping.hpp"
 #include "cspace/navigation/following/controllers.hpp"
 #include "cspace/navigation/following/range_sensor.hpp"
 
@@ -123,8 +124,7 @@ class DynamicWindow {
         const double far = norm(from_center);
         if (std::fabs(far - radius) >= set_.radius || far == 0) return set_.range;
         const double cosine = (radius * radius + far * far - set_.radius * set_.radius) / (2 * radius * far);
-        double angle = std::atan2(from_center.x, -from_center.y);
-        if (angle < 0) angle += 2 * std::numbers::pi;
+        const double angle = wrap_above(std::atan2(from_center.x, -from_center.y), 0);
         return radius * std::max(0.0, angle - std::acos(std::clamp(cosine, -1.0, 1.0)));
     }
 

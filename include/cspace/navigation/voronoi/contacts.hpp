@@ -3,6 +3,7 @@
 
 #include <numbers>
 
+#include "cspace/math/wrapping.hpp"
 #include "cspace/navigation/voronoi/first_touch.hpp"
 
 namespace cspace::navigation::voronoi {
@@ -13,10 +14,7 @@ struct Contact {
 };
 
 // The angle from one direction counterclockwise to another, in [0, 2π).
-inline double turn_from(Point a, Point b) {
-    const double angle = std::atan2(cross(a, b), dot(a, b));
-    return angle < 0 ? angle + 2 * std::numbers::pi : angle;
-}
+inline double turn_from(Point a, Point b) { return wrap_above(std::atan2(cross(a, b), dot(a, b)), 0); }
 
 class Contacts {
   public:

@@ -1,0 +1,32 @@
+// Angles modulo 2π.
+#pragma once
+
+#include "cspace/math/trig.hpp"
+
+namespace cspace::inline CSPACE_ISA {
+
+// The multiple of 2π nearest to a difference of angles.
+template <class V>
+CSPACE_INLINE V nearest_multiple(V difference) {
+    return 2 * pi * round(difference * (1 / (2 * pi)));
+}
+// The difference of two angles the short way round, in [−π, π].
+template <class V>
+CSPACE_INLINE V short_way(V difference) {
+    return difference - nearest_multiple(difference);
+}
+// Brings an angle that is off by at most one turn back into (−π, π].
+template <class V>
+CSPACE_INLINE V wrap_once(V t) {
+    t = select(t > pi, t - 2 * pi, t);
+    return select(t <= fill<V>(-pi), t + 2 * pi, t);
+}
+// The angle in (−π, π].
+template <class V>
+CSPACE_INLINE V wrap_angle(V t) {
+    return wrap_once(short_way(t));
+}
+// The angle in [start, start + 2π).
+inline double wrap_above(double t, double start) { return t - 2 * pi * std::floor((t - start) / (2 * pi)); }
+
+}  // namespace cspace::inline CSPACE_ISA
