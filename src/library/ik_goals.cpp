@@ -108,7 +108,7 @@ void meet_goal(const Solver& solver, const Posed& goal, const int* own_of, doubl
     for (int step = 0; step < most_steps; ++step) {
         TipMotion<double> motion;
         tip_motion<0>(chain, goal, 1.0, q, motion);
-        const Vec3d turned = rotation_vector(goal.R * transpose(forward(chain, q).R));
+        const Vec3d turned = spatial::rotvec_of_rotation(goal.R * transpose(forward(chain, q).R));
         const double error[6] = {motion.error[0], motion.error[1], motion.error[2],
                                  turned.x,        turned.y,        turned.z};
         double A[most][most] = {}, b[most] = {};

@@ -23,7 +23,7 @@ inline Vec3d random_direction(Rng& rng) {
 }
 inline Posed random_pose(Rng& rng) {
     const double angle = uniform(rng, -pi, pi);
-    return {rotation_about(random_direction(rng), std::cos(angle), std::sin(angle)),
+    return {spatial::rotation_about(random_direction(rng), std::cos(angle), std::sin(angle)),
             {uniform(rng, -1, 1), uniform(rng, -1, 1), uniform(rng, -1, 1)}};
 }
 
@@ -80,7 +80,7 @@ inline ik::Chain from_rows(const Row* rows, int n, const Posed& base, const Pose
         chain.axis[i] = column(T.R, 2);
         chain.point[i] = T.t + uniform(rng, -0.3, 0.3) * chain.axis[i];
         const double theta = uniform(rng, -pi, pi), c = std::cos(rows[i].alpha), s = std::sin(rows[i].alpha);
-        const Posed turn = {rotation_about(Vec3d{0, 0, 1}, std::cos(theta), std::sin(theta)),
+        const Posed turn = {spatial::rotation_about(Vec3d{0, 0, 1}, std::cos(theta), std::sin(theta)),
                             {0, 0, rows[i].d}};
         T = T * turn * Posed{{{{1, 0, 0}, {0, c, -s}, {0, s, c}}}, {rows[i].a, 0, 0}};
     }

@@ -13,7 +13,7 @@ TEST(the_joints_a_pose_was_made_from_come_back) {
     for (int w = 0; w < few_joints::words; ++w)
         for (int repeat = 0; repeat < 600; ++repeat) {
             ik::Chain chain = few_joints::random_arm(random, w, repeat % 2);
-            chain.tip.R = rotation_about(random.axis(), 0.6, 0.8);
+            chain.tip.R = spatial::rotation_about(random.axis(), 0.6, 0.8);
             double made[3] = {};
             few_joints::random_joints(random, chain, made);
             const Posed T = forward(chain, made);
@@ -37,7 +37,7 @@ TEST(a_pose_off_the_arm_has_no_answer) {
             double made[3] = {};
             few_joints::random_joints(random, chain, made);
             Posed T = forward(chain, made);
-            T.R = T.R * rotation_about(random.axis(), 0.8, 0.6);
+            T.R = T.R * spatial::rotation_about(random.axis(), 0.8, 0.6);
             T.t = T.t + 0.1 * random.axis();
             const ik::FewJointSolutions s = solve_few_joint_pose(chain, T);
             for (int i = 0; i < s.count; ++i) {  // a planar displacement may happen to fit a planar arm

@@ -30,7 +30,7 @@ struct Random {
 Posed random_pose(Random& random) {
     const Vec3d a{random(), random(), random()};
     const double angle = random(-3.0, 3.0);
-    return {rotation_about((1.0 / norm(a)) * a, std::cos(angle), std::sin(angle)),
+    return {spatial::rotation_about((1.0 / norm(a)) * a, std::cos(angle), std::sin(angle)),
             {random(), random(), random()}};
 }
 

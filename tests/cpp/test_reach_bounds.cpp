@@ -19,7 +19,8 @@ ik::Chain random_chain(Random& random, int n, double scale) {
         chain.point[i] = scale * random.vector();
         chain.prismatic[i] = random.below(4) == 0;
     }
-    chain.tip = {rotation_about(random.axis(), std::cos(1.1), std::sin(1.1)), scale * random.vector()};
+    chain.tip = {spatial::rotation_about(random.axis(), std::cos(1.1), std::sin(1.1)),
+                 scale * random.vector()};
     return chain;
 }
 
@@ -58,7 +59,7 @@ TEST(the_last_of_three_axes_leans_as_far_as_the_middle_one_turns_it) {
             if (lean < 0 || lean > pi || high - low < 0.1) continue;
             const Vec3d about = (1 / norm(square)) * square;
             Posed goal = identity_pose();
-            goal.R = rotation_about(about, std::cos(lean - own), std::sin(lean - own));
+            goal.R = spatial::rotation_about(about, std::cos(lean - own), std::sin(lean - own));
             CHECK(exceeds_reach(chain, goal, 1) == (lean < low - 0.01 || lean > high + 0.01));
         }
     }
@@ -73,8 +74,8 @@ TEST(a_scara_keeps_its_tool_upright_and_reaches_as_far_as_its_links) {
     chain.prismatic[2] = true;
     chain.tip = {identity_pose().R, {0.7, 0, 0}};
     const auto at = [&](double x, double z, double lean) {
-        return exceeds_reach(chain,
-                             {rotation_about(Vec3d{1, 0, 0}, std::cos(lean), std::sin(lean)), {x, 0, z}}, 1);
+        return exceeds_reach(
+            chain, {spatial::rotation_about(Vec3d{1, 0, 0}, std::cos(lean), std::sin(lean)), {x, 0, z}}, 1);
     };
     CHECK(!at(0.699, 25, 0) && !at(-0.699, -25, 0));
     CHECK(at(0.701, 0, 0) && at(0.5, 0, 1e-6) && at(0.5, 0, pi));

@@ -21,7 +21,7 @@ static ik::Redundant shoulder_arm() {
     chain.n = 7;
     Posed T = identity_pose();
     for (int i = 0; i < 7; ++i) {
-        const Mat3d R = rotation_about(Vec3d{1, 0, 0}, i == 0 ? 1.0 : 0.0, turn[i]);
+        const Mat3d R = spatial::rotation_about(Vec3d{1, 0, 0}, i == 0 ? 1.0 : 0.0, turn[i]);
         T = T * Posed{R, {a[i], 0, 0}};
         T = T * Posed{identity_pose().R, {0, 0, d[i]}};
         chain.axis[i] = column(T.R, 2);

@@ -3,6 +3,7 @@
 
 #include "cspace/math/vec.hpp"
 #include "cspace/math/wrapping.hpp"
+#include "cspace/spatial/rotation.hpp"
 
 namespace cspace::ik {
 
@@ -38,7 +39,7 @@ inline Posed joint_motion(const Chain& chain, int i, double q) {
     if (chain.prismatic[i]) return {identity_pose().R, q * chain.axis[i]};
     double s, c;
     sincos(q, s, c);
-    const Mat3d R = rotation_about(chain.axis[i], c, s);
+    const Mat3d R = spatial::rotation_about(chain.axis[i], c, s);
     return {R, chain.point[i] - R * chain.point[i]};
 }
 

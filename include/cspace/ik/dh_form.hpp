@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
+#include "cspace/math/turn.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::ik {
@@ -61,15 +62,15 @@ inline Posed frame_at(const Vec3d& origin, const Vec3d& x, const Vec3d& z) {
     return {from_columns(x, cross(z, x), z), origin};
 }
 
+// Rz(t) Tz(d) Tx(a) Rx(α) of joint i.
+inline Posed link(const DhForm& f, int i, const Turn<double>& t) {
+    return {
+        {{{t.c, -t.s * f.ca[i], t.s * f.sa[i]}, {t.s, t.c * f.ca[i], -t.c * f.sa[i]}, {0, f.sa[i], f.ca[i]}}},
+        {f.a[i] * t.c, f.a[i] * t.s, f.d[i]}};
+}
 inline Posed dh_forward(const DhForm& f, const double* q) {
     Posed T = f.base;
-    for (int i = 0; i < 6; ++i) {
-        const double t = q[i] + f.offset[i], c = std::cos(t), s = std::sin(t);
-        const Posed A = {
-            {{{c, -s * f.ca[i], s * f.sa[i]}, {s, c * f.ca[i], -c * f.sa[i]}, {0, f.sa[i], f.ca[i]}}},
-            {f.a[i] * c, f.a[i] * s, f.d[i]}};
-        T = T * A;
-    }
+    for (int i = 0; i < 6; ++i) T = T * link(f, i, turn_by(q[i] + f.offset[i]));
     return T * f.tool;
 }
 

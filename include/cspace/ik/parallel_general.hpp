@@ -12,13 +12,6 @@
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-// Rz(t) Tz(d) Tx(a) Rx(α) of joint i.
-inline Posed link(const DhForm& f, int i, const Turn<double>& t) {
-    return {
-        {{{t.c, -t.s * f.ca[i], t.s * f.sa[i]}, {t.s, t.c * f.ca[i], -t.c * f.sa[i]}, {0, f.sa[i], f.ca[i]}}},
-        {f.a[i] * t.c, f.a[i] * t.s, f.d[i]}};
-}
-
 // The angle of a rotation about z.
 inline Turn<double> turn_about_z(const Mat3d& R) {
     const double r = std::hypot(R.m[0][0], R.m[1][0]);
@@ -82,7 +75,7 @@ inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal
         const Posed rest = Posed{link(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * Posed{five.R, five.t};
         const Vec3d z = column(rest.R, 2), want = column(seen.R, 2);
         const Turn<double> t234 = align(z.x, z.y, want.x, want.y, 1.0, care, care.unconstrained[3]).t;
-        const Posed turned = {rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
+        const Posed turned = {spatial::rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
         const Turn<double> t6 = turn_about_z(transpose((turned * rest).R) * seen.R);
         planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, care, out, 2 * n);
         for (int k = 2 * n; k < 2 * n + 2; ++k) {
@@ -121,7 +114,7 @@ inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal,
         const Turn<double> t5 =
             align(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.unconstrained[4]).t;
         const Posed rest =
-            to_four * link(f, 4, t5) * Posed{rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
+            to_four * link(f, 4, t5) * Posed{spatial::rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
         planar_three(f, 0, goal * inverse(rest), care, out, 2 * n);
         for (int m = 2 * n; m < 2 * n + 2; ++m) {
             out.t[m][3] = angle_of(t4);

@@ -14,8 +14,7 @@ inline Posed perturbed_goal(const Posed& goal, double length, int k) {
     spread_configuration(k / 4, 6, d);
     const double size = (k % 2 ? -1 : 1) * (k % 4 < 2 ? 1e-2 : 1e-3) / pi;
     const Vec3d away = size * length * Vec3d{d[0], d[1], d[2]}, turn = size * Vec3d{d[3], d[4], d[5]};
-    const double angle = norm(turn);
-    return {rotation_about((1 / angle) * turn, std::cos(angle), std::sin(angle)) * goal.R, goal.t + away};
+    return {spatial::rotation_of_rotvec(turn) * goal.R, goal.t + away};
 }
 
 // Descends from q and adds the result if it is a new solution. Near solutions, a valley that almost reaches

@@ -26,19 +26,13 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
         point[i] = R * p + t;
         V s, c;
         sincos(q[i], s, c);
-        R = R * rotation_about(h, c, s);
+        R = R * spatial::rotation_about(h, c, s);
         t = point[i] - R * p;
     }
     const Vec3<V> tip = R * fill3<V>(chain.tip.t) + t;
     const Mat3<V> Q = R * fill33<V>(chain.tip.R);
     const Vec3<V> dp = (1 / length) * (goal.t - tip);
-    // Half the sum of the cross products of the axes is the rotation that is missing, to first order.
-    Vec3<V> w = 0.5 * cross(column(Q, 0), column(goal.R, 0));
-    V agreement = dot(column(Q, 0), column(goal.R, 0));  // 1 + 2 cos of the missing rotation's angle
-    for (int k = 1; k < 3; ++k) {
-        w = w + 0.5 * cross(column(Q, k), column(goal.R, k));
-        agreement = agreement + dot(column(Q, k), column(goal.R, k));
-    }
+    const Vec3<V> w = spatial::sine_between(Q, goal.R);
     V A[6][6], b[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
     for (int i = 0; i < 6; ++i) {
         const bool slides = chain.prismatic[i];
@@ -54,7 +48,7 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
     for (int i = 0; i < 6; ++i) q[i] = mul_add(chain.prismatic[i] ? length * keep : keep, b[i], q[i]);
     // Half a turn off, the sum of cross products vanishes as at the goal: nothing beyond a right angle has
     // settled.
-    return select(agreement < 1.0, max(largest, fill<V>(1.0)), largest);
+    return select(spatial::trace_between(Q, goal.R) < 1.0, max(largest, fill<V>(1.0)), largest);
 }
 
 // True if q, a candidate near a solution, has converged to it.

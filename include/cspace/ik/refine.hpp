@@ -23,22 +23,6 @@ struct PoseError {
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-// The rotation vector of R for any |R − I|, rotations by π included.
-inline Vec3d rotation_vector(const Mat3d& R) {
-    const Vec3d w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]),
-                     0.5 * (R.m[1][0] - R.m[0][1])};
-    const double s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1);
-    const double angle = std::atan2(s, c);
-    if (s > 1e-6 || c > 0) return (s > 1e-12 ? angle / s : 1.0) * w;
-    // Near a half turn the axis is the largest column of R + I.
-    int k = 0;
-    for (int j = 1; j < 3; ++j)
-        if (R.m[j][j] > R.m[k][k]) k = j;
-    Vec3d axis = column(R, k);
-    (k == 0 ? axis.x : k == 1 ? axis.y : axis.z) += 1;
-    return (angle / norm(axis)) * axis;
-}
-
 inline void measure_error(const Chain& chain, const Posed& goal, double length, const double* q,
                           PoseError& out) {
     Posed T = identity_pose();
@@ -49,7 +33,7 @@ inline void measure_error(const Chain& chain, const Posed& goal, double length, 
         T = T * joint_motion(chain, i, q[i]);
     }
     T = T * chain.tip;
-    const Vec3d dp = goal.t - T.t, w = rotation_vector(goal.R * transpose(T.R));
+    const Vec3d dp = goal.t - T.t, w = spatial::rotvec_of_rotation(goal.R * transpose(T.R));
     out.position = norm(dp);
     out.rotation = norm(w);
     const double e[6] = {dp.x / length, dp.y / length, dp.z / length, w.x, w.y, w.z};

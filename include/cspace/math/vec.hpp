@@ -115,13 +115,5 @@ inline Vec3d any_perpendicular(const Vec3d& h) {
     const Vec3d n = cross(h, other);
     return (1 / norm(n)) * n;
 }
-// Rotation about a unit axis by the angle with cosine c and sine s (Rodrigues 1840).
-template <class V>
-CSPACE_INLINE Mat3<V> rotation_about(const Vec3<V>& k, V c, V s) {
-    const V v = 1.0 - c;
-    return {{{k.x * k.x * v + c, k.x * k.y * v - k.z * s, k.x * k.z * v + k.y * s},
-             {k.x * k.y * v + k.z * s, k.y * k.y * v + c, k.y * k.z * v - k.x * s},
-             {k.x * k.z * v - k.y * s, k.y * k.z * v + k.x * s, k.z * k.z * v + c}}};
-}
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -1,4 +1,5 @@
-// Rotation matrices from quaternions and rotation vectors, over a scalar or a pack of lanes.
+// Rotation matrices from quaternions, axes and rotation vectors, and the logarithm, over a scalar or a pack
+// of lanes.
 #pragma once
 
 #include "cspace/math/trig.hpp"
@@ -21,6 +22,11 @@ CSPACE_INLINE Mat3<V> rotation_of(const Vec3<V>& v, V a, V b) {
              {xy + av.z, 1.0 - (xx + zz), yz - av.x},
              {xz - av.y, yz + av.x, 1.0 - (xx + yy)}}};
 }
+// The rotation about a unit axis by the angle with cosine c and sine s (Rodrigues 1840).
+template <class V>
+CSPACE_INLINE Mat3<V> rotation_about(const Vec3<V>& axis, V c, V s) {
+    return rotation_of(axis, s, 1.0 - c);
+}
 // The rotation of the quaternion (w, v) of any length; square: w² + |v|².
 template <class V>
 CSPACE_INLINE Mat3<V> rotation_of_quaternion(V w, const Vec3<V>& v, V square) {
@@ -39,6 +45,10 @@ CSPACE_INLINE Mat3<V> rotation_of_rotvec(const Vec3<V>& w, V square) {
     return rotation_of(w, select(tiny, fill<V>(1.0), twice * c / theta),
                        select(tiny, fill<V>(0.5), twice * s / theta2));
 }
+template <class V>
+CSPACE_INLINE Mat3<V> rotation_of_rotvec(const Vec3<V>& w) {
+    return rotation_of_rotvec(w, dot(w, w));
+}
 // The rotation by an angle about an axis of any length; square: |axis|².
 template <class V>
 CSPACE_INLINE Mat3<V> rotation_of_axis_angle(const Vec3<V>& axis, V angle, V square) {
@@ -46,6 +56,51 @@ CSPACE_INLINE Mat3<V> rotation_of_axis_angle(const Vec3<V>& axis, V angle, V squ
     sincos(0.5 * angle, s, c);
     const V twice = 2.0 * s;
     return rotation_of(axis, twice * c / sqrt(square), twice * s / square);
+}
+
+// Half the sum of the cross products of the axes of A and B, (sin θ) times the unit axis of B Aᵀ: to first
+// order the rotation vector from A to B.
+template <class V>
+CSPACE_INLINE Vec3<V> sine_between(const Mat3<V>& A, const Mat3<V>& B) {
+    Vec3<V> sum = 0.5 * cross(column(A, 0), column(B, 0));
+    for (int k = 1; k < 3; ++k) sum = sum + 0.5 * cross(column(A, k), column(B, k));
+    return sum;
+}
+// The trace of B Aᵀ, 1 + 2 cos θ: 3 where they agree, −1 half a turn apart.
+template <class V>
+CSPACE_INLINE V trace_between(const Mat3<V>& A, const Mat3<V>& B) {
+    return dot(column(A, 0), column(B, 0)) + dot(column(A, 1), column(B, 1)) +
+           dot(column(A, 2), column(B, 2));
+}
+// The angle θ of B Aᵀ, in [0, π].
+template <class V>
+CSPACE_INLINE V angle_between(const Mat3<V>& A, const Mat3<V>& B) {
+    return atan2(norm(sine_between(A, B)), 0.5 * (trace_between(A, B) - 1.0));
+}
+// The rotation vector of R, rotations by π included.
+template <class V>
+CSPACE_INLINE Vec3<V> rotvec_of_rotation(const Mat3<V>& R) {
+    Vec3<V> w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]), 0.5 * (R.m[1][0] - R.m[0][1])};
+    const V s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1.0);
+    const V angle = atan2(s, c);
+    const V scale = select(s > 1e-12, angle / select(s > 1e-12, s, fill<V>(1.0)), fill<V>(1.0));
+    w = scale * w;
+    const mask_of<V> half = (s <= 1e-6) && (c < 0.0);
+    if (!any(half)) return w;
+    // Near a half turn the axis is the largest column of R + I.
+    Vec3<V> axis = column(R, 0);
+    axis.x = axis.x + 1.0;
+    V largest = R.m[0][0];
+    for (int k = 1; k < 3; ++k) {
+        Vec3<V> other = column(R, k);
+        (k == 1 ? other.y : other.z) = (k == 1 ? other.y : other.z) + 1.0;
+        const mask_of<V> better = R.m[k][k] > largest;
+        largest = select(better, R.m[k][k], largest);
+        axis = {select(better, other.x, axis.x), select(better, other.y, axis.y),
+                select(better, other.z, axis.z)};
+    }
+    axis = (angle / norm(axis)) * axis;
+    return {select(half, axis.x, w.x), select(half, axis.y, w.y), select(half, axis.z, w.z)};
 }
 
 }  // namespace cspace::spatial::inline CSPACE_ISA

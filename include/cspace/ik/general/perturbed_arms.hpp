@@ -106,7 +106,7 @@ inline bool certify_by_tilting(const GeneralPlan& plan, const Posed& goal, doubl
     Led led[2];
     for (int k = 0; k < 2; ++k) {
         const double by = k ? -size : size;
-        const Posed tilted = {rotation_about(axis, std::cos(by), std::sin(by)) * goal.R, goal.t + by * away};
+        const Posed tilted = {spatial::rotation_of_rotvec(by * axis) * goal.R, goal.t + by * away};
         Solutions beside;
         solve_by_plan(plan, tilted, beside);
         if (!beside.complete) return false;

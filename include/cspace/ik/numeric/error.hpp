@@ -6,6 +6,7 @@
 #pragma once
 
 #include "cspace/ik/numeric/task.hpp"
+#include "cspace/spatial/rotation.hpp"
 
 namespace cspace::ik {
 
@@ -39,32 +40,6 @@ inline Rows rows_of(const Task& task) {
     }
     rows.even = task.weight[3] == task.weight[4] && task.weight[4] == task.weight[5];
     return rows;
-}
-
-// The rotation vector of R, rotations by π included.
-template <class V>
-CSPACE_INLINE Vec3<V> log_of(const Mat3<V>& R) {
-    Vec3<V> w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]), 0.5 * (R.m[1][0] - R.m[0][1])};
-    const V s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1.0);
-    const V angle = atan2(s, c);
-    const V scale = select(s > 1e-12, angle / select(s > 1e-12, s, fill<V>(1.0)), fill<V>(1.0));
-    w = scale * w;
-    const mask_of<V> half = (s <= 1e-6) && (c < 0.0);
-    if (!any(half)) return w;
-    // Near a half turn the axis is the largest column of R + I.
-    Vec3<V> axis = column(R, 0);
-    axis.x = axis.x + 1.0;
-    V largest = R.m[0][0];
-    for (int k = 1; k < 3; ++k) {
-        Vec3<V> other = column(R, k);
-        (k == 1 ? other.y : other.z) = (k == 1 ? other.y : other.z) + 1.0;
-        const mask_of<V> better = R.m[k][k] > largest;
-        largest = select(better, R.m[k][k], largest);
-        axis = {select(better, other.x, axis.x), select(better, other.y, axis.y),
-                select(better, other.z, axis.z)};
-    }
-    axis = (angle / norm(axis)) * axis;
-    return {select(half, axis.x, w.x), select(half, axis.y, w.y), select(half, axis.z, w.z)};
 }
 
 // Maps ω to the rate of the rotation vector w: J_l⁻¹(w) ω = ω − ½ w × ω + k w × (w × ω).
@@ -104,7 +79,7 @@ CSPACE_INLINE void measure_gap(const Path& path, const Rows& rows, const Pose<V>
                                                    axis[i] = d;
                                                });
     const V zero = fill<V>(0.0);
-    const Vec3<V> w = rows.turns ? log_of(T.R) : Vec3<V>{zero, zero, zero};
+    const Vec3<V> w = rows.turns ? spatial::rotvec_of_rotation(T.R) : Vec3<V>{zero, zero, zero};
     const V error[6] = {T.t.x, T.t.y, T.t.z, w.x, w.y, w.z};
     const double per_length = 1 / path.length;
     V square[2] = {zero, zero};

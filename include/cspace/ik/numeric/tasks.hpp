@@ -170,7 +170,7 @@ inline TaskError add_task(const TaskProblem& problem, const FrameTask& task, Tas
         default: {
             const Posed T = measure_frame(problem, at, task.frame, {0, 0, 0}, work);
             const Mat3d& Q = task.target.R;
-            const Vec3d turn = log_of(Q * transpose(T.R));
+            const Vec3d turn = spatial::rotvec_of_rotation(Q * transpose(T.R));
             const double away = add_rows(Q, task.target.t - T.t, w, task.gain, 0, work, dof, at);
             if (w[3] != w[4] || w[4] != w[5]) {
                 // Unequal weights see how the rotation vector itself changes (see error.hpp).
@@ -229,11 +229,8 @@ inline void move_by(const TaskProblem& problem, const TaskPlace& from, const dou
     }
     if (!problem.floating) return;
     const Vec3d w = {step[3], step[4], step[5]};
-    const double angle = norm(w);
     to.T_world_base.t = to.T_world_base.t + Vec3d{step[0], step[1], step[2]};
-    if (angle > 0)
-        to.T_world_base.R =
-            rotation_about((1 / angle) * w, std::cos(angle), std::sin(angle)) * to.T_world_base.R;
+    to.T_world_base.R = spatial::rotation_of_rotvec(w) * to.T_world_base.R;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

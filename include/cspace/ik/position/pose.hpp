@@ -27,17 +27,16 @@ struct PoseGap {
 
     void operator()(const double* q, double* value, double (*slope)[n]) const {
         tip(q, value, slope);
-        Vec3d axes[n], columns[3];
-        for (int k = 0; k < 3; ++k) columns[k] = column(R_tip, k);
+        Mat3d R = R_tip;
+        Vec3d axes[n];
         for (int i = n - 1; i >= 0; --i) {
             axes[i] = prismatic[i] ? Vec3d{0, 0, 0} : tip.axis[i];
             if (prismatic[i]) continue;
             const Turn<double> t = turn_by(q[i]);
             for (int j = i + 1; j < n; ++j) axes[j] = rotate(tip.axis[i], t, axes[j]);
-            for (Vec3d& c : columns) c = rotate(tip.axis[i], t, c);
+            R = spatial::rotation_about(tip.axis[i], t.c, t.s) * R;
         }
-        Vec3d turn = {0, 0, 0};
-        for (int k = 0; k < 3; ++k) turn = turn + 0.5 * cross(column(R_goal, k), columns[k]);
+        const Vec3d turn = spatial::sine_between(R_goal, R);
         value[3] = turn.x, value[4] = turn.y, value[5] = turn.z;
         for (int j = 0; j < n; ++j) slope[3][j] = axes[j].x, slope[4][j] = axes[j].y, slope[5][j] = axes[j].z;
     }
@@ -45,15 +44,6 @@ struct PoseGap {
 
 namespace few_joint_pose {
 
-inline double rotation_between(const Mat3d& A, const Mat3d& B) {
-    Vec3d sine = {0, 0, 0};
-    double cosine = -0.5;
-    for (int k = 0; k < 3; ++k) {
-        sine = sine + 0.5 * cross(column(A, k), column(B, k));
-        cosine += 0.5 * dot(column(A, k), column(B, k));
-    }
-    return std::atan2(norm(sine), cosine);
-}
 // The angle of R about h, if it is a rotation about h; otherwise the nearest one.
 inline double angle_about(const Vec3d& h, const Mat3d& R) {
     const Vec3d axial = {R.m[2][1] - R.m[1][2], R.m[0][2] - R.m[2][0], R.m[1][0] - R.m[0][1]};
@@ -82,7 +72,7 @@ struct Search {
     bool opposed(const double* scaled) const {
         double q[n];
         for (int i = 0; i < n; ++i) q[i] = chain.prismatic[i] ? scaled[i] * size : scaled[i];
-        return rotation_between(forward(chain, q).R, goal.R) > 1;
+        return spatial::angle_between(forward(chain, q).R, goal.R) > 1;
     }
 };
 
@@ -145,7 +135,7 @@ void solve(const Chain& chain, const Posed& T, FewJointSolutions& found) {
             if (chain.prismatic[i]) found.q[k][i] *= scale.size;
         const Posed reached = forward(chain, found.q[k]);
         found.position_error[k] = norm(reached.t - T.t);
-        found.rotation_error[k] = rotation_between(reached.R, T.R);
+        found.rotation_error[k] = spatial::angle_between(reached.R, T.R);
     }
 }
 

@@ -167,7 +167,7 @@ CSPACE_NOINLINE void solve_swivel(const SwivelArm& arm, const Posed& goal, V swi
         const Vec3d bent = rotate(h4, bend.root[i], fore);
         const Mat3d here = frame_towards(upper + bent, upper);
         const Mat3<V> R03 = there * fill33<V>(transpose(here));
-        const Mat3d R34 = rotation_about(h4, bend.root[i].c, bend.root[i].s);
+        const Mat3d R34 = spatial::rotation_about(h4, bend.root[i].c, bend.root[i].s);
         const Mat3<V> R47 = fill33<V>(transpose(R34)) * transpose(R03) * fill33<V>(goal_R);
         const SphericalTurns<V> first = three_turns(&chain.axis[0], R03),
                                 last = three_turns(&chain.axis[4], R47);

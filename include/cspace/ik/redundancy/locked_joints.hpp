@@ -71,7 +71,7 @@ CSPACE_INLINE Pose<V> joint_undone(const Chain& chain, int i, const V& q) {
     if (chain.prismatic[i]) return {fill33<V>(identity_pose().R), -q * h};
     V s, c;
     sincos(-q, s, c);
-    const Mat3<V> R = rotation_about(h, c, s);
+    const Mat3<V> R = spatial::rotation_about(h, c, s);
     return {R, p - R * p};
 }
 // The goal of an arm whose locked joints are at its ends. Locked joints at the front move the base, those at

@@ -115,14 +115,12 @@ CSPACE_INLINE void move_halves(const Halves& arm, const Posed& goal, double per_
         out.axis[k] = turning * out.axis[k];
     }
     const Vec3d gap = vector_of_half(middle, 1) - vector_of_half(middle, 0);
-    Vec3d turn = {0, 0, 0};
-    out.aligned = 0;
-    for (int j = 0; j < 3; ++j) {
-        const Vec3d here = vector_of_half(column(meeting, j), 0),
-                    there = vector_of_half(column(meeting, j), 1);
-        turn = turn + 0.5 * cross(here, there);
-        out.aligned += dot(here, there);
-    }
+    Mat3d half[2];
+    for (int k = 0; k < 2; ++k)
+        half[k] = from_columns(vector_of_half(column(meeting, 0), k), vector_of_half(column(meeting, 1), k),
+                               vector_of_half(column(meeting, 2), k));
+    const Vec3d turn = spatial::sine_between(half[0], half[1]);
+    out.aligned = spatial::trace_between(half[0], half[1]);
     const double error[6] = {gap.x, gap.y, gap.z, turn.x, turn.y, turn.z};
     for (int j = 0; j < 6; ++j) out.error[j] = error[j];
 }

@@ -60,17 +60,14 @@ CSPACE_INLINE void tip_motion(const Chain& chain, const Pose<V>& goal, double le
         }
         V s, c;
         sincos(q[i], s, c);
-        R = R * rotation_about(h, c, s);
+        R = R * spatial::rotation_about(h, c, s);
         t = point[i] - R * p;
     }
     const Vec3<V> tip = R * fill3<V>(chain.tip.t) + t;
     const Mat3<V> Q = R * fill33<V>(chain.tip.R);
     const Vec3<V> dp = (1 / length) * (goal.t - tip);
-    // Half the sum of the cross products of the axes is the rotation that is missing, to first order.
-    Vec3<V> w = 0.5 * cross(column(Q, 0), column(goal.R, 0));
-    for (int k = 1; k < 3; ++k) w = w + 0.5 * cross(column(Q, k), column(goal.R, k));
-    out.aligned = dot(column(Q, 0), column(goal.R, 0)) + dot(column(Q, 1), column(goal.R, 1)) +
-                  dot(column(Q, 2), column(goal.R, 2));
+    const Vec3<V> w = spatial::sine_between(Q, goal.R);
+    out.aligned = spatial::trace_between(Q, goal.R);
     const V error[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
     for (int k = 0; k < 6; ++k) out.error[k] = error[k];
     const V zero = fill<V>(0.0);
