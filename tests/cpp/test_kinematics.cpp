@@ -12,6 +12,7 @@
 #include "cspace/kinematics/singular_values.hpp"
 #include "cspace/math/threads.hpp"
 #include "cspace/model/robot_model.hpp"
+#include "cspace/spatial/rotation.hpp"
 #include "kernels/kinematics.hpp"
 
 using namespace cspace;

@@ -72,6 +72,38 @@ void check_solve() {
     CHECK(told_regular > (n == 1 ? 150 : 250) * cspace::Lanes<V>::count);
 }
 
+// B Bᵀ + s 1 for a random B, in the lanes with s = −1 not positive definite; unknowns without a pivot are
+// zero.
+template <int n, class V>
+void check_positive() {
+    check::Random random{17 * n};
+    for (int round = 0; round < 100; ++round) {
+        const auto s = random_system<n, n, V>(random);
+        System<n, n, V> square{};
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < n; ++j) {
+                square.A[i][j] = cspace::fill<V>(i == j ? 1e-3 : 0.0);
+                for (int k = 0; k < n; ++k) square.A[i][j] = square.A[i][j] + s.A[i][k] * s.A[j][k];
+            }
+            square.b[i] = s.b[i];
+        }
+        const int bad = random.below(n);
+        for (int k = 1; k < cspace::Lanes<V>::count; k += 2) cspace::set_lane(square.A[bad][bad], k, -1.0);
+        auto used = square;
+        for (int i = 0; i < n; ++i)
+            for (int j = 0; j < i; ++j) used.A[i][j] = cspace::fill<V>(std::nan(""));  // is not read
+        const auto definite = cspace::solve_positive(used.A, n, used.b);
+        for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
+            CHECK(cspace::lane(definite, k) == (k % 2 == 0));
+            const double largest = largest_size(square, used.b, k);
+            double size;
+            for (int i = 0; i < n && k % 2 == 0; ++i)
+                CHECK_NEAR(residual(square, used.b, i, k, size), 0.0, 1e-12 * largest);
+            CHECK(k % 2 == 0 || cspace::lane(used.b[bad], k) == 0.0);
+        }
+    }
+}
+
 // Whatever the shape: A x − b is orthogonal to the columns of A, and no smaller x does as well.
 template <int m, int n, class V>
 void check_least_squares() {
@@ -140,6 +172,13 @@ TEST(systems_on_lanes) {
     check_all<cspace::Pack<2>>();
     check_all<cspace::Pack<4>>();
     check_all<cspace::Pack<8>>();
+}
+
+TEST(positive_definite_systems_are_solved) {
+    check_positive<1, double>();
+    check_positive<6, double>();
+    check_positive<6, cspace::Pack<4>>();
+    check_positive<9, cspace::Pack<8>>();
 }
 
 TEST(permutations_are_solved_exactly) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cspace/ik/refine.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::ik {
 
@@ -51,22 +52,16 @@ inline Quadratic quadratic_model(const PoseError& error, double weight) {
     return out;
 }
 
-// Solves (H + damping) x = −gradient by Cholesky factorisation; false if the matrix is not positive definite.
+// Solves (H + damping) x = −gradient; false if the matrix is not clearly positive definite.
 inline bool solve_damped(const Quadratic& m, double damping, double* x) {
-    double L[max_joints][max_joints];
+    Quadratic damped = m;
+    double largest = 0;
     for (int i = 0; i < m.n; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            const double rest = m.hessian[i][j] + (i == j ? damping : 0) - dot_n(L[i], L[j], j);
-            if (i == j && !(rest > 1e-13 * (std::fabs(m.hessian[i][i]) + damping))) return false;
-            L[i][j] = i == j ? std::sqrt(rest) : rest / L[j][j];
-        }
-        x[i] = (-m.gradient[i] - dot_n(L[i], x, i)) / L[i][i];
+        damped.hessian[i][i] += damping;
+        largest = max(largest, std::fabs(damped.hessian[i][i]));
+        x[i] = -m.gradient[i];
     }
-    for (int i = m.n - 1; i >= 0; --i) {
-        for (int k = i + 1; k < m.n; ++k) x[i] -= L[k][i] * x[k];
-        x[i] /= L[i][i];
-    }
-    return true;
+    return solve_positive(damped.hessian, m.n, x, 1e-13 * largest);
 }
 
 // Descends from q to a local minimum of the cost; `error` belongs to q on return.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "cspace/math/lanes.hpp"
 
@@ -93,6 +94,44 @@ CSPACE_INLINE mask_of<V> solve_linear(V (&A)[n][n], V (&b)[n]) {
         b[k] = b[k] * inverse[k];
     }
     return linear::full_rank(diagonal);
+}
+
+// A = L D Lᵀ for the leading n × n block of a symmetric A, of which the upper triangle is read (Golub & Van
+// Loan 2013, section 4.1). D Lᵀ replaces it above the diagonal and D⁻¹ on it, with zeros for pivots that are
+// not above `floor`. True where all pivots are. A: anything with rows A[i].
+template <class Matrix>
+CSPACE_INLINE auto factor_ldl(Matrix& A, int n, double floor = 0) {
+    using V = std::remove_reference_t<decltype(A[0][0])>;
+    mask_of<V> definite = fill<V>(1.0) > 0.0;
+    for (int k = 0; k < n; ++k) {
+        const mask_of<V> positive = A[k][k] > floor;
+        definite = definite && positive;
+        A[k][k] = where(positive, linear::safe_inverse(A[k][k]));
+        for (int i = k + 1; i < n; ++i) {
+            const V multiple = -A[k][i] * A[k][k];
+            for (int j = i; j < n; ++j) A[i][j] = mul_add(multiple, A[k][j], A[i][j]);
+        }
+    }
+    return definite;
+}
+// A x = b from the factors; b becomes x. An unknown without a pivot becomes zero.
+template <class Matrix, class V>
+CSPACE_INLINE void solve_ldl(const Matrix& A, int n, V* b) {
+    for (int k = 0; k < n; ++k) {
+        const V y = b[k] * A[k][k];
+        for (int i = k + 1; i < n; ++i) b[i] = mul_add(-A[k][i], y, b[i]);
+    }
+    for (int k = n - 1; k >= 0; --k) {
+        for (int i = k + 1; i < n; ++i) b[k] = mul_add(-A[k][i], b[i], b[k]);
+        b[k] = b[k] * A[k][k];
+    }
+}
+// A x = b for a symmetric positive definite A, which is used up; b becomes x.
+template <class Matrix, class V>
+CSPACE_INLINE mask_of<V> solve_positive(Matrix& A, int n, V* b, double floor = 0) {
+    const mask_of<V> definite = factor_ldl(A, n, floor);
+    solve_ldl(A, n, b);
+    return definite;
 }
 
 // The x of least |A x − b| for m ≥ n, the least x with A x = b for m < n, by reflections. A and b are used

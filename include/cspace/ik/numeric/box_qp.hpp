@@ -12,6 +12,8 @@
 #include <cmath>
 #include <vector>
 
+#include "cspace/math/linear.hpp"
+
 namespace cspace::ik {
 
 struct BoxQp {
@@ -49,30 +51,21 @@ inline void find_gradient(BoxQp& p, const double* x) {
     }
 }
 
-// The step of the m free unknowns to their minimum, by Cholesky factorisation; false if H is not positive
-// definite on them.
+// The step of the m free unknowns to their minimum; false if H is not positive definite on them.
 inline bool find_step(BoxQp& p, int m) {
+    struct Rows {
+        double* first;
+        std::size_t n;
+        double* operator[](int i) const { return first + n * std::size_t(i); }
+    };
     const std::size_t n = std::size_t(p.n);
-    double *L = p.factor.data(), *d = p.step.data();
+    const Rows H{p.H.data(), n}, A{p.factor.data(), n};
     for (int i = 0; i < m; ++i) {
-        const double* row = p.H.data() + n * std::size_t(p.loose[std::size_t(i)]);
-        double* Li = L + n * std::size_t(i);
-        for (int j = 0; j <= i; ++j) {
-            const double* Lj = L + n * std::size_t(j);
-            double rest = row[p.loose[std::size_t(j)]];
-            for (int k = 0; k < j; ++k) rest -= Li[k] * Lj[k];
-            if (i == j && !(rest > 0)) return false;
-            Li[j] = i == j ? std::sqrt(rest) : rest / Lj[j];
-        }
-        d[i] = -p.gradient[std::size_t(p.loose[std::size_t(i)])];
-        for (int k = 0; k < i; ++k) d[i] -= Li[k] * d[k];
-        d[i] /= Li[i];
+        const int row = p.loose[std::size_t(i)];
+        for (int j = i; j < m; ++j) A[i][j] = H[row][p.loose[std::size_t(j)]];
+        p.step[std::size_t(i)] = -p.gradient[std::size_t(row)];
     }
-    for (int i = m - 1; i >= 0; --i) {
-        for (int k = i + 1; k < m; ++k) d[i] -= L[n * std::size_t(k) + std::size_t(i)] * d[k];
-        d[i] /= L[n * std::size_t(i) + std::size_t(i)];
-    }
-    return true;
+    return solve_positive(A, m, p.step.data());
 }
 
 // Moves x by the step of the free unknowns, up to the first bound, which becomes active. Returns true if the

@@ -6,6 +6,7 @@
 // below ε, so no direction is amplified by more than 1/ε.
 #pragma once
 
+#include "cspace/math/linear.hpp"
 #include "cspace/math/small_svd.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -37,28 +38,16 @@ inline double share_within(const double* base, const double* extra, const double
     return share;
 }
 
-// The inverse of a symmetric positive definite 6×6 matrix by Cholesky factorisation; false if it is not
-// positive definite.
+// The inverse of a symmetric positive definite matrix; false if it is not positive definite.
 inline bool invert_positive(const double (&M)[6][6], double (&inverse)[6][6]) {
-    double L[6][6], K[6][6] = {};  // K = L⁻¹
-    for (int i = 0; i < 6; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            const double rest = M[i][j] - dot_n(L[i], L[j], j);
-            if (i == j && !(rest > 0)) return false;
-            L[i][j] = i == j ? std::sqrt(rest) : rest / L[j][j];
-        }
-        K[i][i] = 1 / L[i][i];
-        for (int j = 0; j < i; ++j) {
-            double sum = 0;
-            for (int k = j; k < i; ++k) sum += L[i][k] * K[k][j];
-            K[i][j] = -sum * K[i][i];
-        }
-    }
+    double A[6][6];
     for (int i = 0; i < 6; ++i)
-        for (int j = 0; j < 6; ++j) {
-            inverse[i][j] = 0;
-            for (int k = i > j ? i : j; k < 6; ++k) inverse[i][j] += K[k][i] * K[k][j];
-        }
+        for (int j = 0; j < 6; ++j) A[i][j] = M[i][j];
+    if (!factor_ldl(A, 6)) return false;
+    for (int i = 0; i < 6; ++i) {
+        for (int j = 0; j < 6; ++j) inverse[i][j] = i == j;
+        solve_ldl(A, 6, inverse[i]);
+    }
     return true;
 }
 

@@ -2,28 +2,9 @@
 #pragma once
 
 #include "cspace/ik/numeric/error.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
-
-// Solves M x = b by M = L D Lᵀ for a symmetric positive definite M of k ≤ 6 rows. The lower triangle is read
-// and overwritten; b becomes x. An unknown whose pivot is lost to rounding is set to zero.
-template <class V>
-CSPACE_INLINE void solve_positive(V (&M)[6][6], V (&b)[6], int k) {
-    V L[6][6], inverse[6];
-    for (int j = 0; j < k; ++j) {
-        const mask_of<V> positive = M[j][j] > 0.0;
-        inverse[j] = where(positive, 1.0 / select(positive, M[j][j], fill<V>(1.0)));
-        for (int i = j + 1; i < k; ++i) {
-            L[i][j] = M[i][j] * inverse[j];
-            for (int p = j + 1; p <= i; ++p) M[i][p] = mul_add(-L[i][j], M[p][j], M[i][p]);
-            b[i] = mul_add(-L[i][j], b[j], b[i]);
-        }
-    }
-    for (int j = k - 1; j >= 0; --j) {
-        b[j] = b[j] * inverse[j];
-        for (int i = j + 1; i < k; ++i) b[j] = mul_add(-L[i][j], b[i], b[j]);
-    }
-}
 
 // dx (n,) for m rows. loose[j] is 1, or 0 for a coordinate that must not move. Of two equivalent systems the
 // smaller is solved: (JᵀJ + λ I) dx = Jᵀ e, or dx = Jᵀ y with (J Jᵀ + λ I) y = e.
@@ -33,7 +14,7 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[6][max_joints], const 
     V M[6][6], b[6];
     if (n <= m) {
         for (int i = 0; i < n; ++i) {
-            for (int j = 0; j <= i; ++j) {
+            for (int j = i; j < n; ++j) {
                 V sum = fill<V>(0.0);
                 for (int r = 0; r < m; ++r) sum = mul_add(J[r][i], J[r][j], sum);
                 M[i][j] = loose[i] * loose[j] * sum;
@@ -43,12 +24,12 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[6][max_joints], const 
             for (int r = 0; r < m; ++r) b[i] = mul_add(J[r][i], e[r], b[i]);
             b[i] = loose[i] * b[i];
         }
-        solve_positive(M, b, n);
+        solve_positive(M, n, b);
         for (int i = 0; i < n; ++i) dx[i] = b[i];
         return;
     }
     for (int r = 0; r < m; ++r) {
-        for (int t = 0; t <= r; ++t) {
+        for (int t = r; t < m; ++t) {
             V sum = fill<V>(0.0);
             for (int j = 0; j < n; ++j) sum = mul_add(loose[j] * J[r][j], J[t][j], sum);
             M[r][t] = sum;
@@ -56,7 +37,7 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[6][max_joints], const 
         M[r][r] = M[r][r] + damping;
         b[r] = e[r];
     }
-    solve_positive(M, b, m);
+    solve_positive(M, m, b);
     for (int j = 0; j < n; ++j) {
         dx[j] = fill<V>(0.0);
         for (int r = 0; r < m; ++r) dx[j] = mul_add(J[r][j], b[r], dx[j]);

@@ -47,7 +47,7 @@ void slide(const TipGap<n>& g, double* q) {
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < 3 && !g.prismatic[j]; ++i) at.slope[i][j] = 0;
     normal_equations(at, normal, step);
-    if (!solve_damped<n>(normal, tolerance::exact, step)) return;
+    if (!solve_damped(normal, tolerance::exact, step)) return;
     for (int j = 0; j < n; ++j)
         if (g.prismatic[j]) q[j] += step[j];
 }

@@ -49,33 +49,6 @@ CSPACE_INLINE void lagrangian_times(const Chain& chain, const TipMotion<V>& moti
 
 inline constexpr int max_free = max_joints - 1;
 
-// Solves H x = b for the leading k × k block of a symmetric H by Cholesky factorisation. False in lanes where
-// H is not clearly positive definite.
-template <class V>
-CSPACE_INLINE mask_of<V> solve_positive(V (&H)[max_free][max_free], int k, V* x) {
-    mask_of<V> good = fill<V>(1.0) > 0.0;
-    for (int i = 0; i < k; ++i) {
-        for (int j = 0; j <= i; ++j) {
-            V rest = H[i][j];
-            for (int m = 0; m < j; ++m) rest = rest - H[i][m] * H[j][m];
-            if (i != j) {
-                H[i][j] = rest / H[j][j];
-                continue;
-            }
-            const mask_of<V> positive = rest > 0.05;
-            good = good && positive;
-            H[i][i] = sqrt(select(positive, rest, fill<V>(1.0)));
-        }
-        for (int m = 0; m < i; ++m) x[i] = x[i] - H[i][m] * x[m];
-        x[i] = x[i] / H[i][i];
-    }
-    for (int i = k - 1; i >= 0; --i) {
-        for (int m = i + 1; m < k; ++m) x[i] = x[i] - H[m][i] * x[m];
-        x[i] = x[i] / H[i][i];
-    }
-    return good;
-}
-
 // One step of q to the nearest point. Returns the largest joint change of the full step. motion, lambda: the
 // split Jacobian before the step, and its multipliers.
 template <int N, class V>
@@ -102,15 +75,15 @@ CSPACE_NOINLINE V step_to_nearest(const Chain& chain, int rank, const Pose<V>& g
             plain[k] = plain[k] - along[k][i] * (gap[i] + weight[i] * step[i]);
         }
         for (int m = 0; m <= k; ++m) {
-            H[k][m] = G[k][m] = fill<V>(0.0);
+            H[m][k] = G[m][k] = fill<V>(0.0);
             for (int i = 0; i < n; ++i) {
-                H[k][m] = mul_add(along[m][i], bent[i], H[k][m]);
-                G[k][m] = mul_add(weight[i] * along[m][i], along[k][i], G[k][m]);
+                H[m][k] = mul_add(along[m][i], bent[i], H[m][k]);
+                G[m][k] = mul_add(weight[i] * along[m][i], along[k][i], G[m][k]);
             }
         }
         G[k][k] = G[k][k] + 0.06;  // joints that do not count leave directions undecided
     }
-    const mask_of<V> curved = solve_positive(H, free, newton);
+    const mask_of<V> curved = solve_positive(H, free, newton, 0.05);
     if (!all(curved)) {
         solve_positive(G, free, plain);
         for (int k = 0; k < free; ++k) newton[k] = select(curved, newton[k], plain[k]);

@@ -26,18 +26,15 @@ struct HalvesMotion {
     double aligned;  // trace of the rotation between them: 3 at the goal
 };
 
-// L D Lᵀ factors of 1 − φ″, one block per half.
-struct HalvesFactor {
-    using V = Pack<2>;
-    V below[Halves::longest][Halves::longest], inverse[Halves::longest];
-};
+// 1 − φ″ or its factors as of factor_ldl, one block per half; the upper triangle counts.
+using HalvesMatrix = Pack<2>[Halves::longest][Halves::longest];
 
 // An iterate of Newton's method; joints as in Halves.
 struct HalvesPoint {
     using V = Pack<2>;
     V q[Halves::longest], gap[Halves::longest];  // gap: from the seed
     double lambda[6] = {};
-    V bent[Halves::longest][Halves::longest];  // 1 − φ″ before the last step
+    HalvesMatrix bent;  // 1 − φ″ before the last step
 };
 
 }  // namespace cspace::ik
@@ -128,7 +125,7 @@ CSPACE_INLINE void move_halves(const Halves& arm, const Posed& goal, double per_
 // 1 − φ″ for the weights lambda. The entry of joints a ≤ b of a half, with a the one farther from the middle,
 // is force · (axis a × linear b) + ½ moment · (axis a × axis b). For the half that moves against its joints a
 // and b are exchanged.
-CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda, Pack<2> (&bent)[4][4]) {
+CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda, HalvesMatrix& bent) {
     using V = Pack<2>;
     const V way = there_and_back<V>();
     const Vec3<V> force = {lambda[0] * way, lambda[1] * way, lambda[2] * way};
@@ -138,47 +135,15 @@ CSPACE_INLINE void bend_halves(const HalvesMotion& motion, const double* lambda,
         const Vec3<V> lever = cross(force, motion.axis[a]), twist = cross(moment, motion.axis[a]);
         bent[a][a] = 1.0 - dot(lever, motion.linear[a]);
         for (int b = a + 1; b < 4; ++b)
-            bent[b][a] = -dot(lever, motion.linear[b]) - dot(twist, motion.axis[b]);
+            bent[a][b] = -dot(lever, motion.linear[b]) - dot(twist, motion.axis[b]);
     }
 }
 
-// L D Lᵀ factors of `bent` minus `less` on the diagonal; false unless it is positive definite by `margin`.
-CSPACE_INLINE bool factor_halves(const Pack<2> (&bent)[4][4], double less, double margin, HalvesFactor& out) {
-    using V = Pack<2>;
-    V least = fill<V>(1.0);
-    for (int b = 0; b < 4; ++b) {
-        V row[4];
-        V pivot = bent[b][b] - less;
-        for (int a = 0; a < b; ++a) {
-            row[a] = bent[b][a];
-            for (int m = 0; m < a; ++m) row[a] = row[a] - row[m] * out.below[a][m];
-            out.below[b][a] = row[a] * out.inverse[a];
-            pivot = pivot - row[a] * out.below[b][a];
-        }
-        least = min(least, pivot);
-        out.inverse[b] = 1.0 / pivot;
-    }
-    return all(least > margin);
-}
-
-// Solves S x = b by L D Lᵀ factorisation; false unless S is positive definite.
-CSPACE_INLINE bool solve_six(double (&S)[6][6], double* x) {
-    double inverse[6];
-    bool positive = true;
-    for (int k = 0; k < 6; ++k) {
-        positive = positive && S[k][k] > 0;
-        inverse[k] = 1 / S[k][k];
-        for (int i = k + 1; i < 6; ++i) {
-            const double part = S[i][k] * inverse[k];
-            for (int j = i; j < 6; ++j) S[j][i] -= part * S[j][k];
-            x[i] -= part * x[k];
-        }
-    }
-    for (int k = 5; k >= 0; --k) {
-        for (int j = k + 1; j < 6; ++j) x[k] -= S[j][k] * x[j];
-        x[k] *= inverse[k];
-    }
-    return positive;
+// The factors of `bent` minus `less` on the diagonal; false unless it is positive definite by `margin`.
+CSPACE_INLINE bool factor_halves(const HalvesMatrix& bent, double less, double margin, HalvesMatrix& out) {
+    for (int a = 0; a < 4; ++a)
+        for (int b = a; b < 4; ++b) out[a][b] = a == b ? bent[a][a] - less : bent[a][b];
+    return all(factor_ldl(out, 4, margin));
 }
 
 // One Newton step for the nearest point and its weights. Returns the largest joint change of the full step,
@@ -186,40 +151,39 @@ CSPACE_INLINE bool solve_six(double (&S)[6][6], double* x) {
 CSPACE_INLINE double step_halves(const HalvesMotion& motion, HalvesPoint& at) {
     using V = Pack<2>;
     constexpr double flat = 0.05;
-    HalvesFactor factor;
+    HalvesMatrix factor;
     bend_halves(motion, at.lambda, at.bent);
     if (!factor_halves(at.bent, 0, flat, factor)) {
-        for (int b = 0; b < 4; ++b)
-            for (int a = 0; a <= b; ++a) at.bent[b][a] = fill<V>(a == b);
+        for (int a = 0; a < 4; ++a)
+            for (int b = a; b < 4; ++b) at.bent[a][b] = fill<V>(a == b);
         factor_halves(at.bent, 0, flat, factor);
     }
     // With y = L⁻¹ [Jᵀ, gap]: J (1 − φ″)⁻¹ Jᵀ λ = error + J (1 − φ″)⁻¹ gap.
-    V y[4][7], sum[6][7];
+    V y[4][7], scaled[4][7], sum[6][7];
     for (int b = 0; b < 4; ++b) {
         const Vec3<V>&v = motion.linear[b], &h = motion.axis[b];
         const V row[7] = {v.x, v.y, v.z, h.x, h.y, h.z, at.gap[b]};
         for (int k = 0; k < 7; ++k) {
             y[b][k] = row[k];
-            for (int a = 0; a < b; ++a) y[b][k] = y[b][k] - factor.below[b][a] * y[a][k];
+            for (int a = 0; a < b; ++a) y[b][k] = y[b][k] - factor[a][b] * scaled[a][k];
+            scaled[b][k] = factor[b][b] * y[b][k];
         }
-        for (int k = 0; k < 6; ++k) {
-            const V scaled = factor.inverse[b] * y[b][k];
+        for (int k = 0; k < 6; ++k)
             for (int j = k; j < 7; ++j)
-                sum[k][j] = b ? mul_add(scaled, y[b][j], sum[k][j]) : scaled * y[b][j];
-        }
+                sum[k][j] = b ? mul_add(scaled[b][k], y[b][j], sum[k][j]) : scaled[b][k] * y[b][j];
     }
     double S[6][6];
     for (int k = 0; k < 6; ++k) {
-        for (int j = k; j < 6; ++j) S[j][k] = lane(sum[k][j], 0) + lane(sum[k][j], 1);
+        for (int j = k; j < 6; ++j) S[k][j] = lane(sum[k][j], 0) + lane(sum[k][j], 1);
         at.lambda[k] = motion.error[k] + lane(sum[k][6], 0) + lane(sum[k][6], 1);
     }
-    if (!solve_six(S, at.lambda)) return std::numeric_limits<double>::quiet_NaN();
+    if (!solve_positive(S, 6, at.lambda)) return std::numeric_limits<double>::quiet_NaN();
     V step[4], largest = fill<V>(0.0);
     for (int b = 3; b >= 0; --b) {
         V along = -y[b][6];
         for (int k = 0; k < 6; ++k) along = mul_add(y[b][k], fill<V>(at.lambda[k]), along);
-        step[b] = along * factor.inverse[b];
-        for (int m = b + 1; m < 4; ++m) step[b] = step[b] - factor.below[m][b] * step[m];
+        for (int m = b + 1; m < 4; ++m) along = along - factor[b][m] * step[m];
+        step[b] = along * factor[b][b];
         largest = max(largest, abs(step[b]));
         at.q[b] = at.q[b] + step[b];
         at.gap[b] = at.gap[b] + step[b];
@@ -242,7 +206,7 @@ CSPACE_INLINE bool is_proven_nearest(const Halves& arm, const HalvesPoint& at) {
         reach = reach + load<V>(arm.slid[k]) * (abs(at.q[k]) + 2 * distance);
     const V third = force * reach + moment * load<V>(arm.turn);
     const double most = max(lane(third, 0), lane(third, 1));
-    HalvesFactor factor;
+    HalvesMatrix factor;
     return factor_halves(at.bent, most * distance * (2.0 / 3.0) + margin, 0, factor);
 }
 

@@ -55,10 +55,10 @@ double descend(const System& system, Unknown* t) {
                 linearise(system, aside, at);
                 normal_equations(at, normal, sides[side]);
             }
-            for (int i = j; i < n; ++i) hessian[i][j] = (sides[0][i] - sides[1][i]) / (2 * h);
+            for (int i = j; i < n; ++i) hessian[j][i] = (sides[0][i] - sides[1][i]) / (2 * h);
         }
         for (int i = 0; i < n; ++i) step[i] = down[i];
-        const bool convex = solve_damped<n>(hessian, damping, step);
+        const bool convex = solve_damped(hessian, damping, step);
         Unknown next[n];
         for (int i = 0; i < n; ++i) next[i] = step_angles(t[i], step[i]), length += std::fabs(step[i]);
         const double next_error = convex ? linearise(system, next, at) : error + 1;

@@ -5,6 +5,7 @@
 // their derivatives with respect to the angles. Lengths in it are about one.
 #pragma once
 
+#include "cspace/math/linear.hpp"
 #include "cspace/math/turn.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -30,30 +31,14 @@ double linearise(const System& system, const Unknown* t, Linearised<System>& at)
     return std::sqrt(sum);
 }
 
-// Solves (a + damping) x = b for a symmetric a (lower half used) by Cholesky factorisation; b becomes x.
-// False if it is not positive definite.
+// Solves (A + damping) x = b, where A is used up; b becomes x. False if it is not positive definite.
 template <int n>
-bool solve_damped(const double (*a)[n], double damping, double* b) {
-    double l[n][n];
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j <= i; ++j) {
-            double rest = a[i][j] + (i == j ? damping : 0);
-            for (int k = 0; k < j; ++k) rest -= l[i][k] * l[j][k];
-            if (i == j && !(rest > 0)) return false;
-            l[i][j] = i == j ? std::sqrt(rest) : rest / l[j][j];
-        }
-    for (int i = 0; i < n; ++i) {
-        for (int k = 0; k < i; ++k) b[i] -= l[i][k] * b[k];
-        b[i] /= l[i][i];
-    }
-    for (int i = n - 1; i >= 0; --i) {
-        for (int k = i + 1; k < n; ++k) b[i] -= l[k][i] * b[k];
-        b[i] /= l[i][i];
-    }
-    return true;
+bool solve_damped(double (&A)[n][n], double damping, double* b) {
+    for (int i = 0; i < n; ++i) A[i][i] += damping;
+    return solve_positive(A, n, b);
 }
 
-// JᵀJ and −Jᵀ value; returns the length of the latter.
+// The upper triangle of JᵀJ, and −Jᵀ value; returns the length of the latter.
 template <class System>
 double normal_equations(const Linearised<System>& at, double (*a)[System::angles], double* down) {
     double length = 0;
@@ -61,7 +46,7 @@ double normal_equations(const Linearised<System>& at, double (*a)[System::angles
         down[i] = 0;
         for (int k = 0; k < System::equations; ++k) down[i] -= at.slope[k][i] * at.value[k];
         length = std::hypot(length, down[i]);
-        for (int j = 0; j <= i; ++j) {
+        for (int j = i; j < System::angles; ++j) {
             a[i][j] = 0;
             for (int k = 0; k < System::equations; ++k) a[i][j] += at.slope[k][i] * at.slope[k][j];
         }
@@ -81,7 +66,7 @@ double refine(const System& system, Unknown* t, int iterations = 30) {
     for (int i = 0; i < iterations && error > 2 * std::numeric_limits<double>::epsilon(); ++i) {
         double normal[n][n], step[n], length = 0;
         if (normal_equations(at, normal, step) == 0) break;
-        if (!solve_damped<n>(normal, damping, step)) {
+        if (!solve_damped(normal, damping, step)) {
             damping *= 8;
             continue;
         }
