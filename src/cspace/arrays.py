@@ -10,8 +10,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.errors import InputError, InputTypeError
+from cspace.tolerances import FARTHEST
 
-__all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number"]
+__all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -69,6 +70,21 @@ def one_number(value: Any, subject: str, *, largest: float | None = None) -> flo
     number = as_floats(value, subject, largest=largest)
     if number.ndim:
         raise InputError(f"{subject} has shape {number.shape}; it must be one number")
+    return float(number)
+
+
+def positive_number(
+    value: Any, subject: str, rule: str = "it must be one positive number", *, largest: float = FARTHEST
+) -> float:
+    """A number above zero and at most `largest`, alone. rule: what a message says after the value.
+
+    Raises InputTypeError for a value that is not a number, InputError for any other, and for NaN.
+    """
+    if type(value) is float and 0.0 < value <= largest:
+        return value
+    number = as_floats(value, subject, finite=largest < math.inf, largest=largest)
+    if number.ndim or not number > 0:
+        raise InputError(f"{subject} is {value!r}; {rule}")
     return float(number)
 
 

@@ -11,7 +11,7 @@ import numpy.typing as npt
 from numpy.typing import ArrayLike
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, one_number
+from cspace.arrays import Array, as_floats, one_number, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
@@ -40,9 +40,7 @@ class OccupancyGrid(_core.GridBase):
     kind: Final = "grid"
 
     def __init__(self, blocked: Any, resolution: float = 1.0, origin: ArrayLike = (0.0, 0.0)) -> None:
-        side = float(as_floats(resolution, "resolution").reshape(()) if np.size(resolution) == 1 else np.nan)
-        if not 0 < side < np.inf:
-            raise InputError(f"resolution is {resolution!r}; it must be one positive number [m]")
+        side = positive_number(resolution, "resolution", "it must be one positive number [m]")
         corner = as_point(origin, "origin")
         cells = _read_cells(blocked)
         reach = max(cells.shape) * side + max(map(abs, corner))

@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, one_number
-from cspace.errors import InputError
+from cspace.arrays import Array, positive_number
 from cspace.tolerances import OFFSET_PIECE, OFFSET_SLACK
 
 __all__ = ["Offset", "OffsetCurve", "find_offset"]
@@ -102,9 +101,7 @@ def find_offset(walls: list[Array], clearance: Clearance, wide: float, radius: f
     walls: rings (n, 2) [m] with free space on their left; clearance: of points (m, 2) [m], from all walls;
     wide [m]: the longer side of the bounds.
     """
-    reach = one_number(radius, "radius")
-    if not reach > 0:
-        raise InputError(f"radius is {reach:g}; it must be positive [m]")
+    reach = positive_number(radius, "radius", "it must be positive [m]")
     if reach > wide:
         return Offset(reach, [])  # no point in the bounds is that far from them
     slack = OFFSET_SLACK * wide

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, one_number
+from cspace.arrays import Array, positive_number
 from cspace.errors import InputError
 from cspace.tolerances import CELL_ROUNDING, DEFAULT_CELLS, MAP_CELLS
 
@@ -25,9 +25,7 @@ def rasterize_world(
     if resolution is None:
         side = wide / _choose_parts(min(xmax - xmin, ymax - ymin) / wide)
     else:
-        side = one_number(resolution, "resolution")
-    if not side > 0:
-        raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
+        side = positive_number(resolution, "resolution", "it must be a positive length [m]")
     if not wide / side <= MAP_CELLS:
         raise InputError(
             f"resolution {side:g} gives more than {MAP_CELLS:g} cells along one side; choose larger cells"

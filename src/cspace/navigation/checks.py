@@ -10,7 +10,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.maps import PolygonWorld
 from cspace.tolerances import LARGEST_NUMBER
 
-__all__ = ["check_ends", "need_grid", "need_number", "need_polygons", "need_positive"]
+__all__ = ["check_ends", "need_grid", "need_number", "need_polygons"]
 
 
 def need_polygons(world: Any) -> None:
@@ -29,14 +29,6 @@ def need_grid(grid: Any, name: str = "grid") -> None:
 def check_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
     """Start and goal as points (2,) [m] in free space; InputError names the one that is not."""
     return world.check_free(start, "start"), world.check_free(goal, "goal")
-
-
-def need_positive(value: Any, name: str, rule: str = "give one number above zero") -> float:
-    """A number above zero, or InputError."""
-    number = as_floats(value, name)
-    if number.ndim or not number > 0:
-        raise InputError(f"{name} is {value!r}; {rule}")
-    return float(number)
 
 
 def need_number(value: Any, name: str, least: float) -> float:

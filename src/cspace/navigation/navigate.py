@@ -7,7 +7,7 @@ from typing import Any, Final, TypeAlias
 
 from numpy.typing import ArrayLike
 
-from cspace.arrays import one_number
+from cspace.arrays import positive_number
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid, PolygonWorld
 from cspace.maps.points import check_inflation
@@ -91,9 +91,9 @@ def _prepare_world(
             return ready
     if grown := check_inflation(radius):
         world = _derive_world(world, ("grown", grown), lambda: world.inflate(grown))
-    side = None if resolution is None else one_number(resolution, "resolution")
-    if side is not None and side <= 0:
-        raise InputError(f"resolution is {side:g}; it must be a positive length [m]")
+    side = None
+    if resolution is not None:
+        side = positive_number(resolution, "resolution", "it must be a positive length [m]")
     if kind == "grid" and side is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
     if kind == planner.world:

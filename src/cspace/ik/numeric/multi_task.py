@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, as_generator
+from cspace.arrays import Array, as_floats, as_generator, positive_number
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.numeric.problem import bounds_of, further_starts, middle, positive
+from cspace.ik.numeric.problem import bounds_of, further_starts, middle
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
 from cspace.kinematics.batch import check_robot, frame_number, whole_number
 from cspace.spatial.checks import one_pose
@@ -101,7 +101,7 @@ def task_velocity(
     at = _configuration(robot, q, "q")
     base = _base(T_world_base)
     qd, errors = np.empty(robot.dof), np.empty((len(rows), 2))
-    step, cost = positive(dt, "dt"), positive(damping, "damping")
+    step, cost = positive_number(dt, "dt"), positive_number(damping, "damping")
     speed = _speeds(robot, velocity, n)
     if not _core._task_velocity(
         robot, rows, postures, at, base, bounds_of(robot, limits), speed, step, cost, qd, errors
@@ -143,7 +143,7 @@ def ik_tasks(
     base = _base(T_world_base)
     number = whole_number(starts, "starts", 1, MOST_STARTS)
     steps = whole_number(max_iterations, "max_iterations", 0, 1_000_000)
-    done = positive(tolerance, "tolerance")
+    done = positive_number(tolerance, "tolerance")
     rng = None if rng is None else as_generator(rng)
     kept = [not isinstance(task, PostureTask) for task in listed]
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, as_generator
+from cspace.arrays import Array, as_floats, as_generator, positive_number
 from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.model import Limits
@@ -19,7 +19,7 @@ from cspace.tolerances import FARTHEST
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["Question", "ask", "bounds_of", "further_starts", "middle", "positive"]
+__all__ = ["Question", "ask", "bounds_of", "further_starts", "middle"]
 
 MOST_PATH = 16
 EVERYTHING = np.ones(6)
@@ -79,7 +79,7 @@ def ask(
     far = np.abs(goals[..., :3, 3]).max(initial=0.0)
     if far > FARTHEST / 3:
         raise InputError(f"a goal is {far:g} m away; the maximum is {FARTHEST:g} m")
-    return Question(number, goals, counted, bounds_of(robot, limits), positive(tolerance, "tolerance"))
+    return Question(number, goals, counted, bounds_of(robot, limits), positive_number(tolerance, "tolerance"))
 
 
 def _at(points: Array) -> Array:
@@ -95,20 +95,6 @@ def _weights(value: Any) -> Array:
     if weights.ndim != 1 or (weights < 0).any() or not weights.any():
         raise InputError(f"weights is {weights.tolist()}; expected six numbers, 0 or more, not all of them 0")
     return np.ascontiguousarray(weights)
-
-
-def positive(value: Any, subject: str) -> float:
-    """The value as a positive number.
-
-    Raises InputTypeError for a value that is not a number, InputError for zero, a negative number, NaN, or
-    one beyond FARTHEST.
-    """
-    if type(value) is float and 0.0 < value <= FARTHEST:
-        return value
-    number = as_floats(value, subject, largest=FARTHEST)
-    if number.ndim or not number > 0:
-        raise InputError(f"{subject} is {value!r}; it must be one positive number")
-    return float(number)
 
 
 def bounds_of(robot: KinematicModel, limits: Any) -> Array:

@@ -7,9 +7,8 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError
-from cspace.ik.numeric.problem import positive
 from cspace.spatial.checks import PoseLike, one_pose
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
@@ -88,7 +87,7 @@ class DirectionTask:
     _row: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        weight = positive(self.weight, "weight")
+        weight = positive_number(self.weight, "weight")
         target = _at(_unit(self.direction, "direction"), "direction")
         _pack(self, DIRECTION, target, np.full(3, weight), _unit(self.axis, "axis"))
 
@@ -148,7 +147,7 @@ def _pack(task: Any, kind: int, target: Array, weights: Array, point: Array | No
 
 
 def _gain(value: Any) -> float:
-    gain = positive(value, "gain")
+    gain = positive_number(value, "gain")
     if gain > 1:
         raise InputError(
             f"gain is {gain:g}; it must be above 0 and at most 1, the share of the error that a step removes"

@@ -9,9 +9,8 @@ from typing import Any, Final
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError
-from cspace.navigation.checks import need_positive
 
 __all__ = ["Curve", "Segment"]
 
@@ -92,7 +91,7 @@ class Curve:
     def sample(self, spacing: float) -> Array:
         """Poses along the curve at most `spacing` [m] apart, (n, 3), including both ends and those of every
         segment."""
-        step = need_positive(spacing, "spacing", "give a length above zero, in metres")
+        step = positive_number(spacing, "spacing", "give a length above zero, in metres")
         parts, begin = [np.zeros(1)], 0.0
         for end in self._ends.tolist():
             count = max(1, int(np.ceil((end - begin) / step)))

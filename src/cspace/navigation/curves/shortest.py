@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, leading_axes
+from cspace.arrays import Array, as_floats, leading_axes, positive_number
 from cspace.errors import InputError
-from cspace.navigation.checks import need_positive
 from cspace.navigation.curves.curve import Curve
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -86,9 +85,8 @@ def measure_curves(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
 
 def check_radius(radius: Any) -> float:
     """A turning radius [m]; InputError unless it is one positive number."""
-    as_floats(radius, "radius", largest=LARGEST_NUMBER)
-    rule = "a turning radius is one length above zero, in metres"
-    return need_positive(radius, "radius", f"{rule} (a robot that turns on the spot needs no such curve)")
+    rule = "a turning radius is one length above zero, in metres (a robot that turns on the spot "
+    return positive_number(radius, "radius", rule + "needs no such curve)", largest=LARGEST_NUMBER)
 
 
 def check_poses(poses: Any, name: str, radius: float) -> Array:

@@ -7,9 +7,9 @@ from typing import Any, Final
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.navigation.checks import need_grid, need_positive
+from cspace.navigation.checks import need_grid
 from cspace.navigation.curves import Curve
 from cspace.navigation.following.run import OUTCOMES, Run
 from cspace.navigation.following.vehicles import Car, Unicycle
@@ -77,13 +77,13 @@ def follow(
     body = Unicycle() if vehicle is None else vehicle
     rows, runs = read_track(path)
     check_controller(controller, body, runs)
-    fast = body.max_speed if speed is None else min(need_positive(speed, "speed"), body.max_speed)
+    fast = body.max_speed if speed is None else min(positive_number(speed, "speed"), body.max_speed)
     if world is not None:
         need_grid(world, "world")
     steering, far = tune_controller(controller, body, fast, options)
-    step = need_positive(time_step, "time_step")
+    step = positive_number(time_step, "time_step")
     length = float(np.hypot(*np.diff(rows[:, :2], axis=0).T).sum())
-    limit = 10 * length / fast + 60 if time_limit is None else need_positive(time_limit, "time_limit")
+    limit = 10 * length / fast + 60 if time_limit is None else positive_number(time_limit, "time_limit")
     if limit > SIMULATION_STEPS * step:
         rule = f"give numbers for at most {SIMULATION_STEPS:g} steps"
         raise InputError(f"time_step is {step:g} s, time_limit {limit:g} s; {rule}")
@@ -93,8 +93,8 @@ def follow(
         limit,
         fast,
         window,
-        need_positive(tolerance, "tolerance"),
-        need_positive(patience, "patience"),
+        positive_number(tolerance, "tolerance"),
+        positive_number(patience, "patience"),
     ]
     points = np.ascontiguousarray(rows[:, :2])
     outcome, table = _core._follow(
@@ -122,7 +122,7 @@ def tune_controller(
     weights = as_floats(given.pop("weights", (1.0, 1.0, 1.0)), "weights")
     if weights.shape != (3,) or not (weights >= 0).all() or not weights.any():
         raise InputError(f"weights is {options['weights']!r}; give three numbers of zero or more")
-    numbers = {name: need_positive(value, name) for name, value in given.items()}
+    numbers = {name: positive_number(value, name) for name, value in given.items()}
     if controller == "dynamic_window":
         keeps = vehicle._footprint[3] + numbers["margin"]
         order = [keeps, numbers["lookahead"], numbers["sensor_range"], numbers["rays"], *weights.tolist()]

@@ -7,8 +7,7 @@ from typing import Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import as_floats, leading_axes
-from cspace.errors import InputError
+from cspace.arrays import as_floats, leading_axes, positive_number
 from cspace.navigation.checks import need_grid
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -29,12 +28,10 @@ def cast_rays(grid: Any, points: Any, angles: Any, max_range: float = np.inf) ->
     need_grid(grid)
     places = as_floats(points, "points", last=(2,), largest=LARGEST_NUMBER)
     turns = as_floats(angles, "angles", largest=LARGEST_NUMBER)
-    most = as_floats(max_range, "max_range", finite=False)
-    if most.ndim or not most > 0:
-        raise InputError(f"max_range is {max_range!r}; give one length above zero, in metres")
+    most = positive_number(max_range, "max_range", "give one length above zero, in metres", largest=np.inf)
     batch = leading_axes(points=places.shape[:-1], angles=turns.shape)
     rows = np.ascontiguousarray(np.broadcast_to(places, (*batch, 2)).reshape(-1, 2))
     out = np.empty(len(rows))
     flat = np.ascontiguousarray(np.broadcast_to(turns, batch).ravel())
-    _core._cast_rays(grid, rows, flat, float(most), out)
+    _core._cast_rays(grid, rows, flat, most, out)
     return out.reshape(batch) if batch else float(out[0])
