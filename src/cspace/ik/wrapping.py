@@ -15,12 +15,12 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError
+from cspace.math.wrapping import TURN, wrap_angle
 from cspace.tolerances import MOST_WINDINGS, ON_LIMIT
 
 __all__ = ["all_windings", "into_limits", "nearest_winding", "short_way", "turning", "violations", "wrap"]
 
 Flags = npt.NDArray[np.bool_]
-TURN = 2 * np.pi
 
 
 def turning(kinds: Sequence[str]) -> Flags:
@@ -30,19 +30,13 @@ def turning(kinds: Sequence[str]) -> Flags:
 
 def short_way(gap: Array, kinds: Sequence[str]) -> Array:
     """Differences (..., dof) of configurations, those of revolute joints the short way round."""
-    return np.where(turning(kinds), np.pi - np.mod(np.pi - gap, TURN), gap)
-
-
-def turns_of(kinds: Sequence[str]) -> Array:
-    """2π for a revolute joint, 0 for a prismatic one."""
-    return np.array([TURN if kind == "R" else 0.0 for kind in kinds])
+    return np.where(turning(kinds), wrap_angle(gap), gap)
 
 
 def wrap(q: Array, kinds: Sequence[str]) -> Array:
     """Revolute joints in (−π, π]."""
-    turn = turns_of(kinds)
-    outside = (turn > 0) & ((q > np.pi) | (q <= -np.pi))
-    return np.where(outside, np.pi - np.mod(np.pi - q, TURN), q)
+    outside = turning(kinds) & ((q > np.pi) | (q <= -np.pi))
+    return np.where(outside, wrap_angle(q), q)
 
 
 def copies_inside(q: Array, turns: Flags, lower: Array, upper: Array, wanted: Array, slack: float) -> Array:

@@ -19,11 +19,11 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
+from cspace.math.wrapping import TURN
 from cspace.tolerances import SAME_PLACE, TANGENT_PLACE
 
 __all__ = ["PlanarArm", "boundary", "reachable"]
 
-TURN = 2.0 * np.pi
 Flags = npt.NDArray[np.bool_]
 
 

@@ -12,7 +12,8 @@ from cspace.kinematics.batch import frame_number, whole_number
 from cspace.kinematics.configurations import Seed, random_configurations
 from cspace.kinematics.forward import forward_kinematics
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.kinematics.planar_boundary import TURN, PlanarArm, boundary
+from cspace.kinematics.planar_boundary import PlanarArm, boundary
+from cspace.math.wrapping import TURN
 from cspace.model import Chain
 from cspace.tolerances import PLANAR_AXES
 

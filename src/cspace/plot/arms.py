@@ -130,10 +130,9 @@ def branch_names(answer: Any, inside: Any) -> list[str]:
 
 def nearest(q: Array, near: Array, arm: Any) -> int:
     """The row of q nearest to `near`; revolute joints are compared modulo 2π."""
-    away = q - near
-    turning = np.array([kind == "R" for kind in arm.chain.joint_types])
-    away = np.where(turning, (away + np.pi) % (2 * np.pi) - np.pi, away)
-    return int(np.argmin((away**2).sum(axis=1)))
+    from cspace.ik.wrapping import short_way
+
+    return int(np.argmin((short_way(q - near, arm.chain.joint_types) ** 2).sum(axis=1)))
 
 
 def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:

@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.ik.redundancy.arm_angle import BRANCHES, JOINTS
 from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.wrapping import violations
+from cspace.math.wrapping import TURN, wrap_angle
 from cspace.spatial import exp_so3
 
 if TYPE_CHECKING:
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 __all__ = ["swivel_intervals"]
 
 Flags = npt.NDArray[np.bool_]
-TURN = 2 * np.pi
 LOOKS = 48
 """Swivels at which a branch is looked for that shows how the shoulder turns."""
 ONE_PLACE = 1e-9
@@ -153,8 +153,7 @@ def roots(sphere: Sphere, u: Array, v: Array, r: float) -> Array:
     if size < ONE_PLACE or abs(r - still) > size:
         return np.empty(0)
     middle, half = np.arctan2(sine, cosine), np.arccos((r - still) / size)
-    values = np.array([middle - half, middle + half])
-    return np.asarray(values - TURN * np.ceil((values - np.pi) / TURN))
+    return wrap_angle(np.array([middle - half, middle + half]))
 
 
 def of_branch(solver: Solver, T: Array, branch: int, ends: Array, rows: Array, fits: Flags) -> list[Interval]:

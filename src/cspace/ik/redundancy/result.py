@@ -11,6 +11,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
+from cspace.math.wrapping import wrap_near
 from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
@@ -43,8 +44,7 @@ class Interval:
     def __contains__(self, value: object) -> bool:
         number = float(value)  # type: ignore[arg-type]
         if not self._slides:
-            turn, middle = 2 * np.pi, 0.5 * (self.lower + self.upper)
-            number += turn * round((middle - number) / turn)
+            number = float(wrap_near(number, 0.5 * (self.lower + self.upper)))
         return self.lower <= number <= self.upper
 
 

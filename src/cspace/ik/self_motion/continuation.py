@@ -18,6 +18,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.wrapping import into_limits, short_way, turning
+from cspace.math.wrapping import TURN, wrap_near
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 __all__ = ["Arc", "arc_through", "nearest_member"]
 
 CLOSED, FAR = 0, 1
-TURN = 2 * np.pi
 HALVINGS = 50
 AT_REST = 1e-9
 """Change [rad or m] of a joint that rests along a family: rounding of the steps back onto the curve."""
@@ -151,8 +151,7 @@ def nearest_member(solver: Solver, q: Array, direction: Array, whole_pose: bool,
         points = curve.at(s)
         k = int(np.argmin(distances(solver, points, seed)))
         low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
-    turns = np.where(turning(solver.joint_types), np.round((points[k] - seed) / TURN), 0.0)
-    return np.asarray(points[k] - TURN * turns)
+    return np.where(turning(solver.joint_types), wrap_near(points[k], seed), points[k])
 
 
 def distances(solver: Solver, points: Array, seed: Array) -> Array:

@@ -9,6 +9,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError, InputTypeError, suggest
+from cspace.math.wrapping import wrap_angle
 from cspace.navigation.checks import need_grid
 from cspace.navigation.curves import Curve
 from cspace.navigation.following.run import OUTCOMES, Run
@@ -170,7 +171,7 @@ def read_track(path: Any) -> tuple[Array, Runs]:
     if rows.shape[1] == 2:
         return rows, [(0, 1)]
     steps = np.diff(rows[:, :2], axis=0)
-    middle = rows[:-1, 2] + 0.5 * np.remainder(np.diff(rows[:, 2]) + np.pi, 2 * np.pi) - 0.5 * np.pi
+    middle = rows[:-1, 2] + 0.5 * wrap_angle(np.diff(rows[:, 2]))
     ahead = steps[:, 0] * np.cos(middle) + steps[:, 1] * np.sin(middle)
     signs = np.where(ahead < 0, -1, 1)
     begins = [0, *(np.flatnonzero(np.diff(signs)) + 1).tolist()]
