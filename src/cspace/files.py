@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
+from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 from typing import Any, Final
 
 from cspace.errors import DescriptionError, InputError, InputTypeError, MapError
 
-__all__ = ["path_of", "read_regular", "whole_file", "write_text"]
+__all__ = ["YamlLine", "path_of", "read_regular", "unquote", "whole_file", "write_text", "yaml_lines"]
 
 DRAFTS: Final = count()
 """Numbers the drafts of this process, so that two threads never write into one."""
 
 STEM: Final = 40
 """As much of a file's name as its draft repeats, so that the draft's name is no longer than is allowed."""
+
+CONTENT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
+"""The content of a line of YAML before its comment: a # that follows a blank and is outside quotes."""
+
+ENTRY: Final = re.compile(r"( *)(?:(-)|([A-Za-z_][\w.-]*)\s*:)(?:\s+(.*))?")
 
 
 def path_of(source: Any, subject: str = "a file is given by its path") -> str:
@@ -81,3 +88,35 @@ def write_text(path: str | os.PathLike[str], text: str) -> None:
     """Write `text` as UTF-8 so that the file is either complete or untouched; errors as in whole_file."""
     with whole_file(path) as draft:
         draft.write_text(text, encoding="utf-8", newline="\n")
+
+
+@dataclass(frozen=True)
+class YamlLine:
+    """An entry of a YAML document: its line, its indent, its key, or "-" for an item of a list, and the value
+    behind it. A line that is no entry has the key "", and its content as the value.
+    """
+
+    line: int
+    indent: int
+    key: str
+    value: str
+
+
+def yaml_lines(document: str) -> Iterator[YamlLine]:
+    """The lines of a YAML document, without comments and marks: of block mappings and lists alone."""
+    for number, row in enumerate(document.splitlines(), 1):
+        found = CONTENT.match(row)
+        text = found.group().rstrip() if found else ""
+        if text.strip() in ("", "---", "...") or text.startswith("%"):
+            continue
+        if entry := ENTRY.fullmatch(text):
+            yield YamlLine(number, len(entry[1]), entry[2] or entry[3], entry[4] or "")
+        else:
+            yield YamlLine(number, len(text) - len(text.lstrip()), "", text.strip())
+
+
+def unquote(text: str) -> str:
+    """The text of a YAML scalar, with or without quotes."""
+    if len(text) >= 2 and text[0] == text[-1] and text[0] in "'\"":
+        return text[1:-1].replace("''", "'") if text[0] == "'" else text[1:-1]
+    return text

@@ -13,15 +13,13 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 from cspace.errors import InputError, MapError
-from cspace.files import whole_file, write_text
+from cspace.files import unquote, whole_file, write_text, yaml_lines
 from cspace.maps.files import check_map_path, read_map_text
 from cspace.maps.images import encode_pgm, read_image
 
 __all__ = ["RosMap", "read_ros", "write_ros"]
 
 NEEDED: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
-TEXT: Final = re.compile(r"""(?:(?<!\S)'(?:[^']|'')*'|(?<!\S)"[^"]*"|[^#]|(?<=\S)#)*""")
-"""The content of a line before its comment."""
 
 
 @dataclass(frozen=True)
@@ -108,19 +106,15 @@ def _read_fields(document: str, name: str) -> _Fields:
     """The fields of a single-level YAML map file: numbers, texts and lists of them."""
     fields: _Fields = {}
     open_list: list[Any] | None = None
-    for number, line in enumerate(document.splitlines(), 1):
-        text = _strip_comment(line)
-        if not text.strip() or text.strip() in {"---", "..."} or text.startswith("%"):
+    for entry in yaml_lines(document):
+        number, field, value = entry.line, entry.key, entry.value
+        if field == "-" and open_list is not None:
+            open_list.append(_read_scalar(value))
             continue
-        if (item := re.fullmatch(r"\s*-\s+(.*\S)\s*", text)) and open_list is not None:
-            open_list.append(_read_scalar(item.group(1)))
-            continue
-        pair = re.fullmatch(r"(\s*)([A-Za-z_][\w.-]*)\s*:(?:\s+(.*?))?\s*", text)
-        if pair is None:
+        if field in ("", "-"):
             raise MapError("expected 'field: value'", path=name, line=number)
-        if pair.group(1):
+        if entry.indent:
             continue  # inside a field that map files do not have
-        field, value = pair.group(2), pair.group(3) or ""
         if field in fields:
             raise MapError(
                 f"the field '{field}:' appears for the second time; keep one", path=name, line=number
@@ -140,21 +134,11 @@ def _read_fields(document: str, name: str) -> _Fields:
     return fields
 
 
-def _strip_comment(line: str) -> str:
-    """The line up to a # that follows a blank and is outside quotes."""
-    found = TEXT.match(line)
-    return found.group() if found else ""
-
-
 def _read_scalar(text: str) -> str | float:
     text = text.strip()
-    if len(text) >= 2 and text[0] == text[-1] == "'":
-        return text[1:-1].replace("''", "'")
-    if len(text) >= 2 and text[0] == text[-1] == '"':
-        return text[1:-1]
     if re.fullmatch(r"[-+]?(\d+(\.\d*)?|\.\d+)([eE][-+]?\d+)?", text, re.ASCII):
         return float(text)
-    return text
+    return unquote(text)
 
 
 def _get_number(fields: _Fields, field: str, name: str) -> float:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import os
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -16,6 +15,7 @@ from typing import Final
 
 from cspace.arrays import Array
 from cspace.errors import DescriptionError, suggest
+from cspace.files import YamlLine, unquote, yaml_lines
 from cspace.model.files import path_of, read_bytes
 from cspace.model.transforms import from_rpy
 from cspace.model.values import frozen
@@ -27,9 +27,6 @@ PARTS: Final = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist
 """The links of the arm, in order; each entry places the joint that carries one."""
 
 NUMBERS: Final = ("x", "y", "z", "roll", "pitch", "yaw")
-
-LINE: Final = r"( *)([A-Za-z_]\w*) *:(?: +(.*?))? *(?:#.*)?"
-"""An indented key, a colon, a value, a remark."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,24 +75,23 @@ class _Reader:
         except UnicodeDecodeError as error:
             line = self.data.count(b"\n", 0, error.start) + 1
             raise self.fault("this is no calibration: not UTF-8 text", line) from None
-        rows = [row for row in enumerate(text.splitlines(), 1) if is_said(row[1])]
-        if not rows or not re.fullmatch(r"kinematics *: *(#.*)?", rows[0][1]):
-            line = rows[0][0] if rows else 1
+        rows = list(yaml_lines(text))
+        if not rows or (rows[0].indent, rows[0].key, rows[0].value) != (0, "kinematics", ""):
+            line = rows[0].line if rows else 1
             raise self.fault(
                 "a calibration begins with the key kinematics: (see ur_calibration of ROS)", line
             )
         indents: list[int] = []
         part = ""
-        for line, row in rows[1:]:
-            part = self.take(row, line, indents, part)
-        return Calibration(self.path, MappingProxyType(self.origins(rows[0][0])), self.hash)
+        for row in rows[1:]:
+            part = self.take(row, indents, part)
+        return Calibration(self.path, MappingProxyType(self.origins(rows[0].line)), self.hash)
 
-    def take(self, row: str, line: int, indents: list[int], part: str) -> str:
+    def take(self, row: YamlLine, indents: list[int], part: str) -> str:
         """Read one line; `indents` holds the indents of parts and numbers once they are seen."""
-        found = re.fullmatch(LINE, row)
-        if found is None:
-            raise self.fault(f"{row.strip()[:60]!r}: expected a key and a value, like x: 0.1", line)
-        indent, key, value = len(found[1]), found[2], (found[3] or "").strip("\"'")
+        line, indent, key, value = row.line, row.indent, row.key, unquote(row.value)
+        if key in ("", "-"):
+            raise self.fault(f"{row.value[:60]!r}: expected a key and a value, like x: 0.1", line)
         if indent == 0:
             raise self.fault(f"{key!r} stands beside kinematics; it belongs below it, indented", line)
         if not indents or (len(indents) == 1 and indent > indents[0]):
@@ -152,9 +148,3 @@ class _Reader:
             x, y, z, roll, pitch, yaw = (numbers[key] for key in NUMBERS)
             found[part] = frozen(from_rpy((x, y, z), (roll, pitch, yaw)))
         return found
-
-
-def is_said(row: str) -> bool:
-    """Whether a line has content."""
-    text = row.strip()
-    return bool(text) and not text.startswith("#") and text not in ("---", "...")
