@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.spatial import single
 
 __all__ = ["from_rpy", "from_wxyz", "inverse", "rotation_about", "to_rpy", "translation"]
 
@@ -39,30 +40,19 @@ def to_rpy(R: Array) -> tuple[float, float, float]:
 
 def from_wxyz(quaternion: Array) -> Array:
     """The rotation (4, 4) of a unit quaternion (4,), its scalar first."""
-    w, x, y, z = quaternion.tolist()
-    return np.array(
-        [
-            [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y - w * z), 2.0 * (x * z + w * y), 0.0],
-            [2.0 * (x * y + w * z), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z - w * x), 0.0],
-            [2.0 * (x * z - w * y), 2.0 * (y * z + w * x), 1.0 - 2.0 * (x * x + y * y), 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    return embed_rotation(single.quaternion(*quaternion.tolist()))
 
 
 def rotation_about(axis: Array, angle: float) -> Array:
-    """The rotation (4, 4) by `angle` [rad] about the unit vector `axis` (3,) (Rodrigues 1840)."""
-    x, y, z = axis.tolist()
-    c, s = math.cos(angle), math.sin(angle)
-    v = 2.0 * math.sin(angle / 2.0) ** 2
-    return np.array(
-        [
-            [c + v * x * x, v * x * y - s * z, v * x * z + s * y, 0.0],
-            [v * x * y + s * z, c + v * y * y, v * y * z - s * x, 0.0],
-            [v * x * z - s * y, v * y * z + s * x, c + v * z * z, 0.0],
-            [0.0, 0.0, 0.0, 1.0],
-        ]
-    )
+    """The rotation (4, 4) by `angle` [rad] about the unit vector `axis` (3,)."""
+    return embed_rotation(single.turn(axis.tolist(), angle))
+
+
+def embed_rotation(entries: single.Nine) -> Array:
+    """The rotation (4, 4) of the nine entries of a matrix, row by row."""
+    T = np.eye(4)
+    T[:3, :3] = np.reshape(entries, (3, 3))
+    return T
 
 
 def translation(vector: Array) -> Array:
