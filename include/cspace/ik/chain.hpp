@@ -35,18 +35,41 @@ inline double wrap_joint(const Chain& chain, int i, double q) {
 }
 
 // The displacement of joint i by q.
-inline Posed joint_motion(const Chain& chain, int i, double q) {
-    if (chain.prismatic[i]) return {identity_pose().R, q * chain.axis[i]};
-    double s, c;
+template <class V>
+CSPACE_INLINE Pose<V> joint_motion(const Chain& chain, int i, V q) {
+    const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
+    if (chain.prismatic[i]) return {fill33<V>(identity_pose().R), q * h};
+    V s, c;
     sincos(q, s, c);
-    const Mat3d R = spatial::rotation_about(chain.axis[i], c, s);
-    return {R, chain.point[i] - R * chain.point[i]};
+    const Mat3<V> R = spatial::rotation_about(h, c, s);
+    return {R, p - R * p};
 }
 
+// The displacement of what the first n joints carry. visit(i, axis, point) sees the axis of each joint at q,
+// in base.
+template <class V, class Visit>
+CSPACE_INLINE Pose<V> move_joints(const Chain& chain, int n, const V* q, const Visit& visit) {
+    Pose<V> T = fill_pose<V>(identity_pose());
+    for (int i = 0; i < n; ++i) {
+        const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
+        const Vec3<V> axis = T.R * h, point = T * p;
+        visit(i, axis, point);
+        if (chain.prismatic[i]) {
+            T.t = T.t + q[i] * axis;
+            continue;
+        }
+        V s, c;
+        sincos(q[i], s, c);
+        T.R = T.R * spatial::rotation_about(h, c, s);
+        T.t = point - T.R * p;
+    }
+    return T;
+}
+inline Posed move_joints(const Chain& chain, int n, const double* q) {
+    return move_joints(chain, n, q, [](int, const Vec3d&, const Vec3d&) {});
+}
 inline Posed forward(const Chain& chain, const double* q) {
-    Posed T = identity_pose();
-    for (int i = 0; i < chain.n; ++i) T = T * joint_motion(chain, i, q[i]);
-    return T * chain.tip;
+    return move_joints(chain, chain.n, q) * chain.tip;
 }
 
 // The same arm from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.

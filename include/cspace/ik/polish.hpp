@@ -13,30 +13,15 @@ namespace cspace::ik::inline CSPACE_ISA {
 template <class V>
 CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double length, V* q,
                               double stride = 1e300) {
-    Mat3<V> R = fill33<V>(identity_pose().R);
-    Vec3<V> t = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)};
     Vec3<V> axis[6], point[6];
-    for (int i = 0; i < 6; ++i) {
-        const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
-        axis[i] = R * h;
-        if (chain.prismatic[i]) {
-            t = t + q[i] * axis[i];
-            continue;
-        }
-        point[i] = R * p + t;
-        V s, c;
-        sincos(q[i], s, c);
-        R = R * spatial::rotation_about(h, c, s);
-        t = point[i] - R * p;
-    }
-    const Vec3<V> tip = R * fill3<V>(chain.tip.t) + t;
-    const Mat3<V> Q = R * fill33<V>(chain.tip.R);
-    const Vec3<V> dp = (1 / length) * (goal.t - tip);
-    const Vec3<V> w = spatial::sine_between(Q, goal.R);
+    const auto keep_axis = [&](int i, const Vec3<V>& h, const Vec3<V>& p) { axis[i] = h, point[i] = p; };
+    const Pose<V> T = move_joints(chain, 6, q, keep_axis) * fill_pose<V>(chain.tip);
+    const Vec3<V> dp = (1 / length) * (goal.t - T.t);
+    const Vec3<V> w = spatial::sine_between(T.R, goal.R);
     V A[6][6], b[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
     for (int i = 0; i < 6; ++i) {
         const bool slides = chain.prismatic[i];
-        const Vec3<V> v = slides ? axis[i] : (1 / length) * cross(axis[i], tip - point[i]);
+        const Vec3<V> v = slides ? axis[i] : (1 / length) * cross(axis[i], T.t - point[i]);
         const double turns = slides ? 0.0 : 1.0;
         const V col[6] = {v.x, v.y, v.z, turns * axis[i].x, turns * axis[i].y, turns * axis[i].z};
         for (int k = 0; k < 6; ++k) A[k][i] = col[k];
@@ -48,7 +33,7 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
     for (int i = 0; i < 6; ++i) q[i] = mul_add(chain.prismatic[i] ? length * keep : keep, b[i], q[i]);
     // Half a turn off, the sum of cross products vanishes as at the goal: nothing beyond a right angle has
     // settled.
-    return select(spatial::trace_between(Q, goal.R) < 1.0, max(largest, fill<V>(1.0)), largest);
+    return select(spatial::trace_between(T.R, goal.R) < 1.0, max(largest, fill<V>(1.0)), largest);
 }
 
 // True if q, a candidate near a solution, has converged to it.

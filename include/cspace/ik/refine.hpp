@@ -25,14 +25,9 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 inline void measure_error(const Chain& chain, const Posed& goal, double length, const double* q,
                           PoseError& out) {
-    Posed T = identity_pose();
     Vec3d axis[max_joints], point[max_joints];
-    for (int i = 0; i < chain.n; ++i) {
-        axis[i] = T.R * chain.axis[i];
-        point[i] = T * chain.point[i];
-        T = T * joint_motion(chain, i, q[i]);
-    }
-    T = T * chain.tip;
+    const auto keep_axis = [&](int i, const Vec3d& h, const Vec3d& p) { axis[i] = h, point[i] = p; };
+    const Posed T = move_joints(chain, chain.n, q, keep_axis) * chain.tip;
     const Vec3d dp = goal.t - T.t, w = spatial::rotvec_of_rotation(goal.R * transpose(T.R));
     out.position = norm(dp);
     out.rotation = norm(w);

@@ -40,13 +40,12 @@ inline OrientationFirst orientation_first(const Chain& chain) {
 inline bool solve_slides(const Chain& chain, const OrientationFirst& arm, const Posed& goal, double* q,
                          double& volume) {
     for (const int i : arm.slide) q[i] = 0;
-    Posed T = identity_pose();
     Vec3d D[3];
-    for (int i = 0, slides = 0; i < 6; ++i) {
-        if (chain.prismatic[i]) D[slides++] = T.R * chain.axis[i];
-        T = T * joint_motion(chain, i, q[i]);
-    }
-    const Vec3d gap = goal.t - (T * chain.tip).t;
+    int slides = 0;
+    const auto keep_direction = [&](int i, const Vec3d& axis, const Vec3d&) {
+        if (chain.prismatic[i]) D[slides++] = axis;
+    };
+    const Vec3d gap = goal.t - (move_joints(chain, 6, q, keep_direction) * chain.tip).t;
     volume = min(volume, std::fabs(dot(D[0], cross(D[1], D[2]))));
     double A[3][3], b[3] = {gap.x, gap.y, gap.z};
     for (int j = 0; j < 3; ++j) A[0][j] = D[j].x, A[1][j] = D[j].y, A[2][j] = D[j].z;

@@ -102,7 +102,7 @@ void by_last_axis(const Chain& chain, const Posed& G, double size, bool backward
             Posed rest = G;
             for (int i = 0; i < n - 1; ++i) {
                 q[i] = placed.q[k][i];
-                rest = inverse(joint_motion(chain, i, q[i])) * rest;
+                rest = joint_motion(chain, i, -q[i]) * rest;
             }
             q[n - 1] = angle_about(h, rest.R);
             double forwards[n];

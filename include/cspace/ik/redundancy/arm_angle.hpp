@@ -186,11 +186,8 @@ CSPACE_NOINLINE void solve_swivel(const SwivelArm& arm, const Posed& goal, V swi
 
 // The swivel of a configuration.
 inline double swivel_of(const SwivelArm& arm, const double* q) {
-    Posed T = identity_pose();
-    for (int i = 0; i < 3; ++i) T = T * joint_motion(arm.chain, i, q[i]);
-    const Vec3d E = T * arm.elbow;
-    T = T * joint_motion(arm.chain, 3, q[3]);
-    const Vec3d w = T * arm.wrist - arm.shoulder, e = E - arm.shoulder;
+    const Vec3d e = move_joints(arm.chain, 3, q) * arm.elbow - arm.shoulder;
+    const Vec3d w = move_joints(arm.chain, 4, q) * arm.wrist - arm.shoulder;
     const Vec3d n = (1 / norm(w)) * w, zero = swivel_zero(arm, w);
     return std::atan2(dot(n, cross(zero, e)), dot(zero, e));
 }

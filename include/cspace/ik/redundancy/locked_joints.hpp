@@ -64,16 +64,6 @@ CSPACE_ONCE LockedArm lock_joints(const Chain& whole, const int* locked_joint, i
     return out;
 }
 
-// The displacement of joint i by −q.
-template <class V>
-CSPACE_INLINE Pose<V> joint_undone(const Chain& chain, int i, const V& q) {
-    const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
-    if (chain.prismatic[i]) return {fill33<V>(identity_pose().R), -q * h};
-    V s, c;
-    sincos(-q, s, c);
-    const Mat3<V> R = spatial::rotation_about(h, c, s);
-    return {R, p - R * p};
-}
 // The goal of an arm whose locked joints are at its ends. Locked joints at the front move the base, those at
 // the back move the tip.
 template <class V>
@@ -83,11 +73,11 @@ CSPACE_INLINE Pose<V> goal_between_ends(const LockedArm& locked, const Pose<V>& 
     Pose<V> out = goal;
     int last = locked.n_locked;
     for (int k = 0; k < locked.n_locked && locked.locked_joint[k] < locked.moving[0]; ++k)
-        out = joint_undone(whole, locked.locked_joint[k], at[locked.locked_joint[k]]) * out;
+        out = joint_motion<V>(whole, locked.locked_joint[k], -at[locked.locked_joint[k]]) * out;
     if (last == 0 || locked.locked_joint[last - 1] < locked.moving[0]) return out;
     out = out * fill_pose<V>(inverse(tip));
     for (; last > 0 && locked.locked_joint[last - 1] > locked.moving[0]; --last)
-        out = out * joint_undone(whole, locked.locked_joint[last - 1], at[locked.locked_joint[last - 1]]);
+        out = out * joint_motion<V>(whole, locked.locked_joint[last - 1], -at[locked.locked_joint[last - 1]]);
     return out * fill_pose<V>(tip);
 }
 

@@ -47,33 +47,18 @@ template <int N, class V>
 CSPACE_INLINE void tip_motion(const Chain& chain, const Pose<V>& goal, double length, const V* q,
                               TipMotion<V>& out) {
     const int n = size_or<N>(chain.n);
-    Mat3<V> R = fill33<V>(identity_pose().R);
-    Vec3<V> t = {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)};
     Vec3<V> axis[max_joints], point[max_joints];
-    for (int i = 0; i < n; ++i) {
-        const Vec3<V> h = fill3<V>(chain.axis[i]), p = fill3<V>(chain.point[i]);
-        axis[i] = R * h;
-        point[i] = R * p + t;
-        if (chain.prismatic[i]) {
-            t = t + q[i] * axis[i];
-            continue;
-        }
-        V s, c;
-        sincos(q[i], s, c);
-        R = R * spatial::rotation_about(h, c, s);
-        t = point[i] - R * p;
-    }
-    const Vec3<V> tip = R * fill3<V>(chain.tip.t) + t;
-    const Mat3<V> Q = R * fill33<V>(chain.tip.R);
-    const Vec3<V> dp = (1 / length) * (goal.t - tip);
-    const Vec3<V> w = spatial::sine_between(Q, goal.R);
-    out.aligned = spatial::trace_between(Q, goal.R);
+    const auto keep_axis = [&](int i, const Vec3<V>& h, const Vec3<V>& p) { axis[i] = h, point[i] = p; };
+    const Pose<V> T = move_joints(chain, n, q, keep_axis) * fill_pose<V>(chain.tip);
+    const Vec3<V> dp = (1 / length) * (goal.t - T.t);
+    const Vec3<V> w = spatial::sine_between(T.R, goal.R);
+    out.aligned = spatial::trace_between(T.R, goal.R);
     const V error[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
     for (int k = 0; k < 6; ++k) out.error[k] = error[k];
     const V zero = fill<V>(0.0);
     for (int i = 0; i < n; ++i) {
         const bool slides = chain.prismatic[i];
-        const Vec3<V> v = (1 / length) * (slides ? axis[i] : cross(axis[i], tip - point[i]));
+        const Vec3<V> v = (1 / length) * (slides ? axis[i] : cross(axis[i], T.t - point[i]));
         const Vec3<V> h = slides ? Vec3<V>{zero, zero, zero} : axis[i];
         const V entries[6] = {v.x, v.y, v.z, h.x, h.y, h.z};
         for (int k = 0; k < 6; ++k) out.column[i][k] = entries[k];

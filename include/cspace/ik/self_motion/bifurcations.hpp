@@ -50,13 +50,9 @@ inline bool only_rolls(const Chain& chain, const TipConstraint& constraint, cons
     if (last - first != 2 || std::fabs(direction[first + 1]) > moving || (first != 0 && first != 3))
         return false;
     Vec3d axis[6], point[6];
-    Posed T = identity_pose();
-    for (int i = 0; i < 6; ++i) {
+    for (int i = 0; i < 6; ++i)
         if (chain.prismatic[i]) return false;
-        axis[i] = T.R * chain.axis[i];
-        point[i] = T * chain.point[i];
-        T = T * joint_motion(chain, i, q[i]);
-    }
+    move_joints(chain, 6, q, [&](int i, const Vec3d& h, const Vec3d& p) { axis[i] = h, point[i] = p; });
     const Vec3d &a = axis[first], &b = axis[first + 1];
     const CommonNormal normal = common_normal(a, point[first], b, point[first + 1], false, point[first]);
     const Vec3d centre = normal.from;
