@@ -103,7 +103,7 @@ TEST(ways_of_hybrid_a_star_meet_their_goals_without_contact) {
         const CarPose last = curve.at(length);
         CHECK_NEAR(last.x, ends[1].x, 1e-9);
         CHECK_NEAR(last.y, ends[1].y, 1e-9);
-        CHECK_NEAR(short_angle(last.theta - ends[1].theta), 0, 1e-9);
+        CHECK_NEAR(wrap_angle(last.theta - ends[1].theta), 0, 1e-9);
         for (double s = 0; s < length; s += 0.01) {
             CarPose pose = curve.at(s);
             Footprint inside{body.rear - 1e-3, body.front - 1e-3, body.half_width - 1e-3, 0};

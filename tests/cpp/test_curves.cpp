@@ -27,8 +27,8 @@ CarPose random_pose(Random& random) {
 double miss(const CarPose& start, const Curve& curve, const CarPose& goal, double radius) {
     CarPose at = start;
     for (int i = 0; i < curve.count; ++i) at = drive(at, curve.piece[i], radius);
-    return std::max(
-        {std::fabs(at.x - goal.x), std::fabs(at.y - goal.y), std::fabs(short_angle(at.theta - goal.theta))});
+    return std::max({std::fabs(at.x - goal.x), std::fabs(at.y - goal.y),
+                     std::fabs(cspace::wrap_angle(at.theta - goal.theta))});
 }
 
 }  // namespace

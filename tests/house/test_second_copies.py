@@ -35,7 +35,7 @@ CONCEPTS = [
     Concept(
         "logarithm of a rotation",
         "include/cspace/spatial/rotation.hpp",
-        r"0\.5 \* \(\w+\.m\[2\]\[1\] - ",
+        r"m\[2\]\[1\] - \w+\.m\[1\]\[2\]",
     ),
     Concept(
         "Cholesky and L D Lᵀ factorisation",

@@ -58,8 +58,12 @@ CSPACE_INLINE Mat3<V> rotation_of_axis_angle(const Vec3<V>& axis, V angle, V squ
     return rotation_of(axis, twice * c / sqrt(square), twice * s / square);
 }
 
-// Half the sum of the cross products of the axes of A and B, (sin θ) times the unit axis of B Aᵀ: to first
-// order the rotation vector from A to B.
+// (sin θ) times the unit axis of R.
+template <class V>
+CSPACE_INLINE Vec3<V> sine_of(const Mat3<V>& R) {
+    return {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]), 0.5 * (R.m[1][0] - R.m[0][1])};
+}
+// The same of B Aᵀ, from the cross products of the axes: to first order the rotation vector from A to B.
 template <class V>
 CSPACE_INLINE Vec3<V> sine_between(const Mat3<V>& A, const Mat3<V>& B) {
     Vec3<V> sum = 0.5 * cross(column(A, 0), column(B, 0));
@@ -80,7 +84,7 @@ CSPACE_INLINE V angle_between(const Mat3<V>& A, const Mat3<V>& B) {
 // The rotation vector of R, rotations by π included.
 template <class V>
 CSPACE_INLINE Vec3<V> rotvec_of_rotation(const Mat3<V>& R) {
-    Vec3<V> w = {0.5 * (R.m[2][1] - R.m[1][2]), 0.5 * (R.m[0][2] - R.m[2][0]), 0.5 * (R.m[1][0] - R.m[0][1])};
+    Vec3<V> w = sine_of(R);
     const V s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1.0);
     const V angle = atan2(s, c);
     const V scale = select(s > 1e-12, angle / select(s > 1e-12, s, fill<V>(1.0)), fill<V>(1.0));

@@ -46,9 +46,8 @@ namespace few_joint_pose {
 
 // The angle of R about h, if it is a rotation about h; otherwise the nearest one.
 inline double angle_about(const Vec3d& h, const Mat3d& R) {
-    const Vec3d axial = {R.m[2][1] - R.m[1][2], R.m[0][2] - R.m[2][0], R.m[1][0] - R.m[0][1]};
     const double trace = R.m[0][0] + R.m[1][1] + R.m[2][2];
-    return std::atan2(dot(h, axial), trace - dot(h, R * h));
+    return std::atan2(2 * dot(h, spatial::sine_of(R)), trace - dot(h, R * h));
 }
 
 template <int n>
