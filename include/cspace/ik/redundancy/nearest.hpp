@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
+#include "cspace/math/linear.hpp"
 #include "cspace/math/turn.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {

@@ -14,6 +14,7 @@
 
 #include "cspace/ik/redundancy/nearest.hpp"
 #include "cspace/ik/redundancy/split_chain.hpp"
+#include "cspace/math/linear.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::ik {
