@@ -25,7 +25,7 @@ def rasterize_world(
     if resolution is None:
         side = wide / _choose_parts(min(xmax - xmin, ymax - ymin) / wide)
     else:
-        side = positive_number(resolution, "resolution", "it must be a positive length [m]")
+        side = positive_number(resolution, "resolution", "it must be a positive length [m], one number")
     if not wide / side <= MAP_CELLS:
         raise InputError(
             f"resolution {side:g} gives more than {MAP_CELLS:g} cells along one side; choose larger cells"

@@ -93,7 +93,7 @@ def _prepare_world(
         world = _derive_world(world, ("grown", grown), lambda: world.inflate(grown))
     side = None
     if resolution is not None:
-        side = positive_number(resolution, "resolution", "it must be a positive length [m]")
+        side = positive_number(resolution, "resolution", "it must be a positive length [m], one number")
     if kind == "grid" and side is not None:
         raise InputTypeError("resolution= is for polygons that become a grid; this world has its own")
     if kind == planner.world:

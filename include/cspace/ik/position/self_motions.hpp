@@ -69,7 +69,7 @@ bool is_free(const System& g, const double* q, double* along, bool& close) {
     double normal[n][n], down[n], v[n][n], largest = 0;
     normal_equations(at, normal, down);
     for (int i = 0; i < n; ++i)
-        for (int j = 0; j < i; ++j) normal[j][i] = normal[i][j];
+        for (int j = 0; j < i; ++j) normal[i][j] = normal[j][i];
     for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
     close = false;
     if (surely_regular<n>(normal, largest)) return false;
