@@ -181,7 +181,7 @@ TEST(derivatives_of_the_halves) {
         for (int half = 0; half < 2; ++half) {
             for (int a = 0; a < 4; ++a)
                 for (int b = 0; b < 4; ++b)
-                    by_formula -= x[a][half] * x[b][half] * lane(a < b ? bent[b][a] : bent[a][b], half);
+                    by_formula -= x[a][half] * x[b][half] * lane(a < b ? bent[a][b] : bent[b][a], half);
             by_difference += dot(force, after.linear[half] - before.linear[half]) / (2 * h) +
                              dot(moment, after.angular[half] - before.angular[half]) / (2 * h);
             const Vec3d v2 =
