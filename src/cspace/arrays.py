@@ -84,7 +84,8 @@ def positive_number(
         return value
     number = as_floats(value, subject, finite=largest < math.inf, largest=largest)
     if number.ndim or not number > 0:
-        raise InputError(f"{subject} is {value!r}; {rule}")
+        given = f"has shape {number.shape}" if number.ndim else f"is {value!r}"
+        raise InputError(f"{subject} {given}; {rule}")
     return float(number)
 
 

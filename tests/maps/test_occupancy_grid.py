@@ -173,7 +173,7 @@ def test_a_grid_takes_a_quarter_of_a_byte_per_cell():
         (([[0]], 0), ValueError, "resolution is 0; it must be one positive number"),
         (([[0]], -1.0), ValueError, "resolution is -1"),
         (([[0]], np.nan), ValueError, "resolution"),
-        (([[0]], [1, 2]), ValueError, "resolution is"),
+        (([[0]], [1, 2]), ValueError, r"resolution has shape \(2,\)"),
         (([[0]], 1, (1, 2, 3)), ValueError, r"origin has shape \(3,\)"),
         (([[0]], 1, (1, np.inf)), ValueError, "origin"),
         (([[0]], 1e-9, (1e6, 0)), ValueError, "cells from the farthest cell"),

@@ -8,6 +8,7 @@ kept.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
@@ -101,7 +102,7 @@ def find_offset(walls: list[Array], clearance: Clearance, wide: float, radius: f
     walls: rings (n, 2) [m] with free space on their left; clearance: of points (m, 2) [m], from all walls;
     wide [m]: the longer side of the bounds.
     """
-    reach = positive_number(radius, "radius", "it must be positive [m]")
+    reach = positive_number(radius, "radius", "it must be positive [m]", largest=sys.float_info.max)
     if reach > wide:
         return Offset(reach, [])  # no point in the bounds is that far from them
     slack = OFFSET_SLACK * wide
