@@ -1,5 +1,6 @@
 // A shortest path over the cells of a grid by A*, and one that may turn anywhere by Theta*.
 #include <cspace/navigation/grid/grid_route.hpp>
+#include <cspace/navigation/grid/search.hpp>
 #include <cstdio>
 #include <string>
 #include <vector>

@@ -4,6 +4,7 @@
 #include "check.hpp"
 #include "cspace/math/polynomial.hpp"
 #include "cspace/math/trig_polynomial.hpp"
+#include "cspace/math/wrapping.hpp"
 #include "random.hpp"
 
 using namespace cspace;
