@@ -5,6 +5,7 @@
 string(LENGTH "${ISA}" length)
 set(own "6cspace([0-9]+[a-z_]+)?${length}${ISA}")  # the mangled namespace cspace::<isa> or cspace::<room>::<isa>
 set(leaks)
+list(FILTER OBJECTS EXCLUDE REGEX "\\.[gp]ch$")  # precompiled headers are listed among the objects
 foreach(object IN LISTS OBJECTS)
   execute_process(COMMAND ${NM} --extern-only --defined-only ${object} OUTPUT_VARIABLE symbols
                           RESULT_VARIABLE failed)
