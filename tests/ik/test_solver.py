@@ -107,6 +107,17 @@ def test_threads_that_ask_one_solver_get_the_same_answers():
         same(one, other)
 
 
+@pytest.mark.parametrize("values", [{9: 0.1}, {0: np.nan}, {0: [0.1, 0.2]}, dict.fromkeys(range(6), 0.0)])
+def test_joints_that_cannot_be_locked_are_refused(values):
+    with pytest.raises(InputError, match="locked"):
+        cs.load_robot("ur5e").solver.lock(values)
+
+
+def test_redundancy_without_a_joint_of_another_arm():
+    with pytest.raises(InputError, match="locked has joint 9"):
+        cs.load_robot("ur5e").solver.redundancy_degree([9])
+
+
 # --- batches ----------------------------------------------------------------------------------------------
 @pytest.mark.parametrize("keywords", ["goal", "position", "position direction", "look_at", "rotation"])
 @pytest.mark.parametrize("name", NAMES)

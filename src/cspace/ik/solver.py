@@ -12,10 +12,11 @@ from typing import Any, Protocol, TypeVar, cast
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array
+from cspace.arrays import Array, one_number
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.goals.partial import PartialGoal
+from cspace.ik.locked_joints import joint_number, locked_values
 from cspace.kinematics import KinematicModel, assemble_chain
 from cspace.model import Chain, Limits, chain, from_screws
 
@@ -129,12 +130,14 @@ class Solver(_core.SolverBase, KinematicModel):
 
     def redundancy_degree(self, locked: Sequence[int] = ()) -> int:
         """The number of dimensions that a pose leaves free, with these joints locked at typical values."""
-        return _core._ik_redundancy_degree(self, sorted(locked))
+        joints = {joint_number(self, joint, "locked") for joint in locked}
+        return _core._ik_redundancy_degree(self, sorted(joints))
 
     def lock(self, values: Mapping[int, float]) -> Solver:
         """The solver of the other joints, with these joints (by number) at fixed values [rad or m]."""
         if not values:
             return self
+        values = {k: one_number(v, f"locked[{k}]") for k, v in locked_values(self, values).items()}
 
         def build() -> Solver:
             moving = [k for k in range(self.dof) if k not in values]
