@@ -2,9 +2,9 @@
 # AVX-512. Whoever links cspace_kernels gets the definitions by which src/kernels/dispatch.hpp declares the copies.
 file(GLOB kernel_files CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/*.cpp)
 list(FILTER kernel_files EXCLUDE REGEX "dispatch.cpp$")
-# Kernels that work on packs of four numbers, and the slow paths: an AVX-512 copy of them is no faster than that for
-# AVX2 (docs/decisions/compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
-set(narrow_kernels ik_general ik_pose ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle)
+# Kernels that work on packs of four numbers: an AVX-512 copy of them is no faster than that for AVX2
+# (docs/decisions/compiled-boundary.md). Their headers say CSPACE_NARROW_KERNEL.
+set(narrow_kernels ik_locked ik_nearest ik_intervals ik_sweep ik_arm_angle)
 list(TRANSFORM narrow_kernels PREPEND ${CMAKE_CURRENT_SOURCE_DIR}/src/kernels/)
 list(TRANSFORM narrow_kernels APPEND .cpp)
 set(wide_files ${kernel_files})
@@ -40,7 +40,11 @@ if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64" AND NOT CMAKE_OSX_ARCHITECTURES
 endif()
 target_compile_definitions(cspace_kernels PUBLIC ${kernel_copies})
 
-add_kernels(baseline)
+if("CSPACE_HAS_AVX2" IN_LIST kernel_copies AND NOT MSVC)
+  add_kernels(baseline -O2)  # for processors of before 2013: -O3 takes half as long again to compile
+else()
+  add_kernels(baseline)
+endif()
 if("CSPACE_HAS_AVX2" IN_LIST kernel_copies)
   if(MSVC)
     add_kernels(avx2 /arch:AVX2)

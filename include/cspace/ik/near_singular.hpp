@@ -19,11 +19,11 @@ inline void classify_solutions(Solutions& out) {
         if (out.self_motion[k]) out.status = Status::singular;
 }
 
-// The largest joint difference between two configurations, angles by the shorter way. Prismatic joints far
-// from zero are known only to a relative accuracy.
-inline double joint_distance(const Chain& chain, const double* a, const double* b) {
+// The largest joint difference between two configurations, angles by the shorter way; of those farther apart
+// than `enough` the first that is. Prismatic joints far from zero are known only to a relative accuracy.
+inline double joint_distance(const Chain& chain, const double* a, const double* b, double enough = 1e300) {
     double worst = 0;
-    for (int i = 0; i < chain.n; ++i) {
+    for (int i = 0; i < chain.n && worst < enough; ++i) {
         const double d = a[i] - b[i];
         worst = max(worst, std::fabs(chain.prismatic[i] ? d / max(1.0, std::fabs(a[i])) : short_way(d)));
     }

@@ -2,7 +2,7 @@
 // 2005).
 #pragma once
 
-#include "cspace/math/lanes.hpp"
+#include "cspace/math/rows.hpp"
 
 namespace cspace {
 
@@ -10,9 +10,9 @@ namespace cspace {
 // and at the most, whatever these are. A polynomial has as many roots inside as variations, or fewer by an
 // even number (Descartes).
 struct Variations {
-    int count = 0, most = 0;
-    bool ends_known = true;
-    double largest = 0;
+    int count, most;
+    bool ends_known;
+    double largest;
 };
 
 }  // namespace cspace
@@ -31,20 +31,19 @@ CSPACE_INLINE int count_bits(unsigned x) {
 
 template <int n>
 inline Variations variations(const double* b, double noise) {
-    Variations out;
-    double lowest = b[0], highest = b[0];
-    for (int i = 1; i <= n; ++i) {
-        lowest = b[i] < lowest ? b[i] : lowest;
-        highest = b[i] > highest ? b[i] : highest;
-    }
-    out.largest = highest > -lowest ? highest : -lowest;
-    if (lowest > noise || highest < -noise) return out;
+    Variations out{0, 0, true, 0};
     unsigned above = 0, below = 0;
-    for (int i = 0; i <= n; ++i) {
-        above |= unsigned(b[i] > noise) << i;
-        below |= unsigned(b[i] < -noise) << i;
-    }
-    const unsigned known = above | below, all = (1u << (n + 1)) - 1;
+    for_each_pack(n + 1, [&](auto pack, int i) {
+        const auto part = load<decltype(pack)>(b + i, n + 1 - i);
+        above |= bits_of(part > noise) << i;
+        below |= bits_of(part < -noise) << i;
+    });
+    constexpr unsigned all = (1u << (n + 1)) - 1;
+    above &= all;
+    below &= all;
+    if (above == all || below == all) return out;
+    for (int i = 0; i <= n; ++i) out.largest = max(out.largest, std::fabs(b[i]));
+    const unsigned known = above | below;
     out.ends_known = (known & 1) && (known >> n & 1);
     if (known == all) {
         out.count = out.most = count_bits((above ^ above >> 1) & all >> 1);
@@ -105,7 +104,7 @@ CSPACE_NOINLINE V only_roots(const V* b, double width) {
         low = select(before, x, low);
         high = select(before, high, x);
         const V newton = x - value / slope;
-        const V next = select((newton > low) && (newton < high), newton, 0.5 * (low + high));
+        const V next = select((newton >= low) && (newton <= high), newton, 0.5 * (low + high));
         const V moved = abs(next - x);
         x = next;
         if (!any(moved >= width)) break;

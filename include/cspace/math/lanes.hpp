@@ -224,11 +224,18 @@ template <class V>
 CSPACE_INLINE V copysign(V magnitude, V sign) {
     return bit_or(abs(magnitude), sign_bit(sign));
 }
+#if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
+template <int N, when<is_split<N>> = 0>
+CSPACE_INLINE Pack<N> round(Pack<N> a) {
+    return {round(a.low), round(a.high)};
+}
+#else
 // The nearest integer, ties to even. Adding 2⁵² removes the fraction; larger numbers have none.
 template <class V>
 CSPACE_INLINE V round(V x) {
     const V big = fill<V>(4503599627370496.0), magnitude = abs(x);
     return bit_or(select(magnitude < big, (magnitude + big) - big, magnitude), sign_bit(x));
 }
+#endif
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -44,24 +44,27 @@ CSPACE_INLINE mask_of<V> full_rank(const V (&diagonal)[n]) {
     return smallest > (n * std::numeric_limits<double>::epsilon()) * largest;
 }
 
+// One reflection of factor_qr: it takes column k below the diagonal out of the first `rows` rows.
+template <int m, int n, class V>
+CSPACE_INLINE void reduce_column(V (&A)[m][n], int k, int rows, V& diagonal, V& factor) {
+    V square = A[k][k] * A[k][k];
+    for (int i = k + 1; i < rows; ++i) square = mul_add(A[i][k], A[i][k], square);
+    diagonal = -copysign(sqrt(square), A[k][k]);
+    A[k][k] = A[k][k] - diagonal;
+    factor = -safe_inverse(diagonal * A[k][k]);
+    for (int j = k + 1; j < n; ++j) {
+        V along = A[k][k] * A[k][j];
+        for (int i = k + 1; i < rows; ++i) along = mul_add(A[i][k], A[i][j], along);
+        along = along * factor;
+        for (int i = k; i < rows; ++i) A[i][j] = mul_add(-along, A[i][k], A[i][j]);
+    }
+}
 // The triangle and the reflections of A = Q R (Householder 1958; Golub & Van Loan 2013, section 5.2): R above
 // the diagonal of A and in `diagonal`, the vectors v_k on and below it, I − factor_k v_k v_kᵀ. Of an A with
 // more columns than `diagonal` the first ones are reduced, and the reflections reach the others.
 template <int m, int n, int reduced, class V>
 CSPACE_INLINE void factor_qr(V (&A)[m][n], V (&diagonal)[reduced], V (&factor)[reduced]) {
-    for (int k = 0; k < reduced; ++k) {
-        V square = A[k][k] * A[k][k];
-        for (int i = k + 1; i < m; ++i) square = mul_add(A[i][k], A[i][k], square);
-        diagonal[k] = -copysign(sqrt(square), A[k][k]);
-        A[k][k] = A[k][k] - diagonal[k];
-        factor[k] = -safe_inverse(diagonal[k] * A[k][k]);
-        for (int j = k + 1; j < n; ++j) {
-            V along = A[k][k] * A[k][j];
-            for (int i = k + 1; i < m; ++i) along = mul_add(A[i][k], A[i][j], along);
-            along = along * factor[k];
-            for (int i = k; i < m; ++i) A[i][j] = mul_add(-along, A[i][k], A[i][j]);
-        }
-    }
+    for (int k = 0; k < reduced; ++k) reduce_column(A, k, m, diagonal[k], factor[k]);
 }
 // b := (I − factor_k v_k v_kᵀ) b
 template <int m, int n, int reduced, class V>

@@ -215,6 +215,15 @@ CSPACE_INLINE unsigned bits_of(Mask<4> m) { return unsigned(_mm256_movemask_pd((
 CSPACE_X86_WIDTH(8, _mm512, __m512d)
 CSPACE_INLINE unsigned bits_of(Mask<8> m) { return unsigned(_mm512_movepi64_mask((__m512i)m.m)); }
 #endif
+#if defined(__AVX__)
+// The nearest integer, ties to even; lanes.hpp has it for other registers.
+CSPACE_INLINE double round(double x) { return __builtin_rint(x); }
+CSPACE_INLINE Pack<2> round(Pack<2> a) { return {_mm_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT)}; }
+CSPACE_INLINE Pack<4> round(Pack<4> a) { return {_mm256_round_pd(a.v, _MM_FROUND_TO_NEAREST_INT)}; }
+#endif
+#if defined(__AVX512F__)
+CSPACE_INLINE Pack<8> round(Pack<8> a) { return {_mm512_roundscale_pd(a.v, _MM_FROUND_TO_NEAREST_INT)}; }
+#endif
 #undef CSPACE_X86_WIDTH
 #undef CSPACE_X86_FMA
 #undef CSPACE_X86_SELECT

@@ -33,6 +33,16 @@ CSPACE_INLINE void store(double* values, V v, int count) {
     for (int k = 0; k < count; ++k) values[k] = lane(v, k);
 }
 
+// body(pack, i) for the values from i on, in packs as wide as the registers while more than four are left,
+// then in packs of four; the last ones may have fewer values than lanes. `pack` says the type alone.
+template <class Body>
+CSPACE_INLINE void for_each_pack(int count, const Body& body) {
+    int i = 0;
+    if constexpr (native_width > 4)
+        for (; count - i > 4; i += native_width) body(Pack<native_width>{}, i);
+    for (; i < count; i += 4) body(Pack<4>{}, i);
+}
+
 // --- rows: two neighbouring columns at a time, which suits every register ----------------------------------
 // a and b take the values at 0 and 1 of N rows, `stride` values apart.
 template <int N>

@@ -41,19 +41,19 @@ inline void put_lane(Candidates& out, const V* q, int k, bool close) {
 
 // Newton's method on four candidates abreast, from number `first` on.
 inline void polish_candidates(const GeneralPlan& plan, const Posed& goal, int first, Candidates& all) {
-    using V = Pack<4>;
-    const Pose<V> goal4 = fill_pose<V>(goal);
-    for (; first < all.count; first += 4) {
-        const int lanes = all.count - first < 4 ? all.count - first : 4;
+    for_each_pack(all.count - first, [&](auto pack, int i) {
+        using V = decltype(pack);
+        const int row = first + i, lanes = min(all.count - row, Lanes<V>::count);
+        const Pose<V> goals = fill_pose<V>(goal);
         V q[6], step = fill<V>(1.0);
-        load_rows(&all.q[first][0], 6, lanes, 6, q);
-        for (int k = 0; k < 8 && any(step > 1e-9); ++k) step = newton_step(plan.chain, goal4, 1.0, q, 0.3);
+        load_rows(&all.q[row][0], 6, lanes, 6, q);
+        for (int k = 0; k < 8 && any(step > 1e-9); ++k) step = newton_step(plan.chain, goals, 1.0, q, 0.3);
         for (int k = 0; k < lanes; ++k) {
-            all.settled[first + k] = lane(step, k) < 1e-7;
-            if (!all.settled[first + k]) continue;
-            for (int i = 0; i < 6; ++i) all.q[first + k][i] = lane(q[i], k);
+            all.settled[row + k] = lane(step, k) < 1e-7;
+            if (!all.settled[row + k]) continue;
+            for (int j = 0; j < 6; ++j) all.q[row + k][j] = lane(q[j], k);
         }
-    }
+    });
 }
 
 // Whether no slide has run away: where two of them are nearly parallel Newton's method may send them where
@@ -79,7 +79,7 @@ inline void admit_polished(Solutions& out, const GeneralPlan& plan, const Posed&
     constexpr double wide = 1e-2, near = 1e-3;
     double here = -1;
     for (int k = 0; k < out.count;) {
-        const double gap = joint_distance(chain, out.q[k], q);
+        const double gap = joint_distance(chain, out.q[k], q, wide);
         if (gap < tolerance::same_solution) return;
         if (!(gap < wide)) {
             ++k;

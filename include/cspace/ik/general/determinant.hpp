@@ -14,8 +14,8 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 template <class V>
 CSPACE_INLINE V equation(const Elimination& e, int i, int monomial, V c, V s) {
-    return mul_add(s, fill<V>(e.quarter[i][monomial]),
-                   mul_add(c, fill<V>(e.across[i][monomial]), fill<V>(e.level[i][monomial])));
+    return mul_add(s, fill<V>(e.quarter[monomial][i]),
+                   mul_add(c, fill<V>(e.across[monomial][i]), fill<V>(e.level[monomial][i])));
 }
 
 template <int reduced, class V>

@@ -12,13 +12,17 @@
 // of a1, a2, a4 may.
 #pragma once
 
+#include <cstring>
+
 #include "cspace/ik/general/invariants.hpp"
 #include "cspace/ik/general/loop.hpp"
+#include "cspace/math/rows.hpp"
 
 namespace cspace::ik {
 
 struct Elimination {
-    double level[6][9], across[6][9], quarter[6][9];
+    static constexpr int lanes = 8;  // six equations and two zeros, by their nine monomials
+    double level[9][lanes], across[9][lanes], quarter[9][lanes];
     double W[6][3];          // the six parts that do not see a5: W (cos a4, sin a4, 1) or W (a4², a4, 1)
     double inverse_w[2][6];  // of the first two columns of W, in the least-squares sense
     double a4_rank;          // ratio of their two singular sizes; 0 where they fix only one of the two
@@ -201,30 +205,58 @@ inline void left_side(const Loop& loop, Invariants (&B)[9]) {
     }
 }
 
+// The functionals of six equations, one on each lane.
+template <class V>
+struct Functionals {
+    V part[4][3];  // of l, p, m and q
+    V pp, pl, one;
+};
+
+inline Functionals<Pack<Elimination::lanes>> functionals_behind(const Posed& T, const Invariants (&g)[6]) {
+    constexpr int parts = 15;
+    double rows[Elimination::lanes][parts] = {};
+    static_assert(sizeof(Invariants) == sizeof rows[0]);
+    for (int i = 0; i < 6; ++i) {
+        const Invariants behind = pulled_back(T, g[i]);
+        std::memcpy(rows[i], &behind, sizeof behind);
+    }
+    Pack<Elimination::lanes> v[parts];
+    load_rows(rows[0], parts, Elimination::lanes, parts, v);
+    return {{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {v[6], v[7], v[8]}, {v[9], v[10], v[11]}},
+            v[12],
+            v[13],
+            v[14]};
+}
+
 inline Elimination eliminate(const Loop& loop) {
+    using V = Pack<Elimination::lanes>;
     Elimination e;
     Invariants g[6], B[9];
     right_side(loop, e, g);
     left_side(loop, B);
+    const Functionals<V> f = functionals_behind(loop.M[5], g);
+    V level[9], across[9], quarter[9], square = fill<V>(0.0);  // Rz(a0) v, as in invariants.hpp
+    for (int m = 0; m < 9; ++m) {
+        const Vec3d part[4] = {B[m].l, B[m].p, B[m].m, B[m].q};
+        level[m] = B[m].pp * f.pp + B[m].pl * f.pl + B[m].one * f.one;
+        across[m] = quarter[m] = fill<V>(0.0);
+        for (int k = 0; k < 4; ++k) {
+            const V x = fill<V>(part[k].x), y = fill<V>(part[k].y), z = fill<V>(part[k].z);
+            const auto& [fx, fy, fz] = f.part[k];
+            level[m] = mul_add(fz, z, level[m]);
+            across[m] = mul_add(fx, x, mul_add(fy, y, across[m]));
+            quarter[m] = mul_add(fy, x, mul_add(-fx, y, quarter[m]));
+        }
+        for (const V& v : {level[m], across[m], quarter[m]}) square = mul_add(v, v, square);
+    }
+    const V size = sqrt(square),
+            scale = where(size > vanished_equation, 1.0 / max(size, fill<V>(vanished_equation)));
     e.faintest = 1e300;
-    for (int i = 0; i < 6; ++i) {
-        const Invariants behind = pulled_back(loop.M[5], g[i]);
-        double size = 0;
-        for (int m = 0; m < 9; ++m) {
-            e.level[i][m] = apply(behind, level(B[m]));
-            e.across[i][m] = apply(behind, across(B[m]));
-            e.quarter[i][m] = apply(behind, quarter(B[m]));
-            size += e.level[i][m] * e.level[i][m] + e.across[i][m] * e.across[i][m] +
-                    e.quarter[i][m] * e.quarter[i][m];
-        }
-        size = std::sqrt(size);
-        e.faintest = min(e.faintest, size);
-        const double scale = size > vanished_equation ? 1 / size : 0;
-        for (int m = 0; m < 9; ++m) {
-            e.level[i][m] *= scale;
-            e.across[i][m] *= scale;
-            e.quarter[i][m] *= scale;
-        }
+    for (int i = 0; i < 6; ++i) e.faintest = min(e.faintest, lane(size, i));
+    for (int m = 0; m < 9; ++m) {
+        store(e.level[m], scale * level[m]);
+        store(e.across[m], scale * across[m]);
+        store(e.quarter[m], scale * quarter[m]);
     }
     return e;
 }

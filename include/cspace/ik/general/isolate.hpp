@@ -2,6 +2,7 @@
 #pragma once
 
 #include <initializer_list>
+#include <type_traits>
 
 #include "cspace/ik/general/determinant.hpp"
 #include "cspace/ik/general/sampler.hpp"
@@ -11,11 +12,11 @@ namespace cspace::ik {
 inline constexpr int max_roots = 48;
 
 struct HiddenAngle {
-    double angle;      // [rad]
-    double width;      // of the piece that holds it; 0 where it is isolated
-    int expected;      // how many solutions the signs announce: 1, or 2 for a pair; see below
-    double depth = 0;  // by how much a pair is missed, of the largest value
-    int order = 0;     // how many roots are about, where the signs leave more than a pair open
+    double angle;  // [rad]
+    double width;  // of the piece that holds it; 0 where it is isolated
+    int expected;  // how many solutions the signs announce: 1, or 2 for a pair; see below
+    double depth;  // by how much a pair is missed, of the largest value
+    int order;     // how many roots are about, where the signs leave more than a pair open
 };
 // Noise hides how many there are; or there are none, but so nearly two that a slip of the equations, which
 // the signs do not show, may have hidden them; or they are there for every goal and lead nowhere.
@@ -121,16 +122,15 @@ inline void close_roots(const Function& f, const Arc& arc, const Variations& sig
 
 // The pieces with one root each, four at a time, until a step is no longer than the last.
 inline void find_simple_roots(const Pieces& simple, double last_step, HiddenAngles& out) {
-    using V = Pack<4>;
-    for (int first = 0; first < simple.count; first += 4) {
-        const int lanes = simple.count - first < 4 ? simple.count - first : 4;
+    for_each_pack(simple.count, [&](auto pack, int first) {
+        using V = decltype(pack);
+        const int lanes = min(simple.count - first, Lanes<V>::count);
         V b[padded];
-        for (int i = 0; i <= degree; ++i)
-            for (int k = 0; k < 4; ++k) set_lane(b[i], k, simple.piece[first + (k < lanes ? k : 0)].arc.b[i]);
+        load_rows(simple.piece[first].arc.b, sizeof(Piece) / sizeof(double), lanes, degree + 1, b);
         const V u = only_roots<degree>(b, last_step);
         for (int k = 0; k < lanes; ++k)
-            append_hidden_angle(out, {angle_at(simple.piece[first + k].arc, lane(u, k)), 0, 1});
-    }
+            append_hidden_angle(out, {angle_at(simple.piece[first + k].arc, lane(u, k)), 0, 1, 0, 0});
+    });
 }
 
 inline double value_halfway(const Arc& arc) {
@@ -155,7 +155,7 @@ inline void note_near_misses(const Pieces& dips, HiddenAngles& out) {
         const double u = 0.5 - 0.25 * slope / bend, bottom = middle - 0.125 * slope * slope / bend;
         const bool inside = u > 0 && u < 1;
         append_hidden_angle(out, {angle_at(dip, inside ? u : 0.5), to - from, nearly_two,
-                                  std::fabs(inside ? bottom : middle)});
+                                  std::fabs(inside ? bottom : middle), 0});
     }
 }
 
@@ -175,15 +175,25 @@ inline void divide_arc(const SamplerTables& t, const Arc& arc, Pieces& pieces) {
     }
 }
 
+// The values of f at the nodes; two registers at a time, where f takes them, since one waits for its square
+// roots.
+template <class Function>
+inline void sample_circle(const SamplerTables& t, const Function& f, double* out) {
+    constexpr int wide = 2 * native_width;
+    int j = 0;
+    if constexpr (std::is_invocable_v<const Function&, Pack<wide>, Pack<wide>>)
+        for (; j + wide <= samples; j += wide)
+            store(out + j, f(load<Pack<wide>>(t.cosine + j), load<Pack<wide>>(t.sine + j)));
+    for (; j < samples; j += 4) store(out + j, f(load<Pack<4>>(t.cosine + j), load<Pack<4>>(t.sine + j)));
+}
+
 // f(c, s) on packs of four: a trigonometric polynomial of degree 8. The roots are as exact as Newton's method
 // is behind its last step [arc].
 template <class Function>
 inline void isolate(const Function& f, double last_step, HiddenAngles& out) {
-    using V = Pack<4>;
     const SamplerTables& tables = sampler_tables();
     double sampled[2 * samples];
-    for (int j = 0; j < samples; j += 4)
-        store(sampled + j, f(load<V>(tables.cosine + j), load<V>(tables.sine + j)));
+    sample_circle(tables, f, sampled);
     out.evaluations = samples / 4;
     double largest = 0;
     for (int j = 0; j < samples; ++j) largest = max(largest, std::fabs(sampled[j]));

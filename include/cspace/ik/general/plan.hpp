@@ -130,7 +130,7 @@ inline double pose_sensitivity(const GeneralPlan& plan, const Posed& goal, int n
     int sign = 1;
     for (int i = 0; i < 6; ++i)
         for (int m = 0; m < 9; ++m) {
-            for (double* entry : {&slipped.level[i][m], &slipped.across[i][m], &slipped.quarter[i][m]}) {
+            for (double* entry : {&slipped.level[m][i], &slipped.across[m][i], &slipped.quarter[m][i]}) {
                 *entry += sign * slip;
                 sign = (7 * i + 5 * m + (sign > 0)) % 3 ? -sign : sign;
             }
@@ -227,7 +227,7 @@ inline void find_ghosts(const Posed* goal, int number, GeneralPlan& plan) {
     for (int k = 0; k < 3; ++k) {
         const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal[k], formulation(number));
         const Elimination e = eliminate(loop);
-        isolate([&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); }, fine, hidden[k]);
+        isolate([&](auto c, auto s) { return determinant(e, c, s); }, fine, hidden[k]);
     }
     const auto has = [&](const HiddenAngles& h, const HiddenAngle& root) {
         const double spread = root.order > 2 ? order_seen : same;  // several on one place are known less well

@@ -41,7 +41,8 @@ CSPACE_NOINLINE void reduce_equations(const Elimination& e, V c, V s, ReducedEqu
         for (V& entry : row) entry = fill<V>(0.0);
     for (int i = 0; i < 6; ++i)
         for (int m = 0; m < 9; ++m) out.A[m][i] = out.A[3 + m][6 + i] = equation(e, i, m, c, s);
-    linear::factor_qr(out.A, out.diagonal, out.factor);
+    for (int k = 0; k < 12; ++k)  // the first six columns end at row nine
+        linear::reduce_column(out.A, k, k < 6 ? 9 : 12, out.diagonal[k], out.factor[k]);
 }
 // Q y, for the Q of the reduction.
 template <class V>

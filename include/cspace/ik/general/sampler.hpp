@@ -37,9 +37,9 @@ struct SamplerTables {
 struct Arc {
     double b[padded];
     double centre, quarter;
-    double from = 0, to = 1;
+    double from, to;
     double noise;  // of the coefficients
-    bool resampled = false;
+    bool resampled;
 };
 
 }  // namespace cspace::ik
@@ -155,12 +155,19 @@ inline const SamplerTables& sampler_tables() {
 
 // out = Σ x_j row_j
 CSPACE_INLINE void combine(const double (*row)[padded], const double* x, int count, double* out) {
-    using V = Pack<4>;
-    V sum[padded / 4];
+    using V = Pack<native_width>;
+    constexpr int whole = padded / native_width, rest = padded % native_width;  // rest: none or four
+    V sum[whole];
+    Pack<4> last = fill<Pack<4>>(0.0);
     for (V& v : sum) v = fill<V>(0.0);
-    for (int j = 0; j < count; ++j)
-        for (int i = 0; i < padded / 4; ++i) sum[i] = mul_add(fill<V>(x[j]), load<V>(row[j] + 4 * i), sum[i]);
-    for (int i = 0; i < padded / 4; ++i) store(out + 4 * i, sum[i]);
+    for (int j = 0; j < count; ++j) {
+        for (int i = 0; i < whole; ++i)
+            sum[i] = mul_add(fill<V>(x[j]), load<V>(row[j] + native_width * i), sum[i]);
+        if constexpr (rest > 0)
+            last = mul_add(fill<Pack<4>>(x[j]), load<Pack<4>>(row[j] + padded - rest), last);
+    }
+    for (int i = 0; i < whole; ++i) store(out + native_width * i, sum[i]);
+    if constexpr (rest > 0) store(out + padded - rest, last);
 }
 
 // The arc that starts at sample 2 k; f: the samples, twice round.

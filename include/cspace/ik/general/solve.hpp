@@ -40,13 +40,12 @@ inline constexpr double near_roots = 3e-3;       // [rad] hidden angles this clo
 // The null vectors of hidden angles, four at a time.
 inline void follow_roots(const Loop& loop, const Elimination& e, const double* angle, int count, bool close,
                          Candidates& out) {
-    using V = Pack<4>;
     const bool doubled = !(e.a4_rank > 1e-6);
-    for (int first = 0; first < count; first += 4) {
-        const int lanes = count - first < 4 ? count - first : 4;
-        V at, q[6], second[6];
-        for (int k = 0; k < 4; ++k) set_lane(at, k, angle[first + (k < lanes ? k : lanes - 1)]);
-        const Turn<V> a0 = turn_by(at);
+    for_each_pack(count, [&](auto pack, int first) {
+        using V = decltype(pack);
+        const int lanes = min(count - first, Lanes<V>::count);
+        V q[6], second[6];
+        const Turn<V> a0 = turn_by(load<V>(angle + first, lanes));
         ReducedEquations<V> reduced;
         reduce_equations(e, a0.c, a0.s, reduced);
         joints_from(loop, e, a0, half_angles(null_vector(reduced)), q, second);
@@ -54,7 +53,7 @@ inline void follow_roots(const Loop& loop, const Elimination& e, const double* a
             put_lane(out, q, k, close || doubled);
             if (doubled) put_lane(out, second, k, true);
         }
-    }
+    });
 }
 
 // Both solutions of the null planes that belong to hidden angles, four at a time.
@@ -262,9 +261,12 @@ inline Certificate solve_by_hidden_angle(const GeneralPlan& plan, const Posed& g
     folds |= follow(hidden, close, false, found);
     admit_candidates(plan, goal, 0, found, out);
     bool twice[max_solutions] = {};
-    if (folds || !all_matched(seen, out, twice)) add_near_double_roots(plan, goal, found, out);
+    bool all = !folds && all_matched(seen, out, twice);
+    if (!all) {
+        add_near_double_roots(plan, goal, found, out);
+        all = all_matched(seen, out, twice);
+    }
     seen.work += found.count;
-    bool all = all_matched(seen, out, twice);
     if (!all) {
         const int direct = found.count;
         follow(hidden, close, true, found);
@@ -299,7 +301,7 @@ inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal,
             vanished.hidden.alias = 1;
             return vanished;
         }
-        const auto f = [&](Pack<4> c, Pack<4> s) { return lack_on_both(sheets, c, s); };
+        const auto f = [&](auto c, auto s) { return lack_on_both(sheets, c, s); };
         const auto follow = [&](const HiddenAngles& hidden, const bool* close, bool again,
                                 Candidates& found) {
             return !again && follow_sheets(sheets, hidden, close, found);
@@ -307,7 +309,7 @@ inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal,
         return solve_by_hidden_angle(plan, goal, number, loop, 0, f, follow, out);
     }
     const Elimination e = eliminate(loop);
-    const auto f = [&](Pack<4> c, Pack<4> s) { return determinant(e, c, s); };
+    const auto f = [&](auto c, auto s) { return determinant(e, c, s); };
     const auto follow = [&](const HiddenAngles& hidden, const bool* close, bool again, Candidates& found) {
         return follow_angles(loop, e, hidden, close, again, found);
     };
