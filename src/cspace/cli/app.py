@@ -11,8 +11,6 @@ from cspace.cli.exits import Exit, TimeLimitReached, UsageError, exit_of
 from cspace.cli.registry import VERBS, load
 from cspace.errors import CspaceError, suggest
 
-__all__ = ["main"]
-
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line `argv` (default: the process's) and return its exit code."""

@@ -13,21 +13,6 @@ from typing import Any, Final, NoReturn
 
 from cspace.cli.exits import UsageError
 
-__all__ = [
-    "Parser",
-    "add_chain",
-    "add_degrees",
-    "add_joints",
-    "add_robot",
-    "coordinate",
-    "named_number",
-    "named_value",
-    "number",
-    "radians",
-    "seconds",
-    "separate_values",
-]
-
 OF_PI: Final = re.compile(r"([+-]?)(\d+(?:\.\d*)?|\.\d+)?\*?pi(?:/(\d+(?:\.\d*)?))?")
 """Multiples of π: pi, -pi/2, 3pi/4, 0.5*pi."""
 

@@ -6,8 +6,6 @@ from enum import IntEnum
 
 from cspace.errors import CspaceError, DescriptionError, MapError, MissingExtraError
 
-__all__ = ["Exit", "TimeLimitReached", "UsageError", "exit_of"]
-
 
 class Exit(IntEnum):
     """The exit codes of every verb."""

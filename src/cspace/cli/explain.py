@@ -13,7 +13,6 @@ from cspace.cli.output import Output
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["add_explanation", "explain", "wants_explanation"]
 
 NOT_EXPLAINED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
 """Options of a goal and its solutions, which an explanation does not accept."""

@@ -7,8 +7,6 @@ from pathlib import Path
 
 from cspace.cli.exits import UsageError
 
-__all__ = ["check_writable"]
-
 
 def check_writable(path: Path) -> None:
     """Refuse an output path that cannot be written, before any work is done for it."""

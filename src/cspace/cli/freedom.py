@@ -12,7 +12,6 @@ from cspace.cli.robot import joint_called
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["FREEDOM_WORDS", "add_freedom", "locked_joints", "options_of"]
 
 FREEDOM_WORDS: Final = ("swivel", "samples", "near", "least_squares")
 """The options of these that do not affect how an arm is solved; locked joints do."""

@@ -12,8 +12,6 @@ from cspace.arrays import Array
 from cspace.cli.arguments import OPEN, coordinate, number, radians
 from cspace.cli.exits import UsageError
 
-__all__ = ["GOAL_WORDS", "Goal", "add_goal", "axis_of", "goal_of"]
-
 ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
 """The forms of an orientation."""
 LINEAR: Final = ("vx", "vy", "vz")

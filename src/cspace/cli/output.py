@@ -13,8 +13,6 @@ from typing import Any, Final, TextIO
 
 from cspace.arrays import Array
 
-__all__ = ["Cell", "Output", "Table"]
-
 MOST_COLUMNS: Final = 400
 """The widest table: one that a terminal is too narrow for runs over its edge rather than lose digits."""
 

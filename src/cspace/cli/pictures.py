@@ -7,8 +7,6 @@ from typing import Final
 
 from cspace.cli.exits import UsageError
 
-__all__ = ["check_format"]
-
 FORMATS: Final = (".png", ".svg", ".pdf")
 """The endings of pictures."""
 

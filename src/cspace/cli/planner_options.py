@@ -11,7 +11,6 @@ from cspace.errors import suggest
 if TYPE_CHECKING:
     from cspace.navigation import Option
 
-__all__ = ["options_given", "value_of"]
 
 TRUTHS: Final = {"true": True, "false": False}
 NUMBERS: Final[Mapping[str, tuple[Callable[[str], Any], str]]] = {

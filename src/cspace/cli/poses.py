@@ -9,8 +9,6 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.output import Output
 
-__all__ = ["pose_document", "show_pose"]
-
 
 def pose_document(T: Array) -> dict[str, list[Any]]:
     """A pose (4, 4) in every form, [m] and [rad]."""

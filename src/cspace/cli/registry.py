@@ -12,7 +12,6 @@ if TYPE_CHECKING:
 
     from cspace.cli.output import Output
 
-__all__ = ["VERBS", "VerbModule", "load"]
 
 VERBS: Final[Mapping[str, str]] = MappingProxyType(
     {

@@ -17,17 +17,6 @@ from cspace.errors import suggest
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = [
-    "angle_unit",
-    "configuration",
-    "gripper_note",
-    "headings",
-    "joint_called",
-    "joint_texts",
-    "load",
-    "need_chain",
-]
-
 
 GRIPPER: Final = re.compile("grip|jaw|finger|claw", re.IGNORECASE)
 """What joints and links of grippers are called."""

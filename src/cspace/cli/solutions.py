@@ -17,8 +17,6 @@ from cspace.cli.tasks import singularity_of_rows
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["Rows", "document", "show"]
-
 
 RADIANS: Final = re.compile(r"(\d[\d.e+-]*) rad\b")
 """An angle in a sentence of the library."""

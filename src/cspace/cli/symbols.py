@@ -11,7 +11,6 @@ from cspace.arrays import Array
 if TYPE_CHECKING:
     from cspace.model import DHTable
 
-__all__ = ["ZERO", "angle_text", "entry_texts", "link_matrix"]
 
 ZERO: Final = 1e-9
 """Factors below this are printed as 0: the cosine of a right angle."""

@@ -13,7 +13,6 @@ from cspace.arrays import Array
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["TASKS", "default_task", "motion_rank", "rows_of_task", "singularity_of_rows"]
 
 TASKS: Final[Mapping[str, int]] = MappingProxyType(
     {"pose": 6, "position": 3, "direction": 2, "planar": 3, "planar-position": 2}

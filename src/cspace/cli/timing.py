@@ -12,8 +12,6 @@ from typing import Final
 
 from cspace.cli.exits import TimeLimitReached
 
-__all__ = ["limit"]
-
 CARRIER: Final = signal.SIGINT
 """The signal that brings the stop into the main thread: the only one that all platforms handle."""
 

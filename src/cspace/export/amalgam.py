@@ -8,8 +8,6 @@ from pathlib import Path
 
 from cspace.errors import CspaceError
 
-__all__ = ["amalgamate", "include_folder"]
-
 
 def include_folder() -> Path:
     """The folder that contains cspace/version.hpp: in the installed package or in the source tree."""

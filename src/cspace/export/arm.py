@@ -16,8 +16,6 @@ from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.locked_joints import between_others, joint_number
 from cspace.ik.solver import MAX_SETTLED, HasSolver, Solver, as_solver
 
-__all__ = ["ExportedArm", "exported_arm"]
-
 # Words that cannot name a namespace in C++ or a prefix in C.
 TAKEN = frozenset(
     [

@@ -8,8 +8,6 @@ from cspace.export.arm import ExportedArm
 from cspace.export.cpp import cpp_header, words_of
 from cspace.export.words import filled
 
-__all__ = ["c_files"]
-
 
 def c_files(arm: ExportedArm, header: str) -> dict[str, str]:
     """File names and texts: the header and the source."""

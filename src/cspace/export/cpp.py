@@ -13,8 +13,6 @@ from cspace.export.plain import in_ascii
 from cspace.export.words import filled, template
 from cspace.tolerances import ON_LIMIT
 
-__all__ = ["cpp_header", "words_of"]
-
 TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"
 """Tables are computed when the program starts; on first use they would need the C++ run-time library."""
 

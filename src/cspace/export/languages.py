@@ -18,8 +18,6 @@ from cspace.export.python_file import python_file, python_method
 from cspace.export.words import filled
 from cspace.files import path_of, write_text
 
-__all__ = ["LANGUAGES", "Export", "export"]
-
 LANGUAGES = MappingProxyType(
     {
         "cpp": "a C++17 header",

@@ -9,8 +9,6 @@ from typing import Any
 
 from cspace.errors import InputError
 
-__all__ = ["bounds", "initialiser", "literal", "quoted"]
-
 ENUMS = {"family": "ik::Family", "kind": "ik::FirstThree"}
 INFINITY = "std::numeric_limits<double>::infinity()"
 

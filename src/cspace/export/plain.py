@@ -6,8 +6,6 @@ import re
 import unicodedata
 from types import MappingProxyType
 
-__all__ = ["in_ascii"]
-
 WORDS = MappingProxyType(
     {
         **{

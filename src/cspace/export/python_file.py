@@ -14,8 +14,6 @@ from cspace.export.words import filled
 from cspace.ik.conditions import NoClosedFormError
 from cspace.tolerances import ON_LIMIT
 
-__all__ = ["METHODS", "python_file", "python_method"]
-
 PACKAGE = "cspace.export.python"
 WITH_WRIST = 1
 THREE_PARALLEL = 2

@@ -7,8 +7,6 @@ from pathlib import Path
 from string import Template
 from typing import Any
 
-__all__ = ["filled", "template"]
-
 
 def template(name: str) -> str:
     """The text of a template."""

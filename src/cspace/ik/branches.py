@@ -29,7 +29,6 @@ from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["branch_labels"]
 
 SPHERICAL_WRIST, THREE_PARALLEL = 1, 2
 LAST_PARALLEL = 0

@@ -14,8 +14,6 @@ from cspace.errors import CspaceError
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["Condition", "NoClosedFormError", "conditions", "explain_missing_form"]
-
 
 class NoClosedFormError(CspaceError, NotImplementedError):
     """The arm has none of the geometries that this version solves; the message lists the conditions that

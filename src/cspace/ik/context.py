@@ -12,8 +12,6 @@ if TYPE_CHECKING:
     from cspace.ik.goals.partial import PartialGoal
     from cspace.ik.solver import Solver
 
-__all__ = ["About"]
-
 
 @dataclass(eq=False)
 class About:

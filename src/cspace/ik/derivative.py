@@ -12,7 +12,6 @@ from cspace.ik.conditions import arm_length
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["derivative"]
 
 SINGULAR = 1e-10
 """Ratio of the Jacobian's singular values (lengths over the arm's) below which a solution has no derivative:

@@ -10,8 +10,6 @@ from cspace.ik.conditions import Condition, NoClosedFormError, conditions, expla
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.kinematics import KinematicModel
 
-__all__ = ["Geometry", "geometry"]
-
 FAMILIES = {
     0: "none",
     1: "spherical wrist",

@@ -10,8 +10,6 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 
-__all__ = ["Placed", "are_parallel", "are_square", "meeting_point", "place"]
-
 
 @dataclass(frozen=True, eq=False)
 class Placed:

@@ -10,8 +10,6 @@ from cspace import _core
 from cspace.ik.solutions import NEAREST, Solutions, nearest_to_goal, position_goal
 from cspace.ik.wrapping import wrap
 
-__all__ = ["least_squares_answer"]
-
 
 def least_squares_answer(found: Solutions) -> Solutions:
     """The configuration of least error for one goal that nothing reaches."""

@@ -14,15 +14,6 @@ from cspace.tolerances import FARTHEST
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = [
-    "between_others",
-    "by_name",
-    "joint_number",
-    "locked_in_words",
-    "locked_values",
-    "value_in_words",
-]
-
 
 def joint_number(solver: KinematicModel, key: Any, subject: str) -> int:
     names = solver.joint_names

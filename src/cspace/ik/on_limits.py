@@ -19,7 +19,6 @@ from cspace.tolerances import DOUBLE_SOLUTION, SAME_TIP
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["settle_on_limits"]
 
 STEPS = 4
 """Corrections of a configuration: each squares an error of 1e-7 or less, and any may add a joint."""

@@ -27,7 +27,6 @@ if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
     from cspace.model import Limits
 
-__all__ = ["Solutions"]
 
 UNREACHABLE: Final = 0
 EXACT: Final = 1

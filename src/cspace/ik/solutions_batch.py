@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from cspace.ik.solver import Solver
     from cspace.model import Limits
 
-__all__ = ["PartialRows", "SolutionsBatch"]
-
 
 @dataclass(frozen=True, eq=False)
 class PartialRows:

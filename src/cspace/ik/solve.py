@@ -36,7 +36,6 @@ from cspace.spatial import as_pose
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["solve"]
 
 MAX_POSITION_JOINTS = 3
 """A point determines up to so many joints."""

@@ -20,8 +20,6 @@ from cspace.ik.locked_joints import joint_number, locked_values
 from cspace.kinematics import KinematicModel, assemble_chain
 from cspace.model import Chain, Limits, chain, from_screws
 
-__all__ = ["HasSolver", "Solver", "as_solver", "solver_of_robot"]
-
 MAX_JOINTS = 16
 MAX_SETTLED = 6
 """Joints that a pose determines at most."""

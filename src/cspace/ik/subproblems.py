@@ -38,19 +38,6 @@ if TYPE_CHECKING:
 
     import numpy.typing as npt
 
-__all__ = [
-    "SubproblemSolution",
-    "paden_kahan_1",
-    "paden_kahan_2",
-    "paden_kahan_3",
-    "subproblem_1",
-    "subproblem_2",
-    "subproblem_3",
-    "subproblem_4",
-    "subproblem_5",
-    "subproblem_6",
-]
-
 
 @dataclass(frozen=True, eq=False)
 class SubproblemSolution:

@@ -18,8 +18,6 @@ from cspace.errors import InputError
 from cspace.math.wrapping import TURN, wrap_angle
 from cspace.tolerances import MOST_WINDINGS, ON_LIMIT
 
-__all__ = ["all_windings", "into_limits", "nearest_winding", "short_way", "turning", "violations", "wrap"]
-
 Flags = npt.NDArray[np.bool_]
 
 

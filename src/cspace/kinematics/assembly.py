@@ -15,8 +15,6 @@ from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, t
 
 Numbers = npt.NDArray[np.intp]
 
-__all__ = ["Assembly", "add_tool", "assemble", "assemble_chain", "mount", "screws"]
-
 
 @dataclass
 class Assembly:

@@ -15,8 +15,6 @@ from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial import as_pose
 
-__all__ = ["Batch", "frame_number", "output", "rows_of", "thread_count", "whole_number"]
-
 MOST_THREADS = 1024
 
 

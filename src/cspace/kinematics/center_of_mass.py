@@ -10,8 +10,6 @@ from cspace.kinematics.batch import Batch, output, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
-__all__ = ["center_of_mass", "center_of_mass_jacobian"]
-
 
 def center_of_mass(
     robot: KinematicModel,

@@ -14,8 +14,6 @@ from cspace.model import Limits
 
 Seed: TypeAlias = "int | np.random.Generator | None"
 
-__all__ = ["random_configurations"]
-
 
 def random_configurations(
     limits: Limits, joint_types: str, n: int | None = None, *, rng: Seed = None, reach: float | None = None

@@ -9,8 +9,6 @@ from cspace.kinematics.batch import Batch, frame_number, output, refuse_infinite
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
-__all__ = ["forward_kinematics", "forward_kinematics_all"]
-
 
 def forward_kinematics(
     robot: KinematicModel,

@@ -11,8 +11,6 @@ from cspace.kinematics.forward import compute_chain
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
-__all__ = ["AXES", "fk_jacobian", "jacobian", "jacobian_dot"]
-
 AXES = ("base", "tip")
 """The axes in which a Jacobian can be expressed."""
 

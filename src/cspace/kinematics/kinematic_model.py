@@ -6,8 +6,6 @@ from cspace._core import KinematicsBase
 from cspace.kinematics.assembly import Assembly, screws
 from cspace.model import Chain
 
-__all__ = ["KinematicModel"]
-
 
 class KinematicModel(KinematicsBase):
     """A chain or a tree of joints with its compiled kinematics: `fk`, `jacobian`, `fk_jacobian`.

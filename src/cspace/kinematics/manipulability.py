@@ -16,15 +16,6 @@ from cspace.kinematics.jacobian import AXES, jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
-__all__ = [
-    "ROWS",
-    "Ellipsoid",
-    "distance_to_singularity",
-    "manipulability",
-    "manipulability_ellipsoid",
-    "singular_values",
-]
-
 ROWS = ("vx", "vy", "vz", "wx", "wy", "wz")
 """The rows of a Jacobian by name."""
 

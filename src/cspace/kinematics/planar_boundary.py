@@ -22,8 +22,6 @@ from cspace.arrays import Array
 from cspace.math.wrapping import TURN
 from cspace.tolerances import SAME_PLACE, TANGENT_PLACE
 
-__all__ = ["PlanarArm", "boundary", "reachable"]
-
 Flags = npt.NDArray[np.bool_]
 
 

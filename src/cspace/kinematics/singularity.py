@@ -21,8 +21,6 @@ from cspace.tolerances import SINGULAR_ROUNDING, SINGULAR_VALUE
 MOST_COLUMNS = 12
 """Joints among which every set is tried: 2509 sets of up to six."""
 
-__all__ = ["Singularity", "singularity"]
-
 
 @dataclass(frozen=True, eq=False)
 class Singularity:

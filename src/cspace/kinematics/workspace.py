@@ -17,8 +17,6 @@ from cspace.math.wrapping import TURN
 from cspace.model import Chain
 from cspace.tolerances import PLANAR_AXES
 
-__all__ = ["Workspace", "workspace"]
-
 
 @dataclass(frozen=True, eq=False)
 class Workspace:

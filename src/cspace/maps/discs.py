@@ -10,8 +10,6 @@ from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError
 from cspace.tolerances import FARTHEST_POINT, MOST_SIDES
 
-__all__ = ["circumscribe_discs"]
-
 
 def circumscribe_discs(centers: Any, radii: Any, sides: int) -> list[Array]:
     """A regular circumscribed polygon (sides, 2) [m] of each disc; its first side faces the x direction."""

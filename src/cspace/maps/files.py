@@ -9,8 +9,6 @@ from cspace import files
 from cspace.errors import MapError
 from cspace.tolerances import MAP_BYTES
 
-__all__ = ["check_map_path", "read_map_bytes", "read_map_text"]
-
 
 def check_map_path(path: Any) -> str:
     """The path as text; InputTypeError for any other type."""

@@ -12,8 +12,6 @@ from cspace.errors import MapError
 from cspace.files import write_text
 from cspace.maps.files import check_map_path, read_map_text
 
-__all__ = ["read_geojson", "write_geojson"]
-
 _SKIPPED = {"Point", "MultiPoint", "LineString", "MultiLineString"}
 
 

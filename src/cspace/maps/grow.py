@@ -18,8 +18,6 @@ from cspace.errors import InputError, InputTypeError
 from cspace.maps.outlines import Outline
 from cspace.tolerances import MOST_SIDES, TIGHT_GAP
 
-__all__ = ["grow_outlines"]
-
 TURN: Final = 2**40
 """Directions are quantised to integers, this many per revolution: those that differ by rounding become
 equal, and opposite directions are exactly opposite."""

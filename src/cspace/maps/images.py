@@ -15,8 +15,6 @@ from cspace.errors import MapError, MissingExtraError
 from cspace.maps.files import check_map_path, read_map_bytes
 from cspace.tolerances import MAP_CELLS
 
-__all__ = ["encode_pgm", "read_image"]
-
 PNG_SIGNATURE: Final = b"\x89PNG\r\n\x1a\n"
 
 

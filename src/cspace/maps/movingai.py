@@ -15,8 +15,6 @@ from cspace.errors import InputError, MapError
 from cspace.maps.files import check_map_path, read_map_bytes
 from cspace.tolerances import MAP_CELLS
 
-__all__ = ["Scenarios", "read_movingai", "read_scenarios"]
-
 FREE: Final = b".GS"
 """Ground and swamp."""
 

@@ -16,8 +16,6 @@ from cspace.errors import InputError, InputTypeError, suggest
 from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.tolerances import FARTHEST_CELL, FARTHEST_POINT, FINEST_CELL, MAP_CELLS
 
-__all__ = ["OccupancyGrid"]
-
 RULES: Final = ("cells", "centers")
 """The part of the grid that inflation keeps clear of obstacles."""
 FREE: Final = 0

@@ -18,8 +18,6 @@ import numpy.typing as npt
 from cspace.arrays import Array, positive_number
 from cspace.tolerances import OFFSET_PIECE, OFFSET_SLACK
 
-__all__ = ["Offset", "OffsetCurve", "find_offset"]
-
 Clearance = Callable[[Array], Any]
 
 

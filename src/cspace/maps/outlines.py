@@ -11,8 +11,6 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST_POINT
 
-__all__ = ["Outline", "check_bounds", "find_bounds", "read_outlines"]
-
 Outline = list[Array]
 """One obstacle: its outline (n, 2) [m], then holes."""
 

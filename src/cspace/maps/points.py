@@ -8,8 +8,6 @@ from numpy.typing import ArrayLike
 from cspace.arrays import Array, as_floats, one_number
 from cspace.errors import InputError
 
-__all__ = ["as_path", "as_point", "check_inflation"]
-
 
 def as_point(point: ArrayLike, subject: str) -> tuple[float, float]:
     """x and y of a point (2,) [m]; InputError for other shapes and numbers that are not finite."""

@@ -28,8 +28,6 @@ from cspace.tolerances import ON_WALL
 if TYPE_CHECKING:
     from os import PathLike
 
-__all__ = ["PolygonWorld"]
-
 
 class PolygonWorld:
     """Obstacles in the plane, and the free space between them.

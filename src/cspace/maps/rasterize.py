@@ -12,8 +12,6 @@ from cspace.arrays import Array, positive_number
 from cspace.errors import InputError
 from cspace.tolerances import CELL_ROUNDING, DEFAULT_CELLS, MAP_CELLS
 
-__all__ = ["rasterize_world"]
-
 
 def rasterize_world(
     core: _core.PolygonCore, bounds: Array, resolution: float | None

@@ -11,8 +11,6 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.tolerances import ON_ONE_LINE
 
-__all__ = ["GeometryError", "check_area", "describe_crossings"]
-
 
 class GeometryError(InputError):
     """An invalid polygon: it crosses itself, or has no area. The message names it and the remedy."""

@@ -17,8 +17,6 @@ from cspace.files import unquote, whole_file, write_text, yaml_lines
 from cspace.maps.files import check_map_path, read_map_text
 from cspace.maps.images import encode_pgm, read_image
 
-__all__ = ["RosMap", "read_ros", "write_ros"]
-
 NEEDED: Final = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 
 

@@ -10,8 +10,6 @@ from cspace.errors import MapError
 from cspace.files import write_text
 from cspace.maps.files import check_map_path, read_map_text
 
-__all__ = ["read_polygons", "write_polygons"]
-
 
 def read_polygons(path: str | os.PathLike[str]) -> tuple[list[Any], list[float] | None]:
     """The obstacles, each a list of rings, and the bounds if a line gives them."""

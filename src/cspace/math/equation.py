@@ -11,8 +11,6 @@ import numpy as np
 from cspace.math.trig_matrix import Product
 from cspace.math.trig_polynomial import TrigPolynomial
 
-__all__ = ["Equation", "MatrixEquation"]
-
 
 @dataclass(frozen=True, eq=False)
 class Equation:

@@ -11,8 +11,6 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.math.trig_polynomial import Angle, TrigPolynomial, as_polynomial
 
-__all__ = ["Product", "TrigMatrix"]
-
 
 class TrigMatrix:
     """A square matrix of polynomials; immutable. entries: row by row."""

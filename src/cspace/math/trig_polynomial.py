@@ -15,8 +15,6 @@ import numpy as np
 
 from cspace.math import typeset
 
-__all__ = ["Angle", "TrigPolynomial"]
-
 ROUNDING: Final = 1e-13
 """Numbers this near to an integer are that integer: cosines of right angles are 0."""
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-__all__ = ["number_text", "sum_of_terms", "symbol_latex", "symbol_text", "turn_latex", "turn_text"]
-
 GREEK: Final = {"ca": ("cα", r"c_{\alpha_{%s}}"), "sa": ("sα", r"s_{\alpha_{%s}}")}
 """Cosine and sine of a twist: ca_2 is cα2."""
 DIGITS: Final = 6

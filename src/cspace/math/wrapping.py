@@ -8,8 +8,6 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["TURN", "wrap_angle", "wrap_near"]
-
 TURN: Final = 2.0 * np.pi
 
 

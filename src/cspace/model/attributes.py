@@ -10,8 +10,6 @@ from typing import TypeVar
 from cspace.errors import CspaceError, DescriptionError
 from cspace.model.xml import Element
 
-__all__ = ["at", "fault", "floats", "number", "some_floats", "text_of"]
-
 T = TypeVar("T")
 
 

@@ -22,8 +22,6 @@ from cspace.model.transforms import from_rpy
 from cspace.model.values import IDENTITY
 from cspace.tolerances import CALIBRATION_ANGLE, CALIBRATION_DISTANCE, FRAME_SNAP
 
-__all__ = ["calibrated"]
-
 JOINTS: Final = ("shoulder_pan", "shoulder_lift", "elbow", "wrist_1", "wrist_2", "wrist_3")
 """The joints of a UR arm, in order, without "_joint"; each is placed by the entry of PARTS at its place."""
 

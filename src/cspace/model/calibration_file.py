@@ -21,8 +21,6 @@ from cspace.model.transforms import from_rpy
 from cspace.model.values import frozen
 from cspace.tolerances import CALIBRATION_BYTES, LARGEST_NUMBER
 
-__all__ = ["PARTS", "Calibration", "read_calibration"]
-
 PARTS: Final = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
 """The links of the arm, in order; each entry places the joint that carries one."""
 

@@ -18,8 +18,6 @@ from cspace.model.transforms import inverse
 from cspace.model.values import frozen
 from cspace.spatial import exp_se3
 
-__all__ = ["Chain", "chain", "default_tip", "path", "rigid_group", "zero_poses"]
-
 
 @dataclass(frozen=True, eq=False)
 class Chain:

@@ -10,8 +10,6 @@ from cspace.errors import InputError, InputTypeError, shown, suggest
 from cspace.model.description import Description
 from cspace.model.joint import FREEDOMS
 
-__all__ = ["body_freedoms", "mobility", "point_freedoms", "task_word", "tree_freedoms"]
-
 BODY: Final = {2: 3, 3: 6}
 """Degrees of freedom of a rigid body in the plane and in space."""
 

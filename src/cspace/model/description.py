@@ -14,8 +14,6 @@ from cspace.model.link import Link
 from cspace.model.structure import ElementError, check_mimics, check_tree, unique_names
 from cspace.model.values import finite_number, name_of
 
-__all__ = ["Description", "Provenance", "Source"]
-
 
 @dataclass(frozen=True)
 class Source:

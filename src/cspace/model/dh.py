@@ -17,8 +17,6 @@ from cspace.model.screws import check_joint_types, joint_rows, link_names, one_f
 from cspace.model.text import aligned, shown
 from cspace.model.values import IDENTITY, frozen, placement, sane
 
-__all__ = ["COLUMNS", "CONVENTIONS", "DHTable", "dh_matrix", "from_dh"]
-
 CONVENTIONS: Final = ("standard", "modified")
 COLUMNS: Final = ("alpha", "a", "d", "theta")
 

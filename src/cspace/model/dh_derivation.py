@@ -14,8 +14,6 @@ from cspace.model.transforms import inverse
 from cspace.model.values import frozen
 from cspace.tolerances import DH_COINCIDENT, DH_PARALLEL
 
-__all__ = ["to_dh"]
-
 Row = tuple[float, float, float, float]
 
 ROUNDING = 8.0 * 2.0**-52

@@ -12,8 +12,6 @@ from cspace.errors import DescriptionError
 from cspace.model.joint import Joint, Limits
 from cspace.model.values import IDENTITY
 
-__all__ = ["Coordinates", "Elementary", "coordinates_of", "elementary_joints"]
-
 
 @dataclass(frozen=True, eq=False)
 class Elementary:

@@ -9,8 +9,6 @@ from cspace import files
 from cspace.errors import DescriptionError
 from cspace.tolerances import DESCRIPTION_BYTES
 
-__all__ = ["path_of", "read_bytes"]
-
 
 def path_of(source: Any) -> str:
     """`source` as a path. Raises InputTypeError for other objects."""

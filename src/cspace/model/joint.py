@@ -14,8 +14,6 @@ from cspace.errors import InputError, suggest
 from cspace.model.text import aligned, shown
 from cspace.model.values import IDENTITY, X_AXIS, finite_number, frozen, name_of, number, placement, unit_axis
 
-__all__ = ["FREEDOMS", "JOINT_TYPES", "LIMIT_FIELDS", "Joint", "Limits", "Loop", "Mimic"]
-
 FREEDOMS: Final[dict[str, int]] = {
     "fixed": 0,
     "revolute": 1,

@@ -13,8 +13,6 @@ from cspace.model.packages import locate
 from cspace.model.values import IDENTITY, finite_number, frozen, name_of, placement, sane
 from cspace.tolerances import INERTIA_SYMMETRY
 
-__all__ = ["SHAPES", "Geometry", "Inertial", "Link", "Mesh"]
-
 SHAPES: Final[dict[str, tuple[str, ...]]] = {
     "box": ("x", "y", "z"),
     "sphere": ("radius",),

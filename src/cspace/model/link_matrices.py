@@ -13,8 +13,6 @@ from cspace.arrays import Array, as_floats
 from cspace.math import Angle, TrigMatrix, TrigPolynomial
 from cspace.model.dh import DHTable
 
-__all__ = ["LinkMatrices", "link_matrices"]
-
 MOST_TERMS: Final = 24
 """Entries of more terms than these are counted rather than printed."""
 LEAST: Final = 1e-5

@@ -13,8 +13,6 @@ from cspace.model.joint import Joint
 from cspace.model.link import Link
 from cspace.model.transforms import inverse
 
-__all__ = ["mounted", "with_frame"]
-
 
 def with_frame(
     description: Description, parent: str, T_parent_frame: Array, name: str = "tool"

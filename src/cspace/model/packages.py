@@ -12,8 +12,6 @@ from urllib.parse import unquote
 from cspace.errors import CspaceError, InputTypeError
 from cspace.model.files import read_bytes
 
-__all__ = ["folders", "locate", "locate_package"]
-
 PACKAGE_SCHEMES = ("package://", "model://")
 
 

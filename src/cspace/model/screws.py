@@ -16,8 +16,6 @@ from cspace.model.link import Link
 from cspace.model.transforms import translation
 from cspace.model.values import placement, sane, unit_axis
 
-__all__ = ["check_joint_types", "from_screws", "joint_rows", "link_names", "twists"]
-
 
 def from_screws(
     axes: Any,

@@ -9,8 +9,6 @@ from cspace.errors import DescriptionError, suggest
 from cspace.model.joint import Joint
 from cspace.model.link import Link
 
-__all__ = ["ElementError", "check_mimics", "check_tree", "unique_names"]
-
 
 class Named(Protocol):
     """Anything with a name."""

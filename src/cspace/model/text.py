@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-__all__ = ["aligned", "shown"]
-
 
 def shown(value: float) -> str:
     """Six digits, nothing of the rounding around zero, and a dash for what is absent (infinite)."""

@@ -23,8 +23,6 @@ from cspace.model.transforms import from_rpy
 from cspace.model.values import IDENTITY, X_AXIS
 from cspace.tolerances import TOML_BYTES
 
-__all__ = ["FORMAT", "from_toml"]
-
 FORMAT: Final = 1
 """The version of the file format that is written and read."""
 

@@ -9,8 +9,6 @@ from typing import Any
 
 from cspace.errors import CspaceError, DescriptionError, suggest
 
-__all__ = ["Document", "Table", "parse_toml"]
-
 
 class Document:
     """The text of a file and its name, for messages."""

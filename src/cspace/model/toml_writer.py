@@ -20,8 +20,6 @@ from cspace.model.link import Geometry, Link
 from cspace.model.toml import FORMAT
 from cspace.model.values import IDENTITY
 
-__all__ = ["to_toml", "toml_value"]
-
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 

@@ -9,8 +9,6 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.spatial import single
 
-__all__ = ["from_rpy", "from_wxyz", "inverse", "rotation_about", "to_rpy", "translation"]
-
 
 def from_rpy(xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -> Array:
     """The transform with translation xyz [m] and rotation Rz(yaw) Ry(pitch) Rx(roll), rpy in rad."""

@@ -14,8 +14,6 @@ from cspace.model.elementary import Coordinates, Elementary, coordinates_of, ele
 from cspace.model.link import Inertial
 from cspace.model.values import frozen
 
-__all__ = ["Tree", "lumped", "tree"]
-
 
 @dataclass(frozen=True, eq=False)
 class Tree:

@@ -22,8 +22,6 @@ from cspace.model.values import IDENTITY, X_AXIS, frozen
 from cspace.model.xml import Element, parse_source
 from cspace.tolerances import UNLIMITED
 
-__all__ = ["from_urdf", "urdf_description"]
-
 Color = tuple[float, float, float, float]
 
 OTHER_ROOTS = {

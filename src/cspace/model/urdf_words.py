@@ -8,8 +8,6 @@ from typing import Final
 
 from cspace.model.xml import Element
 
-__all__ = ["closest", "slip_in"]
-
 CHILDREN: Final[dict[str, frozenset[str]]] = {
     "robot": frozenset({"link", "joint", "material", "transmission", "gazebo"}),
     "link": frozenset({"inertial", "visual", "collision"}),

@@ -17,8 +17,6 @@ from cspace.model.transforms import to_rpy
 from cspace.model.values import IDENTITY
 from cspace.tolerances import UNLIMITED
 
-__all__ = ["to_urdf"]
-
 FORBIDDEN = "[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
 """The characters that XML 1.0 does not allow; a text, because the pattern takes milliseconds to compile."""
 

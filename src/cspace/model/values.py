@@ -11,19 +11,6 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError, shown
 from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER, ROTATION_ERROR
 
-__all__ = [
-    "BEYOND",
-    "IDENTITY",
-    "X_AXIS",
-    "finite_number",
-    "frozen",
-    "name_of",
-    "number",
-    "placement",
-    "sane",
-    "unit_axis",
-]
-
 BEYOND = f"no robot has numbers beyond {LARGEST_NUMBER:g} in SI units"
 """The rule that a number broke which is larger than tolerances.LARGEST_NUMBER."""
 

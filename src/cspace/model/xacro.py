@@ -21,8 +21,6 @@ from cspace.model.urdf import urdf_description
 from cspace.model.xml import Element, parse
 from cspace.tolerances import XACRO_SECONDS
 
-__all__ = ["from_xacro", "is_xacro"]
-
 CHILD: Final = (
     "import sys; sys.path[:] = [path for path in sys.path if path]; import json;"
     " request = json.load(sys.stdin); sys.path[:] = request['path'];"

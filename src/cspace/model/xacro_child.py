@@ -16,8 +16,6 @@ from cspace.model.packages import locate_package
 from cspace.model.xml import parse
 from cspace.tolerances import XACRO_ELEMENTS
 
-__all__ = ["main"]
-
 Place = tuple[str, int]
 """A file and a line."""
 

@@ -11,8 +11,6 @@ from cspace.errors import DescriptionError
 from cspace.model.files import path_of, read_bytes
 from cspace.tolerances import DESCRIPTION_BYTES, DESCRIPTION_DEPTH
 
-__all__ = ["Element", "parse", "parse_source", "root_tag"]
-
 BLANKS = "\ufeff \t\r\n"
 
 

@@ -10,8 +10,6 @@ from cspace.errors import InputError, InputTypeError
 from cspace.maps import PolygonWorld
 from cspace.tolerances import LARGEST_NUMBER
 
-__all__ = ["check_ends", "need_grid", "need_number", "need_polygons"]
-
 
 def need_polygons(world: Any) -> None:
     """InputTypeError for anything but a PolygonWorld."""

@@ -19,8 +19,6 @@ from cspace.navigation.route import Route, new_route
 from cspace.navigation.voronoi import Voronoi
 from cspace.tolerances import DISC_FITS, FINE_SIDES, ON_WALL
 
-__all__ = ["DiscFits", "fit_world", "plan_disc"]
-
 
 class DiscFits(NamedTuple):
     """The clearance that contradicts a verdict in a world of grown polygons."""

@@ -17,8 +17,6 @@ from cspace.navigation.planners import PLANNERS, find_planner
 from cspace.navigation.route import Route
 from cspace.tolerances import MOST_DERIVED
 
-__all__ = ["World", "navigate"]
-
 NO_RADIUS: Final = 0.0
 """The robot is a point."""
 

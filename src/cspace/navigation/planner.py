@@ -12,8 +12,6 @@ from cspace.navigation.checks import check_ends
 from cspace.navigation.route import Route, Stats, new_route
 from cspace.search import Planner, Trace
 
-__all__ = ["PlanePlanner"]
-
 NO_EVENTS = (np.empty(0, np.int8), np.empty((0, 2)), np.empty((0, 2)), np.empty(0))
 
 

@@ -12,8 +12,6 @@ from cspace.errors import InputTypeError, suggest
 from cspace.navigation import any_angle, bugs, cells, fields, grid, sampling, visibility, voronoi
 from cspace.navigation.planner import PlanePlanner
 
-__all__ = ["PLANNERS", "find_planner"]
-
 _EXPORTS = (
     getattr(room, name)
     for room in (bugs, visibility, voronoi, any_angle, cells, fields, grid, sampling)

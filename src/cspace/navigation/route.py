@@ -12,7 +12,6 @@ from cspace.navigation.text import count_things
 if TYPE_CHECKING:
     from cspace.search.trace import Trace
 
-__all__ = ["STATUSES", "Route", "Stats", "new_route"]
 
 STATUSES: Final = ("found", "unreachable", "undetermined", "local_minimum")
 """The verdicts, in the order of the compiled core."""

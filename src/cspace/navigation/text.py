@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-__all__ = ["count_things", "explain_division"]
-
 
 def count_things(number: int, noun: str, plural: str = "") -> str:
     """ "1 cell", "2 cells": a number and what it counts; plural: where it is not the noun and an s."""

@@ -11,8 +11,6 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["Steps", "write_gif"]
-
 
 @dataclass(frozen=True)
 class Steps:

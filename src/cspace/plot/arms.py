@@ -16,8 +16,6 @@ from cspace.plot.raytrace.scene import Group, artist_type, scene_of
 from cspace.plot.raytrace.solids import Solid, capsule, cylinder
 from cspace.plot.skeleton import WIDTH, Skeleton, planar_basis, size_of, skeleton
 
-__all__ = ["robot", "solutions"]
-
 GHOST: Final = 0.40
 FAINT: Final = 0.16
 """Opacity of ghosts, and of those out of limits."""

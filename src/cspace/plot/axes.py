@@ -6,8 +6,6 @@ from typing import Any, Final
 
 from cspace.errors import InputError, MissingExtraError
 
-__all__ = ["flat_axes", "space_axes"]
-
 SQUARE: Final = 6.4
 """Width of a picture in space [inch], without labels at its side."""
 

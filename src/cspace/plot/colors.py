@@ -8,8 +8,6 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["AXES", "BARRED", "INK", "JOINT", "LINK", "STAND", "mix", "palette"]
-
 INK: Final = (0.16, 0.19, 0.24)
 """Text, outlines."""
 LINK: Final = (0.90, 0.91, 0.925)

@@ -13,8 +13,6 @@ from cspace.errors import InputError
 from cspace.plot import colors
 from cspace.plot.axes import space_axes
 
-__all__ = ["draw_bands", "minima", "surface"]
-
 PLACES: Final = 160
 """Places along a side of the world at which a field is evaluated for its picture."""
 TOP: Final = 0.85

@@ -9,8 +9,6 @@ from cspace.errors import InputError
 from cspace.files import whole_file
 from cspace.plot.animation import write_gif
 
-__all__ = ["save"]
-
 
 def save(artists: Any, path: str | Path, *, dpi: float = 150.0) -> None:
     """Write the figure that some artists belong to, and close it.

@@ -15,8 +15,6 @@ from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group, scene_of
 from cspace.spatial import as_pose
 
-__all__ = ["frames"]
-
 
 def frames(
     poses: Any,

@@ -13,8 +13,6 @@ from cspace.plot import colors
 from cspace.plot.axes import flat_axes
 from cspace.plot.skeleton import Skeleton, planar_basis, size_of, skeleton
 
-__all__ = ["draw", "manipulability", "workspace"]
-
 WORKSPACE_SAMPLES: Final = 400
 """Cells along the longer side of a workspace picture: about one per pixel."""
 

@@ -13,8 +13,6 @@ from cspace.arrays import Array
 from cspace.plot import colors
 from cspace.plot.fields import draw_bands
 
-__all__ = ["draw_idea", "replaced_at", "shown_events"]
-
 MOST_EVENTS: Final = 20_000
 """Events that a picture shows: of more every second, third … is drawn; a reader could not tell them apart."""
 CROWD: Final = 1000

@@ -10,8 +10,6 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.spatial import rotation
 
-__all__ = ["WIDTH", "Skeleton", "planar_basis", "skeleton"]
-
 PARALLEL: Final = 0.08
 """Sine of the angle below which two axes are routed as parallel: their common normal would lie far away."""
 DETOUR: Final = 1.9

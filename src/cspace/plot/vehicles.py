@@ -13,8 +13,6 @@ from cspace.plot.axes import flat_axes
 from cspace.plot.planner_overlays import lines
 from cspace.plot.worlds import PATH, world
 
-__all__ = ["coverage", "drive"]
-
 BODIES: Final = 24
 """Outlines of the vehicle between start and goal."""
 ROUND: Final = 36

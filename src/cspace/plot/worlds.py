@@ -15,8 +15,6 @@ from cspace.plot.animation import Steps
 from cspace.plot.axes import flat_axes, need_matplotlib
 from cspace.plot.planner_overlays import draw_idea, replaced_at, shown_events
 
-__all__ = ["animation", "route", "routes", "world"]
-
 WALL: Final = (0.36, 0.39, 0.44)
 """Obstacles."""
 SHUT: Final = (0.72, 0.74, 0.77)

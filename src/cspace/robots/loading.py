@@ -15,8 +15,6 @@ from cspace.model.xml import root_tag
 from cspace.robot import Robot
 from cspace.robots.lookup import catalogue_description
 
-__all__ = ["load_description", "load_robot"]
-
 ADVICE = {
     ".sdf": "SDF (Gazebo) cannot be read; convert it to URDF",
     ".usd": "USD cannot be read; convert it to URDF",

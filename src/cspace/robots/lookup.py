@@ -12,8 +12,6 @@ from cspace.errors import InputTypeError, UnknownNameError, suggest
 from cspace.model import Description, from_toml
 from cspace.robots.index import PLAIN_NAMES, ROWS
 
-__all__ = ["CatalogueRow", "catalogue_description", "find", "names", "rows", "search"]
-
 FOLDER: Final = Path(__file__).parent / "catalogue"
 SEPARATORS: Final = r"[\s._-]"
 """Separators that are allowed anywhere in the name of a robot."""

@@ -15,8 +15,6 @@ import numpy as np
 from cspace.arrays import as_floats, as_generator
 from cspace.errors import InputError, InputTypeError, suggest
 
-__all__ = ["Option", "draw_seed", "option", "options_of"]
-
 
 @dataclass(frozen=True)
 class Option:

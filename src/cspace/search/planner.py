@@ -12,8 +12,6 @@ import numpy as np
 from cspace.errors import InputTypeError, attribute_error, suggest
 from cspace.search.options import Option, options_of
 
-__all__ = ["Planner"]
-
 Same = TypeVar("Same", bound="Planner")
 
 

@@ -10,8 +10,6 @@ import numpy.typing as npt
 
 from cspace.arrays import Array
 
-__all__ = ["Trace"]
-
 
 @dataclass(frozen=True, eq=False)
 class Trace:

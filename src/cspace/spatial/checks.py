@@ -10,8 +10,6 @@ from cspace import tolerances
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 
-__all__ = ["PoseLike", "RotationLike", "as_pose", "as_pose_2d", "as_rotation", "as_rotation_2d", "one_pose"]
-
 PoseLike: TypeAlias = Any
 """(..., 4, 4) numbers, or an object that provides such a matrix: `__array__`, `as_matrix()` or `.A`."""
 

@@ -21,15 +21,6 @@ from cspace.spatial.poses import broadcast_batches
 from cspace.spatial.rotations import rotvec_of_matrix
 from cspace.spatial.vectors import length_and_direction
 
-__all__ = [
-    "pose_distance",
-    "pose_distance_2d",
-    "rotation_distance",
-    "rotation_distance_2d",
-    "translation_distance",
-    "translation_distance_2d",
-]
-
 
 def rotation_distance(R_a: RotationLike, R_b: RotationLike) -> Array:
     """The angle of the rotation from one rotation to another, |log(R_aᵀ R_b)|, in [0, π].

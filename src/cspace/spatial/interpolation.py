@@ -15,8 +15,6 @@ from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_pose_2d, a
 from cspace.spatial.poses import assemble, broadcast_batches, inverse
 from cspace.spatial.rotations import matrix_of_rotvec, rotvec_of_matrix
 
-__all__ = ["interpolate", "interpolate_2d", "interpolate_decoupled", "slerp"]
-
 
 def interpolate(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
     """The pose at the fraction t of the screw motion from start to end: a helix at a constant twist.

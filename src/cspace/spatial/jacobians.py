@@ -18,17 +18,6 @@ from cspace.errors import InputError
 from cspace.spatial.rotations import checked_angle_and_axis, skew
 from cspace.spatial.twists import sinc
 
-__all__ = [
-    "left_jacobian_inv_se3",
-    "left_jacobian_inv_so3",
-    "left_jacobian_se3",
-    "left_jacobian_so3",
-    "right_jacobian_inv_se3",
-    "right_jacobian_inv_so3",
-    "right_jacobian_se3",
-    "right_jacobian_so3",
-]
-
 
 def left_jacobian_so3(rotvec: npt.ArrayLike) -> Array:
     """J with exp(w + δ) = exp(J δ) exp(w) to first order.

@@ -12,17 +12,6 @@ from cspace.errors import InputTypeError
 from cspace.spatial.checks import as_pose_2d, as_rotation_2d
 from cspace.spatial.poses import assemble, inverse, turned
 
-__all__ = [
-    "embed_pose_2d",
-    "inverse_pose_2d",
-    "pose_2d",
-    "rotation_2d",
-    "to_theta",
-    "to_xytheta",
-    "transform_directions_2d",
-    "transform_points_2d",
-]
-
 
 def rotation_2d(theta: npt.ArrayLike) -> Array:
     """Planar rotations [[cos θ, −sin θ], [sin θ, cos θ]], counter-clockwise.

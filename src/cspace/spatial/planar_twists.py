@@ -13,18 +13,6 @@ from cspace.spatial.planar import angle_of, matrix_of_angle, to_theta
 from cspace.spatial.poses import assemble
 from cspace.spatial.twists import sinc, x_cot_x
 
-__all__ = [
-    "adjoint_2d",
-    "exp_se2",
-    "exp_so2",
-    "hat_se2",
-    "hat_so2",
-    "log_se2",
-    "log_so2",
-    "vee_se2",
-    "vee_so2",
-]
-
 
 def hat_so2(angle: npt.ArrayLike) -> Array:
     """The skew matrix [[0, −ω], [ω, 0]]: (...) → (..., 2, 2)."""

@@ -12,8 +12,6 @@ from cspace.arrays import Array
 from cspace.spatial.checks import as_pose_2d
 from cspace.spatial.planar import angle_of
 
-__all__ = ["Pole", "pole_of"]
-
 
 @dataclass(frozen=True, eq=False)
 class Pole:

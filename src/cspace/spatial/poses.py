@@ -18,8 +18,6 @@ from cspace.spatial.rotations import matrix_of_axis_angle, matrix_of_rotvec
 from cspace.spatial.sequences import axes_of, matrix_of_euler, matrix_of_fixed
 from cspace.spatial.vectors import length_and_direction
 
-__all__ = ["inverse_pose", "pose", "rotation", "to_xyz", "transform_directions", "transform_points"]
-
 
 def pose(
     xyz: npt.ArrayLike | None = None,

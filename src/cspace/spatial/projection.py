@@ -14,14 +14,6 @@ from cspace.spatial.checks import RotationLike, as_rotation, determinant, orthog
 from cspace.spatial.poses import assemble
 from cspace.spatial.quaternions import matrix_of_wxyz, wxyz_of_matrix
 
-__all__ = [
-    "mean_rotation",
-    "project_pose",
-    "project_pose_2d",
-    "project_rotation",
-    "project_rotation_2d",
-]
-
 
 def project_rotation(matrix: npt.ArrayLike, *, limit: float = tolerances.ROTATION_PROJECTION) -> Array:
     """The rotation nearest to a matrix that has lost its orthogonality: typed, measured or summed.

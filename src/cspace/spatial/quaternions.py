@@ -11,8 +11,6 @@ from cspace.spatial import single
 from cspace.spatial.checks import RotationLike, as_rotation
 from cspace.spatial.vectors import length_and_direction
 
-__all__ = ["to_wxyz", "to_xyzw"]
-
 
 def to_wxyz(R: RotationLike) -> Array:
     """The unit quaternion of a rotation or pose, scalar first.

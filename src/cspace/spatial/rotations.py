@@ -15,9 +15,6 @@ from cspace.spatial.checks import RotationLike, as_rotation
 from cspace.spatial.quaternions import wxyz_of_matrix
 from cspace.spatial.vectors import length_and_direction
 
-__all__ = ["exp_so3", "hat_so3", "log_so3", "to_axis_angle", "to_rotvec", "vee_so3"]
-
-
 SHORT: Final = 3.6
 """Entries [rad] up to here make a vector of less than the 6.3 rad that the compiled formula takes."""
 

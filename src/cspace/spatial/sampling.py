@@ -11,8 +11,6 @@ from cspace.spatial.planar import matrix_of_angle
 from cspace.spatial.poses import assemble
 from cspace.spatial.quaternions import matrix_of_wxyz
 
-__all__ = ["random_pose", "random_pose_2d", "random_rotation", "random_rotation_2d"]
-
 Size = int | tuple[int, ...]
 
 

@@ -15,8 +15,6 @@ from cspace.spatial.poses import broadcast_batches
 from cspace.spatial.twists import exponential, logarithm
 from cspace.spatial.vectors import cross, length_and_direction
 
-__all__ = ["Screw", "screw_of", "screw_to_twist", "twist_to_screw"]
-
 
 @dataclass(frozen=True, eq=False)
 class Screw:

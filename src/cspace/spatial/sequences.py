@@ -17,8 +17,6 @@ from cspace.errors import InputTypeError, UnknownNameError, suggest
 from cspace.spatial import single
 from cspace.spatial.checks import RotationLike, as_rotation
 
-__all__ = ["SEQUENCES", "to_euler", "to_fixed", "to_rpy"]
-
 SEQUENCES: Final[tuple[str, ...]] = tuple(
     i + j + k for i in "XYZ" for j in "XYZ" for k in "XYZ" if i != j and j != k
 )

@@ -12,22 +12,6 @@ import numpy as np
 from cspace import tolerances
 from cspace.arrays import Array
 
-__all__ = [
-    "Nine",
-    "angles",
-    "direction",
-    "euler",
-    "helix",
-    "inverse",
-    "matrix",
-    "pose",
-    "quaternion",
-    "rotvec",
-    "straightened",
-    "turn",
-    "wxyz",
-]
-
 Nine = tuple[float, float, float, float, float, float, float, float, float]
 """The entries of a 3×3 matrix, row by row."""
 

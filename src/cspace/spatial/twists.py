@@ -18,8 +18,6 @@ from cspace.spatial.rotations import (
 )
 from cspace.spatial.vectors import cross, length_and_direction
 
-__all__ = ["adjoint", "coadjoint", "exp_se3", "hat_se3", "log_se3", "small_adjoint", "vee_se3"]
-
 
 def hat_se3(twist: npt.ArrayLike) -> Array:
     """The 4×4 matrix of a twist, [[[ω], v], [0, 0]].

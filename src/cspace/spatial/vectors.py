@@ -8,8 +8,6 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["cross", "length_and_direction"]
-
 
 def length_and_direction(v: Array) -> tuple[Array, Array]:
     """(..., k) → length (...) and unit direction (..., k); the direction of a zero vector is zero.

@@ -16,7 +16,6 @@ from cspace.cli.symbols import ZERO, angle_text, entry_texts, link_matrix
 if TYPE_CHECKING:
     from cspace.model import DHTable, LinkMatrices
 
-__all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
 cspace dh ur5e

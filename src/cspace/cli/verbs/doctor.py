@@ -14,8 +14,6 @@ import numpy as np
 from cspace.cli.exits import Exit
 from cspace.cli.output import Cell, Output, Table
 
-__all__ = ["EXAMPLES", "arguments", "run"]
-
 EXAMPLES: Final = """
 cspace doctor
 cspace doctor --json

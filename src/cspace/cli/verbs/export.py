@@ -15,7 +15,6 @@ from cspace.cli.robot import joint_called, load, need_chain
 if TYPE_CHECKING:
     from cspace.export import Export
 
-__all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
 cspace export ur5e --lang cpp -o ur5e_ik.hpp

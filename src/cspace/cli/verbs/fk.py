@@ -11,8 +11,6 @@ from cspace.cli.output import Output
 from cspace.cli.poses import pose_document, show_pose
 from cspace.cli.robot import configuration, load, need_chain
 
-__all__ = ["EXAMPLES", "arguments", "run"]
-
 EXAMPLES: Final = """
 cspace fk ur5e 0 -pi/2 pi/2 0 pi/2 0
 cspace fk puma560 10 -20 30 0 45 0 --deg

@@ -23,7 +23,6 @@ from cspace.errors import InputError, InputTypeError
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
 cspace ik ur5e --xyz 0.4 0.1 0.3 --rpy 0 180 0 --deg

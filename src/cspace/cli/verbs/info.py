@@ -16,7 +16,6 @@ from cspace.cli.tasks import TASKS, default_task, motion_rank
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
 cspace info ur5e

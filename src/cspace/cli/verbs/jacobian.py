@@ -15,7 +15,6 @@ from cspace.cli.tasks import rows_of_task
 if TYPE_CHECKING:
     from cspace.robot import Robot
 
-__all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
 cspace jacobian ur5e 0 -90 90 0 90 0 --deg

@@ -21,7 +21,6 @@ from cspace.errors import InputError
 if TYPE_CHECKING:
     from cspace.navigation import Route
 
-__all__ = ["EXAMPLES", "arguments", "run"]
 
 EXAMPLES: Final = """
 cspace nav map.yaml --start 1 1 --goal 9 7 --planner all --plot ways.png

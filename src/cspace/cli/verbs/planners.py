@@ -12,7 +12,6 @@ from cspace.cli.output import Cell, Output, Table
 if TYPE_CHECKING:
     from cspace.navigation import Option, PlanePlanner
 
-__all__ = ["EXAMPLES", "arguments", "run", "typed"]
 
 EXAMPLES: Final = """
 cspace planners

@@ -9,8 +9,6 @@ from typing import Final
 from cspace.cli.exits import Exit
 from cspace.cli.output import Cell, Output, Table
 
-__all__ = ["EXAMPLES", "arguments", "run"]
-
 EXAMPLES: Final = """
 cspace robots
 cspace robots --search universal

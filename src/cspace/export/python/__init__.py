@@ -1,3 +1,1 @@
 """Solvers in plain numpy, of which an exported Python file is put together."""
-
-__all__: list[str] = []

@@ -8,17 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-__all__ = [
-    "Array",
-    "Solutions",
-    "accept_candidate",
-    "inverse",
-    "joint_motion",
-    "make_answer",
-    "pose_and_jacobian",
-    "pose_gap",
-]
-
 Array = npt.NDArray[np.float64]
 
 REACHED = 1e-9  # error of a solution [rad, m over the arm's length]

@@ -10,8 +10,6 @@ import numpy as np
 from cspace.export.python.base import Array, Solutions, accept_candidate, inverse, make_answer, pose_gap
 from cspace.export.python.trig_steps import Care
 
-__all__ = ["solve_closed"]
-
 Branch = list[complex]  # the turns t1 … t6 of the Denavit–Hartenberg form
 
 

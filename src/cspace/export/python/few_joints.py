@@ -13,8 +13,6 @@ import numpy as np
 
 from cspace.export.python.base import Array, Solutions, accept_candidate, inverse, joint_motion, make_answer
 
-__all__ = ["solve_few_joints"]
-
 FLAT = 1e-9  # coefficients below this, over lengths of the arm, fix nothing
 
 

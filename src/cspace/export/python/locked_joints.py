@@ -13,8 +13,6 @@ import numpy.typing as npt
 
 from cspace.export.python.base import Array, Solutions, inverse, joint_motion
 
-__all__ = ["solve_locked", "values_of"]
-
 
 def values_of(locked: npt.ArrayLike, count: int) -> Array:
     """The values of the locked joints."""

@@ -12,8 +12,6 @@ import numpy as np
 from cspace.export.python.base import Array, inverse
 from cspace.export.python.trig_steps import Care, align, turns_where_zero, two_link
 
-__all__ = ["branches"]
-
 FIRST_PARALLEL = 4
 ROUNDING = 1e-13  # of rows of size one
 NEARLY = 1e-5  # matrices nearer than this to singular ones have nearly double roots

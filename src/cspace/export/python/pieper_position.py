@@ -9,8 +9,6 @@ import numpy as np
 from cspace.export.python.base import Array
 from cspace.export.python.trig_steps import Care, align, linear_equation, turns_where_zero, two_link
 
-__all__ = ["PLACES"]
-
 Triple = tuple[complex, complex, complex]
 
 

@@ -8,8 +8,6 @@ from cspace.export.python.base import Array
 from cspace.export.python.pieper_position import PLACES
 from cspace.export.python.trig_steps import Care, undo_joint, wrist
 
-__all__ = ["branches"]
-
 
 def branches(plan: dict[str, Any], goal: Array, care: Care) -> list[list[complex]]:
     """Up to 4 x 2 branches."""

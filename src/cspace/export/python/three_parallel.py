@@ -9,8 +9,6 @@ import numpy as np
 from cspace.export.python.base import Array
 from cspace.export.python.trig_steps import Care, linear_equation, two_link, undo_joint, wrist
 
-__all__ = ["branches", "free_turns"]
-
 
 def behind_shoulders(
     arm: dict[str, Any], goal: Array, care: Care

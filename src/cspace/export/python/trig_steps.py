@@ -8,8 +8,6 @@ import numpy as np
 
 from cspace.export.python.base import Array
 
-__all__ = ["Care", "align", "linear_equation", "turns_where_zero", "two_link", "undo_joint", "wrist"]
-
 
 @dataclass
 class Care:

@@ -18,7 +18,6 @@ from cspace.math import Equation, TrigPolynomial
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["swivel_steps", "swivel_values"]
 
 SHOULDER, ELBOW, WRIST = (0, 1, 2), 3, (4, 5, 6)
 

@@ -25,7 +25,6 @@ if TYPE_CHECKING:
     from cspace.ik.solver import Solver
     from cspace.kinematics import KinematicModel
 
-__all__ = ["refused_plan", "settled_plan", "survey_of"]
 
 SPHERICAL_WRIST, THREE_PARALLEL, MIDDLE_PARALLEL, FIRST_PARALLEL = 1, 2, 3, 4
 """The families of the core."""

@@ -13,8 +13,6 @@ from cspace.ik.explain.screws import vector
 from cspace.math import Equation, MatrixEquation
 from cspace.model.text import aligned, shown
 
-__all__ = ["blocks", "document"]
-
 LEAST: Final = 1e-5
 """Factors below this (of the arm's length, where they are lengths) are not printed: rounded right angles."""
 EXACT: Final = 1e-12

@@ -11,8 +11,6 @@ from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, moved, numbers, symbols
 from cspace.math import Equation, TrigPolynomial
 
-__all__ = ["few_joint_steps", "few_joint_values"]
-
 WAYS = {1: 1, 2: 2, 3: 4}
 """How many configurations bring the tip of an arm of so many joints to a point."""
 

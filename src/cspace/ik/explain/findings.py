@@ -15,8 +15,6 @@ from cspace.math import Equation, MatrixEquation
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST
 
-__all__ = ["Findings", "Step"]
-
 Values = Callable[[Array, Array], dict[str, Any]]
 """From configurations and the poses that they reach to the numbers of the symbols."""
 

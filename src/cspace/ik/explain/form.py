@@ -13,8 +13,6 @@ from cspace.ik.explain.page import Rows
 from cspace.math import Angle, Product, TrigMatrix, TrigPolynomial
 from cspace.model.text import shown
 
-__all__ = ["Form", "symbol"]
-
 symbol = TrigPolynomial.symbol
 
 

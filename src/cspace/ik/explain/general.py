@@ -14,8 +14,6 @@ from cspace.ik.explain.page import Rows
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 
-__all__ = ["Loop"]
-
 Factor = tuple[str, str, TrigMatrix]
 
 

@@ -20,7 +20,6 @@ from cspace.ik.goals.parts import is_open, partial_goal
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["goal_of_parts", "plan_of_parts"]
 
 TYPICAL = MappingProxyType(
     {

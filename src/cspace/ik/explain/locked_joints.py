@@ -22,8 +22,6 @@ from cspace.ik.solver import MAX_SETTLED, Solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 from cspace.spatial import exp_se3
 
-__all__ = ["locked_plan"]
-
 AHEAD = 100
 """Locked joints are angles of their own: those of the six that move are numbered from 1."""
 GOLDEN = 0.6180339887498949

@@ -17,8 +17,6 @@ from cspace.ik.locked_joints import locked_values
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.kinematics import KinematicModel
 
-__all__ = ["ik_plan"]
-
 
 def ik_plan(robot: HasSolver, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
     """How `robot.ik` solves an arm: the geometry found, the steps, the equations with its numbers.

@@ -13,8 +13,6 @@ from typing import Final, Protocol
 
 from cspace.model.text import aligned
 
-__all__ = ["Block", "Formulas", "Heading", "Paragraph", "Rows", "latex", "markdown", "plain"]
-
 WIDTH: Final = 100
 """Columns of plain text."""
 PLAIN: Final = (

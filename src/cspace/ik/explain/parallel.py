@@ -7,8 +7,6 @@ from cspace.ik.explain.form import Form, symbol
 from cspace.ik.explain.wrist import define, in_frame_one, px, py, pz, squared, turn_steps
 from cspace.math import Equation, Product, TrigMatrix, TrigPolynomial
 
-__all__ = ["first_parallel_steps", "middle_parallel_steps", "three_parallel_steps"]
-
 
 def height(form: Form) -> tuple[TrigPolynomial, TrigPolynomial]:
     """The height of the goal and of the wrist along axes 2, 3, 4; that of the wrist without joint 5."""

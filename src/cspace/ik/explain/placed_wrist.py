@@ -11,8 +11,6 @@ from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import Screws, Vector, dotted, numbers, symbols, turned
 from cspace.math import Equation, MatrixEquation, TrigPolynomial
 
-__all__ = ["orientation_steps", "placed_wrist_steps"]
-
 AXES = "xyz"
 
 

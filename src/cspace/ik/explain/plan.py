@@ -8,8 +8,6 @@ from cspace.ik.explain import page
 from cspace.ik.explain.document import blocks, document
 from cspace.ik.explain.findings import Findings
 
-__all__ = ["IkPlan"]
-
 
 class IkPlan(Findings):
     """How `robot.ik` solves an arm; prints, has to_markdown() and to_latex(), and is false if it does not.

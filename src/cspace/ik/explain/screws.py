@@ -13,19 +13,6 @@ from cspace.ik.explain.page import Rows
 from cspace.math import Angle, TrigPolynomial
 from cspace.model.text import shown
 
-__all__ = [
-    "Screws",
-    "Vector",
-    "dotted",
-    "goal_values",
-    "joint_values",
-    "moved",
-    "numbers",
-    "symbols",
-    "turned",
-    "vector",
-]
-
 Vector = list[TrigPolynomial]
 
 

@@ -12,15 +12,6 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import angle_between, common_point
 
-__all__ = [
-    "InvariantDirection",
-    "InvariantPoint",
-    "Relation",
-    "invariant_directions",
-    "invariant_points",
-    "relations",
-]
-
 
 @dataclass(frozen=True)
 class Relation:

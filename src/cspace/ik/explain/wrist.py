@@ -6,8 +6,6 @@ from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form, symbol
 from cspace.math import Equation, Product, TrigPolynomial
 
-__all__ = ["turn_steps", "wrist_constants", "wrist_steps"]
-
 define = Equation.definition
 LAST_PARALLEL, FIRST_MEET, LAST_MEET, FIRST_PARALLEL, GENERAL = range(5)
 """What the first three axes share, in the order of the core."""

@@ -16,17 +16,6 @@ from cspace.tolerances import FARTHEST
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = [
-    "checked_poses",
-    "goal_array",
-    "is_far",
-    "one_configuration",
-    "open_in_space",
-    "planar_poses",
-    "points_in_base",
-    "too_far",
-]
-
 
 def goal_array(goal: Any) -> Array:
     """The goals as contiguous float64; a plain batch goes on unchecked, for the core checks every goal

@@ -16,8 +16,6 @@ from cspace.arrays import Array
 from cspace.model import Chain
 from cspace.spatial import exp_so3
 
-__all__ = ["ANY", "BALL", "CROSS", "KEYWORDS", "PartialGoal"]
-
 KEYWORDS = ("position", "rotation", "direction", "look_at", "ray", "angle_to")
 X, Y, Z = np.eye(3)
 BALL = (("R", X), ("R", Y), ("R", Z))

@@ -14,8 +14,6 @@ from cspace.spatial import as_rotation
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
-__all__ = ["check_tool_axis", "is_open", "partial_goal"]
-
 POINTED = ("direction", "look_at", "ray", "angle_to")
 """The keywords that involve the tool axis."""
 DIRECTIONS = ("direction", "ray[1]", "angle_to[0]", "tool_axis")

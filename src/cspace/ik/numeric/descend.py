@@ -18,7 +18,6 @@ from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["METHODS", "ik_many_starts", "ik_numeric"]
 
 METHODS = ("levenberg_marquardt", "newton")
 """The methods of descent."""

@@ -19,7 +19,6 @@ from cspace.tolerances import FARTHEST, SERVED, SETTLED
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["TaskSolution", "ik_tasks", "task_velocity"]
 
 NO_SPEED = np.empty(0)
 MOST_STARTS = 1_000_000

@@ -19,7 +19,6 @@ from cspace.tolerances import FARTHEST
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["Question", "ask", "bounds_of", "further_starts", "middle"]
 
 MOST_PATH = 16
 EVERYTHING = np.ones(6)

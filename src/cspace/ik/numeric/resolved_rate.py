@@ -17,7 +17,6 @@ from cspace.tolerances import FARTHEST, WEAK_DIRECTION
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["resolved_rate"]
 
 MOST_JOINTS = 128
 

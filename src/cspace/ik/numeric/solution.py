@@ -16,7 +16,6 @@ from cspace.ik.wrapping import nearest_winding
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["NumericSolution", "SampledSolutions"]
 
 REACHED: Final = 0
 STALLED: Final = 1

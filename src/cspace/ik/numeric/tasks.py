@@ -13,15 +13,6 @@ from cspace.spatial.checks import PoseLike, one_pose
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
-__all__ = [
-    "CenterOfMassTask",
-    "DirectionTask",
-    "PoseTask",
-    "PositionTask",
-    "PostureTask",
-    "Task",
-]
-
 POSE: Final = 0
 POSITION: Final = 1
 DIRECTION: Final = 2

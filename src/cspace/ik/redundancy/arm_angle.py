@@ -12,8 +12,6 @@ from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.tolerances import FARTHEST
 
-__all__ = ["solve_swivel", "swivel"]
-
 BRANCHES = 8
 JOINTS = 7
 

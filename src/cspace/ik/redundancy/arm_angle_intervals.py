@@ -18,7 +18,6 @@ from cspace.spatial import exp_so3
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["swivel_intervals"]
 
 Flags = npt.NDArray[np.bool_]
 LOOKS = 48

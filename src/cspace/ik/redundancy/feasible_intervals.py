@@ -18,7 +18,6 @@ from cspace.ik.wrapping import into_limits
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["redundancy_of_pose"]
 
 END_NOTHING, END_FOLD = -1, -2
 STILL = 1e-6

@@ -15,8 +15,6 @@ from cspace.ik.redundancy.result import Redundancy
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.spatial.checks import one_pose
 
-__all__ = ["redundancy"]
-
 
 def redundancy(
     robot: HasSolver,

@@ -17,7 +17,6 @@ from cspace.tolerances import FARTHEST
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["MOST_SAMPLES", "Interval", "Redundancy"]
 
 MOST_SAMPLES = 100_000
 """Values of a free joint that one call answers for."""

@@ -23,7 +23,6 @@ from cspace.tolerances import FARTHEST
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["solve_freedom"]
 
 SAMPLES = 16
 

@@ -23,7 +23,6 @@ from cspace.math.wrapping import TURN, wrap_near
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["Arc", "arc_through", "nearest_member"]
 
 CLOSED, FAR = 0, 1
 HALVINGS = 50

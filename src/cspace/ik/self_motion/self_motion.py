@@ -19,7 +19,6 @@ from cspace.ik.wrapping import wrap
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
-__all__ = ["SelfMotion", "self_motion_at"]
 
 MOVING = 1e-6
 """Smallest entry of a unit direction [rad or m] that is motion: what a joint at rest has is rounding."""

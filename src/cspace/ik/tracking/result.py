@@ -15,8 +15,6 @@ from cspace.ik.branches import branch_labels
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel, singularity
 
-__all__ = ["Branch", "Track"]
-
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Branch:

@@ -25,7 +25,6 @@ from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYO
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
-__all__ = ["COSTS", "track"]
 
 COSTS: Final = ("length", "step", "time")
 """What a branch may cost: Σ ‖Δq‖; the largest Δq of a joint; Σ of the times that the velocity limits ask."""

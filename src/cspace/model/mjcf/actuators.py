@@ -8,8 +8,6 @@ from collections.abc import Iterable
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.xml import Element
 
-__all__ = ["efforts"]
-
 
 def efforts(actuators: Iterable[Element], defaults: Defaults) -> dict[str, float]:
     """The largest force or torque of all actuators on each joint, by its name [N or N·m]; inf where unknown.

@@ -10,8 +10,6 @@ from cspace.model.files import read_bytes
 from cspace.model.xml import Element, parse, parse_source
 from cspace.tolerances import DESCRIPTION_BYTES, MJCF_DEPTH
 
-__all__ = ["read_document"]
-
 
 def read_document(source: str | os.PathLike[str] | bytes) -> Element:
     """The root element of an MJCF file or text, includes resolved; each element knows its file and line.

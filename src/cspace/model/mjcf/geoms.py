@@ -19,8 +19,6 @@ from cspace.model.mjcf.settings import Settings, shortest, unit
 from cspace.model.transforms import from_wxyz, inverse, translation
 from cspace.model.xml import Element
 
-__all__ = ["SOLIDS", "Geom", "Geoms"]
-
 SOLIDS: Final = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}
 """The solids, and how many half sizes each has: radii, half lengths."""
 

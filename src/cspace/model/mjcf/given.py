@@ -10,8 +10,6 @@ from cspace.model.values import BEYOND
 from cspace.model.xml import Element
 from cspace.tolerances import LARGEST_NUMBER
 
-__all__ = ["Defaults", "Given"]
-
 MAIN = "main"
 
 ACTUATORS = (

@@ -21,8 +21,6 @@ from cspace.model.transforms import rotation_about, translation
 from cspace.model.values import IDENTITY, unit_axis
 from cspace.model.xml import Element
 
-__all__ = ["Coupling", "Draft", "couplings", "read_joint"]
-
 KINDS: Final = ("hinge", "slide", "free", "ball")
 
 LOG: Final = logging.getLogger("cspace")

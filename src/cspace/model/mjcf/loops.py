@@ -17,8 +17,6 @@ from cspace.model.mounting import free_name
 from cspace.model.transforms import from_wxyz, inverse, translation
 from cspace.model.xml import Element
 
-__all__ = ["loops"]
-
 
 def loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skeleton) -> tuple[Loop, ...]:
     """A spherical loop for each <connect> and a rigid one for each <weld> that is active."""

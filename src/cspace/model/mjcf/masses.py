@@ -16,8 +16,6 @@ from cspace.model.mjcf.given import Given
 from cspace.model.mjcf.settings import ORIENTATIONS, Settings
 from cspace.model.tree import lumped
 
-__all__ = ["corrected", "scaled", "weighs", "weight_of_geoms", "written"]
-
 
 def written(given: Given, T_body_frame: Array, settings: Settings) -> Inertial:
     """What <inertial> says, in a frame of its body."""

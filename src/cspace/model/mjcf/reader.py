@@ -25,8 +25,6 @@ from cspace.model.structure import ElementError
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
 
-__all__ = ["mjcf_description"]
-
 MAKERS: Final = {
     "replicate": "copies of a body",
     "attach": "another model",

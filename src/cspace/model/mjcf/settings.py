@@ -15,8 +15,6 @@ from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
 from cspace.tolerances import AXIS_LENGTH, MJCF_SAME_AXIS
 
-__all__ = ["ORIENTATIONS", "Settings", "settings_of"]
-
 ORIENTATIONS = ("quat", "axisangle", "euler", "xyaxes", "zaxis")
 """The attributes of which one may say how a frame is turned."""
 

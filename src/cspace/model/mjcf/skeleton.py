@@ -18,8 +18,6 @@ from cspace.model.transforms import inverse
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
 
-__all__ = ["WORLD", "Segment", "Skeleton"]
-
 WORLD: Final = "world"
 """The link of <worldbody>, as MuJoCo calls it."""
 

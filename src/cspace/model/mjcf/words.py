@@ -8,8 +8,6 @@ from cspace.model.attributes import fault
 from cspace.model.urdf_words import closest
 from cspace.model.xml import Element
 
-__all__ = ["check_words"]
-
 
 def words(text: str) -> frozenset[str]:
     return frozenset(text.split())

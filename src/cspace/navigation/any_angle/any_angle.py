@@ -19,8 +19,6 @@ from cspace.navigation.route import Route
 from cspace.navigation.text import count_things, explain_division
 from cspace.tolerances import CELLS_PER_CORNER, MESHED_CORNERS, RUN_CELLS
 
-__all__ = ["AnyAngle"]
-
 
 class AnyAngle(PlanePlanner):
     """The shortest path through a PolygonWorld, or over an OccupancyGrid.

@@ -35,8 +35,6 @@ from cspace.navigation.text import count_things
 from cspace.search import draw_seed, option
 from cspace.tolerances import SCAN_NOISE
 
-__all__ = ["VoronoiBug", "VoronoiBugEvidence"]
-
 
 class VoronoiBugEvidence(NamedTuple):
     """The record of a robot that traced the points equally near to two walls, and the loop that encloses

@@ -21,8 +21,6 @@ from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
 from cspace.search import option
 
-__all__ = ["Bug1", "Bug2", "BugEvidence", "TangentBug"]
-
 HANDS: Final = {"left": 0, "right": 1, None: 2}
 """The numbers of hands in the compiled core; None: either."""
 

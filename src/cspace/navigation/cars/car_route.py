@@ -14,8 +14,6 @@ from cspace.navigation.route import Stats
 from cspace.navigation.text import count_things
 from cspace.tolerances import CAR_POSES
 
-__all__ = ["CarRoute"]
-
 REASONS: Final = (
     "found",
     "unreachable: not even a disc within the vehicle passes from start to goal",

@@ -16,8 +16,6 @@ from cspace.navigation.following.vehicles import Car
 from cspace.navigation.route import STATUSES, Stats
 from cspace.tolerances import LARGEST_NUMBER
 
-__all__ = ["hybrid_a_star"]
-
 
 def hybrid_a_star(
     grid: Any,

@@ -28,8 +28,6 @@ from cspace.navigation.text import count_things
 from cspace.search import option
 from cspace.tolerances import FINEST_LEVEL, QUADTREE_CELLS, QUADTREE_DEPTH, UNIFORM_DEPTH
 
-__all__ = ["ApproximateCells", "ApproximateCellsSearch", "CellEvidence", "approximate_cells"]
-
 METRICS: Final = ("euclidean", "manhattan")
 
 

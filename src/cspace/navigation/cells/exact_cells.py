@@ -22,8 +22,6 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
 
-__all__ = ["ExactCells", "exact_cells"]
-
 
 class ExactCells(PlanePlanner):
     """A path through the trapezoids of a PolygonWorld.

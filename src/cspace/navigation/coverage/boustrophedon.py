@@ -16,8 +16,6 @@ from cspace.navigation.checks import need_grid
 from cspace.navigation.text import count_things
 from cspace.tolerances import CELL_ROUNDING
 
-__all__ = ["Coverage", "coverage"]
-
 ALONG: Final = ("x", "y")
 
 Labels = npt.NDArray[np.int32]

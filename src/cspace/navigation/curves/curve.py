@@ -12,8 +12,6 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, positive_number
 from cspace.errors import InputError
 
-__all__ = ["Curve", "Segment"]
-
 KINDS: Final = {1: "left", 0: "straight", -1: "right"}
 Pieces = tuple[tuple[int, float], ...]
 """Turn (+1 left, 0 straight, −1 right) and length [m] of each segment; a negative length is driven in

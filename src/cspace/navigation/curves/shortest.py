@@ -12,8 +12,6 @@ from cspace.errors import InputError
 from cspace.navigation.curves.curve import Curve
 from cspace.tolerances import LARGEST_NUMBER
 
-__all__ = ["dubins", "dubins_distance", "reeds_shepp", "reeds_shepp_distance"]
-
 
 def dubins(start: Any, goal: Any, radius: float) -> Curve:
     """The shortest curve of a car that drives forwards with a minimum turning radius (Dubins).

@@ -25,8 +25,6 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.search import option
 
-__all__ = ["Brushfire", "BrushfireDiagram", "brushfire_diagram"]
-
 PREFER: Final = ("clearance", "length")
 
 

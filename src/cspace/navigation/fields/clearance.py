@@ -6,8 +6,6 @@ from typing import Any
 
 from cspace import _core
 
-__all__ = ["clearance_field"]
-
 
 def clearance_field(grid: Any) -> Any:
     """The ClearanceField of a grid: the distances of its cells from walls."""

@@ -21,8 +21,6 @@ from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
 from cspace.search import option
 
-__all__ = ["FastMarching", "arrival_times"]
-
 
 @dataclass(frozen=True, eq=False)
 class FastMarching(PlanePlanner):

@@ -24,8 +24,6 @@ from cspace.navigation.route import Route, Stats, new_route
 from cspace.navigation.text import count_things
 from cspace.tolerances import HARMONIC_CYCLES, HARMONIC_FIELDS, HARMONIC_RESIDUAL
 
-__all__ = ["Harmonic", "HarmonicEvidence", "harmonic"]
-
 
 class HarmonicEvidence(NamedTuple):
     """The accuracy of the solution of Laplace's equation."""

@@ -28,8 +28,6 @@ from cspace.navigation.route import Route
 from cspace.search import option
 from cspace.tolerances import LEAST_INFLUENCE
 
-__all__ = ["PotentialAStar"]
-
 MODES: Final = ("exact", "bounded", "greedy")
 
 

@@ -27,8 +27,6 @@ from cspace.navigation.text import count_things
 from cspace.search import option
 from cspace.tolerances import DESCENT_LOOKS, LEAST_REACH
 
-__all__ = ["PotentialField", "PotentialRest", "potential"]
-
 RESTS: Final = ("goal", "minimum", "saddle", "crease", "wall", "budget")
 SAID: Final = {
     "minimum": "the potential rises in every direction",

@@ -37,8 +37,6 @@ from cspace.tolerances import (
     ON_WALL,
 )
 
-__all__ = ["NavigationEvidence", "NavigationFunction", "RimonKoditschek", "navigation_function"]
-
 
 class NavigationEvidence(NamedTuple):
     """The evidence for a descent on a navigation function."""

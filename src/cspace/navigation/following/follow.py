@@ -16,8 +16,6 @@ from cspace.navigation.following.run import OUTCOMES, Run
 from cspace.navigation.following.vehicles import Car, Unicycle
 from cspace.tolerances import LARGEST_NUMBER, SIMULATION_STEPS, TRACK_POSES
 
-__all__ = ["CONTROLLERS", "follow"]
-
 OPTIONS: Final[dict[str, dict[str, Any]]] = {
     "pure_pursuit": {"lookahead": None},
     "stanley": {"gain": 1.0, "softening": 0.5},

@@ -11,8 +11,6 @@ from cspace.arrays import as_floats, leading_axes, positive_number
 from cspace.navigation.checks import need_grid
 from cspace.tolerances import LARGEST_NUMBER
 
-__all__ = ["cast_rays"]
-
 
 def cast_rays(grid: Any, points: Any, angles: Any, max_range: float = np.inf) -> Any:
     """How far rays go until they enter a blocked cell, (...) [m]; a float for one ray.

@@ -9,8 +9,6 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["OUTCOMES", "Run"]
-
 OUTCOMES: Final = ("arrived", "stuck", "collision", "timeout", "missed")
 """How a run may end, in the order of the compiled core."""
 

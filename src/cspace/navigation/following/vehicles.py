@@ -8,8 +8,6 @@ from math import pi, tan
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 
-__all__ = ["Car", "Unicycle"]
-
 MAY_BE_ZERO = ("max_reverse", "rear", "radius")
 
 

@@ -22,9 +22,6 @@ from cspace.navigation.grid.search import (
 )
 from cspace.search import option
 
-__all__ = ["AStar", "Dijkstra", "FocalSearch", "GreedyBestFirst", "JumpPointSearch", "ThetaStar", "Wavefront"]
-__all__ += ["WeightedAStar"]
-
 
 class AStar(CostPlanner):
     """A*: expands the open node with the smallest f = g + h. The path over the cells of a grid is the

@@ -22,8 +22,6 @@ from cspace.navigation.route import STATUSES, Route, Stats, new_route
 from cspace.navigation.text import count_things
 from cspace.search import option
 
-__all__ = ["DStarLite", "DStarLiteSearch"]
-
 
 class DStarLite:
     """A robot on its way over a grid of which it learns more.

@@ -24,8 +24,6 @@ from cspace.search import option
 if TYPE_CHECKING:
     import numpy.typing as npt
 
-__all__ = ["CORNERS", "METRICS", "CostPlanner", "GridPlanner", "SearchPlanner", "Settings"]
-__all__ += ["corners_option"]
 
 CORNERS: Final = {"never": 0, "one": 1, "always": 2}
 """When a diagonal step is allowed: both cells beside it are free, one is, always."""

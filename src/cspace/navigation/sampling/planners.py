@@ -14,8 +14,6 @@ from cspace.navigation.text import count_things, explain_division
 from cspace.search import draw_seed, option
 from cspace.tolerances import MOST_SAMPLES, SAMPLE_STEP
 
-__all__ = ["PRM", "RRT", "RRTStar", "Sampled"]
-
 
 class Sampled(NamedTuple):
     """What a planner that draws samples has done; all 0 where no path can exist."""

@@ -22,8 +22,6 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things, explain_division
 
-__all__ = ["VisibilityGraph", "VisibilityGraphSearch", "visibility_graph"]
-
 
 class VisibilityGraph(NamedTuple):
     """The corners of a world that see each other."""

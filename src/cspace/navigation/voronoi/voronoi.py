@@ -26,8 +26,6 @@ from cspace.navigation.text import explain_division
 from cspace.search import option
 from cspace.tolerances import DIAGRAM_CHORD
 
-__all__ = ["Voronoi", "VoronoiDiagram", "VoronoiEvidence", "voronoi_diagram"]
-
 PREFER: Final = ("clearance", "length")
 
 

@@ -1,3 +1,1 @@
 """Solids drawn by casting rays: shapes, lights and shadows."""
-
-__all__: list[str] = []

@@ -12,8 +12,6 @@ from cspace.plot.raytrace.layer import Layer
 from cspace.plot.raytrace.shadow import Shadow
 from cspace.plot.raytrace.view import Block, View, affine, centers
 
-__all__ = ["Canvas", "Floor"]
-
 GAP: Final = 0.03
 """Share of the picture's size by which a ghost must be before a solid to be drawn over it: links that two
 configurations share coincide, and neither should flicker through the other."""

@@ -16,8 +16,6 @@ from cspace.plot.raytrace.quadrics import Piece
 from cspace.plot.raytrace.solids import Solid, pieces
 from cspace.plot.raytrace.view import Block, View, centers
 
-__all__ = ["Layer", "look", "span"]
-
 SAMPLES: Final = (np.array([[1, 3, 5, 7, 9, 11, 13, 15], [5, 13, 1, 9, 15, 3, 11, 7]]) / 16.0)[:, :, None]
 """Where the rays of an outline pixel go through it: eight rooks that do not attack each other, (2, 8, 1)."""
 

@@ -15,8 +15,6 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.plot.raytrace.view import Rays, affine
 
-__all__ = ["Disc", "Piece", "Side", "Sphere"]
-
 LAST = np.array([0.0, 0.0, 1.0])
 
 

@@ -17,8 +17,6 @@ from cspace.plot.raytrace.shadow import shadow_of
 from cspace.plot.raytrace.solids import Solid
 from cspace.plot.raytrace.view import View
 
-__all__ = ["Group", "Scene", "artist_type", "scene_of"]
-
 
 @dataclass
 class Group:

@@ -11,8 +11,6 @@ from cspace.arrays import Array
 from cspace.plot.raytrace.solids import Solid, pieces
 from cspace.plot.raytrace.view import Rays, block_about, centers
 
-__all__ = ["Shadow", "shadow_of"]
-
 LIGHT: Final = np.array([0.10, -0.07, 1.0]) / np.linalg.norm([0.10, -0.07, 1.0])
 """Toward the light."""
 CELL: Final = 0.004

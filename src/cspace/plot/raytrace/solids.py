@@ -13,8 +13,6 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.plot.raytrace.quadrics import Disc, Piece, Side, Sphere
 
-__all__ = ["Solid", "arrow", "capsule", "cylinder", "pieces"]
-
 
 @dataclass(frozen=True)
 class Solid:

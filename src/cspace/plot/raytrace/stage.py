@@ -13,8 +13,6 @@ from cspace.plot.raytrace.scene import scene_of
 from cspace.plot.raytrace.solids import Solid, arrow
 from cspace.plot.raytrace.view import project
 
-__all__ = ["choose_view", "fit", "floor_under", "goal_pose", "set_up", "triads", "write_title"]
-
 ROOM: Final = 0.0925
 """Half the height of matplotlib's 3-D view in its projected units."""
 

@@ -9,8 +9,6 @@ import numpy as np
 
 from cspace.arrays import Array
 
-__all__ = ["Block", "Rays", "View", "affine", "block_about", "centers", "project"]
-
 Block = tuple[int, int, int, int]
 """A block of pixels: columns x0 to x1, rows y0 to y1."""
 PARALLEL_WAYS: Final = 1e-9
