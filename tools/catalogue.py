@@ -1,11 +1,11 @@
-"""Writes what is made from the catalogue files: src/cspace/robots/index.py and docs/catalogue.md.
+"""Writes what is made from the catalogue files: src/cspace/robots/index.json and docs/catalogue.md.
 
 Run it after a change in src/cspace/robots/catalogue: python tools/catalogue.py
 """
 
 from __future__ import annotations
 
-import re
+import json
 import sys
 from pathlib import Path
 
@@ -20,16 +20,6 @@ FOLDER = ROOT / "src/cspace/robots/catalogue"
 def descriptions() -> list[Description]:
     """Every robot of the catalogue, in the order of the names."""
     return [from_toml(path) for path in sorted(FOLDER.glob("*.toml"))]
-
-
-def plain(name: str) -> str:
-    """A name as it is compared: small letters and digits alone."""
-    return re.sub(r"[^a-z0-9]", "", name.lower())
-
-
-def plain_names(robot: Description) -> tuple[str, ...]:
-    """The name and the aliases as they are compared, each once."""
-    return tuple(dict.fromkeys(map(plain, (robot.name, *robot.provenance.aliases))))
 
 
 def joint_word(types: str) -> str:
@@ -60,27 +50,8 @@ def rated(robots: list[Description]) -> int:
 
 
 def index_text(robots: list[Description]) -> str:
-    """The module cspace.robots.index."""
-    lines = [
-        '"""The rows of the catalogue, made from its files by tools/catalogue.py; change those."""',
-        "",
-        "from __future__ import annotations",
-        "",
-        "# fmt: off",
-        "# ruff: noqa: E501",
-        "Row = tuple[str, int, str, str, str, str, str, tuple[str, ...], tuple[str, ...]]",
-        '"""name, dof, joints, title, vendor, source, licence, aliases, missing."""',
-        "",
-        "ROWS: tuple[Row, ...] = (",
-        *(f"    {row(robot)!r}," for robot in robots),
-        ")",
-        "",
-        "PLAIN_NAMES: dict[str, str] = {",
-        *(f"    {name!r}: {robot.name!r}," for robot in robots for name in plain_names(robot)),
-        "}",
-        '"""Every name and alias in small letters and digits alone, with the name that it means."""',
-    ]
-    return "\n".join(lines) + "\n"
+    """The rows of cspace.robots, one line each: the fields of CatalogueRow."""
+    return "[\n" + ",\n".join(json.dumps(row(robot), ensure_ascii=False) for robot in robots) + "\n]\n"
 
 
 def page_text(robots: list[Description]) -> str:
@@ -117,7 +88,7 @@ def outputs() -> dict[Path, str]:
     """Each file that is made, and its text."""
     robots = descriptions()
     return {
-        ROOT / "src/cspace/robots/index.py": index_text(robots),
+        ROOT / "src/cspace/robots/index.json": index_text(robots),
         ROOT / "docs/catalogue.md": page_text(robots),
     }
 

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Final
 
 from cspace.errors import InputTypeError, UnknownNameError, suggest
 from cspace.model import Description, from_toml
-from cspace.robots.index import PLAIN_NAMES, ROWS
 
 FOLDER: Final = Path(__file__).parent / "catalogue"
+INDEX: Final = Path(__file__).parent / "index.json"
+"""The rows of the catalogue, made from its files by tools/catalogue.py; change those."""
 SEPARATORS: Final = r"[\s._-]"
 """Separators that are allowed anywhere in the name of a robot."""
 
@@ -36,14 +39,17 @@ class CatalogueRow:
     missing: tuple[str, ...]
 
 
+@cache
 def rows() -> tuple[CatalogueRow, ...]:
     """Every robot of the catalogue, by name."""
-    return tuple(CatalogueRow(*row) for row in ROWS)
+    read = json.loads(INDEX.read_text(encoding="utf-8"))
+    return tuple(CatalogueRow(*row[:-2], *map(tuple, row[-2:])) for row in read)
 
 
+@cache
 def names() -> tuple[str, ...]:
     """The names of the robots in the catalogue, in order, without aliases."""
-    return tuple(row[0] for row in ROWS)
+    return tuple(row.name for row in rows())
 
 
 def find(name: str) -> str:
@@ -55,14 +61,14 @@ def find(name: str) -> str:
     """
     _check_text(name, "a robot of the catalogue")
     key = _key(name)
-    found = PLAIN_NAMES.get(key) or _after_its_maker(key)
+    found = _plain_names().get(key) or _after_its_maker(key)
     if found is not None:
         return found
-    known = [known for row in ROWS for known in (row[0], *row[7])]
+    known = [known for row in rows() for known in (row.name, *row.aliases)]
     text = str(suggest("robot", name, known, owner="the catalogue"))
     text = text[: text.rindex(f" {len(known)} robots")]
     raise UnknownNameError(
-        f"{text} cs.robots.names() lists all {len(ROWS)}, cs.robots.search() searches them;"
+        f"{text} cs.robots.names() lists all {len(rows())}, cs.robots.search() searches them;"
         " the path of a .urdf or .toml file is accepted too"
     )
 
@@ -91,16 +97,22 @@ def plain(name: str) -> str:
 
 
 def _key(name: str) -> str:
-    """A name without capitals and separators, as in PLAIN_NAMES."""
+    """A name without capitals and separators."""
     return re.sub(SEPARATORS, "", name.lower())
+
+
+@cache
+def _plain_names() -> dict[str, str]:
+    """The key of every name and alias, with the name that it means."""
+    return {_key(known): row.name for row in rows() for known in (row.name, *row.aliases)}
 
 
 def _after_its_maker(key: str) -> str | None:
     """The robot whose maker, whole or by the first word, and one of whose names make up `key`."""
-    for name, _, _, _, vendor, *_ in ROWS:
-        for maker in {_key(vendor), _key(vendor.split()[0])}:
-            if key.startswith(maker) and PLAIN_NAMES.get(key[len(maker) :]) == name:
-                return name
+    for row in rows():
+        for maker in {_key(row.vendor), _key(row.vendor.split()[0])}:
+            if key.startswith(maker) and _plain_names().get(key[len(maker) :]) == row.name:
+                return row.name
     return None
 
 
