@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 import argparse
+import re
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
+from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table
 from cspace.cli.robot import load, need_chain
-from cspace.cli.symbols import ZERO, angle_text, entry_texts, link_matrix
 
 if TYPE_CHECKING:
+    from cspace.math import TrigMatrix
     from cspace.model import DHTable, LinkMatrices
 
-
+ZERO: Final = 1e-9
+"""Factors below this are printed as 0: the cosine of a right angle."""
 EXAMPLES: Final = """
 cspace dh ur5e
 cspace dh puma560 --convention modified --deg
@@ -50,22 +53,22 @@ def run(args: argparse.Namespace, out: Output) -> int:
     robot = load(args)
     need_chain(robot)
     table = to_dh(robot.chain, convention=args.convention)
-    links = link_matrices(table) if args.products else None
+    links = link_matrices(table)
     if out.as_json:
-        out.document(document(robot.name, table, links))
+        out.document(document(robot.name, links, products=args.products))
         return Exit.DONE
     if args.latex:
-        latex(out, table, degrees=args.deg)
+        latex(out, links, degrees=args.deg)
     elif args.markdown:
-        markdown(out, table, degrees=args.deg)
+        markdown(out, links, degrees=args.deg)
     else:
-        show(out, robot.name, table, degrees=args.deg)
-    for text in products(links, args) if links is not None else ():
+        show(out, robot.name, links, degrees=args.deg)
+    for text in product_texts(links, args) if args.products else ():
         out.line(text)
     return Exit.DONE
 
 
-def products(links: LinkMatrices, args: argparse.Namespace) -> list[str]:
+def product_texts(links: LinkMatrices, args: argparse.Namespace) -> list[str]:
     """The products of the link matrices in the selected form."""
     if args.latex:
         return links.product_formulas()
@@ -74,8 +77,14 @@ def products(links: LinkMatrices, args: argparse.Namespace) -> list[str]:
     return [f"\n{text}" for text in links.product_texts()]
 
 
-def document(name: str, table: DHTable, links: LinkMatrices | None) -> dict[str, Any]:
+def entry_texts(A: TrigMatrix) -> list[list[str]]:
+    """The entries (4, 4) of a link matrix as texts in ASCII."""
+    return [[text.replace("−", "-") for text in row] for row in A.texts(least=ZERO, least_shift=ZERO)]
+
+
+def document(name: str, links: LinkMatrices, *, products: bool) -> dict[str, Any]:
     """The table as JSON data, [rad] and [m]."""
+    table = links.table
     columns = zip(
         table.joint_names, table.joint_types, table.alpha, table.a, table.d, table.theta_offset, strict=True
     )
@@ -98,10 +107,15 @@ def document(name: str, table: DHTable, links: LinkMatrices | None) -> dict[str,
         "base": table.T_base.tolist(),
         "tool": table.T_tool.tolist(),
         "deviation": float(table.deviation),
-        "matrices": [link_matrix(table, i).tolist() for i in range(len(table))],
-        "symbols": [entry_texts(table, i) for i in range(len(table))],
-        **({} if links is None else {"products": [T.texts() for T in links.products[1:]]}),
+        "matrices": numbers_at_zero(table).tolist(),
+        "symbols": [entry_texts(A) for A in links.matrices],
+        **({"products": [T.texts() for T in links.products[1:]]} if products else {}),
     }
+
+
+def numbers_at_zero(table: DHTable) -> Array:
+    """The link matrices (rows, 4, 4) with every joint at zero."""
+    return table.matrices(np.zeros(len(table) - table.joint_types.count("F")))
 
 
 def headings(convention: str) -> list[str]:
@@ -132,8 +146,23 @@ def signed(text: str) -> str:
     return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
 
 
-def show(out: Output, name: str, table: DHTable, *, degrees: bool) -> None:
+def angle_text(angle: float, *, degrees: bool) -> str:
+    """An angle in the selected unit; in radians simple fractions of 2π are written with pi."""
+    if abs(angle) < ZERO:
+        return "0"
+    if degrees:
+        return f"{np.degrees(angle):.6g}"
+    for divisor in (1, 2, 3, 4, 6):
+        times = angle * divisor / np.pi
+        if abs(times - round(times)) < ZERO:
+            sign, count = "-" if times < 0 else "", abs(round(times))
+            return sign + ("pi" if count == 1 else f"{count}pi") + ("" if divisor == 1 else f"/{divisor}")
+    return f"{angle:.6g}"
+
+
+def show(out: Output, name: str, links: LinkMatrices, *, degrees: bool) -> None:
     """The table and the matrices for people."""
+    table = links.table
     out.heading(
         f"{name}, {table.convention} convention, angles in {'deg' if degrees else 'rad'}, lengths in m"
     )
@@ -149,18 +178,19 @@ def show(out: Output, name: str, table: DHTable, *, degrees: bool) -> None:
             out.matrix(T, text)
     out.line()
     out.line("ck and sk stand for cos and sin of theta(k)")
-    for i in range(len(table)):
-        texts = entry_texts(table, i)
+    for i, A in enumerate(numbers_at_zero(table)):
+        texts = entry_texts(links.matrices[i])
         widths = [max(len(row[j]) for row in texts) for j in range(4)]
         out.heading(f"A{i + 1}")
-        for symbols, numbers in zip(texts, link_matrix(table, i), strict=True):
+        for symbols, numbers in zip(texts, A, strict=True):
             left = "  ".join(f"{text:>{width}}" for text, width in zip(symbols, widths, strict=True))
             right = "  ".join(f"{x:9.5f}" for x in np.where(np.abs(numbers) < 5e-6, 0.0, numbers))
             out.line(f"  {left}      q = 0: {right}")
 
 
-def latex(out: Output, table: DHTable, *, degrees: bool) -> None:
+def latex(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
     """The table as a LaTeX array and the matrices."""
+    table = links.table
     index = "i-1" if table.convention == "modified" else "i"
     lines = [
         r"\begin{array}{c|cccc}",
@@ -173,35 +203,31 @@ def latex(out: Output, table: DHTable, *, degrees: bool) -> None:
             cells[4] += "" if cells[4].startswith("q_") and " " not in cells[4] else r"^\circ"
         lines.append(" & ".join(cells) + r" \\")
     lines.append(r"\end{array}")
-    lines += [matrix_latex(table, i) for i in range(len(table))]
-    for line in lines:
+    for line in [*lines, *matrix_formulas(links)]:
         out.line(line)
 
 
-def matrix_latex(table: DHTable, i: int) -> str:
-    """One link matrix in LaTeX."""
-    rows = r" \\ ".join(" & ".join(with_index(text) for text in row) for row in entry_texts(table, i))
-    upper = f"{{}}^{{{i}}}A_{{{i + 1}}}"
-    return rf"{upper} = \begin{{bmatrix}} {rows} \end{{bmatrix}}"
+def matrix_formulas(links: LinkMatrices) -> list[str]:
+    """The link matrices in LaTeX."""
+    return [
+        rf"{{}}^{{{i}}}A_{{{i + 1}}} = {A.latex(least=ZERO, least_shift=ZERO)}"
+        for i, A in enumerate(links.matrices)
+    ]
 
 
 def with_index(text: str) -> str:
-    """c1 as c_{1}, s12 as s_{12}, q3 as q_{3}."""
-    return " ".join(
-        f"{sign}{word[0]}_{{{word[1:]}}}" if word[:1] in "csq" and word[1:].isdigit() else sign + word
-        for sign, word in (
-            ("-", w[1:]) if w.startswith("-") and len(w) > 1 else ("", w) for w in text.split(" ")
-        )
-    )
+    """The variable of a row in LaTeX: q3 as q_{3}."""
+    return re.sub(r"\bq(\d+)", r"q_{\1}", text)
 
 
-def markdown(out: Output, table: DHTable, *, degrees: bool) -> None:
+def markdown(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
     """The table as a Markdown table and the matrices as formulas."""
+    table = links.table
     titles = headings(table.convention)
     out.line("| " + " | ".join(titles) + " |")
     out.line("|" + "---|" * len(titles))
     for i in range(len(table)):
         out.line("| " + " | ".join(row_texts(table, i, degrees=degrees)) + " |")
-    for i in range(len(table)):
+    for formula in matrix_formulas(links):
         out.line()
-        out.line(f"$${matrix_latex(table, i)}$$")
+        out.line(f"$${formula}$$")
