@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -38,42 +39,40 @@ SUMMARIES = {
 }
 
 
-def survey_of(robot: KinematicModel) -> dict[str, Any]:
-    """What an explanation says of every arm: its joints, its length, what its axes share."""
+def survey_of(robot: KinematicModel) -> IkPlan:
+    """What an explanation says of every arm: its joints, its length, what its axes share. No steps yet."""
     chain = robot.chain
     measurable = chain.dof == len(chain.joint_types) and len(chain.joint_types) > 0
     length = arm_length(robot) if measurable else 1.0
     if isinstance(robot, _core.SolverBase):
         length = _core._ik_geometry(robot)["length"]
-    return {
-        "robot": robot.name,
-        "joints": tuple(chain.joint_names),
-        "length": length,
-        "relations": relations(chain, length),
-        "invariant_points": invariant_points(chain, length),
-        "invariant_directions": invariant_directions(chain, length),
-    }
+    return IkPlan(
+        robot.name,
+        tuple(chain.joint_names),
+        length=length,
+        relations=relations(chain, length),
+        invariant_points=invariant_points(chain, length),
+        invariant_directions=invariant_directions(chain, length),
+    )
 
 
-def settled_plan(solver: Solver, common: dict[str, Any], numbers: tuple[int, ...] | None = None) -> IkPlan:
+def settled_plan(solver: Solver, survey: IkPlan, numbers: tuple[int, ...] | None = None) -> IkPlan:
     """An arm of up to six joints. numbers: by which (from 1) the user knows them, 1, 2, … unless given."""
     if solver.is_redundant:
-        return refused_plan(common, explain_missing_form(solver))
+        return refused_plan(survey, explain_missing_form(solver))
     chain = solver.chain
     seen, inside = _core._ik_geometry(solver), _core._ik_plan(solver)
-    common = {**common, "length": seen["length"]}
+    survey = replace(survey, length=seen["length"])
     if "form" in inside and seen["family"] in SUMMARIES:
-        return form_plan(Form.of(seen, inside["form"]), seen, common, numbers)
+        return form_plan(Form.of(seen, inside["form"]), seen, survey, numbers)
     if "loop" in inside:
-        return general_plan(Loop.of(inside["loop"]), common)
-    return few_joint_plan(chain, common)
+        return general_plan(Loop.of(inside["loop"]), survey)
+    return few_joint_plan(chain, survey)
 
 
-def refused_plan(common: dict[str, Any], reason: str) -> IkPlan:
+def refused_plan(survey: IkPlan, reason: str) -> IkPlan:
     """An arm that nothing solves: what its axes share."""
-    return IkPlan(
-        **common, family="none", summary="`robot.ik` does not solve this arm.", branches=0, reason=reason
-    )
+    return replace(survey, summary="`robot.ik` does not solve this arm.", reason=reason)
 
 
 ONE_CALL = (
@@ -88,7 +87,7 @@ COMPLETED = " of the completed arm; the arm's own are those with its virtual joi
 
 
 def form_plan(
-    form: Form, seen: dict[str, Any], common: dict[str, Any], numbers: tuple[int, ...] | None = None
+    form: Form, seen: dict[str, Any], survey: IkPlan, numbers: tuple[int, ...] | None = None
 ) -> IkPlan:
     """An arm with a closed form."""
     family = seen["family"]
@@ -108,14 +107,14 @@ def form_plan(
     name = "spherical wrist" if family == SPHERICAL_WRIST else "three parallel axes"
     if form.reversed:
         summary = f"read from the tip, {summary}"
-    return IkPlan(
-        **common,
+    return replace(
+        survey,
         family=name,
         summary=f"{name}. {summary[0].upper()}{summary[1:]}.",
         branches=ways(steps),
         counted=COMPLETED if seen["virtual_joints"] else "",
         notes=notes_of(form, seen),
-        tables={"Denavit–Hartenberg form of the solver": form.table(common["joints"], numbers)},
+        tables={"Denavit–Hartenberg form of the solver": form.table(survey.joints, numbers)},
         matrices={"B": form.base, "C": form.tool},
         constants=constants,
         steps=tuple(steps),
@@ -153,40 +152,44 @@ def notes_of(form: Form, seen: dict[str, Any]) -> tuple[str, ...]:
     return tuple(notes)
 
 
-def general_plan(loop: Loop, common: dict[str, Any]) -> IkPlan:
+def general_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     """Up to six joints, revolute or prismatic, without a closed form on lanes."""
-    n = len(common["joints"])
-    notes = []
+    n = len(survey.joints)
+    notes: tuple[str, ...] = ()
     if n < 6:
-        notes.append(
+        notes = (
             f"Virtual joints ({', '.join(str(i + 1) for i in range(n, 6))}) behind the last complete the "
             "arm to six. A pose that the arm reaches is one that the completed arm reaches with its "
-            "virtual joints at zero."
+            "virtual joints at zero.",
         )
+        survey = replace(survey, counted=COMPLETED)
     if loop.wrist is not None:
-        return wrist_plan(loop, common, notes)
-    if loop.slides == 3:
-        return slides_plan(loop, common, notes)
-    if loop.perturbed_arms or not loop.order:
-        return perturbed_plan(loop, common, notes)
-    steps, count = loop.steps(), len(loop.order)
-    notes += [
-        loop_note(loop),
-        f"{count} of the twelve formulations {'is' if count == 1 else 'are'} regular for this arm; they "
-        "are asked in this order until one certifies that nothing is missing.",
-    ]
-    return IkPlan(
-        **{**common, "length": 1.0},
+        return wrist_plan(loop, replace(survey, notes=notes))
+    survey = replace(
+        survey,
+        length=1.0,
         family="general",
+        notes=(*notes, loop_note(loop)),
+        matrices=loop.matrices(),
+        _values=loop.values,
+    )
+    if loop.slides == 3:
+        return slides_plan(loop, survey)
+    if loop.perturbed_arms or not loop.order:
+        return perturbed_plan(loop, survey)
+    steps, count = loop.steps(), len(loop.order)
+    asked = (
+        f"{count} of the twelve formulations {'is' if count == 1 else 'are'} regular for this arm; they "
+        "are asked in this order until one certifies that nothing is missing."
+    )
+    return replace(
+        survey,
         summary="joints in general position. No closed form: all but one angle are eliminated from the "
         "loop that arm and goal close.",
         branches=ways(steps),
-        counted=COMPLETED if n < 6 else "",
-        notes=tuple(notes),
-        tables={"Formulations": loop.formulations(common["joints"])},
-        matrices=loop.matrices(),
+        notes=(*survey.notes, asked),
+        tables={"Formulations": loop.formulations(survey.joints)},
         steps=tuple(steps),
-        _values=loop.values,
     )
 
 
@@ -199,7 +202,7 @@ def loop_note(loop: Loop) -> str:
     )
 
 
-def perturbed_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
+def perturbed_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     """An arm that is solved through arms beside it."""
     most = 8 if loop.slides == 2 else 16
     step = Step(
@@ -210,35 +213,26 @@ def perturbed_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPl
         "loses beside a fold the other one keeps.",
         (loop.chain_equation(),),
     )
-    return IkPlan(
-        **{**common, "length": 1.0},
-        family="general",
+    return replace(
+        survey,
         summary="joints in general position, with axes parallel, square or meeting in such a way that "
         "every polynomial in a hidden angle vanishes or has double roots only. Two neighbours of the arm, "
         "its axes disturbed a little to either side, have neither fault; they are solved by elimination "
         "to one hidden angle.",
         branches=most,
-        counted=COMPLETED if len(common["joints"]) < 6 else "",
-        notes=(*notes, loop_note(loop)),
-        matrices=loop.matrices(),
         steps=(step,),
-        _values=loop.values,
     )
 
 
-def slides_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
+def slides_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     """Three prismatic joints: the orientation first."""
     steps = orientation_steps(loop.six, loop.chain_equation())
-    return IkPlan(
-        **{**common, "length": 1.0},
+    return replace(
+        survey,
         family="orientation first",
         summary="three revolute joints determine the orientation, three prismatic joints the position.",
         branches=ways(steps),
-        counted=COMPLETED if len(common["joints"]) < 6 else "",
-        notes=(*notes, loop_note(loop)),
-        matrices=loop.matrices(),
         steps=tuple(steps),
-        _values=loop.values,
     )
 
 
@@ -248,8 +242,9 @@ def behind(names: tuple[str, ...], *, reverse: bool) -> tuple[str, ...]:
     return whole[::-1] if reverse else whole
 
 
-def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
+def wrist_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     """A wrist behind three joints of any kind."""
+    notes = list(survey.notes)
     arm = loop.six.reversed() if loop.wrist else loop.six
     if loop.wrist:
         notes.append(
@@ -269,11 +264,10 @@ def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
         return joint_values(arm.joint_types, whole[..., ::-1] if loop.wrist else whole) | goal_values(goal)
 
     steps = placed_wrist_steps(arm, centre)
-    return IkPlan(
-        **common,
+    return replace(
+        survey,
         family="wrist behind three joints",
-        counted=COMPLETED if len(common["joints"]) < 6 else "",
-        tables={"Joints at zero": arm.table(behind(common["joints"], reverse=bool(loop.wrist)))},
+        tables={"Joints at zero": arm.table(behind(survey.joints, reverse=bool(loop.wrist)))},
         summary="three axes meet in a point, the wrist: the three joints before it, some of which slide, "
         "place it, and the wrist makes the orientation.",
         branches=ways(steps),
@@ -283,7 +277,7 @@ def wrist_plan(loop: Loop, common: dict[str, Any], notes: list[str]) -> IkPlan:
     )
 
 
-def few_joint_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
+def few_joint_plan(chain: Any, survey: IkPlan) -> IkPlan:
     """Arms of up to three joints."""
     steps = few_joint_steps(chain)
     turning = chain.joint_types.count("R")
@@ -307,10 +301,10 @@ def few_joint_plan(chain: Any, common: dict[str, Any]) -> IkPlan:
     def values(q: Array, T: Array) -> dict[str, Any]:
         return few_joint_values(chain, q, T)
 
-    return IkPlan(
-        **common,
+    return replace(
+        survey,
         family="fewer than six joints",
-        tables={"Joints at zero": Screws.of(chain).table(common["joints"])},
+        tables={"Joints at zero": Screws.of(chain).table(survey.joints)},
         summary=f"an arm of {len(chain.joint_types)} joint{'s' if len(chain.joint_types) > 1 else ''} "
         f"({chain.joint_types}), solved directly.",
         branches=ways(steps),

@@ -49,9 +49,9 @@ class Findings:
 
     robot: str
     joints: tuple[str, ...]
-    family: str
-    summary: str
-    branches: int
+    family: str = "none"
+    summary: str = ""
+    branches: int = 0
     reason: str = ""
     relations: tuple[Relation, ...] = ()
     invariant_points: tuple[InvariantPoint, ...] = ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
@@ -88,7 +88,7 @@ class Split:
         return np.asarray(np.linalg.inv(before) @ T @ behind, dtype=np.float64)
 
 
-def locked_plan(solver: Solver, locked: Mapping[int, float], common: dict[str, Any]) -> IkPlan:
+def locked_plan(solver: Solver, locked: Mapping[int, float], survey: IkPlan) -> IkPlan:
     """An arm with redundant joints, or with locked joints. locked: joints that the user holds, and where."""
     others = solver.lock(dict(locked))
     redundancy_degree = others.redundancy_degree()
@@ -96,8 +96,9 @@ def locked_plan(solver: Solver, locked: Mapping[int, float], common: dict[str, A
     at = {**{k: typical(solver, k) for k in default}, **locked}
     split = Split(solver, tuple(sorted(at)), at)
     others = split.others()
-    bare = {**common, "joints": tuple(others.joint_names), "relations": (), "invariant_points": ()}
-    inner = settled_plan(others, {**bare, "invariant_directions": ()}, tuple(k + 1 for k in split.moving))
+    inner = settled_plan(
+        others, replace(bare_survey(others), length=survey.length), tuple(k + 1 for k in split.moving)
+    )
     steps = swivel_of(solver) if not locked else ()
     tables = dict(inner.tables)
     if redundancy_degree == 1 and not locked:
@@ -105,8 +106,9 @@ def locked_plan(solver: Solver, locked: Mapping[int, float], common: dict[str, A
     notes = [*reasons(split, default), *numbering(split), *inner.notes]
     ends = [k for k in split.locked if k not in split.between]
     first = (locked_step(split, ends),) if inner else ()
-    return IkPlan(
-        **{**common, "length": inner.length},
+    return replace(
+        survey,
+        length=inner.length,
         family="redundant" if redundancy_degree else "locked",
         summary=summary(split, default, redundancy_degree, inner),
         branches=inner.branches if inner else solver.max_solutions,
@@ -202,7 +204,7 @@ def choices(solver: Solver, default: tuple[int, ...]) -> Rows:
     rows = []
     for k, name in enumerate(solver.joint_names):
         split = Split(solver, (k,), {k: typical(solver, k)})
-        others = settled_plan(split.others(), bare_common(solver))
+        others = settled_plan(split.others(), bare_survey(solver))
         place = "between others" if split.between else "at an end"
         kind = others.family if others else "descents from many starts"
         count = str(others.branches) if others else "a sample"
@@ -210,16 +212,9 @@ def choices(solver: Solver, default: tuple[int, ...]) -> Rows:
     return Rows(("joint", "place", "the six others", "solutions up to", "by default"), rows)
 
 
-def bare_common(solver: Solver) -> dict[str, Any]:
-    """For plans of which only the family is asked."""
-    return {
-        "robot": solver.name,
-        "joints": tuple(f"{i}" for i in range(len(solver.joint_names))),
-        "length": 1.0,
-        "relations": (),
-        "invariant_points": (),
-        "invariant_directions": (),
-    }
+def bare_survey(solver: Solver) -> IkPlan:
+    """An arm without what its axes share: for plans inside of plans."""
+    return IkPlan(solver.name, tuple(solver.joint_names))
 
 
 def answers(split: Split, default: tuple[int, ...], others: Solver) -> tuple[str, ...]:
