@@ -23,23 +23,23 @@ MOST_TERMS: Final = 16
 
 def blocks(plan: Findings) -> list[page.Block]:
     """The page of an explanation."""
-    out: list[page.Block] = [page.Paragraph(f"**{plan.robot}**: {plan.summary}")]
+    out: list[page.Block] = [page.paragraph(f"**{plan.robot}**: {plan.summary}")]
     if plan.reason:
-        out.append(page.Paragraph(plan.reason))
+        out.append(page.paragraph(plan.reason))
     out += geometry_blocks(plan)
-    out += [page.Paragraph(note) for note in plan.notes]
-    for name, rows in plan.tables.items():
-        out += [page.Heading(name), rows]
+    out += [page.paragraph(note) for note in plan.notes]
+    for name, table in plan.tables.items():
+        out += [page.heading(name), table]
     for name, T in plan.matrices.items():
-        out.append(page.Formulas([(matrix_text(name, T), matrix_latex(name, T))]))
+        out.append(page.formulas([(matrix_text(name, T), matrix_latex(name, T))]))
     if plan.steps:
-        out += [page.Heading("Steps"), *step_blocks(plan, plan.steps)]
-        out.append(page.Paragraph(f"Together {total(plan.steps)} solutions{plan.counted}."))
+        out += [page.heading("Steps"), *step_blocks(plan, plan.steps)]
+        out.append(page.paragraph(f"Together {total(plan.steps)} solutions{plan.counted}."))
     for name, steps in plan.other_ways.items():
-        out += [page.Heading(name), *step_blocks(plan, steps)]
-        out.append(page.Paragraph(f"Together {total(steps)} solutions."))
+        out += [page.heading(name), *step_blocks(plan, steps)]
+        out.append(page.paragraph(f"Together {total(steps)} solutions."))
     if plan.calls:
-        out += [page.Heading("What calls do"), *map(page.Paragraph, plan.calls)]
+        out += [page.heading("What calls do"), *map(page.paragraph, plan.calls)]
     return out
 
 
@@ -50,7 +50,7 @@ def step_blocks(plan: Findings, steps: Sequence[Step]) -> list[page.Block]:
         ways = "" if step.ways == 1 else f"up to {step.ways} ways"
         how = ", ".join(word for word in (ways, step.method) if word)
         how = f" ({how})" if how else ""
-        out.append(page.Paragraph(f"{number}. {step.finds}{how}. {step.words}"))
+        out.append(page.paragraph(f"{number}. {step.finds}{how}. {step.words}"))
         out += equation_blocks(plan, step)
     return out
 
@@ -78,15 +78,15 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
             for each in plan.relations
         ]
         head = ("axes", "joints", "angle [°]", "distance [m]", "relation")
-        out += [page.Heading("Neighbouring axes"), page.Rows(head, rows)]
+        out += [page.heading("Neighbouring axes"), page.table(head, rows)]
     for point in plan.invariant_points:
         meet = f"meet in a point, ({vector(point.place)}) m at zero{missed(point.miss, 'm')}"
         words = f"Axes {listed(point.joints)} {meet}: their joints do not move it."
-        out.append(page.Paragraph(words))
+        out.append(page.paragraph(words))
     for each in plan.invariant_directions:
         parallel = f"are parallel to ({vector(each.direction)}) at zero{missed(each.miss, 'rad')}"
         still = "their joints change neither heights along it nor angles with it."
-        out.append(page.Paragraph(f"Axes {listed(each.joints)} {parallel}: {still}"))
+        out.append(page.paragraph(f"Axes {listed(each.joints)} {parallel}: {still}"))
     return out
 
 
@@ -106,7 +106,7 @@ def equation_blocks(plan: Findings, step: Step) -> list[page.Block]:
     out: list[page.Block] = []
     general = [line(plan, each, numbers=False) for each in symbols if refers_to_the_arm(plan, each)]
     if general:
-        out.append(page.Formulas(general))
+        out.append(page.formulas(general))
     special = [
         line(plan, each, numbers=True)
         for each in symbols
@@ -114,8 +114,8 @@ def equation_blocks(plan: Findings, step: Step) -> list[page.Block]:
     ]
     if special:
         if general:
-            out.append(page.Paragraph("With this arm's numbers:"))
-        out.append(page.Formulas(special))
+            out.append(page.paragraph("With this arm's numbers:"))
+        out.append(page.formulas(special))
     return out
 
 

@@ -57,7 +57,7 @@ class Findings:
     invariant_points: tuple[InvariantPoint, ...] = ()
     invariant_directions: tuple[InvariantDirection, ...] = ()
     notes: tuple[str, ...] = ()
-    tables: Mapping[str, page.Rows] = field(default_factory=dict)
+    tables: Mapping[str, page.Block] = field(default_factory=dict)
     matrices: Mapping[str, Array] = field(default_factory=dict)
     constants: Mapping[str, float] = field(default_factory=dict)
     steps: tuple[Step, ...] = ()

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.explain.page import Rows
+from cspace.ik.explain.page import Block, table
 from cspace.math import Angle, Product, TrigMatrix, TrigPolynomial
 from cspace.model.text import shown
 
@@ -98,7 +98,7 @@ class Form:
         rotation = [[goal[i, j] if 3 not in (i, j) else TrigPolynomial() for j in range(4)] for i in range(4)]
         return TrigMatrix(rows) @ TrigMatrix(rotation)
 
-    def table(self, names: tuple[str, ...], numbers: tuple[int, ...] | None = None) -> Rows:
+    def table(self, names: tuple[str, ...], numbers: tuple[int, ...] | None = None) -> Block:
         """The table of the form with the joints behind it. numbers: theirs in the arm, else 1, 2, …"""
         rows = []
         for i, joint in enumerate(self.joint):
@@ -106,7 +106,7 @@ class Form:
             alpha = np.degrees(np.arctan2(self.sa[i], self.ca[i]))
             entries = (shown(x) for x in (alpha, self.a[i], self.d[i]))
             rows.append((f"{i + 1}", name, *entries, self.angle_text(i, numbers)))
-        return Rows(("i", "joint", r"$\alpha_i$ [°]", "$a_i$ [m]", "$d_i$ [m]", "$t_i$ [°]"), rows)
+        return table(("i", "joint", r"$\alpha_i$ [°]", "$a_i$ [m]", "$d_i$ [m]", "$t_i$ [°]"), rows)
 
     def angle_text(self, i: int, numbers: tuple[int, ...] | None) -> str:
         """t_i from the joint's own angle: $q_2$ + 180."""

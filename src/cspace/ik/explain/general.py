@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.page import Rows
+from cspace.ik.explain.page import Block, table
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 
@@ -64,7 +64,7 @@ class Loop:
         """The matrices that the equations name."""
         return {"F": self.first, **{f"L{i + 1}": link for i, link in enumerate(self.links)}, "H": self.last}
 
-    def formulations(self, names: tuple[str, ...]) -> Rows:
+    def formulations(self, names: tuple[str, ...]) -> Block:
         """The formulations that serve, in the order in which they are asked."""
         rows = []
         for k, (_, joints, backwards) in enumerate(self.order, 1):
@@ -79,7 +79,7 @@ class Loop:
                     "tip to base" if backwards else "base to tip",
                 )
             )
-        return Rows(("order", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows)
+        return table(("order", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows)
 
     def steps(self) -> list[Step]:
         """The steps of the formulation that is asked first."""

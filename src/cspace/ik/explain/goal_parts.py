@@ -11,7 +11,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import InputTypeError, suggest
-from cspace.ik.explain.page import Rows
+from cspace.ik.explain.page import Block, table
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import vector
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
@@ -119,7 +119,7 @@ def padded(q: Array, own: slice, dof: int) -> Array:
     return out
 
 
-def goal_joints(goal: PartialGoal, whole: Solver) -> Rows:
+def goal_joints(goal: PartialGoal, whole: Solver) -> Block:
     """Which motions stand for what the goal leaves open."""
     rows = []
     for i, (kind, axis) in enumerate((*goal.before, *goal.behind)):
@@ -127,4 +127,4 @@ def goal_joints(goal: PartialGoal, whole: Solver) -> Rows:
         what = "slides along" if kind == "P" else "turns about"
         where = "before the base" if before else "behind the tip"
         rows.append((f"`{goal.joint_names[i]}`", where, what, vector(axis), "base" if before else "tip"))
-    return Rows(("joint", "place", "does", "direction", "seen in"), rows)
+    return table(("joint", "place", "does", "direction", "seen in"), rows)

@@ -15,7 +15,7 @@ from cspace.errors import InputError
 from cspace.ik.explain.arm_angle import swivel_steps, swivel_values
 from cspace.ik.explain.describe import ONE_CALL, settled_plan
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.page import Rows
+from cspace.ik.explain.page import Block, table
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.ik.solver import MAX_SETTLED, Solver
@@ -199,7 +199,7 @@ def numbering(split: Split) -> list[str]:
     return [f"Joints 1 to {len(moving)} of the steps are those that move: {listed}."]
 
 
-def choices(solver: Solver, default: tuple[int, ...]) -> Rows:
+def choices(solver: Solver, default: tuple[int, ...]) -> Block:
     """For every joint that may be locked how the six others are solved."""
     rows = []
     for k, name in enumerate(solver.joint_names):
@@ -209,7 +209,7 @@ def choices(solver: Solver, default: tuple[int, ...]) -> Rows:
         kind = others.family if others else "descents from many starts"
         count = str(others.branches) if others else "a sample"
         rows.append((f"`{name}`", place, kind, count, "locked" if k in default else ""))
-    return Rows(("joint", "place", "the six others", "solutions up to", "by default"), rows)
+    return table(("joint", "place", "the six others", "solutions up to", "by default"), rows)
 
 
 def bare_survey(solver: Solver) -> IkPlan:

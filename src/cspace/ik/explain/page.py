@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import re
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Final, Protocol
+from typing import Final
 
 from cspace.model.text import aligned
 
@@ -45,17 +45,13 @@ IN_LATEX: Final = (
 """What a character of prose is in LaTeX."""
 
 
-class Block(Protocol):
-    """A part of a page."""
+@dataclass(frozen=True)
+class Block:
+    """A part of a page: as plain text, as Markdown with formulas between dollar signs, and as LaTeX."""
 
-    def plain(self) -> str:
-        """As plain text."""
-
-    def markdown(self) -> str:
-        """As Markdown with formulas between dollar signs."""
-
-    def latex(self) -> str:
-        """As LaTeX."""
+    plain: str
+    markdown: str
+    latex: str
 
 
 def plain_sentence(text: str) -> str:
@@ -85,102 +81,52 @@ def latex_sentence(text: str) -> str:
     return "".join(out)
 
 
-@dataclass(frozen=True)
-class Heading:
+def heading(words: str) -> Block:
     """A heading."""
-
-    words: str
-
-    def plain(self) -> str:
-        """See Block."""
-        return f"{plain_sentence(self.words)}\n{'-' * len(plain_sentence(self.words))}"
-
-    def markdown(self) -> str:
-        """See Block."""
-        return f"### {self.words}"
-
-    def latex(self) -> str:
-        """See Block."""
-        return rf"\subsection*{{{latex_sentence(self.words)}}}"
+    text = plain_sentence(words)
+    latex = rf"\subsection*{{{latex_sentence(words)}}}"
+    return Block(f"{text}\n{'-' * len(text)}", f"### {words}", latex)
 
 
-@dataclass(frozen=True)
-class Paragraph:
+def paragraph(words: str) -> Block:
     """Some sentences."""
-
-    words: str
-
-    def plain(self) -> str:
-        """See Block."""
-        return textwrap.fill(
-            plain_sentence(self.words), WIDTH, break_long_words=False, break_on_hyphens=False
-        )
-
-    def markdown(self) -> str:
-        """See Block."""
-        return self.words
-
-    def latex(self) -> str:
-        """See Block."""
-        return latex_sentence(self.words)
+    text = plain_sentence(words)
+    filled = textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
+    return Block(filled, words, latex_sentence(words))
 
 
-@dataclass(frozen=True)
-class Rows:
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Block:
     """A table. head: its headings; rows: cells as sentences."""
-
-    head: Sequence[str]
-    rows: Sequence[Sequence[str]]
-
-    def plain(self) -> str:
-        """See Block."""
-        return aligned([[plain_sentence(cell) for cell in row] for row in (self.head, *self.rows)])
-
-    def markdown(self) -> str:
-        """See Block."""
-        lines = [self.head, ["---"] * len(self.head), *self.rows]
-        return "\n".join("| " + " | ".join(cells) + " |" for cells in lines)
-
-    def latex(self) -> str:
-        """See Block."""
-        lines = [" & ".join(map(latex_sentence, row)) + r" \\" for row in (self.head, *self.rows)]
-        lines[0] += r" \hline"
-        return "\n".join([rf"\begin{{tabular}}{{{'r' * len(self.head)}}}", *lines, r"\end{tabular}"])
+    lines = [head, *rows]
+    latex = [" & ".join(map(latex_sentence, row)) + r" \\" for row in lines]
+    latex[0] += r" \hline"
+    return Block(
+        aligned([[plain_sentence(cell) for cell in row] for row in lines]),
+        "\n".join("| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *lines[1:]]),
+        "\n".join([rf"\begin{{tabular}}{{{'r' * len(head)}}}", *latex, r"\end{tabular}"]),
+    )
 
 
-@dataclass(frozen=True)
-class Formulas:
+def formulas(lines: Sequence[tuple[str, str]]) -> Block:
     """Equations one below the other. lines: plain text and LaTeX, the latter with an & to align by."""
-
-    lines: Sequence[tuple[str, str]]
-
-    def plain(self) -> str:
-        """See Block."""
-        return "\n".join(f"    {text}" for text, _ in self.lines)
-
-    def markdown(self) -> str:
-        """See Block."""
-        return "$$\n" + self._aligned("aligned") + "\n$$"
-
-    def latex(self) -> str:
-        """See Block."""
-        return self._aligned("align*")
-
-    def _aligned(self, name: str) -> str:
-        body = " \\\\\n".join(formula for _, formula in self.lines)
-        return f"\\begin{{{name}}}\n{body}\n\\end{{{name}}}"
+    body = " \\\\\n".join(formula for _, formula in lines)
+    return Block(
+        "\n".join(f"    {text}" for text, _ in lines),
+        f"$$\n\\begin{{aligned}}\n{body}\n\\end{{aligned}}\n$$",
+        f"\\begin{{align*}}\n{body}\n\\end{{align*}}",
+    )
 
 
 def plain(blocks: Sequence[Block]) -> str:
     """A page as plain text."""
-    return "\n\n".join(block.plain() for block in blocks) + "\n"
+    return "\n\n".join(block.plain for block in blocks) + "\n"
 
 
 def markdown(blocks: Sequence[Block]) -> str:
     """A page as Markdown."""
-    return "\n\n".join(block.markdown() for block in blocks) + "\n"
+    return "\n\n".join(block.markdown for block in blocks) + "\n"
 
 
 def latex(blocks: Sequence[Block]) -> str:
     """A page as LaTeX, to be input between begin and end of a document with amsmath."""
-    return "\n\n".join(block.latex() for block in blocks) + "\n"
+    return "\n\n".join(block.latex for block in blocks) + "\n"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.explain.page import Rows
+from cspace.ik.explain.page import Block, table
 from cspace.math import Angle, TrigPolynomial
 from cspace.model.text import shown
 
@@ -30,7 +30,7 @@ class Screws:
         """The joints of a robot."""
         return cls(chain.joint_types, chain.axes, chain.points, chain.T_zero)
 
-    def table(self, names: Sequence[str]) -> Rows:
+    def table(self, names: Sequence[str]) -> Block:
         """Where the joints are at zero; a joint without a name is virtual."""
         rows = []
         for i, kind in enumerate(self.joint_types):
@@ -38,7 +38,7 @@ class Screws:
             point = vector(self.points[i]) if kind == "R" else "–"
             what = "turns" if kind == "R" else "slides"
             rows.append((f"{i + 1}", name, what, vector(self.axes[i]), point))
-        return Rows(("i", "joint", "does", "along", "through [m]"), rows)
+        return table(("i", "joint", "does", "along", "through [m]"), rows)
 
     def reversed(self) -> Screws:
         """The same joints read from the tip."""
