@@ -11,7 +11,8 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.conditions import common_point
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, numbers, turned, vector
+from cspace.ik.explain.placed_wrist import rotation_steps
+from cspace.ik.explain.screws import dotted, goal_values, joint_values, numbers, turned, vector
 from cspace.ik.redundancy.arm_angle import swivel
 from cspace.math import Equation, TrigPolynomial
 
@@ -73,65 +74,25 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
             "it: the angle about $l$ from the half-plane through the direction of axis 1 to the one through "
             "E. $K$, the rotation of joints 1 to 3, takes the triangle to its place.",
         ),
-        *ball_steps(chain, SHOULDER, "k", "K", "$K$ is made by joints 1 to 3."),
+        *ball_steps(chain, SHOULDER, "K", "$K$ is made by joints 1 to 3."),
         *ball_steps(
             chain,
             WRIST,
-            "m",
             "M",
             "$M$, what $K$ and joint 4 leave of the orientation of the goal, is made by joints 5 to 7.",
         ),
     )
 
 
-def ball_steps(
-    chain: Any, joints: tuple[int, int, int], name: str, matrix: str, words: str
-) -> tuple[Step, ...]:
+def ball_steps(chain: Any, joints: tuple[int, int, int], name: str, words: str) -> list[Step]:
     """Three axes through a point make a rotation whose entries are symbols."""
-    i, j, k = joints
-    h = chain.axes
-    entries = [[TrigPolynomial.symbol(f"{name}_{a}{b}") for b in (1, 2, 3)] for a in (1, 2, 3)]
-
-    def times(v: Array, *, back: bool = False) -> Vector:
-        rows = zip(*entries, strict=True) if back else iter(entries)
-        return [sum((float(v[n]) * row[n] for n in range(3)), TrigPolynomial()) for row in rows]
-
-    middle = turned(chain, j, numbers(h[k]))
-    onto = turned(chain, i, middle)
-    last = turned(chain, k, turned(chain, j, numbers(h[i]), back=True), back=True)
-    ahead, behind = times(h[k]), times(h[i], back=True)
-    first = Equation(dotted(h[i], ahead), dotted(h[i], middle))
-    return (
-        Step(
-            f"$t_{j + 1}$",
-            2,
-            "subproblem 4",
-            f"{words} The angle between axis {i + 1} and where it takes axis {k + 1} depends on $t_{j + 1}$ "
-            "alone.",
-            (first,),
-        ),
-        Step(
-            f"$t_{i + 1}$",
-            1,
-            "subproblem 1",
-            f"Where ${matrix}$ takes axis {k + 1}.",
-            equal(ahead, onto, but=first),
-        ),
-        Step(
-            f"$t_{k + 1}$",
-            1,
-            "subproblem 1",
-            f"Where ${matrix}^T$ takes axis {i + 1}.",
-            equal(behind, last, but=first),
-        ),
-    )
-
-
-def equal(left: Vector, right: Vector, *, but: Equation) -> tuple[Equation, ...]:
-    """The equations of two vectors, without those that say nothing, or the same as another."""
-    pairs = (Equation(a, b) for a, b in zip(left, right, strict=True))
-    said = (TrigPolynomial(), but.left - but.right, but.right - but.left)
-    return tuple(each for each in pairs if each.left - each.right not in said)
+    i, j, k = (joint + 1 for joint in joints)
+    entries = [[TrigPolynomial.symbol(f"{name.lower()}_{a}{b}") for b in (1, 2, 3)] for a in (1, 2, 3)]
+    ahead = [dotted(chain.axes[k - 1], row) for row in entries]
+    behind = [dotted(chain.axes[i - 1], list(column)) for column in zip(*entries, strict=True)]
+    angle = f"{words} The angle between axis {i} and where it takes axis {k} depends on $t_{j}$ alone."
+    onto = f"Where ${name}$ takes axis {k}.", f"Where ${name}^T$ takes axis {i}."
+    return rotation_steps(chain, joints, ahead, behind, (angle, *onto))
 
 
 def swivel_values(solver: Solver, q: Array, T: Array) -> dict[str, Any]:

@@ -3,6 +3,8 @@ general/position_first.hpp and orientation_first.hpp."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 from cspace.arrays import Array
@@ -37,45 +39,52 @@ def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
 
 def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...]) -> list[Step]:
     """Three revolute joints give the remaining rotation: the middle one first."""
-    i, j, k = turns
+    i, _, k = turns
     h, R_tip = arm.axes, arm.T_zero[:3, :3]
     left = goal_turns(R_tip.T @ h[k])  # where the last axis points, seen behind the joints before
     for joint in before:
         left = turned(arm, joint, left, back=True)
-    middle = turned(arm, j, numbers(h[k]))
     seen = tuple(Equation.definition(f"g_{AXES[n]}", left[n]) for n in range(3))
-    g = symbols("g")
     back = numbers(h[i])
     for joint in reversed(before):
         back = turned(arm, joint, back)
-    f = turned_back_by_goal(back, R_tip)
-    names = [f"$t_{n + 1}$" for n in turns]
-    onto = turned(arm, i, middle)
+    words = (
+        f"$g$ is the goal direction of axis {k + 1}, seen behind the joints before. Its angle with "
+        f"axis {i + 1} depends on $t_{turns[1] + 1}$ alone.",
+        f"Joint {i + 1} rotates axis {k + 1} to its goal.",
+        f"The same from the other side: the direction of axis {i + 1}, seen from the tip.",
+    )
+    return rotation_steps(arm, turns, symbols("g"), turned_back_by_goal(back, R_tip), words, seen)
+
+
+def rotation_steps(
+    arm: Any,
+    turns: tuple[int, int, int],
+    ahead: Vector,
+    behind: Vector,
+    words: tuple[str, str, str],
+    given: tuple[Equation, ...] = (),
+) -> list[Step]:
+    """Three axes make a rotation, the middle one first. ahead: where the rotation takes the last axis;
+    behind: where its inverse takes the first. words: of each step; given: equations before the first one."""
+    i, j, k = turns
+    h = arm.axes
+    middle = turned(arm, j, numbers(h[k]))
+    first = Equation(dotted(h[i], ahead), dotted(h[i], middle))
+    onto = equal(ahead, turned(arm, i, middle), but=first)
     last = turned(arm, k, turned(arm, j, numbers(h[i]), back=True), back=True)
     return [
-        Step(
-            names[1],
-            2,
-            "subproblem 4",
-            f"$g$ is the goal direction of axis {k + 1}, seen behind the joints before. Its angle with "
-            f"axis {i + 1} depends on {names[1]} alone.",
-            (*seen, Equation(dotted(h[i], g), dotted(h[i], middle))),
-        ),
-        Step(
-            names[0],
-            1,
-            "subproblem 1",
-            f"Joint {i + 1} rotates axis {k + 1} to its goal.",
-            tuple(Equation(g[n], onto[n]) for n in range(3)),
-        ),
-        Step(
-            names[2],
-            1,
-            "subproblem 1",
-            f"The same from the other side: the direction of axis {i + 1}, seen from the tip.",
-            tuple(Equation(f[n], last[n]) for n in range(3)),
-        ),
+        Step(f"$t_{j + 1}$", 2, "subproblem 4", words[0], (*given, first)),
+        Step(f"$t_{i + 1}$", 1, "subproblem 1", words[1], onto),
+        Step(f"$t_{k + 1}$", 1, "subproblem 1", words[2], equal(behind, last, but=first)),
     ]
+
+
+def equal(left: Vector, right: Vector, *, but: Equation) -> tuple[Equation, ...]:
+    """The equations of two vectors, without those that say nothing, or the same as another."""
+    pairs = (Equation(a, b) for a, b in zip(left, right, strict=True))
+    said = (TrigPolynomial(), but.left - but.right, but.right - but.left)
+    return tuple(each for each in pairs if each.left - each.right not in said)
 
 
 def turned_back_by_goal(v: Vector, R_tip: Array) -> Vector:
