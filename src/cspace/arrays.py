@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import operator
 from collections.abc import Mapping
 from typing import Any
 
@@ -13,6 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
+__all__ += ["whole_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -87,6 +89,23 @@ def positive_number(
         given = f"has shape {number.shape}" if number.ndim else f"is {value!r}"
         raise InputError(f"{subject} {given}; {rule}")
     return float(number)
+
+
+def whole_number(value: Any, subject: str, least: int, most: int, note: str = "") -> int:
+    """The value as an int between two bounds.
+
+    Raises InputTypeError for a value that is not an integer, InputError outside the bounds.
+    """
+    try:
+        count = operator.index(value)
+    except TypeError:
+        count = None
+    if count is None or isinstance(value, (bool, np.bool_)):
+        raise InputTypeError(f"{subject} is a {type(value).__name__}; it must be a whole number")
+    if not least <= count <= most:
+        also = f"; {note}" if note else ""
+        raise InputError(f"{subject} is {count}; it must be {least} to {most}{also}")
+    return count
 
 
 def leading_axes(**shapes: tuple[int, ...]) -> tuple[int, ...]:

@@ -60,24 +60,22 @@ class UnknownNameError(CspaceError, KeyError):
     """A name that is not in the list: robot, frame, joint, method. The message suggests the nearest."""
 
 
-class DescriptionError(CspaceError, ValueError):
+class _FileError(CspaceError, ValueError):
+    """A file that cannot be read; contains the file and, if known, the line."""
+
+    def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
+        where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
+        super().__init__(where + message)
+        self.path = path
+        self.line = line
+
+
+class DescriptionError(_FileError):
     """A robot description that cannot be read; contains the file and, if known, the line."""
 
-    def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
-        where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
-        super().__init__(where + message)
-        self.path = path
-        self.line = line
 
-
-class MapError(CspaceError, ValueError):
+class MapError(_FileError):
     """A map file that cannot be read; contains the file and, if known, the line."""
-
-    def __init__(self, message: str, *, path: str | None = None, line: int | None = None) -> None:
-        where = "" if path is None else f"{path}: " if line is None else f"{path}:{line}: "
-        super().__init__(where + message)
-        self.path = path
-        self.line = line
 
 
 class MissingExtraError(CspaceError, ImportError):

@@ -32,12 +32,12 @@ CALLS = [
     (
         lambda: ARM.ik(np.stack([GOAL]), threads="2"),
         InputTypeError,
-        "threads must be a whole number, got str",
+        "threads is a str; it must be a whole number",
     ),
     (
         lambda: ARM.ik(np.stack([GOAL]), threads=1.5),
         InputTypeError,
-        "threads must be a whole number, got float",
+        "threads is a float; it must be a whole number",
     ),
     (lambda: ARM.ik(np.stack([GOAL]), threads=10**30), InputError, "must be 0 to 1024"),
     (lambda: ARM.ik(np.stack([GOAL]), threads=-1), InputError, "threads is -1"),
@@ -53,7 +53,7 @@ CALLS = [
     (lambda: MANY.nearest(np.zeros(6), "max_"), UnknownNameError, "did you mean 'max'"),
     (lambda: ARM.jacobian_dot(np.zeros(6), None), InputTypeError, "qd is None"),
     (lambda: ARM.to_dh(convention=np.eye(3)), UnknownNameError, "no Denavit–Hartenberg convention"),
-    (lambda: ARM.random_configuration("3"), InputTypeError, "n must be a whole number"),
+    (lambda: ARM.random_configuration("3"), InputTypeError, "n is a str; it must be a whole number"),
     (lambda: ARM.random_configuration(-1), InputError, "n is -1"),
     (lambda: ARM.random_configuration(reach=[1, 2]), InputError, "reach is"),
     (lambda: ARM.random_configuration(reach="far"), InputTypeError, "reach must be numbers"),
@@ -75,7 +75,7 @@ CALLS = [
         "position lies at .* the largest distance",
     ),
     (lambda: ARM.ik_many_starts(GOAL, starts=[[1, 2], [1, 2, 3]]), InputTypeError, "starts must be numbers"),
-    (lambda: ARM.ik_many_starts(GOAL, starts="many"), InputTypeError, "starts must be a whole number"),
+    (lambda: ARM.ik_many_starts(GOAL, starts="many"), InputTypeError, "starts is a str; it must be a whole number"),
     (
         lambda: ARM.ik_many_starts(GOAL, tolerance=True),
         InputTypeError,

@@ -12,6 +12,8 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, tree
+from cspace.model.transforms import inverse
+from cspace.spatial.vectors import frame_along
 
 Numbers = npt.NDArray[np.intp]
 
@@ -128,7 +130,7 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
     n = len(source.axes)
     T_base_joint = np.array([np.eye(4), *_turned(source.axes)])
     T_base_joint[1:, :3, 3] = source.points
-    back = np.array([_inverse(T) for T in T_base_joint])
+    back = np.array([inverse(T) for T in T_base_joint])
     frame_joint = np.array([before - 1 for before, _ in source.frames.values()])
     poses = np.array([pose for _, pose in source.frames.values()])
     T_joint_frame = back[frame_joint + 1] @ poses
@@ -189,23 +191,7 @@ def _turned(axes: Array) -> Array:
     """Rotations (n, 4, 4) whose third columns are the unit axes (n, 3)."""
     result = np.tile(np.eye(4), (len(axes), 1, 1))
     for T, axis in zip(result, axes, strict=True):
-        T[:3, :3] = turned_to(axis)
-    return result
-
-
-def turned_to(axis: Array) -> Array:
-    """A rotation (3, 3) whose third column is the unit axis (3,); a coordinate axis is only permuted."""
-    aside = np.zeros(3)
-    aside[int(np.argmin(np.abs(axis)))] = 1.0
-    y = np.cross(axis, aside)
-    y /= np.linalg.norm(y)
-    return np.column_stack([np.cross(y, axis), y, axis])
-
-
-def _inverse(T: Array) -> Array:
-    result = np.eye(4)
-    result[:3, :3] = T[:3, :3].T
-    result[:3, 3] = -T[:3, :3].T @ T[:3, 3]
+        T[:3, :3] = frame_along(axis)
     return result
 
 

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import operator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, whole_number
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -168,20 +167,3 @@ def thread_count(threads: Any, shape: tuple[int, ...]) -> int:
     if threads is None:
         return 0 if shape else 1
     return whole_number(threads, "threads", 0, MOST_THREADS, "0 or None for every processor")
-
-
-def whole_number(value: Any, subject: str, least: int, most: int, note: str = "") -> int:
-    """The value as an int between two bounds.
-
-    Raises InputTypeError for a value that is not an integer, InputError outside the bounds.
-    """
-    try:
-        count = operator.index(value)
-    except TypeError:
-        count = None
-    if count is None or isinstance(value, (bool, np.bool_)):
-        raise InputTypeError(f"{subject} must be a whole number, got {type(value).__name__}")
-    if not least <= count <= most:
-        also = f"; {note}" if note else ""
-        raise InputError(f"{subject} is {count}; it must be {least} to {most}{also}")
-    return count

@@ -7,9 +7,8 @@ from typing import TypeAlias
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, as_generator
+from cspace.arrays import Array, as_floats, as_generator, whole_number
 from cspace.errors import InputError
-from cspace.kinematics.batch import whole_number
 from cspace.model import Limits
 
 Seed: TypeAlias = "int | np.random.Generator | None"

@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cspace.arrays import Array
-from cspace.kinematics.assembly import turned_to
-from cspace.kinematics.batch import frame_number, whole_number
+from cspace.arrays import Array, whole_number
+from cspace.kinematics.batch import frame_number
 from cspace.kinematics.configurations import Seed, random_configurations
 from cspace.kinematics.forward import forward_kinematics
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.kinematics.planar_boundary import PlanarArm, boundary
 from cspace.math.wrapping import TURN
 from cspace.model import Chain
+from cspace.spatial.vectors import frame_along
 from cspace.tolerances import PLANAR_AXES
 
 
@@ -85,7 +85,7 @@ def _planar(chain: Chain, lower: Array, upper: Array) -> tuple[PlanarArm, Array,
     free = np.isinf(lower).all() and np.isinf(upper).all()
     if n < 1 or chain.joint_types != "R" * n or len(chain.coordinates.names) != n or (n > 3 and not free):
         return None
-    R = turned_to(chain.axes[0])
+    R = frame_along(chain.axes[0])
     normal = R[:, 2]
     if np.abs(np.cross(chain.axes, normal)).max() > PLANAR_AXES:
         return None

@@ -8,13 +8,13 @@ each corner and wall that the disc can just pass. A gap is therefore open exactl
 
 from __future__ import annotations
 
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, whole_number
+from cspace.errors import InputError
 from cspace.maps.outlines import Outline
 from cspace.tolerances import MOST_SIDES, TIGHT_GAP
 
@@ -36,7 +36,7 @@ def grow_outlines(
     sum. The sum of a polygon and a disc is the union of the polygon, the disc at each corner and a strip
     along each edge.
     """
-    _check_sides(sides)
+    whole_number(sides, "sides", 4, MOST_SIDES)
     xmin, ymin, xmax, ymax = map(float, bounds)
     if not (xmin + reach < xmax - reach and ymin + reach < ymax - reach):
         raise InputError(
@@ -64,13 +64,6 @@ def grow_outlines(
             made.append([_make_strip(int(ahead[here]), discs[k], discs[(k + 1) % len(ring)])])
         first += len(ring)
     return [*outlines, *made], np.array([xmin + reach, ymin + reach, xmax - reach, ymax - reach])
-
-
-def _check_sides(sides: Any) -> None:
-    if isinstance(sides, bool) or not isinstance(sides, (int, np.integer)):
-        raise InputTypeError(f"sides is a {type(sides).__name__}; it must be a whole number")
-    if not 4 <= sides <= MOST_SIDES:
-        raise InputError(f"sides is {sides}; it must be 4 to {MOST_SIDES}")
 
 
 def _quantise_directions(vectors: Array) -> Directions:

@@ -15,6 +15,7 @@ from cspace.ik.explain.placed_wrist import rotation_steps
 from cspace.ik.explain.screws import dotted, goal_values, joint_values, numbers, turned, vector
 from cspace.ik.redundancy.arm_angle import swivel
 from cspace.math import Equation, TrigPolynomial
+from cspace.spatial import exp_so3
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -104,7 +105,7 @@ def swivel_values(solver: Solver, q: Array, T: Array) -> dict[str, Any]:
     S, E, W = points_of(chain)
     in_tip = np.linalg.inv(chain.T_zero) @ np.append(W, 1.0)
     l = (T @ in_tip)[..., :3] - S
-    R4 = about(chain.axes[ELBOW], q[..., ELBOW])
+    R4 = exp_so3(chain.axes[ELBOW] * q[..., ELBOW, None])
     bent = E - S + R4 @ (W - E)
     here = frame_towards(bent, np.broadcast_to(E - S, bent.shape))
     K = frame_at(chain.axes[0], l, swivel(solver, q)) @ np.swapaxes(here, -1, -2)
@@ -113,14 +114,6 @@ def swivel_values(solver: Solver, q: Array, T: Array) -> dict[str, Any]:
     for name, R in (("k", K), ("m", M)):
         out |= {f"{name}_{i + 1}{j + 1}": R[..., i, j] for i in range(3) for j in range(3)}
     return out
-
-
-def about(h: Array, angle: Array) -> Array:
-    """Rotations (..., 3, 3) about a unit vector."""
-    x, y, z = h
-    C = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    s, c = np.sin(angle)[..., None, None], np.cos(angle)[..., None, None]
-    return np.asarray(np.eye(3) + s * C + (1 - c) * (C @ C))
 
 
 def frame_towards(along: Array, e: Array) -> Array:

@@ -10,6 +10,7 @@ from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, moved, numbers, symbols
 from cspace.math import Equation, TrigPolynomial
+from cspace.spatial.vectors import perpendicular
 
 WAYS = {1: 1, 2: 2, 3: 4}
 """How many configurations bring the tip of an arm of so many joints to a point."""
@@ -26,8 +27,7 @@ def kept(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
     d = [x[k] - float(o[k]) for k in range(3)]
     if chain.joint_types[i] == "R":
         return [(dotted(h, d), "m"), (sum((part * part for part in d), TrigPolynomial()), "m²")]
-    across = np.cross(h, np.eye(3)[int(np.argmin(np.abs(h)))])
-    across /= np.linalg.norm(across)
+    across = perpendicular(h)
     return [(dotted(across, d), "m"), (dotted(np.cross(h, across), d), "m")]
 
 

@@ -21,6 +21,7 @@ from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.ik.solver import MAX_SETTLED, Solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 from cspace.spatial import exp_se3
+from cspace.spatial.vectors import frame_along
 
 AHEAD = 100
 """Locked joints are angles of their own: those of the six that move are numbered from 1."""
@@ -58,10 +59,8 @@ class Split:
         """A frame (4, 4) on the axis of a joint at an end, z along it: in the base, or in the tip."""
         chain = self.solver.chain
         z = chain.axes[k]
-        x = np.cross(np.eye(3)[int(np.argmin(np.abs(z)))], z)
-        x /= np.linalg.norm(x)
         T = np.eye(4)
-        T[:3, :3] = np.column_stack([x, np.cross(z, x), z])
+        T[:3, :3] = frame_along(z)
         T[:3, 3] = chain.points[k] - (chain.points[k] @ z) * z
         if k < self.moving[0]:
             return T

@@ -15,6 +15,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.model import Chain
 from cspace.spatial import exp_so3
+from cspace.spatial.vectors import perpendicular
 
 KEYWORDS = ("position", "rotation", "direction", "look_at", "ray", "angle_to")
 X, Y, Z = np.eye(3)
@@ -171,5 +172,4 @@ def from_line(away: Array, d: Array) -> Array:
 
 def tilted(axis: Array, angle: float) -> Array:
     """A rotation (3, 3) by `angle` about a direction perpendicular to `axis`."""
-    across = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    return exp_so3(angle * across / np.linalg.norm(across))
+    return exp_so3(angle * perpendicular(axis))

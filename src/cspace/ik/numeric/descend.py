@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, as_generator
+from cspace.arrays import Array, as_floats, as_generator, whole_number
 from cspace.errors import InputError
 from cspace.ik.numeric.problem import ask, further_starts, middle
 from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
-from cspace.kinematics.batch import choice, thread_count, whole_number
+from cspace.kinematics.batch import choice, thread_count
 from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, as_generator, positive_number
+from cspace.arrays import Array, as_floats, as_generator, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.numeric.problem import bounds_of, further_starts, middle
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
-from cspace.kinematics.batch import check_robot, frame_number, whole_number
+from cspace.kinematics.batch import check_robot, frame_number
 from cspace.spatial.checks import one_pose
 from cspace.tolerances import FARTHEST, SERVED, SETTLED
 

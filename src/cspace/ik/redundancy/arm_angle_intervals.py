@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array
+from cspace.ik.conditions import common_point
 from cspace.ik.redundancy.arm_angle import BRANCHES, JOINTS
 from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.wrapping import violations
@@ -98,7 +99,8 @@ def spheres(solver: Solver, T: Array, q: Array, psi: float) -> tuple[Sphere, Sph
     chain = solver.chain
     turns = exp_so3(chain.axes * q[:, None])
     shoulder, elbow = turns[0] @ turns[1] @ turns[2], turns[3]
-    n = wrist_of(chain, T, turns) - centre(chain, 0)
+    S, W = (common_point(chain.axes[k : k + 3], chain.points[k : k + 3])[0] for k in (0, 4))
+    n = (T @ np.linalg.inv(chain.T_zero) @ np.append(W, 1.0))[:3] - S
     n = n / np.linalg.norm(n)
     along, K = np.outer(n, n), np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
     start = exp_so3(-psi * n) @ shoulder
@@ -107,21 +109,6 @@ def spheres(solver: Solver, T: Array, q: Array, psi: float) -> tuple[Sphere, Sph
     left = tuple(part @ start for part in parts)
     right = tuple(elbow.T @ part.T @ G for part in left)
     return Sphere(0, left), Sphere(4, right)
-
-
-def centre(chain: Any, first: int) -> Array:
-    """Where three axes meet at zero (3,)."""
-    axes, points = chain.axes[first : first + 3], chain.points[first : first + 3]
-    across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
-    middle = points.mean(axis=0)
-    away = np.einsum("nij,nj->i", across, points - middle)
-    return np.asarray(middle + np.linalg.solve(across.sum(axis=0), away))
-
-
-def wrist_of(chain: Any, T: Array, turns: Array) -> Array:
-    """Where the goal puts the point in which the last three axes meet (3,)."""
-    tip = np.linalg.inv(chain.T_zero) @ np.append(centre(chain, 4), 1.0)
-    return np.asarray((T @ tip)[:3])
 
 
 def conditions(solver: Solver, sphere: Sphere) -> list[tuple[Array, Array, float]]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, as_floats, whole_number
+from cspace.errors import InputError
 from cspace.math.wrapping import wrap_near
 from cspace.tolerances import FARTHEST
 
@@ -87,11 +87,8 @@ class Redundancy:
 
     def spread(self, n: int) -> Array:
         """n values of the parameter, (n,): the middles of n equal parts of all that is feasible."""
-        if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
-            raise InputTypeError(f"n is a {type(n).__name__}, expected a number of values")
-        if not 1 <= n <= MOST_SAMPLES:
-            raise InputError(f"n is {n}, expected 1 to {MOST_SAMPLES} values")
-        return np.array(_core._ik_spread(self._ends, int(n)), dtype=np.float64)
+        count = whole_number(n, "n", 1, MOST_SAMPLES)
+        return np.array(_core._ik_spread(self._ends, count), dtype=np.float64)
 
     @property
     def _ends(self) -> Array:

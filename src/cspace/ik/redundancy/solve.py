@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Protocol, cast
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, leading_axes
+from cspace.arrays import Array, as_floats, leading_axes, whole_number
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.context import About
@@ -137,11 +137,7 @@ def check_samples(solver: Solver, options: Any, degree: int) -> None:
 def sample_count(samples: Any) -> int:
     if samples is None:
         return SAMPLES
-    if isinstance(samples, bool) or not isinstance(samples, (int, np.integer)):
-        raise InputTypeError(f"samples is a {type(samples).__name__}, expected a number of values")
-    if not 1 <= samples <= MOST_SAMPLES:
-        raise InputError(f"samples is {samples}, expected 1 to {MOST_SAMPLES}")
-    return int(samples)
+    return whole_number(samples, "samples", 1, MOST_SAMPLES)
 
 
 # --- all redundant joints are locked ----------------------------------------------------------------------

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, whole_number
+from cspace.errors import InputError
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
 from cspace.ik.wrapping import wrap
@@ -73,17 +73,14 @@ class SelfMotion:
         from q once around, joints that go all the way round in (−π, π]. No rows where q breaks the limits
         (see bounds). Raises InputError where the family has no end, naming the joint, and for n below 1.
         """
-        if isinstance(n, bool) or not isinstance(n, (int, np.integer)):
-            raise InputTypeError(f"n is a {type(n).__name__}, expected a number of configurations")
-        if not 1 <= n <= MOST_SAMPLES:
-            raise InputError(f"n is {n}, expected 1 to {MOST_SAMPLES} configurations")
+        count = whole_number(n, "n", 1, MOST_SAMPLES)
         if self._arc is None:
             return np.empty((0, len(self.q)))
         endless = np.flatnonzero(np.isinf(self.bounds).any(axis=1))
         if len(endless):
             name = self._solver.joint_names[int(endless[0])]
             raise InputError(f"the self-motion is unbounded: {name} has no limits; give the robot limits")
-        q = self._arc.sample(int(n))
+        q = self._arc.sample(count)
         goes_round = self._arc.is_loop & (np.ptp(self.bounds, axis=1) >= 2 * np.pi)
         return np.where(goes_round, wrap(q, self._solver.joint_types), q)
 
