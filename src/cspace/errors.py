@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import wraps
 from types import MappingProxyType
-from typing import Final
+from typing import Final, ParamSpec, TypeVar
 
 __all__ = [
     "CspaceError",
@@ -16,9 +17,13 @@ __all__ = [
     "UnknownNameError",
     "attribute_error",
     "keyword_error",
+    "name_new_keywords",
     "shown",
     "suggest",
 ]
+
+Given = ParamSpec("Given")
+Answer = TypeVar("Answer")
 
 SHOWN: Final = (str, int, float)
 """What reads well in a message, whatever it is."""
@@ -118,6 +123,21 @@ def keyword_error(text: str) -> TypeError:
     if name not in RENAMED:
         return TypeError(text)
     return InputTypeError(f"unknown keyword {name!r}: use {RENAMED[name]}=")
+
+
+def name_new_keywords(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
+    """The function, whose error for an old keyword contains the new one; see keyword_error."""
+
+    @wraps(function)
+    def call(*args: Given.args, **keywords: Given.kwargs) -> Answer:
+        try:
+            return function(*args, **keywords)
+        except TypeError as error:
+            if type(error) is not TypeError or not keywords.keys() & RENAMED.keys():
+                raise
+            raise keyword_error(str(error)) from None
+
+    return call
 
 
 def attribute_error(owner: object, name: str) -> AttributeError:

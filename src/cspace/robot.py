@@ -12,7 +12,7 @@ import numpy as np
 from cspace import kinematics, model
 from cspace._core import RobotBase
 from cspace.arrays import Array
-from cspace.errors import InputTypeError
+from cspace.errors import InputTypeError, name_new_keywords
 from cspace.kinematics import KinematicModel
 from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
@@ -157,6 +157,7 @@ class Robot(RobotBase, KinematicModel):
         """The joint axes at zero from base to tip, including tool and mounting; the same as chain."""
         return self.chain
 
+    @name_new_keywords
     def export(
         self,
         lang: str | None = None,
@@ -208,6 +209,7 @@ class Robot(RobotBase, KinematicModel):
             self._solver = solver_of_robot(self)
         return cast("Solver", self._solver)
 
+    @name_new_keywords
     def ik_plan(self, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
         """How ik solves this arm: the geometry found, the steps, and the equations with the arm's numbers.
 

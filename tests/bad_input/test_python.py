@@ -75,7 +75,11 @@ CALLS = [
         "position lies at .* the largest distance",
     ),
     (lambda: ARM.ik_many_starts(GOAL, starts=[[1, 2], [1, 2, 3]]), InputTypeError, "starts must be numbers"),
-    (lambda: ARM.ik_many_starts(GOAL, starts="many"), InputTypeError, "starts is a str; it must be a whole number"),
+    (
+        lambda: ARM.ik_many_starts(GOAL, starts="many"),
+        InputTypeError,
+        "starts is a str; it must be a whole",
+    ),
     (
         lambda: ARM.ik_many_starts(GOAL, tolerance=True),
         InputTypeError,

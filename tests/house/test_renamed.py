@@ -17,6 +17,26 @@ def test_an_old_keyword_names_the_new_one():
         robot.ik(np.eye(4), fixd=0)
 
 
+@pytest.mark.parametrize(
+    ("method", "old", "new"),
+    [
+        ("ik_plan", "asked", "goal_parts"),
+        ("ik_plan", "fixed", "locked"),
+        ("export", "fixed", "locked"),
+        ("redundancy", "fixed", "locked"),
+    ],
+)
+def test_methods_in_python_name_the_new_keyword_too(method, old, new):
+    robot = cs.load_robot("panda")
+    function = getattr(cs.export if method == "export" else cs.ik, method)
+    for call in (getattr(robot, method), lambda **given: function(robot, **given)):
+        with pytest.raises(errors.InputTypeError, match=f"^unknown keyword '{old}': use {new}=$"):
+            call(**{old: {"panda_joint7": 0.3}})
+    if method != "redundancy":
+        with pytest.raises(TypeError, match="unexpected keyword argument 'fixd'"):
+            getattr(robot, method)(fixd=0)
+
+
 def answers():
     robot = cs.load_robot("ur5e")
     q = np.full(6, 0.3)

@@ -126,7 +126,11 @@ BAD_CALLS = [
     (lambda r: r.fk(np.zeros(6), out=np.empty((4, 8))[:, ::2]), InputError, "C-contiguous"),
     (lambda r: r.fk_jacobian(np.zeros(6), out=np.empty((4, 4))), InputTypeError, "pair of arrays"),
     (lambda r: r.fk(np.zeros(6), threads=-1), InputError, "threads is -1"),
-    (lambda r: r.fk(np.zeros(6), threads=1.5), InputTypeError, "threads is a float; it must be a whole number"),
+    (
+        lambda r: r.fk(np.zeros(6), threads=1.5),
+        InputTypeError,
+        "threads is a float; it must be a whole number",
+    ),
     (lambda r: r.fk(np.zeros(6), fram="link_1"), TypeError, "fram"),
     (lambda r: r.fk(), TypeError, "q"),
 ]

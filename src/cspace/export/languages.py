@@ -10,7 +10,7 @@ from pathlib import Path, PurePath
 from types import MappingProxyType
 from typing import Any
 
-from cspace.errors import InputError, InputTypeError, suggest
+from cspace.errors import InputError, InputTypeError, name_new_keywords, suggest
 from cspace.export.arm import ExportedArm, exported_arm
 from cspace.export.c import c_files
 from cspace.export.cpp import cpp_header, words_of
@@ -74,6 +74,7 @@ class Export:
         write_text(path, self.example)
 
 
+@name_new_keywords
 def export(
     robot: Any,
     lang: str | None = None,

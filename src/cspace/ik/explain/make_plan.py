@@ -6,7 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 
-from cspace.errors import InputTypeError
+from cspace.errors import InputTypeError, name_new_keywords
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.explain.describe import refused_plan, settled_plan, survey_of
 from cspace.ik.explain.goal_parts import goal_of_parts, plan_of_parts
@@ -18,6 +18,7 @@ from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.kinematics import KinematicModel
 
 
+@name_new_keywords
 def ik_plan(robot: HasSolver, *, goal_parts: Any = None, locked: Any = None, tool_axis: Any = "z") -> IkPlan:
     """How `robot.ik` solves an arm: the geometry found, the steps, the equations with its numbers.
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import RENAMED, InputError, InputTypeError
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
 from cspace.ik.goals.parts import check_tool_axis, partial_goal
 from cspace.ik.locked_joints import by_name, joint_number
@@ -42,6 +42,8 @@ def redundancy(
     given = {name: value for name, value in parts.items() if value is not None}
     unknown = sorted(given.keys() - set(KEYWORDS))
     if unknown:
+        if unknown[0] in RENAMED:
+            raise InputTypeError(f"unknown keyword {unknown[0]!r}: use {RENAMED[unknown[0]]}=")
         raise InputTypeError(
             f"redundancy() has no keyword {unknown[0]!r}; the parts of a goal are {list(KEYWORDS)}"
         )
