@@ -299,4 +299,101 @@ DEFAULT_CELLS: Final = 200
 """Cells along the longer side of the bounds unless given: gaps of a two-hundredth of the world count as
 narrow."""
 
+BRANCH_OFFSET: Final = 1e-6
+"""Part of its own length up to which an elbow or a prismatic joint counts as being on the line: rounding
+moves it by the root of 1e-15 there."""
+
+BRANCH_LENGTH: Final = 1e-9
+"""Length of a line from shoulder to wrist [m] below which it has no direction: rounding of the two points."""
+
+NO_DERIVATIVE: Final = 1e-10
+"""Ratio of the Jacobian's singular values (lengths over the arm's) below which a solution has no derivative:
+rounding leaves 1e-16, and the derivative's own digits are lost long before."""
+
+PRINTED_FACTOR: Final = 1e-5
+"""Factor of a formula (a length: over that of the arm or of a usual link) below which its term is not
+printed: rounded right angles."""
+
+PRINTED_MISS: Final = 1e-12
+"""Distance or angle [m, rad] by which axes miss a relation, below which it is not printed: rounding."""
+
+PRINTED_ZERO: Final = 1e-9
+"""Number of a printed table below which it is 0: the cosine of a right angle."""
+
+SQUARE_WRIST: Final = 1e-4
+"""Cosine of the twist of a wrist up to which it counts as square: its folds then have a closed form."""
+
+DOUBLE_DIRECTION: Final = 1e-5
+"""Singular value, relative to the largest, of a direction that is left alone where a configuration is moved
+onto a limit: that of the double solution itself."""
+
+SAME_SWIVEL: Final = 1e-9
+"""Distance of arm angles [rad] up to which they are one: rounding of the conditions that they solve."""
+
+INSIDE_END: Final = 1e-6
+"""How far inside an interval of arm angles its end is looked at [rad]: there the joint that stops is nearest
+its limit."""
+
+MOVING_JOINT: Final = 1e-6
+"""Smallest entry of the unit direction of a self-motion [rad or m] that is motion: files round axes."""
+
+RESTING_JOINT: Final = 1e-9
+"""Change [rad or m] of a joint that rests along a self-motion: rounding of the steps back onto the curve."""
+
+SAME_MEMBER: Final = 1e-6
+"""Distance [rad, m] from a seed within which a configuration of a self-motion is the seed."""
+
+ORIENTATION_KEPT: Final = 1e-3
+"""Largest angle [rad] at which the search for the distance of a goal counts the orientation as kept, if the
+distance [m] is more."""
+
+INTEGER_ROUNDING: Final = 1e-13
+"""Distance from an integer up to which the factor of a formula is that integer: cosines of right angles."""
+
+SYMBOL_PARALLEL: Final = 1e-12
+"""Sine of the angle between axes up to which formulas write the sum of their angles: rounding."""
+
+FORM_DEVIATION: Final = 1e-13
+"""Difference of a closed form from the true arm (over the arm's length, rad) that an explanation mentions:
+less is rounding."""
+
+UPRIGHT_TURN: Final = 1e-12
+"""Largest 1 − |cosine| of the angle of a revolute axis to z in an arm of the xy plane: its tip leaves the
+plane by a millionth of the reach."""
+
+LEVEL_SLIDE: Final = 1e-6
+"""Largest |cosine| of the angle of a prismatic axis to z in an arm of the xy plane: as UPRIGHT_TURN."""
+
+UPRIGHT_TIP: Final = 1e-9
+"""Distance of the tip at zero from the plane of the first two axes, over its distance from the base, up to
+which the arm stands upright: the rounding of a file."""
+
+LEAST_SLIDE: Final = 1e-3
+"""Least range of the starts of a prismatic joint without limits [m], where the goal is at the base."""
+
+REACH_ROUNDING: Final = 1e-9
+"""Share by which the sum of the links may fall short of the farthest tip: roundings of its terms."""
+
+POSSIBLE_MOTION: Final = 1e-9
+"""Share of the largest singular value of a Jacobian up to which a direction counts as impossible."""
+
+SELF_CHECK: Final = 1e-9
+"""Largest |fk(ik(T)) − T| [m, unitless] that passes the self-check: far above rounding, far below any use."""
+
+SAME_MINIMUM: Final = 1e-3
+"""Distance of minima of a drawn field, in sides of the world, up to which they are one: descents end no
+nearer."""
+
+PARALLEL_RAYS: Final = 1e-9
+"""Share of a ray's way by which it may change over a picture while all its rays count as parallel."""
+
+DRAWN_LENGTH: Final = 1e-9
+"""Length [m] of a link from which on it is drawn: shorter ones are points."""
+
+DRAWN_PLANE: Final = 1e-6
+"""Sine of the angle by which the axes of an arm that is drawn in a plane may miss it: files round axes."""
+
+LEAST_DIVISOR: Final = 1e-12
+"""Least divisor of a picture, in place of zero: lengths and shares of what is drawn are far above it."""
+
 __all__ = [name for name in globals() if name.isupper()]

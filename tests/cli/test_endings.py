@@ -71,7 +71,7 @@ BAD_LINES = [
         "--swivel can only be combined",
     ),
     ("ik ur5e --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 3", "leave --samples out"),
-    ("ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 0", "samples is 0, expected 1 to"),
+    ("ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 0", "samples is 0; it must be 1 to"),
     ("ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples many", "invalid int value: 'many'"),
     (
         "ik panda --xyz 0.4 0 0.3 --rpy 0 3 0 --samples 3 --near 0 0 0 0 0 0 0",

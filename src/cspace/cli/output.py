@@ -97,7 +97,7 @@ class Output:
     def matrix(self, values: Array, name: str) -> None:
         """A matrix under its name, digits aligned."""
         self.heading(name)
-        texts = [[f"{_tidy(x): .6f}" for x in row] for row in values]
+        texts = [[f"{tidy_number(x): .6f}" for x in row] for row in values]
         for row in texts:
             self.line("  " + "  ".join(f"{text:>10}" for text in row))
 
@@ -122,9 +122,9 @@ def _knows_colours() -> bool:
     return not plain and (sys.platform != "win32" or "WT_SESSION" in os.environ)
 
 
-def _tidy(x: float) -> float:
-    """Rounding noise below the printed digits is shown as zero, without its sign."""
-    return 0.0 if abs(x) < 5e-7 else x
+def tidy_number(x: float, decimals: int = 6) -> float:
+    """A number for print: zero, without a sign, where it would be rounded to zero."""
+    return 0.0 if abs(x) < 0.5 * 10.0**-decimals else x
 
 
 def _plain(value: Any) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.cli.output import Output
+from cspace.cli.output import Output, tidy_number
 
 
 def pose_document(T: Array) -> dict[str, list[Any]]:
@@ -35,4 +35,4 @@ def show_pose(out: Output, T: Array, name: str, *, degrees: bool) -> None:
 
 def numbers(values: Any) -> str:
     """Numbers in a line, rounding noise shown as zero."""
-    return "  ".join(f"{0.0 if abs(x) < 5e-7 else x:.6f}" for x in values)
+    return "  ".join(f"{tidy_number(x):.6f}" for x in values)

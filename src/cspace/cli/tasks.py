@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.tolerances import POSSIBLE_MOTION
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -21,8 +22,6 @@ TASKS: Final[Mapping[str, int]] = MappingProxyType(
 
 SAMPLES: Final = 8
 """Configurations whose Jacobians are looked at; a rank is lost at all of them only if it is never there."""
-RANK: Final = 1e-9
-"""Share of the largest singular value below which a direction counts as impossible."""
 
 
 def motion_rank(robot: Robot, rows: str | Iterable[str] = "all") -> int:
@@ -33,7 +32,7 @@ def motion_rank(robot: Robot, rows: str | Iterable[str] = "all") -> int:
         return 0
     q = np.random.default_rng(1).uniform(-1.3, 1.3, size=(SAMPLES, len(robot.joint_names)))
     largest = singular_values(robot, q)[:, :1]
-    return int((singular_values(robot, q, rows=rows) > RANK * largest).sum(axis=1).max())
+    return int((singular_values(robot, q, rows=rows) > POSSIBLE_MOTION * largest).sum(axis=1).max())
 
 
 def singularity_of_rows(robot: Robot, q: Array, rows: str | Iterable[str]) -> Array | None:

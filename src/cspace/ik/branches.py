@@ -25,6 +25,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point, place
+from cspace.tolerances import BRANCH_LENGTH, BRANCH_OFFSET
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -32,10 +33,6 @@ if TYPE_CHECKING:
 
 SPHERICAL_WRIST, THREE_PARALLEL = 1, 2
 LAST_PARALLEL = 0
-NOISE = 1e-9
-LEVEL = 1e-6
-"""Part of its own length up to which an elbow or a prismatic joint counts as being on the line: rounding
-moves it by the root of 1e-15 there."""
 
 Words = Callable[[Placed, int], str]
 """The name of one configuration, from where the arm is and the number of its branch."""
@@ -88,7 +85,7 @@ def words_of_completed(chain: Any) -> Words | None:
         return lambda at, _: f"{shoulder(at, at.points[3])}, {elbow(at, at.points[3])}"
     if len(h) == 5 and not are_parallel(h[3], h[4]):
         gap = np.cross(h[3], h[4]) @ (p[4] - p[3])
-        if abs(gap) <= LEVEL:
+        if abs(gap) <= BRANCH_OFFSET:
             return shoulder_and_elbow_at_meeting
     return None
 
@@ -131,7 +128,7 @@ def in_a_plane(turns: list[int]) -> Words:
         end = at.points[turns[2]] if len(turns) > 2 else at.tip
         n = towards_viewer(at.axes[first])
         line, upper = (across(v - at.points[first], n) for v in (end, at.points[second]))
-        if np.linalg.norm(line) <= LEVEL * np.linalg.norm(upper):
+        if np.linalg.norm(line) <= BRANCH_OFFSET * np.linalg.norm(upper):
             return "elbow folded"
         return elbow_side(line, upper, np.cross(n, line))
 
@@ -168,8 +165,8 @@ def elbow(at: Placed, end: Array) -> str:
 def elbow_side(line: Array, upper: Array, up: Array) -> str:
     """Whether the upper arm ends above the line from shoulder to wrist or below."""
     length2 = line @ line
-    offset = upper - (upper @ line) / length2 * line if length2 > NOISE**2 else upper
-    if np.linalg.norm(offset) <= LEVEL * np.linalg.norm(upper):
+    offset = upper - (upper @ line) / length2 * line if length2 > BRANCH_LENGTH**2 else upper
+    if np.linalg.norm(offset) <= BRANCH_OFFSET * np.linalg.norm(upper):
         return "elbow straight"
     return "elbow up" if offset @ up > 0 else "elbow down"
 
@@ -189,7 +186,7 @@ def side_of(at: Placed, turn: int, sliding: int, end: Array, words: tuple[str, s
     between."""
     from_axis = across(end - at.points[turn], at.axes[turn])
     ahead = from_axis @ at.axes[sliding]
-    if abs(ahead) <= LEVEL * np.linalg.norm(from_axis):
+    if abs(ahead) <= BRANCH_OFFSET * np.linalg.norm(from_axis):
         return "level"
     return words[0] if ahead > 0 else words[1]
 

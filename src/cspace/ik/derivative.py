@@ -8,15 +8,10 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.conditions import arm_length
+from cspace.tolerances import NO_DERIVATIVE
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
-
-
-SINGULAR = 1e-10
-"""Ratio of the Jacobian's singular values (lengths over the arm's) below which a solution has no derivative:
-rounding leaves 1e-16, and the derivative's own digits are lost long before.
-"""
 
 
 def derivative(solver: Solver, q: Array, position_only: bool = False) -> Array:
@@ -36,7 +31,7 @@ def derivative(solver: Solver, q: Array, position_only: bool = False) -> Array:
     J = scale[:, None] * solver.jacobian(q[real])
     rows = 3 if position_only else 6
     U, sigma, Vt = np.linalg.svd(J[:, :rows], full_matrices=False)
-    regular = sigma[:, -1] > SINGULAR * sigma[:, 0]
+    regular = sigma[:, -1] > NO_DERIVATIVE * sigma[:, 0]
     inverse = np.einsum("kji,kj,klj->kil", Vt, 1 / np.where(regular[:, None], sigma, np.nan), U)
     found = np.zeros((len(J), solver.dof, 6))
     found[..., :rows] = inverse * scale[:rows]

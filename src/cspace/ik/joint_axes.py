@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.tolerances import UPRIGHT_TIP
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +59,7 @@ def front_at_zero(chain: Any) -> Array:
     (h1, h2), p1, tip = chain.axes[:2], chain.points[0], chain.T_zero[:3, 3]
     square = np.cross(h1, h2)
     ahead, size = square @ (tip - p1), np.linalg.norm(tip - p1)
-    if abs(ahead) <= 1e-9 * size:
+    if abs(ahead) <= UPRIGHT_TIP * size:
         ahead = square @ np.cross(h2, tip - chain.points[1])
     return np.asarray(square if ahead >= 0 else -square)
 

@@ -14,7 +14,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.wrapping import Flags, into_limits, violations
 from cspace.model import Limits
-from cspace.tolerances import DOUBLE_SOLUTION, SAME_TIP
+from cspace.tolerances import DOUBLE_DIRECTION, DOUBLE_SOLUTION, SAME_TIP
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -22,8 +22,6 @@ if TYPE_CHECKING:
 
 STEPS = 4
 """Corrections of a configuration: each squares an error of 1e-7 or less, and any may add a joint."""
-WEAK = 1e-5
-"""Singular value, relative to the largest, of a direction that is left alone: the double solution's own."""
 
 
 def settle_on_limits(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:
@@ -62,7 +60,7 @@ def settle_row(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:
         if np.abs(miss).max() <= SAME_TIP * size and into_limits(x, *bounds, SAME_TIP)[1]:
             return x
         x = x.copy()
-        x[~locked] += np.linalg.lstsq(J[:, ~locked], miss, rcond=WEAK)[0]
+        x[~locked] += np.linalg.lstsq(J[:, ~locked], miss, rcond=DOUBLE_DIRECTION)[0]
     return q
 
 

@@ -19,7 +19,7 @@ from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
 from cspace.ik.wrapping import all_windings, into_limits, nearest_winding, violations, wrap
 from cspace.kinematics.batch import choice
-from cspace.tolerances import SLIGHT_MISS
+from cspace.tolerances import ORIENTATION_KEPT, SAME_MEMBER, SLIGHT_MISS
 
 if TYPE_CHECKING:
     from cspace.ik.goals.partial import PartialGoal
@@ -36,12 +36,8 @@ INCOMPLETE: Final = 8
 """Added to a verdict where solutions may be missing."""
 VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
 METRICS: Final = ("euclidean", "max")
-SAME_MEMBER: Final = 1e-6
-"""Distance [rad, m] from a seed within which a configuration of a self-motion is the seed."""
 ORIENTATION_FIRST: Final = 1e4
 """Weight of a radian, in lengths of the arm, in the search for the distance: the orientation is kept."""
-ORIENTATION_KEPT: Final = 1e-3
-"""Largest angle [rad] of that search at which the orientation counts as kept, if the distance [m] is more."""
 
 
 POSE_ASKS: Final = 6

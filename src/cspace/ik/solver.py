@@ -19,6 +19,7 @@ from cspace.ik.goals.partial import PartialGoal
 from cspace.ik.locked_joints import joint_number, locked_values
 from cspace.kinematics import KinematicModel, assemble_chain
 from cspace.model import Chain, Limits, chain, from_screws
+from cspace.tolerances import REACH_ROUNDING
 
 MAX_JOINTS = 16
 MAX_SETTLED = 6
@@ -199,7 +200,7 @@ def largest_reach(source: Chain) -> float:
     if "P" in source.joint_types:
         return float("inf")
     corners: Array = np.vstack([np.zeros(3), source.points, source.T_zero[:3, 3]])
-    return float(np.linalg.norm(np.diff(corners, axis=0), axis=1).sum()) * (1 + 1e-9)
+    return float(np.linalg.norm(np.diff(corners, axis=0), axis=1).sum()) * (1 + REACH_ROUNDING)
 
 
 def solver_of_robot(robot: KinematicModel) -> Solver:

@@ -9,14 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from cspace.math import typeset
-
-ROUNDING: Final = 1e-13
-"""Numbers this near to an integer are that integer: cosines of right angles are 0."""
+from cspace.tolerances import INTEGER_ROUNDING
 
 Plain = tuple[tuple[str, int], ...]
 """Symbols with their powers, in the order of their names."""
@@ -176,7 +174,7 @@ def as_polynomial(value: Any) -> TrigPolynomial:
 def snapped(value: float) -> float:
     """A number without the rounding about an integer."""
     nearest = round(value)
-    return float(nearest) if abs(value - nearest) < ROUNDING else value
+    return float(nearest) if abs(value - nearest) < INTEGER_ROUNDING else value
 
 
 def combined(angles: tuple[Angle, ...]) -> tuple[int, typeset.Combination]:

@@ -12,11 +12,10 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.math import Angle, TrigMatrix, TrigPolynomial
 from cspace.model.dh import DHTable
+from cspace.tolerances import PRINTED_FACTOR, SYMBOL_PARALLEL
 
 MOST_TERMS: Final = 24
 """Entries of more terms than these are counted rather than printed."""
-LEAST: Final = 1e-5
-"""Factors below this (lengths: this share of a usual link) are not printed: rounded right angles."""
 NAMES: Final = (("n_x", "o_x", "a_x", "p_x"), ("n_y", "o_y", "a_y", "p_y"), ("n_z", "o_z", "a_z", "p_z"))
 """The entries of a displacement: the axes n, o, a of its frame, its origin p."""
 
@@ -103,7 +102,7 @@ class LinkMatrices:
     def _least(self) -> dict[str, float]:
         lengths = np.abs(self.table.rows[:, 1:3])
         usual = float(np.median(lengths[lengths > 0.0])) if lengths.any() else 1.0
-        return {"least": LEAST, "least_shift": LEAST * usual}
+        return {"least": PRINTED_FACTOR, "least_shift": PRINTED_FACTOR * usual}
 
     def _left_out(self) -> str:
         least, shift = self._least.values()
@@ -149,6 +148,6 @@ def link_matrices(table: DHTable) -> LinkMatrices:
 
 def groups_of(table: DHTable) -> Sequence[int]:
     """For each row the number of its group of consecutive parallel axes."""
-    twist = np.abs(np.sin(table.alpha)) > 1e-12
+    twist = np.abs(np.sin(table.alpha)) > SYMBOL_PARALLEL
     before = twist[:-1] if table.convention == "standard" else twist[1:]
     return [int(group) for group in np.concatenate([[0], np.cumsum(before)])]

@@ -15,6 +15,7 @@ from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group, artist_type, scene_of
 from cspace.plot.raytrace.solids import Solid, capsule, cylinder
 from cspace.plot.skeleton import WIDTH, Skeleton, planar_basis, size_of, skeleton
+from cspace.tolerances import DRAWN_LENGTH
 
 GHOST: Final = 0.40
 FAINT: Final = 0.16
@@ -150,7 +151,7 @@ def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:
     floor = stage.floor_under(center, max(widest, foot, 0.4 * float(np.ptp(around[:, 2]))), low)
     elevation, azimuth = stage.choose_view(points, T_goal[None, :3, 3])
     artist = stage.set_up(ax, around, floor, elevation=elevation, azimuth=azimuth)
-    if low < -1e-9:
+    if low < -DRAWN_LENGTH:
         up, half, width = np.array([0.0, 0.0, 1.0]), -0.5 * low, 0.8 * drawn[0].radii[0]
         stand = cylinder(-half * up, up, width, half, np.array(colors.STAND))
         artist.scene.groups.append(Group([stand]))
@@ -171,7 +172,7 @@ def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
     for i, path in enumerate(drawn.paths):
         ends = np.linspace(radii[i], radii[i + 1], len(path))
         for k in range(len(path) - 1):
-            if np.linalg.norm(path[k + 1] - path[k]) < 1e-9:
+            if np.linalg.norm(path[k + 1] - path[k]) < DRAWN_LENGTH:
                 continue
             if i == 0 and k == 0 and path[1][2] > path[0][2]:  # the pillar stands on the floor, flat
                 solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
@@ -179,7 +180,7 @@ def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
             else:
                 solids.append(capsule(path[k], path[k + 1], ends[k], ends[k + 1], link))
     for rail in drawn.rails:
-        if np.linalg.norm(rail[1] - rail[0]) > 1e-9:
+        if np.linalg.norm(rail[1] - rail[0]) > DRAWN_LENGTH:
             solids.append(capsule(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
     for i, (place, axis) in enumerate(zip(drawn.joints, drawn.axes, strict=True)):
         solids.append(cylinder(place, axis, WIDTH * radii[i + 1], drawn.body_half(i), joint))

@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.plot import colors
 from cspace.plot.axes import space_axes
+from cspace.tolerances import SAME_MINIMUM
 
 PLACES: Final = 160
 """Places along a side of the world at which a field is evaluated for its picture."""
@@ -19,8 +20,6 @@ TOP: Final = 0.85
 """The share of free places shown with different heights: beyond it, next to walls, fields are unbounded."""
 BANDS: Final = 24
 """Bands of equal height."""
-SAME: Final = 1e-3
-"""Minima nearer to each other than this, in sides of the world, are one."""
 WALL: Final = (0.36, 0.39, 0.44)
 """Obstacles."""
 PATH: Final = (0.84, 0.18, 0.20)
@@ -156,7 +155,7 @@ def minima(route: Any) -> Array:
     for start in at[1:-1, 1:-1][np.isfinite(middle) & np.all([middle < x for x in lower], axis=0)]:
         rest = navigate(route.world, start, route.goal, "potential_field", **route.evidence.gains)
         end = rest.path[-1]
-        if not rest and all(np.hypot(*(end - other)) > SAME * side for other in kept):
+        if not rest and all(np.hypot(*(end - other)) > SAME_MINIMUM * side for other in kept):
             kept.append(end)
     return np.array(kept).reshape(-1, 2)
 
@@ -185,7 +184,7 @@ def tinted(level: Array, solid: Any, low: float, top: float) -> Array:
     """A colour for every place (n, n, 4): blue by height, obstacles dark."""
     from matplotlib import colormaps
 
-    share = np.floor(BANDS * (level - low) / max(top - low, 1e-300)) / BANDS
+    share = np.floor(BANDS * (level - low) / max(top - low, np.finfo(np.float64).tiny)) / BANDS
     paint: Array = colormaps["Blues"](0.15 + 0.75 * share)
     paint[solid] = (*WALL, 1.0)
     return paint

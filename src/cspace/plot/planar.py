@@ -12,6 +12,7 @@ from cspace.errors import InputError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes
 from cspace.plot.skeleton import Skeleton, planar_basis, size_of, skeleton
+from cspace.tolerances import DRAWN_LENGTH, LEAST_DIVISOR
 
 WORKSPACE_SAMPLES: Final = 400
 """Cells along the longer side of a workspace picture: about one per pixel."""
@@ -86,7 +87,7 @@ def outline(p: Array, r: Array, radius_p: float, radius_r: float) -> Array:
     way = r - p
     length = float(np.linalg.norm(way))
     angle = np.linspace(-np.pi, np.pi, 73)
-    if length <= abs(radius_p - radius_r) + 1e-12:
+    if length <= abs(radius_p - radius_r) + LEAST_DIVISOR:
         return np.asarray(p + radius_p * np.stack([np.cos(angle), np.sin(angle)], axis=1))
     heading = np.arctan2(way[1], way[0])
     tilt = np.arccos((radius_p - radius_r) / length)
@@ -109,7 +110,7 @@ def draw_arm(ax: Any, drawn: Skeleton, basis: Array, tint: Array, *, ghost: bool
         ends = np.linspace(radii[i], radii[i + 1], len(path))
         for k in range(len(path) - 1):
             p, r = path[k] @ basis.T, path[k + 1] @ basis.T
-            if np.linalg.norm(r - p) > 1e-9:
+            if np.linalg.norm(r - p) > DRAWN_LENGTH:
                 face = (*colors.mix(tint, (1.0, 1.0, 1.0), 0.15), alpha)
                 bar = Polygon(
                     outline(p, r, ends[k], ends[k + 1]),
@@ -272,7 +273,7 @@ def manipulability(
     lengths = np.zeros(2)
     lengths[: len(s)] = s
     size = size_of(arm.chain.points, arm.chain.T_zero)
-    factor = 0.30 * size / max(lengths[0], 1e-12) if scale is None else scale
+    factor = 0.30 * size / max(lengths[0], LEAST_DIVISOR) if scale is None else scale
     center = tip_points(arm, q, basis)
     tilt = np.degrees(np.arctan2(u[1, 0], u[0, 0]))
     ellipse = Ellipse(

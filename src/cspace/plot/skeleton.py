@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.spatial import rotation
+from cspace.tolerances import DRAWN_LENGTH, DRAWN_PLANE
 
 PARALLEL: Final = 0.08
 """Sine of the angle below which two axes are routed as parallel: their common normal would lie far away."""
@@ -96,7 +97,7 @@ def size_of(points: Array, T_zero: Array) -> float:
     """The length [m] of the path from the base over the joints to the tip at zero: the drawing's scale."""
     way = np.concatenate([np.zeros((1, 3)), points, T_zero[None, :3, 3]])
     length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
-    return length if length > 1e-9 else 1.0
+    return length if length > DRAWN_LENGTH else 1.0
 
 
 def route(p: Array, a: Array, r: Array, b: Array, length: float) -> Array:
@@ -157,7 +158,7 @@ def planar_basis(chain: Any) -> Array | None:
     normal = turning[0]
     for axis, kind in zip(axes, types, strict=True):
         off = np.linalg.norm(np.cross(axis, normal)) if kind == "R" else abs(axis @ normal)
-        if off > 1e-6:
+        if off > DRAWN_PLANE:
             return None
     x = np.eye(3)[0] if abs(normal[0]) < 0.9 else np.eye(3)[2]
     x = x - (x @ normal) * normal

@@ -11,15 +11,14 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit
-from cspace.cli.output import Output, Table
+from cspace.cli.output import Output, Table, tidy_number
 from cspace.cli.robot import load, need_chain
+from cspace.tolerances import PRINTED_ZERO
 
 if TYPE_CHECKING:
     from cspace.math import TrigMatrix
     from cspace.model import DHTable, LinkMatrices
 
-ZERO: Final = 1e-9
-"""Factors below this are printed as 0: the cosine of a right angle."""
 EXAMPLES: Final = """
 cspace dh ur5e
 cspace dh puma560 --convention modified --deg
@@ -79,7 +78,10 @@ def product_texts(links: LinkMatrices, args: argparse.Namespace) -> list[str]:
 
 def entry_texts(A: TrigMatrix) -> list[list[str]]:
     """The entries (4, 4) of a link matrix as texts in ASCII."""
-    return [[text.replace("−", "-") for text in row] for row in A.texts(least=ZERO, least_shift=ZERO)]
+    return [
+        [text.replace("−", "-") for text in row]
+        for row in A.texts(least=PRINTED_ZERO, least_shift=PRINTED_ZERO)
+    ]
 
 
 def document(name: str, links: LinkMatrices, *, products: bool) -> dict[str, Any]:
@@ -138,7 +140,7 @@ def row_texts(table: DHTable, i: int, *, degrees: bool) -> list[str]:
 
 def length_text(length: float) -> str:
     """A length [m] without rounding noise."""
-    return "0" if abs(length) < ZERO else f"{length:.6g}"
+    return "0" if abs(length) < PRINTED_ZERO else f"{length:.6g}"
 
 
 def signed(text: str) -> str:
@@ -148,13 +150,13 @@ def signed(text: str) -> str:
 
 def angle_text(angle: float, *, degrees: bool) -> str:
     """An angle in the selected unit; in radians simple fractions of 2π are written with pi."""
-    if abs(angle) < ZERO:
+    if abs(angle) < PRINTED_ZERO:
         return "0"
     if degrees:
         return f"{np.degrees(angle):.6g}"
     for divisor in (1, 2, 3, 4, 6):
         times = angle * divisor / np.pi
-        if abs(times - round(times)) < ZERO:
+        if abs(times - round(times)) < PRINTED_ZERO:
             sign, count = "-" if times < 0 else "", abs(round(times))
             return sign + ("pi" if count == 1 else f"{count}pi") + ("" if divisor == 1 else f"/{divisor}")
     return f"{angle:.6g}"
@@ -170,11 +172,11 @@ def show(out: Output, name: str, links: LinkMatrices, *, degrees: bool) -> None:
     for i in range(len(table)):
         drawn.add(*row_texts(table, i, degrees=degrees))
     out.table(drawn)
-    if table.deviation > ZERO:
+    if table.deviation > PRINTED_ZERO:
         moved = f"the tip moves by up to {table.deviation:.1g} m"
         out.line(f"axes that almost are parallel or meet are taken as such: {moved}")
     for T, text in ((table.T_base, "base: before the first row"), (table.T_tool, "tool: after the last row")):
-        if np.abs(T - np.eye(4)).max() > ZERO:
+        if np.abs(T - np.eye(4)).max() > PRINTED_ZERO:
             out.matrix(T, text)
     out.line()
     out.line("ck and sk stand for cos and sin of theta(k)")
@@ -184,7 +186,7 @@ def show(out: Output, name: str, links: LinkMatrices, *, degrees: bool) -> None:
         out.heading(f"A{i + 1}")
         for symbols, numbers in zip(texts, A, strict=True):
             left = "  ".join(f"{text:>{width}}" for text, width in zip(symbols, widths, strict=True))
-            right = "  ".join(f"{x:9.5f}" for x in np.where(np.abs(numbers) < 5e-6, 0.0, numbers))
+            right = "  ".join(f"{tidy_number(x, 5):9.5f}" for x in numbers)
             out.line(f"  {left}      q = 0: {right}")
 
 
@@ -210,7 +212,7 @@ def latex(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
 def matrix_formulas(links: LinkMatrices) -> list[str]:
     """The link matrices in LaTeX."""
     return [
-        rf"{{}}^{{{i}}}A_{{{i + 1}}} = {A.latex(least=ZERO, least_shift=ZERO)}"
+        rf"{{}}^{{{i}}}A_{{{i + 1}}} = {A.latex(least=PRINTED_ZERO, least_shift=PRINTED_ZERO)}"
         for i, A in enumerate(links.matrices)
     ]
 

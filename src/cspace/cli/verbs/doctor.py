@@ -13,6 +13,7 @@ import numpy as np
 
 from cspace.cli.exits import Exit
 from cspace.cli.output import Cell, Output, Table
+from cspace.tolerances import SELF_CHECK
 
 EXAMPLES: Final = """
 cspace doctor
@@ -26,8 +27,6 @@ ARMS: Final = ("ur5e", "puma560", "kr6_r900")
 """The arms of the self-check."""
 POSES: Final = 50
 """Poses per arm."""
-ALLOWED: Final = 1e-9
-"""Largest difference |fk(ik(T)) − T| [m, unitless] that passes: far above rounding, far below any use."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
@@ -97,4 +96,4 @@ def check(name: str) -> dict[str, Any]:
         away = np.abs(robot.fk(found) - T).max() if len(found) else np.inf
         back = np.abs(np.sin(0.5 * (found - start))).max(axis=1).min() if len(found) else np.inf
         worst, count = max(worst, float(away), float(back)), count + len(found)
-    return {"robot": name, "poses": POSES, "solutions": count, "worst": worst, "passed": worst <= ALLOWED}
+    return {"robot": name, "poses": POSES, "solutions": count, "worst": worst, "passed": worst <= SELF_CHECK}

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Final
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
 from cspace.cli.exits import Exit
-from cspace.cli.output import Output, Table
+from cspace.cli.output import Output, Table, tidy_number
 from cspace.cli.robot import configuration, headings, load, need_chain
 from cspace.cli.tasks import rows_of_task
 
@@ -76,7 +76,7 @@ def show(out: Output, robot: Robot, J: Array, facts: dict[str, Any], text: str) 
     """The matrix and the facts for people."""
     table = Table(["", *headings(robot)])
     for name, row in zip(ROWS, J, strict=True):
-        table.add(name, *(f"{0.0 if abs(x) < 5e-7 else x:.6f}" for x in row))
+        table.add(name, *(f"{tidy_number(x):.6f}" for x in row))
     out.table(table)
     out.line()
     out.facts(

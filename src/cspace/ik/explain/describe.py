@@ -21,6 +21,7 @@ from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.ik.explain.survey import invariant_directions, invariant_points, relations
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
 from cspace.ik.geometry import FIRST_THREE
+from cspace.tolerances import FORM_DEVIATION
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -143,7 +144,7 @@ def notes_of(form: Form, seen: dict[str, Any]) -> tuple[str, ...]:
         "its origin, $r_{ij}$ are the entries of its rotation. $c_1$, $s_{23}$ are cosine and sine "
         "of $t_1$, $t_2 + t_3$; $c_{\\alpha_1}$, $s_{\\alpha_1}$ those of a twist."
     )
-    if seen["deviation"] > 1e-13:
+    if seen["deviation"] > FORM_DEVIATION:
         corrected = "; Newton steps on the true axes correct it" if seen["polish"] else ""
         notes.append(
             "The form takes axes as parallel or meeting that are so within rounding; poses differ by up "

@@ -12,11 +12,8 @@ from cspace.ik.explain.findings import Findings, Step
 from cspace.ik.explain.screws import vector
 from cspace.math import Equation, MatrixEquation
 from cspace.model.text import aligned, shown
+from cspace.tolerances import PRINTED_FACTOR, PRINTED_MISS
 
-LEAST: Final = 1e-5
-"""Factors below this (of the arm's length, where they are lengths) are not printed: rounded right angles."""
-EXACT: Final = 1e-12
-"""What is missed by less [m, rad] is not missed: rounding."""
 MOST_TERMS: Final = 16
 """An equation of more terms is printed with symbols alone."""
 
@@ -92,7 +89,7 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
 
 def missed(miss: float, unit: str) -> str:
     """By how much axes fail to meet or to be parallel, if it is more than rounding."""
-    return f" (missed by {miss:.1g} {unit})" if miss > EXACT else ""
+    return f" (missed by {miss:.1g} {unit})" if miss > PRINTED_MISS else ""
 
 
 def listed(joints: tuple[int, ...]) -> str:
@@ -144,7 +141,7 @@ def line(plan: Findings, equation: Equation | MatrixEquation, *, numbers: bool) 
             f"{special.left.text()} = … ({terms} terms)",
             rf"{special.left.latex()} &= \text{{{terms} terms}}",
         )
-    least = LEAST * plan.length ** {"m": 1, "m²": 2, "m⁴": 4}.get(equation.unit, 0)
+    least = PRINTED_FACTOR * plan.length ** {"m": 1, "m²": 2, "m⁴": 4}.get(equation.unit, 0)
     return special.text(least=least), special.latex(least=least)
 
 

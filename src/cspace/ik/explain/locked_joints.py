@@ -22,13 +22,12 @@ from cspace.ik.solver import MAX_SETTLED, Solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 from cspace.spatial import exp_se3
 from cspace.spatial.vectors import frame_along
+from cspace.tolerances import SQUARE_WRIST
 
 AHEAD = 100
 """Locked joints are angles of their own: those of the six that move are numbered from 1."""
 GOLDEN = 0.6180339887498949
 FIRST_MEET = 1
-SQUARE = 1e-4
-"""Twists of a wrist this near to a right angle have folds in closed form [cosine]."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -272,7 +271,7 @@ def folds_known(others: Solver, name: str) -> bool:
     if kind != "closed" or not plan["on_lanes"] or plan["virtual_joints"] or not plan["wrist"]:
         return False
     first, last = plan["wrist"]["first"], plan["wrist"]["last"]
-    return bool(first["kind"] == FIRST_MEET and max(abs(last["ca4"]), abs(last["ca5"])) < SQUARE)
+    return bool(first["kind"] == FIRST_MEET and max(abs(last["ca4"]), abs(last["ca5"])) < SQUARE_WRIST)
 
 
 def swivel_of(solver: Solver) -> tuple[Step, ...]:

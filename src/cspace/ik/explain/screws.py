@@ -12,6 +12,7 @@ from cspace.arrays import Array
 from cspace.ik.explain.page import Block, table
 from cspace.math import Angle, TrigPolynomial
 from cspace.model.text import shown
+from cspace.tolerances import SYMBOL_PARALLEL
 
 Vector = list[TrigPolynomial]
 
@@ -91,7 +92,7 @@ def dotted(h: Array, x: Vector) -> TrigPolynomial:
 def group_of(chain: Any, i: int) -> int:
     """The group of parallel axes that joint i belongs to: the first joint of its kind."""
     for k in range(i):
-        if np.linalg.norm(np.cross(chain.axes[k], chain.axes[i])) < 1e-12:
+        if np.linalg.norm(np.cross(chain.axes[k], chain.axes[i])) < SYMBOL_PARALLEL:
             return k
     return i
 

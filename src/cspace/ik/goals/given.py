@@ -11,7 +11,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.parts import is_open
 from cspace.ik.wrapping import turning
 from cspace.spatial import as_pose
-from cspace.tolerances import FARTHEST
+from cspace.tolerances import FARTHEST, LEVEL_SLIDE, UPRIGHT_TURN
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -82,7 +82,7 @@ def lifted(solver: Solver, p: Array) -> Array:
     """Points (..., 2) of the plane z = constant in which an arm keeps its tip, as points (..., 3)."""
     chain = solver.chain
     along_z = np.abs(chain.axes[:, 2])
-    in_plane = np.where(turning(chain.joint_types), along_z > 1 - 1e-12, along_z < 1e-6)
+    in_plane = np.where(turning(chain.joint_types), along_z > 1 - UPRIGHT_TURN, along_z < LEVEL_SLIDE)
     if not in_plane.all():
         raise InputError(
             f"position has shape {p.shape}, but {solver.name} is not a planar arm; give three coordinates"

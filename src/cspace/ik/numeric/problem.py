@@ -14,7 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.model import Limits
 from cspace.spatial import as_pose
-from cspace.tolerances import FARTHEST
+from cspace.tolerances import FARTHEST, LEAST_SLIDE
 
 if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
@@ -141,7 +141,7 @@ def further_starts(robot: KinematicModel, bounds: Array, goals: Array, count: in
     share = spread(count, n) if rng is None else as_generator(rng).random((count, n))
     reach = 1.0
     if "P" in robot.joint_types:
-        reach = 1e-3 + float(np.abs(goals[..., :3, 3]).max(initial=0.0))
+        reach = LEAST_SLIDE + float(np.abs(goals[..., :3, 3]).max(initial=0.0))
     span = np.where([kind == "P" for kind in robot.joint_types], reach, np.pi)
     low, high = bounds if bounds.size else (np.full(n, -np.inf), np.full(n, np.inf))
     open_low, open_high = ~np.isfinite(low), ~np.isfinite(high)

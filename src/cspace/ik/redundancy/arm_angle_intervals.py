@@ -15,6 +15,7 @@ from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.wrapping import violations
 from cspace.math.wrapping import TURN, wrap_angle
 from cspace.spatial import exp_so3
+from cspace.tolerances import INSIDE_END, SAME_SWIVEL
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -23,10 +24,6 @@ if TYPE_CHECKING:
 Flags = npt.NDArray[np.bool_]
 LOOKS = 48
 """Swivels at which a branch is looked for that shows how the shoulder turns."""
-ONE_PLACE = 1e-9
-"""Changes closer together than this [rad] are one."""
-BESIDE = 1e-6
-"""How far inside an interval its end is looked at [rad]: there the joint that stops is nearest its limit."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,13 +82,13 @@ def critical_swivels(solver: Solver, T: Array) -> Array:
     elbows: list[float] = []
     for look, branch in zip(*np.nonzero(np.isfinite(rows[..., 0])), strict=True):
         q = rows[look, branch]
-        if any(abs(np.sin((q[3] - other) / 2)) < ONE_PLACE for other in elbows):
+        if any(abs(np.sin((q[3] - other) / 2)) < SAME_SWIVEL for other in elbows):
             continue
         elbows.append(float(q[3]))
         for sphere in spheres(solver, T, q, float(looks[look])):
             found += [roots(sphere, *condition) for condition in conditions(solver, sphere)]
     values = np.sort(np.concatenate(found)) if found else np.empty(0)
-    return values[np.append(True, np.diff(values) > ONE_PLACE)] if len(values) else values
+    return values[np.append(True, np.diff(values) > SAME_SWIVEL)] if len(values) else values
 
 
 def spheres(solver: Solver, T: Array, q: Array, psi: float) -> tuple[Sphere, Sphere]:
@@ -136,7 +133,7 @@ def roots(sphere: Sphere, u: Array, v: Array, r: float) -> Array:
     """The swivels (0 to 2,) in (−π, π] at which uᵀ M v = r."""
     still, cosine, sine = (float(u @ part @ v) for part in sphere.parts)
     size = float(np.hypot(cosine, sine))
-    if size < ONE_PLACE or abs(r - still) > size:
+    if size < SAME_SWIVEL or abs(r - still) > size:
         return np.empty(0)
     middle, half = np.arctan2(sine, cosine), np.arccos((r - still) / size)
     return wrap_angle(np.array([middle - half, middle + half]))
@@ -153,8 +150,8 @@ def of_branch(solver: Solver, T: Array, branch: int, ends: Array, rows: Array, f
         lower = float(ends[start])
         upper = float(ends[(start + count - 1) % m + 1]) + (TURN if start + count > m else 0.0)
         cause = (
-            what_ends(solver, T, branch, lower, min(BESIDE, 0.5 * (upper - lower))),
-            what_ends(solver, T, branch, upper, -min(BESIDE, 0.5 * (upper - lower))),
+            what_ends(solver, T, branch, lower, min(INSIDE_END, 0.5 * (upper - lower))),
+            what_ends(solver, T, branch, upper, -min(INSIDE_END, 0.5 * (upper - lower))),
         )
         out.append(Interval(lower, upper, branch + 1, cause, rows[(start + count // 2) % m]))
     return out

@@ -14,14 +14,13 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.locked_joints import joint_number, locked_values, value_in_words
 from cspace.ik.redundancy.result import Interval, Redundancy
 from cspace.ik.wrapping import into_limits
+from cspace.tolerances import MOVING_JOINT
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
 
 END_NOTHING, END_FOLD = -1, -2
-STILL = 1e-6
-"""Part of the self-motion's direction below which a joint rests in it: files round axes."""
 
 
 def redundancy_of_pose(solver: Solver, T: Array, parameter: Any, locked: Any) -> Redundancy:
@@ -72,7 +71,7 @@ def check_moves(solver: Solver, T: Array, joint: int) -> None:
     if not seen:
         return
     J = solver.jacobian(np.array([interval.q for interval in seen]))
-    if np.abs(np.linalg.svd(J)[2][:, -1, joint]).max() > STILL:
+    if np.abs(np.linalg.svd(J)[2][:, -1, joint]).max() > MOVING_JOINT:
         return
     at = ", ".join(sorted({value_in_words(solver, joint, interval.q[joint]) for interval in seen}))
     raise InputError(

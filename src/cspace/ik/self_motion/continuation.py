@@ -19,6 +19,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.wrapping import into_limits, short_way, turning
 from cspace.math.wrapping import TURN, wrap_near
+from cspace.tolerances import RESTING_JOINT
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
 CLOSED, FAR = 0, 1
 HALVINGS = 50
-AT_REST = 1e-9
-"""Change [rad or m] of a joint that rests along a family: rounding of the steps back onto the curve."""
 MOST_TURNS = 1000
 """Revolutions after which a joint counts as rotating without end."""
 
@@ -89,7 +88,7 @@ class Arc:
         shift = np.zeros(curve.points.shape[1]) if curve.shift is None else curve.shift
         points = self.turning_points()
         low, high = points.min(axis=0), points.max(axis=0)
-        rests = high - low < AT_REST
+        rests = high - low < RESTING_JOINT
         low, high = np.where(rests, curve.q, low), np.where(rests, curve.q, high)
         for end, way in ((self.first, -1), (self.last, 1)):
             if np.isfinite(end):
@@ -179,7 +178,7 @@ def with_extremes(
     solver: Solver, q: Array, points: Array, tangents: Array, start: int, whole_pose: bool
 ) -> tuple[Array, Array, int]:
     """The points of a curve and, between them, those where a joint turns back: its tangent changes sign."""
-    turning = np.abs(tangents).max(axis=0) > AT_REST
+    turning = np.abs(tangents).max(axis=0) > RESTING_JOINT
     where, joint = np.nonzero((tangents[:-1] * tangents[1:] < 0) & turning)
     if len(where) == 0:
         return points, tangents, start
@@ -217,7 +216,7 @@ def stop(curve: Curve, lower: Array, upper: Array, way: int, end: int) -> float:
             return way * np.inf
         points, s = points + way * around * curve.shift, s + way * around * curve.length
     # Joints at rest stay where the limits hold them, whatever rounding says.
-    moving = np.ptp(curve.points, axis=0) > AT_REST
+    moving = np.ptp(curve.points, axis=0) > RESTING_JOINT
     outside = (((points < lower) | (points > upper)) & moving).any(axis=1)
     outside[0] = False  # q itself, or a point that the time around before has passed
     if not outside.any():
@@ -228,7 +227,7 @@ def stop(curve: Curve, lower: Array, upper: Array, way: int, end: int) -> float:
 
 def times_around(points: Array, shift: Array, lower: Array, upper: Array) -> int:
     """How many times the curve can be gone around before a limit is met, MOST_TURNS at most."""
-    moving = np.ptp(points, axis=0) > AT_REST
+    moving = np.ptp(points, axis=0) > RESTING_JOINT
     if (((points < lower) | (points > upper)) & moving).any():
         return 0
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -251,7 +250,7 @@ def crossing(curve: Curve, inside: float, outside: float, limits: tuple[Array, A
 def outward(curve: Curve, way: int) -> npt.NDArray[np.float64]:
     """The directions of prismatic joints at an end of an unbounded curve; zero for joints at rest."""
     t = curve.tangents[-1 if way > 0 else 0]
-    return np.where(np.abs(t) > AT_REST, t, 0.0)
+    return np.where(np.abs(t) > RESTING_JOINT, t, 0.0)
 
 
 def onto(solver: Solver, q: Array, near: Array, along: Array, whole_pose: bool) -> tuple[Array, Array]:

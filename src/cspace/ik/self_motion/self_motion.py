@@ -15,13 +15,10 @@ from cspace.errors import InputError
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
 from cspace.ik.wrapping import wrap
+from cspace.tolerances import MOVING_JOINT
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
-
-
-MOVING = 1e-6
-"""Smallest entry of a unit direction [rad or m] that is motion: what a joint at rest has is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +96,6 @@ def self_motion_at(solver: Solver, row: int, q: Array, whole_pose: bool) -> Self
     found = _core._ik_direction(solver, np.ascontiguousarray(q), whole_pose)
     direction = np.linalg.svd(solver.jacobian(q)[:rows])[2][-1] if found is None else found
     direction = direction * np.sign(direction[np.argmax(np.abs(direction))])
-    moving = np.abs(direction) > MOVING
+    moving = np.abs(direction) > MOVING_JOINT
     names = tuple(itertools.compress(solver.joint_names, moving))
     return SelfMotion(row, q, np.where(moving, direction, 0.0), names, solver, whole_pose)

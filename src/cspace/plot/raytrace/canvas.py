@@ -11,6 +11,7 @@ from cspace.arrays import Array
 from cspace.plot.raytrace.layer import Layer
 from cspace.plot.raytrace.shadow import Shadow
 from cspace.plot.raytrace.view import Block, View, affine, centers
+from cspace.tolerances import LEAST_DIVISOR, PARALLEL_RAYS
 
 GAP: Final = 0.03
 """Share of the picture's size by which a ghost must be before a solid to be drawn over it: links that two
@@ -59,11 +60,13 @@ class Canvas:
         world = on_floor(view, block, float(floor.center[2]))
         flat = world - floor.center[:2]
         share = np.sqrt(flat[..., 0] ** 2 + flat[..., 1] ** 2) / floor.radius
-        per_pixel = np.maximum(np.hypot(*np.gradient(share)), 1e-12)
+        per_pixel = np.maximum(np.hypot(*np.gradient(share)), LEAST_DIVISOR)
         inside = np.clip((1.0 - share) / per_pixel + 0.5, 0.0, 1.0)
         away = np.abs(world - floor.step * np.round(world / floor.step))
         across = np.maximum.reduce([np.abs(np.gradient(world, axis=axis)) for axis in (0, 1)])
-        line = np.clip(LINE_WIDTH * self.scale - away / np.maximum(across, 1e-12) + 0.5, 0.0, 1.0).max(axis=2)
+        line = np.clip(
+            LINE_WIDTH * self.scale - away / np.maximum(across, LEAST_DIVISOR) + 0.5, 0.0, 1.0
+        ).max(axis=2)
         fade = np.clip(1.0 - share**2, 0.0, 1.0) ** 1.2
         dark = np.zeros(share.shape)
         if shadow is not None:
@@ -114,5 +117,5 @@ def on_floor(view: View, block: Block, height: float) -> Array:
     x0, x1, y0, y1 = block
     x, y = centers(x0, x1)[None, :], centers(y0, y1)[:, None]
     o, w = ([affine(rows[:, axis], x, y) for axis in range(3)] for rows in (view.rays.origin, view.rays.way))
-    t = (height - o[2]) / np.minimum(w[2], -1e-9)
+    t = (height - o[2]) / np.minimum(w[2], -PARALLEL_RAYS)
     return np.stack([o[0] + t * w[0], o[1] + t * w[1]], axis=2)

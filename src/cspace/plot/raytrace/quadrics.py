@@ -14,6 +14,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.plot.raytrace.view import Rays, affine
+from cspace.tolerances import LEAST_DIVISOR
 
 LAST = np.array([0.0, 0.0, 1.0])
 
@@ -63,7 +64,7 @@ class Quadric:
         B = affine(self.B, x, y)
         if np.min(A) > 0.0:
             return [(-B - root) / A]
-        A = np.where(np.abs(A) < 1e-12, 1e-12, A)
+        A = np.where(np.abs(A) < LEAST_DIVISOR, LEAST_DIVISOR, A)
         return [(-B - root) / A, (root - B) / A]
 
 
@@ -121,7 +122,7 @@ class Side:
         """See Piece."""
         d = points - self.start
         out = d - np.outer(d @ self.axis, self.axis)
-        out /= np.maximum(np.sqrt(np.einsum("ij,ij->i", out, out)), 1e-12)[:, None]
+        out /= np.maximum(np.sqrt(np.einsum("ij,ij->i", out, out)), LEAST_DIVISOR)[:, None]
         cosine = 1.0 / np.sqrt(1.0 + self.slope**2)
         return np.asarray(cosine * (out + self.slope * self.axis))
 
@@ -143,7 +144,7 @@ class Disc:
         offset = rays.origin - np.outer(LAST, self.center)
         falling = affine(rays.way @ self.normal, x, y)
         above = affine(offset @ self.normal, x, y)
-        t = -above / np.where(falling < -1e-12, falling, np.nan)
+        t = -above / np.where(falling < -LEAST_DIVISOR, falling, np.nan)
         away = np.zeros(t.shape)
         for axis in range(3):
             away = away + (affine(offset[:, axis], x, y) + t * affine(rays.way[:, axis], x, y)) ** 2

@@ -12,6 +12,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.plot.raytrace.quadrics import Disc, Piece, Side, Sphere
+from cspace.tolerances import LEAST_DIVISOR
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,7 @@ class Solid:
     def lowest(self) -> float:
         """The height of its lowest point [m]."""
         way = self.b - self.a
-        upright = 0.0 if self.round else way[2] / max(float(np.linalg.norm(way)), 1e-12)
+        upright = 0.0 if self.round else way[2] / max(float(np.linalg.norm(way)), LEAST_DIVISOR)
         down = np.sqrt(max(0.0, 1.0 - upright**2))
         return float(min(self.a[2] - down * self.radius_a, self.b[2] - down * self.radius_b))
 
@@ -61,9 +62,9 @@ def pieces(solid: Solid) -> list[Piece]:
     """The surfaces that bound a solid."""
     way = solid.b - solid.a
     length = float(np.linalg.norm(way))
-    slope = (solid.radius_a - solid.radius_b) / max(length, 1e-12)
+    slope = (solid.radius_a - solid.radius_b) / max(length, LEAST_DIVISOR)
     if solid.round:
-        if length < 1e-12 or abs(slope) >= 1.0:  # one sphere holds the other
+        if length < LEAST_DIVISOR or abs(slope) >= 1.0:  # one sphere holds the other
             larger = solid.a if solid.radius_a >= solid.radius_b else solid.b
             return [Sphere(larger, max(solid.radius_a, solid.radius_b))]
         ends = slope * solid.radius_a, length + slope * solid.radius_b

@@ -12,6 +12,7 @@ from cspace.plot.raytrace.canvas import Floor
 from cspace.plot.raytrace.scene import scene_of
 from cspace.plot.raytrace.solids import Solid, arrow
 from cspace.plot.raytrace.view import project
+from cspace.tolerances import LEAST_DIVISOR
 
 ROOM: Final = 0.0925
 """Half the height of matplotlib's 3-D view in its projected units."""
@@ -35,7 +36,7 @@ def choose_view(points: Array, focus: Array) -> tuple[float, float]:
             eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
             seen = spread @ np.stack([right, np.cross(eye, right)], axis=1)
             area = np.sqrt(max(np.linalg.det(seen.T @ seen / len(seen)), 0.0))
-            toward = outward @ eye / (np.linalg.norm(outward) + 1e-12)
+            toward = outward @ eye / (np.linalg.norm(outward) + LEAST_DIVISOR)
             score = area * (1.0 + 0.35 * toward - 0.10 * abs(elevation - 24.0) / 6.0)
             score *= 1.0 + 0.08 * np.cos(a - np.radians(-55.0))
             if score > best_score:
@@ -57,11 +58,11 @@ def fit(ax: Any, points: Array, *, margin: float = 1.10) -> None:
         box = ax.get_window_extent()
         shape = min(box.width, box.height)
         room_x, room_y = ROOM * box.width / shape / margin, ROOM * box.height / shape / margin
-        grow = min(room_x / max(width, 1e-12), room_y / max(height, 1e-12))
+        grow = min(room_x / max(width, LEAST_DIVISOR), room_y / max(height, LEAST_DIVISOR))
         e, a = np.radians(ax.elev), np.radians(ax.azim)
         right = np.array([-np.sin(a), np.cos(a), 0.0])
         up = np.cross([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], right)
-        per_unit = (np.ptp(points @ right) or 1.0) / max(np.ptp(x), 1e-12)
+        per_unit = (np.ptp(points @ right) or 1.0) / max(np.ptp(x), LEAST_DIVISOR)
         center = center + per_unit * (0.5 * (x.min() + x.max()) * right + 0.5 * (y.min() + y.max()) * up)
         zoom *= grow
 

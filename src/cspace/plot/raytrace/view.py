@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any
 
 import numpy as np
 
 from cspace.arrays import Array
+from cspace.tolerances import PARALLEL_RAYS
 
 Block = tuple[int, int, int, int]
 """A block of pixels: columns x0 to x1, rows y0 to y1."""
-PARALLEL_WAYS: Final = 1e-9
-"""Share of a ray's way by which it may change from pixel to pixel while all rays count as parallel."""
 
 
 def project(points: Array, matrix: Array) -> Array:
@@ -103,7 +102,7 @@ def rays_through(near: Array, way: Array) -> Rays:
     rays that meet in an eye, with t = 0 at the eye.
     """
     turning = way[:2]
-    if np.abs(turning).max() * 1e4 < PARALLEL_WAYS * np.abs(way[2]).max():
+    if np.abs(turning).max() * 1e4 < PARALLEL_RAYS * np.abs(way[2]).max():
         return Rays(near, np.array([np.zeros(3), np.zeros(3), way[2]]))
     back = -float(np.vdot(near[:2], turning) / np.vdot(turning, turning))
     eye = near[2] + back * way[2]
