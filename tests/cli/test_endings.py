@@ -315,7 +315,7 @@ def test_an_unexpected_fault_is_one_line_and_code_70(monkeypatch, capsys):
     def fail(verb: str) -> None:
         raise ZeroDivisionError("the sky\nfell")
 
-    monkeypatch.setattr(app, "load", fail)
+    monkeypatch.setattr(app, "import_verb", fail)
     assert app.main(["fk", "ur5e"]) == Exit.INTERNAL
     message = capsys.readouterr().err
     assert "ZeroDivisionError: the sky" in message
@@ -328,7 +328,7 @@ def test_an_interrupt_is_code_130(monkeypatch, capsys):
     def interrupt(verb: str) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(app, "load", interrupt)
+    monkeypatch.setattr(app, "import_verb", interrupt)
     assert app.main(["fk", "ur5e"]) == Exit.INTERRUPTED
     assert capsys.readouterr().err == "cspace: interrupted\n"
 

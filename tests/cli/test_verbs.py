@@ -8,7 +8,7 @@ import pytest
 import cspace as cs
 from cli import schema
 from cli.run import ROOT, cspace
-from cspace.cli.registry import VERBS, load
+from cspace.cli.registry import VERBS, import_verb
 
 LINES = {
     "robots": "robots --search ur5",
@@ -63,7 +63,7 @@ def test_help_has_examples_that_parse(verb):
     result = cspace(f"{verb} --help")
     assert result.code == 0
     assert f"usage: cspace {verb}" in result.out
-    examples = load(verb).EXAMPLES.strip().splitlines()
+    examples = import_verb(verb).EXAMPLES.strip().splitlines()
     assert examples
     for line in examples:
         assert line in result.out
@@ -73,7 +73,7 @@ def test_help_has_examples_that_parse(verb):
 def test_examples_of_the_help_run(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     for verb in VERBS:
-        for line in load(verb).EXAMPLES.strip().splitlines():
+        for line in import_verb(verb).EXAMPLES.strip().splitlines():
             if not any(word in line for word in ("arm.urdf", "--plot", "yard.geojson")):
                 result = cspace(line.removeprefix("cspace "))
                 assert result.code == 0, f"{line}\n{result.err}"

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from cspace.errors import InputError, InputTypeError
-from cspace.kinematics.planar_boundary import PlanarArm, reachable
+from cspace.kinematics.planar_boundary import PlanarArm, is_reachable
 from cspace.model import from_screws
 from cspace.robot import Robot
 from kinematics import robots
@@ -116,7 +116,7 @@ def test_the_boundary_separates_what_is_reached_from_what_is_not(seed):
     assert inside(space.boundary, reached).all()
     spread = clear_of_edge(rng.uniform(-reach, reach, (300, 2)))
     arm = PlanarArm(lengths, np.column_stack([lower, np.minimum(width, 2 * np.pi)]))
-    np.testing.assert_array_equal(inside(space.boundary, spread), reachable(arm, spread))
+    np.testing.assert_array_equal(inside(space.boundary, spread), is_reachable(arm, spread))
 
 
 @pytest.mark.parametrize("n", [2, 3])
@@ -127,7 +127,7 @@ def test_reachable_agrees_with_a_grid_of_configurations(n):
         width = rng.uniform(0.5, 2 * np.pi, n)
         robot = limited(lengths, lower, lower + width)
         some = robot.fk(rng.uniform(lower, lower + width, (300, n)))[:, :2, 3]
-        assert reachable(PlanarArm(lengths, np.column_stack([lower, width])), some).all()
+        assert is_reachable(PlanarArm(lengths, np.column_stack([lower, width])), some).all()
 
 
 def test_the_plane_may_lie_anywhere_and_axes_may_point_down():

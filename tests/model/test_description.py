@@ -5,7 +5,7 @@ import pytest
 
 from cspace.errors import CspaceError, DescriptionError, InputError, UnknownNameError
 from cspace.model import Description, Geometry, Inertial, Joint, Limits, Link, Loop, Mesh, Mimic
-from cspace.model.transforms import translation
+from cspace.model.transforms import translation_by
 
 
 def links(*names):
@@ -60,7 +60,7 @@ def test_axes_become_unit_vectors_and_arrays_are_read_only():
         (lambda: hinge("j", "a", "b", origin=np.diag([1, 1, -1, 1])), InputError, "not a rigid transform"),
         (lambda: hinge("j", "a", "b", origin=np.full((4, 4), np.inf)), InputError, "finite"),
         (lambda: hinge("j", "a", "b", origin=np.ones((4, 4))), InputError, "last row"),
-        (lambda: hinge("j", "a", "b", origin=translation([0, 0, 1e13])), InputError, "beyond 1e\\+12"),
+        (lambda: hinge("j", "a", "b", origin=translation_by([0, 0, 1e13])), InputError, "beyond 1e\\+12"),
         (lambda: Inertial(1e13, (0, 0, 0), np.eye(3)), InputError, "beyond"),
         (lambda: Inertial(1.0, (0, 1e13, 0), np.eye(3)), InputError, "beyond"),
         (lambda: Geometry("sphere", (1e13,)), InputError, "beyond"),

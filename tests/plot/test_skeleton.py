@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from cspace.plot import colors
-from cspace.plot.skeleton import planar_basis, skeleton
+from cspace.plot.skeleton import make_skeleton, planar_basis
 from plot import arms
 
 ROBOTS = {"elbow": arms.elbow_arm, "planar": arms.planar_arm, "scara": arms.scara}
@@ -16,7 +16,7 @@ ROBOTS = {"elbow": arms.elbow_arm, "planar": arms.planar_arm, "scara": arms.scar
 def test_links_hang_together_and_end_at_the_tip(name):
     robot = ROBOTS[name]()
     for q in np.random.default_rng(1).uniform(-1, 1, size=(20, robot.dof)):
-        drawn = skeleton(robot, q)
+        drawn = make_skeleton(robot, q)
         np.testing.assert_allclose(drawn.T_tip, robot.fk(q), atol=1e-12)
         np.testing.assert_allclose(drawn.paths[-1][-1], robot.fk(q)[:3, 3], atol=1e-12)
         np.testing.assert_allclose(drawn.paths[0][0], 0.0, atol=1e-12)
@@ -31,7 +31,7 @@ def test_links_hang_together_and_end_at_the_tip(name):
 def test_joint_bodies_sit_on_their_axes(name):
     robot = ROBOTS[name]()
     q = np.random.default_rng(2).uniform(-1, 1, size=robot.dof)
-    drawn = skeleton(robot, q)
+    drawn = make_skeleton(robot, q)
     for i in range(robot.dof):
         off = drawn.joints[i] - drawn.paths[i][-1]
         assert np.linalg.norm(np.cross(off, drawn.axes[i])) < 1e-9
@@ -45,7 +45,7 @@ def test_planar_arms_are_told_from_others():
 
 @pytest.mark.parametrize("count", [1, 2, 8, 16])
 def test_colours_differ_and_are_equally_light(count):
-    tints = colors.palette(count)
+    tints = colors.make_palette(count)
     assert tints.shape == (count, 3)
     assert ((tints >= 0) & (tints <= 1)).all()
     if count > 1:

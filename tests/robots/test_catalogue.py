@@ -8,7 +8,7 @@ import pytest
 from cspace.errors import UnknownNameError
 from cspace.model import chain, dh_matrix, from_dh, from_urdf, to_dh, to_urdf
 from cspace.robots import find, load_description, load_robot, names, rows, search
-from cspace.robots.lookup import FOLDER, plain
+from cspace.robots.lookup import FOLDER, plain_text
 from data import ROOT, shared_data
 from oracles.forward import product_of_exponentials
 
@@ -34,7 +34,7 @@ def test_every_file_is_named_as_its_robot_and_every_name_is_found_once():
     owner = {}
     for row in rows():
         assert load_description(row.name).name == row.name
-        for name in {plain(n) for n in (row.name, *row.aliases)}:
+        for name in {plain_text(n) for n in (row.name, *row.aliases)}:
             assert name not in owner, f"{name} is both {owner[name]} and {row.name}"
             owner[name] = row.name
 

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from cspace.cli.exits import Exit, TimeLimitReached, UsageError, exit_of
-from cspace.cli.registry import VERBS, load
+from cspace.cli.registry import VERBS, import_verb
 from cspace.errors import CspaceError, suggest
 
 
@@ -17,41 +17,43 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = list(sys.argv[1:] if argv is None else argv)
     debug = "--debug" in words
     try:
-        code = dispatch(words)
+        code = dispatch_verb(words)
         if sys.stdout is not None:  # None: closed by the caller
             sys.stdout.flush()
         return code
     except BrokenPipeError:  # the reader of our output has left (`cspace robots | head`): leave too
-        silence()
+        silence_output()
         return Exit.CLOSED_PIPE
     except TimeLimitReached as stop:
-        say(str(stop))
+        print_message(str(stop))
         return Exit.TIME_LIMIT
     except KeyboardInterrupt:
-        say("interrupted")
+        print_message("interrupted")
         return Exit.INTERRUPTED
     except CspaceError as error:
         if debug:
             raise
-        say(str(error))
+        print_message(str(error))
         return exit_of(error)
     except Exception as error:
         if debug:
             raise
         if isinstance(error, OSError) and error.filename is None:  # a stream; files are named
-            say(f"the answer cannot be written: {error.strerror or error}; free space, or write elsewhere")
-            silence()
+            print_message(
+                f"the answer cannot be written: {error.strerror or error}; free space, or write elsewhere"
+            )
+            silence_output()
             return Exit.USAGE
         first_line = (str(error).splitlines() or [""])[0]
-        say(f"internal error: {type(error).__name__}: {first_line}")
-        say("run the same command with --debug to see where; please report it with that traceback")
+        print_message(f"internal error: {type(error).__name__}: {first_line}")
+        print_message("run the same command with --debug to see where; please report it with that traceback")
         return Exit.INTERNAL
 
 
-def dispatch(words: list[str]) -> int:
+def dispatch_verb(words: list[str]) -> int:
     """Find the verb among the words and run it."""
     if not words or words[0] in ("-h", "--help", "help"):
-        print(overview())
+        print(write_overview())
         return Exit.DONE
     if words[0] in ("-V", "--version"):
         from cspace import __version__
@@ -70,20 +72,20 @@ def run_verb(verb: str, words: list[str]) -> int:
     """Parse the words of one verb and run its file."""
     from cspace.cli.arguments import Parser, separate_values
     from cspace.cli.output import Output
-    from cspace.cli.timing import limit
+    from cspace.cli.timing import limit_time
 
-    module = load(verb)
+    module = import_verb(verb)
     parser = Parser(verb, VERBS[verb], module.EXAMPLES)
     module.arguments(parser)
     try:
         args = parser.parse_intermixed_args(separate_values(words))
     except SystemExit as stop:  # argparse leaves this way after --help; faults are raised by Parser.error
         return int(stop.code or 0)
-    with limit(args.time_limit):
+    with limit_time(args.time_limit):
         return module.run(args, Output(as_json=args.json))
 
 
-def overview() -> str:
+def write_overview() -> str:
     """The text of `cspace --help`."""
     width = max(map(len, VERBS))
     verbs = "\n".join(f"  {name:<{width}}  {summary}" for name, summary in VERBS.items())
@@ -97,13 +99,13 @@ def overview() -> str:
     )
 
 
-def say(message: str) -> None:
+def print_message(message: str) -> None:
     """One message for people, on the error stream."""
     with contextlib.suppress(OSError, ValueError):
         print(f"cspace: {message}", file=sys.stderr)
 
 
-def silence() -> None:
+def silence_output() -> None:
     """Point the standard output at the null device: Python's flush at exit would fail a second time."""
     null = os.open(os.devnull, os.O_WRONLY)
     with contextlib.suppress(OSError, ValueError):

@@ -37,7 +37,7 @@ class Parser(argparse.ArgumentParser):
         self.add_argument("--json", action="store_true", help="machine-readable output: radians, metres")
         self.add_argument("--debug", action="store_true", help="show the traceback of an error")
         self.add_argument(
-            "--time-limit", type=seconds, metavar="S", help="stop after S seconds, with exit code 5"
+            "--time-limit", type=read_seconds, metavar="S", help="stop after S seconds, with exit code 5"
         )
 
     def print_help(self, file: Any = None) -> None:
@@ -54,12 +54,12 @@ class OfPi(float):
     """A number typed as a multiple of π: of an angle its radians, also where angles are typed in degrees."""
 
 
-def radians(value: float, *, degrees: bool) -> float:
+def read_radians(value: float, *, degrees: bool) -> float:
     """A typed angle [rad]; `degrees`: it was typed in degrees, unless with pi."""
     return math.radians(value) if degrees and not isinstance(value, OfPi) else float(value)
 
 
-def number(text: str) -> float:
+def read_number(text: str) -> float:
     """A finite number, or a multiple of π: 0.5, -1e-3, pi, -pi/2, 3pi/4."""
     word = text.strip()
     match = OF_PI.fullmatch(word.lower())
@@ -79,9 +79,9 @@ def number(text: str) -> float:
     return value
 
 
-def seconds(text: str) -> float:
+def read_seconds(text: str) -> float:
     """A positive time [s]."""
-    value = number(text)
+    value = read_number(text)
     if value <= 0.0 or value > threading.TIMEOUT_MAX:
         raise argparse.ArgumentTypeError(
             f"{text.strip()!r} is not a time limit; expected more than 0 s, at most "
@@ -102,12 +102,12 @@ def named_value(text: str) -> tuple[str, str]:
 def named_number(text: str) -> tuple[str, float]:
     """A name and a finite number with = between them."""
     name, value = named_value(text)
-    return name, number(value)
+    return name, read_number(value)
 
 
-def coordinate(text: str) -> float | None:
+def read_coordinate(text: str) -> float | None:
     """A number, or `any` for a coordinate that does not matter."""
-    return None if text.strip().lower() == OPEN else number(text)
+    return None if text.strip().lower() == OPEN else read_number(text)
 
 
 def separate_values(words: Sequence[str]) -> list[str]:
@@ -183,7 +183,7 @@ def add_chain(parser: argparse.ArgumentParser) -> None:
 def add_joints(parser: argparse.ArgumentParser) -> None:
     """One value per joint."""
     parser.add_argument(
-        "q", metavar="Q", nargs="*", type=number, help="one value per joint [rad, m]; pi/2 may be typed"
+        "q", metavar="Q", nargs="*", type=read_number, help="one value per joint [rad, m]; pi/2 may be typed"
     )
 
 

@@ -47,7 +47,7 @@ def wants_explanation(args: argparse.Namespace) -> bool:
     return True
 
 
-def explain(args: argparse.Namespace, robot: Robot, out: Output) -> int:
+def print_explanation(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     """Print the explanation; an arm without a solver is a negative answer, with the relations of its axes."""
     locked = None if args.locked is None else locked_joints(args, robot)
     goal_parts = None if args.goal_parts is None else [part.replace("-", "_") for part in args.goal_parts]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any, Final
 
-from cspace.cli.arguments import named_number, number, radians
+from cspace.cli.arguments import named_number, read_number, read_radians
 from cspace.cli.exits import UsageError
 from cspace.cli.robot import joint_called
 
@@ -31,7 +31,7 @@ def add_freedom(parser: argparse.ArgumentParser) -> None:
         metavar="JOINT=VALUE",
         help="joints locked at values; q7 is the seventh joint, whatever its name",
     )
-    group.add_argument("--swivel", type=number, metavar="A", help="angle of the elbow on its circle")
+    group.add_argument("--swivel", type=read_number, metavar="A", help="angle of the elbow on its circle")
     group.add_argument(
         "--samples",
         type=int,
@@ -41,7 +41,7 @@ def add_freedom(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--near",
         nargs="+",
-        type=number,
+        type=read_number,
         metavar="Q",
         help="a configuration: nearest solution first, or only it if the goal leaves degrees of freedom",
     )
@@ -59,7 +59,7 @@ def options_of(args: argparse.Namespace, robot: Robot) -> dict[str, Any]:
     if args.locked is not None:
         options["locked"] = locked_joints(args, robot)
     if args.swivel is not None:
-        options["swivel"] = radians(args.swivel, degrees=args.deg)
+        options["swivel"] = read_radians(args.swivel, degrees=args.deg)
     for name in ("samples", "least_squares"):
         if getattr(args, name) is not None:
             options[name] = getattr(args, name)
@@ -75,5 +75,5 @@ def locked_joints(args: argparse.Namespace, robot: Robot) -> dict[str, float]:
         if name in locked:
             raise UsageError(f"--locked names {name} twice; give each joint one value")
         turns = "turn" in name if of_goal else robot.joint_types[robot.joint_names.index(name)] == "R"
-        locked[name] = radians(value, degrees=args.deg) if turns else value
+        locked[name] = read_radians(value, degrees=args.deg) if turns else value
     return locked

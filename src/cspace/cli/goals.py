@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.cli.arguments import OPEN, coordinate, number, radians
+from cspace.cli.arguments import OPEN, read_coordinate, read_number, read_radians
 from cspace.cli.exits import UsageError
 
 ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
@@ -70,22 +70,28 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
         "goal", "the tip in the base: a pose (a place and an orientation), or the parts of it that matter"
     )
 
-    def add(*names: str, letters: str, text: str, kind: Any = number) -> None:
+    def add(*names: str, letters: str, text: str, kind: Any = read_number) -> None:
         words = tuple(letters.split())
         group.add_argument(*names, nargs=len(words), metavar=words, type=kind, help=text)
 
     add(
-        "--xyz", "--position", letters="X Y Z", kind=coordinate, text=f"position [m]; {OPEN}: does not matter"
+        "--xyz",
+        "--position",
+        letters="X Y Z",
+        kind=read_coordinate,
+        text=f"position [m]; {OPEN}: does not matter",
     )
     add("--xy", letters="X Y", text="position of a planar arm [m]")
-    group.add_argument("--angle", metavar="A", type=number, help="with --xy: the angle of the tip's x axis")
+    group.add_argument(
+        "--angle", metavar="A", type=read_number, help="with --xy: the angle of the tip's x axis"
+    )
     add("--rpy", letters="R P Y", text="orientation: roll, pitch, yaw about fixed x, y, z")
     add("--wxyz", letters="W X Y Z", text="orientation: quaternion, real part first")
     add("--xyzw", letters="X Y Z W", text="orientation: quaternion, real part last")
     group.add_argument(
-        "--rotation", nargs=9, metavar="R", type=number, help="orientation: matrix, row by row"
+        "--rotation", nargs=9, metavar="R", type=read_number, help="orientation: matrix, row by row"
     )
-    group.add_argument("--matrix", nargs=16, metavar="M", type=number, help="the whole pose, row by row")
+    group.add_argument("--matrix", nargs=16, metavar="M", type=read_number, help="the whole pose, row by row")
     add("--direction", letters="X Y Z", text="direction of the tool axis")
     add("--look-at", letters="X Y Z", text="a point on the tool axis, ahead of the tip [m]")
     add("--ray", letters="X Y Z DX DY DZ", text="a point [m] and the direction of the line of the tool axis")
@@ -120,7 +126,7 @@ def goal_of(args: argparse.Namespace) -> Goal:
     if set(parts) == {"position", "rotation"} and None not in parts["position"]:
         return Goal(as_pose(pose_at(place, R), "goal"), tool_axis=axis_of(args))
     if args.angle is not None:
-        parts["angle"] = radians(args.angle, degrees=args.deg)
+        parts["angle"] = read_radians(args.angle, degrees=args.deg)
     return Goal(None, parts, axis_of(args))
 
 
@@ -151,7 +157,7 @@ def rotation_of(args: argparse.Namespace) -> Array | None:
     if forms[0] == "rotation":
         return np.asarray(as_rotation(np.reshape(values, (3, 3)), "--rotation"))
     if forms[0] == "rpy":
-        values = [radians(value, degrees=args.deg) for value in values]
+        values = [read_radians(value, degrees=args.deg) for value in values]
     arguments: dict[str, Any] = {forms[0]: np.array(values)}
     return np.asarray(pose(np.zeros(3), **arguments)[:3, :3])
 
@@ -164,10 +170,10 @@ def pointing_of(args: argparse.Namespace) -> dict[str, Any]:
     if args.angle_to is not None:
         axis, angle = args.angle_to
         try:
-            value = number(angle)
+            value = read_number(angle)
         except argparse.ArgumentTypeError as error:
             raise UsageError(f"--angle-to takes an axis and an angle: {error}") from None
-        parts["angle_to"] = (axis.strip(), radians(value, degrees=args.deg))
+        parts["angle_to"] = (axis.strip(), read_radians(value, degrees=args.deg))
     return parts
 
 
@@ -177,7 +183,7 @@ def axis_of(args: argparse.Namespace) -> Any:
     if len(words) == 1:
         return words[0].strip()
     try:
-        axis = [number(word) for word in words]
+        axis = [read_number(word) for word in words]
     except argparse.ArgumentTypeError as error:
         raise UsageError(f"--tool-axis takes a name or three numbers: {error}") from None
     if len(axis) != 3:

@@ -30,7 +30,7 @@ def options_given(
     pairs = [*typed, *([] if seed is None else [("rng", str(seed))])]
     given: dict[str, dict[str, Any]] = {planner: {} for planner in planners}
     for name, text in pairs:
-        for planner, option in meant(name, planners):
+        for planner, option in options_meant(name, planners):
             if option.name in given[planner]:
                 raise UsageError(
                     f"option {option.name!r} of planner {planner!r} is given twice; give it once"
@@ -39,7 +39,7 @@ def options_given(
     return given
 
 
-def meant(name: str, planners: Sequence[str]) -> list[tuple[str, Option]]:
+def options_meant(name: str, planners: Sequence[str]) -> list[tuple[str, Option]]:
     """The planners, and their options, that a typed name is about."""
     from cspace.navigation import PLANNERS
 

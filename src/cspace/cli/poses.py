@@ -25,14 +25,14 @@ def show_pose(out: Output, T: Array, name: str, *, degrees: bool) -> None:
     out.matrix(T, name)
     out.facts(
         {
-            "xyz [m]": numbers(forms["xyz"]),
-            f"rpy [{'deg' if degrees else 'rad'}]": numbers(rpy) + "  (about fixed x, y, z)",
-            "wxyz": numbers(forms["wxyz"]) + "  (quaternion, real part first)",
-            "xyzw": numbers(forms["xyzw"]) + "  (quaternion, real part last)",
+            "xyz [m]": join_numbers(forms["xyz"]),
+            f"rpy [{'deg' if degrees else 'rad'}]": join_numbers(rpy) + "  (about fixed x, y, z)",
+            "wxyz": join_numbers(forms["wxyz"]) + "  (quaternion, real part first)",
+            "xyzw": join_numbers(forms["xyzw"]) + "  (quaternion, real part last)",
         }
     )
 
 
-def numbers(values: Any) -> str:
+def join_numbers(values: Any) -> str:
     """Numbers in a line, rounding noise shown as zero."""
     return "  ".join(f"{tidy_number(x):.6f}" for x in values)

@@ -41,6 +41,6 @@ class VerbModule(Protocol):
         """Run the verb, write the result to `out`, return the exit code."""
 
 
-def load(verb: str) -> VerbModule:
+def import_verb(verb: str) -> VerbModule:
     """Import the file of one verb."""
     return cast(VerbModule, import_module(f"cspace.cli.verbs.{verb}"))

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.cli.arguments import radians
+from cspace.cli.arguments import read_radians
 from cspace.cli.exits import UsageError
 from cspace.errors import suggest
 
@@ -22,7 +22,7 @@ GRIPPER: Final = re.compile("grip|jaw|finger|claw", re.IGNORECASE)
 """What joints and links of grippers are called."""
 
 
-def load(args: argparse.Namespace) -> Robot:
+def load_chosen(args: argparse.Namespace) -> Robot:
     """The robot that the words name, with the chosen ends."""
     from cspace.robots import load_robot
 
@@ -46,14 +46,14 @@ def need_chain(robot: Robot) -> None:
         )
 
 
-def configuration(values: Sequence[float], robot: Robot, subject: str, *, degrees: bool) -> Array:
+def read_configuration(values: Sequence[float], robot: Robot, subject: str, *, degrees: bool) -> Array:
     """Typed values as a configuration (n,) [rad, m]; with `degrees` the angles were typed in degrees."""
     n = len(robot.joint_names)
     if len(values) != n:
         names = ", ".join(robot.joint_names)
         raise UsageError(f"{robot.name} has {n} joints, {subject} has {len(values)} values; joints: {names}")
     typed = zip(values, robot.joint_types, strict=True)
-    return np.array([radians(value, degrees=degrees and kind == "R") for value, kind in typed])
+    return np.array([read_radians(value, degrees=degrees and kind == "R") for value, kind in typed])
 
 
 def gripper_note(args: argparse.Namespace, robot: Robot) -> str:
@@ -72,7 +72,7 @@ def angle_unit(degrees: bool) -> str:
     return "deg" if degrees else "rad"
 
 
-def headings(robot: Robot) -> list[str]:
+def joint_headings(robot: Robot) -> list[str]:
     """Column headings of the joints: their names where they are short, else q1, q2, …"""
     names = list(robot.joint_names)
     return names if max(map(len, names), default=0) <= 8 else [f"q{k + 1}" for k in range(len(names))]

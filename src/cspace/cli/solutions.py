@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.goals import Goal
 from cspace.cli.output import Cell, Output, Table
-from cspace.cli.robot import angle_unit, headings, joint_texts
+from cspace.cli.robot import angle_unit, joint_headings, joint_texts
 from cspace.cli.tasks import singularity_of_rows
 
 if TYPE_CHECKING:
@@ -58,7 +58,9 @@ class Rows:
         return len(self.q)
 
 
-def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[str, Any]) -> dict[str, Any]:
+def solutions_document(
+    robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[str, Any]
+) -> dict[str, Any]:
     """The solutions as JSON data, [rad] and [m]."""
     solutions = [
         {
@@ -90,7 +92,7 @@ def document(robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[st
     }
 
 
-def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -> None:
+def print_solutions(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -> None:
     """The solutions as a table, or the reason why there are none."""
     reason = answer.reason.replace("least_squares=True", "--least-squares")
     reason = in_degrees(reason) if degrees else reason
@@ -99,13 +101,13 @@ def show(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -
         return
     out.table(table_of(robot, rows, degrees=degrees))
     names = ", ".join(
-        f"{short} {name}" for short, name in zip(headings(robot), robot.joint_names, strict=True)
+        f"{short} {name}" for short, name in zip(joint_headings(robot), robot.joint_names, strict=True)
     )
     units = f"angles in {angle_unit(degrees)}" + (", slides in m" if "P" in robot.joint_types else "")
     if rows.singularity is not None:
         units += "; singularity: distance to the nearest singular configuration"
     out.hint(f"{units}; residual: of the true pose")
-    if headings(robot) != list(robot.joint_names):
+    if joint_headings(robot) != list(robot.joint_names):
         out.hint(names)
 
 
@@ -120,7 +122,7 @@ def table_of(robot: Robot, rows: Rows, *, degrees: bool) -> Table:
     branch = ["branch"] if any(rows.branch) else []
     singularity = [] if rows.singularity is None else ["singularity"]
     near = [] if rows.distance is None else ["distance"]
-    columns = ["", *headings(robot), *limits, *singularity, *branch, "residual", *near]
+    columns = ["", *joint_headings(robot), *limits, *singularity, *branch, "residual", *near]
     table = Table(columns, left=frozenset(columns.index(name) for name in (*limits, *branch)))
     for k in range(len(rows)):
         cells: list[Cell | str] = [f"{k + 1}", *joint_texts(rows.q[k], robot, degrees=degrees)]
@@ -142,7 +144,7 @@ def limits_cell(out_by: dict[str, float], robot: Robot, *, degrees: bool) -> Cel
     if not out_by:
         return Cell("ok", "green")
     texts = []
-    short = dict(zip(robot.joint_names, headings(robot), strict=True))
+    short = dict(zip(robot.joint_names, joint_headings(robot), strict=True))
     kinds = dict(zip(robot.joint_names, robot.joint_types, strict=True))
     for name, excess in out_by.items():
         size, unit, digits = excess, "m" if kinds[name] == "P" else "rad", 4

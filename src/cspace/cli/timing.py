@@ -17,7 +17,7 @@ CARRIER: Final = signal.SIGINT
 
 
 @contextmanager
-def limit(seconds: float | None) -> Iterator[None]:
+def limit_time(seconds: float | None) -> Iterator[None]:
     """Raise TimeLimitReached in the block when it takes longer; None means no limit.
 
     Compiled code is not interrupted: the error is raised when it returns. Ctrl-C works as before.

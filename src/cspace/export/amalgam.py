@@ -18,7 +18,7 @@ def include_folder() -> Path:
     raise CspaceError(f"the C++ headers are not in {package / 'include'}; install cspace again")
 
 
-def amalgamate(entries: Iterable[str]) -> str:
+def amalgamate_headers(entries: Iterable[str]) -> str:
     """The headers in `entries` and everything that they include, each once, after its own includes."""
     folder = include_folder()
     parts: list[str] = []

@@ -88,12 +88,14 @@ def exported_arm(robot: HasSolver, name: str | None, locked: Any = None) -> Expo
     chosen = checked_locked_joints(solver, locked)
     if not chosen:
         kind, plan = numbers_of(solver)
-        return described(solver, name, kind, plan)
+        return describe_arm(solver, name, kind, plan)
     if between_others(len(solver.joint_names), chosen):
-        return described(solver, name, "locked", {}, locked=chosen)
+        return describe_arm(solver, name, "locked", {}, locked=chosen)
     others = solver.lock(dict.fromkeys(chosen, 0.0))
     kind, plan = numbers_of(others)
-    return described(solver, name, kind, plan, locked=chosen, moving=described(others, "moving", kind, plan))
+    return describe_arm(
+        solver, name, kind, plan, locked=chosen, moving=describe_arm(others, "moving", kind, plan)
+    )
 
 
 def numbers_of(solver: Solver) -> tuple[str, dict[str, Any]]:
@@ -103,7 +105,7 @@ def numbers_of(solver: Solver) -> tuple[str, dict[str, Any]]:
     return _core._ik_numbers(solver)
 
 
-def vector(v: Array) -> dict[str, float]:
+def vector_field(v: Array) -> dict[str, float]:
     """A vector as a field of the headers."""
     return {axis: float(x) for axis, x in zip("xyz", v, strict=True)}
 
@@ -132,7 +134,7 @@ def checked_locked_joints(solver: Solver, locked: Any) -> tuple[int, ...]:
     return tuple(sorted(chosen))
 
 
-def described(
+def describe_arm(
     solver: Solver,
     name: str | None,
     kind: str,
@@ -143,7 +145,7 @@ def described(
     """The names and numbers of an arm."""
     chain = solver.chain
     return ExportedArm(
-        identifier=checked(name) if name is not None else identifier_from(solver.name),
+        identifier=check_name(name) if name is not None else identifier_from(solver.name),
         title=in_ascii(" ".join(str(solver.name).split()).replace("*/", "")) or "arm",
         kind=kind,
         plan=plan,
@@ -161,7 +163,7 @@ def described(
     )
 
 
-def checked(name: str) -> str:
+def check_name(name: str) -> str:
     if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or is_taken(name):
         raise InputError(
             f"name is {shown(name)}, expected a letter, then letters, digits and single underscores, "

@@ -6,11 +6,11 @@ import re
 from string import Template
 from typing import Any
 
-from cspace.export.amalgam import amalgamate
-from cspace.export.arm import ExportedArm, vector
-from cspace.export.numbers import bounds, initialiser, literal, quoted
+from cspace.export.amalgam import amalgamate_headers
+from cspace.export.arm import ExportedArm, vector_field
+from cspace.export.numbers import quote_text, write_bounds, write_initialiser, write_literal
 from cspace.export.plain import in_ascii
-from cspace.export.words import filled, template
+from cspace.export.words import fill_template, read_template
 from cspace.tolerances import ON_LIMIT
 
 TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"
@@ -23,17 +23,22 @@ def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
     one_file: only one file of the program will include it, and link without the run-time library of C++.
     """
     words = {**words_of(arm), "storage": "static" if one_file else "inline"}
-    headers, code = solver(arm)
-    code = Template(code).substitute(words, plan=initialiser(plan_of(arm)))
+    headers, code = solver_source(arm)
+    code = Template(code).substitute(words, plan=write_initialiser(plan_of(arm)))
     if arm.moving:
-        around = {**words, "solver": code, "plan": initialiser(chain_of(arm)), "moving_room": arm.moving.room}
-        code = filled("solve_locked_joints.hpp.in", around)
-    core = TABLES_AT_START * one_file + in_ascii(amalgamate(headers))
+        around = {
+            **words,
+            "solver": code,
+            "plan": write_initialiser(chain_of(arm)),
+            "moving_room": arm.moving.room,
+        }
+        code = fill_template("solve_locked_joints.hpp.in", around)
+    core = TABLES_AT_START * one_file + in_ascii(amalgamate_headers(headers))
     solve = f"namespace cspace {{\n\n{code}\n}}  // namespace cspace\n"
-    parts = [core, filled("types.hpp.in", words), solve, filled("interface.hpp.in", words)]
-    text = renamed("\n".join(parts), words)
+    parts = [core, fill_template("types.hpp.in", words), solve, fill_template("interface.hpp.in", words)]
+    text = rename_core("\n".join(parts), words)
     undefined = "".join(f"#undef {macro}\n" for macro in left_macros(text, words["MACRO"]))
-    return f"{filled('head.hpp.in', words)}\n{text}\n{undefined}\n#endif\n"
+    return f"{fill_template('head.hpp.in', words)}\n{text}\n{undefined}\n#endif\n"
 
 
 def words_of(arm: ExportedArm) -> dict[str, Any]:
@@ -46,10 +51,10 @@ def words_of(arm: ExportedArm) -> dict[str, Any]:
         "MACRO": f"{arm.identifier.upper()}_IK_",
         "dof": arm.dof,
         "room": arm.room,
-        "joint_names": ", ".join(quoted(name) for name in arm.joint_names),
-        "prismatic": literal([kind == "P" for kind in arm.joint_types])[1:-1],
-        "lower": bounds(arm.lower),
-        "upper": bounds(arm.upper),
+        "joint_names": ", ".join(quote_text(name) for name in arm.joint_names),
+        "prismatic": write_literal([kind == "P" for kind in arm.joint_types])[1:-1],
+        "lower": write_bounds(arm.lower),
+        "upper": write_bounds(arm.upper),
         "on_limit": ON_LIMIT,
         **words_of_locked(arm),
     }
@@ -106,10 +111,10 @@ def chain_of(arm: ExportedArm) -> dict[str, Any]:
     """The whole arm as a chain of the headers."""
     return {
         "n": arm.dof,
-        "axis": [vector(axis) for axis in arm.axes],
-        "point": [vector(point) for point in arm.points],
+        "axis": [vector_field(axis) for axis in arm.axes],
+        "point": [vector_field(point) for point in arm.points],
         "prismatic": [kind == "P" for kind in arm.joint_types],
-        "tip": {"R": {"m": arm.T_zero[:3, :3].tolist()}, "t": vector(arm.T_zero[:3, 3])},
+        "tip": {"R": {"m": arm.T_zero[:3, :3].tolist()}, "t": vector_field(arm.T_zero[:3, 3])},
     }
 
 
@@ -119,7 +124,7 @@ def plan_of(arm: ExportedArm) -> dict[str, Any]:
     return {**arm.plan, "solve": "&ik::solve_general"} if arm.kind == "general" else arm.plan
 
 
-def solver(arm: ExportedArm) -> tuple[list[str], str]:
+def solver_source(arm: ExportedArm) -> tuple[list[str], str]:
     """The headers of the core that solve the arm, and the code that calls them."""
     headers = ["cspace/math/isa.hpp", "cspace/ik/goal.hpp", "cspace/ik/chain.hpp"]
     parts = ["refused", "given", f"solve_{arm.kind}"]
@@ -137,10 +142,10 @@ def solver(arm: ExportedArm) -> tuple[list[str], str]:
         parts = ["solve_locked"]
     else:
         headers += ["cspace/ik/arm.hpp"]
-    return headers, "\n".join(template(f"{part}.hpp.in") for part in parts)
+    return headers, "\n".join(read_template(f"{part}.hpp.in") for part in parts)
 
 
-def renamed(text: str, words: dict[str, Any]) -> str:
+def rename_core(text: str, words: dict[str, Any]) -> str:
     """The namespace and the macros of the core under the name of the arm, so that no names collide.
 
     The namespace of the instruction set holds all of the core, because C++17 knows no nested inline ones.

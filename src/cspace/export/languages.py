@@ -15,7 +15,7 @@ from cspace.export.arm import ExportedArm, exported_arm
 from cspace.export.c import c_files
 from cspace.export.cpp import cpp_header, words_of
 from cspace.export.python_file import python_file, python_method
-from cspace.export.words import filled
+from cspace.export.words import fill_template
 from cspace.files import path_of, write_text
 
 LANGUAGES = MappingProxyType(
@@ -148,20 +148,20 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     else:
         files = {main: cpp_header(arm) if language == "cpp" else python_file(arm)}
     ending = {"cpp": ".cpp", "c": ".c", "python": ".py"}[language]
-    words = {**words_of(arm), "header": main, "file": f"main{ending}", "sample": sample(arm)}
+    words = {**words_of(arm), "header": main, "file": f"main{ending}", "sample": sample_configuration(arm)}
     words["source"] = PurePath(main).with_suffix(".cpp").name
     words["object"] = PurePath(main).with_suffix(".o").name
     words["module"] = PurePath(main).stem
-    example = filled(f"example{ending}.in", words)
+    example = fill_template(f"example{ending}.in", words)
     chosen = tuple(arm.joint_names[k] for k in arm.locked)
-    return Export(language, arm.identifier, method(arm, language), files, example, chosen)
+    return Export(language, arm.identifier, describe_method(arm, language), files, example, chosen)
 
 
-def method(arm: ExportedArm, language: str) -> str:
+def describe_method(arm: ExportedArm, language: str) -> str:
     return python_method(arm) if language == "python" else arm.method
 
 
-def sample(arm: ExportedArm) -> str:
+def sample_configuration(arm: ExportedArm) -> str:
     """An irregular configuration inside the limits, as a list of numbers."""
     values = []
     for i, (lower, upper) in enumerate(zip(arm.lower, arm.upper, strict=True)):

@@ -40,10 +40,10 @@ RAISED = str.maketrans("⁰¹²³⁴⁵⁶⁷⁸⁹⁻ⁿᵏⁱᵀ", "0123456789
 def in_ascii(text: str) -> str:
     """Greek letters by name, superscripts as powers, symbols in ASCII; every other character as ?."""
     text = re.sub("[⁰¹²³⁴-⁹⁻ⁿᵏⁱᵀ]+", lambda found: "^" + found[0].translate(RAISED), text)
-    return re.sub(r"[^\x00-\x7f]", lambda found: letter(found[0]), text)
+    return re.sub(r"[^\x00-\x7f]", lambda found: write_letter(found[0]), text)
 
 
-def letter(sign: str) -> str:
+def write_letter(sign: str) -> str:
     if sign in WORDS:
         return WORDS[sign]
     name = unicodedata.name(sign, "")

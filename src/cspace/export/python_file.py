@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from cspace.export.arm import ExportedArm
-from cspace.export.words import filled
+from cspace.export.words import fill_template
 from cspace.ik.conditions import NoClosedFormError
 from cspace.tolerances import ON_LIMIT
 
@@ -50,7 +50,7 @@ def python_file(arm: ExportedArm) -> str:
         "dof": arm.dof,
         **python_words_of_locked(arm),
     }
-    return filled("module.py.in", words)
+    return fill_template("module.py.in", words)
 
 
 def python_words_of_locked(arm: ExportedArm) -> dict[str, str]:

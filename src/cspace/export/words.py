@@ -8,11 +8,11 @@ from string import Template
 from typing import Any
 
 
-def template(name: str) -> str:
+def read_template(name: str) -> str:
     """The text of a template."""
     return (Path(__file__).parent / "templates" / name).read_text(encoding="utf-8")
 
 
-def filled(name: str, words: Mapping[str, Any]) -> str:
+def fill_template(name: str, words: Mapping[str, Any]) -> str:
     """The text of a template with its placeholders replaced."""
-    return Template(template(name)).substitute(words)
+    return Template(read_template(name)).substitute(words)

@@ -24,7 +24,7 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point, place
+from cspace.ik.joint_axes import Placed, are_parallel, are_square, meeting_point, place_axes
 from cspace.tolerances import BRANCH_LENGTH, BRANCH_OFFSET
 
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def branch_labels(solver: Solver, q: Array, numbers: tuple[int, ...]) -> tuple[s
     if words is None:
         return tuple(f"branch {n + 1}" for n in numbers)
     chain = solver.chain
-    return tuple(words(place(chain, row), n) for row, n in zip(q, numbers, strict=True))
+    return tuple(words(place_axes(chain, row), n) for row, n in zip(q, numbers, strict=True))
 
 
 def words_of(chain: Any, seen: dict[str, Any]) -> Words | None:
@@ -71,7 +71,7 @@ def six_joints(other: int, wrist_bit: int, forearm_end: int | None) -> Words:
         wrist = meeting_point(at.axes[4], at.points[4], at.axes[other], at.points[other])
         end = wrist if forearm_end is None else at.points[forearm_end]
         flip = "flip" if (number >> wrist_bit) & 1 else "no flip"
-        return f"{shoulder(at, wrist)}, {elbow(at, end)}, wrist {flip}"
+        return f"{name_shoulder(at, wrist)}, {name_elbow(at, end)}, wrist {flip}"
 
     return words
 
@@ -82,7 +82,7 @@ def words_of_completed(chain: Any) -> Words | None:
     if not (are_square(h[0], h[1]) and are_parallel(h[1], h[2])):
         return None
     if are_parallel(h[1], h[3]):
-        return lambda at, _: f"{shoulder(at, at.points[3])}, {elbow(at, at.points[3])}"
+        return lambda at, _: f"{name_shoulder(at, at.points[3])}, {name_elbow(at, at.points[3])}"
     if len(h) == 5 and not are_parallel(h[3], h[4]):
         gap = np.cross(h[3], h[4]) @ (p[4] - p[3])
         if abs(gap) <= BRANCH_OFFSET:
@@ -92,7 +92,7 @@ def words_of_completed(chain: Any) -> Words | None:
 
 def shoulder_and_elbow_at_meeting(at: Placed, _: int) -> str:
     wrist = meeting_point(at.axes[3], at.points[3], at.axes[4], at.points[4])
-    return f"{shoulder(at, wrist)}, {elbow(at, wrist)}"
+    return f"{name_shoulder(at, wrist)}, {name_elbow(at, wrist)}"
 
 
 def words_of_few(chain: Any) -> Words | None:
@@ -108,15 +108,15 @@ def words_of_few(chain: Any) -> Words | None:
     if len(turns) > 1 and level and along == slides:
         return in_a_plane(turns)
     if len(turns) == 1 and len(across) == 1 and len(across) + len(along) == len(slides):
-        return lambda at, _: slide(at, turns[0], across[0], at.tip)
+        return lambda at, _: name_slide(at, turns[0], across[0], at.tip)
     if kinds == "RPR" and across and level:
-        return lambda at, _: slide(at, 0, 1, at.points[2])
+        return lambda at, _: name_slide(at, 0, 1, at.points[2])
     if kinds == "RPR" and across and are_square(h[2], h[0]) and are_square(h[2], h[1]):
-        return lambda at, _: f"{slide(at, 0, 1, at.tip)}, {link(at, 2, 1)}"
+        return lambda at, _: f"{name_slide(at, 0, 1, at.tip)}, {name_link(at, 2, 1)}"
     if kinds == "RRR" and are_square(h[0], h[1]) and are_parallel(h[1], h[2]):
-        return lambda at, _: f"{shoulder(at, at.tip)}, {elbow(at, at.tip)}"
+        return lambda at, _: f"{name_shoulder(at, at.tip)}, {name_elbow(at, at.tip)}"
     if kinds == "RRP" and are_square(h[0], h[1]) and are_square(h[1], h[2]):
-        return lambda at, _: f"{shoulder(at, at.tip)}, {slide(at, 1, 2, at.tip)}"
+        return lambda at, _: f"{name_shoulder(at, at.tip)}, {name_slide(at, 1, 2, at.tip)}"
     return None
 
 
@@ -127,7 +127,7 @@ def in_a_plane(turns: list[int]) -> Words:
     def words(at: Placed, _: int) -> str:
         end = at.points[turns[2]] if len(turns) > 2 else at.tip
         n = towards_viewer(at.axes[first])
-        line, upper = (across(v - at.points[first], n) for v in (end, at.points[second]))
+        line, upper = (part_across(v - at.points[first], n) for v in (end, at.points[second]))
         if np.linalg.norm(line) <= BRANCH_OFFSET * np.linalg.norm(upper):
             return "elbow folded"
         return elbow_side(line, upper, np.cross(n, line))
@@ -145,20 +145,20 @@ def towards_viewer(h: Array) -> Array:
     return h if np.cross(right, up) @ h > 0 else -h
 
 
-def shoulder(at: Placed, wrist: Array) -> str:
+def name_shoulder(at: Placed, wrist: Array) -> str:
     h1, h2 = at.axes[:2]
     to_wrist = wrist - at.points[0]
-    forward, beside = across(to_wrist, h1), to_wrist @ h2
+    forward, beside = part_across(to_wrist, h1), to_wrist @ h2
     side = np.cross(h1, forward) @ (beside * h2)
     if abs(beside) <= _core.AXIS_RELATION * np.linalg.norm(to_wrist):
         return "shoulder front" if at.face @ forward > 0 else "shoulder back"
     return "shoulder left" if side > 0 else "shoulder right"
 
 
-def elbow(at: Placed, end: Array) -> str:
+def name_elbow(at: Placed, end: Array) -> str:
     """The elbow of an arm whose axes 2 and 3 are parallel and whose forearm ends at `end`."""
     h2 = at.axes[1]
-    line, upper = (across(v - at.points[1], h2) for v in (end, at.points[2]))
+    line, upper = (part_across(v - at.points[1], h2) for v in (end, at.points[2]))
     return elbow_side(line, upper, at.axes[0])
 
 
@@ -171,12 +171,12 @@ def elbow_side(line: Array, upper: Array, up: Array) -> str:
     return "elbow up" if offset @ up > 0 else "elbow down"
 
 
-def slide(at: Placed, turn: int, sliding: int, end: Array) -> str:
+def name_slide(at: Placed, turn: int, sliding: int, end: Array) -> str:
     word = side_of(at, turn, sliding, end, ("forward", "back"))
     return f"slide {word}"
 
 
-def link(at: Placed, turn: int, sliding: int) -> str:
+def name_link(at: Placed, turn: int, sliding: int) -> str:
     word = side_of(at, turn, sliding, at.tip, ("ahead", "behind"))
     return f"link {word}"
 
@@ -184,13 +184,13 @@ def link(at: Placed, turn: int, sliding: int) -> str:
 def side_of(at: Placed, turn: int, sliding: int, end: Array, words: tuple[str, str]) -> str:
     """On which side of a turning axis `end` lies, along a prismatic joint; "level" with it at the fold
     between."""
-    from_axis = across(end - at.points[turn], at.axes[turn])
+    from_axis = part_across(end - at.points[turn], at.axes[turn])
     ahead = from_axis @ at.axes[sliding]
     if abs(ahead) <= BRANCH_OFFSET * np.linalg.norm(from_axis):
         return "level"
     return words[0] if ahead > 0 else words[1]
 
 
-def across(v: Array, h: Array) -> Array:
+def part_across(v: Array, h: Array) -> Array:
     """The part of v perpendicular to the unit vector h."""
     return np.asarray(v - (v @ h) * h)

@@ -60,7 +60,7 @@ def arm_length(robot: KinematicModel) -> float:
     return float(max(steps)) or 1.0
 
 
-def conditions(robot: KinematicModel) -> tuple[Condition, ...]:
+def measure_conditions(robot: KinematicModel) -> tuple[Condition, ...]:
     """Every condition that a closed form could rest on, measured."""
     axes, points = robot.chain.axes, robot.chain.points
     allowed = _core.AXIS_RELATION * arm_length(robot)
@@ -120,7 +120,7 @@ def explain_missing_form(robot: KinematicModel) -> str:
         )
     if "P" in kinds:
         return f"{subject}: it has prismatic joints"
-    tested = "; ".join(str(c) for c in conditions(robot) if not c.holds)
+    tested = "; ".join(str(c) for c in measure_conditions(robot) if not c.holds)
     return (
         f"{subject}: the first or last three axes must meet in a point, or three adjacent axes must be "
         f"parallel. {tested}"

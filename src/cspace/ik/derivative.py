@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from cspace.ik.solver import Solver
 
 
-def derivative(solver: Solver, q: Array, position_only: bool = False) -> Array:
+def solve_derivative(solver: Solver, q: Array, position_only: bool = False) -> Array:
     """dq per twist of the goal: the pseudo-inverse of the Jacobian, (..., dof, 6).
 
     q: (..., dof) [rad, m], rows of NaN allowed. A goal that moves by the base twist [v; ω] (v the velocity of

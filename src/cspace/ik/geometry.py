@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import cast
 
 from cspace import _core
-from cspace.ik.conditions import Condition, NoClosedFormError, conditions, explain_missing_form
+from cspace.ik.conditions import Condition, NoClosedFormError, explain_missing_form, measure_conditions
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.kinematics import KinematicModel
 
@@ -67,9 +67,9 @@ def geometry(robot: HasSolver) -> Geometry:
         solver = as_solver(robot)
     except NoClosedFormError as error:
         model = cast(KinematicModel, robot)
-        tested = conditions(model) if len(model.chain.axes) >= 3 else ()
+        tested = measure_conditions(model) if len(model.chain.axes) >= 3 else ()
         return Geometry("none", "", False, 0.0, tested, str(error))
-    tested = conditions(solver) if len(solver.chain.axes) >= 3 else ()
+    tested = measure_conditions(solver) if len(solver.chain.axes) >= 3 else ()
     if solver.is_redundant:
         return redundant_geometry(solver, tested)
     seen = _core._ik_geometry(solver)

@@ -32,7 +32,7 @@ def are_square(h1: Array, h2: Array) -> bool:
     return bool(abs(h1 @ h2) <= _core.AXIS_RELATION)
 
 
-def place(chain: Any, q: Array) -> Placed:
+def place_axes(chain: Any, q: Array) -> Placed:
     """The arm at q by its product of exponentials."""
     R, t = np.eye(3), np.zeros(3)
     axes, points = np.empty((2, len(q), 3))

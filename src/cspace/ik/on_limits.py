@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.wrapping import Flags, into_limits, violations
+from cspace.ik.wrapping import Flags, into_limits, measure_violations
 from cspace.model import Limits
 from cspace.tolerances import DOUBLE_DIRECTION, DOUBLE_SOLUTION, SAME_TIP
 
@@ -35,7 +35,7 @@ def settle_on_limits(solver: Solver, q: Array, limits: Limits, rows: slice) -> A
     if solver.dof > rows.stop:
         return q
     outside = np.nonzero(~into_limits(q, *bounds, SAME_TIP)[1])
-    excess = violations(q[outside], *bounds, SAME_TIP)
+    excess = measure_violations(q[outside], *bounds, SAME_TIP)
     close = (excess <= DOUBLE_SOLUTION).all(axis=-1) & (excess > 0).any(axis=-1)
     if not close.any():
         return q
@@ -55,7 +55,7 @@ def settle_row(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:
     for _ in range(STEPS):
         x, locked = onto_limits(x, locked, *bounds)
         J = solver.jacobian(x)[rows]
-        miss = displacement(solver.fk(x), T)[rows]
+        miss = measure_displacement(solver.fk(x), T)[rows]
         size = max(1.0, float(np.abs(J).max()))
         if np.abs(miss).max() <= SAME_TIP * size and into_limits(x, *bounds, SAME_TIP)[1]:
             return x
@@ -70,7 +70,7 @@ def onto_limits(q: Array, locked: Flags, kinds: str, lower: Array, upper: Array)
     return moved, locked | (moved == lower) | (moved == upper)
 
 
-def displacement(T_from: Array, T_to: Array) -> Array:
+def measure_displacement(T_from: Array, T_to: Array) -> Array:
     """The small motion [v; ω] (6,) that takes a pose to another one, to first order."""
     turn = T_to[:3, :3] @ T_from[:3, :3].T
     w = 0.5 * np.array([turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1]])

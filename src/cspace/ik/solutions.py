@@ -12,13 +12,13 @@ from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, attribute_error
 from cspace.ik.branches import branch_labels
 from cspace.ik.context import About
-from cspace.ik.derivative import derivative
+from cspace.ik.derivative import solve_derivative
 from cspace.ik.goals.given import one_configuration
 from cspace.ik.locked_joints import locked_in_words
 from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
-from cspace.ik.wrapping import all_windings, into_limits, nearest_winding, violations, wrap
-from cspace.kinematics.batch import choice
+from cspace.ik.wrapping import all_windings, into_limits, measure_violations, nearest_winding, wrap_joints
+from cspace.kinematics.batch import check_choice
 from cspace.tolerances import ORIENTATION_KEPT, SAME_MEMBER, SLIGHT_MISS
 
 if TYPE_CHECKING:
@@ -136,9 +136,9 @@ class Solutions(_core.SolutionsBase):
         to first order. NaN where a solution is singular. Computed on access.
         """
         if self._partial is not None:
-            moves = derivative(self._about.extended, self._about.q)
+            moves = solve_derivative(self._about.extended, self._about.q)
             return np.swapaxes(self._partial.own_joints(np.swapaxes(moves, 1, 2)), 1, 2)
-        return derivative(self.solver, self.q, self.goal.shape == (3,))
+        return solve_derivative(self.solver, self.q, self.goal.shape == (3,))
 
     @property
     def branch(self) -> tuple[str, ...]:
@@ -171,9 +171,8 @@ class Solutions(_core.SolutionsBase):
         if self._about is not None and self._about.values:
             return f"{text}, {spread_in_words(self._about)}" + ("" if self.complete else f"; {UNCERTIFIED}")
         if self.freedom:
-            text = (
-                f"{len(self)} of the configurations that reach the goal, which leaves {named(self.freedom)}"
-            )
+            free = name_freedom(self.freedom)
+            text = f"{len(self)} of the configurations that reach the goal, which leaves {free}"
         if self._status == SINGULAR:
             moving = sorted({name for self_motion in self.self_motions for name in self_motion.joints})
             is_pose = self.goal.shape == (4, 4) and self._partial is None
@@ -235,7 +234,7 @@ class Solutions(_core.SolutionsBase):
         representative counts; its `nearest` says which member comes nearest.
         """
         seed = one_configuration(self.solver, q, "q")
-        choice(metric, "metric", METRICS)
+        check_choice(metric, "metric", METRICS)
         if not self:
             return self
         limits = self.solver.limits
@@ -263,7 +262,7 @@ class Solutions(_core.SolutionsBase):
 
     def wrapped(self) -> Solutions:
         """The same solutions with revolute joints in (−π, π]."""
-        return self._take(np.arange(len(self)), wrap(self.q, self.solver.joint_types), self._note)
+        return self._take(np.arange(len(self)), wrap_joints(self.q, self.solver.joint_types), self._note)
 
     def violations(self, limits: Limits | None = None) -> tuple[dict[str, float], ...]:
         """Per solution, the joints that no multiple of 2π brings into the limits, and by how much [rad, m].
@@ -271,7 +270,9 @@ class Solutions(_core.SolutionsBase):
         Empty for exactly the solutions that `within` keeps.
         """
         bounds = bounds_of(self.solver, limits)
-        excess = violations(self._settled(bounds), self.solver.joint_types, bounds.lower, bounds.upper)
+        excess = measure_violations(
+            self._settled(bounds), self.solver.joint_types, bounds.lower, bounds.upper
+        )
         names = self.solver.joint_names
         return tuple({name: float(e) for name, e in zip(names, row, strict=True) if e > 0} for row in excess)
 
@@ -336,7 +337,7 @@ def how_many(k: int) -> str:
     return "1 configuration reaches" if k == 1 else f"{k} configurations reach"
 
 
-def named(freedom: tuple[str, ...]) -> str:
+def name_freedom(freedom: tuple[str, ...]) -> str:
     """The dimensions that a goal leaves free, as text."""
     k = len(freedom)
     return f"{k} dimension{'s' if k > 1 else ''} free: {', '.join(freedom)}"
@@ -411,7 +412,7 @@ def nearest_to_goal(found: Solutions, radian: float = 1.0) -> tuple[Array, float
 
 
 def limits_reason(found: Solutions, q: Array, limits: Limits) -> str:
-    excess = violations(q, found.solver.joint_types, limits.lower, limits.upper)
+    excess = measure_violations(q, found.solver.joint_types, limits.lower, limits.upper)
     best = int(np.argmin(excess.max(axis=1)))
     joint = int(np.argmax(excess[best]))
     unit = "rad" if found.solver.joint_types[joint] == "R" else "m"

@@ -14,7 +14,7 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, attribute_error
 from cspace.ik.context import About
-from cspace.ik.derivative import derivative
+from cspace.ik.derivative import solve_derivative
 from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.solutions import (
@@ -28,8 +28,8 @@ from cspace.ik.solutions import (
     pose_errors,
     position_goal,
 )
-from cspace.ik.wrapping import into_limits, nearest_winding, short_way, wrap
-from cspace.kinematics.batch import choice
+from cspace.ik.wrapping import into_limits, nearest_winding, short_way, wrap_joints
+from cspace.kinematics.batch import check_choice
 from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
@@ -141,7 +141,7 @@ class SolutionsBatch:
     def derivative(self) -> Array:
         """dq per base twist [v; ω] of each goal, (..., k_max, dof, 6), NaN padded, as of `Solutions`."""
         if self._partial is None:
-            return derivative(self.solver, self.q, self.goal.shape[self.count.ndim :] == (3,))
+            return solve_derivative(self.solver, self.q, self.goal.shape[self.count.ndim :] == (3,))
         out = np.full((*self.q.shape, 6), np.nan)
         for index in np.ndindex(self.count.shape):  # the joints of each goal are known to its own answer
             out[index][: self.count[index]] = self[index].derivative
@@ -223,7 +223,7 @@ class SolutionsBatch:
 
     def wrapped(self) -> SolutionsBatch:
         """The same solutions with revolute joints in (−π, π]."""
-        q = wrap(self.q, self.solver.joint_types)
+        q = wrap_joints(self.q, self.solver.joint_types)
         return self._with(q, self.count)
 
     def _with(
@@ -239,7 +239,7 @@ class SolutionsBatch:
         """Per goal the configuration nearest to q (dof,) or (..., dof), (..., dof); NaN where there is
         none.
         """
-        choice(metric, "metric", METRICS)
+        check_choice(metric, "metric", METRICS)
         seed = self._seed(q)[..., None, :]
         limits = self.solver.limits
         moved = nearest_winding(self.q, seed, self.solver.joint_types, limits.lower, limits.upper)

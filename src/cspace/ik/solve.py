@@ -29,7 +29,7 @@ from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.redundancy.solve import solve_freedom
 from cspace.ik.solutions import NEAREST, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.ik.wrapping import wrap
+from cspace.ik.wrapping import wrap_joints
 from cspace.kinematics.batch import thread_count
 from cspace.spatial import as_pose
 
@@ -106,7 +106,7 @@ def solve(
     if swivel is not None:
         raise InputTypeError("swivel= needs a full pose; lock joints with locked= instead")
     parts = partial_goal(given, tool_axis)
-    return choose(solver, solve_freedom(solver, parts, parts.T, options), options)
+    return choose_solutions(solver, solve_freedom(solver, parts, parts.T, options), options)
 
 
 def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
@@ -114,21 +114,21 @@ def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
     if options.swivel is not None:
         return answer_swivel(solver, T, options)
     if options.sets_freedom or solver.is_redundant:
-        return choose(solver, solve_freedom(solver, None, checked_poses(T), options), options)
+        return choose_solutions(solver, solve_freedom(solver, None, checked_poses(T), options), options)
     found = solve_many(solver, T, options.threads) if T.ndim > 2 else solve_one(solver, T, options.near)
-    return choose(solver, found, options)
+    return choose_solutions(solver, found, options)
 
 
 def answer_points(solver: Solver, p: Array, options: Options) -> Answer:
     if p.ndim > 1:
-        return choose(solver, solve_positions(solver, p, options.threads), options)
+        return choose_solutions(solver, solve_positions(solver, p, options.threads), options)
     found = cast(Solutions, _core._ik_position(solver, p))
     if options.near is not None and found.self_motions:
         found = found._along_self_motions(one_configuration(solver, options.near, "near"))
-    return choose(solver, found, options)
+    return choose_solutions(solver, found, options)
 
 
-def choose(solver: Solver, found: Answer, options: Options) -> Answer:
+def choose_solutions(solver: Solver, found: Answer, options: Options) -> Answer:
     """Of all solutions those that the options name."""
     if options.least_squares and options.locked:
         raise InputTypeError("least_squares= cannot be combined with locked=, because it moves every joint")
@@ -148,7 +148,7 @@ def answer_swivel(solver: Solver, T: Array, options: Options) -> Answer:
         raise InputTypeError(
             "swivel= can only be combined with near=, because it fixes the redundant degree of freedom"
         )
-    return choose(solver, solve_swivel(solver, checked_poses(T), options.swivel), options)
+    return choose_solutions(solver, solve_swivel(solver, checked_poses(T), options.swivel), options)
 
 
 def is_plain_position(solver: Solver, given: dict[str, Any]) -> bool:
@@ -214,7 +214,9 @@ def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:
     q, count, verdict = found.q.copy(), found.count.copy(), found._verdict.copy()
     if found._partial is None and found.goal.shape[found.count.ndim :] == (4, 4):
         goals = np.ascontiguousarray(found.goal[tuple(bad.T)])
-        rows = wrap(_core._ik_nearest_poses(found.solver, goals, 1.0, threads), found.solver.joint_types)
+        rows = wrap_joints(
+            _core._ik_nearest_poses(found.solver, goals, 1.0, threads), found.solver.joint_types
+        )
     else:
         rows = np.array([least_squares_answer(found[tuple(index)]).q[0] for index in bad])
     if not q.shape[-2]:

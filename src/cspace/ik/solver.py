@@ -145,7 +145,7 @@ class Solver(_core.SolverBase, KinematicModel):
             made._read(self.chain.lock(values), self.name, goal_joints, self._reach)
             return made
 
-        return kept(self._locked, tuple(sorted(values.items())), build)
+        return keep_solver(self._locked, tuple(sorted(values.items())), build)
 
     def extend(self, goal: PartialGoal) -> Solver:
         """The solver of the arm with the virtual joints of a partial goal."""
@@ -161,7 +161,7 @@ class Solver(_core.SolverBase, KinematicModel):
             made._read(longer, self.name, added, reach)
             return made
 
-        return kept(self._extended, goal.key, build)
+        return keep_solver(self._extended, goal.key, build)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return solver_again, (self.chain, self.name, self._goal_joints, self._reach)
@@ -170,7 +170,7 @@ class Solver(_core.SolverBase, KinematicModel):
         return f"<Solver {self.name}: {self.joint_types}, {self.base} → {self.tip}>"
 
 
-def kept(solvers: dict[Key, Solver], key: Key, build: Callable[[], Solver]) -> Solver:
+def keep_solver(solvers: dict[Key, Solver], key: Key, build: Callable[[], Solver]) -> Solver:
     """The solver of that key, built if it is not there; the oldest of many is dropped."""
     found = solvers.get(key)
     if found is None:

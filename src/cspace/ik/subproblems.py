@@ -86,12 +86,12 @@ def axis_rows(value: Any, subject: str, last: tuple[int, ...] = (3,)) -> Array:
     return directions
 
 
-def amounts(value: Any, subject: str, last: tuple[int, ...] = ()) -> Array:
+def read_amounts(value: Any, subject: str, last: tuple[int, ...] = ()) -> Array:
     """Points, normals and lengths (..., *last), small enough that no product of them overflows."""
     return as_floats(value, subject, last=last, largest=FARTHEST)
 
 
-def solve(
+def call_kernel(
     kernel: Callable[..., None], most: int, angles: int, arrays: list[Array], tails: list[int]
 ) -> SubproblemSolution:
     """Calls a kernel on broadcast inputs; the last tails[i] axes of arrays[i] belong to one problem."""
@@ -128,8 +128,8 @@ def subproblem_1(k: Any, p1: Any, p2: Any) -> SubproblemSolution:
     and the same distance from it; free if one of them lies on the axis.
     Source: Paden 1986, §4.3; Elias & Wen 2022, §3.1.
     """
-    arrays = [axis_rows(k, "k"), amounts(p1, "p1", last=(3,)), amounts(p2, "p2", last=(3,))]
-    return solve(_core.subproblem_1, 1, 1, arrays, [1, 1, 1])
+    arrays = [axis_rows(k, "k"), read_amounts(p1, "p1", last=(3,)), read_amounts(p2, "p2", last=(3,))]
+    return call_kernel(_core.subproblem_1, 1, 1, arrays, [1, 1, 1])
 
 
 def subproblem_2(k1: Any, k2: Any, p1: Any, p2: Any) -> SubproblemSolution:
@@ -143,10 +143,10 @@ def subproblem_2(k1: Any, k2: Any, p1: Any, p2: Any) -> SubproblemSolution:
     arrays = [
         axis_rows(k1, "k1"),
         axis_rows(k2, "k2"),
-        amounts(p1, "p1", last=(3,)),
-        amounts(p2, "p2", last=(3,)),
+        read_amounts(p1, "p1", last=(3,)),
+        read_amounts(p2, "p2", last=(3,)),
     ]
-    return solve(_core.subproblem_2, 2, 2, arrays, [1, 1, 1, 1])
+    return call_kernel(_core.subproblem_2, 2, 2, arrays, [1, 1, 1, 1])
 
 
 def subproblem_3(k: Any, p1: Any, p2: Any, d: Any) -> SubproblemSolution:
@@ -156,11 +156,16 @@ def subproblem_3(k: Any, p1: Any, p2: Any, d: Any) -> SubproblemSolution:
     smallest and the largest distance of p2 from the circle of p1; free if either point lies on the axis.
     Source: Paden 1986, §4.3; Elias & Wen 2022, §3.3.
     """
-    distance = amounts(d, "d")
+    distance = read_amounts(d, "d")
     if np.any(distance < 0):
         raise InputError(f"d is {float(distance.min())}; a distance must be 0 or more")
-    arrays = [axis_rows(k, "k"), amounts(p1, "p1", last=(3,)), amounts(p2, "p2", last=(3,)), distance]
-    return solve(_core.subproblem_3, 2, 1, arrays, [1, 1, 1, 0])
+    arrays = [
+        axis_rows(k, "k"),
+        read_amounts(p1, "p1", last=(3,)),
+        read_amounts(p2, "p2", last=(3,)),
+        distance,
+    ]
+    return call_kernel(_core.subproblem_3, 2, 1, arrays, [1, 1, 1, 0])
 
 
 def subproblem_4(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
@@ -171,12 +176,12 @@ def subproblem_4(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
     perpendicular to the axis or p lies on the axis. Source: Elias & Wen 2022, §3.4.
     """
     arrays = [
-        amounts(h, "h", last=(3,)),
+        read_amounts(h, "h", last=(3,)),
         axis_rows(k, "k"),
-        amounts(p, "p", last=(3,)),
-        amounts(d, "d"),
+        read_amounts(p, "p", last=(3,)),
+        read_amounts(d, "d"),
     ]
-    return solve(_core.subproblem_4, 2, 1, arrays, [1, 1, 1, 0])
+    return call_kernel(_core.subproblem_4, 2, 1, arrays, [1, 1, 1, 0])
 
 
 def subproblem_5(
@@ -188,9 +193,11 @@ def subproblem_5(
     Source: Elias & Wen 2022, §3.5.
     """
     named = {"p0": p0, "p1": p1, "p2": p2, "p3": p3, "p4": p4}
-    points = [amounts(value, name, last=(3,)) for name, value in named.items()]
+    points = [read_amounts(value, name, last=(3,)) for name, value in named.items()]
     axes = [axis_rows(k1, "k1"), axis_rows(k2, "k2"), axis_rows(k3, "k3")]
-    return solve(_core.subproblem_5, 4, 3, [stacked(points, "points"), stacked(axes, "axes")], [2, 2])
+    return call_kernel(
+        _core.subproblem_5, 4, 3, [stack_vectors(points, "points"), stack_vectors(axes, "axes")], [2, 2]
+    )
 
 
 def subproblem_6(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
@@ -204,12 +211,12 @@ def subproblem_6(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
     Source: Elias & Wen 2022, §3.6.
     """
     arrays = [
-        amounts(h, "h", last=(4, 3)),
+        read_amounts(h, "h", last=(4, 3)),
         axis_rows(k, "k", last=(4, 3)),
-        amounts(p, "p", last=(4, 3)),
-        amounts(d, "d", last=(2,)),
+        read_amounts(p, "p", last=(4, 3)),
+        read_amounts(d, "d", last=(2,)),
     ]
-    return solve(_core.subproblem_6, 4, 2, arrays, [2, 2, 2, 1])
+    return call_kernel(_core.subproblem_6, 4, 2, arrays, [2, 2, 2, 1])
 
 
 def paden_kahan_1(axis: Any, p: Any, q: Any, *, point: Any = (0.0, 0.0, 0.0)) -> SubproblemSolution:
@@ -250,10 +257,10 @@ def paden_kahan_3(
 
 def from_point(value: Any, subject: str, point: Any) -> Array:
     """The vector (..., 3) from `point` to `value`."""
-    return amounts(value, subject, last=(3,)) - amounts(point, "point", last=(3,))
+    return read_amounts(value, subject, last=(3,)) - read_amounts(point, "point", last=(3,))
 
 
-def stacked(vectors: list[Array], subject: str) -> Array:
+def stack_vectors(vectors: list[Array], subject: str) -> Array:
     """Vectors (..., 3) that broadcast, as one array (..., len(vectors), 3)."""
     try:
         return np.stack(np.broadcast_arrays(*vectors), axis=-2)

@@ -12,7 +12,7 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, tree
-from cspace.model.transforms import inverse
+from cspace.model.transforms import invert_transform
 from cspace.spatial.vectors import frame_along
 
 Numbers = npt.NDArray[np.intp]
@@ -130,7 +130,7 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
     n = len(source.axes)
     T_base_joint = np.array([np.eye(4), *_turned(source.axes)])
     T_base_joint[1:, :3, 3] = source.points
-    back = np.array([inverse(T) for T in T_base_joint])
+    back = np.array([invert_transform(T) for T in T_base_joint])
     frame_joint = np.array([before - 1 for before, _ in source.frames.values()])
     poses = np.array([pose for _, pose in source.frames.values()])
     T_joint_frame = back[frame_joint + 1] @ poses

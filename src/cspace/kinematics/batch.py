@@ -122,7 +122,7 @@ def frame_number(robot: KinematicModel, frame: str | None) -> int:
         raise suggest("frame", frame, robot.frames, owner=robot.name) from None
 
 
-def output(out: Any, shape: tuple[int, ...], subject: str = "out") -> Array:
+def check_output(out: Any, shape: tuple[int, ...], subject: str = "out") -> Array:
     """The array to write into: a new one, or the caller's if it fits.
 
     Raises InputTypeError unless out is a contiguous float64 array, InputError for another shape.
@@ -139,7 +139,7 @@ def output(out: Any, shape: tuple[int, ...], subject: str = "out") -> Array:
     return out
 
 
-def choice(value: Any, subject: str, known: tuple[str, ...]) -> str:
+def check_choice(value: Any, subject: str, known: tuple[str, ...]) -> str:
     """The value of the argument `subject` if it is one of the known words.
 
     Raises UnknownNameError, with the nearest word, if not.

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.errors import InputError
-from cspace.kinematics.batch import Batch, output, refuse_infinite, rows_of
+from cspace.kinematics.batch import Batch, check_output, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -29,7 +29,7 @@ def center_of_mass(
     Raises InputError for a wrong shape or NaN, and where no link has a mass.
     """
     batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
-    center = output(out, (*batch.shape, 3))
+    center = check_output(out, (*batch.shape, 3))
     _compute(robot, batch, center, None)
     return center
 
@@ -55,7 +55,7 @@ def center_of_mass_jacobian(
     Sugihara, Nakamura and Inoue 2002, section 2.
     """
     batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
-    J = output(out, (*batch.shape, 3, robot.dof))
+    J = check_output(out, (*batch.shape, 3, robot.dof))
     _compute(robot, batch, None, J)
     return J
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
-from cspace.kinematics.batch import Batch, frame_number, output, refuse_infinite, rows_of
+from cspace.kinematics.batch import Batch, check_output, frame_number, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
 
@@ -27,7 +27,7 @@ def forward_kinematics(
     """
     number = frame_number(robot, frame)
     batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
-    T = output(out, (*batch.shape, 4, 4))
+    T = check_output(out, (*batch.shape, 4, 4))
     compute_chain(robot, number, batch, T=T)
     return T
 
@@ -46,7 +46,7 @@ def forward_kinematics_all(
     in the order of robot.frames. Raises InputError for a wrong shape or NaN.
     """
     batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
-    T = output(out, (*batch.shape, len(robot.frames), 4, 4))
+    T = check_output(out, (*batch.shape, len(robot.frames), 4, 4))
     if not robot._tree_rows(batch.q, batch.T_world_base, T, None, None, batch.threads):
         refuse_infinite(batch)
     return T

@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.errors import InputTypeError
-from cspace.kinematics.batch import choice, frame_number, output, rows_of
+from cspace.kinematics.batch import check_choice, check_output, frame_number, rows_of
 from cspace.kinematics.forward import compute_chain
 from cspace.kinematics.kinematic_model import KinematicModel
 from cspace.spatial.checks import PoseLike
@@ -32,9 +32,9 @@ def jacobian(
     Returns J (..., 6, dof), rows [v; ω].
     Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame or axes.
     """
-    number, in_tip = frame_number(robot, frame), choice(expressed_in, "expressed_in", AXES) == "tip"
+    number, in_tip = frame_number(robot, frame), check_choice(expressed_in, "expressed_in", AXES) == "tip"
     batch = rows_of(robot, q, point=point, T_world_base=T_world_base, threads=threads)
-    J = output(out, (*batch.shape, 6, robot.dof))
+    J = check_output(out, (*batch.shape, 6, robot.dof))
     compute_chain(robot, number, batch, J=J, in_tip=in_tip)
     return J
 
@@ -57,12 +57,12 @@ def fk_jacobian(
     whatever the point. Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame or
     axes.
     """
-    number, in_tip = frame_number(robot, frame), choice(expressed_in, "expressed_in", AXES) == "tip"
+    number, in_tip = frame_number(robot, frame), check_choice(expressed_in, "expressed_in", AXES) == "tip"
     if out is not None and not (isinstance(out, tuple | list) and len(out) == 2):
         raise InputTypeError("out must be the pair of arrays (T, J) to write into")
     batch = rows_of(robot, q, point=point, T_world_base=T_world_base, threads=threads)
-    T = output(out and out[0], (*batch.shape, 4, 4), "out[0]")
-    J = output(out and out[1], (*batch.shape, 6, robot.dof), "out[1]")
+    T = check_output(out and out[0], (*batch.shape, 4, 4), "out[0]")
+    J = check_output(out and out[1], (*batch.shape, 6, robot.dof), "out[1]")
     compute_chain(robot, number, batch, T=T, J=J, in_tip=in_tip)
     return T, J
 
@@ -96,8 +96,8 @@ def jacobian_dot(
     """
     if qd is None:
         raise InputTypeError("qd is None; the derivative needs the velocities (..., dof)")
-    number, in_tip = frame_number(robot, frame), choice(expressed_in, "expressed_in", AXES) == "tip"
+    number, in_tip = frame_number(robot, frame), check_choice(expressed_in, "expressed_in", AXES) == "tip"
     batch = rows_of(robot, q, qd=qd, point=point, T_world_base=T_world_base, threads=threads)
-    J_rate = output(out, (*batch.shape, 6, robot.dof))
+    J_rate = check_output(out, (*batch.shape, 6, robot.dof))
     compute_chain(robot, number, batch, J_rate=J_rate, in_tip=in_tip)
     return J_rate

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError, suggest
-from cspace.kinematics.batch import choice, frame_number, rows_of
+from cspace.kinematics.batch import check_choice, frame_number, rows_of
 from cspace.kinematics.forward import compute_chain
 from cspace.kinematics.jacobian import AXES, jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -79,7 +79,7 @@ def singular_values(
     accurate.
     """
     number, chosen = frame_number(robot, frame), row_numbers(rows)
-    in_tip = choice(expressed_in, "expressed_in", AXES) == "tip"
+    in_tip = check_choice(expressed_in, "expressed_in", AXES) == "tip"
     batch = rows_of(robot, q, point=point, T_world_base=T_world_base, threads=threads)
     sigma = np.empty((*batch.shape, min(len(chosen), len(robot.joint_names))))
     compute_chain(robot, number, batch, sigma=sigma, chosen=sum(1 << r for r in chosen), in_tip=in_tip)

@@ -56,7 +56,7 @@ class Arc:
         return np.asarray(self.center) + self.radius * np.column_stack([np.cos(angle), np.sin(angle)])
 
 
-def within(angle: Array, start: float, width: float) -> Flags:
+def is_within(angle: Array, start: float, width: float) -> Flags:
     """Whether angles lie in a range modulo 2π; its ends count, up to rounding."""
     if width >= TURN:
         return np.ones(np.shape(angle), dtype=bool)
@@ -101,7 +101,7 @@ def _arc(arm: PlanarArm, holds: tuple[str, ...], free: list[int], folds: tuple[f
             turn, straight = 0.0, bearing
         else:
             turn = straight + folds[k - 1] - bearing - along
-            if not within(np.array(turn), *arm.ranges[joint]):
+            if not is_within(np.array(turn), *arm.ranges[joint]):
                 return None
         along += turn
         c, s = np.cos(along), np.sin(along)
@@ -112,7 +112,7 @@ def _arc(arm: PlanarArm, holds: tuple[str, ...], free: list[int], folds: tuple[f
     return Arc((float(center[0]), float(center[1])), radius, heading + start + bearing, float(width))
 
 
-def reachable(arm: PlanarArm, points: Array) -> Flags:
+def is_reachable(arm: PlanarArm, points: Array) -> Flags:
     """Whether the tip of an arm of two or more links gets to points (m, 2), exactly up to rounding."""
     if len(arm.lengths) == 2:
         return _reachable_by_two(arm, points)
@@ -130,7 +130,7 @@ def _reachable_by_two(arm: PlanarArm, points: Array) -> Flags:
     for elbow in (bend, -bend):
         aside = np.arctan2(b * np.sin(elbow), a + b * np.cos(elbow))
         first = np.arctan2(points[:, 1], points[:, 0]) - aside
-        found |= within(elbow, *arm.ranges[1]) & within(first, *arm.ranges[0])
+        found |= is_within(elbow, *arm.ranges[1]) & is_within(first, *arm.ranges[0])
     return np.asarray(found & (np.abs(cosine) <= 1.0))
 
 
@@ -154,10 +154,10 @@ def _reachable_by_more(arm: PlanarArm, rest: PlanarArm, circles: list[Arc], poin
     turns = start + (ordered[1:] + ordered[:-1]) / 2.0
     c, s = np.cos(turns), np.sin(turns)
     seen = np.column_stack([c * point[0] + s * point[1] - arm.lengths[0], c * point[1] - s * point[0]])
-    return bool(reachable(rest, seen).any())
+    return bool(is_reachable(rest, seen).any())
 
 
-def boundary(arm: PlanarArm, *, step: float = TURN / 256) -> list[Array]:
+def trace_boundary(arm: PlanarArm, *, step: float = TURN / 256) -> list[Array]:
     """The boundary as closed curves (m, 2), first point repeated, what is reachable to the left.
 
     step: largest angle [rad] of an arc between two points of a curve.
@@ -218,7 +218,7 @@ def _side(arm: PlanarArm, arc: Arc, low: float, high: float) -> int:
     middle = np.array([(low + high) / 2.0])
     aside = min(10.0 * SAME_PLACE * arm.reach, 0.5 * arc.radius)
     near = [Arc(arc.center, arc.radius + shift, 0.0, TURN).at(middle)[0] for shift in (-aside, aside)]
-    inside, outside = reachable(arm, np.array(near))
+    inside, outside = is_reachable(arm, np.array(near))
     return int(inside) - int(outside)
 
 

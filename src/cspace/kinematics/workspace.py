@@ -11,7 +11,7 @@ from cspace.kinematics.batch import frame_number
 from cspace.kinematics.configurations import Seed, random_configurations
 from cspace.kinematics.forward import forward_kinematics
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.kinematics.planar_boundary import PlanarArm, boundary
+from cspace.kinematics.planar_boundary import PlanarArm, trace_boundary
 from cspace.math.wrapping import TURN
 from cspace.model import Chain
 from cspace.spatial.vectors import frame_along
@@ -73,7 +73,7 @@ def workspace(
         plane = _planar(robot.chain, limits.lower, limits.upper)
         if plane is not None:
             arm, R, origin = plane
-            flat = boundary(arm)
+            flat = trace_boundary(arm)
             area = float(sum(_enclosed(curve) for curve in flat))
             curves = tuple(origin + curve @ R[:, :2].T for curve in flat)
     return Workspace(points, q, curves, area)

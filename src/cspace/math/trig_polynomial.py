@@ -37,7 +37,7 @@ class TrigPolynomial:
     __slots__ = ("terms",)
 
     def __init__(self, terms: Mapping[Monomial, float] | None = None) -> None:
-        kept = {key: snapped(value) for key, value in (terms or {}).items()}
+        kept = {key: snap_to_integer(value) for key, value in (terms or {}).items()}
         self.terms: dict[Monomial, float] = {key: value for key, value in kept.items() if value}
 
     @classmethod
@@ -53,12 +53,12 @@ class TrigPolynomial:
     @classmethod
     def cos(cls, *angles: Angle) -> TrigPolynomial:
         """The cosine of a sum of angles of one group."""
-        return cls(dict([turn("c", *combined(angles))]))
+        return cls(dict([turn_monomial("c", *combine_angles(angles))]))
 
     @classmethod
     def sin(cls, *angles: Angle) -> TrigPolynomial:
         """The sine of a sum of angles of one group."""
-        return cls(dict([turn("s", *combined(angles))]))
+        return cls(dict([turn_monomial("s", *combine_angles(angles))]))
 
     def __add__(self, other: Any) -> TrigPolynomial:
         terms = dict(self.terms)
@@ -70,7 +70,7 @@ class TrigPolynomial:
         terms: dict[Monomial, float] = {}
         for a, x in self.terms.items():
             for b, y in as_polynomial(other).terms.items():
-                for key, value in product(a, b):
+                for key, value in multiply_monomials(a, b):
                     terms[key] = terms.get(key, 0.0) + x * y * value
         return TrigPolynomial(terms)
 
@@ -171,13 +171,13 @@ def as_polynomial(value: Any) -> TrigPolynomial:
     return value if isinstance(value, TrigPolynomial) else TrigPolynomial.number(value)
 
 
-def snapped(value: float) -> float:
+def snap_to_integer(value: float) -> float:
     """A number without the rounding about an integer."""
     nearest = round(value)
     return float(nearest) if abs(value - nearest) < INTEGER_ROUNDING else value
 
 
-def combined(angles: tuple[Angle, ...]) -> tuple[int, typeset.Combination]:
+def combine_angles(angles: tuple[Angle, ...]) -> tuple[int, typeset.Combination]:
     """The group and the sum of some angles."""
     groups = {angle.group for angle in angles}
     if len(groups) != 1:
@@ -185,7 +185,7 @@ def combined(angles: tuple[Angle, ...]) -> tuple[int, typeset.Combination]:
     return groups.pop(), tuple(sorted((angle.index, 1) for angle in angles))
 
 
-def turn(kind: str, group: int, angle: typeset.Combination) -> tuple[Monomial, float]:
+def turn_monomial(kind: str, group: int, angle: typeset.Combination) -> tuple[Monomial, float]:
     """The cosine or sine of a sum, its first angle taken positively, as a monomial and its factor."""
     if not angle:
         return ((), ()), 1.0 if kind == "c" else 0.0
@@ -196,7 +196,7 @@ def turn(kind: str, group: int, angle: typeset.Combination) -> tuple[Monomial, f
     return ((), ((group, kind, angle),)), sign
 
 
-def product(a: Monomial, b: Monomial) -> list[tuple[Monomial, float]]:
+def multiply_monomials(a: Monomial, b: Monomial) -> list[tuple[Monomial, float]]:
     """The product of two monomials as a sum of monomials."""
     powers = dict(a[0])
     for name, power in b[0]:
@@ -216,7 +216,7 @@ def product(a: Monomial, b: Monomial) -> list[tuple[Monomial, float]]:
 def product_of_turns(a: Turn, b: Turn) -> list[tuple[tuple[Turn, ...], float]]:
     """cos x cos y = ½ cos(x − y) + ½ cos(x + y), and similar."""
     (group, f, x), (_, g, y) = a, b
-    plus, minus = added(x, y, 1), added(x, y, -1)
+    plus, minus = add_angles(x, y, 1), add_angles(x, y, -1)
     kind = "c" if f == g else "s"
     if f == g:
         parts = [(minus, 0.5), (plus, 0.5 if f == "c" else -0.5)]
@@ -224,13 +224,13 @@ def product_of_turns(a: Turn, b: Turn) -> list[tuple[tuple[Turn, ...], float]]:
         parts = [(plus, 0.5), (minus, 0.5 if f == "s" else -0.5)]
     out = []
     for angle, factor in parts:
-        key, sign = turn(kind, group, angle)
+        key, sign = turn_monomial(kind, group, angle)
         if sign:
             out.append((key[1], sign * factor))
     return out
 
 
-def added(x: typeset.Combination, y: typeset.Combination, sign: int) -> typeset.Combination:
+def add_angles(x: typeset.Combination, y: typeset.Combination, sign: int) -> typeset.Combination:
     """The sum (or difference) of two sums of angles."""
     times = dict(x)
     for index, count in y:

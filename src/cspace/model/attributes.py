@@ -13,24 +13,24 @@ from cspace.model.xml import Element
 T = TypeVar("T")
 
 
-def fault(element: Element, message: str) -> DescriptionError:
+def fault_at(element: Element, message: str) -> DescriptionError:
     """The error that names the file and the line of `element`."""
     return DescriptionError(message, path=element.path, line=element.line)
 
 
-def at(element: Element, make: Callable[[], T]) -> T:
+def complain_at(element: Element, make: Callable[[], T]) -> T:
     """What `make` returns; its complaint gets the file and the line of `element`."""
     try:
         return make()
     except DescriptionError as error:
         if error.line is not None:
             raise
-        raise fault(element, str(error)) from None
+        raise fault_at(element, str(error)) from None
     except CspaceError as error:
-        raise fault(element, str(error)) from None
+        raise fault_at(element, str(error)) from None
 
 
-def floats(element: Element, attribute: str, default: Sequence[float] | None, n: int) -> list[float]:
+def read_floats(element: Element, attribute: str, default: Sequence[float] | None, n: int) -> list[float]:
     """The n finite numbers of an attribute."""
     return some_floats(element, attribute, default, n, n)
 
@@ -42,7 +42,7 @@ def some_floats(
     text = element.attributes.get(attribute)
     if text is None:
         if default is None:
-            raise fault(element, f"<{element.tag}> needs the attribute {attribute!r}")
+            raise fault_at(element, f"<{element.tag}> needs the attribute {attribute!r}")
         return list(default)
     where = f"{attribute}={text[:60]!r} of <{element.tag}>"
     wanted = f"{least}" if least == most else f"{least} to {most}"
@@ -51,15 +51,15 @@ def some_floats(
         if "_" in text:  # Python reads 1_000, no other reader does
             raise ValueError
     except ValueError:
-        raise fault(element, f"{where}: expected {wanted} number{'s' if most > 1 else ''}") from None
+        raise fault_at(element, f"{where}: expected {wanted} number{'s' if most > 1 else ''}") from None
     if not least <= len(numbers) <= most:
-        raise fault(element, f"{where} holds {len(numbers)} numbers, expected {wanted}")
+        raise fault_at(element, f"{where} holds {len(numbers)} numbers, expected {wanted}")
     if not all(math.isfinite(number) for number in numbers):
-        raise fault(element, f"{where}: every number must be finite")
+        raise fault_at(element, f"{where}: every number must be finite")
     return numbers
 
 
-def number(element: Element, attribute: str, default: float | None = None) -> float:
+def read_number(element: Element, attribute: str, default: float | None = None) -> float:
     """One finite number; the plain case first, since a humanoid has a thousand of them."""
     text = element.attributes.get(attribute, "_")
     if "_" not in text:
@@ -67,12 +67,12 @@ def number(element: Element, attribute: str, default: float | None = None) -> fl
             value = float(text)
             if math.isfinite(value):
                 return value
-    return floats(element, attribute, None if default is None else [default], 1)[0]
+    return read_floats(element, attribute, None if default is None else [default], 1)[0]
 
 
 def text_of(element: Element, attribute: str) -> str:
     """The text of an attribute that must be there."""
     value = element.attributes.get(attribute, "").strip()
     if not value:
-        raise fault(element, f"<{element.tag}> needs the attribute {attribute!r}")
+        raise fault_at(element, f"<{element.tag}> needs the attribute {attribute!r}")
     return value

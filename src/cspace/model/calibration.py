@@ -48,15 +48,15 @@ def calibrated(description: Description, path: str | os.PathLike[str]) -> Descri
     calibration = read_calibration(path)
     joints = joints_of(description)
     if all(joint.axis.tolist() == [0.0, 0.0, 1.0] for joint in joints):
-        result = replaced(description, joints, calibration)
+        result = replace_joints(description, joints, calibration)
     elif len(description.links) == len(PARTS) + 2:
-        result = rebuilt(description, joints, calibration)
+        result = rebuild_chain(description, joints, calibration)
     else:
         raise InputError(
             f"the link frames of robot {description.name!r} do not fit a calibration, in which each joint"
             " rotates about its own z axis; use a URDF of ur_description, or the name of the arm"
         )
-    check(description, result, joints, calibration)
+    check_calibration(description, result, joints, calibration)
     known = description.provenance
     named = f"calibration {calibration.hash}".rstrip() + f" ({os.path.basename(calibration.path)})"
     missing = tuple(group for group in known.missing if group != "link frames")
@@ -85,7 +85,9 @@ def joints_of(description: Description) -> list[Joint]:
     return found
 
 
-def replaced(description: Description, joints: Sequence[Joint], calibration: Calibration) -> Description:
+def replace_joints(
+    description: Description, joints: Sequence[Joint], calibration: Calibration
+) -> Description:
     """The same links with other joint frames."""
     names = {joint.name: part for joint, part in zip(joints, PARTS, strict=True)}
     changed = tuple(
@@ -95,7 +97,7 @@ def replaced(description: Description, joints: Sequence[Joint], calibration: Cal
     return replace(description, joints=changed)
 
 
-def rebuilt(description: Description, joints: Sequence[Joint], calibration: Calibration) -> Description:
+def rebuild_chain(description: Description, joints: Sequence[Joint], calibration: Calibration) -> Description:
     """A chain from base to tip through the links of ur_description."""
     base, tip = joints[0].parent, default_tip(description)
     links = ["base_link_inertia", *(f"{part}_link" for part in PARTS)]
@@ -122,7 +124,7 @@ def turn_of_tip(description: Description) -> Array:
     return turned if np.any(turned != IDENTITY) else IDENTITY
 
 
-def check(
+def check_calibration(
     nominal: Description, measured: Description, joints: Sequence[Joint], calibration: Calibration
 ) -> None:
     """Raise if the calibration is that of another arm: its axes at zero are far from the nominal ones."""

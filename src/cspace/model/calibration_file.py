@@ -18,7 +18,7 @@ from cspace.errors import DescriptionError, suggest
 from cspace.files import YamlLine, unquote, yaml_lines
 from cspace.model.files import path_of, read_bytes
 from cspace.model.transforms import from_rpy
-from cspace.model.values import frozen
+from cspace.model.values import freeze_array
 from cspace.tolerances import CALIBRATION_BYTES, LARGEST_NUMBER
 
 PARTS: Final = ("shoulder", "upper_arm", "forearm", "wrist_1", "wrist_2", "wrist_3")
@@ -144,5 +144,5 @@ class _Reader:
             if missing:
                 raise self.fault(f"{part!r} has no {', '.join(missing)}", self.lines[part])
             x, y, z, roll, pitch, yaw = (numbers[key] for key in NUMBERS)
-            found[part] = frozen(from_rpy((x, y, z), (roll, pitch, yaw)))
+            found[part] = freeze_array(from_rpy((x, y, z), (roll, pitch, yaw)))
         return found

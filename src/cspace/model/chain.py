@@ -14,8 +14,8 @@ from cspace.model.description import Description
 from cspace.model.elementary import Coordinates, Elementary, coordinates_of, elementary_joints
 from cspace.model.joint import LIMIT_FIELDS, Joint, Limits
 from cspace.model.screws import twists
-from cspace.model.transforms import inverse
-from cspace.model.values import frozen
+from cspace.model.transforms import invert_transform
+from cspace.model.values import freeze_array
 from cspace.spatial import exp_se3
 
 
@@ -118,14 +118,14 @@ class Chain:
         """The chain with its tip turned by R (3, 3), seen in the tip."""
         T = self.T_zero.copy()
         T[:3, :3] = T[:3, :3] @ R
-        return replace(self, T_zero=frozen(T), frames={**self.frames, self.tip: (len(self.axes), T)})
+        return replace(self, T_zero=freeze_array(T), frames={**self.frames, self.tip: (len(self.axes), T)})
 
     def reversed(self) -> Chain:
         """The chain from tip to base: its joints in the opposite order, its pose the inverse.
 
         Raises InputError for a chain with mimic joints.
         """
-        T, order = inverse(self.T_zero), slice(None, None, -1)
+        T, order = invert_transform(self.T_zero), slice(None, None, -1)
         turned = self._changed(
             self.joint_names[order],
             self.joint_types[order],
@@ -164,9 +164,9 @@ class Chain:
             tip=self.tip,
             joint_names=names,
             joint_types=kinds,
-            axes=frozen(np.ascontiguousarray(axes)),
-            points=frozen(np.ascontiguousarray(points)),
-            T_zero=frozen(np.ascontiguousarray(T_zero)),
+            axes=freeze_array(np.ascontiguousarray(axes)),
+            points=freeze_array(np.ascontiguousarray(points)),
+            T_zero=freeze_array(np.ascontiguousarray(T_zero)),
             coordinates=Coordinates(names, *rows, Limits(*limits)),
             frames=MappingProxyType({self.base: (0, np.eye(4)), self.tip: (n, T_zero)}),
         )
@@ -184,7 +184,7 @@ def zero_poses(description: Description, base: str | None = None) -> dict[str, A
         joint = description.parent_joint[link]
         poses[link] = poses[joint.parent] @ joint.origin
     if base is not None and base != description.root:
-        T_base_root = inverse(poses[description.link(base).name])
+        T_base_root = invert_transform(poses[description.link(base).name])
         poses = {link: T_base_root @ pose for link, pose in poses.items()}
     return poses
 
@@ -241,7 +241,7 @@ def _carried(description: Description, link: str) -> list[str]:
     return group
 
 
-def path(description: Description, base: str, tip: str) -> list[tuple[Joint, bool]]:
+def find_path(description: Description, base: str, tip: str) -> list[tuple[Joint, bool]]:
     """The joints from link `base` to link `tip` in order, each with whether it is passed backward."""
     ancestors = {link: i for i, link in enumerate(_ancestors(description, base))}
     down: list[Joint] = []
@@ -278,7 +278,7 @@ def chain(description: Description, base: str | None = None, tip: str | None = N
     axes: list[Array] = []
     points: list[Array] = []
     frames = {link: (0, poses[link]) for link in rigid_group(description, base)}
-    for joint, backward in path(description, base, tip):
+    for joint, backward in find_path(description, base, tip):
         steps = elementary_joints(joint)
         frame = poses[joint.child]  # at zero the joint frame is the child frame
         for step in reversed(steps) if backward else steps:
@@ -289,15 +289,15 @@ def chain(description: Description, base: str | None = None, tip: str | None = N
             frames[link] = (len(parts), poses[link])
     n = len(parts)
     for _, pose in frames.values():
-        frozen(pose)
+        freeze_array(pose)
     return Chain(
         name=description.name,
         base=base,
         tip=tip,
         joint_names=tuple(part.name for part in parts),
         joint_types="".join(part.kind for part in parts),
-        axes=frozen(np.array(axes).reshape(n, 3)),
-        points=frozen(np.array(points).reshape(n, 3)),
+        axes=freeze_array(np.array(axes).reshape(n, 3)),
+        points=freeze_array(np.array(points).reshape(n, 3)),
         T_zero=frames[tip][1],
         coordinates=coordinates_of(tuple(parts), description.joint_by_name),
         frames=MappingProxyType(frames),

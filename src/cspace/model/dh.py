@@ -14,13 +14,13 @@ from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
 from cspace.model.screws import check_joint_types, joint_rows, link_names, one_freedom_type
-from cspace.model.text import aligned, shown
-from cspace.model.values import IDENTITY, frozen, placement, sane
+from cspace.model.text import align_cells, shown
+from cspace.model.values import IDENTITY, check_placement, check_size, freeze_array
 
 CONVENTIONS: Final = ("standard", "modified")
 COLUMNS: Final = ("alpha", "a", "d", "theta")
 
-Z_AXIS: Final[Array] = frozen(np.array([0.0, 0.0, 1.0]))
+Z_AXIS: Final[Array] = freeze_array(np.array([0.0, 0.0, 1.0]))
 
 
 def check_convention(convention: object) -> str:
@@ -90,10 +90,10 @@ class DHTable:
             values = as_floats(getattr(self, column), f"column {column}")
             if values.shape != (n,):
                 raise InputError(f"column {column} has shape {values.shape}, expected ({n},)")
-            store(self, column, frozen(sane(values, f"column {column}").copy()))
+            store(self, column, freeze_array(check_size(values, f"column {column}").copy()))
         store(self, "joint_types", check_joint_types(self.joint_types, n, letters="RPF"))
-        store(self, "T_base", placement(self.T_base, "T_base"))
-        store(self, "T_tool", placement(self.T_tool, "T_tool"))
+        store(self, "T_base", check_placement(self.T_base, "T_base"))
+        store(self, "T_tool", check_placement(self.T_tool, "T_tool"))
         names = tuple(self.joint_names) or tuple(f"joint_{i + 1}" for i in range(n))
         if len(names) != n:
             raise InputError(f"joint_names has {len(names)} names, expected {n}")
@@ -136,10 +136,10 @@ class DHTable:
             shift += f" + q{i + 1}" if kind == "P" else ""
             turn += f" + q{i + 1}" if kind == "R" else ""
             cells.append((str(i + 1), self.joint_names[i], shown(np.degrees(alpha)), shown(a), shift, turn))
-        text = f"Denavit–Hartenberg, {self.convention}\n{aligned(cells)}"
+        text = f"Denavit–Hartenberg, {self.convention}\n{align_cells(cells)}"
         for name, T in (("T_base", self.T_base), ("T_tool", self.T_tool)):
             if not np.array_equal(T, IDENTITY):
-                text += f"\n{name}\n" + aligned([["", *map(shown, row)] for row in T.tolist()])
+                text += f"\n{name}\n" + align_cells([["", *map(shown, row)] for row in T.tolist()])
         return text
 
 

@@ -10,8 +10,8 @@ from cspace.arrays import Array
 from cspace.errors import InputTypeError
 from cspace.model.chain import Chain
 from cspace.model.dh import DHTable, check_convention, dh_matrix
-from cspace.model.transforms import inverse
-from cspace.model.values import frozen
+from cspace.model.transforms import invert_transform
+from cspace.model.values import freeze_array
 from cspace.tolerances import DH_COINCIDENT, DH_PARALLEL
 
 Row = tuple[float, float, float, float]
@@ -54,7 +54,7 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
     frames = []
     for i in range(n):
         frames.append(frame)
-        to_frame = inverse(frame)
+        to_frame = invert_transform(frame)
         if i + 1 < n:
             direction = to_frame[:3, :3] @ chain.axes[i + 1]
             row = _row(direction, to_frame[:3, :3] @ chain.points[i + 1] + to_frame[:3, 3])
@@ -63,7 +63,7 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
         rows.append(row)
         frame = frame @ dh_matrix(*row, convention="standard")
     table = np.array(rows).reshape(n, 4)
-    T_tool = inverse(frame) @ chain.T_zero
+    T_tool = invert_transform(frame) @ chain.T_zero
     if convention == "modified" and n:
         last_link = dh_matrix(table[-1, 0], table[-1, 1], 0.0, 0.0, convention="standard")
         T_tool = last_link @ T_tool
@@ -86,12 +86,12 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
 def _first_frame(chain: Chain) -> Array:
     """Frame 0: z along the first axis."""
     if not chain.joint_types:
-        return frozen(np.eye(4))
+        return freeze_array(np.eye(4))
     axis, point = chain.axes[0], chain.points[0]
     foot = point - axis * (axis @ point)
     upright = math.hypot(axis[0], axis[1]) <= DH_PARALLEL and axis[2] > 0.0
     if upright and np.linalg.norm(foot) <= DH_COINCIDENT:
-        return frozen(np.eye(4))
+        return freeze_array(np.eye(4))
     guide = np.array([1.0, 0.0, 0.0])
     x = guide - axis * (axis @ guide)
     if np.linalg.norm(x) <= DH_PARALLEL:
@@ -100,7 +100,7 @@ def _first_frame(chain: Chain) -> Array:
     x /= np.linalg.norm(x)
     frame = np.eye(4)
     frame[:3, 0], frame[:3, 1], frame[:3, 2], frame[:3, 3] = x, np.cross(axis, x), axis, foot
-    return frozen(frame)
+    return freeze_array(frame)
 
 
 def _row(direction: Array, point: Array) -> Row:

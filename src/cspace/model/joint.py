@@ -11,8 +11,17 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, suggest
-from cspace.model.text import aligned, shown
-from cspace.model.values import IDENTITY, X_AXIS, finite_number, frozen, name_of, number, placement, unit_axis
+from cspace.model.text import align_cells, shown
+from cspace.model.values import (
+    IDENTITY,
+    X_AXIS,
+    check_number,
+    check_placement,
+    finite_number,
+    freeze_array,
+    name_of,
+    unit_axis,
+)
 
 FREEDOMS: Final[dict[str, int]] = {
     "fixed": 0,
@@ -91,13 +100,13 @@ class Joint:
         name_of(self.parent, f"parent link of {subject}")
         name_of(self.child, f"child link of {subject}")
         store = object.__setattr__
-        store(self, "origin", placement(self.origin, f"origin of {subject}"))
+        store(self, "origin", check_placement(self.origin, f"origin of {subject}"))
         if self.type in ("fixed", "floating"):  # neither has an axis
             store(self, "axis", X_AXIS)
         elif self.axis is not X_AXIS:
             store(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
         for name in LIMIT_FIELDS:
-            store(self, name, number(getattr(self, name), f"{name} limit of {subject}"))
+            store(self, name, check_number(getattr(self, name), f"{name} limit of {subject}"))
         for name in ("damping", "friction"):
             value = getattr(self, name)
             if value is not None:
@@ -148,8 +157,10 @@ class Loop:
             raise suggest("joint type", self.type, FREEDOMS, owner=subject)
         name_of(self.parent, f"parent link of {subject}")
         name_of(self.child, f"child link of {subject}")
-        object.__setattr__(self, "origin", placement(self.origin, f"origin of {subject}"))
-        object.__setattr__(self, "child_origin", placement(self.child_origin, f"child origin of {subject}"))
+        object.__setattr__(self, "origin", check_placement(self.origin, f"origin of {subject}"))
+        object.__setattr__(
+            self, "child_origin", check_placement(self.child_origin, f"child origin of {subject}")
+        )
         object.__setattr__(self, "axis", unit_axis(self.axis, f"axis of {subject}"))
 
 
@@ -186,7 +197,7 @@ class Limits:
     @cached_property
     def range(self) -> Array:
         """lower and upper as rows, (2, dof)."""
-        return frozen(np.array([self.lower, self.upper]))
+        return freeze_array(np.array([self.lower, self.upper]))
 
     def __repr__(self) -> str:
         """A row per coordinate; a dash for an absent limit, and no column without limits."""
@@ -194,7 +205,7 @@ class Limits:
         always = ("lower", "upper")
         columns = {name: row for name, row in fields.items() if name in always or np.isfinite(row).any()}
         rows = [[str(i), *(shown(row[i]) for row in columns.values())] for i in range(len(self))]
-        return f"limits [rad or m, s, N·m or N]\n{aligned([['i', *columns], *rows])}"
+        return f"limits [rad or m, s, N·m or N]\n{align_cells([['i', *columns], *rows])}"
 
     @classmethod
     def of(cls, joints: tuple[Joint, ...] | list[Joint]) -> Limits:
@@ -205,10 +216,10 @@ class Limits:
 
 def _limit_row(value: Any, name: str, n: int) -> Array:
     if value is None:
-        return frozen(np.full(n, np.inf))
+        return freeze_array(np.full(n, np.inf))
     row = as_floats(value, f"{name} limits", finite=False)
     if row.shape != (n,):
         raise InputError(f"{name} limits have shape {row.shape}, expected ({n},)")
     if np.isnan(row).any():
         raise InputError(f"{name} limits contain NaN; use inf for an absent limit")
-    return frozen(row.copy())
+    return freeze_array(row.copy())

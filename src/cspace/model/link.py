@@ -9,8 +9,8 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats
 from cspace.errors import DescriptionError, InputError, suggest
-from cspace.model.packages import locate
-from cspace.model.values import IDENTITY, finite_number, frozen, name_of, placement, sane
+from cspace.model.packages import locate_file
+from cspace.model.values import IDENTITY, check_placement, check_size, finite_number, freeze_array, name_of
 from cspace.tolerances import INERTIA_SYMMETRY
 
 SHAPES: Final[dict[str, tuple[str, ...]]] = {
@@ -45,8 +45,8 @@ class Inertial:
         if skew > INERTIA_SYMMETRY * max(1.0, float(np.abs(inertia).max())):
             raise InputError(f"inertia is not symmetric: opposite entries differ by {skew:.3g}")
         object.__setattr__(self, "mass", mass)
-        object.__setattr__(self, "com", frozen(com.copy()))
-        object.__setattr__(self, "inertia", frozen((inertia + inertia.T) / 2))
+        object.__setattr__(self, "com", freeze_array(com.copy()))
+        object.__setattr__(self, "inertia", freeze_array((inertia + inertia.T) / 2))
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Mesh:
 
         Raises DescriptionError naming every place searched if there is no such file.
         """
-        path, searched = locate(self.uri, self.beside, self.package_paths)
+        path, searched = locate_file(self.uri, self.beside, self.package_paths)
         if path is None:
             places = "".join(f"\n  {place}" for place in searched) or " nowhere"
             raise DescriptionError(
@@ -109,7 +109,7 @@ class Geometry:
         if (self.mesh is not None) != (self.shape == "mesh"):
             raise InputError(f"shape {self.shape!r} {'without' if self.mesh is None else 'with'} a mesh file")
         object.__setattr__(self, "size", size)
-        object.__setattr__(self, "origin", placement(self.origin, f"origin of a {self.shape}"))
+        object.__setattr__(self, "origin", check_placement(self.origin, f"origin of a {self.shape}"))
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,4 +131,4 @@ def _exactly(value: Any, subject: str, shape: tuple[int, ...]) -> Array:
     array = as_floats(value, subject, last=shape)
     if array.ndim != len(shape):
         raise InputError(f"{subject} has shape {array.shape}, expected {shape}")
-    return sane(array, subject)
+    return check_size(array, subject)

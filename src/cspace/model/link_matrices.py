@@ -71,7 +71,7 @@ class LinkMatrices:
         out = []
         for i, T in enumerate(self.products[1:], 2):
             name = " ".join(f"A{k + 1}" for k in range(i))
-            lines = [f"  {entry.replace('_', '')} = {self._shown(T, r, c)}" for r, c, entry in places()]
+            lines = [f"  {entry.replace('_', '')} = {self._shown(T, r, c)}" for r, c, entry in entry_places()]
             out.append("\n".join([name, *lines]))
         return out
 
@@ -80,7 +80,7 @@ class LinkMatrices:
         out = []
         for i, T in enumerate(self.products[1:], 2):
             name = " ".join(f"A_{{{k + 1}}}" for k in range(i))
-            rows = [f"{entry} &= {self._shown(T, r, c, latex=True)}" for r, c, entry in places()]
+            rows = [f"{entry} &= {self._shown(T, r, c, latex=True)}" for r, c, entry in entry_places()]
             body = " \\\\\n".join(rows)
             out.append(f"{name}: \\quad \\begin{{aligned}}\n{body}\n\\end{{aligned}}")
         return out
@@ -120,7 +120,7 @@ class LinkMatrices:
         return matrices + self.product_formulas()
 
 
-def places() -> list[tuple[int, int, str]]:
+def entry_places() -> list[tuple[int, int, str]]:
     """Row, column and name of the twelve entries, column by column."""
     return [(row, column, NAMES[row][column]) for column in range(4) for row in range(3)]
 

@@ -15,7 +15,7 @@ from cspace.model.files import read_bytes
 PACKAGE_SCHEMES = ("package://", "model://")
 
 
-def folders(package_paths: Any) -> tuple[str, ...]:
+def check_folders(package_paths: Any) -> tuple[str, ...]:
     """The folders of a `package_paths` argument; one folder alone would be read as a list of its letters."""
     if isinstance(package_paths, (str, bytes, os.PathLike)):
         raise InputTypeError(
@@ -27,7 +27,9 @@ def folders(package_paths: Any) -> tuple[str, ...]:
         raise InputTypeError(f"package_paths is a list of folders: {error}") from None
 
 
-def locate(uri: str, beside: str | None, package_paths: Sequence[str]) -> tuple[str | None, tuple[str, ...]]:
+def locate_file(
+    uri: str, beside: str | None, package_paths: Sequence[str]
+) -> tuple[str | None, tuple[str, ...]]:
     """The file that `uri` names, or None, and the places tried in order.
 
     uri: package://NAME/rest, model://NAME/rest, file://path, or a plain path. beside: the folder of the

@@ -13,8 +13,8 @@ from cspace.errors import InputError
 from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
-from cspace.model.transforms import translation
-from cspace.model.values import placement, sane, unit_axis
+from cspace.model.transforms import translation_by
+from cspace.model.values import check_placement, check_size, unit_axis
 
 
 def from_screws(
@@ -47,12 +47,12 @@ def from_screws(
     """
     directions = as_floats(axes, "axes", last=(None, 3))
     n = len(directions)
-    places = sane(as_floats(points, "points", last=(n, 3)), "points")
+    places = check_size(as_floats(points, "points", last=(n, 3)), "points")
     if directions.ndim != 2 or places.ndim != 2:
         raise InputError(
             f"axes and points have the shapes {directions.shape}, {places.shape}; expected (n, 3)"
         )
-    end = placement(T_zero, "T_zero")
+    end = check_placement(T_zero, "T_zero")
     types = check_joint_types("R" * n if joint_types is None else joint_types, n)
     names = _joint_names(joint_names, n)
     links = link_names(names, base, tip)
@@ -60,11 +60,11 @@ def from_screws(
     rows = joint_rows(n, lower=lower, upper=upper, **limits)
     joints = []
     for i in range(n):
-        origin = translation(places[i] - (places[i - 1] if i else 0.0))
+        origin = translation_by(places[i] - (places[i - 1] if i else 0.0))
         axis = unit_axis(directions[i], f"axis of joint {names[i]!r}")
         kind = one_freedom_type(types[i], rows[i])
         joints.append(Joint(names[i], kind, links[i], links[i + 1], origin, axis, **rows[i]))
-    last = translation(-places[-1]) @ end if n else end
+    last = translation_by(-places[-1]) @ end if n else end
     joints.append(Joint(f"{tip}_fixed", "fixed", links[n], tip, last))
     return Description(name, tuple(Link(link) for link in (*links, tip)), tuple(joints))
 

@@ -11,7 +11,7 @@ def shown(value: float) -> str:
     return f"{round(float(value), 12) + 0.0:.6g}" if math.isfinite(value) else "-"
 
 
-def aligned(rows: Sequence[Sequence[str]]) -> str:
+def align_cells(rows: Sequence[Sequence[str]]) -> str:
     """Lines of cells, each column as wide as its widest cell, aligned to the right."""
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return "\n".join(

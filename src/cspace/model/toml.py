@@ -15,7 +15,7 @@ from cspace.model.dh import DHTable, from_dh
 from cspace.model.files import path_of, read_bytes
 from cspace.model.joint import LIMIT_FIELDS, Joint, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
-from cspace.model.packages import folders
+from cspace.model.packages import check_folders
 from cspace.model.screws import from_screws
 from cspace.model.structure import ElementError
 from cspace.model.toml_table import Document, Table, parse_toml
@@ -67,7 +67,7 @@ class _Reader:
         self.document = document
         path = document.path
         self.beside = None if path is None else os.path.dirname(os.path.abspath(path))
-        self.package_paths = folders(package_paths)
+        self.package_paths = check_folders(package_paths)
 
     def at(self, table: Table, make: Callable[[], T]) -> T:
         """What `make` returns; its complaint gets the place of `table`."""

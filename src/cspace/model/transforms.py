@@ -53,14 +53,14 @@ def embed_rotation(entries: single.Nine) -> Array:
     return T
 
 
-def translation(vector: Array) -> Array:
+def translation_by(vector: Array) -> Array:
     """The translation (4, 4) by `vector` (3,) [m]."""
     result = np.eye(4)
     result[:3, 3] = vector
     return result
 
 
-def inverse(T: Array) -> Array:
+def invert_transform(T: Array) -> Array:
     """The inverse of a rigid transform (4, 4): Rᵀ, −Rᵀ p."""
     result = np.eye(4)
     result[:3, :3] = T[:3, :3].T

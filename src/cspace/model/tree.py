@@ -12,7 +12,7 @@ from cspace.arrays import Array
 from cspace.model.description import Description
 from cspace.model.elementary import Coordinates, Elementary, coordinates_of, elementary_joints
 from cspace.model.link import Inertial
-from cspace.model.values import frozen
+from cspace.model.values import freeze_array
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +76,7 @@ def tree(description: Description) -> Tree:
     n = len(parts)
     mass, com, inertia, massless = _bodies(description, frames, n)
     for _, pose in frames.values():
-        frozen(pose)
+        freeze_array(pose)
     return Tree(
         name=description.name,
         root=root,
@@ -84,8 +84,8 @@ def tree(description: Description) -> Tree:
         joint_names=tuple(part.name for part in parts),
         joint_types="".join(part.kind for part in parts),
         parent=np.array(parent, dtype=np.intp),
-        placement=frozen(np.array(placement).reshape(n, 4, 4)),
-        axes=frozen(np.array([part.axis for part in parts]).reshape(n, 3)),
+        placement=freeze_array(np.array(placement).reshape(n, 4, 4)),
+        axes=freeze_array(np.array([part.axis for part in parts]).reshape(n, 3)),
         coordinates=coordinates_of(tuple(parts), description.joint_by_name),
         frames=MappingProxyType(frames),
         mass=mass,
@@ -121,11 +121,11 @@ def _bodies(
             carried[joint + 1].append((inertial, pose))
     mass, com, inertia = np.zeros(n + 1), np.zeros((n + 1, 3)), np.zeros((n + 1, 3, 3))
     for k, parts in enumerate(carried):
-        mass[k], com[k], inertia[k] = lumped(parts)
-    return frozen(mass), frozen(com), frozen(inertia), tuple(massless)
+        mass[k], com[k], inertia[k] = lump_bodies(parts)
+    return freeze_array(mass), freeze_array(com), freeze_array(inertia), tuple(massless)
 
 
-def lumped(parts: list[tuple[Inertial, Array]]) -> tuple[float, Array, Array]:
+def lump_bodies(parts: list[tuple[Inertial, Array]]) -> tuple[float, Array, Array]:
     """One body out of several: Σm, Σm c / Σm, and Σ(R I Rᵀ + m (|d|² 1 − d dᵀ)) about it (Steiner)."""
     mass = sum(inertial.mass for inertial, _ in parts)
     places = [pose[:3, :3] @ inertial.com + pose[:3, 3] for inertial, pose in parts]

@@ -10,15 +10,15 @@ from typing import Any
 
 from cspace.arrays import Array
 from cspace.errors import suggest
-from cspace.model.attributes import at, fault, floats, number, text_of
+from cspace.model.attributes import complain_at, fault_at, read_floats, read_number, text_of
 from cspace.model.description import Description
 from cspace.model.joint import JOINT_TYPES, Joint, Mimic
 from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
-from cspace.model.packages import folders
+from cspace.model.packages import check_folders
 from cspace.model.structure import ElementError
 from cspace.model.transforms import from_rpy
 from cspace.model.urdf_words import slip_in
-from cspace.model.values import IDENTITY, X_AXIS, frozen
+from cspace.model.values import IDENTITY, X_AXIS, freeze_array
 from cspace.model.xml import Element, parse_source
 from cspace.tolerances import UNLIMITED
 
@@ -54,7 +54,7 @@ class _Reader:
 
     def __init__(self, path: str | None, package_paths: Sequence[Any]) -> None:
         self.beside = None if path is None else os.path.dirname(os.path.abspath(path))
-        self.package_paths = folders(package_paths)
+        self.package_paths = check_folders(package_paths)
         self.colors: dict[str, Color] = {}
 
     def read(self, root: Element) -> Description:
@@ -72,16 +72,16 @@ class _Reader:
             named: list[tuple[Element, Link | Joint]] = [*links] if error.kind == "link" else [*joints]
             culprits = [element for element, part in named if part.name == error.name]
             culprit = culprits[min(error.occurrence, len(culprits) - 1)] if culprits else root
-            raise fault(culprit, str(error)) from None
+            raise fault_at(culprit, str(error)) from None
 
     def check_root(self, root: Element) -> None:
         """Complain unless the document is a URDF robot, saying what it is instead."""
         xacro = next((child for child in root.children if child.tag.startswith("xacro:")), None)
         if xacro is not None:
-            raise fault(xacro, "this is a xacro file, which load_robot and model.from_xacro expand")
+            raise fault_at(xacro, "this is a xacro file, which load_robot and model.from_xacro expand")
         if root.tag != "robot":
             hint = OTHER_ROOTS.get(root.tag, "a URDF file holds one <robot> element")
-            raise fault(root, f"this is no robot: the root element is <{root.tag}>; {hint}")
+            raise fault_at(root, f"this is no robot: the root element is <{root.tag}>; {hint}")
 
     def check_words(self, element: Element) -> None:
         """Complain about what looks like a slip of the pen: an element left out in silence is worse."""
@@ -89,7 +89,7 @@ class _Reader:
         if slip is not None:
             name = element.attributes.get("name", "")
             where = f" ({element.tag} {name!r})" if name else ""
-            raise fault(slip[1], slip[0] + where)
+            raise fault_at(slip[1], slip[0] + where)
         for child in element.children:
             if child.tag in ("link", "joint", "inertial", "visual", "collision"):
                 self.check_words(child)
@@ -99,9 +99,9 @@ class _Reader:
         element = parent.first("origin")
         if element is None:
             return IDENTITY
-        x, y, z = floats(element, "xyz", (0.0, 0.0, 0.0), 3)
-        roll, pitch, yaw = floats(element, "rpy", (0.0, 0.0, 0.0), 3)
-        return frozen(from_rpy((x, y, z), (roll, pitch, yaw)))
+        x, y, z = read_floats(element, "xyz", (0.0, 0.0, 0.0), 3)
+        roll, pitch, yaw = read_floats(element, "rpy", (0.0, 0.0, 0.0), 3)
+        return freeze_array(from_rpy((x, y, z), (roll, pitch, yaw)))
 
     def color(self, material: Element) -> Color | None:
         """The colour of a material, by its own <color> or by the name of an earlier one."""
@@ -109,14 +109,14 @@ class _Reader:
         element = material.first("color")
         if element is None:
             return self.colors.get(name)
-        r, g, b, a = floats(element, "rgba", None, 4)
+        r, g, b, a = read_floats(element, "rgba", None, 4)
         self.colors[name] = (r, g, b, a)
         return self.colors[name]
 
     def link(self, element: Element) -> Link:
         name = text_of(element, "name")
         inertial = element.first("inertial")
-        return at(
+        return complain_at(
             element,
             lambda: Link(
                 name,
@@ -129,57 +129,57 @@ class _Reader:
     def inertial(self, element: Element, link: str) -> Inertial:
         mass, inertia = element.first("mass"), element.first("inertia")
         if mass is None:
-            raise fault(element, f"<inertial> of link {link!r} needs <mass value=…>")
+            raise fault_at(element, f"<inertial> of link {link!r} needs <mass value=…>")
         T = self.origin(element)
-        value = number(mass, "value")
+        value = read_number(mass, "value")
         entries = [0.0] * 6
         if inertia is not None:
-            entries = [number(inertia, name, 0.0) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")]
+            entries = [read_number(inertia, name, 0.0) for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")]
         xx, xy, xz, yy, yz, zz = entries
         R = T[:3, :3]
         local = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
-        return at(element, lambda: Inertial(value, T[:3, 3], R @ local @ R.T))
+        return complain_at(element, lambda: Inertial(value, T[:3, 3], R @ local @ R.T))
 
     def geometry(self, element: Element) -> Geometry:
         """One <visual> or <collision>."""
         holder = element.first("geometry")
         if holder is None or not holder.children:
-            raise fault(element, f"<{element.tag}> needs a <geometry> with a shape")
+            raise fault_at(element, f"<{element.tag}> needs a <geometry> with a shape")
         shape = holder.children[0]
         if shape.tag not in SHAPES:
-            raise fault(shape, str(suggest("shape", shape.tag, SHAPES)))
+            raise fault_at(shape, str(suggest("shape", shape.tag, SHAPES)))
         size: list[float] = []
         mesh = None
         if shape.tag == "mesh":
             mesh = self.mesh(shape)
         elif shape.tag == "box":
-            size = floats(shape, "size", None, 3)
+            size = read_floats(shape, "size", None, 3)
         else:
-            size = [number(shape, name) for name in SHAPES[shape.tag]]
+            size = [read_number(shape, name) for name in SHAPES[shape.tag]]
         material = element.first("material")
         color = None if material is None else self.color(material)
         name = element.attributes.get("name", "")
         origin = self.origin(element)
-        return at(shape, lambda: Geometry(shape.tag, tuple(size), origin, name, mesh, color))
+        return complain_at(shape, lambda: Geometry(shape.tag, tuple(size), origin, name, mesh, color))
 
     def mesh(self, element: Element) -> Mesh:
         uri = text_of(element, "filename")
-        x, y, z = floats(element, "scale", (1.0, 1.0, 1.0), 3)
-        return at(element, lambda: Mesh(uri, (x, y, z), self.beside, self.package_paths))
+        x, y, z = read_floats(element, "scale", (1.0, 1.0, 1.0), 3)
+        return complain_at(element, lambda: Mesh(uri, (x, y, z), self.beside, self.package_paths))
 
     def joint(self, element: Element) -> Joint:
         name = text_of(element, "name")
         kind = text_of(element, "type")
         if kind not in JOINT_TYPES:
             known = suggest("joint type", kind, JOINT_TYPES, owner=f"joint {name!r}")
-            raise fault(element, str(known))
+            raise fault_at(element, str(known))
         parent, child = (self.end(element, name, which) for which in ("parent", "child"))
         axis = element.first("axis")
-        direction: Any = X_AXIS if axis is None else floats(axis, "xyz", (1.0, 0.0, 0.0), 3)
+        direction: Any = X_AXIS if axis is None else read_floats(axis, "xyz", (1.0, 0.0, 0.0), 3)
         origin = self.origin(element)
         numbers = self.limits(element, kind) | self.dynamics(element)
         mimic = self.mimic(element) if kind != "fixed" else None
-        return at(
+        return complain_at(
             axis if axis is not None and not any(direction) else element,
             lambda: Joint(name, kind, parent, child, origin, direction, mimic=mimic, **numbers),
         )
@@ -188,7 +188,7 @@ class _Reader:
         """The link at one end of a joint."""
         tag = joint.first(which)
         if tag is None:
-            raise fault(joint, f"joint {name!r} needs <{which} link=…>")
+            raise fault_at(joint, f"joint {name!r} needs <{which} link=…>")
         return text_of(tag, "link")
 
     def limits(self, joint: Element, kind: str) -> dict[str, Any]:
@@ -198,21 +198,21 @@ class _Reader:
             return {}
         found = {}
         if kind in ("revolute", "prismatic"):
-            found = {name: number(limit, name, 0.0) for name in ("lower", "upper")}
+            found = {name: read_number(limit, name, 0.0) for name in ("lower", "upper")}
         for name in ("velocity", "effort", "acceleration", "jerk"):
             if name in limit.attributes:
-                found[name] = number(limit, name)
+                found[name] = read_number(limit, name)
         return {name: math.copysign(math.inf, x) if abs(x) >= UNLIMITED else x for name, x in found.items()}
 
     def dynamics(self, joint: Element) -> dict[str, Any]:
         element = joint.first("dynamics")
         names = () if element is None else ("damping", "friction")
-        return {name: number(element, name) for name in names if name in element.attributes}  # type: ignore
+        return {name: read_number(element, name) for name in names if name in element.attributes}  # type: ignore
 
     def mimic(self, joint: Element) -> Mimic | None:
         element = joint.first("mimic")
         if element is None:
             return None
         leader = text_of(element, "joint")
-        factor, shift = number(element, "multiplier", 1.0), number(element, "offset", 0.0)
-        return at(element, lambda: Mimic(leader, factor, shift))
+        factor, shift = read_number(element, "multiplier", 1.0), read_number(element, "offset", 0.0)
+        return complain_at(element, lambda: Mimic(leader, factor, shift))

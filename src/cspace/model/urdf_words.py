@@ -38,20 +38,20 @@ def slip_in(element: Element) -> tuple[str, Element] | None:
     present = {child.tag for child in element.children}
     for child in element.children:
         if known and child.tag not in known:
-            meant = closest(child.tag, known - present)
+            meant = closest_word(child.tag, known - present)
             if meant:
                 return f"<{element.tag}> has no <{child.tag}>; did you mean <{meant}>?", child
         names = ATTRIBUTES.get(child.tag)
         if names is None or child.attributes.keys() <= names:
             continue
         for name in child.attributes.keys() - names:
-            meant = closest(name, names - child.attributes.keys())
+            meant = closest_word(name, names - child.attributes.keys())
             if meant:
                 return f"<{child.tag}> has no attribute {name!r}; did you mean {meant!r}?", child
     return None
 
 
-def closest(word: str, known: Iterable[str]) -> str | None:
+def closest_word(word: str, known: Iterable[str]) -> str | None:
     """The known word that `word` was meant for, if any; names of another namespace are never meant so."""
     if ":" in word:
         return None

@@ -15,16 +15,16 @@ BEYOND = f"no robot has numbers beyond {LARGEST_NUMBER:g} in SI units"
 """The rule that a number broke which is larger than tolerances.LARGEST_NUMBER."""
 
 
-def frozen(array: Array) -> Array:
+def freeze_array(array: Array) -> Array:
     """The array itself, made read-only."""
     array.setflags(write=False)
     return array
 
 
-IDENTITY: Array = frozen(np.eye(4))
+IDENTITY: Array = freeze_array(np.eye(4))
 """The placement that moves nothing."""
 
-X_AXIS: Array = frozen(np.array([1.0, 0.0, 0.0]))
+X_AXIS: Array = freeze_array(np.array([1.0, 0.0, 0.0]))
 """The axis of a joint that names none (URDF)."""
 
 
@@ -37,7 +37,7 @@ def name_of(value: object, subject: str) -> str:
     return value
 
 
-def number(value: Any, subject: str) -> float:
+def check_number(value: Any, subject: str) -> float:
     """A float that is not NaN; infinities are accepted, for limits."""
     try:
         result = float(value)
@@ -50,7 +50,7 @@ def number(value: Any, subject: str) -> float:
 
 def finite_number(value: Any, subject: str) -> float:
     """A float that is neither NaN nor infinite nor beyond tolerances.LARGEST_NUMBER."""
-    result = number(value, subject)
+    result = check_number(value, subject)
     if math.isinf(result):
         raise InputError(f"{subject} is {result}; it must be finite")
     if abs(result) > LARGEST_NUMBER:
@@ -58,7 +58,7 @@ def finite_number(value: Any, subject: str) -> float:
     return result
 
 
-def sane(array: Array, subject: str) -> Array:
+def check_size(array: Array, subject: str) -> Array:
     """The array itself, if no number is beyond tolerances.LARGEST_NUMBER."""
     largest = max(array.ravel().tolist(), key=abs, default=0.0)
     if abs(largest) > LARGEST_NUMBER:
@@ -66,7 +66,7 @@ def sane(array: Array, subject: str) -> Array:
     return array
 
 
-def placement(value: object, subject: str) -> Array:
+def check_placement(value: object, subject: str) -> Array:
     """A read-only (4, 4) rigid transform, copied from `value`.
 
     Raises InputError where the last row is not (0, 0, 0, 1) or the upper left block is not a rotation.
@@ -79,7 +79,7 @@ def placement(value: object, subject: str) -> Array:
         raise InputError(f"{subject} has shape {pose.shape}, expected (4, 4)")
     if pose[3, 0] != 0.0 or pose[3, 1] != 0.0 or pose[3, 2] != 0.0 or pose[3, 3] != 1.0:
         raise InputError(f"{subject} has the last row {pose[3].tolist()}, expected [0, 0, 0, 1]")
-    sane(pose[:3, 3], subject)
+    check_size(pose[:3, 3], subject)
     error = _rotation_error(pose)
     if error > ROTATION_ERROR:
         raise InputError(
@@ -87,7 +87,7 @@ def placement(value: object, subject: str) -> Array:
             f"{error:.3g}"
             f" (allowed {ROTATION_ERROR:g})"
         )
-    return frozen(np.array(pose))
+    return freeze_array(np.array(pose))
 
 
 def _rotation_error(pose: Array) -> float:
@@ -120,6 +120,6 @@ def unit_axis(value: Any, subject: str) -> Array:
     if length < AXIS_LENGTH:
         raise InputError(f"{subject} is {vector.tolist()}, which has no direction; an axis must not be zero")
     if abs(length - 1.0) <= 2.0**-51:  # a unit vector to rounding stays as it is, bit for bit
-        return frozen(np.array(vector))
+        return freeze_array(np.array(vector))
     scaled: Array = vector / length
-    return frozen(scaled)
+    return freeze_array(scaled)

@@ -13,12 +13,12 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
 from cspace.errors import DescriptionError, InputError, InputTypeError, MissingExtraError
-from cspace.model.attributes import fault
+from cspace.model.attributes import fault_at
 from cspace.model.description import Description
 from cspace.model.files import path_of, read_bytes
-from cspace.model.packages import folders
+from cspace.model.packages import check_folders
 from cspace.model.urdf import urdf_description
-from cspace.model.xml import Element, parse
+from cspace.model.xml import Element, parse_document
 from cspace.tolerances import XACRO_SECONDS
 
 CHILD: Final = (
@@ -47,7 +47,7 @@ def from_xacro(
     """
     name = path_of(path)
     read_bytes(name)  # raises the usual error for a missing file
-    root = expanded(name, texts_of(xacro_args), folders(package_paths))
+    root = expand_file(name, texts_of(xacro_args), check_folders(package_paths))
     stem = os.path.basename(name).partition(".")[0]
     if root.tag == "mujoco":
         from cspace.model.mjcf.reader import mjcf_description
@@ -55,7 +55,9 @@ def from_xacro(
         root.attributes.setdefault("model", stem)
         return mjcf_description(root, package_paths)
     if root.tag == "robot" and root.first("link") is None:
-        raise fault(root, "this xacro file makes no links; if it holds macros, give the file that calls them")
+        raise fault_at(
+            root, "this xacro file makes no links; if it holds macros, give the file that calls them"
+        )
     root.attributes.setdefault("name", stem)
     return urdf_description(root, package_paths)
 
@@ -65,7 +67,7 @@ def is_xacro(data: bytes) -> bool:
     if b"<xacro:" not in data:
         return False
     try:
-        stack = [parse(data)]
+        stack = [parse_document(data)]
     except DescriptionError:
         return False
     while stack:
@@ -90,7 +92,7 @@ def texts_of(arguments: Mapping[str, Any] | None) -> dict[str, str]:
     return found
 
 
-def expanded(path: str, arguments: Mapping[str, str], package_paths: Sequence[str]) -> Element:
+def expand_file(path: str, arguments: Mapping[str, str], package_paths: Sequence[str]) -> Element:
     """The root element of what a xacro file makes; each element knows its file and line there."""
     import subprocess  # these two cost a tenth of `import cspace`
     from importlib.util import find_spec

@@ -13,7 +13,7 @@ from xml.dom import expatbuilder, minidom
 from cspace.errors import CspaceError, DescriptionError, suggest
 from cspace.model.files import read_bytes
 from cspace.model.packages import locate_package
-from cspace.model.xml import parse
+from cspace.model.xml import parse_document
 from cspace.tolerances import XACRO_ELEMENTS
 
 Place = tuple[str, int]
@@ -26,10 +26,10 @@ WATCHED = ("grab_property", "grab_macro", "process_include", "handle_macro_call"
 def main(request: dict[str, Any]) -> None:
     """Write the result of one request to the standard output: the elements, or the error in the file."""
     answers, sys.stdout = sys.stdout, sys.stderr  # xacro prints
-    json.dump(answer(request), answers)
+    json.dump(answer_request(request), answers)
 
 
-def answer(request: dict[str, Any]) -> dict[str, Any]:
+def answer_request(request: dict[str, Any]) -> dict[str, Any]:
     """The expanded document as JSON data, or the fault that ends it."""
     arguments = Arguments(request["arguments"])
     expansion = Expansion(request["file"], request["package_paths"])
@@ -43,20 +43,20 @@ def answer(request: dict[str, Any]) -> dict[str, Any]:
     except RecursionError:
         fault = "its macros or includes call each other without end"
     except Exception as error:
-        fault = told(error)
+        fault = fault_text(error)
     else:
         if arguments.unused():
             return {"unknown": arguments.complaint()}
         files: dict[str, int] = {}
         rows = [
             (depth, tag, attributes, files.setdefault(file, len(files)), line)
-            for depth, tag, attributes, (file, line) in listed(root, (request["file"], 1))
+            for depth, tag, attributes, (file, line) in list_elements(root, (request["file"], 1))
         ]
         return {"files": list(files), "elements": rows}
     return {"fault": fault, "file": expansion.place[0], "line": expansion.place[1]}
 
 
-def told(error: Exception) -> str:
+def fault_text(error: Exception) -> str:
     """What xacro complains about, in one line."""
     cause = getattr(error, "exc", None)
     if isinstance(cause, CspaceError):
@@ -138,7 +138,7 @@ class Expansion:
         except DescriptionError as error:
             self.xacro.filestack.pop()
             raise self.xacro.XacroException(str(error), exc=OSError()) from None
-        parse(data, filename)
+        parse_document(data, filename)
         return Placed(filename).parseString(data)
 
     def watched(self, function: Callable[..., Any]) -> Callable[..., Any]:
@@ -184,7 +184,7 @@ def with_places(node: Any, copy: Any) -> Any:
     return copy
 
 
-def listed(root: minidom.Element, place: Place) -> Iterator[tuple[int, str, dict[str, str], Place]]:
+def list_elements(root: minidom.Element, place: Place) -> Iterator[tuple[int, str, dict[str, str], Place]]:
     """An element and all inside it: depth, tag, attributes, place."""
     stack = [(0, root, place)]
     while stack:

@@ -73,7 +73,7 @@ class _Builder:
         return DescriptionError(message, path=self.path, line=self.line())
 
 
-def parse(
+def parse_document(
     data: bytes, path: str | None = None, lines_before: int = 0, depth: int = DESCRIPTION_DEPTH
 ) -> Element:
     """The root element of an XML document.
@@ -112,11 +112,11 @@ def parse_source(source: str | os.PathLike[str] | bytes, depth: int = DESCRIPTIO
     if isinstance(source, str) and source.lstrip(BLANKS).startswith("<"):
         blank = len(source) - len(source.lstrip(BLANKS))
         data = source[blank:].encode("utf-8", "replace")
-        return parse(data, None, source.count("\n", 0, blank), depth)
+        return parse_document(data, None, source.count("\n", 0, blank), depth)
     if isinstance(source, bytes):
-        return parse(source, None, 0, depth)
+        return parse_document(source, None, 0, depth)
     path = path_of(source)
-    return parse(read_bytes(path), path, 0, depth)
+    return parse_document(read_bytes(path), path, 0, depth)
 
 
 class _RootSeen(Exception):

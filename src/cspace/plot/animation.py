@@ -31,7 +31,7 @@ def write_gif(figure: Any, steps: Steps, path: str | Path, dpi: float) -> None:
 
     figure.set_dpi(dpi)
     canvas = FigureCanvasAgg(figure)
-    pictures = list(drawn(figure, canvas, steps))
+    pictures = list(draw_frames(figure, canvas, steps))
     # One palette for all: that of the last picture, which has every colour.
     palette = Image.fromarray(pictures[-1]).quantize(
         256, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE
@@ -42,7 +42,7 @@ def write_gif(figure: Any, steps: Steps, path: str | Path, dpi: float) -> None:
     first.save(path, format="GIF", save_all=True, append_images=others, duration=steps.interval, loop=0)
 
 
-def drawn(figure: Any, canvas: Any, steps: Steps) -> Iterable[Array]:
+def draw_frames(figure: Any, canvas: Any, steps: Steps) -> Iterable[Array]:
     """The pictures as bytes (height, width, 3)."""
     added, over = steps.show(0)
     moving = [*added, *over]

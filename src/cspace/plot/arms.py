@@ -13,8 +13,8 @@ from cspace.plot import colors, planar
 from cspace.plot.axes import space_axes
 from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group, artist_type, scene_of
-from cspace.plot.raytrace.solids import Solid, capsule, cylinder
-from cspace.plot.skeleton import WIDTH, Skeleton, planar_basis, size_of, skeleton
+from cspace.plot.raytrace.solids import Solid, make_capsule, make_cylinder
+from cspace.plot.skeleton import WIDTH, Skeleton, make_skeleton, planar_basis, size_of
 from cspace.tolerances import DRAWN_LENGTH
 
 GHOST: Final = 0.40
@@ -35,15 +35,15 @@ def robot(arm: Any, q: Any, *, ax: Any | None = None, color: Any = None, title: 
         raise InputError(f"q has shape {q.shape}; one picture shows one configuration, expected ({arm.dof},)")
     basis = planar_basis(arm.chain)
     if basis is not None and not hasattr(ax, "get_proj"):
-        return planar.draw(
+        return planar.draw_configurations(
             arm, q[None], basis, ax=ax, solid=0, tints=[colors.JOINT if color is None else color], title=title
         )
     axes = space_axes(ax)
-    drawn = skeleton(arm, q)
+    drawn = make_skeleton(arm, q)
     set_stage(axes, arm, [drawn], drawn.T_tip)
     size = 0.14 * size_of(arm.chain.points, arm.chain.T_zero)
     link = np.array(colors.LINK if color is None else color, dtype=np.float64)[:3]
-    frames = Group(stage.triads(np.stack([np.eye(4), drawn.T_tip]), size), shadow=False)
+    frames = Group(stage.make_triads(np.stack([np.eye(4), drawn.T_tip]), size), shadow=False)
     artists = draw_groups(axes, [Group(solids_of(drawn, link, np.array(colors.JOINT))), frames])
     return artists + stage.write_title(axes, title)
 
@@ -76,26 +76,29 @@ def solutions(
     if len(inside) != len(q):
         raise InputError(f"within has {len(inside)} entries for {len(q)} configurations; give one each")
     names = list(labels) if labels is not None else branch_names(answer, inside)
-    solid = 0 if near is None else nearest(q, as_floats(near, "near", last=(arm.dof,)), arm)
+    solid = 0 if near is None else nearest_row(q, as_floats(near, "near", last=(arm.dof,)), arm)
     tints = tints_of(inside, solid)
     basis = planar_basis(arm.chain)
     if basis is not None and not hasattr(ax, "get_proj"):
-        return planar.draw(
+        return planar.draw_configurations(
             arm, q, basis, ax=ax, solid=solid, tints=tints, names=names, goal=goal, title=title
         )
     axes = space_axes(ax, aside=0.7 + 0.063 * max(map(len, names)))
-    drawn = [skeleton(arm, each) for each in q]
+    drawn = [make_skeleton(arm, each) for each in q]
     T_goal = drawn[solid].T_tip if goal is None else stage.goal_pose(goal, drawn[solid].T_tip)
     set_stage(axes, arm, drawn, T_goal)
     white = (1.0, 1.0, 1.0)
     groups = [
-        Group(solids_of(drawn[k], colors.mix(tints[k], white, 0.25), tints[k]), GHOST if inside[k] else FAINT)
+        Group(
+            solids_of(drawn[k], colors.mix_colors(tints[k], white, 0.25), tints[k]),
+            GHOST if inside[k] else FAINT,
+        )
         for k in range(len(q))
         if k != solid
     ]
     groups.append(Group(solids_of(drawn[solid], np.array(colors.LINK), tints[solid])))
     size = size_of(arm.chain.points, arm.chain.T_zero)
-    groups.append(Group(stage.triads(T_goal[None], 0.20 * size, thickness=0.045), shadow=False))
+    groups.append(Group(stage.make_triads(T_goal[None], 0.20 * size, thickness=0.045), shadow=False))
     artists = draw_groups(axes, groups)
     artists += write_legend(axes, names, tints, solid)
     return artists + stage.write_title(axes, title)
@@ -114,7 +117,7 @@ def tints_of(inside: Any, solid: int) -> list[Array]:
     coloured[solid] = True
     tints = np.tile(np.array(colors.BARRED), (len(inside), 1))
     first = int(coloured[:solid].sum())
-    tints[coloured] = np.roll(colors.palette(int(coloured.sum())), first, axis=0)
+    tints[coloured] = np.roll(colors.make_palette(int(coloured.sum())), first, axis=0)
     return list(tints)
 
 
@@ -127,7 +130,7 @@ def branch_names(answer: Any, inside: Any) -> list[str]:
     return [name if fits else f"{name} (out of limits)" for name, fits in zip(names, inside, strict=True)]
 
 
-def nearest(q: Array, near: Array, arm: Any) -> int:
+def nearest_row(q: Array, near: Array, arm: Any) -> int:
     """The row of q nearest to `near`; revolute joints are compared modulo 2π."""
     from cspace.ik.wrapping import short_way
 
@@ -153,7 +156,7 @@ def set_stage(ax: Any, arm: Any, drawn: list[Skeleton], T_goal: Array) -> None:
     artist = stage.set_up(ax, around, floor, elevation=elevation, azimuth=azimuth)
     if low < -DRAWN_LENGTH:
         up, half, width = np.array([0.0, 0.0, 1.0]), -0.5 * low, 0.8 * drawn[0].radii[0]
-        stand = cylinder(-half * up, up, width, half, np.array(colors.STAND))
+        stand = make_cylinder(-half * up, up, width, half, np.array(colors.STAND))
         artist.scene.groups.append(Group([stand]))
 
 
@@ -168,7 +171,7 @@ def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
     """The bodies of the links and joints of one configuration."""
     radii = drawn.radii
     up = np.array([0.0, 0.0, 1.0])
-    solids = [cylinder(0.3 * radii[0] * up, up, 1.7 * radii[0], 0.3 * radii[0], joint)]
+    solids = [make_cylinder(0.3 * radii[0] * up, up, 1.7 * radii[0], 0.3 * radii[0], joint)]
     for i, path in enumerate(drawn.paths):
         ends = np.linspace(radii[i], radii[i + 1], len(path))
         for k in range(len(path) - 1):
@@ -176,14 +179,14 @@ def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
                 continue
             if i == 0 and k == 0 and path[1][2] > path[0][2]:  # the pillar stands on the floor, flat
                 solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
-                solids.append(capsule(path[1], path[1], ends[1], ends[1], link))
+                solids.append(make_capsule(path[1], path[1], ends[1], ends[1], link))
             else:
-                solids.append(capsule(path[k], path[k + 1], ends[k], ends[k + 1], link))
+                solids.append(make_capsule(path[k], path[k + 1], ends[k], ends[k + 1], link))
     for rail in drawn.rails:
         if np.linalg.norm(rail[1] - rail[0]) > DRAWN_LENGTH:
-            solids.append(capsule(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
+            solids.append(make_capsule(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
     for i, (place, axis) in enumerate(zip(drawn.joints, drawn.axes, strict=True)):
-        solids.append(cylinder(place, axis, WIDTH * radii[i + 1], drawn.body_half(i), joint))
+        solids.append(make_cylinder(place, axis, WIDTH * radii[i + 1], drawn.body_half(i), joint))
     return solids
 
 

@@ -39,7 +39,7 @@ LMS_OF_LAB: Final = np.array(
 )
 
 
-def oklch(lightness: float, chroma: float, hue: float) -> Array:
+def color_of_oklch(lightness: float, chroma: float, hue: float) -> Array:
     """The sRGB colour (3,) in [0, 1] of a lightness, a chroma and a hue [deg] in OKLab (Ottosson 2020)."""
     h = np.radians(hue)
     lab = np.array([lightness, chroma * np.cos(h), chroma * np.sin(h)])
@@ -48,7 +48,7 @@ def oklch(lightness: float, chroma: float, hue: float) -> Array:
     return np.asarray(srgb, dtype=np.float64)
 
 
-def palette(count: int) -> Array:
+def make_palette(count: int) -> Array:
     """`count` colours (count, 3), evenly spaced in hue; neighbours in the list are far apart where it helps.
 
     Up to eight go around the circle in order (a family of solutions reads as a rainbow); more alternate
@@ -56,9 +56,11 @@ def palette(count: int) -> Array:
     """
     hues = FIRST_HUE + 360.0 * np.arange(count) / max(count, 1)
     light = [0.66 if count <= 8 or k % 2 == 0 else 0.52 for k in range(count)]
-    return np.array([oklch(light[k], 0.145, hues[k]) for k in range(count)]).reshape(count, 3)
+    return np.array([color_of_oklch(light[k], 0.145, hues[k]) for k in range(count)]).reshape(count, 3)
 
 
-def mix(color: Array | tuple[float, float, float], other: tuple[float, float, float], share: float) -> Array:
+def mix_colors(
+    color: Array | tuple[float, float, float], other: tuple[float, float, float], share: float
+) -> Array:
     """`color` with a share of `other` in it."""
     return (1.0 - share) * np.asarray(color, dtype=np.float64) + share * np.asarray(other, dtype=np.float64)

@@ -38,12 +38,12 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
     """
     height = height_of(route)
     axes = space_axes(ax)
-    at, where = places(route.world)
-    level, top = levels(height(at))
+    at, where = raster_points(route.world)
+    level, top = cap_heights(height(at))
     solid = np.isnan(level)
     low = float(np.nanmin(level))
     shown = np.where(solid, top, level)
-    paint = tinted(shown, solid, low, top)
+    paint = tint_places(shown, solid, low, top)
     artists = [
         axes.plot_surface(
             *np.meshgrid(*where),
@@ -58,10 +58,10 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
     ]
     axes.computed_zorder = False
     lift = 0.01 * (top - low)
-    path = between(route.path)
+    path = interpolate_path(route.path)
     if len(path):
         artists += axes.plot(*path.T, np.minimum(height(path), top) + lift, color=PATH, linewidth=2, zorder=6)
-    for points, marker, size in ((minima(route), "o", 6), (route.goal[None], "*", 13)):
+    for points, marker, size in ((find_minima(route), "o", 6), (route.goal[None], "*", 13)):
         z = np.clip(height(points), low, top) + lift
         artists += axes.plot(*points.T, z, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
     xmin, ymin, xmax, ymax = route.world.bounds
@@ -81,12 +81,12 @@ def draw_bands(axes: Any, route: Any) -> list[Any]:
         height = height_of(route)
     except InputError:
         return []
-    at, where = places(route.world)
-    level, _ = levels(height(at))
+    at, where = raster_points(route.world)
+    level, _ = cap_heights(height(at))
     artists: list[Any] = []
     if np.nanmax(level) > np.nanmin(level):
         artists.append(axes.contourf(*where, level, levels=BANDS, cmap="Blues", zorder=1, alpha=0.85))
-    low = minima(route)
+    low = find_minima(route)
     if len(low):
         artists += axes.plot(*low.T, "o", ms=5, mfc="white", mec=colors.INK, mew=1.2, zorder=5)
     return artists
@@ -138,14 +138,14 @@ def harmonic_height(route: Any) -> Height:
     return height
 
 
-def minima(route: Any) -> Array:
+def find_minima(route: Any) -> Array:
     """Where the field of a route rests but at its goal: (k, 2) [m]. Of potential fields what descents from
     the lowest places of a raster come to; other fields have none."""
     if route.planner != "potential_field":
         return np.empty((0, 2))
     from cspace.navigation import navigate
 
-    at, _ = places(route.world)
+    at, _ = raster_points(route.world)
     level = height_of(route)(at)
     middle = level[1:-1, 1:-1]
     n = PLACES - 2
@@ -160,7 +160,7 @@ def minima(route: Any) -> Array:
     return np.array(kept).reshape(-1, 2)
 
 
-def places(world: Any) -> tuple[Array, tuple[Array, Array]]:
+def raster_points(world: Any) -> tuple[Array, tuple[Array, Array]]:
     """A raster over the bounds, of centres of cells where they are few: its points (rows, columns, 2), and x
     of its columns and y of its rows."""
     xmin, ymin, xmax, ymax = world.bounds
@@ -171,7 +171,7 @@ def places(world: Any) -> tuple[Array, tuple[Array, Array]]:
     return np.stack(np.meshgrid(x, y), axis=-1), (x, y)
 
 
-def levels(height: Array) -> tuple[Array, float]:
+def cap_heights(height: Array) -> tuple[Array, float]:
     """Heights up to a top, NaN where there is none; and the top."""
     level = np.where(np.isfinite(height), height, np.nan)
     if np.isnan(level).all():
@@ -180,7 +180,7 @@ def levels(height: Array) -> tuple[Array, float]:
     return np.minimum(level, top), top
 
 
-def tinted(level: Array, solid: Any, low: float, top: float) -> Array:
+def tint_places(level: Array, solid: Any, low: float, top: float) -> Array:
     """A colour for every place (n, n, 4): blue by height, obstacles dark."""
     from matplotlib import colormaps
 
@@ -190,7 +190,7 @@ def tinted(level: Array, solid: Any, low: float, top: float) -> Array:
     return paint
 
 
-def between(path: Array) -> Array:
+def interpolate_path(path: Array) -> Array:
     """A path with points in between, so that it lies on a surface: (m, 2)."""
     if len(path) < 2:
         return path

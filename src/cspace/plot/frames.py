@@ -48,7 +48,7 @@ def frames(
         elevation, azimuth = stage.choose_view(everything, everything)
         stage.set_up(axes, everything, floor, elevation=elevation, azimuth=azimuth)
     artist = scene_of(axes)
-    artist.scene.groups.append(Group(stage.triads(T, length)))
+    artist.scene.groups.append(Group(stage.make_triads(T, length)))
     artists: list[Any] = [artist]
     artists += [write_name(axes, name, T[k], length) for k, name in enumerate(names or ())]
     return artists + stage.write_title(axes, title)

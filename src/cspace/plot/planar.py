@@ -11,7 +11,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes
-from cspace.plot.skeleton import Skeleton, planar_basis, size_of, skeleton
+from cspace.plot.skeleton import Skeleton, make_skeleton, planar_basis, size_of
 from cspace.tolerances import DRAWN_LENGTH, LEAST_DIVISOR
 
 WORKSPACE_SAMPLES: Final = 400
@@ -22,7 +22,7 @@ EXACT_ENDS: Final = {"shrinkA": 0, "shrinkB": 0}
 """Arrows that end exactly at given points."""
 
 
-def draw(
+def draw_configurations(
     arm: Any,
     q: Array,
     basis: Array,
@@ -36,9 +36,9 @@ def draw(
 ) -> list[Any]:
     """Draw configurations q (k, dof) of an arm in the plane of `basis` (2, 3); row `solid` is opaque."""
     axes = flat_axes(ax)
-    drawn = [skeleton(arm, each) for each in q]
+    drawn = [make_skeleton(arm, each) for each in q]
     size = size_of(arm.chain.points, arm.chain.T_zero)
-    artists = prepare(axes, basis)
+    artists = prepare_axes(axes, basis)
     order = [k for k in range(len(q)) if k != solid] + [solid]
     for place, k in enumerate(order):
         artists += draw_arm(axes, drawn[k], basis, np.asarray(tints[k]), ghost=k != solid, zorder=3 + place)
@@ -52,7 +52,7 @@ def draw(
         T = T if goal is None else np.asarray(goal, dtype=np.float64)
         artists += draw_frame(axes, T, basis, 0.16 * size, zorder=4 + len(q))
     if names:
-        artists += legend(axes, names, tints, solid)
+        artists += draw_legend(axes, names, tints, solid)
     if title:
         artists.append(axes.set_title(title, fontsize=11, color=colors.INK, loc="left"))
     corners = np.concatenate([each.points for each in drawn]) @ basis.T
@@ -61,7 +61,7 @@ def draw(
     return artists
 
 
-def prepare(ax: Any, basis: Array) -> list[Any]:
+def prepare_axes(ax: Any, basis: Array) -> list[Any]:
     """Equal aspect, a quiet grid, axes named after the base frame's."""
     ax.set_aspect("equal", adjustable="datalim")
     ax.grid(True, color=(0.90, 0.915, 0.935), linewidth=0.8)
@@ -82,7 +82,7 @@ def frame_view(ax: Any, points: Array) -> None:
     ax.autoscale_view()
 
 
-def outline(p: Array, r: Array, radius_p: float, radius_r: float) -> Array:
+def outline_bar(p: Array, r: Array, radius_p: float, radius_r: float) -> Array:
     """The outline (m, 2) of a tapered bar between two circles."""
     way = r - p
     length = float(np.linalg.norm(way))
@@ -103,7 +103,7 @@ def draw_arm(ax: Any, drawn: Skeleton, basis: Array, tint: Array, *, ghost: bool
     from matplotlib.patches import Circle, Polygon
 
     alpha = 0.30 if ghost else 1.0
-    edge = colors.mix(tint, colors.INK, 0.40)
+    edge = colors.mix_colors(tint, colors.INK, 0.40)
     artists: list[Any] = []
     radii = 0.72 * drawn.radii
     for i, path in enumerate(drawn.paths[1:], start=1):
@@ -111,9 +111,9 @@ def draw_arm(ax: Any, drawn: Skeleton, basis: Array, tint: Array, *, ghost: bool
         for k in range(len(path) - 1):
             p, r = path[k] @ basis.T, path[k + 1] @ basis.T
             if np.linalg.norm(r - p) > DRAWN_LENGTH:
-                face = (*colors.mix(tint, (1.0, 1.0, 1.0), 0.15), alpha)
+                face = (*colors.mix_colors(tint, (1.0, 1.0, 1.0), 0.15), alpha)
                 bar = Polygon(
-                    outline(p, r, ends[k], ends[k + 1]),
+                    outline_bar(p, r, ends[k], ends[k + 1]),
                     closed=True, facecolor=face, edgecolor=(*edge, 0.55 if ghost else 1.0),
                     linewidth=1.0 if ghost else 1.3, zorder=zorder,
                 )  # fmt: skip
@@ -163,7 +163,7 @@ def draw_target(ax: Any, point: Array, size: float, *, zorder: float) -> list[An
     return [ax.add_patch(ring), *ax.plot(*point, marker="+", markersize=12, color=red, zorder=zorder)]
 
 
-def legend(ax: Any, names: Sequence[str], tints: Sequence[Any], solid: int) -> list[Any]:
+def draw_legend(ax: Any, names: Sequence[str], tints: Sequence[Any], solid: int) -> list[Any]:
     """The branches and their colours; the solid one is bold."""
     from matplotlib.patches import Patch
 
@@ -206,7 +206,7 @@ def workspace(arm: Any, *, ax: Any | None = None, title: str = "") -> list[Any]:
     points = tip_points(arm, q, basis)
     J = basis @ arm.jacobian(q)[..., :3, :]
     measure = np.sqrt(np.clip(np.linalg.det(J @ np.swapaxes(J, -1, -2)), 0.0, None)) if arm.dof > 1 else None
-    artists = prepare(axes, basis)
+    artists = prepare_axes(axes, basis)
     size = size_of(arm.chain.points, arm.chain.T_zero)
     if measure is None:
         order = np.argsort(q[:, 0])
@@ -267,7 +267,7 @@ def manipulability(
     basis = planar_or_refuse(arm)
     q = as_floats(q, "q", last=(arm.dof,))
     axes = flat_axes(ax)
-    artists = draw(arm, q[None], basis, ax=axes, solid=0, tints=[colors.LINK], title=title)
+    artists = draw_configurations(arm, q[None], basis, ax=axes, solid=0, tints=[colors.LINK], title=title)
     J = basis @ arm.jacobian(q)[:3, :]
     u, s, _ = np.linalg.svd(J)
     lengths = np.zeros(2)

@@ -29,7 +29,7 @@ def draw_idea(axes: Any, route: Any) -> list[Any]:
     return artists + drawn(axes, route)
 
 
-def lines(axes: Any, pieces: Array, **style: Any) -> list[Any]:
+def draw_lines(axes: Any, pieces: Array, **style: Any) -> list[Any]:
     """Segments (k, 2, 2)."""
     from matplotlib.collections import LineCollection
 
@@ -103,7 +103,7 @@ def draw_trace(axes: Any, events: Any) -> list[Any]:
     if is_line.any():
         pieces = np.stack([start, end], axis=1)[is_line]
         style = dict(linewidths=0.8, alpha=0.8) if len(pieces) < CROWD else dict(linewidths=0.4, alpha=0.35)
-        artists += lines(axes, pieces, array=when[is_line], cmap="viridis", zorder=3, **style)
+        artists += draw_lines(axes, pieces, array=when[is_line], cmap="viridis", zorder=3, **style)
     if not is_line.all():
         dots = end[~is_line]
         artists.append(axes.scatter(*dots.T, c=when[~is_line], cmap="viridis", s=4, linewidths=0, zorder=3))
@@ -144,7 +144,7 @@ def draw_traced_diagram(axes: Any, route: Any) -> list[Any]:
     for word, tint in (("trace", colors.JOINT), ("roll", FAINT)):
         part = trace.only(word)
         if len(part):
-            artists += lines(
+            artists += draw_lines(
                 axes, np.stack([part.start, part.end], axis=1), colors=[tint], linewidths=2.4, zorder=2
             )
     meets = route.evidence.meets
@@ -157,7 +157,7 @@ def draw_visibility_graph(axes: Any, route: Any) -> list[Any]:
     from cspace.navigation.visibility.visibility_graph import visibility_graph
 
     nodes, edges = visibility_graph(route.world)
-    return lines(axes, nodes[edges], colors=[FAINT], linewidths=0.5, zorder=2)
+    return draw_lines(axes, nodes[edges], colors=[FAINT], linewidths=0.5, zorder=2)
 
 
 def draw_exact_cells(axes: Any, route: Any) -> list[Any]:
@@ -235,7 +235,7 @@ def draw_navigation_function(axes: Any, route: Any) -> list[Any]:
     return artists
 
 
-def nothing(axes: Any, route: Any) -> list[Any]:
+def draw_nothing(axes: Any, route: Any) -> list[Any]:
     return []
 
 
@@ -262,9 +262,9 @@ SEARCHED: Final[dict[str, Callable[[Any, Any], list[Any]]]] = {
     **{name: draw_walk for name in ("bug_1", "bug_2", "tangent_bug")},
     "voronoi_bug": draw_traced_diagram,
     "approximate_cells": draw_expanded,
-    "brushfire": nothing,
-    "harmonic": nothing,
-    "rimon_koditschek": nothing,
-    "voronoi": nothing,
+    "brushfire": draw_nothing,
+    "harmonic": draw_nothing,
+    "rimon_koditschek": draw_nothing,
+    "voronoi": draw_nothing,
 }
 """How a planner's search is drawn, where not as its events."""

@@ -52,17 +52,17 @@ class Skeleton:
         return float((TURNING if self.types[i] == "R" else SLIDING) * self.radii[i + 1])
 
 
-def skeleton(robot: Any, q: Array) -> Skeleton:
+def make_skeleton(robot: Any, q: Array) -> Skeleton:
     """The skeleton of `robot` (anything with a `chain`) at the configuration `q` (dof,)."""
     chain = robot.chain
     types = str(chain.joint_types)
-    before, after, axes, T_tip = move(chain.axes, chain.points, types, chain.T_zero, q)
+    before, after, axes, T_tip = move_joints(chain.axes, chain.points, types, chain.T_zero, q)
     length = size_of(chain.points, chain.T_zero)
     n = len(types)
-    paths = [route(np.zeros(3), np.array([0.0, 0.0, 1.0]), before[0], axes[0], length)]
+    paths = [route_link(np.zeros(3), np.array([0.0, 0.0, 1.0]), before[0], axes[0], length)]
     for i in range(n - 1):
-        paths.append(route(after[i], axes[i], before[i + 1], axes[i + 1], length))
-    paths.append(route(after[-1], axes[-1], T_tip[:3, 3], axes[-1], length))
+        paths.append(route_link(after[i], axes[i], before[i + 1], axes[i + 1], length))
+    paths.append(route_link(after[-1], axes[-1], T_tip[:3, 3], axes[-1], length))
     radii = length * np.linspace(0.046, 0.019, n + 2)
     joints = np.array([body_place(i, before, axes, paths, radii) for i in range(n)])
     leaving = paths[1][1] - paths[1][0]
@@ -73,7 +73,7 @@ def skeleton(robot: Any, q: Array) -> Skeleton:
     return Skeleton(paths, radii, joints, axes, types, T_tip, rails)
 
 
-def move(
+def move_joints(
     axes: Array, points: Array, types: str, T_zero: Array, q: Array
 ) -> tuple[Array, Array, Array, Array]:
     """The joints carried along: points before and after their own motion, axes, the tip (exponentials)."""
@@ -100,7 +100,7 @@ def size_of(points: Array, T_zero: Array) -> float:
     return length if length > DRAWN_LENGTH else 1.0
 
 
-def route(p: Array, a: Array, r: Array, b: Array, length: float) -> Array:
+def route_link(p: Array, a: Array, r: Array, b: Array, length: float) -> Array:
     """The way of a link from point p on axis a to point r on axis b, as a builder would make it: along the
     first axis, across by the common normal, along the second; straight where that would be a detour.
     """

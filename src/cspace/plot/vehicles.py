@@ -10,7 +10,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes
-from cspace.plot.planner_overlays import lines
+from cspace.plot.planner_overlays import draw_lines
 from cspace.plot.worlds import PATH, world
 
 BODIES: Final = 24
@@ -35,9 +35,9 @@ def drive(drive: Any, *, ax: Any | None = None, bodies: int = BODIES) -> list[An
     vehicle = getattr(drive, "vehicle", None)
     ends = np.array([drive.start, drive.goal]) if hasattr(drive, "goal") else poses[[0, -1]]
     if vehicle is not None:
-        artists += outlines(axes, vehicle, evenly(poses, bodies), linewidths=0.5, alpha=0.12)
-        artists += outlines(axes, vehicle, ends, linewidths=1.4, facecolors="none", zorder=5)
-    artists += directed(axes, poses)
+        artists += draw_outlines(axes, vehicle, space_evenly(poses, bodies), linewidths=0.5, alpha=0.12)
+        artists += draw_outlines(axes, vehicle, ends, linewidths=1.4, facecolors="none", zorder=5)
+    artists += draw_directions(axes, poses)
     for (x, y, theta), size in zip(ends, (8, 12), strict=True):
         pointing = (3, 0, np.degrees(theta) - 90.0)
         style = dict(ms=size, mfc="white", mec=colors.INK, mew=1.2, zorder=7)
@@ -60,7 +60,7 @@ def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
     axes = flat_axes(ax)
     artists = world(coverage.grid, ax=axes)
     xmin, ymin, xmax, ymax = coverage.grid.bounds
-    tints = colors.mix(colors.palette(max(len(coverage.order), 1)), (1.0, 1.0, 1.0), 0.72)
+    tints = colors.mix_colors(colors.make_palette(max(len(coverage.order), 1)), (1.0, 1.0, 1.0), 0.72)
     shade = np.zeros((*coverage.regions.shape, 4))
     inside = coverage.regions >= 0
     shade[inside, :3] = tints[coverage.regions[inside] % len(tints)]
@@ -69,7 +69,7 @@ def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
     artists.append(axes.imshow(shade, extent=box, origin="lower", interpolation="nearest"))
     pieces = np.stack([coverage.path[:-1], coverage.path[1:]], axis=1)
     when = np.linspace(0.0, 0.85, len(pieces))
-    artists += lines(axes, pieces, array=when, cmap="viridis", clim=(0.0, 1.0), linewidths=1.4, zorder=4)
+    artists += draw_lines(axes, pieces, array=when, cmap="viridis", clim=(0.0, 1.0), linewidths=1.4, zorder=4)
     artists += axes.plot(*coverage.path[0], "o", ms=7, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
     axes.set(xlim=(xmin, xmax), ylim=(ymin, ymax))
     said = f"coverage: {coverage.length:.5g} m, overlap {coverage.overlap:.2g}"
@@ -94,7 +94,7 @@ def title_of(drive: Any) -> str:
     return f"hybrid_a_star: {drive.reason.split(',')[0] if not drive else format(drive.length, '.5g') + ' m'}"
 
 
-def evenly(poses: Array, count: int) -> Array:
+def space_evenly(poses: Array, count: int) -> Array:
     """Poses spaced evenly along the path, at most `count`."""
     if count < 0:
         raise InputError(f"bodies is {count}; it must be a number of outlines, zero or more")
@@ -105,7 +105,7 @@ def evenly(poses: Array, count: int) -> Array:
     return np.asarray(poses[np.unique(rows)])
 
 
-def outlines(axes: Any, vehicle: Any, poses: Array, **style: Any) -> list[Any]:
+def draw_outlines(axes: Any, vehicle: Any, poses: Array, **style: Any) -> list[Any]:
     """The outline of a vehicle at poses (k, 3)."""
     from matplotlib.collections import PolyCollection
 
@@ -120,10 +120,10 @@ def outlines(axes: Any, vehicle: Any, poses: Array, **style: Any) -> list[Any]:
     return [axes.add_collection(PolyCollection(list(turned + poses[:, None, :2]), **drawn))]
 
 
-def directed(axes: Any, poses: Array) -> list[Any]:
+def draw_directions(axes: Any, poses: Array) -> list[Any]:
     """The path of a vehicle, each step in the colour of its direction."""
     pieces = np.stack([poses[:-1, :2], poses[1:, :2]], axis=1)
     steps = np.diff(poses[:, :2], axis=0)
     heading = np.stack([np.cos(poses[:-1, 2]), np.sin(poses[:-1, 2])], axis=1)
     tints = np.where(np.sum(steps * heading, axis=1)[:, None] >= 0, PATH, colors.AXES[2])
-    return lines(axes, pieces, colors=tints, linewidths=2.0, zorder=6, capstyle="round")
+    return draw_lines(axes, pieces, colors=tints, linewidths=2.0, zorder=6, capstyle="round")

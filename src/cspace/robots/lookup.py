@@ -91,7 +91,7 @@ def search(text: str) -> tuple[CatalogueRow, ...]:
     return tuple(row for _, row in sorted(fitting, key=lambda pair: (-pair[0], pair[1].name)))
 
 
-def plain(name: str) -> str:
+def plain_text(name: str) -> str:
     """A text as a search compares it: small letters and digits alone."""
     return re.sub(r"[^a-z0-9]", "", name.lower())
 
@@ -124,13 +124,13 @@ def _check_text(value: object, subject: str) -> None:
 def _fit(row: CatalogueRow, word: str) -> int:
     """How well a word fits: 2 as a whole, 1 as a part, 0 not at all."""
     whole = set(_words(row)) | {str(row.dof), row.joints.lower()}
-    if word in whole or plain(word) in {plain(part) for part in whole} - {""}:
+    if word in whole or plain_text(word) in {plain_text(part) for part in whole} - {""}:
         return 2
     texts = (row.name, *row.aliases, row.title, row.vendor)
     if word.isdecimal():  # a number must be a whole word: 7 fits iiwa7, not kr210_r2700
         return int(any(re.search(rf"(?<!\d){word}(?!\d)", text) for text in texts))
-    key = plain(word)
-    return int(bool(key) and any(key in plain(text) for text in texts))
+    key = plain_text(word)
+    return int(bool(key) and any(key in plain_text(text) for text in texts))
 
 
 def _words(row: CatalogueRow) -> Iterator[str]:

@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.spatial import planar_twists, twists
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_pose_2d, as_rotation
-from cspace.spatial.poses import assemble, broadcast_batches, inverse
+from cspace.spatial.poses import assemble, broadcast_batches, invert_pose
 from cspace.spatial.rotations import matrix_of_rotvec, rotvec_of_matrix
 
 
@@ -26,8 +26,8 @@ def interpolate(T_start: PoseLike, T_end: PoseLike, t: npt.ArrayLike) -> Array:
     axes broadcast: one pair and t of shape (m,) give (m, 4, 4); for n pairs at m fractions pass T[:, None].
     """
     start, end = _spatial(as_pose, T_start, "start pose"), _spatial(as_pose, T_end, "end pose")
-    step, t = _fractions(twists.logarithm(_relative(start, end)), t)
-    return np.asarray(start @ twists.exponential(step * t))
+    step, t = _fractions(twists.logarithm_se3(_relative(start, end)), t)
+    return np.asarray(start @ twists.exponential_se3(step * t))
 
 
 def slerp(R_start: RotationLike, R_end: RotationLike, t: npt.ArrayLike) -> Array:
@@ -64,8 +64,8 @@ def interpolate_2d(T_start: Any, T_end: Any, t: npt.ArrayLike) -> Array:
     Shapes as in interpolate, with (..., 3, 3); a half turn goes counter-clockwise.
     """
     start, end = as_pose_2d(T_start, "start pose"), as_pose_2d(T_end, "end pose")
-    step, t = _fractions(planar_twists.logarithm(_relative(start, end)), t)
-    return np.asarray(start @ planar_twists.exponential(step * t))
+    step, t = _fractions(planar_twists.logarithm_se2(_relative(start, end)), t)
+    return np.asarray(start @ planar_twists.exponential_se2(step * t))
 
 
 def _spatial(check: Callable[[Any, str], Array], value: Any, subject: str) -> Array:
@@ -92,7 +92,7 @@ def _is_planar(value: Any) -> bool:
 
 def _relative(start: Array, end: Array) -> Array:
     broadcast_batches(start.shape[:-2], end.shape[:-2], "start", "end")
-    return np.asarray(inverse(start) @ end)
+    return np.asarray(invert_pose(start) @ end)
 
 
 def _fractions(step: Array, t: npt.ArrayLike) -> tuple[Array, Array]:

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputTypeError
 from cspace.spatial.checks import as_pose_2d, as_rotation_2d
-from cspace.spatial.poses import assemble, inverse, turned
+from cspace.spatial.poses import assemble, invert_pose, turn_vectors
 
 
 def rotation_2d(theta: npt.ArrayLike) -> Array:
@@ -62,7 +62,7 @@ def to_xytheta(T: Any) -> Array:
 
 def inverse_pose_2d(T: Any) -> Array:
     """The inverse of planar poses by transposition: T_a_b (..., 3, 3) → T_b_a (..., 3, 3)."""
-    return inverse(as_pose_2d(T))
+    return invert_pose(as_pose_2d(T))
 
 
 def transform_points_2d(T: Any, points: npt.ArrayLike) -> Array:
@@ -71,7 +71,7 @@ def transform_points_2d(T: Any, points: npt.ArrayLike) -> Array:
     T: T_a_b (..., 3, 3). points: p_b (..., 2) [m]. Leading axes broadcast. Returns p_a (..., 2).
     """
     T = as_pose_2d(T)
-    return np.asarray(turned(T[..., :2, :2], as_floats(points, "points", last=(2,))) + T[..., :2, 2])
+    return np.asarray(turn_vectors(T[..., :2, :2], as_floats(points, "points", last=(2,))) + T[..., :2, 2])
 
 
 def transform_directions_2d(T: Any, directions: npt.ArrayLike) -> Array:
@@ -80,7 +80,7 @@ def transform_directions_2d(T: Any, directions: npt.ArrayLike) -> Array:
     T: T_a_b (..., 3, 3) or rotations (..., 2, 2). directions: d_b (..., 2). Leading axes broadcast.
     Returns d_a (..., 2).
     """
-    return turned(as_rotation_2d(T), as_floats(directions, "directions", last=(2,)))
+    return turn_vectors(as_rotation_2d(T), as_floats(directions, "directions", last=(2,)))
 
 
 def embed_pose_2d(T: Any) -> Array:

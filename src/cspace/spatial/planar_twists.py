@@ -58,7 +58,7 @@ def exp_se2(twist: npt.ArrayLike) -> Array:
 
     twist: [v; ω] (..., 3) [m, rad] → (..., 3, 3).
     """
-    return exponential(as_floats(twist, "planar twist", last=(3,)))
+    return exponential_se2(as_floats(twist, "planar twist", last=(3,)))
 
 
 def log_se2(T: Any) -> Array:
@@ -66,7 +66,7 @@ def log_se2(T: Any) -> Array:
 
     T: (..., 3, 3) → [v; ω] (..., 3) [m, rad].
     """
-    return logarithm(as_pose_2d(T))
+    return logarithm_se2(as_pose_2d(T))
 
 
 def adjoint_2d(T: Any) -> Array:
@@ -82,7 +82,7 @@ def adjoint_2d(T: Any) -> Array:
     return Ad
 
 
-def exponential(xi: Array) -> Array:
+def exponential_se2(xi: Array) -> Array:
     """exp_se2 without checks."""
     x, y, angle = xi[..., 0], xi[..., 1], xi[..., 2]
     half = 0.5 * angle
@@ -90,7 +90,7 @@ def exponential(xi: Array) -> Array:
     return assemble(matrix_of_angle(angle), np.stack([a * x - b * y, b * x + a * y], axis=-1))
 
 
-def logarithm(T: Array) -> Array:
+def logarithm_se2(T: Array) -> Array:
     """log_se2 without checks."""
     x, y, angle = T[..., 0, 2], T[..., 1, 2], angle_of(T[..., :2, :2])
     half = 0.5 * angle

@@ -96,7 +96,7 @@ def inverse_pose(T: PoseLike) -> Array:
 
     T: T_a_b (..., 4, 4) → T_b_a (..., 4, 4).
     """
-    return inverse(as_pose(T))
+    return invert_pose(as_pose(T))
 
 
 def transform_points(T: PoseLike, points: npt.ArrayLike) -> Array:
@@ -107,7 +107,7 @@ def transform_points(T: PoseLike, points: npt.ArrayLike) -> Array:
     """
     T = as_pose(T)
     points = as_floats(points, "points", last=(3,))
-    return np.asarray(turned(T[..., :3, :3], points) + T[..., :3, 3])
+    return np.asarray(turn_vectors(T[..., :3, :3], points) + T[..., :3, 3])
 
 
 def transform_directions(T: PoseLike, directions: npt.ArrayLike) -> Array:
@@ -116,7 +116,7 @@ def transform_directions(T: PoseLike, directions: npt.ArrayLike) -> Array:
     T: T_a_b (..., 4, 4) or rotations (..., 3, 3). directions: d_b (..., 3). Leading axes broadcast.
     Returns d_a (..., 3).
     """
-    return turned(as_rotation(T), as_floats(directions, "directions", last=(3,)))
+    return turn_vectors(as_rotation(T), as_floats(directions, "directions", last=(3,)))
 
 
 def to_xyz(T: PoseLike) -> Array:
@@ -134,16 +134,16 @@ def assemble(R: Array, p: Array) -> Array:
     return T
 
 
-def inverse(T: Array) -> Array:
+def invert_pose(T: Array) -> Array:
     """inverse_pose and inverse_pose_2d without checks."""
     if T.shape == (4, 4):
         return single.inverse(T)
     n = T.shape[-1] - 1
     R_inverse = np.swapaxes(T[..., :n, :n], -1, -2)
-    return assemble(R_inverse, -turned(R_inverse, T[..., :n, n]))
+    return assemble(R_inverse, -turn_vectors(R_inverse, T[..., :n, n]))
 
 
-def turned(R: Array, v: Array) -> Array:
+def turn_vectors(R: Array, v: Array) -> Array:
     """R v for (..., n, n) and (..., n), broadcast."""
     broadcast_batches(R.shape[:-2], v.shape[:-1], "pose", "vector")
     return np.asarray(np.einsum("...ij,...j->...i", R, v))

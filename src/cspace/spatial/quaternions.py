@@ -28,10 +28,10 @@ def to_xyzw(R: RotationLike) -> Array:
 
     R: (..., 3, 3) or (..., 4, 4) → (..., 4), order x, y, z, w.
     """
-    return rolled(wxyz_of_matrix(as_rotation(R)), -1)
+    return roll_numbers(wxyz_of_matrix(as_rotation(R)), -1)
 
 
-def rolled(q: Array, shift: int) -> Array:
+def roll_numbers(q: Array, shift: int) -> Array:
     """Quaternions with the four numbers shifted round: 1 makes wxyz of xyzw, −1 the reverse."""
     result = np.empty(q.shape)
     for k in range(4):
@@ -48,7 +48,7 @@ def matrix_of_quaternion(q: object, subject: str, *, scalar_last: bool = False) 
         if _core.quaternion_matrices(rows, scalar_last, R.reshape(-1, 3, 3)):
             return R
     unit = unit_wxyz(numbers, subject)
-    return matrix_of_wxyz(rolled(unit, 1) if scalar_last else unit)
+    return matrix_of_wxyz(roll_numbers(unit, 1) if scalar_last else unit)
 
 
 def unit_wxyz(q: object, subject: str) -> Array:

@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.spatial.checks import PoseLike, as_pose
 from cspace.spatial.poses import broadcast_batches
-from cspace.spatial.twists import exponential, logarithm
+from cspace.spatial.twists import exponential_se3, logarithm_se3
 from cspace.spatial.vectors import cross, length_and_direction
 
 
@@ -64,7 +64,7 @@ class Screw:
 
     def pose(self, fraction: npt.ArrayLike = 1.0) -> Array:
         """The displacement (..., 4, 4) after a fraction of the motion, broadcast over the leading axes."""
-        return exponential(screw_to_twist(self) * as_floats(fraction, "fraction")[..., None])
+        return exponential_se3(screw_to_twist(self) * as_floats(fraction, "fraction")[..., None])
 
 
 def screw_of(T: PoseLike) -> Screw:
@@ -74,7 +74,7 @@ def screw_of(T: PoseLike) -> Screw:
 
     T: (..., 4, 4). Source: Chasles 1830; Murray, Li and Sastry 1994, prop. 2.10.
     """
-    return _screw_of_twist(logarithm(as_pose(T)), tolerances.PURE_TRANSLATION_ANGLE)
+    return _screw_of_twist(logarithm_se3(as_pose(T)), tolerances.PURE_TRANSLATION_ANGLE)
 
 
 def twist_to_screw(twist: npt.ArrayLike) -> Screw:

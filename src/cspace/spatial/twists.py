@@ -49,7 +49,7 @@ def exp_se3(twist: npt.ArrayLike) -> Array:
     twist: [v; ω] (..., 6) [m, rad] → (..., 4, 4). Raises InputError if |ω| overflows.
     Source: Murray, Li and Sastry 1994, prop. 2.9.
     """
-    return exponential(as_floats(twist, "twist", last=(6,)))
+    return exponential_se3(as_floats(twist, "twist", last=(6,)))
 
 
 def log_se3(T: PoseLike) -> Array:
@@ -60,7 +60,7 @@ def log_se3(T: PoseLike) -> Array:
 
     T: (..., 4, 4) → [v; ω] (..., 6) [m, rad]. Source: Murray, Li and Sastry 1994, prop. 2.9.
     """
-    return logarithm(as_pose(T))
+    return logarithm_se3(as_pose(T))
 
 
 def adjoint(T: PoseLike) -> Array:
@@ -107,7 +107,7 @@ def small_adjoint(twist: npt.ArrayLike) -> Array:
     return ad
 
 
-def exponential(xi: Array) -> Array:
+def exponential_se3(xi: Array) -> Array:
     """exp_se3 without checks but for an overflowing angle.
 
     Written with the unit axis, no coefficient cancels or overflows, down to the smallest angles.
@@ -124,7 +124,7 @@ def exponential(xi: Array) -> Array:
     return assemble(matrix_of_axis_angle(axis, angle), p)
 
 
-def logarithm(T: Array) -> Array:
+def logarithm_se3(T: Array) -> Array:
     """log_se3 without checks."""
     if T.ndim == 2 and (split := single.rotvec(T[:3, :3])):
         angle_of_one, axis_of_one = split

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from cspace.plot.raytrace.layer import look
-from cspace.plot.raytrace.solids import Solid, arrow, pieces
+from cspace.plot.raytrace.layer import see_solids
+from cspace.plot.raytrace.solids import Solid, bounding_pieces, make_arrow
 from cspace.plot.raytrace.view import Rays, View
 
 GREY = np.full(3, 0.5)
@@ -25,7 +25,7 @@ def cameras(rng: np.random.Generator) -> dict[str, Rays]:
 def meetings(solid: Solid, rays: Rays, x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """The first t of every ray (m,), inf where it misses, and the normals (m, 3) there, else NaN."""
     t, normals = np.full(x.shape, np.inf), np.full((len(x), 3), np.nan)
-    for piece in pieces(solid):
+    for piece in bounding_pieces(solid):
         found = piece.meet(rays, x, y)
         nearer = found < t
         t = np.where(nearer, found, t)
@@ -98,7 +98,7 @@ def test_rays_that_miss_stay_outside(name, camera):
 def test_two_balls_hold_every_piece(name):
     for rays in cameras(np.random.default_rng(5)).values():
         x, y = np.random.default_rng(6).uniform(-1, 1, size=(2, 2000))
-        for piece in pieces(SOLIDS[name]):
+        for piece in bounding_pieces(SOLIDS[name]):
             t = piece.meet(rays, x, y)
             hit = np.isfinite(t)
             (a, r), (b, s) = piece.balls()
@@ -114,7 +114,7 @@ def test_an_outline_pixel_holds_the_share_that_many_rays_find():
     ax.figure.canvas.draw()
     view = View(ax, 1.0)
     for solid in SOLIDS.values():
-        layer = look(view, [solid])
+        layer = see_solids(view, [solid])
         rows, columns = np.divmod(layer.pixels, view.width)
         steps = (np.arange(16) + 0.5) / 16
         dx, dy = (each.ravel() for each in np.meshgrid(steps, steps))
@@ -127,6 +127,6 @@ def test_an_outline_pixel_holds_the_share_that_many_rays_find():
 
 
 def test_an_arrow_ends_where_it_points():
-    pieces = arrow(np.array([0.1, 0.2, 0.3]), np.array([0.0, 0.0, 0.5]), 0.02, GREY)
+    pieces = make_arrow(np.array([0.1, 0.2, 0.3]), np.array([0.0, 0.0, 0.5]), 0.02, GREY)
     np.testing.assert_allclose(pieces[-1].b, [0.1, 0.2, 0.8], atol=1e-15)
     np.testing.assert_allclose(pieces[0].b, pieces[-1].a, atol=1e-15)

@@ -12,7 +12,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
-from cspace.cli.robot import load, need_chain
+from cspace.cli.robot import load_chosen, need_chain
 from cspace.tolerances import PRINTED_ZERO
 
 if TYPE_CHECKING:
@@ -49,19 +49,19 @@ def run(args: argparse.Namespace, out: Output) -> int:
     """Print the table and the matrix of every link, as symbols and, with q = 0, as numbers."""
     from cspace.model import link_matrices, to_dh
 
-    robot = load(args)
+    robot = load_chosen(args)
     need_chain(robot)
     table = to_dh(robot.chain, convention=args.convention)
     links = link_matrices(table)
     if out.as_json:
-        out.document(document(robot.name, links, products=args.products))
+        out.document(table_document(robot.name, links, products=args.products))
         return Exit.DONE
     if args.latex:
-        latex(out, links, degrees=args.deg)
+        print_latex(out, links, degrees=args.deg)
     elif args.markdown:
-        markdown(out, links, degrees=args.deg)
+        print_markdown(out, links, degrees=args.deg)
     else:
-        show(out, robot.name, links, degrees=args.deg)
+        print_table(out, robot.name, links, degrees=args.deg)
     for text in product_texts(links, args) if args.products else ():
         out.line(text)
     return Exit.DONE
@@ -84,7 +84,7 @@ def entry_texts(A: TrigMatrix) -> list[list[str]]:
     ]
 
 
-def document(name: str, links: LinkMatrices, *, products: bool) -> dict[str, Any]:
+def table_document(name: str, links: LinkMatrices, *, products: bool) -> dict[str, Any]:
     """The table as JSON data, [rad] and [m]."""
     table = links.table
     columns = zip(
@@ -120,7 +120,7 @@ def numbers_at_zero(table: DHTable) -> Array:
     return table.matrices(np.zeros(len(table) - table.joint_types.count("F")))
 
 
-def headings(convention: str) -> list[str]:
+def column_headings(convention: str) -> list[str]:
     """Column headings; a modified row has the alpha and a of the link before."""
     before = "(i-1)" if convention == "modified" else "(i)"
     return ["i", f"alpha{before}", f"a{before}", "d(i)", "theta(i)", "joint"]
@@ -131,9 +131,9 @@ def row_texts(table: DHTable, i: int, *, degrees: bool) -> list[str]:
     turning = table.joint_types[i] == "R"
     theta, d = angle_text(table.theta_offset[i], degrees=degrees), length_text(table.d[i])
     if turning:
-        theta = f"q{i + 1}" if theta == "0" else f"q{i + 1} {signed(theta)}"
+        theta = f"q{i + 1}" if theta == "0" else f"q{i + 1} {sign_text(theta)}"
     elif table.joint_types[i] == "P":
-        d = f"q{i + 1}" if d == "0" else f"q{i + 1} {signed(d)}"
+        d = f"q{i + 1}" if d == "0" else f"q{i + 1} {sign_text(d)}"
     alpha = angle_text(table.alpha[i], degrees=degrees)
     return [f"{i + 1}", alpha, length_text(table.a[i]), d, theta, table.joint_names[i]]
 
@@ -143,7 +143,7 @@ def length_text(length: float) -> str:
     return "0" if abs(length) < PRINTED_ZERO else f"{length:.6g}"
 
 
-def signed(text: str) -> str:
+def sign_text(text: str) -> str:
     """A number as it follows a sum: + 0.5, - 0.5."""
     return f"- {text[1:]}" if text.startswith("-") else f"+ {text}"
 
@@ -162,13 +162,13 @@ def angle_text(angle: float, *, degrees: bool) -> str:
     return f"{angle:.6g}"
 
 
-def show(out: Output, name: str, links: LinkMatrices, *, degrees: bool) -> None:
+def print_table(out: Output, name: str, links: LinkMatrices, *, degrees: bool) -> None:
     """The table and the matrices for people."""
     table = links.table
     out.heading(
         f"{name}, {table.convention} convention, angles in {'deg' if degrees else 'rad'}, lengths in m"
     )
-    drawn = Table(headings(table.convention), left=frozenset({5}))
+    drawn = Table(column_headings(table.convention), left=frozenset({5}))
     for i in range(len(table)):
         drawn.add(*row_texts(table, i, degrees=degrees))
     out.table(drawn)
@@ -190,7 +190,7 @@ def show(out: Output, name: str, links: LinkMatrices, *, degrees: bool) -> None:
             out.line(f"  {left}      q = 0: {right}")
 
 
-def latex(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
+def print_latex(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
     """The table as a LaTeX array and the matrices."""
     table = links.table
     index = "i-1" if table.convention == "modified" else "i"
@@ -222,10 +222,10 @@ def with_index(text: str) -> str:
     return re.sub(r"\bq(\d+)", r"q_{\1}", text)
 
 
-def markdown(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
+def print_markdown(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
     """The table as a Markdown table and the matrices as formulas."""
     table = links.table
-    titles = headings(table.convention)
+    titles = column_headings(table.convention)
     out.line("| " + " | ".join(titles) + " |")
     out.line("|" + "---|" * len(titles))
     for i in range(len(table)):

@@ -35,14 +35,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print versions and optional parts and run the self-check; a failed check is a negative answer."""
-    checks = [check(name) for name in ARMS]
+    checks = [check_arm(name) for name in ARMS]
     extras = {name: version_of(name) for name in EXTRAS}
     healthy = all(each["passed"] for each in checks)
     if out.as_json:
         out.document(
             {
                 "schema": "cspace.doctor/1",
-                "versions": versions(),
+                "versions": read_versions(),
                 "extras": extras,
                 "checks": checks,
                 "healthy": healthy,
@@ -50,7 +50,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         )
         return Exit.DONE if healthy else Exit.NEGATIVE
     absent = {name: f"not installed; pip install 'cspace[{extra}]'" for name, extra in EXTRAS.items()}
-    out.facts({**versions(), **{name: version or absent[name] for name, version in extras.items()}})
+    out.facts({**read_versions(), **{name: version or absent[name] for name, version in extras.items()}})
     out.line()
     table = Table(["self-check", "poses", "solutions", "worst |fk(ik(T)) - T|", ""], left=frozenset({0, 4}))
     for each in checks:
@@ -60,7 +60,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     return Exit.DONE if healthy else Exit.NEGATIVE
 
 
-def versions() -> dict[str, str]:
+def read_versions() -> dict[str, str]:
     """What is running."""
     from cspace import __version__, _core
 
@@ -83,7 +83,7 @@ def version_of(package: str) -> str | None:
         return None
 
 
-def check(name: str) -> dict[str, Any]:
+def check_arm(name: str) -> dict[str, Any]:
     """Solve poses of random configurations: every solution must reach its pose, and one must be the start."""
     from cspace.robots import load_robot
 

@@ -10,7 +10,7 @@ from cspace.cli.arguments import add_chain, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.files import check_writable
 from cspace.cli.output import Output
-from cspace.cli.robot import joint_called, load, need_chain
+from cspace.cli.robot import joint_called, load_chosen, need_chain
 
 if TYPE_CHECKING:
     from cspace.export import Export
@@ -53,7 +53,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         check_writable(path)
     if args.output is not None and args.example is not None:
         check_apart(args.lang, args.output, args.example)
-    robot = load(args)
+    robot = load_chosen(args)
     need_chain(robot)
     locked = None if args.locked is None else [joint_called(word, robot) for word in args.locked]
     made = robot.export(args.lang, args.output, name=args.name, locked=locked)
@@ -61,7 +61,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         raise UsageError(f"{made.language} needs {len(made.files)} files: give their location with -o FILE")
     if args.example is not None:
         made.write_example(args.example)
-    report(made, args, out)
+    report_files(made, args, out)
     return Exit.DONE
 
 
@@ -75,7 +75,7 @@ def check_apart(lang: str | None, output: Path, example: Path) -> None:
             raise UsageError(f"--example {str(example)!r} would overwrite {path.name!r}: choose another name")
 
 
-def report(made: Export, args: argparse.Namespace, out: Output) -> None:
+def report_files(made: Export, args: argparse.Namespace, out: Output) -> None:
     """What was written, or the text itself."""
     written = [] if args.output is None else [str(args.output.parent / name) for name in made.files]
     written += [str(args.example)] * (args.example is not None)

@@ -9,7 +9,7 @@ from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output
 from cspace.cli.poses import pose_document, show_pose
-from cspace.cli.robot import configuration, load, need_chain
+from cspace.cli.robot import load_chosen, need_chain, read_configuration
 
 EXAMPLES: Final = """
 cspace fk ur5e 0 -pi/2 pi/2 0 pi/2 0
@@ -29,10 +29,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print the pose of the frame in the base."""
-    robot = load(args)
+    robot = load_chosen(args)
     if args.frame is None:
         need_chain(robot)
-    q = configuration(args.q, robot, "q", degrees=args.deg)
+    q = read_configuration(args.q, robot, "q", degrees=args.deg)
     T = robot.fk(q) if args.frame is None else robot.fk(q, frame=args.frame)
     frame = args.frame or robot.tip
     if out.as_json:

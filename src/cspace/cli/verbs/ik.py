@@ -10,14 +10,14 @@ from typing import TYPE_CHECKING, Any, Final
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.explain import add_explanation, explain, wants_explanation
+from cspace.cli.explain import add_explanation, print_explanation, wants_explanation
 from cspace.cli.files import check_writable
 from cspace.cli.freedom import add_freedom, options_of
 from cspace.cli.goals import Goal, add_goal, goal_of
 from cspace.cli.output import Output
 from cspace.cli.pictures import check_format
-from cspace.cli.robot import configuration, gripper_note, load, need_chain
-from cspace.cli.solutions import Rows, document, show
+from cspace.cli.robot import gripper_note, load_chosen, need_chain, read_configuration
+from cspace.cli.solutions import Rows, print_solutions, solutions_document
 from cspace.errors import InputError, InputTypeError
 
 if TYPE_CHECKING:
@@ -64,10 +64,12 @@ def run(args: argparse.Namespace, out: Output) -> int:
     if args.plot is not None:
         check_format(args.plot)
         check_writable(args.plot)
-    robot = load(args)
+    robot = load_chosen(args)
     need_chain(robot)
     try:
-        return explain(args, robot, out) if wants_explanation(args) else answer(args, robot, out)
+        return (
+            print_explanation(args, robot, out) if wants_explanation(args) else answer_goal(args, robot, out)
+        )
     except (InputError, InputTypeError) as error:
         raise UsageError(in_options(str(error))) from error
 
@@ -77,27 +79,27 @@ def in_options(message: str) -> str:
     return KEYWORDS.sub(lambda match: "--" + match[1].replace("_", "-"), message)
 
 
-def answer(args: argparse.Namespace, robot: Robot, out: Output) -> int:
+def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     """Solve a goal; no solution is a negative answer, with its reason."""
     goal, options = goal_of(args), options_of(args, robot)
-    near = None if args.near is None else configuration(args.near, robot, "--near", degrees=args.deg)
-    found = solve(robot, goal, near, options)
+    near = None if args.near is None else read_configuration(args.near, robot, "--near", degrees=args.deg)
+    found = solve_goal(robot, goal, near, options)
     if args.limits == "drop":
         found = found.within()
     rows = Rows(robot, found, near, check=args.limits != "keep", counting=goal.rows)
     if out.as_json:
-        out.document(document(robot, found, rows, goal, options))
+        out.document(solutions_document(robot, found, rows, goal, options))
     else:
-        show(out, robot, found, rows, degrees=args.deg)
+        print_solutions(out, robot, found, rows, degrees=args.deg)
         if note := gripper_note(args, robot):
             out.hint(note)
     if found and args.plot is not None:
-        draw(args.plot, robot, rows, goal.mark, title=title_of(robot, rows))
+        draw_solutions(args.plot, robot, rows, goal.mark, title=title_of(robot, rows))
         out.hint(f"picture written to {args.plot}")
     return Exit.DONE if found else Exit.NEGATIVE
 
 
-def solve(robot: Robot, goal: Goal, near: Array | None, options: dict[str, Any]) -> Any:
+def solve_goal(robot: Robot, goal: Goal, near: Array | None, options: dict[str, Any]) -> Any:
     """Every solution; where the goal leaves freedom, and no list is whole, the one nearest to `near`."""
     found = goal.ask(robot, **options)
     leaves_freedom = found.freedom or found.status == "singular"
@@ -111,7 +113,7 @@ def title_of(robot: Robot, rows: Rows) -> str:
     return f"{robot.name}: {len(rows)} configurations reach the goal"
 
 
-def draw(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, title: str) -> None:
+def draw_solutions(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, title: str) -> None:
     """Write the picture of all solutions, the first row within limits solid."""
     from cspace import plot
 

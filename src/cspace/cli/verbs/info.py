@@ -10,7 +10,7 @@ import numpy as np
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Output, Table
-from cspace.cli.robot import gripper_note, load
+from cspace.cli.robot import gripper_note, load_chosen
 from cspace.cli.tasks import TASKS, default_task, motion_rank
 
 if TYPE_CHECKING:
@@ -38,13 +38,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print the robot's data sheet."""
-    robot = load(args)
+    robot = load_chosen(args)
     task = task_of(args.task, robot)
-    facts = document(robot, task)
+    facts = robot_document(robot, task)
     if out.as_json:
         out.document(facts)
     else:
-        show(out, robot, facts, gripper_note(args, robot), degrees=args.deg)
+        print_facts(out, robot, facts, gripper_note(args, robot), degrees=args.deg)
     return Exit.DONE
 
 
@@ -59,7 +59,7 @@ def task_of(word: str | None, robot: Robot) -> tuple[str, int]:
     raise UsageError(f"no task {word!r}; give a number from 1 to 6 or one of {', '.join(TASKS)}")
 
 
-def document(robot: Robot, task: tuple[str, int]) -> dict[str, Any]:
+def robot_document(robot: Robot, task: tuple[str, int]) -> dict[str, Any]:
     """The data sheet as JSON data, [rad] and [m]; no limit is null."""
     from cspace.model import mobility, task_word, tree_freedoms
 
@@ -120,7 +120,7 @@ def geometry_document(robot: Robot) -> dict[str, Any] | None:
     return {"family": found.family, "text": str(found), "closed_form": bool(found), "conditions": conditions}
 
 
-def show(out: Output, robot: Robot, facts: dict[str, Any], note: str, *, degrees: bool) -> None:
+def print_facts(out: Output, robot: Robot, facts: dict[str, Any], note: str, *, degrees: bool) -> None:
     """The data sheet for people."""
     out.heading(f"{robot.name}" + (f" — {facts['title']}" if facts["title"] else ""))
     freedoms, tip = facts["freedoms"], facts["tip"]

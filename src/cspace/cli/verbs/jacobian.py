@@ -9,7 +9,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
-from cspace.cli.robot import configuration, headings, load, need_chain
+from cspace.cli.robot import joint_headings, load_chosen, need_chain, read_configuration
 from cspace.cli.tasks import rows_of_task
 
 if TYPE_CHECKING:
@@ -46,10 +46,10 @@ def run(args: argparse.Namespace, out: Output) -> int:
     """Print the Jacobian and its distance to a singularity."""
     from cspace import kinematics
 
-    robot = load(args)
+    robot = load_chosen(args)
     if args.frame is None:
         need_chain(robot)
-    q = configuration(args.q, robot, "q", degrees=args.deg)
+    q = read_configuration(args.q, robot, "q", degrees=args.deg)
     rows = args.rows or rows_of_task(robot)
     more: dict[str, Any] = {"expressed_in": args.expressed_in, "rows": rows}
     J = robot.jacobian(q, args.frame, expressed_in=args.expressed_in)
@@ -68,13 +68,13 @@ def run(args: argparse.Namespace, out: Output) -> int:
         given = {"expressed_in": args.expressed_in, "q": q.tolist(), "joints": list(robot.joint_names)}
         out.document({"schema": "cspace.jacobian/1", **ends, **given, "jacobian": J.tolist(), **facts})
     else:
-        show(out, robot, J, facts, str(near))
+        print_jacobian(out, robot, J, facts, str(near))
     return Exit.DONE
 
 
-def show(out: Output, robot: Robot, J: Array, facts: dict[str, Any], text: str) -> None:
+def print_jacobian(out: Output, robot: Robot, J: Array, facts: dict[str, Any], text: str) -> None:
     """The matrix and the facts for people."""
-    table = Table(["", *headings(robot)])
+    table = Table(["", *joint_headings(robot)])
     for name, row in zip(ROWS, J, strict=True):
         table.add(name, *(f"{tidy_number(x):.6f}" for x in row))
     out.table(table)

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from cspace.cli.arguments import named_value, number
+from cspace.cli.arguments import named_value, read_number
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.files import check_writable
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.pictures import check_format
 from cspace.cli.planner_options import options_given
-from cspace.cli.verbs.planners import typed
+from cspace.cli.verbs.planners import typed_value
 from cspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -38,7 +38,9 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         "map", type=Path, help="ROS map (.yaml), MovingAI .map, image, GeoJSON or text of polygons"
     )
     for name in ("start", "goal"):
-        parser.add_argument(f"--{name}", nargs=2, type=number, required=True, metavar=("X", "Y"), help="[m]")
+        parser.add_argument(
+            f"--{name}", nargs=2, type=read_number, required=True, metavar=("X", "Y"), help="[m]"
+        )
     parser.add_argument(
         "--planner",
         default="any_angle",
@@ -53,9 +55,13 @@ def arguments(parser: argparse.ArgumentParser) -> None:
         help="an option of the planners (cspace planners NAME); may be repeated",
     )
     parser.add_argument("--seed", type=int, metavar="N", help="the seed of sampling-based planners")
-    parser.add_argument("--radius", type=number, default=0.0, help="radius of the robot [m] (default: 0)")
     parser.add_argument(
-        "--resolution", type=number, help="side of a cell [m], for images and for polygons converted to cells"
+        "--radius", type=read_number, default=0.0, help="radius of the robot [m] (default: 0)"
+    )
+    parser.add_argument(
+        "--resolution",
+        type=read_number,
+        help="side of a cell [m], for images and for polygons converted to cells",
     )
     parser.add_argument(
         "--plot", type=Path, metavar="FILE", help="draw the routes side by side (.png, .svg, .pdf)"
@@ -74,14 +80,14 @@ def run(args: argparse.Namespace, out: Output) -> int:
         check_format(args.plot)
     if args.animate and args.animate.suffix.lower() != ".gif":
         raise UsageError(f"an animation is a GIF file, but {str(args.animate)!r} does not end with .gif")
-    world = load(args.map, args.resolution)
-    found, refused = answers(world, given, args)
-    best, routes = ask(world, "any_angle", args, {}), [each.route for each in found]
-    written = pictures(args, routes)
+    world = load_world(args.map, args.resolution)
+    found, refused = collect_answers(world, given, args)
+    best, routes = ask_planner(world, "any_angle", args, {}), [each.route for each in found]
+    written = draw_pictures(args, routes)
     if out.as_json:
-        out.document(document(args, found, best) | {"refused": refused, "written": written})
+        out.document(answers_document(args, found, best) | {"refused": refused, "written": written})
     else:
-        show(found, best, out)
+        print_answers(found, best, out)
         for name, why in refused.items():
             out.line(f"{name}: {why}")
         for path in written:
@@ -89,7 +95,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     return Exit.DONE if any(routes) else Exit.NEGATIVE
 
 
-def pictures(args: argparse.Namespace, routes: list[Route]) -> list[str]:
+def draw_pictures(args: argparse.Namespace, routes: list[Route]) -> list[str]:
     """Draw the requested pictures; returns the files that were written."""
     if not (args.plot or args.animate):
         return []
@@ -112,7 +118,7 @@ def planners_of(text: str) -> list[str]:
     return [find_planner(name.strip()).name for name in text.split(",")]
 
 
-def load(path: Path, resolution: float | None) -> Any:
+def load_world(path: Path, resolution: float | None) -> Any:
     """The world in a file, by its ending."""
     from cspace.maps import OccupancyGrid, PolygonWorld
 
@@ -132,7 +138,7 @@ def load(path: Path, resolution: float | None) -> Any:
     )
 
 
-def ask(world: Any, planner: str, args: argparse.Namespace, options: dict[str, Any]) -> Route:
+def ask_planner(world: Any, planner: str, args: argparse.Namespace, options: dict[str, Any]) -> Route:
     """The result of one planner."""
     from cspace.navigation import PLANNERS, navigate
 
@@ -152,20 +158,20 @@ class Answer:
     to ask twice."""
 
 
-def answer(world: Any, planner: str, args: argparse.Namespace, options: dict[str, Any]) -> Answer:
+def time_planner(world: Any, planner: str, args: argparse.Namespace, options: dict[str, Any]) -> Answer:
     """Ask a planner twice: the second time with the same seed."""
     began = time.perf_counter()
-    route = ask(world, planner, args, options)
+    route = ask_planner(world, planner, args, options)
     first, again = time.perf_counter() - began, None
     if first < PATIENCE:
         seed = {"rng": route.options["rng"]} if "rng" in route.options else {}
         began = time.perf_counter()
-        ask(world, planner, args, {**options, **seed})
+        ask_planner(world, planner, args, {**options, **seed})
         again = time.perf_counter() - began
     return Answer(route, first, again)
 
 
-def answers(
+def collect_answers(
     world: Any, given: dict[str, dict[str, Any]], args: argparse.Namespace
 ) -> tuple[list[Answer], dict[str, str]]:
     """What planners answer, and why others refuse the question; InputError where all do. given: the options
@@ -173,7 +179,7 @@ def answers(
     found, refused = [], {}
     for planner, options in given.items():
         try:
-            found.append(answer(world, planner, args, options))
+            found.append(time_planner(world, planner, args, options))
         except InputError as error:
             if len(given) == 1:
                 raise
@@ -183,14 +189,14 @@ def answers(
     return found, refused
 
 
-def ratio(route: Route, best: Route) -> float | None:
+def length_ratio(route: Route, best: Route) -> float | None:
     """How many times the shortest path a route is long."""
     if not (route and best) or not math.isfinite(route.length):
         return None
     return route.length / best.length if best.length else 1.0
 
 
-def show(found: list[Answer], best: Route, out: Output) -> None:
+def print_answers(found: list[Answer], best: Route, out: Output) -> None:
     """One line a planner, and why some found nothing; of a single one, the reason and the corners too."""
     columns = (
         "planner",
@@ -205,7 +211,7 @@ def show(found: list[Answer], best: Route, out: Output) -> None:
     table = Table(columns, left=frozenset({0, 1}))
     routes = [each.route for each in found]
     for each, route in zip(found, routes, strict=True):
-        share = ratio(route, best)
+        share = length_ratio(route, best)
         table.add(
             route.planner,
             Cell(route.status, "" if route else "yellow"),
@@ -227,7 +233,7 @@ def show(found: list[Answer], best: Route, out: Output) -> None:
             out.line(f"{x:12.6f} {y:12.6f}")
 
 
-def document(args: argparse.Namespace, answered: list[Answer], best: Route) -> dict[str, Any]:
+def answers_document(args: argparse.Namespace, answered: list[Answer], best: Route) -> dict[str, Any]:
     """The results as one JSON document."""
     found = [
         {
@@ -235,14 +241,14 @@ def document(args: argparse.Namespace, answered: list[Answer], best: Route) -> d
             "status": route.status,
             "reason": route.reason,
             "length": route.length if math.isfinite(route.length) else None,
-            "ratio_to_shortest": ratio(route, best),
+            "ratio_to_shortest": length_ratio(route, best),
             "clearance": None if math.isnan(route.clearance) else route.clearance,
             "nodes": route.stats.nodes,
             "edges": route.stats.edges,
             "seconds": route.stats.seconds,
             "seconds_first": each.first,
             "seconds_again": each.again,
-            "options": {name: typed(value) for name, value in route.options.items()},
+            "options": {name: typed_value(value) for name, value in route.options.items()},
             "path": route.path.tolist(),
         }
         for each, route in ((each, each.route) for each in answered)

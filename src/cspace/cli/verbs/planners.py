@@ -32,7 +32,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
 
     rows = [find_planner(name) for name in args.names] or list(PLANNERS.values())
     if out.as_json:
-        out.document({"schema": "cspace.planners/1", "planners": [document(row) for row in rows]})
+        out.document({"schema": "cspace.planners/1", "planners": [planner_document(row) for row in rows]})
     elif args.names:
         for row in rows:
             show_options(row, out)
@@ -59,23 +59,23 @@ def show_options(row: PlanePlanner, out: Output) -> None:
 
 def default_of(option: Option) -> str:
     """The default as it would be typed; empty where there is none that can be."""
-    return "" if option.default is None else str(typed(option.default)).lower()
+    return "" if option.default is None else str(typed_value(option.default)).lower()
 
 
-def typed(value: Any) -> Any:
+def typed_value(value: Any) -> Any:
     """A value of an option as JSON holds it: infinity is the text "inf", which can be typed."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     return value
 
 
-def document(row: PlanePlanner) -> dict[str, Any]:
+def planner_document(row: PlanePlanner) -> dict[str, Any]:
     """A planner for machines."""
     options = [
         {
             "name": each.name,
             "type": each.type,
-            "default": typed(each.default),
+            "default": typed_value(each.default),
             "unit": each.unit,
             "meaning": each.meaning,
         }

@@ -12,7 +12,14 @@ from cspace.arrays import Array
 from cspace.ik.conditions import common_point
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.placed_wrist import rotation_steps
-from cspace.ik.explain.screws import dotted, goal_values, joint_values, numbers, turned, vector
+from cspace.ik.explain.screws import (
+    dot_product,
+    goal_values,
+    joint_values,
+    number_vector,
+    turn_direction,
+    vector_text,
+)
 from cspace.ik.redundancy.arm_angle import swivel
 from cspace.math import Equation, TrigPolynomial
 from cspace.spatial import exp_so3
@@ -45,17 +52,17 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
             Equation.definition(f"l_{axis}", TrigPolynomial.symbol(f"p_{axis}") + offset - float(S[k]), "m")
         )
     l = [TrigPolynomial.symbol(f"l_{axis}") for axis in "xyz"]
-    bent = turned(chain, ELBOW, numbers(W - E))
+    bent = turn_direction(chain, ELBOW, number_vector(W - E))
     square = sum((each * each for each in l), TrigPolynomial())
-    reach = 2.0 * dotted(E - S, bent) + float((E - S) @ (E - S) + (W - E) @ (W - E))
+    reach = 2.0 * dot_product(E - S, bent) + float((E - S) @ (E - S) + (W - E) @ (W - E))
     return (
         Step(
             "$l$",
             1,
             "",
-            f"The shoulder S = ({vector(S)}) m, where axes 1, 2 and 3 meet, stays where it is; the wrist W, "
-            "where axes 5, 6 and 7 meet, stands still in the tip, so the goal fixes it. $l$ leads from S to "
-            "W.",
+            f"The shoulder S = ({vector_text(S)}) m, where axes 1, 2 and 3 meet, stays where it is; the "
+            "wrist W, where axes 5, 6 and 7 meet, stands still in the tip, so the goal fixes it. $l$ leads from S "
+            "to W.",
             tuple(to_wrist),
         ),
         Step(
@@ -63,8 +70,8 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
             2,
             "subproblem 3",
             "Joints 1 to 3 and 5 to 7 do not change the distance from S to W. With the elbow E, the point of "
-            f"axis 4 nearest to S, ({vector(E)}) m at zero, it depends on $t_4$ alone. The $t_i$ are the "
-            "joints' own angles here.",
+            f"axis 4 nearest to S, ({vector_text(E)}) m at zero, it depends on $t_4$ alone. The $t_i$ are "
+            "the joints' own angles here.",
             (Equation(square, reach, unit="m²"),),
         ),
         Step(
@@ -89,8 +96,8 @@ def ball_steps(chain: Any, joints: tuple[int, int, int], name: str, words: str) 
     """Three axes through a point make a rotation whose entries are symbols."""
     i, j, k = (joint + 1 for joint in joints)
     entries = [[TrigPolynomial.symbol(f"{name.lower()}_{a}{b}") for b in (1, 2, 3)] for a in (1, 2, 3)]
-    ahead = [dotted(chain.axes[k - 1], row) for row in entries]
-    behind = [dotted(chain.axes[i - 1], list(column)) for column in zip(*entries, strict=True)]
+    ahead = [dot_product(chain.axes[k - 1], row) for row in entries]
+    behind = [dot_product(chain.axes[i - 1], list(column)) for column in zip(*entries, strict=True)]
     angle = f"{words} The angle between axis {i} and where it takes axis {k} depends on $t_{j}$ alone."
     onto = f"Where ${name}$ takes axis {k}.", f"Where ${name}^T$ takes axis {i}."
     return rotation_steps(chain, joints, ahead, behind, (angle, *onto))

@@ -18,7 +18,7 @@ from cspace.ik.explain.parallel import first_parallel_steps, middle_parallel_ste
 from cspace.ik.explain.placed_wrist import orientation_steps, placed_wrist_steps
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
-from cspace.ik.explain.survey import invariant_directions, invariant_points, relations
+from cspace.ik.explain.survey import invariant_directions, invariant_points, measure_relations
 from cspace.ik.explain.wrist import wrist_constants, wrist_steps
 from cspace.ik.geometry import FIRST_THREE
 from cspace.tolerances import FORM_DEVIATION
@@ -51,7 +51,7 @@ def survey_of(robot: KinematicModel) -> IkPlan:
         robot.name,
         tuple(chain.joint_names),
         length=length,
-        relations=relations(chain, length),
+        relations=measure_relations(chain, length),
         invariant_points=invariant_points(chain, length),
         invariant_directions=invariant_directions(chain, length),
     )
@@ -112,7 +112,7 @@ def form_plan(
         survey,
         family=name,
         summary=f"{name}. {summary[0].upper()}{summary[1:]}.",
-        branches=ways(steps),
+        branches=count_ways(steps),
         counted=COMPLETED if seen["virtual_joints"] else "",
         notes=notes_of(form, seen),
         tables={"Denavit–Hartenberg form of the solver": form.table(survey.joints, numbers)},
@@ -187,7 +187,7 @@ def general_plan(loop: Loop, survey: IkPlan) -> IkPlan:
         survey,
         summary="joints in general position. No closed form: all but one angle are eliminated from the "
         "loop that arm and goal close.",
-        branches=ways(steps),
+        branches=count_ways(steps),
         notes=(*survey.notes, asked),
         tables={"Formulations": loop.formulations(survey.joints)},
         steps=tuple(steps),
@@ -232,12 +232,12 @@ def slides_plan(loop: Loop, survey: IkPlan) -> IkPlan:
         survey,
         family="orientation first",
         summary="three revolute joints determine the orientation, three prismatic joints the position.",
-        branches=ways(steps),
+        branches=count_ways(steps),
         steps=tuple(steps),
     )
 
 
-def behind(names: tuple[str, ...], *, reverse: bool) -> tuple[str, ...]:
+def append_virtual_names(names: tuple[str, ...], *, reverse: bool) -> tuple[str, ...]:
     """The joints' names with the virtual ones behind them, from the tip if so asked."""
     whole = (*names, *("",) * (6 - len(names)))
     return whole[::-1] if reverse else whole
@@ -268,10 +268,10 @@ def wrist_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     return replace(
         survey,
         family="wrist behind three joints",
-        tables={"Joints at zero": arm.table(behind(survey.joints, reverse=bool(loop.wrist)))},
+        tables={"Joints at zero": arm.table(append_virtual_names(survey.joints, reverse=bool(loop.wrist)))},
         summary="three axes meet in a point, the wrist: the three joints before it, some of which slide, "
         "place it, and the wrist makes the orientation.",
-        branches=ways(steps),
+        branches=count_ways(steps),
         notes=tuple(notes),
         steps=tuple(steps),
         _values=values,
@@ -308,13 +308,13 @@ def few_joint_plan(chain: Any, survey: IkPlan) -> IkPlan:
         tables={"Joints at zero": Screws.of(chain).table(survey.joints)},
         summary=f"an arm of {len(chain.joint_types)} joint{'s' if len(chain.joint_types) > 1 else ''} "
         f"({chain.joint_types}), solved directly.",
-        branches=ways(steps),
+        branches=count_ways(steps),
         notes=tuple(notes),
         steps=tuple(steps),
         _values=values,
     )
 
 
-def ways(steps: list[Step]) -> int:
+def count_ways(steps: list[Step]) -> int:
     """How many answers the steps have together."""
     return int(np.prod([step.ways for step in steps]))

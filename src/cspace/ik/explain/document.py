@@ -9,34 +9,34 @@ import numpy as np
 
 from cspace.ik.explain import page
 from cspace.ik.explain.findings import Findings, Step
-from cspace.ik.explain.screws import vector
+from cspace.ik.explain.screws import vector_text
 from cspace.math import Equation, MatrixEquation
-from cspace.model.text import aligned, shown
+from cspace.model.text import align_cells, shown
 from cspace.tolerances import PRINTED_FACTOR, PRINTED_MISS
 
 MOST_TERMS: Final = 16
 """An equation of more terms is printed with symbols alone."""
 
 
-def blocks(plan: Findings) -> list[page.Block]:
+def lay_out_plan(plan: Findings) -> list[page.Block]:
     """The page of an explanation."""
-    out: list[page.Block] = [page.paragraph(f"**{plan.robot}**: {plan.summary}")]
+    out: list[page.Block] = [page.lay_out_paragraph(f"**{plan.robot}**: {plan.summary}")]
     if plan.reason:
-        out.append(page.paragraph(plan.reason))
+        out.append(page.lay_out_paragraph(plan.reason))
     out += geometry_blocks(plan)
-    out += [page.paragraph(note) for note in plan.notes]
+    out += [page.lay_out_paragraph(note) for note in plan.notes]
     for name, table in plan.tables.items():
-        out += [page.heading(name), table]
+        out += [page.lay_out_heading(name), table]
     for name, T in plan.matrices.items():
-        out.append(page.formulas([(matrix_text(name, T), matrix_latex(name, T))]))
+        out.append(page.lay_out_formulas([(matrix_text(name, T), matrix_latex(name, T))]))
     if plan.steps:
-        out += [page.heading("Steps"), *step_blocks(plan, plan.steps)]
-        out.append(page.paragraph(f"Together {total(plan.steps)} solutions{plan.counted}."))
+        out += [page.lay_out_heading("Steps"), *step_blocks(plan, plan.steps)]
+        out.append(page.lay_out_paragraph(f"Together {count_solutions(plan.steps)} solutions{plan.counted}."))
     for name, steps in plan.other_ways.items():
-        out += [page.heading(name), *step_blocks(plan, steps)]
-        out.append(page.paragraph(f"Together {total(steps)} solutions."))
+        out += [page.lay_out_heading(name), *step_blocks(plan, steps)]
+        out.append(page.lay_out_paragraph(f"Together {count_solutions(steps)} solutions."))
     if plan.calls:
-        out += [page.heading("What calls do"), *map(page.paragraph, plan.calls)]
+        out += [page.lay_out_heading("What calls do"), *map(page.lay_out_paragraph, plan.calls)]
     return out
 
 
@@ -47,12 +47,12 @@ def step_blocks(plan: Findings, steps: Sequence[Step]) -> list[page.Block]:
         ways = "" if step.ways == 1 else f"up to {step.ways} ways"
         how = ", ".join(word for word in (ways, step.method) if word)
         how = f" ({how})" if how else ""
-        out.append(page.paragraph(f"{number}. {step.finds}{how}. {step.words}"))
+        out.append(page.lay_out_paragraph(f"{number}. {step.finds}{how}. {step.words}"))
         out += equation_blocks(plan, step)
     return out
 
 
-def total(steps: Sequence[Step]) -> str:
+def count_solutions(steps: Sequence[Step]) -> str:
     """How many solutions the steps have together, with the product."""
     factors = [str(step.ways) for step in steps if step.ways > 1]
     most = int(np.prod([step.ways for step in steps]))
@@ -75,24 +75,24 @@ def geometry_blocks(plan: Findings) -> list[page.Block]:
             for each in plan.relations
         ]
         head = ("axes", "joints", "angle [°]", "distance [m]", "relation")
-        out += [page.heading("Neighbouring axes"), page.table(head, rows)]
+        out += [page.lay_out_heading("Neighbouring axes"), page.lay_out_table(head, rows)]
     for point in plan.invariant_points:
-        meet = f"meet in a point, ({vector(point.place)}) m at zero{missed(point.miss, 'm')}"
-        words = f"Axes {listed(point.joints)} {meet}: their joints do not move it."
-        out.append(page.paragraph(words))
+        meet = f"meet in a point, ({vector_text(point.place)}) m at zero{miss_text(point.miss, 'm')}"
+        words = f"Axes {list_joints(point.joints)} {meet}: their joints do not move it."
+        out.append(page.lay_out_paragraph(words))
     for each in plan.invariant_directions:
-        parallel = f"are parallel to ({vector(each.direction)}) at zero{missed(each.miss, 'rad')}"
+        parallel = f"are parallel to ({vector_text(each.direction)}) at zero{miss_text(each.miss, 'rad')}"
         still = "their joints change neither heights along it nor angles with it."
-        out.append(page.paragraph(f"Axes {listed(each.joints)} {parallel}: {still}"))
+        out.append(page.lay_out_paragraph(f"Axes {list_joints(each.joints)} {parallel}: {still}"))
     return out
 
 
-def missed(miss: float, unit: str) -> str:
+def miss_text(miss: float, unit: str) -> str:
     """By how much axes fail to meet or to be parallel, if it is more than rounding."""
     return f" (missed by {miss:.1g} {unit})" if miss > PRINTED_MISS else ""
 
 
-def listed(joints: tuple[int, ...]) -> str:
+def list_joints(joints: tuple[int, ...]) -> str:
     """4, 5 and 6."""
     return ", ".join(map(str, joints[:-1])) + f" and {joints[-1]}"
 
@@ -101,18 +101,18 @@ def equation_blocks(plan: Findings, step: Step) -> list[page.Block]:
     """The equations of a step as symbols and, where they fit, with the arm's numbers."""
     symbols = step.equations
     out: list[page.Block] = []
-    general = [line(plan, each, numbers=False) for each in symbols if refers_to_the_arm(plan, each)]
+    general = [equation_line(plan, each, numbers=False) for each in symbols if refers_to_the_arm(plan, each)]
     if general:
-        out.append(page.formulas(general))
+        out.append(page.lay_out_formulas(general))
     special = [
-        line(plan, each, numbers=True)
+        equation_line(plan, each, numbers=True)
         for each in symbols
-        if not refers_to_the_arm(plan, each) or fits(plan, each)
+        if not refers_to_the_arm(plan, each) or fits_line(plan, each)
     ]
     if special:
         if general:
-            out.append(page.paragraph("With this arm's numbers:"))
-        out.append(page.formulas(special))
+            out.append(page.lay_out_paragraph("With this arm's numbers:"))
+        out.append(page.lay_out_formulas(special))
     return out
 
 
@@ -123,14 +123,14 @@ def refers_to_the_arm(plan: Findings, equation: Equation | MatrixEquation) -> bo
     )
 
 
-def fits(plan: Findings, equation: Equation | MatrixEquation) -> bool:
+def fits_line(plan: Findings, equation: Equation | MatrixEquation) -> bool:
     """Whether an equation is short enough to be printed with numbers."""
     if not isinstance(equation, Equation):
         return True
     return len(equation.with_numbers(plan.constants)) <= MOST_TERMS
 
 
-def line(plan: Findings, equation: Equation | MatrixEquation, *, numbers: bool) -> tuple[str, str]:
+def equation_line(plan: Findings, equation: Equation | MatrixEquation, *, numbers: bool) -> tuple[str, str]:
     """An equation as text and LaTeX."""
     if isinstance(equation, MatrixEquation) or not numbers:
         return equation.text(), equation.latex()
@@ -147,7 +147,7 @@ def line(plan: Findings, equation: Equation | MatrixEquation, *, numbers: bool) 
 
 def matrix_text(name: str, T: Any) -> str:
     """A matrix of numbers behind its name."""
-    lines = aligned([[shown(x) for x in row] for row in T]).splitlines()
+    lines = align_cells([[shown(x) for x in row] for row in T]).splitlines()
     before = f"{name} = "
     return ("\n    ").join((before if k == 0 else " " * len(before)) + row for k, row in enumerate(lines))
 
@@ -159,7 +159,7 @@ def matrix_latex(name: str, T: Any) -> str:
     return rf"{symbol} &= \begin{{bmatrix}} {rows} \end{{bmatrix}}"
 
 
-def document(plan: Findings) -> dict[str, Any]:
+def plan_document(plan: Findings) -> dict[str, Any]:
     """An explanation as data."""
     return {
         "robot": plan.robot,

@@ -8,7 +8,15 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.screws import Vector, dotted, goal_values, joint_values, moved, numbers, symbols
+from cspace.ik.explain.screws import (
+    Vector,
+    dot_product,
+    goal_values,
+    joint_values,
+    move_point,
+    number_vector,
+    symbol_vector,
+)
 from cspace.math import Equation, TrigPolynomial
 from cspace.spatial.vectors import perpendicular
 
@@ -21,17 +29,19 @@ def few_joint_values(chain: Any, q: Array, T: Array) -> dict[str, Any]:
     return joint_values(chain.joint_types, q) | goal_values(T)
 
 
-def kept(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
+def invariants_of(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:
     """The two functions of a point that joint i does not change, and their units."""
     h, o = chain.axes[i], chain.points[i]
     d = [x[k] - float(o[k]) for k in range(3)]
     if chain.joint_types[i] == "R":
-        return [(dotted(h, d), "m"), (sum((part * part for part in d), TrigPolynomial()), "m²")]
+        return [(dot_product(h, d), "m"), (sum((part * part for part in d), TrigPolynomial()), "m²")]
     across = perpendicular(h)
-    return [(dotted(across, d), "m"), (dotted(np.cross(h, across), d), "m")]
+    return [(dot_product(across, d), "m"), (dot_product(np.cross(h, across), d), "m")]
 
 
-def equal(f: list[tuple[TrigPolynomial, str]], g: list[tuple[TrigPolynomial, str]]) -> tuple[Equation, ...]:
+def equate_invariants(
+    f: list[tuple[TrigPolynomial, str]], g: list[tuple[TrigPolynomial, str]]
+) -> tuple[Equation, ...]:
     """Equations between the invariants of a joint on both sides, without trivial ones."""
     pairs = [Equation(x, y, unit=unit) for (x, unit), (y, _) in zip(f, g, strict=True)]
     return tuple(each for each in pairs if (each.left - each.right).terms)
@@ -40,12 +50,12 @@ def equal(f: list[tuple[TrigPolynomial, str]], g: list[tuple[TrigPolynomial, str
 def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
     """The steps that bring the tip to a point, by default p."""
     kinds, n = chain.joint_types, len(chain.joint_types)
-    goal, tip = symbols("p") if goal is None else goal, numbers(chain.T_zero[:3, 3])
+    goal, tip = symbol_vector("p") if goal is None else goal, number_vector(chain.T_zero[:3, 3])
     if n == 1:
         return [last_step(chain, 0, tip, goal)]
     middle = 0 if n == 2 else 1
-    behind = moved(chain, n - 1, tip)
-    before = goal if n == 2 else moved(chain, 0, goal, back=True)
+    behind = move_point(chain, n - 1, tip)
+    before = goal if n == 2 else move_point(chain, 0, goal, back=True)
     names = [f"${'t' if kinds[k] == 'R' else 'q'}_{k + 1}$" for k in ((1,) if n == 2 else (0, 2))]
     what = (
         "its height along the axis and its distance from a point of the axis"
@@ -57,7 +67,7 @@ def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
         WAYS[n],
         "subproblem 5" if kinds == "RRR" else "",
         f"Joint {middle + 1} maps one point to another exactly if its invariants agree: {what}.",
-        equal(kept(chain, middle, before), kept(chain, middle, behind)),
+        equate_invariants(invariants_of(chain, middle, before), invariants_of(chain, middle, behind)),
     )
     return [first, last_step(chain, middle, behind, before)]
 
@@ -65,7 +75,7 @@ def few_joint_steps(chain: Any, goal: Vector | None = None) -> list[Step]:
 def last_step(chain: Any, i: int, x: Vector, y: Vector) -> Step:
     """Joint i maps x to y."""
     turning = chain.joint_types[i] == "R"
-    carried = moved(chain, i, x)
+    carried = move_point(chain, i, x)
     equations = (Equation(carried[k], y[k], unit="m") for k in range(3))
     return Step(
         f"$t_{i + 1}$" if turning else f"$q_{i + 1}$",

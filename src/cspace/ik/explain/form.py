@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.explain.page import Block, table
+from cspace.ik.explain.page import Block, lay_out_table
 from cspace.math import Angle, Product, TrigMatrix, TrigPolynomial
 from cspace.model.text import shown
 
@@ -106,7 +106,7 @@ class Form:
             alpha = np.degrees(np.arctan2(self.sa[i], self.ca[i]))
             entries = (shown(x) for x in (alpha, self.a[i], self.d[i]))
             rows.append((f"{i + 1}", name, *entries, self.angle_text(i, numbers)))
-        return table(("i", "joint", r"$\alpha_i$ [°]", "$a_i$ [m]", "$d_i$ [m]", "$t_i$ [°]"), rows)
+        return lay_out_table(("i", "joint", r"$\alpha_i$ [°]", "$a_i$ [m]", "$d_i$ [m]", "$t_i$ [°]"), rows)
 
     def angle_text(self, i: int, numbers: tuple[int, ...] | None) -> str:
         """t_i from the joint's own angle: $q_2$ + 180."""

@@ -10,7 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.page import Block, table
+from cspace.ik.explain.page import Block, lay_out_table
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
 from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 
@@ -79,7 +79,9 @@ class Loop:
                     "tip to base" if backwards else "base to tip",
                 )
             )
-        return table(("order", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows)
+        return lay_out_table(
+            ("order", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows
+        )
 
     def steps(self) -> list[Step]:
         """The steps of the formulation that is asked first."""
@@ -165,19 +167,19 @@ class Loop:
         """L_i (from 1), or its inverse; L6 closes the loop through the goal."""
         if i == 6:
             goal = TrigMatrix.symbols().inverse()
-            matrix = constant(self.last) @ goal @ constant(self.first)
+            matrix = constant_matrix(self.last) @ goal @ constant_matrix(self.first)
         else:
-            matrix = constant(self.links[i - 1])
+            matrix = constant_matrix(self.links[i - 1])
         if back:
             return f"L{i}⁻¹", f"L_{i}^{{-1}}", matrix.inverse()
         return f"L{i}", f"L_{i}", matrix
 
     def chain_equation(self) -> MatrixEquation:
         """The arm in these frames: F Rz(t1) L1 Rz(t2) … Rz(t6) H = T."""
-        factors: list[Factor] = [("F", "F", constant(self.first))]
+        factors: list[Factor] = [("F", "F", constant_matrix(self.first))]
         for i in range(6):
             factors.append(self.turn(i))
-            factors.append(self.link(i + 1) if i < 5 else ("H", "H", constant(self.last)))
+            factors.append(self.link(i + 1) if i < 5 else ("H", "H", constant_matrix(self.last)))
         return MatrixEquation(Product(tuple(factors)), Product((("T", "T", TrigMatrix.symbols()),)))
 
     def split_equation(self, joints: tuple[int, ...], backwards: bool) -> MatrixEquation:
@@ -203,6 +205,6 @@ class Loop:
         return MatrixEquation(Product(left), Product(right))
 
 
-def constant(T: Array) -> TrigMatrix:
+def constant_matrix(T: Array) -> TrigMatrix:
     """A matrix of numbers."""
     return TrigMatrix(T.tolist())

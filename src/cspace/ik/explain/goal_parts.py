@@ -11,9 +11,9 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import InputTypeError, suggest
-from cspace.ik.explain.page import Block, table
+from cspace.ik.explain.page import Block, lay_out_table
 from cspace.ik.explain.plan import IkPlan
-from cspace.ik.explain.screws import vector
+from cspace.ik.explain.screws import vector_text
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
 from cspace.ik.goals.parts import is_open, partial_goal
 
@@ -71,7 +71,7 @@ def plan_of_parts(solver: Solver, goal: PartialGoal, plan_of: Callable[[Solver],
         "joints, to which all below belongs. Solutions that differ in these joints alone count once.",
     ]
     if goal.kind not in ("position", "rotation"):
-        notes.append(f"The tool axis is ({vector(goal.axis)}) in the tip.")
+        notes.append(f"The tool axis is ({vector_text(goal.axis)}) in the tip.")
     if "look_at" in goal.kind:
         notes.append("Solutions that have the point behind the tool, at a negative slide, are dropped.")
     if "angle_to" in goal.kind:
@@ -83,7 +83,7 @@ def plan_of_parts(solver: Solver, goal: PartialGoal, plan_of: Callable[[Solver],
     behind = np.linalg.inv(solver.chain.T_zero) @ whole.chain.T_zero
 
     def values(q: Array, T: Array) -> dict[str, Any]:
-        return dict(plan._values(padded(q, own, whole.dof), T @ behind)) if plan._values else {}
+        return dict(plan._values(pad_configurations(q, own, whole.dof), T @ behind)) if plan._values else {}
 
     return replace(
         plan,
@@ -112,7 +112,7 @@ def calls_of(goal: PartialGoal, plan: IkPlan) -> tuple[str, ...]:
     return (f"`robot.ik({words})` answers with {rule}.", near)
 
 
-def padded(q: Array, own: slice, dof: int) -> Array:
+def pad_configurations(q: Array, own: slice, dof: int) -> Array:
     """Configurations of the arm with the joints of the goal at zero."""
     out = np.zeros((*q.shape[:-1], dof))
     out[..., own] = q
@@ -126,5 +126,5 @@ def goal_joints(goal: PartialGoal, whole: Solver) -> Block:
         before = i < len(goal.before)
         what = "slides along" if kind == "P" else "turns about"
         where = "before the base" if before else "behind the tip"
-        rows.append((f"`{goal.joint_names[i]}`", where, what, vector(axis), "base" if before else "tip"))
-    return table(("joint", "place", "does", "direction", "seen in"), rows)
+        rows.append((f"`{goal.joint_names[i]}`", where, what, vector_text(axis), "base" if before else "tip"))
+    return lay_out_table(("joint", "place", "does", "direction", "seen in"), rows)

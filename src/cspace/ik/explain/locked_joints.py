@@ -15,7 +15,7 @@ from cspace.errors import InputError
 from cspace.ik.explain.arm_angle import swivel_steps, swivel_values
 from cspace.ik.explain.describe import ONE_CALL, settled_plan
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.page import Block, table
+from cspace.ik.explain.page import Block, lay_out_table
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.ik.solver import MAX_SETTLED, Solver
@@ -91,7 +91,7 @@ def locked_plan(solver: Solver, locked: Mapping[int, float], survey: IkPlan) -> 
     others = solver.lock(dict(locked))
     redundancy_degree = others.redundancy_degree()
     default = tuple(solver.joint_names.index(others.joint_names[k]) for k in others.redundant_joints)
-    at = {**{k: typical(solver, k) for k in default}, **locked}
+    at = {**{k: typical_value(solver, k) for k in default}, **locked}
     split = Split(solver, tuple(sorted(at)), at)
     others = split.others()
     inner = settled_plan(
@@ -100,15 +100,15 @@ def locked_plan(solver: Solver, locked: Mapping[int, float], survey: IkPlan) -> 
     steps = swivel_of(solver) if not locked else ()
     tables = dict(inner.tables)
     if redundancy_degree == 1 and not locked:
-        tables = {"What may be held": choices(solver, default), **tables}
-    notes = [*reasons(split, default), *numbering(split), *inner.notes]
+        tables = {"What may be held": list_choices(solver, default), **tables}
+    notes = [*describe_reasons(split, default), *describe_numbering(split), *inner.notes]
     ends = [k for k in split.locked if k not in split.between]
     first = (locked_step(split, ends),) if inner else ()
     return replace(
         survey,
         length=inner.length,
         family="redundant" if redundancy_degree else "locked",
-        summary=summary(split, default, redundancy_degree, inner),
+        summary=summarise_split(split, default, redundancy_degree, inner),
         branches=inner.branches if inner else solver.max_solutions,
         notes=tuple(notes),
         tables=tables,
@@ -117,7 +117,7 @@ def locked_plan(solver: Solver, locked: Mapping[int, float], survey: IkPlan) -> 
         steps=(*first, *inner.steps),
         locked=tuple(solver.joint_names[k] for k in split.locked),
         counted=f"{inner.counted}, for each value of {names_of(split, split.locked)}",
-        calls=answers(split, default, others) if redundancy_degree else ONE_CALL,
+        calls=describe_answers(split, default, others) if redundancy_degree else ONE_CALL,
         other_ways={"By the swivel (`swivel=`)": steps} if steps else {},
         _values=values_of(split, inner),
         _other_values=partial(swivel_values, solver) if steps else None,
@@ -130,7 +130,7 @@ def names_of(split: Split, joints: tuple[int, ...]) -> str:
     return ", ".join(names[:-1]) + f" and {names[-1]}" if len(names) > 1 else names[0]
 
 
-def typical(solver: Solver, k: int) -> float:
+def typical_value(solver: Solver, k: int) -> float:
     """The value of a joint at which nothing special is expected."""
     lower, upper = float(solver.limits.lower[k]), float(solver.limits.upper[k])
     if not np.isfinite([lower, upper]).all():
@@ -138,7 +138,7 @@ def typical(solver: Solver, k: int) -> float:
     return lower + (0.2 + 0.6 * (GOLDEN * (k + 1) % 1.0)) * (upper - lower)
 
 
-def summary(split: Split, default: tuple[int, ...], redundancy_degree: int, inner: IkPlan) -> str:
+def summarise_split(split: Split, default: tuple[int, ...], redundancy_degree: int, inner: IkPlan) -> str:
     """The method as one sentence."""
     n, solver = len(split.solver.joint_names), split.solver
     moving = len(split.moving)
@@ -149,18 +149,17 @@ def summary(split: Split, default: tuple[int, ...], redundancy_degree: int, inne
     else:
         more = f"{n} joints, some of them held"
     how = inner.summary if inner else "nothing solves exactly: members are found by descents from 48 starts"
-    return (
-        f"{more}. {names_of(split, split.locked)} {stand(split)}; the other {moving} of {solver.name}: {how}"
-    )
+    locked = f"{names_of(split, split.locked)} {role_of(split)}"
+    return f"{more}. {locked}; the other {moving} of {solver.name}: {how}"
 
 
-def stand(split: Split) -> str:
+def role_of(split: Split) -> str:
     """What locked joints do."""
     one = len(split.locked) == 1
     return ("is a parameter" if one else "are parameters") + " of each call"
 
 
-def reasons(split: Split, default: tuple[int, ...]) -> list[str]:
+def describe_reasons(split: Split, default: tuple[int, ...]) -> list[str]:
     """Why these joints are locked."""
     out = []
     one = len(default) == 1
@@ -188,7 +187,7 @@ def reasons(split: Split, default: tuple[int, ...]) -> list[str]:
     return out
 
 
-def numbering(split: Split) -> list[str]:
+def describe_numbering(split: Split) -> list[str]:
     """Which joints the six angles of the equations belong to, where their numbers differ."""
     moving = split.moving
     if moving == tuple(range(len(moving))):
@@ -197,17 +196,17 @@ def numbering(split: Split) -> list[str]:
     return [f"Joints 1 to {len(moving)} of the steps are those that move: {listed}."]
 
 
-def choices(solver: Solver, default: tuple[int, ...]) -> Block:
+def list_choices(solver: Solver, default: tuple[int, ...]) -> Block:
     """For every joint that may be locked how the six others are solved."""
     rows = []
     for k, name in enumerate(solver.joint_names):
-        split = Split(solver, (k,), {k: typical(solver, k)})
+        split = Split(solver, (k,), {k: typical_value(solver, k)})
         others = settled_plan(split.others(), bare_survey(solver))
         place = "between others" if split.between else "at an end"
         kind = others.family if others else "descents from many starts"
         count = str(others.branches) if others else "a sample"
         rows.append((f"`{name}`", place, kind, count, "locked" if k in default else ""))
-    return table(("joint", "place", "the six others", "solutions up to", "by default"), rows)
+    return lay_out_table(("joint", "place", "the six others", "solutions up to", "by default"), rows)
 
 
 def bare_survey(solver: Solver) -> IkPlan:
@@ -215,7 +214,7 @@ def bare_survey(solver: Solver) -> IkPlan:
     return IkPlan(solver.name, tuple(solver.joint_names))
 
 
-def answers(split: Split, default: tuple[int, ...], others: Solver) -> tuple[str, ...]:
+def describe_answers(split: Split, default: tuple[int, ...], others: Solver) -> tuple[str, ...]:
     """How a goal is answered that leaves freedom."""
     locked = names_of(split, default)
     one = len(default) == 1
@@ -236,7 +235,9 @@ def answers(split: Split, default: tuple[int, ...], others: Solver) -> tuple[str
         + ", each sample solved by the steps above, and the lowest settled by the same method."
     )
     if one:
-        out.append(f"`robot.redundancy(T)`, the feasible intervals of {locked}: {intervals(others, name)}")
+        out.append(
+            f"`robot.redundancy(T)`, the feasible intervals of {locked}: {describe_intervals(others, name)}"
+        )
     out.append(
         "`robot.track(poses)` follows the least motion of the joints, $q' = J^+ t$ for the twist $t$ of the "
         "path, from `start=` or from the configuration nearest to the middle of the limits; no joint is held."
@@ -244,7 +245,7 @@ def answers(split: Split, default: tuple[int, ...], others: Solver) -> tuple[str
     return tuple(out)
 
 
-def intervals(others: Solver, name: str) -> str:
+def describe_intervals(others: Solver, name: str) -> str:
     """How the feasible intervals are found."""
     limits = (
         "every other joint is locked at each of its limits, and what is left is solved: all points where a "
@@ -298,8 +299,8 @@ def locked_step(split: Split, ends: list[int]) -> Step:
         words += "A joint held between others stands at the value that the numbers below belong to."
     words = words.strip()
     goal = ("Tgoal", r"T_{\text{goal}}", whole_goal("whole"))
-    left = [part for k in ends if k < split.moving[0] for part in undone(split, k, chain)]
-    right = [part for k in reversed(ends) if k > split.moving[-1] for part in undone(split, k, chain)]
+    left = [part for k in ends if k < split.moving[0] for part in undo_joint(split, k, chain)]
+    right = [part for k in reversed(ends) if k > split.moving[-1] for part in undo_joint(split, k, chain)]
     parts = (*reversed_pairs(left), goal, *right)
     equations: list[Equation | MatrixEquation] = []
     if ends:
@@ -315,7 +316,7 @@ def reversed_pairs(parts: list[Any]) -> list[Any]:
     return [part for group in reversed(groups) for part in group]
 
 
-def undone(split: Split, k: int, chain: Any) -> list[tuple[str, str, TrigMatrix]]:
+def undo_joint(split: Split, k: int, chain: Any) -> list[tuple[str, str, TrigMatrix]]:
     """M Rz(−q) M⁻¹: the motion of a locked joint taken back."""
     M, i = split.frame(k), k + 1
     frame, back = TrigMatrix(M.tolist()), TrigMatrix(np.linalg.inv(M).tolist())

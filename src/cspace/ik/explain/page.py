@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
 
-from cspace.model.text import aligned
+from cspace.model.text import align_cells
 
 WIDTH: Final = 100
 """Columns of plain text."""
@@ -81,33 +81,33 @@ def latex_sentence(text: str) -> str:
     return "".join(out)
 
 
-def heading(words: str) -> Block:
+def lay_out_heading(words: str) -> Block:
     """A heading."""
     text = plain_sentence(words)
     latex = rf"\subsection*{{{latex_sentence(words)}}}"
     return Block(f"{text}\n{'-' * len(text)}", f"### {words}", latex)
 
 
-def paragraph(words: str) -> Block:
+def lay_out_paragraph(words: str) -> Block:
     """Some sentences."""
     text = plain_sentence(words)
     filled = textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
     return Block(filled, words, latex_sentence(words))
 
 
-def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Block:
+def lay_out_table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Block:
     """A table. head: its headings; rows: cells as sentences."""
     lines = [head, *rows]
     latex = [" & ".join(map(latex_sentence, row)) + r" \\" for row in lines]
     latex[0] += r" \hline"
     return Block(
-        aligned([[plain_sentence(cell) for cell in row] for row in lines]),
+        align_cells([[plain_sentence(cell) for cell in row] for row in lines]),
         "\n".join("| " + " | ".join(row) + " |" for row in [head, ["---"] * len(head), *lines[1:]]),
         "\n".join([rf"\begin{{tabular}}{{{'r' * len(head)}}}", *latex, r"\end{tabular}"]),
     )
 
 
-def formulas(lines: Sequence[tuple[str, str]]) -> Block:
+def lay_out_formulas(lines: Sequence[tuple[str, str]]) -> Block:
     """Equations one below the other. lines: plain text and LaTeX, the latter with an & to align by."""
     body = " \\\\\n".join(formula for _, formula in lines)
     return Block(
@@ -117,16 +117,16 @@ def formulas(lines: Sequence[tuple[str, str]]) -> Block:
     )
 
 
-def plain(blocks: Sequence[Block]) -> str:
+def join_plain(blocks: Sequence[Block]) -> str:
     """A page as plain text."""
     return "\n\n".join(block.plain for block in blocks) + "\n"
 
 
-def markdown(blocks: Sequence[Block]) -> str:
+def join_markdown(blocks: Sequence[Block]) -> str:
     """A page as Markdown."""
     return "\n\n".join(block.markdown for block in blocks) + "\n"
 
 
-def latex(blocks: Sequence[Block]) -> str:
+def join_latex(blocks: Sequence[Block]) -> str:
     """A page as LaTeX, to be input between begin and end of a document with amsmath."""
     return "\n\n".join(block.latex for block in blocks) + "\n"

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form, symbol
-from cspace.ik.explain.wrist import define, in_frame_one, px, py, pz, squared, turn_steps
+from cspace.ik.explain.wrist import define, in_frame_one, px, py, pz, sum_squares, turn_steps
 from cspace.math import Equation, Product, TrigMatrix, TrigPolynomial
 
 
-def height(form: Form) -> tuple[TrigPolynomial, TrigPolynomial]:
+def wrist_heights(form: Form) -> tuple[TrigPolynomial, TrigPolynomial]:
     """The height of the goal and of the wrist along axes 2, 3, 4; that of the wrist without joint 5."""
     (c1, s1), (ca1, sa1), ca4 = (form.cos(1), form.sin(1)), form.twist(1), form.twist(4)[0]
     d = [symbol(f"d_{i}") for i in range(1, 6)]
@@ -17,7 +17,7 @@ def height(form: Form) -> tuple[TrigPolynomial, TrigPolynomial]:
 
 def three_parallel_steps(form: Form) -> list[Step]:
     """Axes 2, 3, 4 parallel, 5 and 6 meet."""
-    goal, own = height(form)
+    goal, own = wrist_heights(form)
     shoulder = Step(
         "$t_1$",
         2,
@@ -31,7 +31,7 @@ def three_parallel_steps(form: Form) -> list[Step]:
 
 def middle_parallel_steps(form: Form) -> list[Step]:
     """Axes 2, 3, 4 parallel, 5 and 6 apart."""
-    (goal, own), (ca1, sa1), (ca4, sa4) = height(form), form.twist(1), form.twist(4)
+    (goal, own), (ca1, sa1), (ca4, sa4) = wrist_heights(form), form.twist(1), form.twist(4)
     ca5, sa5 = form.twist(5)
     c1, s1, c5, s5 = form.cos(1), form.sin(1), form.cos(5), form.sin(5)
     r = {i: symbol(f"r_{i}3") for i in (1, 2, 3)}
@@ -73,7 +73,7 @@ def planar_steps(form: Form, *, meeting: bool) -> list[Step]:
                 *in_frame_one(form),
                 define("u", x - c234 * X + s234 * Y, "m"),
                 define("v", y - s234 * X - c234 * Y, "m"),
-                Equation(squared(u, v), squared(a2, a3) + 2.0 * a2 * a3 * c3, unit="m²"),
+                Equation(sum_squares(u, v), sum_squares(a2, a3) + 2.0 * a2 * a3 * c3, unit="m²"),
             ),
         ),
         Step(
@@ -105,7 +105,7 @@ def first_parallel_steps(form: Form) -> list[Step]:
     )  # fmt: skip
     k = Product((form.about_x(3), form.about_z(4), form.about_x(4))).matrix()
     kx, ky = symbol("k_x"), symbol("k_y")
-    Q = displaced(form)
+    Q = parallel_displacement(form)
     qx, qy, a1, a2 = symbol("u"), symbol("v"), symbol("a_1"), symbol("a_2")
     return [
         Step(
@@ -137,7 +137,7 @@ def first_parallel_steps(form: Form) -> list[Step]:
             (
                 define("u", Q[0, 3], "m"),
                 define("v", Q[1, 3], "m"),
-                Equation(squared(qx, qy), squared(a1, a2) + 2.0 * a1 * a2 * form.cos(2), unit="m²"),
+                Equation(sum_squares(qx, qy), sum_squares(a1, a2) + 2.0 * a1 * a2 * form.cos(2), unit="m²"),
             ),
         ),
         Step(
@@ -157,7 +157,7 @@ def first_parallel_steps(form: Form) -> list[Step]:
     ]
 
 
-def displaced(form: Form) -> TrigMatrix:
+def parallel_displacement(form: Form) -> TrigMatrix:
     """P (Tx(a3) Rx(α3) A4 A5 Rz(t6))⁻¹: the displacement by the three parallel joints."""
     rest = TrigMatrix.shift(x=form.a[2]) @ form.about_x(3)[2]
     for i in (4, 5):

@@ -10,7 +10,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.explain.few_joints import few_joint_steps
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.screws import Screws, Vector, dotted, numbers, symbols, turned
+from cspace.ik.explain.screws import Screws, Vector, dot_product, number_vector, symbol_vector, turn_direction
 from cspace.math import Equation, MatrixEquation, TrigPolynomial
 
 AXES = "xyz"
@@ -27,12 +27,12 @@ def goal_turns(v: Array) -> Vector:
 def placed_wrist_steps(arm: Screws, centre: Array) -> list[Step]:
     """Joints 1, 2, 3 position the centre (3,) of the wrist, joints 4, 5, 6 rotate about it."""
     in_tip = (np.linalg.inv(arm.T_zero) @ np.append(centre, 1.0))[:3]
-    p, offset = symbols("p"), goal_turns(in_tip)
+    p, offset = symbol_vector("p"), goal_turns(in_tip)
     wanted = tuple(Equation.definition(f"w_{AXES[k]}", p[k] + offset[k], "m") for k in range(3))
     T_zero = np.eye(4)
     T_zero[:3, 3] = centre
     first = Screws(arm.joint_types[:3], arm.axes[:3], arm.points[:3], T_zero)
-    place = few_joint_steps(first, symbols("w"))
+    place = few_joint_steps(first, symbol_vector("w"))
     where = Step("$w$", 1, "", "The goal fixes where the centre of the wrist has to be.", wanted)
     return [where, *place, *three_turns(arm, (3, 4, 5), before=(0, 1, 2))]
 
@@ -43,18 +43,18 @@ def three_turns(arm: Screws, turns: tuple[int, int, int], before: tuple[int, ...
     h, R_tip = arm.axes, arm.T_zero[:3, :3]
     left = goal_turns(R_tip.T @ h[k])  # where the last axis points, seen behind the joints before
     for joint in before:
-        left = turned(arm, joint, left, back=True)
+        left = turn_direction(arm, joint, left, back=True)
     seen = tuple(Equation.definition(f"g_{AXES[n]}", left[n]) for n in range(3))
-    back = numbers(h[i])
+    back = number_vector(h[i])
     for joint in reversed(before):
-        back = turned(arm, joint, back)
+        back = turn_direction(arm, joint, back)
     words = (
         f"$g$ is the goal direction of axis {k + 1}, seen behind the joints before. Its angle with "
         f"axis {i + 1} depends on $t_{turns[1] + 1}$ alone.",
         f"Joint {i + 1} rotates axis {k + 1} to its goal.",
         f"The same from the other side: the direction of axis {i + 1}, seen from the tip.",
     )
-    return rotation_steps(arm, turns, symbols("g"), turned_back_by_goal(back, R_tip), words, seen)
+    return rotation_steps(arm, turns, symbol_vector("g"), turned_back_by_goal(back, R_tip), words, seen)
 
 
 def rotation_steps(
@@ -69,18 +69,18 @@ def rotation_steps(
     behind: where its inverse takes the first. words: of each step; given: equations before the first one."""
     i, j, k = turns
     h = arm.axes
-    middle = turned(arm, j, numbers(h[k]))
-    first = Equation(dotted(h[i], ahead), dotted(h[i], middle))
-    onto = equal(ahead, turned(arm, i, middle), but=first)
-    last = turned(arm, k, turned(arm, j, numbers(h[i]), back=True), back=True)
+    middle = turn_direction(arm, j, number_vector(h[k]))
+    first = Equation(dot_product(h[i], ahead), dot_product(h[i], middle))
+    onto = equate_vectors(ahead, turn_direction(arm, i, middle), but=first)
+    last = turn_direction(arm, k, turn_direction(arm, j, number_vector(h[i]), back=True), back=True)
     return [
         Step(f"$t_{j + 1}$", 2, "subproblem 4", words[0], (*given, first)),
         Step(f"$t_{i + 1}$", 1, "subproblem 1", words[1], onto),
-        Step(f"$t_{k + 1}$", 1, "subproblem 1", words[2], equal(behind, last, but=first)),
+        Step(f"$t_{k + 1}$", 1, "subproblem 1", words[2], equate_vectors(behind, last, but=first)),
     ]
 
 
-def equal(left: Vector, right: Vector, *, but: Equation) -> tuple[Equation, ...]:
+def equate_vectors(left: Vector, right: Vector, *, but: Equation) -> tuple[Equation, ...]:
     """The equations of two vectors, without those that say nothing, or the same as another."""
     pairs = (Equation(a, b) for a, b in zip(left, right, strict=True))
     said = (TrigPolynomial(), but.left - but.right, but.right - but.left)

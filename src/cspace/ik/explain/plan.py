@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from cspace.ik.explain import page
-from cspace.ik.explain.document import blocks, document
+from cspace.ik.explain.document import lay_out_plan, plan_document
 from cspace.ik.explain.findings import Findings
 
 
@@ -22,15 +22,15 @@ class IkPlan(Findings):
 
     def to_text(self) -> str:
         """As plain text."""
-        return page.plain(blocks(self))
+        return page.join_plain(lay_out_plan(self))
 
     def to_markdown(self) -> str:
         """As Markdown with formulas between dollar signs."""
-        return page.markdown(blocks(self))
+        return page.join_markdown(lay_out_plan(self))
 
     def to_latex(self) -> str:
         """As LaTeX for the body of a document that loads amsmath."""
-        return page.latex(blocks(self))
+        return page.join_latex(lay_out_plan(self))
 
     __str__ = to_text
 
@@ -39,4 +39,4 @@ class IkPlan(Findings):
 
     def to_dict(self) -> dict[str, Any]:
         """As plain data, angles in radians and lengths in metres."""
-        return document(self)
+        return plan_document(self)

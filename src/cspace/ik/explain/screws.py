@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.explain.page import Block, table
+from cspace.ik.explain.page import Block, lay_out_table
 from cspace.math import Angle, TrigPolynomial
 from cspace.model.text import shown
 from cspace.tolerances import SYMBOL_PARALLEL
@@ -36,10 +36,10 @@ class Screws:
         rows = []
         for i, kind in enumerate(self.joint_types):
             name = f"`{names[i]}`" if i < len(names) and names[i] else "virtual, held at 0"
-            point = vector(self.points[i]) if kind == "R" else "–"
+            point = vector_text(self.points[i]) if kind == "R" else "–"
             what = "turns" if kind == "R" else "slides"
-            rows.append((f"{i + 1}", name, what, vector(self.axes[i]), point))
-        return table(("i", "joint", "does", "along", "through [m]"), rows)
+            rows.append((f"{i + 1}", name, what, vector_text(self.axes[i]), point))
+        return lay_out_table(("i", "joint", "does", "along", "through [m]"), rows)
 
     def reversed(self) -> Screws:
         """The same joints read from the tip."""
@@ -49,7 +49,7 @@ class Screws:
         return Screws(self.joint_types[::-1], axes, points, np.asarray(back, dtype=np.float64))
 
 
-def vector(v: Any) -> str:
+def vector_text(v: Any) -> str:
     """A vector without rounding noise."""
     return ", ".join(shown(round(float(x), 8)) for x in v)
 
@@ -74,17 +74,17 @@ def goal_values(T: Array, *, length: float = 1.0) -> dict[str, Any]:
     return out
 
 
-def numbers(v: Any) -> Vector:
+def number_vector(v: Any) -> Vector:
     """A vector of numbers."""
     return [TrigPolynomial.number(float(x)) for x in v]
 
 
-def symbols(name: str) -> Vector:
+def symbol_vector(name: str) -> Vector:
     """name_x, name_y, name_z."""
     return [TrigPolynomial.symbol(f"{name}_{axis}") for axis in "xyz"]
 
 
-def dotted(h: Array, x: Vector) -> TrigPolynomial:
+def dot_product(h: Array, x: Vector) -> TrigPolynomial:
     """h · x."""
     return sum((float(h[k]) * x[k] for k in range(3)), TrigPolynomial())
 
@@ -97,13 +97,13 @@ def group_of(chain: Any, i: int) -> int:
     return i
 
 
-def turned(chain: Any, i: int, v: Vector, *, back: bool = False) -> Vector:
+def turn_direction(chain: Any, i: int, v: Vector, *, back: bool = False) -> Vector:
     """The direction v turned by joint i, or back; a prismatic joint leaves it."""
     if chain.joint_types[i] == "P":
         return v
     h, angle = chain.axes[i], Angle(i + 1, group_of(chain, i))
     c, s = TrigPolynomial.cos(angle), (-1.0 if back else 1.0) * TrigPolynomial.sin(angle)
-    along = dotted(h, v)
+    along = dot_product(h, v)
     out = []
     for k in range(3):
         i1, i2 = (k + 1) % 3, (k + 2) % 3
@@ -112,11 +112,11 @@ def turned(chain: Any, i: int, v: Vector, *, back: bool = False) -> Vector:
     return out
 
 
-def moved(chain: Any, i: int, x: Vector, *, back: bool = False) -> Vector:
+def move_point(chain: Any, i: int, x: Vector, *, back: bool = False) -> Vector:
     """The point x carried along by joint i: e^{ξ q} x, or back by e^{−ξ q}."""
     h, o = chain.axes[i], chain.points[i]
     if chain.joint_types[i] == "P":
         slide = (-1.0 if back else 1.0) * TrigPolynomial.symbol(f"q_{i + 1}")
         return [x[k] + float(h[k]) * slide for k in range(3)]
-    d = turned(chain, i, [x[k] - float(o[k]) for k in range(3)], back=back)
+    d = turn_direction(chain, i, [x[k] - float(o[k]) for k in range(3)], back=back)
     return [d[k] + float(o[k]) for k in range(3)]

@@ -61,7 +61,7 @@ class InvariantDirection:
     miss: float
 
 
-def relations(chain: Any, length: float) -> tuple[Relation, ...]:
+def measure_relations(chain: Any, length: float) -> tuple[Relation, ...]:
     """What each pair of neighbouring axes shares; length: the arm's [m], the scale of what is allowed."""
     out = []
     for i in range(len(chain.joint_types) - 1):
@@ -86,7 +86,7 @@ def relations(chain: Any, length: float) -> tuple[Relation, ...]:
 
 def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
     """Where adjacent axes meet: three in a point, or two that belong to no such three."""
-    pairs = [each.joints for each in relations(chain, length) if each.meet and not each.parallel]
+    pairs = [each.joints for each in measure_relations(chain, length) if each.meet and not each.parallel]
     threes = [
         (a, b, c)
         for (a, b), (_, c) in itertools.pairwise(pairs)
@@ -106,7 +106,7 @@ def invariant_points(chain: Any, length: float) -> tuple[InvariantPoint, ...]:
 def invariant_directions(chain: Any, length: float) -> tuple[InvariantDirection, ...]:
     """Runs of neighbouring parallel axes of revolute joints."""
     runs: list[list[int]] = []
-    for each in relations(chain, length):
+    for each in measure_relations(chain, length):
         a, b = each.joints
         if not each.parallel or "P" in chain.joint_types[a - 1 : b]:
             continue

@@ -66,7 +66,7 @@ def turned_by_two(form: Form) -> tuple[TrigPolynomial, TrigPolynomial]:
     return c2 * vx - s2 * vy, s2 * vx + c2 * vy
 
 
-def pan(form: Form, *, a1: bool = True) -> Step:
+def pan_step(form: Form, *, a1: bool = True) -> Step:
     """t_1 from the bearing of p."""
     (c1, s1), (ca1, sa1) = (form.cos(1), form.sin(1)), form.twist(1)
     x, y = turned_by_two(form)
@@ -132,7 +132,7 @@ def last_parallel(form: Form) -> list[Step]:
     ]
 
 
-def squared(*parts: TrigPolynomial) -> TrigPolynomial:
+def sum_squares(*parts: TrigPolynomial) -> TrigPolynomial:
     """The sum of squares."""
     return sum((part * part for part in parts), TrigPolynomial())
 
@@ -144,7 +144,7 @@ def first_meet(form: Form) -> list[Step]:
     a2, d2 = symbol("a_2"), symbol("d_2")
     _, y = turned_by_two(form)
     length2 = (
-        squared(a2, d2, wx, wy, wz)
+        sum_squares(a2, d2, wx, wy, wz)
         + 2.0 * d2 * ca2 * wz
         + 2.0 * (a2 * wx + d2 * sa2 * wy) * c3
         + 2.0 * (d2 * sa2 * wx - a2 * wy) * s3
@@ -156,7 +156,7 @@ def first_meet(form: Form) -> list[Step]:
             "subproblem 3",
             "Joints 1 and 2 do not move the point where their axes meet, so the distance of the wrist "
             "from it depends only on $t_3$.",
-            (Equation(squared(px, py, pz), length2, unit="m²"),),
+            (Equation(sum_squares(px, py, pz), length2, unit="m²"),),
         ),
         Step(
             "$t_2$",
@@ -166,7 +166,7 @@ def first_meet(form: Form) -> list[Step]:
             "fixes $t_2$.",
             (*behind_joint_two(form), Equation(pz, ca1 * vz + sa1 * y, unit="m")),
         ),
-        pan(form, a1=False),
+        pan_step(form, a1=False),
     ]
 
 
@@ -186,8 +186,10 @@ def last_meet(form: Form) -> list[Step]:
             "from it is constant. This gives an equation in $t_1$ alone.",
             (
                 Equation(
-                    squared(px, py, pz, a1, d2) - 2.0 * ca1 * d2 * pz,
-                    squared(wx, wy, wz) + 2.0 * (a1 * px + out * py) * c1 + 2.0 * (a1 * py - out * px) * s1,
+                    sum_squares(px, py, pz, a1, d2) - 2.0 * ca1 * d2 * pz,
+                    sum_squares(wx, wy, wz)
+                    + 2.0 * (a1 * px + out * py) * c1
+                    + 2.0 * (a1 * py - out * px) * s1,
                     unit="m²",
                 ),
             ),
@@ -239,10 +241,10 @@ def first_parallel(form: Form) -> list[Step]:
             "The distance of the wrist from axis 1 gives the elbow angle between the two parallel axes.",
             (
                 *behind_joint_two(form),
-                Equation(squared(px, py), squared(a1, vx, vy) + 2.0 * a1 * x, unit="m²"),
+                Equation(sum_squares(px, py), sum_squares(a1, vx, vy) + 2.0 * a1 * x, unit="m²"),
             ),
         ),
-        pan(form),
+        pan_step(form),
     ]
 
 
@@ -251,7 +253,7 @@ def any_three(form: Form) -> list[Step]:
     ca1, sa1 = form.twist(1)
     a1 = symbol("a_1")
     x, y = turned_by_two(form)
-    v2, p2 = squared(vx, vy, vz), squared(px, py, pz)
+    v2, p2 = sum_squares(vx, vy, vz), sum_squares(px, py, pz)
     k, m, n = symbol("k"), symbol("m"), 4.0 * a1 * a1
     return [
         Step(
@@ -265,7 +267,7 @@ def any_three(form: Form) -> list[Step]:
                 *behind_joint_two(form),
                 define("k", p2 - a1 * a1 - v2, "m²"),
                 define("m", pz - ca1 * vz, "m"),
-                Equation(sa1 * sa1 * k * k + n * m * m, n * sa1 * sa1 * squared(vx, vy), unit="m⁴"),
+                Equation(sa1 * sa1 * k * k + n * m * m, n * sa1 * sa1 * sum_squares(vx, vy), unit="m⁴"),
             ),
         ),
         Step(
@@ -278,7 +280,7 @@ def any_three(form: Form) -> list[Step]:
                 Equation(pz, ca1 * vz + sa1 * y, unit="m"),
             ),
         ),
-        pan(form),
+        pan_step(form),
     ]
 
 

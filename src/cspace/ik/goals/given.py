@@ -9,7 +9,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.parts import is_open
-from cspace.ik.wrapping import turning
+from cspace.ik.wrapping import turning_joints
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST, LEVEL_SLIDE, UPRIGHT_TURN
 
@@ -41,7 +41,7 @@ def points_in_base(solver: Solver, position: Any) -> Array:
     """
     p = as_floats(position, "position")
     if p.ndim > 0 and p.shape[-1] == 2:
-        p = lifted(solver, p)
+        p = lift_points(solver, p)
     if p.ndim == 0 or p.shape[-1] != 3:
         raise InputError(
             f"position has shape {p.shape}, expected (..., 3), or (..., 2) for an arm in the plane"
@@ -57,7 +57,7 @@ def open_in_space(solver: Solver, position: Any) -> Any:
         return position
     if all(v is None for v in position):
         return (None, None, None)
-    return (*position, float(lifted(solver, np.zeros(2))[2]))
+    return (*position, float(lift_points(solver, np.zeros(2))[2]))
 
 
 def planar_poses(solver: Solver, goal: Any, position: Any, angle: Any) -> Array:
@@ -67,7 +67,7 @@ def planar_poses(solver: Solver, goal: Any, position: Any, angle: Any) -> Array:
     p = as_floats(position, "position", last=(2,), largest=FARTHEST)
     T_zero = solver.chain.T_zero
     turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
-    p = lifted(solver, p)
+    p = lift_points(solver, p)
     T = np.zeros((*leading_axes(position=p.shape[:-1], angle=turn.shape), 4, 4))
     T[..., 0, 0] = T[..., 1, 1] = np.cos(turn)
     T[..., 1, 0] = np.sin(turn)
@@ -78,11 +78,11 @@ def planar_poses(solver: Solver, goal: Any, position: Any, angle: Any) -> Array:
     return T
 
 
-def lifted(solver: Solver, p: Array) -> Array:
+def lift_points(solver: Solver, p: Array) -> Array:
     """Points (..., 2) of the plane z = constant in which an arm keeps its tip, as points (..., 3)."""
     chain = solver.chain
     along_z = np.abs(chain.axes[:, 2])
-    in_plane = np.where(turning(chain.joint_types), along_z > 1 - UPRIGHT_TURN, along_z < LEVEL_SLIDE)
+    in_plane = np.where(turning_joints(chain.joint_types), along_z > 1 - UPRIGHT_TURN, along_z < LEVEL_SLIDE)
     if not in_plane.all():
         raise InputError(
             f"position has shape {p.shape}, but {solver.name} is not a planar arm; give three coordinates"

@@ -75,7 +75,7 @@ class PartialGoal:
         last = len(self.behind) - 1
         for i, (name, (kind, axis)) in enumerate(zip(names[len(self.before) :], self.behind, strict=True)):
             if self.tilt and i == last:
-                chain = chain.turn_tip(tilted(axis, self.tilt))
+                chain = chain.turn_tip(tilt_across(axis, self.tilt))
             lower = 0.0 if kind == "P" and "look_at" in self.kind else -np.inf  # the point lies ahead
             chain = chain.append(name, kind, axis, lower)
         return chain
@@ -122,12 +122,12 @@ class PartialGoal:
                 gap = np.linalg.norm(T[..., :3, :3] - self.T[..., :3, :3], axis=(-2, -1))
                 angles.append(2 * np.arcsin(np.minimum(gap / np.sqrt(8), 1.0)))
             elif name == "angle_to":
-                angles.append(np.abs(angle(a, np.broadcast_to(self.base_axis, a.shape)) - self.tilt))
+                angles.append(np.abs(measure_angle(a, np.broadcast_to(self.base_axis, a.shape)) - self.tilt))
             elif name == "direction":
-                angles.append(angle(a, d))
+                angles.append(measure_angle(a, d))
             elif name == "ray":
                 distances.append(from_line(p - goal, d))
-                angles.append(angle(a, d))
+                angles.append(measure_angle(a, d))
             else:  # look_at
                 away = goal - p
                 is_behind = np.sum(away * a, axis=-1) < 0
@@ -159,7 +159,7 @@ BARE = {"rotation": 2}
 """Dimensions of the value of one goal, where it is no vector."""
 
 
-def angle(a: Array, b: Array) -> Array:
+def measure_angle(a: Array, b: Array) -> Array:
     """The angle between unit vectors (..., 3) [rad], with all its digits."""
     return np.asarray(2 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
 
@@ -170,6 +170,6 @@ def from_line(away: Array, d: Array) -> Array:
     return np.asarray(np.linalg.norm(away - along * d, axis=-1))
 
 
-def tilted(axis: Array, angle: float) -> Array:
+def tilt_across(axis: Array, angle: float) -> Array:
     """A rotation (3, 3) by `angle` about a direction perpendicular to `axis`."""
     return exp_so3(angle * perpendicular(axis))

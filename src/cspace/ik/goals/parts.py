@@ -110,7 +110,7 @@ def is_open(value: Any) -> bool:
 
 
 # --- one kind of goal each --------------------------------------------------------------------------------
-def position(values: dict[str, Any], axis: Array) -> PartialGoal:
+def goal_of_position(values: dict[str, Any], axis: Array) -> PartialGoal:
     value = values["position"]
     if not is_open(value):
         return PartialGoal("position", pose(value, ANY), BALL, {"position": value}, axis)
@@ -142,7 +142,7 @@ def position_and_rotation(values: dict[str, Any], axis: Array) -> PartialGoal:
     return PartialGoal("position+rotation", pose(p, R), (), {"position": p, "rotation": R}, axis)
 
 
-def direction(values: dict[str, Any], axis: Array) -> PartialGoal:
+def goal_of_direction(values: dict[str, Any], axis: Array) -> PartialGoal:
     d = values["direction"]
     behind = (("R", axis), *CROSS)
     return PartialGoal("direction", pose(np.zeros(3), turn_to(axis, d)), behind, {"direction": d}, axis)
@@ -159,7 +159,7 @@ def look_at(values: dict[str, Any], axis: Array) -> PartialGoal:
     return PartialGoal("look_at", pose(p, ANY), (("P", axis), *BALL), {"look_at": p}, axis)
 
 
-def ray(values: dict[str, Any], axis: Array) -> PartialGoal:
+def goal_of_ray(values: dict[str, Any], axis: Array) -> PartialGoal:
     p, d = values["ray[0]"], values["ray[1]"]
     behind = (("P", axis), ("R", axis))
     foot = p - np.sum(p * d, axis=-1, keepdims=True) * d  # the same line, by its point nearest to the base
@@ -176,13 +176,13 @@ def position_and_angle(values: dict[str, Any], axis: Array) -> PartialGoal:
 
 
 MAKERS = {
-    "position": position,
+    "position": goal_of_position,
     "rotation": rotation,
-    "direction": direction,
+    "direction": goal_of_direction,
     "position+rotation": position_and_rotation,
     "position+direction": position_and_direction,
     "look_at": look_at,
-    "ray": ray,
+    "ray": goal_of_ray,
     "position+angle_to": position_and_angle,
 }
 

@@ -10,9 +10,9 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, as_generator, whole_number
 from cspace.errors import InputError
-from cspace.ik.numeric.problem import ask, further_starts, middle
+from cspace.ik.numeric.problem import further_starts, middle_configuration, pose_problem
 from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
-from cspace.kinematics.batch import choice, thread_count
+from cspace.kinematics.batch import check_choice, thread_count
 from cspace.tolerances import FARTHEST, NUMERIC_TOLERANCE
 
 if TYPE_CHECKING:
@@ -67,8 +67,8 @@ def ik_numeric(
 
     Levenberg 1944; Sugihara 2011 (damping in proportion to the error); Bertsekas 1982 (limits).
     """
-    question = ask(robot, goal, position, frame, weights, limits, tolerance)
-    newton = choice(method, "method", METHODS) == "newton"
+    question = pose_problem(robot, goal, position, frame, weights, limits, tolerance)
+    newton = check_choice(method, "method", METHODS) == "newton"
     number = whole_number(starts, "starts", 1, MOST_STARTS)
     steps = whole_number(max_iterations, "max_iterations", 0, MOST_ITERATIONS)
     lead, n = question.goals.shape[:-2], len(robot.joint_names)
@@ -76,7 +76,7 @@ def ik_numeric(
         rng = as_generator(rng)
     posture = _posture(robot, rest, rest_weights)
     if start is None:
-        first = middle(robot, question.limits)[None] if rest is None else posture[:1]
+        first = middle_configuration(robot, question.limits)[None] if rest is None else posture[:1]
     else:
         first = _starts(robot, start, lead)
     goals = np.ascontiguousarray(question.goals.reshape(-1, 4, 4))
@@ -121,7 +121,7 @@ def ik_many_starts(
     found. Ends that differ by less than 1e-6 [rad, lengths of the arm] are one solution.
     Raises as ik_numeric does.
     """
-    question = ask(robot, goal, position, frame, weights, limits, tolerance)
+    question = pose_problem(robot, goal, position, frame, weights, limits, tolerance)
     if question.goals.ndim != 2:
         raise InputError(f"goal has shape {question.goals.shape}; ik_many_starts takes one goal")
     steps = whole_number(max_iterations, "max_iterations", 0, MOST_ITERATIONS)

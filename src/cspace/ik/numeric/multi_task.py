@@ -10,7 +10,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, as_generator, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.numeric.problem import bounds_of, further_starts, middle
+from cspace.ik.numeric.problem import bounds_of, further_starts, middle_configuration
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.spatial.checks import one_pose
@@ -138,7 +138,7 @@ def ik_tasks(
     rows, postures, listed = _packed(robot, tasks)
     rows[:, 2], postures[:, -1] = 1.0, 1.0
     bounds = bounds_of(robot, limits)
-    first = middle(robot, bounds) if start is None else _configuration(robot, start, "start")
+    first = middle_configuration(robot, bounds) if start is None else _configuration(robot, start, "start")
     base = _base(T_world_base)
     number = whole_number(starts, "starts", 1, MOST_STARTS)
     steps = whole_number(max_iterations, "max_iterations", 0, 1_000_000)

@@ -39,7 +39,7 @@ class Question:
     tolerance: float
 
 
-def ask(
+def pose_problem(
     robot: KinematicModel,
     goal: Any,
     position: Any,
@@ -118,7 +118,7 @@ def bounds_of(robot: KinematicModel, limits: Any) -> Array:
     return np.array([lower, upper])
 
 
-def middle(robot: KinematicModel, bounds: Array) -> Array:
+def middle_configuration(robot: KinematicModel, bounds: Array) -> Array:
     """The configuration halfway between the limits (n,); zero, or the limit nearest to it, where one is
     missing.
     """
@@ -138,7 +138,7 @@ def further_starts(robot: KinematicModel, bounds: Array, goals: Array, count: in
     tip at zero. rng: seed or generator of random ones; None spreads them evenly, the same in every call.
     """
     n = len(robot.joint_names)
-    share = spread(count, n) if rng is None else as_generator(rng).random((count, n))
+    share = spread_points(count, n) if rng is None else as_generator(rng).random((count, n))
     reach = 1.0
     if "P" in robot.joint_types:
         reach = LEAST_SLIDE + float(np.abs(goals[..., :3, 3]).max(initial=0.0))
@@ -151,7 +151,7 @@ def further_starts(robot: KinematicModel, bounds: Array, goals: Array, count: in
 
 
 @lru_cache(maxsize=32)
-def spread(count: int, n: int) -> Array:
+def spread_points(count: int, n: int) -> Array:
     """Points (count, n) of the unit cube, evenly spread: multiples of the powers of 1/φ, where φ is the
     positive root of xⁿ⁺¹ = x + 1 (the additive recurrence of Roberts 2018).
     """

@@ -12,7 +12,7 @@ from cspace.arrays import Array
 from cspace.ik.conditions import common_point
 from cspace.ik.redundancy.arm_angle import BRANCHES, JOINTS
 from cspace.ik.redundancy.result import Interval, Redundancy
-from cspace.ik.wrapping import violations
+from cspace.ik.wrapping import measure_violations
 from cspace.math.wrapping import TURN, wrap_angle
 from cspace.spatial import exp_so3
 from cspace.tolerances import INSIDE_END, SAME_SWIVEL
@@ -70,7 +70,7 @@ def keep_limits(solver: Solver, rows: Array) -> Flags:
     flat = rows.reshape(-1, JOINTS)
     there = np.isfinite(flat[:, 0])
     lower, upper = solver.limits.lower, solver.limits.upper
-    beyond = violations(np.where(there[:, None], flat, 0.0), solver.joint_types, lower, upper)
+    beyond = measure_violations(np.where(there[:, None], flat, 0.0), solver.joint_types, lower, upper)
     return np.asarray((there & (beyond <= 0).all(axis=-1)).reshape(rows.shape[:-1]))
 
 
@@ -85,13 +85,13 @@ def critical_swivels(solver: Solver, T: Array) -> Array:
         if any(abs(np.sin((q[3] - other) / 2)) < SAME_SWIVEL for other in elbows):
             continue
         elbows.append(float(q[3]))
-        for sphere in spheres(solver, T, q, float(looks[look])):
-            found += [roots(sphere, *condition) for condition in conditions(solver, sphere)]
+        for sphere in find_spheres(solver, T, q, float(looks[look])):
+            found += [find_roots(sphere, *condition) for condition in limit_conditions(solver, sphere)]
     values = np.sort(np.concatenate(found)) if found else np.empty(0)
     return values[np.append(True, np.diff(values) > SAME_SWIVEL)] if len(values) else values
 
 
-def spheres(solver: Solver, T: Array, q: Array, psi: float) -> tuple[Sphere, Sphere]:
+def find_spheres(solver: Solver, T: Array, q: Array, psi: float) -> tuple[Sphere, Sphere]:
     """Shoulder and wrist of the branches with the elbow of q, whose swivel is psi."""
     chain = solver.chain
     turns = exp_so3(chain.axes * q[:, None])
@@ -108,7 +108,7 @@ def spheres(solver: Solver, T: Array, q: Array, psi: float) -> tuple[Sphere, Sph
     return Sphere(0, left), Sphere(4, right)
 
 
-def conditions(solver: Solver, sphere: Sphere) -> list[tuple[Array, Array, float]]:
+def limit_conditions(solver: Solver, sphere: Sphere) -> list[tuple[Array, Array, float]]:
     """(u, v, r): uᵀ M v = r where a joint reaches a limit, or the middle one an end of its reach."""
     a, b, c = solver.chain.axes[sphere.first : sphere.first + 3]
     lower, upper = (
@@ -129,7 +129,7 @@ def conditions(solver: Solver, sphere: Sphere) -> list[tuple[Array, Array, float
     return out
 
 
-def roots(sphere: Sphere, u: Array, v: Array, r: float) -> Array:
+def find_roots(sphere: Sphere, u: Array, v: Array, r: float) -> Array:
     """The swivels (0 to 2,) in (−π, π] at which uᵀ M v = r."""
     still, cosine, sine = (float(u @ part @ v) for part in sphere.parts)
     size = float(np.hypot(cosine, sine))
@@ -163,7 +163,7 @@ def what_ends(solver: Solver, T: Array, branch: int, end: float, inwards: float)
     if not np.isfinite(beyond[0]):
         return "fold"
     lower, upper = solver.limits.lower, solver.limits.upper
-    out = violations(beyond[None], solver.joint_types, lower, upper)[0]
+    out = measure_violations(beyond[None], solver.joint_types, lower, upper)[0]
     joint = int(np.argmax(out))
     if not out[joint] > 0:
         return "fold"

@@ -17,7 +17,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.ik.wrapping import into_limits, short_way, turning
+from cspace.ik.wrapping import into_limits, short_way, turning_joints
 from cspace.math.wrapping import TURN, wrap_near
 from cspace.tolerances import RESTING_JOINT
 
@@ -66,7 +66,7 @@ class Curve:
         step = self.s[i + 1] - self.s[i]
         part = np.where(step > 0, (inner - self.s[i]) / np.where(step > 0, step, 1.0), 0.0)
         chord = self.points[i] + part[:, None] * (self.points[i + 1] - self.points[i])
-        exact, _ = onto(self.solver, self.q, chord, self.tangents[i], self.whole_pose)
+        exact, _ = return_onto_curve(self.solver, self.q, chord, self.tangents[i], self.whole_pose)
         exact = np.where(np.isnan(exact), self.points[i], exact)  # a corner too sharp for its chord
         return exact if self.shift is None else exact + around[:, None] * self.shift
 
@@ -93,11 +93,11 @@ class Arc:
         for end, way in ((self.first, -1), (self.last, 1)):
             if np.isfinite(end):
                 continue
-            drift = way * (shift if curve.shift is not None else outward(curve, way))
+            drift = way * (shift if curve.shift is not None else outward_directions(curve, way))
             low, high = np.where(drift < 0, -np.inf, low), np.where(drift > 0, np.inf, high)
         if self.is_loop:
             round_about = (shift != 0) | (high - low >= TURN)
-            round_about &= turning(curve.solver.joint_types)
+            round_about &= turning_joints(curve.solver.joint_types)
             low, high = np.where(round_about, -np.pi, low), np.where(round_about, np.pi, high)
         return np.stack([low, high], axis=1)
 
@@ -130,9 +130,9 @@ def arc_through(solver: Solver, q: Array, direction: Array, whole_pose: bool) ->
     moved, fits = into_limits(q[None], solver.joint_types, lower, upper)
     if not fits[0]:
         return None
-    curve, ends = trace(solver, np.ascontiguousarray(moved[0]), direction, whole_pose)
-    last = stop(curve, lower, upper, 1, ends[1])
-    first = stop(curve, lower, upper, -1, ends[0])
+    curve, ends = trace_curve(solver, np.ascontiguousarray(moved[0]), direction, whole_pose)
+    last = find_stop(curve, lower, upper, 1, ends[1])
+    first = find_stop(curve, lower, upper, -1, ends[0])
     if curve.shift is not None and np.isinf([first, last]).all():
         return Arc(curve, 0.0, curve.length, True)
     return Arc(curve, first, last, False)
@@ -142,27 +142,31 @@ def nearest_member(solver: Solver, q: Array, direction: Array, whole_pose: bool,
     """The configuration (dof,) of the self-motion through q that is nearest to a seed, limits aside, each
     revolute joint by the turn that brings it closest."""
     rounds, parts = 9, 33
-    curve, _ = trace(solver, np.ascontiguousarray(q), direction, whole_pose)
-    low, high = curve.beside(int(np.argmin(distances(solver, curve.points, seed))))
+    curve, _ = trace_curve(solver, np.ascontiguousarray(q), direction, whole_pose)
+    low, high = curve.beside(int(np.argmin(measure_distances(solver, curve.points, seed))))
     for _ in range(rounds):  # each narrows the piece between two points sixteenfold
         s = np.linspace(low, high, parts)
         points = curve.at(s)
-        k = int(np.argmin(distances(solver, points, seed)))
+        k = int(np.argmin(measure_distances(solver, points, seed)))
         low, high = s[max(k - 1, 0)], s[min(k + 1, parts - 1)]
-    return np.where(turning(solver.joint_types), wrap_near(points[k], seed), points[k])
+    return np.where(turning_joints(solver.joint_types), wrap_near(points[k], seed), points[k])
 
 
-def distances(solver: Solver, points: Array, seed: Array) -> Array:
+def measure_distances(solver: Solver, points: Array, seed: Array) -> Array:
     """How far configurations (k, dof) are from a seed, revolute joints the short way round, (k,)."""
     return np.asarray(np.linalg.norm(short_way(points - seed, solver.joint_types), axis=1))
 
 
-def trace(solver: Solver, q: Array, direction: Array, whole_pose: bool) -> tuple[Curve, tuple[int, int]]:
+def trace_curve(
+    solver: Solver, q: Array, direction: Array, whole_pose: bool
+) -> tuple[Curve, tuple[int, int]]:
     """The curve through q, with the extremes of every joint among its points, and how it ends either way."""
     ahead, along, end = _core._ik_follow(solver, q, np.ascontiguousarray(direction), whole_pose)
     start, ends, shift = 0, (end, end), None
     if end == CLOSED:
-        shift = np.where(turning(solver.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0)
+        shift = np.where(
+            turning_joints(solver.joint_types), TURN * np.round((ahead[-1] - ahead[0]) / TURN), 0.0
+        )
     else:
         behind, back, other = _core._ik_follow(solver, q, -np.ascontiguousarray(direction), whole_pose)
         start, ends = len(behind) - 1, (other, end)
@@ -187,7 +191,7 @@ def with_extremes(
     sign = np.sign(tangents[where, joint])
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        exact, t = onto(solver, q, before + middle[:, None] * step, tangents[where], whole_pose)
+        exact, t = return_onto_curve(solver, q, before + middle[:, None] * step, tangents[where], whole_pose)
         same = np.sign(t[np.arange(len(where)), joint]) == sign
         low, high = np.where(same, middle, low), np.where(same, high, middle)
     order = np.lexsort((low, where))
@@ -199,7 +203,7 @@ def with_extremes(
     )
 
 
-def stop(curve: Curve, lower: Array, upper: Array, way: int, end: int) -> float:
+def find_stop(curve: Curve, lower: Array, upper: Array, way: int, end: int) -> float:
     """The arc length at which the curve, followed from q forward (way 1) or back (−1), meets a limit;
     infinite where it meets none, the end of the curve where it was lost.
     """
@@ -222,7 +226,7 @@ def stop(curve: Curve, lower: Array, upper: Array, way: int, end: int) -> float:
     if not outside.any():
         return way * np.inf if curve.shift is not None or end == FAR else float(s[-1])
     i = int(np.argmax(outside))
-    return crossing(curve, float(s[i - 1]), float(s[i]), (lower, upper, moving))
+    return find_crossing(curve, float(s[i - 1]), float(s[i]), (lower, upper, moving))
 
 
 def times_around(points: Array, shift: Array, lower: Array, upper: Array) -> int:
@@ -236,7 +240,7 @@ def times_around(points: Array, shift: Array, lower: Array, upper: Array) -> int
     return int(min(np.floor(least) + 1, MOST_TURNS))
 
 
-def crossing(curve: Curve, inside: float, outside: float, limits: tuple[Array, Array, Any]) -> float:
+def find_crossing(curve: Curve, inside: float, outside: float, limits: tuple[Array, Array, Any]) -> float:
     """The last arc length, between these two, at which the curve is within limits."""
     lower, upper, moving = limits
     for _ in range(HALVINGS):
@@ -247,13 +251,15 @@ def crossing(curve: Curve, inside: float, outside: float, limits: tuple[Array, A
     return inside
 
 
-def outward(curve: Curve, way: int) -> npt.NDArray[np.float64]:
+def outward_directions(curve: Curve, way: int) -> npt.NDArray[np.float64]:
     """The directions of prismatic joints at an end of an unbounded curve; zero for joints at rest."""
     t = curve.tangents[-1 if way > 0 else 0]
     return np.where(np.abs(t) > RESTING_JOINT, t, 0.0)
 
 
-def onto(solver: Solver, q: Array, near: Array, along: Array, whole_pose: bool) -> tuple[Array, Array]:
+def return_onto_curve(
+    solver: Solver, q: Array, near: Array, along: Array, whole_pose: bool
+) -> tuple[Array, Array]:
     """Rows of joints brought onto the curve through q, and the tangents there."""
     rows = [np.ascontiguousarray(value) for value in (q, near, along)]
     return _core._ik_onto(solver, *rows, whole_pose)

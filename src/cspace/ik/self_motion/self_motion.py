@@ -14,7 +14,7 @@ from cspace.arrays import Array, whole_number
 from cspace.errors import InputError
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.self_motion.continuation import Arc, arc_through, nearest_member
-from cspace.ik.wrapping import wrap
+from cspace.ik.wrapping import wrap_joints
 from cspace.tolerances import MOVING_JOINT
 
 if TYPE_CHECKING:
@@ -79,7 +79,7 @@ class SelfMotion:
             raise InputError(f"the self-motion is unbounded: {name} has no limits; give the robot limits")
         q = self._arc.sample(count)
         goes_round = self._arc.is_loop & (np.ptp(self.bounds, axis=1) >= 2 * np.pi)
-        return np.where(goes_round, wrap(q, self._solver.joint_types), q)
+        return np.where(goes_round, wrap_joints(q, self._solver.joint_types), q)
 
     def nearest(self, q: Array) -> Array:
         """The configuration of the family that is nearest to q (dof,), (dof,) [rad, m].

@@ -63,7 +63,7 @@ class Branch:
         """Where it ends and why, as one sentence."""
         if self:
             return f"follows {all_of(len(self.poses))}"
-        return f"ends {where(self.end, len(self.q))}: {self._cause()}"
+        return f"ends {describe_place(self.end, len(self.q))}: {self._cause()}"
 
     def _cause(self) -> str:
         if self.cause == "limit":
@@ -163,7 +163,7 @@ def all_of(n: int) -> str:
     return "the one pose" if n == 1 else f"all {n} poses"
 
 
-def where(end: float, reached: int) -> str:
+def describe_place(end: float, reached: int) -> str:
     """The place of an end as text; reached: the number of poses before it."""
     if reached == 0:
         return "before pose 0"

@@ -13,12 +13,12 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.numeric import ik_numeric
-from cspace.ik.numeric.problem import Question, ask, middle
+from cspace.ik.numeric.problem import Question, middle_configuration, pose_problem
 from cspace.ik.solutions import pose_errors
 from cspace.ik.solver import as_solver
 from cspace.ik.tracking.result import Branch, Track
-from cspace.ik.wrapping import turning
-from cspace.kinematics.batch import choice
+from cspace.ik.wrapping import turning_joints
+from cspace.kinematics.batch import check_choice
 from cspace.spatial import interpolate_decoupled
 from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
 
@@ -70,10 +70,10 @@ def track(
 
     Allgower and Georg 1990, chapter 6 (predictor and corrector).
     """
-    question = ask(robot, poses, None, None, None, limits, NUMERIC_TOLERANCE)
+    question = pose_problem(robot, poses, None, None, None, limits, NUMERIC_TOLERANCE)
     T = path_of(question.goals)
     cost_function = cost_of(robot, cost)
-    bounds = np.stack([*open_bounds(robot, question), strides(robot, max_step)])
+    bounds = np.stack([*open_bounds(robot, question), check_strides(robot, max_step)])
     starts, numbers, complete, note = starts_of(robot, question, T, start)
     whole_turns = start is None and not is_redundant(robot, question)
     b, n = len(starts), len(robot.joint_names)
@@ -114,12 +114,12 @@ def open_bounds(robot: KinematicModel, question: Question) -> tuple[Array, Array
     return -free, free
 
 
-def strides(robot: KinematicModel, max_step: Any) -> Array:
+def check_strides(robot: KinematicModel, max_step: Any) -> Array:
     """How far each joint may move between neighbouring poses (n,); one number counts for those that turn."""
     steps = as_floats(max_step, "max_step", finite=False)
     n = len(robot.joint_names)
     if steps.ndim == 0:
-        steps = np.where(turning(robot.joint_types), steps, np.inf)
+        steps = np.where(turning_joints(robot.joint_types), steps, np.inf)
     if steps.shape != (n,) or not (steps > 0).all():
         raise InputError(
             f"max_step is {max_step!r}; expected one positive angle, or {n} steps, one per joint"
@@ -141,7 +141,9 @@ def starts_of(robot: KinematicModel, question: Question, T: Array, start: Any) -
             raise InputError(f"start has shape {seed.shape}, expected ({n},): one configuration")
         return nearest_start(robot, question, first, seed)
     if is_redundant(robot, question):
-        q, numbers, complete, note = nearest_start(robot, question, first, middle(robot, question.limits))
+        q, numbers, complete, note = nearest_start(
+            robot, question, first, middle_configuration(robot, question.limits)
+        )
         return q, numbers, complete, note or "; it begins nearest the middle of the limits"
     s: Any = as_solver(robot).solve(first)
     note = "" if s else f"the first pose is not reached: {s.reason}"
@@ -209,7 +211,7 @@ def cost_of(robot: KinematicModel, cost: Cost) -> Callable[[Array], float]:
     """The price of a branch q (m, dof)."""
     if callable(cost):
         return lambda q: number_of_cost(answer_of(cost, q))
-    word = choice(cost, "cost", COSTS)
+    word = check_choice(cost, "cost", COSTS)
     if word == "length":
         return lambda q: float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())
     if word == "step":

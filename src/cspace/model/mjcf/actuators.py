@@ -9,7 +9,7 @@ from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.xml import Element
 
 
-def efforts(actuators: Iterable[Element], defaults: Defaults) -> dict[str, float]:
+def read_efforts(actuators: Iterable[Element], defaults: Defaults) -> dict[str, float]:
     """The largest force or torque of all actuators on each joint, by its name [N or N·m]; inf where unknown.
 
     Force is gear · forcerange; of a <motor>, whose force is its control, gear · ctrlrange serves as well.
@@ -19,20 +19,20 @@ def efforts(actuators: Iterable[Element], defaults: Defaults) -> dict[str, float
         given = defaults.given(element)
         joint = given.text("joint") or given.text("jointinparent")
         if joint:
-            found[joint] = found.get(joint, 0.0) + effort(given)
+            found[joint] = found.get(joint, 0.0) + read_effort(given)
     return found
 
 
-def effort(given: Given) -> float:
+def read_effort(given: Given) -> float:
     """The largest force of one actuator on its joint."""
     gear = abs(given.floats("gear", (1.0,), 1, 6)[0])
-    force = bound(given, "force")
+    force = largest_magnitude(given, "force")
     if given.element.tag == "motor":
-        force = min(force, bound(given, "ctrl"))
+        force = min(force, largest_magnitude(given, "ctrl"))
     return gear * force if math.isfinite(force) else math.inf
 
 
-def bound(given: Given, what: str) -> float:
+def largest_magnitude(given: Given, what: str) -> float:
     """The largest magnitude within a range; inf where it does not count."""
     low, high = given.span(f"{what}range")
     limited = given.word(f"{what}limited", "auto", ("true", "false", "auto"))

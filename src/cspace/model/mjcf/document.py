@@ -5,9 +5,9 @@ from __future__ import annotations
 import os
 
 from cspace.errors import DescriptionError
-from cspace.model.attributes import fault, text_of
+from cspace.model.attributes import fault_at, text_of
 from cspace.model.files import read_bytes
-from cspace.model.xml import Element, parse, parse_source
+from cspace.model.xml import Element, parse_document, parse_source
 from cspace.tolerances import DESCRIPTION_BYTES, MJCF_DEPTH
 
 
@@ -37,7 +37,7 @@ class _Includes:
         while stack:
             element, depth = stack.pop()
             if depth > MJCF_DEPTH:
-                raise fault(element, f"elements are nested more than {MJCF_DEPTH} deep; this is no robot")
+                raise fault_at(element, f"elements are nested more than {MJCF_DEPTH} deep; this is no robot")
             while any(child.tag == "include" for child in element.children):
                 element.children = [part for child in element.children for part in self.parts(child)]
             stack.extend((child, depth + 1) for child in element.children)
@@ -48,26 +48,28 @@ class _Includes:
         if element.tag != "include":
             return [element]
         if element.children:
-            raise fault(element, "<include> holds elements; what is included stands in its file")
+            raise fault_at(element, "<include> holds elements; what is included stands in its file")
         included = self.included(element)
         if not included.children:
-            raise fault(element, f"the included file {included.path!r} holds no elements")
+            raise fault_at(element, f"the included file {included.path!r} holds no elements")
         return included.children
 
     def included(self, element: Element) -> Element:
         name = text_of(element, "file")
         if self.main is None or element.path is None:
-            raise fault(element, f"{name!r} is included by a text, which has no folder; give the file's path")
+            raise fault_at(
+                element, f"{name!r} is included by a text, which has no folder; give the file's path"
+            )
         places = [os.path.join(os.path.dirname(path), name) for path in (self.main, element.path)]
         path = next((place for place in places if os.path.isfile(place)), places[0])
         if os.path.realpath(path) in self.seen:
-            raise fault(element, f"the file {name!r} is included a second time; MuJoCo takes a file once")
+            raise fault_at(element, f"the file {name!r} is included a second time; MuJoCo takes a file once")
         self.seen.add(os.path.realpath(path))
         try:
             data = read_bytes(path)
         except DescriptionError as error:
-            raise fault(element, f"<include file={name!r}>: {error}") from None
+            raise fault_at(element, f"<include file={name!r}>: {error}") from None
         self.bytes += len(data)
         if self.bytes > DESCRIPTION_BYTES:
-            raise fault(element, f"the included files hold more than {DESCRIPTION_BYTES} bytes")
-        return parse(data, path, 0, MJCF_DEPTH)
+            raise fault_at(element, f"the included files hold more than {DESCRIPTION_BYTES} bytes")
+        return parse_document(data, path, 0, MJCF_DEPTH)

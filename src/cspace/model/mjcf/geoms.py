@@ -12,11 +12,11 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import suggest
-from cspace.model.attributes import at, fault, floats
+from cspace.model.attributes import complain_at, fault_at, read_floats
 from cspace.model.link import Geometry, Mesh
 from cspace.model.mjcf.given import Defaults, Given
-from cspace.model.mjcf.settings import Settings, shortest, unit
-from cspace.model.transforms import from_wxyz, inverse, translation
+from cspace.model.mjcf.settings import Settings, shortest_rotation, unit_direction
+from cspace.model.transforms import from_wxyz, invert_transform, translation_by
 from cspace.model.xml import Element
 
 SOLIDS: Final = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}
@@ -78,21 +78,21 @@ class Geoms:
         if len(size) < count or min(size[:count]) <= 0.0:
             rule = f"it needs {count} above zero: radii and half lengths"
             holder = given.holder("size") or given.element
-            raise fault(holder, f"size of a {kind} is {size[:count]}; {rule}")
+            raise fault_at(holder, f"size of a {kind} is {size[:count]}; {rule}")
         return Geom(kind, tuple(size[:count]), T_body_frame @ place, given)
 
     def between(self, given: Given, kind: str) -> tuple[Array, float]:
         """The frame (4, 4) of a long solid between two points, and half its length [m]."""
         element = given.holder("fromto") or given.element
         if kind == "sphere":
-            raise fault(element, "fromto makes capsules, cylinders, boxes and ellipsoids, no sphere")
+            raise fault_at(element, "fromto makes capsules, cylinders, boxes and ellipsoids, no sphere")
         if "pos" in element.attributes:
-            raise fault(element, f"<{element.tag}> has a place twice, by 'pos' and 'fromto'")
+            raise fault_at(element, f"<{element.tag}> has a place twice, by 'pos' and 'fromto'")
         ends = np.array(given.floats("fromto", None, 6))
         start, end = ends[:3], ends[3:]
         along = start - end  # MuJoCo's z points from the second point to the first
-        T = shortest(unit(along.tolist(), element, "fromto"))
-        return translation((start + end) / 2.0) @ T, math.hypot(*along.tolist()) / 2.0
+        T = shortest_rotation(unit_direction(along.tolist(), element, "fromto"))
+        return translation_by((start + end) / 2.0) @ T, math.hypot(*along.tolist()) / 2.0
 
     def shapes(self, geom: Geom) -> tuple[Geometry | None, Geometry | None]:
         """How it is drawn and how it collides; None where it is not, or where links have no such shape."""
@@ -116,7 +116,7 @@ class Geoms:
             size = (half[0], 2.0 * half[1])
         else:
             return None
-        return at(given.element, lambda: Geometry(kind, size, geom.T_body_geom, name, None, color))
+        return complain_at(given.element, lambda: Geometry(kind, size, geom.T_body_geom, name, None, color))
 
     def mesh(self, geom: Geom, name: str, color: Color | None) -> Geometry | None:
         """The mesh of a geom by reference; None where no file holds it."""
@@ -124,7 +124,7 @@ class Geoms:
         holder = given.holder("mesh") or given.element
         called = given.text("mesh")
         if called not in self.meshes:
-            raise fault(holder, str(suggest("mesh", called, self.meshes, owner="<asset>")))
+            raise fault_at(holder, str(suggest("mesh", called, self.meshes, owner="<asset>")))
         asset = self.meshes[called]
         file = asset.element.attributes.get("file", "").strip()
         x, y, z = asset.floats("scale", (1.0, 1.0, 1.0), 3)
@@ -132,9 +132,9 @@ class Geoms:
             return None
         file = posixpath.basename(file.replace("\\", "/")) if self.settings.strip else file
         uri = posixpath.join(self.settings.mesh_folder, file)
-        T = geom.T_body_geom @ inverse(reference(asset, np.array([x, y, z])))
-        mesh = at(asset.element, lambda: Mesh(uri, (x, y, z), self.beside, self.package_paths))
-        return at(given.element, lambda: Geometry("mesh", (), T, name, mesh, color))
+        T = geom.T_body_geom @ invert_transform(reference_frame(asset, np.array([x, y, z])))
+        mesh = complain_at(asset.element, lambda: Mesh(uri, (x, y, z), self.beside, self.package_paths))
+        return complain_at(given.element, lambda: Geometry("mesh", (), T, name, mesh, color))
 
     def color(self, given: Given) -> Color | None:
         """The colour of a geom: its own, else that of its material."""
@@ -144,7 +144,7 @@ class Geoms:
             holder = self.materials[material].holder("rgba")
         if holder is None:
             return None
-        r, g, b, a = floats(holder, "rgba", None, 4)
+        r, g, b, a = read_floats(holder, "rgba", None, 4)
         return (r, g, b, a)
 
 
@@ -154,13 +154,13 @@ def mesh_name(element: Element) -> str:
     return element.attributes.get("name", "") or posixpath.splitext(posixpath.basename(file))[0]
 
 
-def reference(asset: Given, scale: Array) -> Array:
+def reference_frame(asset: Given, scale: Array) -> Array:
     """The frame (4, 4) that a mesh is moved out of: refpos and refquat, refpos scaled (3,) as the mesh is."""
-    T = translation(scale * asset.floats("refpos", (0.0, 0.0, 0.0), 3))
+    T = translation_by(scale * asset.floats("refpos", (0.0, 0.0, 0.0), 3))
     if asset.holder("refquat") is None:
         return T
     quaternion = np.array(asset.floats("refquat", None, 4))
     length = math.hypot(*quaternion.tolist())
     if length == 0.0:
-        raise fault(asset.element, "refquat of <mesh> is zero; a quaternion has the length 1")
+        raise fault_at(asset.element, "refquat of <mesh> is zero; a quaternion has the length 1")
     return T @ from_wxyz(quaternion / length)

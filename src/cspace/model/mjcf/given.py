@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cspace.errors import suggest
-from cspace.model.attributes import fault, some_floats
+from cspace.model.attributes import fault_at, some_floats
 from cspace.model.values import BEYOND
 from cspace.model.xml import Element
 from cspace.tolerances import LARGEST_NUMBER
@@ -45,7 +45,7 @@ class Given:
         numbers = some_floats(holder, name, default, least, least if most is None else most)
         largest = max(numbers, key=abs, default=0.0)
         if abs(largest) > LARGEST_NUMBER:
-            raise fault(holder, f"{name} of <{holder.tag}> holds {largest:g}; {BEYOND}")
+            raise fault_at(holder, f"{name} of <{holder.tag}> holds {largest:g}; {BEYOND}")
         return numbers
 
     def span(self, name: str) -> tuple[float, float]:
@@ -65,7 +65,7 @@ class Given:
         word = holder.attributes[name].strip()
         if word not in known:
             error = suggest("value", word, known, owner=f"{name} of <{holder.tag}>")
-            raise fault(holder, str(error))
+            raise fault_at(holder, str(error))
         return word
 
     def flag(self, name: str, default: bool) -> bool:
@@ -95,7 +95,7 @@ class Defaults:
             for nested in section.all("default"):
                 name = nested.attributes.get("class", "")
                 if not name or name in self.behind:
-                    raise fault(
+                    raise fault_at(
                         nested, f"a second default class {name!r}" if name else "a class needs a name"
                     )
                 self.behind[name] = self.add(nested, self.behind[outer])
@@ -106,22 +106,22 @@ class Defaults:
         found = dict(outer)
         for element in section.children:
             if element.tag != "default":
-                tag = slot(element)
+                tag = class_slot(element)
                 found[tag] = (element, *found.get(tag, ()))
         return found
 
     def given(self, element: Element, around: str | None = None) -> Given:
         """The element with its class behind it: the one it names, else that of the bodies around it."""
         name = element.attributes.get("class", around or MAIN)
-        return Given(element, self.known(name, element).get(slot(element), ()))
+        return Given(element, self.known(name, element).get(class_slot(element), ()))
 
     def known(self, name: str, element: Element) -> dict[str, tuple[Element, ...]]:
         """The class of that name; `element` is where a complaint belongs."""
         if name not in self.behind:
-            raise fault(element, str(suggest("default class", name, self.behind)))
+            raise fault_at(element, str(suggest("default class", name, self.behind)))
         return self.behind[name]
 
 
-def slot(element: Element) -> str:
+def class_slot(element: Element) -> str:
     """The tag under which a class stores the defaults of an element."""
     return "general" if element.tag in ACTUATORS else element.tag

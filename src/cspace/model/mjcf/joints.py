@@ -12,12 +12,12 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import suggest
-from cspace.model.attributes import at, fault
+from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Joint, Mimic
-from cspace.model.mjcf.actuators import bound
+from cspace.model.mjcf.actuators import largest_magnitude
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.settings import Settings
-from cspace.model.transforms import rotation_about, translation
+from cspace.model.transforms import rotation_about, translation_by
 from cspace.model.values import IDENTITY, unit_axis
 from cspace.model.xml import Element
 
@@ -49,7 +49,7 @@ class Draft:
 
     def motion(self, by: float) -> Array:
         """The motion (4, 4) by an angle [rad] or a distance [m]."""
-        return rotation_about(self.axis, by) if self.kind == "hinge" else translation(by * self.axis)
+        return rotation_about(self.axis, by) if self.kind == "hinge" else translation_by(by * self.axis)
 
     def joint(self, parent: str, child: str, place: Array, coupling: Coupling | None, effort: float) -> Joint:
         """The joint between two links, standing at `place` (4, 4) in its parent, driven by `effort`."""
@@ -75,7 +75,7 @@ def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings)
         free = (IDENTITY, np.array([1.0, 0.0, 0.0]), 0.0, -math.inf, math.inf, math.inf, None, None)
         return Draft(name, kind, *free, element)
     if kind == "ball":
-        raise fault(
+        raise fault_at(
             given.holder("type") or element,
             f"joint {name!r} is a ball joint, which has no single coordinate; write it as three hinges with"
             " one 'pos' and perpendicular axes",
@@ -84,29 +84,33 @@ def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings)
     R = T_body_frame[:3, :3]
     anchor = R @ given.floats("pos", (0.0, 0.0, 0.0), 3) + T_body_frame[:3, 3]
     direction = given.floats("axis", (0.0, 0.0, 1.0), 3)
-    axis = at(given.holder("axis") or element, lambda: unit_axis(R @ direction, f"axis of joint {name!r}"))
-    lower, upper = limits(given, name, unit, settings)
+    axis = complain_at(
+        given.holder("axis") or element, lambda: unit_axis(R @ direction, f"axis of joint {name!r}")
+    )
+    lower, upper = read_limits(given, name, unit, settings)
     damping, friction = (
         None if given.holder(key) is None else given.floats(key, None, 1, 9)[0]
         for key in ("damping", "frictionloss")
     )
-    ref, effort = given.number("ref", 0.0) * unit, bound(given, "actuatorfrc")
-    return Draft(name, kind, translation(anchor), axis, ref, lower, upper, effort, damping, friction, element)
+    ref, effort = given.number("ref", 0.0) * unit, largest_magnitude(given, "actuatorfrc")
+    return Draft(
+        name, kind, translation_by(anchor), axis, ref, lower, upper, effort, damping, friction, element
+    )
 
 
-def limits(given: Given, name: str, unit: float, settings: Settings) -> tuple[float, float]:
+def read_limits(given: Given, name: str, unit: float, settings: Settings) -> tuple[float, float]:
     """The range of a joint [rad or m]; ±inf where it has none."""
     holder = given.holder("range")
     low, high = given.span("range")
     limited = given.word("limited", "auto", ("true", "false", "auto"))
     if limited == "auto" and not settings.autolimits and holder is not None:
         rule = "say limited= as well, or leave autolimits on in <compiler>"
-        raise fault(holder, f"joint {name!r} has a range, and autolimits is off; {rule}")
+        raise fault_at(holder, f"joint {name!r} has a range, and autolimits is off; {rule}")
     if limited == "false" or (limited == "auto" and not low < high):
         return -math.inf, math.inf
     if not low < high:
         text = f"joint {name!r} is limited to the range {low:g} to {high:g}; the first must be less"
-        raise fault(holder or given.element, text)
+        raise fault_at(holder or given.element, text)
     return low * unit, high * unit
 
 
@@ -125,10 +129,10 @@ class Coupling:
             return None
         leader = self.leader
         offset = self.offset + follower.ref - self.factor * leader.ref
-        return at(self.element, lambda: Mimic(leader.name, self.factor, offset))
+        return complain_at(self.element, lambda: Mimic(leader.name, self.factor, offset))
 
 
-def couplings(
+def read_couplings(
     equalities: Sequence[Element], defaults: Defaults, drafts: Mapping[str, Draft]
 ) -> dict[str, Coupling]:
     """The couplings of joints that are straight lines, by the joint that follows.
@@ -140,9 +144,9 @@ def couplings(
         given = defaults.given(element)
         if element.tag != "joint" or not given.flag("active", True):
             continue
-        follower = named(element, "joint1", drafts)
-        leader = named(element, "joint2", drafts) if element.attributes.get("joint2") else None
-        offset, factor, *rest = coefficients(given)
+        follower = joint_named(element, "joint1", drafts)
+        leader = joint_named(element, "joint2", drafts) if element.attributes.get("joint2") else None
+        offset, factor, *rest = read_coefficients(given)
         if leader is not None and any(rest):
             LOG.warning(
                 "%s:%d: joints %r and %r are coupled by a polynomial of degree two or more; they are read as"
@@ -154,22 +158,22 @@ def couplings(
             )
             continue
         if follower.name in found:
-            raise fault(element, f"joint {follower.name!r} is coupled twice; it can follow one joint")
+            raise fault_at(element, f"joint {follower.name!r} is coupled twice; it can follow one joint")
         found[follower.name] = Coupling(leader, offset, factor, element)
     return found
 
 
-def coefficients(given: Given) -> list[float]:
+def read_coefficients(given: Given) -> list[float]:
     """The five coefficients of a coupling, the constant first; as in MuJoCo those left out are 0 1 0 0 0."""
     numbers = given.floats("polycoef", (0.0, 1.0), 1, 5)
     return [*numbers, *(0.0, 1.0, 0.0, 0.0, 0.0)[len(numbers) :]]
 
 
-def named(element: Element, attribute: str, drafts: Mapping[str, Draft]) -> Draft:
+def joint_named(element: Element, attribute: str, drafts: Mapping[str, Draft]) -> Draft:
     """The joint that an equality names."""
     name = element.attributes.get(attribute, "").strip()
     if name not in drafts:
-        raise fault(element, f"{attribute} of an equality: {suggest('joint', name, drafts)}")
+        raise fault_at(element, f"{attribute} of an equality: {suggest('joint', name, drafts)}")
     if drafts[name].kind == "free":
-        raise fault(element, f"joint {name!r} is free and can be in no equality")
+        raise fault_at(element, f"joint {name!r} is free and can be in no equality")
     return drafts[name]

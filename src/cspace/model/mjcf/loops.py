@@ -9,16 +9,16 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import suggest
-from cspace.model.attributes import at, fault
+from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Loop
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.skeleton import WORLD, Skeleton
 from cspace.model.mounting import free_name
-from cspace.model.transforms import from_wxyz, inverse, translation
+from cspace.model.transforms import from_wxyz, invert_transform, translation_by
 from cspace.model.xml import Element
 
 
-def loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skeleton) -> tuple[Loop, ...]:
+def read_loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skeleton) -> tuple[Loop, ...]:
     """A spherical loop for each <connect> and a rigid one for each <weld> that is active."""
     found: list[Loop] = []
     for element in equalities:
@@ -26,38 +26,38 @@ def loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skeleton)
             continue
         wish = element.attributes.get("name", "") or f"{element.tag}_{len(found) + 1}"
         name = free_name(wish, {*skeleton.joint_names, *(loop.name for loop in found)})
-        make = connect if element.tag == "connect" else weld
-        found.append(at(element, partial(make, name, element, skeleton)))
+        make = read_connect if element.tag == "connect" else read_weld
+        found.append(complain_at(element, partial(make, name, element, skeleton)))
     return tuple(found)
 
 
-def connect(name: str, element: Element, skeleton: Skeleton) -> Loop:
+def read_connect(name: str, element: Element, skeleton: Skeleton) -> Loop:
     """Two bodies that share a point: two sites, or where the anchor in the first is when all is at rest."""
     ends = two_sites(element, skeleton)
     if ends is not None:
         return Loop(name, "spherical", *ends)
     first, second = two_bodies(element, skeleton)
-    origin = translation(np.array(Given(element).floats("anchor", None, 3)))
-    far = inverse(skeleton.rest[second]) @ skeleton.rest[first] @ origin
+    origin = translation_by(np.array(Given(element).floats("anchor", None, 3)))
+    far = invert_transform(skeleton.rest[second]) @ skeleton.rest[first] @ origin
     return Loop(name, "spherical", first, second, origin, far)
 
 
-def weld(name: str, element: Element, skeleton: Skeleton) -> Loop:
+def read_weld(name: str, element: Element, skeleton: Skeleton) -> Loop:
     """Two bodies that are one: two sites, or as `relpose` says or the rest has it."""
     ends = two_sites(element, skeleton)
     if ends is not None:
         return Loop(name, "fixed", *ends)
     first, second = two_bodies(element, skeleton)
-    return Loop(name, "fixed", first, second, relative(element, first, second, skeleton))
+    return Loop(name, "fixed", first, second, relative_pose(element, first, second, skeleton))
 
 
-def relative(element: Element, first: str, second: str, skeleton: Skeleton) -> Array:
+def relative_pose(element: Element, first: str, second: str, skeleton: Skeleton) -> Array:
     """The pose (4, 4) of the second body in the first; a quaternion of zeros means that of the rest."""
     numbers = np.array(Given(element).floats("relpose", (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 7))
     length = float(np.linalg.norm(numbers[3:]))
     if length == 0.0:
-        return inverse(skeleton.rest[first]) @ skeleton.rest[second]
-    return translation(numbers[:3]) @ from_wxyz(numbers[3:] / length)
+        return invert_transform(skeleton.rest[first]) @ skeleton.rest[second]
+    return translation_by(numbers[:3]) @ from_wxyz(numbers[3:] / length)
 
 
 def two_sites(element: Element, skeleton: Skeleton) -> tuple[str, str] | None:
@@ -67,7 +67,7 @@ def two_sites(element: Element, skeleton: Skeleton) -> tuple[str, str] | None:
         return None
     for name in names:
         if name not in skeleton.sites:
-            raise fault(element, f"<{element.tag}>: {suggest('site', name, skeleton.sites)}")
+            raise fault_at(element, f"<{element.tag}>: {suggest('site', name, skeleton.sites)}")
     first, second = (skeleton.sites[str(name)] for name in names)
     return first, second
 
@@ -77,5 +77,5 @@ def two_bodies(element: Element, skeleton: Skeleton) -> tuple[str, str]:
     first, second = (element.attributes.get(key, WORLD) for key in ("body1", "body2"))
     for name in (first, second):
         if name not in skeleton.bodies:
-            raise fault(element, f"<{element.tag}>: {suggest('body', name, skeleton.bodies)}")
+            raise fault_at(element, f"<{element.tag}>: {suggest('body', name, skeleton.bodies)}")
     return first, second

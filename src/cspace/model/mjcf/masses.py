@@ -9,15 +9,15 @@ from dataclasses import replace
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.model.attributes import at, fault
+from cspace.model.attributes import complain_at, fault_at
 from cspace.model.link import Inertial
 from cspace.model.mjcf.geoms import SOLIDS, Geom
 from cspace.model.mjcf.given import Given
 from cspace.model.mjcf.settings import ORIENTATIONS, Settings
-from cspace.model.tree import lumped
+from cspace.model.tree import lump_bodies
 
 
-def written(given: Given, T_body_frame: Array, settings: Settings) -> Inertial:
+def read_inertial(given: Given, T_body_frame: Array, settings: Settings) -> Inertial:
     """What <inertial> says, in a frame of its body."""
     element = given.element
     given.floats("pos", None, 3)  # must be there
@@ -25,7 +25,7 @@ def written(given: Given, T_body_frame: Array, settings: Settings) -> Inertial:
     mass, full = given.number("mass"), given.holder("fullinertia")
     if full is not None:
         if "diaginertia" in element.attributes or given.holder(*ORIENTATIONS) is not None:
-            raise fault(
+            raise fault_at(
                 element, "fullinertia stands in the axes of its body; it takes neither diaginertia nor a turn"
             )
         xx, yy, zz, xy, xz, yz = given.floats("fullinertia", None, 6)
@@ -33,10 +33,10 @@ def written(given: Given, T_body_frame: Array, settings: Settings) -> Inertial:
     else:
         local = np.diag(given.floats("diaginertia", (0.0, 0.0, 0.0), 3))
     R = T[:3, :3]
-    return at(element, lambda: Inertial(mass, T[:3, 3], R @ local @ R.T))
+    return complain_at(element, lambda: Inertial(mass, T[:3, 3], R @ local @ R.T))
 
 
-def weighs(geom: Geom, settings: Settings) -> bool:
+def has_weight(geom: Geom, settings: Settings) -> bool:
     """Whether a geom counts for the mass of its body."""
     low, high = settings.groups
     return low <= geom.given.number("group", 0.0) <= high
@@ -48,7 +48,7 @@ def weight_of_geoms(geoms: Sequence[Geom]) -> Inertial | None:
     known = [part for part in parts if part is not None]
     if len(known) < len(parts):
         return None
-    mass, com, inertia = lumped([(part, np.eye(4)) for part in known])
+    mass, com, inertia = lump_bodies([(part, np.eye(4)) for part in known])
     return Inertial(mass, com, inertia)
 
 
@@ -64,7 +64,7 @@ def weight_of_geom(geom: Geom) -> Inertial | None:
     volume, diagonal = unit_inertia(geom.kind, geom.half)
     total = density * volume if mass is None else mass
     R = T[:3, :3]
-    return at(given.element, lambda: Inertial(total, T[:3, 3], total * (R * diagonal) @ R.T))
+    return complain_at(given.element, lambda: Inertial(total, T[:3, 3], total * (R * diagonal) @ R.T))
 
 
 def unit_inertia(kind: str, half: Sequence[float]) -> tuple[float, Array]:
@@ -88,7 +88,7 @@ def unit_inertia(kind: str, half: Sequence[float]) -> tuple[float, Array]:
     return math.pi * r * r * (2.0 * h + ends), np.array([across, across, along])
 
 
-def corrected(inertial: Inertial | None, settings: Settings) -> Inertial | None:
+def correct_inertial(inertial: Inertial | None, settings: Settings) -> Inertial | None:
     """The masses of one body after boundmass, boundinertia and balanceinertia."""
     if inertial is None or (settings.least_mass, settings.least_inertia, settings.balance) == (
         0.0,
@@ -103,7 +103,7 @@ def corrected(inertial: Inertial | None, settings: Settings) -> Inertial | None:
     return Inertial(max(inertial.mass, settings.least_mass), inertial.com, (axes * moments) @ axes.T)
 
 
-def scaled(inertials: dict[str, Inertial | None], settings: Settings) -> dict[str, Inertial | None]:
+def scale_inertials(inertials: dict[str, Inertial | None], settings: Settings) -> dict[str, Inertial | None]:
     """The masses of all bodies after settotalmass; all unknown where one of them is."""
     if settings.total_mass is None:
         return inertials

@@ -8,19 +8,25 @@ from pathlib import Path
 from typing import Any, Final
 
 from cspace.arrays import Array
-from cspace.model.attributes import at, fault, some_floats
+from cspace.model.attributes import complain_at, fault_at, some_floats
 from cspace.model.description import Description
 from cspace.model.link import Geometry, Inertial, Link
-from cspace.model.mjcf.actuators import efforts
+from cspace.model.mjcf.actuators import read_efforts
 from cspace.model.mjcf.geoms import Geom, Geoms
 from cspace.model.mjcf.given import Defaults, Given
-from cspace.model.mjcf.joints import Coupling, Draft, couplings, read_joint
-from cspace.model.mjcf.loops import loops
-from cspace.model.mjcf.masses import corrected, scaled, weighs, weight_of_geoms, written
+from cspace.model.mjcf.joints import Coupling, Draft, read_couplings, read_joint
+from cspace.model.mjcf.loops import read_loops
+from cspace.model.mjcf.masses import (
+    correct_inertial,
+    has_weight,
+    read_inertial,
+    scale_inertials,
+    weight_of_geoms,
+)
 from cspace.model.mjcf.settings import settings_of
 from cspace.model.mjcf.skeleton import WORLD, Skeleton
 from cspace.model.mjcf.words import check_words
-from cspace.model.packages import folders
+from cspace.model.packages import check_folders
 from cspace.model.structure import ElementError
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
@@ -44,9 +50,9 @@ def mjcf_description(root: Element, package_paths: Sequence[Any] = ()) -> Descri
     """The robot of the root element of an MJCF document; errors as in from_mjcf."""
     if root.tag != "mujoco":
         part = "; it is a part, so give the file that includes it" if root.tag == PART else ""
-        raise fault(root, f"this is no MJCF: the root element is <{root.tag}>, not <mujoco>{part}")
+        raise fault_at(root, f"this is no MJCF: the root element is <{root.tag}>, not <mujoco>{part}")
     check_words(root)
-    return at(root, _Reader(root, package_paths).read)
+    return complain_at(root, _Reader(root, package_paths).read)
 
 
 class _Reader:
@@ -56,7 +62,7 @@ class _Reader:
         self.root = root
         self.defaults = Defaults(root)
         self.settings = settings_of(root)
-        self.geoms = Geoms(root, self.defaults, self.settings, folders(package_paths))
+        self.geoms = Geoms(root, self.defaults, self.settings, check_folders(package_paths))
         self.skeleton = Skeleton(root)
         self.weights: dict[str, Inertial | None] = {}
         self.visual: dict[str, list[Geometry]] = {}
@@ -67,20 +73,20 @@ class _Reader:
             self.tree(world)
         skeleton = self.skeleton
         equalities = self.sections("equality")
-        followers = couplings(equalities, self.defaults, skeleton.drafts)
-        driven = efforts(self.sections("actuator"), self.defaults)
-        weights = scaled(self.weights, self.settings)
+        followers = read_couplings(equalities, self.defaults, skeleton.drafts)
+        driven = read_efforts(self.sections("actuator"), self.defaults)
+        weights = scale_inertials(self.weights, self.settings)
         links = tuple(self.link(name, weights.get(name)) for name in skeleton.links)
         joints = tuple(segment.joint(followers, driven) for segment in skeleton.segments)
-        ties = loops(equalities, self.defaults, skeleton)
-        poses = keyframes(self.sections("keyframe"), skeleton.drafts, followers)
+        ties = read_loops(equalities, self.defaults, skeleton)
+        poses = read_keyframes(self.sections("keyframe"), skeleton.drafts, followers)
         unnamed = "robot" if self.root.path is None else Path(self.root.path).stem
         name = self.root.attributes.get("model", "").strip() or unnamed
         try:
             return Description(name, links, joints, ties, poses)
         except ElementError as error:
             draft = skeleton.drafts.get(error.name)
-            raise fault(self.root if draft is None else draft.element, str(error)) from None
+            raise fault_at(self.root if draft is None else draft.element, str(error)) from None
 
     def sections(self, tag: str) -> list[Element]:
         """What all sections of that tag hold."""
@@ -112,7 +118,7 @@ class _Reader:
         while stack:
             element, T, around = stack.pop()
             if element.tag in MAKERS:
-                raise fault(
+                raise fault_at(
                     element,
                     f"<{element.tag}> makes {MAKERS[element.tag]} and is not read here; let MuJoCo write the"
                     " whole model first (mujoco.mj_saveLastXML)",
@@ -128,7 +134,9 @@ class _Reader:
         """The world, which nothing moves."""
         for element, _, _ in parts:
             if element.tag in ("joint", "freejoint", "inertial"):
-                raise fault(element, f"<{element.tag}> stands in the world, which neither moves nor weighs")
+                raise fault_at(
+                    element, f"<{element.tag}> stands in the world, which neither moves nor weighs"
+                )
         return WORLD
 
     def body(self, element: Element, parent: str, place: Array, parts: Sequence[Part]) -> str:
@@ -141,7 +149,7 @@ class _Reader:
                 drafts.append(read_joint(self.defaults.given(part, around), joint, T, self.settings))
         free = next((draft for draft in drafts if draft.kind == "free"), None)
         if free is not None and (parent != WORLD or len(drafts) > 1):
-            raise fault(
+            raise fault_at(
                 free.element, f"the free joint of {name!r} must be its only one, and its body in the world"
             )
         self.skeleton.add_body(element, name, parent, place, drafts)
@@ -158,20 +166,20 @@ class _Reader:
                 self.site(self.defaults.given(element, around), name, T)
             elif element.tag == "inertial":
                 if inertial:
-                    raise fault(element, f"body {name!r} has two <inertial>")
-                inertial.append(written(Given(element), T, self.settings))
+                    raise fault_at(element, f"body {name!r} has two <inertial>")
+                inertial.append(read_inertial(Given(element), T, self.settings))
         shapes = [self.geoms.shapes(geom) for geom in geoms]
         self.visual.setdefault(name, []).extend(drawn for drawn, _ in shapes if drawn is not None)
         self.collision.setdefault(name, []).extend(solid for _, solid in shapes if solid is not None)
         if name == WORLD:
             return
         rule = self.settings.from_geoms
-        heavy = [geom for geom in geoms if weighs(geom, self.settings)] if rule != "false" else []
+        heavy = [geom for geom in geoms if has_weight(geom, self.settings)] if rule != "false" else []
         if inertial and (rule != "true" or not heavy):
             weight: Inertial | None = inertial[0]
         else:
-            weight = at(body, lambda: weight_of_geoms(heavy))
-        self.weights[name] = at(body, lambda: corrected(weight, self.settings))
+            weight = complain_at(body, lambda: weight_of_geoms(heavy))
+        self.weights[name] = complain_at(body, lambda: correct_inertial(weight, self.settings))
 
     def site(self, given: Given, body: str, T_body_frame: Array) -> None:
         """A site, where it is."""
@@ -180,7 +188,7 @@ class _Reader:
         self.skeleton.add_site(given.element, body, T_body_frame @ place)
 
 
-def keyframes(
+def read_keyframes(
     keys: Iterable[Element], drafts: Mapping[str, Draft], followers: Mapping[str, Coupling]
 ) -> dict[str, dict[str, float]]:
     """The named keyframes as poses of the joints that move by themselves [rad or m]."""

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.model.attributes import fault
+from cspace.model.attributes import fault_at
 from cspace.model.mjcf.given import Given
-from cspace.model.transforms import from_wxyz, rotation_about, translation
+from cspace.model.transforms import from_wxyz, rotation_about, translation_by
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
 from cspace.tolerances import AXIS_LENGTH, MJCF_SAME_AXIS
@@ -50,27 +50,27 @@ class Settings:
             return IDENTITY
         T = IDENTITY if holder is None else self.rotation(holder)
         x = given.floats("pos", (0.0, 0.0, 0.0), 3)
-        return translation(np.array(x)) @ T
+        return translation_by(np.array(x)) @ T
 
     def rotation(self, element: Element) -> Array:
         """The rotation (4, 4) that one element gives."""
         names = [name for name in ORIENTATIONS if name in element.attributes]
         if len(names) > 1:
-            raise fault(element, f"<{element.tag}> is turned twice, by {names[0]!r} and {names[1]!r}")
+            raise fault_at(element, f"<{element.tag}> is turned twice, by {names[0]!r} and {names[1]!r}")
         given = Given(element)
         if names[0] == "quat":
             w, *axis = given.floats("quat", None, 4)
             length = math.hypot(w, *axis)
             if length < AXIS_LENGTH:
-                raise fault(element, f"quat of <{element.tag}> is zero; a quaternion has the length 1")
+                raise fault_at(element, f"quat of <{element.tag}> is zero; a quaternion has the length 1")
             return from_wxyz(np.array([w, *axis]) / length)
         if names[0] == "axisangle":
             *axis, angle = given.floats("axisangle", None, 4)
-            return rotation_about(unit(axis, element, "axisangle"), angle * self.unit)
+            return rotation_about(unit_direction(axis, element, "axisangle"), angle * self.unit)
         if names[0] == "euler":
             return self.from_euler(given.floats("euler", None, 3))
         if names[0] == "zaxis":
-            return shortest(unit(given.floats("zaxis", None, 3), element, "zaxis"))
+            return shortest_rotation(unit_direction(given.floats("zaxis", None, 3), element, "zaxis"))
         return from_xy(given.floats("xyaxes", None, 6), element)
 
     def from_euler(self, angles: list[float]) -> Array:
@@ -82,16 +82,16 @@ class Settings:
         return T
 
 
-def unit(vector: list[float], element: Element, name: str) -> Array:
+def unit_direction(vector: list[float], element: Element, name: str) -> Array:
     """The direction of a vector; `element` is where a complaint belongs."""
     length = math.hypot(*vector)
     if length < AXIS_LENGTH:
-        raise fault(element, f"{name} of <{element.tag}> is no direction: it has the length {length:g}")
+        raise fault_at(element, f"{name} of <{element.tag}> is no direction: it has the length {length:g}")
     direction: Array = np.array(vector) / length
     return direction
 
 
-def shortest(z: Array) -> Array:
+def shortest_rotation(z: Array) -> Array:
     """The smallest rotation (4, 4) that takes the z axis to the unit vector `z` (3,); about x to −z."""
     axis = np.cross((0.0, 0.0, 1.0), z)
     sine = math.hypot(*axis)
@@ -102,9 +102,9 @@ def shortest(z: Array) -> Array:
 
 def from_xy(numbers: list[float], element: Element) -> Array:
     """The rotation (4, 4) with the given x axis, and y as near to the given one as possible."""
-    x = unit(numbers[:3], element, "xyaxes")
+    x = unit_direction(numbers[:3], element, "xyaxes")
     y = np.array(numbers[3:])
-    y = unit((y - x * (x @ y)).tolist(), element, "the y axis in xyaxes")
+    y = unit_direction((y - x * (x @ y)).tolist(), element, "the y axis in xyaxes")
     T = np.eye(4)
     T[:3, :3] = np.column_stack([x, y, np.cross(x, y)])
     return T
@@ -116,13 +116,15 @@ def settings_of(root: Element) -> Settings:
     given = Given(elements[-1], elements[-2::-1]) if elements else Given(Element("compiler", {}, root.line))
     if given.text("coordinate", "local") != "local":
         holder = given.holder("coordinate") or given.element
-        raise fault(
+        raise fault_at(
             holder, "global coordinates were dropped from MJCF; save the file with MuJoCo 2.3.3 first"
         )
     sequence = given.text("eulerseq", "xyz")
     if len(sequence) != 3 or not set(sequence.lower()) <= set("xyz"):
         holder = given.holder("eulerseq") or given.element
-        raise fault(holder, f"eulerseq is {sequence[:20]!r}; it holds three letters out of x, y, z, X, Y, Z")
+        raise fault_at(
+            holder, f"eulerseq is {sequence[:20]!r}; it holds three letters out of x, y, z, X, Y, Z"
+        )
     total = given.number("settotalmass", -1.0)
     low, high = given.floats("inertiagrouprange", (0.0, 5.0), 2)
     return Settings(

@@ -10,11 +10,11 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.model.attributes import at, fault
+from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Joint
 from cspace.model.mjcf.joints import Coupling, Draft
 from cspace.model.mounting import free_name
-from cspace.model.transforms import inverse
+from cspace.model.transforms import invert_transform
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
 
@@ -37,9 +37,9 @@ class Segment:
         """The joint, once it is known which joints follow others and how hard they are driven."""
         ends, draft = (self.parent, self.child, self.place), self.draft
         if draft is None:
-            return at(self.element, lambda: Joint(self.name, "fixed", *ends))
+            return complain_at(self.element, lambda: Joint(self.name, "fixed", *ends))
         effort = efforts.get(self.name, math.inf)
-        return at(self.element, lambda: draft.joint(*ends, followers.get(self.name), effort))
+        return complain_at(self.element, lambda: draft.joint(*ends, followers.get(self.name), effort))
 
 
 class Skeleton:
@@ -52,7 +52,7 @@ class Skeleton:
     """
 
     def __init__(self, root: Element) -> None:
-        inside = [part for world in root.all("worldbody") for part in everything(world)]
+        inside = [part for world in root.all("worldbody") for part in walk_elements(world)]
         named = {tag: [e.attributes.get("name", "") for e in inside if e.tag == tag] for tag in TAGS}
         self.link_names = {WORLD, *named["body"]}
         self.joint_names = {*named["joint"], *named["freejoint"]}
@@ -68,14 +68,14 @@ class Skeleton:
         """The name of a body, made up where it has none."""
         name = element.attributes.get("name", "")
         if name in self.bodies:
-            raise fault(element, f"a second body is named {name!r}")
+            raise fault_at(element, f"a second body is named {name!r}")
         return name or self.new_link(f"body_{len(self.bodies)}")
 
     def joint_name(self, element: Element, body: str) -> str:
         """The name of a joint, made up where it has none."""
         name = element.attributes.get("name", "")
         if name in self.given_joints:
-            raise fault(element, f"a second joint is named {name!r}")
+            raise fault_at(element, f"a second joint is named {name!r}")
         name = name or self.new_joint(f"{body}_joint")
         self.given_joints.add(name)
         return name
@@ -108,7 +108,7 @@ class Skeleton:
             link = name if whole else self.new_link(f"{name}/{draft.name}")
             self.segments.append(Segment(draft.name, draft, here, link, place @ draft.anchor, draft.element))
             self.links.append(link)
-            here, place = link, inverse(draft.anchor)
+            here, place = link, invert_transform(draft.anchor)
         if here != name:
             self.add_fixed(element, name, here, place)
 
@@ -116,7 +116,7 @@ class Skeleton:
         """A site with a name, as a link that stands at `place` (4, 4) in its body."""
         name = element.attributes["name"]
         if name in self.sites:
-            raise fault(element, f"a second site is named {name!r}")
+            raise fault_at(element, f"a second site is named {name!r}")
         link = self.new_link(f"{name}_site" if name in self.link_names else name)
         self.sites[name] = link
         self.rest[link] = self.rest[body] @ place
@@ -131,7 +131,7 @@ class Skeleton:
 TAGS: Final = ("body", "joint", "freejoint")
 
 
-def everything(root: Element) -> Iterator[Element]:
+def walk_elements(root: Element) -> Iterator[Element]:
     """An element and all inside it."""
     stack = [root]
     while stack:

@@ -4,29 +4,29 @@ from __future__ import annotations
 
 from typing import Final
 
-from cspace.model.attributes import fault
-from cspace.model.urdf_words import closest
+from cspace.model.attributes import fault_at
+from cspace.model.urdf_words import closest_word
 from cspace.model.xml import Element
 
 
-def words(text: str) -> frozenset[str]:
+def list_words(text: str) -> frozenset[str]:
     return frozenset(text.split())
 
 
 TURNS: Final = "quat axisangle euler xyaxes zaxis"
-INSIDE: Final = words(
+INSIDE: Final = list_words(
     "body frame joint freejoint geom site inertial camera light plugin replicate attach composite flexcomp"
 )
 CHILDREN: Final[dict[str, frozenset[str]]] = {
-    "mujoco": words(
+    "mujoco": list_words(
         "compiler option size statistic visual default extension asset worldbody deformable contact tendon"
         " equality actuator sensor custom keyframe"
     ),
     "worldbody": INSIDE,
     "body": INSIDE,
     "frame": INSIDE,
-    "equality": words("connect weld joint tendon flex flexvert flexstrain distance"),
-    "keyframe": words("key"),
+    "equality": list_words("connect weld joint tendon flex flexvert flexstrain distance"),
+    "keyframe": list_words("key"),
 }
 """What may stand in the elements that are read."""
 
@@ -35,26 +35,26 @@ ELEMENTS: Final = frozenset().union(*CHILDREN.values())
 
 SOLIDS: Final = "class name type group size material mesh fromto pos user rgba " + TURNS
 ATTRIBUTES: Final[dict[str, frozenset[str]]] = {
-    "compiler": words(
+    "compiler": list_words(
         "alignfree angle assetdir autolimits balanceinertia boundinertia boundmass conflict convexhull"
         " coordinate discardvisual eulerseq exactmeshinertia fitaabb fusestatic inertiafromgeom"
         " inertiagrouprange meshdir passthrough savecanonical savecompiled saveinertial settotalmass"
         " strippath texturedir usethread"
     ),
-    "body": words("childclass fuse gravcomp mocap name pos simple sleep user " + TURNS),
-    "frame": words("childclass name pos " + TURNS),
-    "inertial": words("mass pos diaginertia fullinertia " + TURNS),
-    "joint": words(
+    "body": list_words("childclass fuse gravcomp mocap name pos simple sleep user " + TURNS),
+    "frame": list_words("childclass name pos " + TURNS),
+    "inertial": list_words("mass pos diaginertia fullinertia " + TURNS),
+    "joint": list_words(
         "actuatorfrclimited actuatorfrcrange actuatorgravcomp armature axis class damping frictionloss group"
         " limited margin name pos range ref solimpfriction solimplimit solreffriction solreflimit"
         " springdamper springref springyield stiffness type user"
     ),
-    "freejoint": words("align group name"),
-    "geom": words(
+    "freejoint": list_words("align group name"),
+    "geom": list_words(
         "adhesion castshadow conaffinity condim contype density fitscale fluidcoef fluidshape friction gap"
         " hfield margin mass priority shellinertia solimp solmix solref surfacevel " + SOLIDS
     ),
-    "site": words(SOLIDS),
+    "site": list_words(SOLIDS),
 }
 """The attributes of those elements."""
 
@@ -72,19 +72,19 @@ def check_words(root: Element) -> None:
             if known is not None and child.tag not in known:
                 message = f"<{element.tag}> has no <{child.tag}>"
                 if child.tag in ELEMENTS:
-                    raise fault(child, f"{message}; it stands elsewhere in MJCF")
-                check(child, message, child.tag, known, "<{}>")
+                    raise fault_at(child, f"{message}; it stands elsewhere in MJCF")
+                check_word(child, message, child.tag, known, "<{}>")
             if element.tag in ("mujoco", "worldbody", "body", "frame"):
                 attributes = ATTRIBUTES.get(child.tag, frozenset(child.attributes))
                 for name in child.attributes.keys() - attributes:
                     missing = attributes - child.attributes.keys()
-                    check(child, f"<{child.tag}> has no attribute {name!r}", name, missing, "{!r}")
+                    check_word(child, f"<{child.tag}> has no attribute {name!r}", name, missing, "{!r}")
                 if child.tag in CHILDREN:
                     stack.append(child)
 
 
-def check(element: Element, message: str, word: str, known: frozenset[str], form: str) -> None:
+def check_word(element: Element, message: str, word: str, known: frozenset[str], form: str) -> None:
     """Raise if the word is meant for a known one."""
-    meant = closest(word, known)
+    meant = closest_word(word, known)
     if meant:
-        raise fault(element, f"{message}; did you mean {form.format(meant)}?")
+        raise fault_at(element, f"{message}; did you mean {form.format(meant)}?")

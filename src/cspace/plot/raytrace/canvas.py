@@ -10,7 +10,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.plot.raytrace.layer import Layer
 from cspace.plot.raytrace.shadow import Shadow
-from cspace.plot.raytrace.view import Block, View, affine, centers
+from cspace.plot.raytrace.view import Block, View, affine_at, pixel_centers
 from cspace.tolerances import LEAST_DIVISOR, PARALLEL_RAYS
 
 GAP: Final = 0.03
@@ -115,7 +115,9 @@ class Canvas:
 def on_floor(view: View, block: Block, height: float) -> Array:
     """Where the rays of a block of pixels reach the floor, (h, w, 2) [m]."""
     x0, x1, y0, y1 = block
-    x, y = centers(x0, x1)[None, :], centers(y0, y1)[:, None]
-    o, w = ([affine(rows[:, axis], x, y) for axis in range(3)] for rows in (view.rays.origin, view.rays.way))
+    x, y = pixel_centers(x0, x1)[None, :], pixel_centers(y0, y1)[:, None]
+    o, w = (
+        [affine_at(rows[:, axis], x, y) for axis in range(3)] for rows in (view.rays.origin, view.rays.way)
+    )
     t = (height - o[2]) / np.minimum(w[2], -PARALLEL_RAYS)
     return np.stack([o[0] + t * w[0], o[1] + t * w[1]], axis=2)

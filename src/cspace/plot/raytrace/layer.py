@@ -13,8 +13,8 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.plot.raytrace.quadrics import Piece
-from cspace.plot.raytrace.solids import Solid, pieces
-from cspace.plot.raytrace.view import Block, View, centers
+from cspace.plot.raytrace.solids import Solid, bounding_pieces
+from cspace.plot.raytrace.view import Block, View, pixel_centers
 
 SAMPLES: Final = (np.array([[1, 3, 5, 7, 9, 11, 13, 15], [5, 13, 1, 9, 15, 3, 11, 7]]) / 16.0)[:, :, None]
 """Where the rays of an outline pixel go through it: eight rooks that do not attack each other, (2, 8, 1)."""
@@ -45,32 +45,32 @@ class Hits:
     key: Any
 
 
-def look(view: View, solids: list[Solid]) -> Layer | None:
+def see_solids(view: View, solids: list[Solid]) -> Layer | None:
     """Solids as seen and lit, or None if none is in the picture."""
     surfaces: list[Piece] = []
     tints: list[Array] = []
     smooth: list[int] = []  # pieces of one number meet without a crease
     for solid in solids:
         first = len(surfaces)
-        surfaces += pieces(solid)
+        surfaces += bounding_pieces(solid)
         smooth += [first if solid.round else k for k in range(first, len(surfaces))]
         tints += [solid.color] * (len(surfaces) - first)
-    spans = [span(view, piece) for piece in surfaces]
+    spans = [span_pixels(view, piece) for piece in surfaces]
     seen = [each for each in spans if each is not None]
     if not seen:
         return None
     x0, y0 = min(b[0] for b in seen), min(b[2] for b in seen)
     block = x0, max(b[1] for b in seen), y0, max(b[3] for b in seen)
-    depth, keys = middles(view, surfaces, spans, block)
-    rim, at_edge = outlines(np.array([*smooth, -1], np.int16)[keys])
+    depth, keys = look_through_middles(view, surfaces, spans, block)
+    rim, at_edge = find_outlines(np.array([*smooth, -1], np.int16)[keys])
     rows, columns = np.nonzero(at_edge)
-    samples = around(view, surfaces, spans, columns + x0, rows + y0)
+    samples = look_around(view, surfaces, spans, columns + x0, rows + y0)
     inside = np.nonzero((keys >= 0) & ~at_edge)
     hit = samples.key >= 0
     clear = Hits(inside[1] + x0 + 0.5, inside[0] + y0 + 0.5, depth[inside], keys[inside])
     at_edges = Hits(samples.x[hit], samples.y[hit], samples.t[hit], samples.key[hit])
     both = Hits(*(np.concatenate([getattr(clear, f), getattr(at_edges, f)]) for f in ("x", "y", "t", "key")))
-    shades = shaded(view, surfaces, np.array(tints, np.float32), both)
+    shades = shade_hits(view, surfaces, np.array(tints, np.float32), both)
     spread = np.zeros((*hit.shape, 3), np.float32)
     spread[hit] = shades[len(clear.t) :]
     some = hit.any(axis=0)
@@ -84,14 +84,16 @@ def look(view: View, solids: list[Solid]) -> Layer | None:
     )
 
 
-def span(view: View, piece: Piece) -> Block | None:
+def span_pixels(view: View, piece: Piece) -> Block | None:
     """The block of pixels a piece may cover."""
     signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=np.float64)
     cube = signs @ np.stack([view.right, view.up, view.eye])
     return view.block_of(np.concatenate([center + radius * cube for center, radius in piece.balls()]))
 
 
-def middles(view: View, surfaces: list[Piece], spans: list[Block | None], block: Block) -> tuple[Array, Any]:
+def look_through_middles(
+    view: View, surfaces: list[Piece], spans: list[Block | None], block: Block
+) -> tuple[Array, Any]:
     """What the rays through the middles of a block's pixels meet: depth and piece (h, w), inf and -1."""
     x0, x1, y0, y1 = block
     depth = np.full((y1 - y0, x1 - x0), np.inf)
@@ -100,7 +102,7 @@ def middles(view: View, surfaces: list[Piece], spans: list[Block | None], block:
         if each is None:
             continue
         a, b, c, d = each
-        x, y = centers(a, b)[None, :], centers(c, d)[:, None]
+        x, y = pixel_centers(a, b)[None, :], pixel_centers(c, d)[:, None]
         place = slice(c - y0, d - y0), slice(a - x0, b - x0)
         t = piece.meet(view.rays, x, y)
         nearer = t < depth[place]
@@ -109,7 +111,7 @@ def middles(view: View, surfaces: list[Piece], spans: list[Block | None], block:
     return depth, keys
 
 
-def outlines(keys: Any) -> tuple[Any, Any]:
+def find_outlines(keys: Any) -> tuple[Any, Any]:
     """The pixels of the outline that show something, and all pixels next to a different number."""
     rim, edge = np.zeros(keys.shape, bool), np.zeros(keys.shape, bool)
     padded = np.pad(keys, 1, constant_values=-1)
@@ -120,7 +122,9 @@ def outlines(keys: Any) -> tuple[Any, Any]:
     return rim & (keys >= 0), edge
 
 
-def around(view: View, surfaces: list[Piece], spans: list[Block | None], columns: Any, rows: Any) -> Hits:
+def look_around(
+    view: View, surfaces: list[Piece], spans: list[Block | None], columns: Any, rows: Any
+) -> Hits:
     """What eight rays through each of some pixels meet, (8, m); the pixels row by row."""
     x, y = columns + SAMPLES[0], rows + SAMPLES[1]
     depth, keys = np.full(x.shape, np.inf), np.full(x.shape, -1, np.int16)
@@ -139,7 +143,7 @@ def around(view: View, surfaces: list[Piece], spans: list[Block | None], columns
     return Hits(x, y, depth, keys)
 
 
-def shaded(view: View, surfaces: list[Piece], tints: Any, hits: Hits) -> Any:
+def shade_hits(view: View, surfaces: list[Piece], tints: Any, hits: Hits) -> Any:
     """The colours (m, 3) where rays met something."""
     points = view.rays.points(hits.x, hits.y, hits.t)
     normals = np.empty(points.shape, np.float32)
@@ -149,10 +153,10 @@ def shaded(view: View, surfaces: list[Piece], tints: Any, hits: Hits) -> Any:
         at = order[bounds[key] : bounds[key + 1]]
         if len(at):
             normals[at] = piece.normals(points[at])
-    return lit(tints[hits.key], normals, view)
+    return light_colors(tints[hits.key], normals, view)
 
 
-def lit(colors: Any, normals: Any, view: View) -> Any:
+def light_colors(colors: Any, normals: Any, view: View) -> Any:
     """The colours under a key light over the viewer's left shoulder, a fill light and a faint gloss."""
     key = 0.55 * view.eye + 0.75 * view.up - 0.45 * view.right
     key /= np.linalg.norm(key)

@@ -13,7 +13,7 @@ from typing import Protocol
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.plot.raytrace.view import Rays, affine
+from cspace.plot.raytrace.view import Rays, affine_at
 from cspace.tolerances import LEAST_DIVISOR
 
 LAST = np.array([0.0, 0.0, 1.0])
@@ -32,7 +32,7 @@ class Piece(Protocol):
         """Two balls, center (3,) and radius, whose hull contains it."""
 
 
-def quadratic(form: Array, x: Array, y: Array) -> Array:
+def evaluate_quadratic(form: Array, x: Array, y: Array) -> Array:
     """(x, y, 1) form (x, y, 1)ᵀ."""
     f = form + form.T
     square = (0.5 * f[0, 0] * x + f[0, 2]) * x + 0.5 * f[2, 2]
@@ -58,10 +58,10 @@ class Quadric:
 
     def roots(self, x: Array, y: Array) -> list[Array]:
         """The nearer root, NaN where there is none; both where a ray looks along a cone (A ≤ 0)."""
-        inside = quadratic(self.inside, x, y)
+        inside = evaluate_quadratic(self.inside, x, y)
         root = np.sqrt(inside, out=np.full_like(inside, np.nan), where=inside >= 0.0)
-        A = quadratic(self.A, x, y) if self.A[:2].any() else self.A[2, 2]
-        B = affine(self.B, x, y)
+        A = evaluate_quadratic(self.A, x, y) if self.A[:2].any() else self.A[2, 2]
+        B = affine_at(self.B, x, y)
         if np.min(A) > 0.0:
             return [(-B - root) / A]
         A = np.where(np.abs(A) < LEAST_DIVISOR, LEAST_DIVISOR, A)
@@ -107,8 +107,8 @@ class Side:
         """See Piece."""
         G = np.eye(3) - (1.0 + self.slope**2) * np.outer(self.axis, self.axis)
         quadric = Quadric(rays, self.start, G, self.radius * self.slope * self.axis, -(self.radius**2))
-        base = affine((rays.origin - np.outer(LAST, self.start)) @ self.axis, x, y)
-        rise = affine(rays.way @ self.axis, x, y)
+        base = affine_at((rays.origin - np.outer(LAST, self.start)) @ self.axis, x, y)
+        rise = affine_at(rays.way @ self.axis, x, y)
         best: Array | None = None
         low, high = self.ends
         for t in quadric.roots(x, y):
@@ -142,12 +142,12 @@ class Disc:
     def meet(self, rays: Rays, x: Array, y: Array) -> Array:
         """See Piece."""
         offset = rays.origin - np.outer(LAST, self.center)
-        falling = affine(rays.way @ self.normal, x, y)
-        above = affine(offset @ self.normal, x, y)
+        falling = affine_at(rays.way @ self.normal, x, y)
+        above = affine_at(offset @ self.normal, x, y)
         t = -above / np.where(falling < -LEAST_DIVISOR, falling, np.nan)
         away = np.zeros(t.shape)
         for axis in range(3):
-            away = away + (affine(offset[:, axis], x, y) + t * affine(rays.way[:, axis], x, y)) ** 2
+            away = away + (affine_at(offset[:, axis], x, y) + t * affine_at(rays.way[:, axis], x, y)) ** 2
         return np.asarray(np.where(away <= self.radius**2, t, np.inf))
 
     def normals(self, points: Array) -> Array:

@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 from cspace.plot.raytrace.canvas import Canvas, Floor
-from cspace.plot.raytrace.layer import Layer, look
+from cspace.plot.raytrace.layer import Layer, see_solids
 from cspace.plot.raytrace.shadow import shadow_of
 from cspace.plot.raytrace.solids import Solid
 from cspace.plot.raytrace.view import View
@@ -41,8 +41,12 @@ class Scene:
         if self.floor is not None:
             cast = [solid for group in self.groups if group.shadow for solid in group.solids]
             canvas.lay_floor(view, self.floor, shadow_of(cast, float(self.floor.center[2]), view.size))
-        front = look(view, [solid for group in self.groups if group.opacity >= 1.0 for solid in group.solids])
-        seen = ((look(view, group.solids), group.opacity) for group in self.groups if group.opacity < 1.0)
+        front = see_solids(
+            view, [solid for group in self.groups if group.opacity >= 1.0 for solid in group.solids]
+        )
+        seen = (
+            (see_solids(view, group.solids), group.opacity) for group in self.groups if group.opacity < 1.0
+        )
         ghosts = [(layer, opacity) for layer, opacity in seen if layer is not None]
         ghosts.sort(key=lambda ghost: -mean_depth(ghost[0]))
         for layer, opacity in ghosts:

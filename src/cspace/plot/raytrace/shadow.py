@@ -8,8 +8,8 @@ from typing import Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.plot.raytrace.solids import Solid, pieces
-from cspace.plot.raytrace.view import Rays, block_about, centers
+from cspace.plot.raytrace.solids import Solid, bounding_pieces
+from cspace.plot.raytrace.view import Rays, block_about, pixel_centers
 
 LIGHT: Final = np.array([0.10, -0.07, 1.0]) / np.linalg.norm([0.10, -0.07, 1.0])
 """Toward the light."""
@@ -43,11 +43,11 @@ class Shadow:
 
 def shadow_of(solids: list[Solid], floor: float, size: float) -> Shadow | None:
     """The shadow of solids on the floor at a height [m] in a picture of a size [m]."""
-    surfaces = [piece for solid in solids for piece in pieces(solid)]
+    surfaces = [piece for solid in solids for piece in bounding_pieces(solid)]
     if not surfaces:
         return None
     cell = CELL * size
-    spans = [cast(piece.balls(), floor) for piece in surfaces]
+    spans = [cast_shadow(piece.balls(), floor) for piece in surfaces]
     everything = np.concatenate(spans)
     low = everything.min(axis=0) - 3 * REACH * cell
     columns, rows = np.ceil((everything.max(axis=0) - low) / cell).astype(int) + 3 * REACH
@@ -58,12 +58,12 @@ def shadow_of(solids: list[Solid], floor: float, size: float) -> Shadow | None:
         block = block_about((span - low) / cell, columns, rows)
         if block is not None:
             x0, x1, y0, y1 = block
-            t = piece.meet(rays, centers(x0, x1)[None, :], centers(y0, y1)[:, None])
+            t = piece.meet(rays, pixel_centers(x0, x1)[None, :], pixel_centers(y0, y1)[:, None])
             np.copyto(dark[y0:y1, x0:x1], 1.0, where=np.isfinite(t))
-    return Shadow(low + 0.5 * cell, cell, soften(dark, REACH))
+    return Shadow(low + 0.5 * cell, cell, soften_image(dark, REACH))
 
 
-def cast(balls: list[tuple[Array, float]], floor: float) -> Array:
+def cast_shadow(balls: list[tuple[Array, float]], floor: float) -> Array:
     """Corners (8, 2) on the floor of squares about the shadows of two balls."""
     corners = []
     for center, radius in balls:
@@ -72,7 +72,7 @@ def cast(balls: list[tuple[Array, float]], floor: float) -> Array:
     return np.array(corners)
 
 
-def soften(image: Array, reach: int) -> Array:
+def soften_image(image: Array, reach: int) -> Array:
     """Three running means along each direction, close to a Gaussian; the image has a border of 3 reach."""
     soft = image
     for axis in (0, 1) * 3:

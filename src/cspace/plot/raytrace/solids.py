@@ -37,17 +37,17 @@ class Solid:
         return float(min(self.a[2] - down * self.radius_a, self.b[2] - down * self.radius_b))
 
 
-def capsule(a: Array, b: Array, radius_a: float, radius_b: float, color: Array) -> Solid:
+def make_capsule(a: Array, b: Array, radius_a: float, radius_b: float, color: Array) -> Solid:
     """The hull of two spheres."""
     return Solid(a, b, radius_a, radius_b, color)
 
 
-def cylinder(center: Array, axis: Array, radius: float, half: float, color: Array) -> Solid:
+def make_cylinder(center: Array, axis: Array, radius: float, half: float, color: Array) -> Solid:
     """A cylinder about a unit axis."""
     return Solid(center - half * axis, center + half * axis, radius, radius, color, round=False)
 
 
-def arrow(origin: Array, way: Array, thickness: float, color: Array) -> list[Solid]:
+def make_arrow(origin: Array, way: Array, thickness: float, color: Array) -> list[Solid]:
     """An arrow from `origin` along `way` (3,) [m]: a shaft and a head."""
     length = float(np.linalg.norm(way))
     head = min(0.34 * length, 5.5 * thickness)
@@ -58,7 +58,7 @@ def arrow(origin: Array, way: Array, thickness: float, color: Array) -> list[Sol
     ]
 
 
-def pieces(solid: Solid) -> list[Piece]:
+def bounding_pieces(solid: Solid) -> list[Piece]:
     """The surfaces that bound a solid."""
     way = solid.b - solid.a
     length = float(np.linalg.norm(way))

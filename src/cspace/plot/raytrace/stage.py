@@ -10,8 +10,8 @@ from cspace.arrays import Array
 from cspace.plot import colors
 from cspace.plot.raytrace.canvas import Floor
 from cspace.plot.raytrace.scene import scene_of
-from cspace.plot.raytrace.solids import Solid, arrow
-from cspace.plot.raytrace.view import project
+from cspace.plot.raytrace.solids import Solid, make_arrow
+from cspace.plot.raytrace.view import project_points
 from cspace.tolerances import LEAST_DIVISOR
 
 ROOM: Final = 0.0925
@@ -44,7 +44,7 @@ def choose_view(points: Array, focus: Array) -> tuple[float, float]:
     return best
 
 
-def fit(ax: Any, points: Array, *, margin: float = 1.10) -> None:
+def fit_axes(ax: Any, points: Array, *, margin: float = 1.10) -> None:
     """Equal aspect, and limits and zoom such that the points (m, 3) fill the axes whatever the view."""
     center = 0.5 * (points.min(axis=0) + points.max(axis=0))
     half = 0.5 * float(np.ptp(points, axis=0).max()) or 1.0
@@ -53,7 +53,7 @@ def fit(ax: Any, points: Array, *, margin: float = 1.10) -> None:
         for axis, c in zip("xyz", center, strict=True):
             getattr(ax, f"set_{axis}lim")(c - half, c + half)
         ax.set_box_aspect((1, 1, 1), zoom=zoom)
-        x, y, _ = project(points, ax.get_proj()).T
+        x, y, _ = project_points(points, ax.get_proj()).T
         width, height = np.ptp(x) / 2, np.ptp(y) / 2
         box = ax.get_window_extent()
         shape = min(box.width, box.height)
@@ -81,17 +81,17 @@ def set_up(ax: Any, points: Array, floor: Floor, *, elevation: float, azimuth: f
     ax.view_init(elev=elevation, azim=azimuth)
     angle = np.linspace(0.0, 2 * np.pi, 33)
     rim = floor.center + floor.radius * np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
-    fit(ax, np.concatenate([points, rim]))
+    fit_axes(ax, np.concatenate([points, rim]))
     return scene_of(ax, floor)
 
 
-def triads(poses: Array, size: float, *, thickness: float = 0.035) -> list[Solid]:
+def make_triads(poses: Array, size: float, *, thickness: float = 0.035) -> list[Solid]:
     """Frames as red x, green y and blue z arrows of length `size` [m] at the poses (k, 4, 4)."""
     return [
         piece
         for T in poses
         for axis in range(3)
-        for piece in arrow(T[:3, 3], size * T[:3, axis], thickness * size, np.array(colors.AXES[axis]))
+        for piece in make_arrow(T[:3, 3], size * T[:3, axis], thickness * size, np.array(colors.AXES[axis]))
     ]
 
 

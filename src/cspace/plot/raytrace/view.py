@@ -14,18 +14,18 @@ Block = tuple[int, int, int, int]
 """A block of pixels: columns x0 to x1, rows y0 to y1."""
 
 
-def project(points: Array, matrix: Array) -> Array:
+def project_points(points: Array, matrix: Array) -> Array:
     """Points (m, 3) through a projection matrix (4, 4): (m, 3), the last one depth."""
     lifted = points @ matrix[:, :3].T + matrix[:, 3]
     return np.asarray(lifted[:, :3] / lifted[:, 3:])
 
 
-def affine(row: Array, x: Array, y: Array) -> Array:
+def affine_at(row: Array, x: Array, y: Array) -> Array:
     """row · (x, y, 1), where x and y broadcast."""
     return np.asarray((row[0] * x + row[2]) + row[1] * y)
 
 
-def centers(first: int, last: int) -> Array:
+def pixel_centers(first: int, last: int) -> Array:
     """The middles of the pixels from `first` to before `last`."""
     return np.arange(first, last, dtype=np.float64) + 0.5
 
@@ -50,8 +50,8 @@ class Rays:
         """The points (m, 3) of some rays, x, y, t: (m,)."""
         points = np.empty((len(t), 3))
         for axis in range(3):  # by hand: threads of a matrix product cost more than they save here
-            w = affine(self.way[:, axis], x, y)
-            points[:, axis] = affine(self.origin[:, axis], x, y) + t * w
+            w = affine_at(self.way[:, axis], x, y)
+            points[:, axis] = affine_at(self.origin[:, axis], x, y) + t * w
         return points
 
 
@@ -74,7 +74,7 @@ class View:
         limits = np.array([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()])
         middle, self.size = limits.mean(axis=1), float(np.ptp(limits, axis=1).max())
         near_far = middle + np.array([[0.5], [-0.5]]) * self.size * self.eye
-        depths = project(near_far, self.matrix)[:, 2]
+        depths = project_points(near_far, self.matrix)[:, 2]
         near, far = (self.plane(axes, depth) for depth in depths)
         self.rays = rays_through(near, (far - near) / self.size)
 
@@ -90,7 +90,7 @@ class View:
 
     def seen(self, points: Array) -> Array:
         """Where points (m, 3) appear, in pixels (m, 2)."""
-        return np.asarray(self.to_display.transform(project(points, self.matrix)[:, :2])) * self.scale
+        return np.asarray(self.to_display.transform(project_points(points, self.matrix)[:, :2])) * self.scale
 
     def block_of(self, points: Array) -> Block | None:
         """The block of pixels that contains the projected points (m, 3), or None off the image."""
