@@ -382,7 +382,7 @@ def test_control_c_ends_quietly(tmp_path):
         "import signal, sys, time, cspace.cli.app as app\n"
         "signal.signal(signal.SIGINT, signal.default_int_handler)  # a job in the background ignores it\n"
         "def load(verb):\n    print('ready', flush=True)\n    time.sleep(60)\n"
-        "app.load = load\nsys.exit(app.main(['fk', 'ur5e']))\n"
+        "app.import_verb = load\nsys.exit(app.main(['fk', 'ur5e']))\n"
     )
     process = subprocess.Popen(
         [sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment()

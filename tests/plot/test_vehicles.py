@@ -8,7 +8,6 @@ import pytest
 import cspace as cs
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
-from cspace.plot.worlds import PATH
 
 plt = pytest.importorskip("matplotlib.pyplot")
 nav = cs.navigation
@@ -30,7 +29,7 @@ def test_a_curve_is_red_forwards_and_blue_backwards(ax):
     drawn = way(cs.plot.drive(curve, ax=ax))
     tints = drawn.get_colors()[:, :3]
     lengths = np.array([np.hypot(*np.diff(piece, axis=0)[0]) for piece in drawn.get_segments()])
-    for direction, tint in ((1, PATH), (-1, colors.AXES[2])):
+    for direction, tint in ((1, colors.PATH), (-1, colors.AXES[2])):
         driven = sum(each.length for each in curve.segments if each.direction == direction)
         same = np.all(np.abs(tints - tint) < 1e-6, axis=1)
         assert driven > 0

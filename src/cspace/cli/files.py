@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
+from typing import Final
 
 from cspace.cli.exits import UsageError
+
+FORMATS: Final = (".png", ".svg", ".pdf")
+"""The endings of pictures."""
 
 
 def check_writable(path: Path) -> None:
@@ -20,3 +24,11 @@ def check_writable(path: Path) -> None:
         raise UsageError(f"cannot write {str(path)!r}: there is no folder {str(path.parent)!r}")
     if not os.access(path.parent, os.W_OK):
         raise UsageError(f"cannot write {str(path)!r}: the folder {str(path.parent)!r} is not writable")
+
+
+def check_format(path: Path) -> None:
+    """Raise UsageError for a file name without the ending of a picture, before any computation."""
+    if path.suffix.lower() not in FORMATS:
+        raise UsageError(
+            f"unknown picture format {str(path)!r}; its name must end with one of {', '.join(FORMATS)}"
+        )

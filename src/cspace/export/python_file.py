@@ -17,11 +17,12 @@ from cspace.tolerances import ON_LIMIT
 PACKAGE = "cspace.export.python"
 WITH_WRIST = 1
 THREE_PARALLEL = 2
+IMPORTS = (ast.Import, ast.ImportFrom)
 
 # The modules of each method, in the order in which they are written.
 CLOSED = ("base", "trig_steps", "closed")
 METHODS = {
-    "wrist": (*CLOSED, "pieper_position", "position_first"),
+    "wrist": (*CLOSED, "spherical_wrist"),
     "three_parallel": (*CLOSED, "three_parallel"),
     "parallel_general": (*CLOSED, "parallel_general"),
     "few_joints": ("base", "few_joints"),
@@ -163,18 +164,12 @@ def module_source(name: str) -> str:
 
 
 def without_imports(source: str) -> str:
-    """A module's text after its imports and its list of names, its docstring as a comment."""
+    """A module's text after its imports, its docstring as a comment."""
     tree = ast.parse(source)
-    end = max(node.end_lineno or 0 for node in tree.body if is_preamble(node))
+    end = max(node.end_lineno or 0 for node in tree.body if isinstance(node, IMPORTS))
     title = "\n".join(f"# {line}".rstrip() for line in (ast.get_docstring(tree) or "").splitlines())
     body = "\n".join(source.splitlines()[end:]).strip("\n")
     return f"{title}\n\n{body}\n"
-
-
-def is_preamble(node: ast.stmt) -> bool:
-    """Whether a statement imports something or is __all__."""
-    names = [ast.unparse(target) for target in node.targets] if isinstance(node, ast.Assign) else []
-    return isinstance(node, (ast.Import, ast.ImportFrom)) or "__all__" in names
 
 
 def standard_imports(modules: list[str]) -> list[str]:
@@ -182,7 +177,7 @@ def standard_imports(modules: list[str]) -> list[str]:
     lines: set[str] = set()
     for source in modules:
         for node in ast.parse(source).body:
-            if isinstance(node, (ast.Import, ast.ImportFrom)):
+            if isinstance(node, IMPORTS):
                 lines.add(ast.unparse(node))
     own = {line for line in lines if PACKAGE in line or "__future__" in line}
     return sorted(lines - own, key=lambda line: ("numpy" in line, line))

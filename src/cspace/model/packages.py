@@ -44,7 +44,7 @@ def locate_file(
 def locate_package(
     name: str, beside: str | None, package_paths: Sequence[str]
 ) -> tuple[str | None, tuple[str, ...]]:
-    """The folder of a package, or None, and the places tried in order; rules as in `locate`."""
+    """The folder of a package, or None, and the places tried in order; rules as in `locate_file`."""
     return _first(_packages(name, beside, package_paths), os.path.isdir)
 
 

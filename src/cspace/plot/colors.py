@@ -20,6 +20,10 @@ STAND: Final = (0.80, 0.82, 0.85)
 """The pillar below a robot whose base is above the floor."""
 AXES: Final = ((0.84, 0.18, 0.20), (0.18, 0.62, 0.28), (0.16, 0.38, 0.88))
 """The x, y and z axes of a frame."""
+WALL: Final = (0.36, 0.39, 0.44)
+"""Obstacles."""
+PATH: Final = AXES[0]
+"""The path that a planner found, and a vehicle's forwards."""
 FIRST_HUE: Final = 252.0
 """Hue of the first colour [deg]: a calm blue."""
 

@@ -20,10 +20,6 @@ TOP: Final = 0.85
 """The share of free places shown with different heights: beyond it, next to walls, fields are unbounded."""
 BANDS: Final = 24
 """Bands of equal height."""
-WALL: Final = (0.36, 0.39, 0.44)
-"""Obstacles."""
-PATH: Final = (0.84, 0.18, 0.20)
-"""The path down."""
 
 Height = Callable[[Array], Array]
 
@@ -60,7 +56,9 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
     lift = 0.01 * (top - low)
     path = interpolate_path(route.path)
     if len(path):
-        artists += axes.plot(*path.T, np.minimum(height(path), top) + lift, color=PATH, linewidth=2, zorder=6)
+        artists += axes.plot(
+            *path.T, np.minimum(height(path), top) + lift, color=colors.PATH, linewidth=2, zorder=6
+        )
     for points, marker, size in ((find_minima(route), "o", 6), (route.goal[None], "*", 13)):
         z = np.clip(height(points), low, top) + lift
         artists += axes.plot(*points.T, z, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
@@ -186,7 +184,7 @@ def tint_places(level: Array, solid: Any, low: float, top: float) -> Array:
 
     share = np.floor(BANDS * (level - low) / max(top - low, np.finfo(np.float64).tiny)) / BANDS
     paint: Array = colormaps["Blues"](0.15 + 0.75 * share)
-    paint[solid] = (*WALL, 1.0)
+    paint[solid] = (*colors.WALL, 1.0)
     return paint
 
 

@@ -11,7 +11,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.axes import flat_axes
 from cspace.plot.planner_overlays import draw_lines
-from cspace.plot.worlds import PATH, world
+from cspace.plot.worlds import world
 
 BODIES: Final = 24
 """Outlines of the vehicle between start and goal."""
@@ -125,5 +125,5 @@ def draw_directions(axes: Any, poses: Array) -> list[Any]:
     pieces = np.stack([poses[:-1, :2], poses[1:, :2]], axis=1)
     steps = np.diff(poses[:, :2], axis=0)
     heading = np.stack([np.cos(poses[:-1, 2]), np.sin(poses[:-1, 2])], axis=1)
-    tints = np.where(np.sum(steps * heading, axis=1)[:, None] >= 0, PATH, colors.AXES[2])
+    tints = np.where(np.sum(steps * heading, axis=1)[:, None] >= 0, colors.PATH, colors.AXES[2])
     return draw_lines(axes, pieces, colors=tints, linewidths=2.0, zorder=6, capstyle="round")

@@ -15,13 +15,9 @@ from cspace.plot.animation import Steps
 from cspace.plot.axes import flat_axes, need_matplotlib
 from cspace.plot.planner_overlays import draw_idea, replaced_at, shown_events
 
-WALL: Final = (0.36, 0.39, 0.44)
-"""Obstacles."""
 SHUT: Final = (0.72, 0.74, 0.77)
 """Where no obstacle is and the centre may not be: within the radius of one, or in a blocked cell."""
 FREE: Final = (1.0, 1.0, 1.0)
-PATH: Final = (0.84, 0.18, 0.20)
-"""The path that a planner found."""
 PANEL: Final = 3.6
 """Side of one world in a picture of several [inch]."""
 TITLE: Final = 0.12
@@ -49,7 +45,7 @@ def _ground(axes: Any, world: Any, asked: Any) -> list[Any]:
     axes.tick_params(labelsize=8, colors=colors.INK)
     from matplotlib.patches import Rectangle
 
-    box = Rectangle((xmin, ymin), xmax - xmin, ymax - ymin, color=WALL, linewidth=0, zorder=0)
+    box = Rectangle((xmin, ymin), xmax - xmin, ymax - ymin, color=colors.WALL, linewidth=0, zorder=0)
     below = [axes.add_patch(box)]
     if asked is not world:
         below.append(_free(axes, asked, SHUT))
@@ -61,7 +57,7 @@ def _free(axes: Any, world: Any, color: tuple[float, float, float]) -> Any:
     if world.kind == "grid":
         xmin, ymin, xmax, ymax = world.bounds
         shade = np.broadcast_to(np.array([*color, 1.0]), (*world.shape, 4)).copy()
-        shade[world.blocked] = (*WALL, 0.0)
+        shade[world.blocked] = (*colors.WALL, 0.0)
         shown, box = axes.axis(), (xmin, xmax, ymin, ymax)
         drawn = axes.imshow(shade, extent=box, origin="lower", interpolation="nearest", zorder=0)
         axes.axis(shown)
@@ -86,7 +82,9 @@ def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
     if idea:
         artists += draw_idea(axes, route)
     if len(route.path):
-        artists += axes.plot(*route.path.T, color=PATH, linewidth=2.0, zorder=6, solid_capstyle="round")
+        artists += axes.plot(
+            *route.path.T, color=colors.PATH, linewidth=2.0, zorder=6, solid_capstyle="round"
+        )
     artists += draw_ends(axes, route)
     said = f"{route.length:.5g} m" if route else route.status
     artists.append(axes.set_title(f"{route.planner}: {said}", fontsize=9, color=colors.INK, loc="left"))
@@ -150,7 +148,7 @@ def animation(route: Any, *, ax: Any | None = None, frames: int = FRAMES) -> Any
     pieces = np.stack([events.start, events.end], axis=1) if len(events) else np.empty((0, 2, 2))
     searched = axes.add_collection(LineCollection([], linewidths=1.2, zorder=4))
     reached = axes.scatter([], [], s=6, zorder=5)
-    (path,) = axes.plot([], [], color=PATH, linewidth=2.2, zorder=6)
+    (path,) = axes.plot([], [], color=colors.PATH, linewidth=2.2, zorder=6)
     ends = draw_ends(axes, route)
 
     def told(frame: int) -> int:

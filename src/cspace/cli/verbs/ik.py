@@ -11,11 +11,10 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.explain import add_explanation, print_explanation, wants_explanation
-from cspace.cli.files import check_writable
+from cspace.cli.files import check_format, check_writable
 from cspace.cli.freedom import add_freedom, options_of
 from cspace.cli.goals import Goal, add_goal, goal_of
 from cspace.cli.output import Output
-from cspace.cli.pictures import check_format
 from cspace.cli.robot import gripper_note, load_chosen, need_chain, read_configuration
 from cspace.cli.solutions import Rows, print_solutions, solutions_document
 from cspace.errors import InputError, InputTypeError

@@ -11,9 +11,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from cspace.cli.arguments import named_value, read_number
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.files import check_writable
+from cspace.cli.files import check_format, check_writable
 from cspace.cli.output import Cell, Output, Table
-from cspace.cli.pictures import check_format
 from cspace.cli.planner_options import options_given
 from cspace.cli.verbs.planners import typed_value
 from cspace.errors import InputError

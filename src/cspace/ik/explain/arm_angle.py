@@ -61,8 +61,8 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
             1,
             "",
             f"The shoulder S = ({vector_text(S)}) m, where axes 1, 2 and 3 meet, stays where it is; the "
-            "wrist W, where axes 5, 6 and 7 meet, stands still in the tip, so the goal fixes it. $l$ leads from S "
-            "to W.",
+            "wrist W, where axes 5, 6 and 7 meet, stands still in the tip, so the goal fixes it. $l$ leads "
+            "from S to W.",
             tuple(to_wrist),
         ),
         Step(

@@ -1,4 +1,4 @@
-"""The first three joints of an arm bring the centre of its wrist to a point (Pieper 1968)."""
+"""Arms with a spherical wrist: three joints place its centre, three turn about it (Pieper 1968)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,15 @@ from typing import Any
 import numpy as np
 
 from cspace.export.python.base import Array
-from cspace.export.python.trig_steps import Care, align, linear_equation, turns_where_zero, two_link
+from cspace.export.python.trig_steps import (
+    Care,
+    align,
+    linear_equation,
+    turns_where_zero,
+    two_link,
+    undo_joint,
+    wrist,
+)
 
 Triple = tuple[complex, complex, complex]
 
@@ -135,3 +143,18 @@ def any_three(g: dict[str, Any], p: Array, care: Care) -> list[Triple]:
 
 
 PLACES = (axes_2_3_parallel, axes_1_2_meet, axes_2_3_meet, axes_1_2_parallel, any_three)
+
+
+def branches(plan: dict[str, Any], goal: Array, care: Care) -> list[list[complex]]:
+    """Up to 4 x 2 branches."""
+    arm = plan["wrist"]
+    g, found = arm["first"], []
+    for t1, t2, t3 in PLACES[g["kind"]](g, goal[:3, 3], care):
+        seen = []
+        for v in (goal[:3, 2], goal[:3, 0]):
+            v = undo_joint(t1, g["ca1"], g["sa1"], v)
+            v = undo_joint(t2, g["ca2"], g["sa2"], v)
+            seen.append(undo_joint(t3, arm["ca3"], arm["sa3"], v))
+        both, ok = wrist(arm["last"], seen[0], seen[1], care, care.unconstrained[3])
+        found += [[t1, t2, t3, *last] for last in both if ok]
+    return found
