@@ -14,7 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
-__all__ += ["whole_number"]
+__all__ += ["one_array", "whole_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -63,6 +63,25 @@ def as_arrays(
     if len(out) > 1:
         leading_axes(**{name: a.shape[: a.ndim - len(values[name][1])] for name, a in out.items()})
     return out
+
+
+def one_array(
+    value: Any,
+    subject: str,
+    shape: tuple[int | None, ...],
+    meaning: str = "",
+    *,
+    largest: float | None = None,
+) -> Array:
+    """A contiguous float64 array of exactly this shape, (3,) or (n, 2) for (3,) or (None, 2), all finite.
+
+    meaning: what messages say after the shape. Raises InputTypeError and InputError as of as_floats.
+    """
+    array = as_floats(value, subject, largest=largest)
+    if not _fits(array.shape, shape):
+        wanted = str(shape).replace("None", "n") + (f": {meaning}" if meaning else "")
+        raise InputError(f"{subject} has shape {array.shape}, expected {wanted}")
+    return np.ascontiguousarray(array)
 
 
 def one_number(value: Any, subject: str, *, largest: float | None = None) -> float:

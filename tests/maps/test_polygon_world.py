@@ -87,7 +87,7 @@ def test_what_a_repair_leaves_is_read_by_the_even_odd_rule():
     [
         (lambda: cs.PolygonWorld("abc"), InputTypeError, ["obstacles", "str"]),
         (lambda: cs.PolygonWorld([[(0, 0), (1, np.nan), (1, 1)]]), InputError, ["obstacle 0", "nan"]),
-        (lambda: cs.PolygonWorld([[(0, 0, 0), (1, 1, 1)]]), InputError, ["obstacle 0", "(..., 2)"]),
+        (lambda: cs.PolygonWorld([[(0, 0, 0), (1, 1, 1)]]), InputError, ["obstacle 0", "(n, 2)"]),
         (lambda: cs.PolygonWorld([[(1, 1)]]), InputError, ["obstacle 0", "one corner"]),
         (lambda: cs.PolygonWorld([BOX], (0, 0, 0, 1)), InputError, ["bounds", "enclose no area"]),
         (lambda: cs.PolygonWorld([BOX], (0, 0, 1)), InputError, ["bounds", "(..., 4)"]),

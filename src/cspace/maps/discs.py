@@ -6,17 +6,15 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, one_number
+from cspace.arrays import Array, as_floats, one_array, one_number
 from cspace.errors import InputError
 from cspace.tolerances import FARTHEST_POINT, MOST_SIDES
 
 
 def circumscribe_discs(centers: Any, radii: Any, sides: int) -> list[Array]:
     """A regular circumscribed polygon (sides, 2) [m] of each disc; its first side faces the x direction."""
-    at = as_floats(centers, "centers", last=(2,), largest=FARTHEST_POINT)
+    at = one_array(centers, "centers", (None, 2), largest=FARTHEST_POINT)
     reach = as_floats(radii, "radii", largest=FARTHEST_POINT)
-    if at.ndim != 2:
-        raise InputError(f"centers has shape {at.shape}, expected (n, 2)")
     if reach.shape not in {(), (len(at),)}:
         raise InputError(f"radii has shape {reach.shape}, expected () or ({len(at)},): one per disc")
     if not np.all(reach > 0):

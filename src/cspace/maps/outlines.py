@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST_POINT
 
@@ -39,9 +39,7 @@ def _is_list_of_rings(obstacle: Any) -> bool:
 
 
 def _read_ring(points: Any, subject: str) -> Array:
-    ring = as_floats(points, subject, last=(2,), largest=FARTHEST_POINT)
-    if ring.ndim != 2:
-        raise InputError(f"{subject} has shape {ring.shape}, expected (n, 2): a row of x and y per corner")
+    ring = one_array(points, subject, (None, 2), "a row of x and y per corner", largest=FARTHEST_POINT)
     if len(ring) > 1 and np.array_equal(ring[0], ring[-1]):
         ring = ring[:-1]
     kept = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)] if len(ring) > 1 else ring

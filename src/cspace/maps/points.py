@@ -2,27 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
 from numpy.typing import ArrayLike
 
-from cspace.arrays import Array, as_floats, one_number
+from cspace.arrays import Array, one_array, one_number
 from cspace.errors import InputError
 
 
 def as_point(point: ArrayLike, subject: str) -> tuple[float, float]:
     """x and y of a point (2,) [m]; InputError for other shapes and numbers that are not finite."""
-    given = as_floats(point, subject, last=(2,))
-    if given.ndim != 1:
-        raise InputError(f"{subject} has shape {given.shape}, expected (2,)")
-    return float(given[0]), float(given[1])
+    x, y = one_array(point, subject, (2,)).tolist()
+    return x, y
 
 
 def as_path(path: ArrayLike) -> Array:
     """A path as an array (m, 2) [m], contiguous; InputError for other shapes."""
-    points = as_floats(path, "path", last=(2,))
-    if points.ndim != 2:
-        raise InputError(f"path has shape {points.shape}, expected (m, 2)")
-    return np.ascontiguousarray(points)
+    return one_array(path, "path", (None, 2))
 
 
 def check_inflation(radius: float) -> float:

@@ -7,7 +7,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, one_array
 from cspace.errors import DescriptionError, InputError, suggest
 from cspace.model.packages import locate_file
 from cspace.model.values import IDENTITY, check_placement, check_size, finite_number, freeze_array, name_of
@@ -128,7 +128,4 @@ class Link:
 
 
 def _exactly(value: Any, subject: str, shape: tuple[int, ...]) -> Array:
-    array = as_floats(value, subject, last=shape)
-    if array.ndim != len(shape):
-        raise InputError(f"{subject} has shape {array.shape}, expected {shape}")
-    return check_size(array, subject)
+    return check_size(one_array(value, subject, shape), subject)

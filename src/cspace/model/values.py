@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError, shown
 from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER, ROTATION_ERROR
 
@@ -74,9 +74,7 @@ def check_placement(value: object, subject: str) -> Array:
     pose = IDENTITY
     if value is pose:
         return pose
-    pose = as_floats(value, subject, last=(4, 4))
-    if pose.ndim != 2:
-        raise InputError(f"{subject} has shape {pose.shape}, expected (4, 4)")
+    pose = one_array(value, subject, (4, 4))
     if pose[3, 0] != 0.0 or pose[3, 1] != 0.0 or pose[3, 2] != 0.0 or pose[3, 3] != 1.0:
         raise InputError(f"{subject} has the last row {pose[3].tolist()}, expected [0, 0, 0, 1]")
     check_size(pose[:3, 3], subject)
@@ -112,9 +110,7 @@ def unit_axis(value: Any, subject: str) -> Array:
 
     Raises InputError for a vector shorter than tolerances.AXIS_LENGTH.
     """
-    vector = as_floats(value, subject, last=(3,))
-    if vector.ndim != 1:
-        raise InputError(f"{subject} has shape {vector.shape}, expected (3,)")
+    vector = one_array(value, subject, (3,))
     scale = float(np.abs(vector).max())
     length = scale * math.sqrt(sum((x / scale) ** 2 for x in vector.tolist())) if scale > 0.0 else 0.0
     if length < AXIS_LENGTH:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, leading_axes
+from cspace.arrays import Array, as_floats, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.parts import is_open
 from cspace.ik.wrapping import turning_joints
@@ -92,10 +92,7 @@ def lift_points(solver: Solver, p: Array) -> Array:
 
 def one_configuration(solver: Solver, value: Any, subject: str) -> Array:
     """One configuration (dof,), contiguous."""
-    q = as_floats(value, subject, last=(solver.dof,), largest=FARTHEST)
-    if q.ndim != 1:
-        raise InputError(f"{subject} has shape {q.shape}, expected ({solver.dof},): one configuration")
-    return np.ascontiguousarray(q)
+    return one_array(value, subject, (solver.dof,), "one configuration", largest=FARTHEST)
 
 
 def is_far(p: Array) -> Any:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, as_generator, positive_number, whole_number
+from cspace.arrays import Array, as_generator, one_array, positive_number, whole_number
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.numeric.problem import bounds_of, further_starts, middle_configuration
+from cspace.ik.numeric.problem import bounds_of, further_starts, largest_speeds, middle_configuration
 from cspace.ik.numeric.tasks import TASK_WIDTH, CenterOfMassTask, PostureTask, Task
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.spatial.checks import one_pose
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from cspace.kinematics import KinematicModel
 
 
-NO_SPEED = np.empty(0)
 MOST_STARTS = 1_000_000
 
 
@@ -95,13 +94,12 @@ def task_velocity(
     Kanoun, Lamiraux and Wieber 2011 (inequalities); Nocedal and Wright 2006, section 16.5.
     """
     check_robot(robot)
-    n = len(robot.joint_names)
     rows, postures, _ = _packed(robot, tasks)
     at = _configuration(robot, q, "q")
     base = _base(T_world_base)
     qd, errors = np.empty(robot.dof), np.empty((len(rows), 2))
     step, cost = positive_number(dt, "dt"), positive_number(damping, "damping")
-    speed = _speeds(robot, velocity, n)
+    speed = largest_speeds(robot, velocity)
     if not _core._task_velocity(
         robot, rows, postures, at, base, bounds_of(robot, limits), speed, step, cost, qd, errors
     ):
@@ -197,22 +195,8 @@ def _packed(robot: KinematicModel, tasks: Task | Iterable[Task]) -> tuple[Array,
 
 def _configuration(robot: KinematicModel, value: Any, subject: str) -> Array:
     n = len(robot.joint_names)
-    q = as_floats(value, subject, last=(n,), largest=FARTHEST)
-    if q.ndim != 1:
-        raise InputError(f"{subject} has shape {q.shape}, expected one configuration ({n},)")
-    return np.ascontiguousarray(q)
+    return one_array(value, subject, (n,), "one configuration", largest=FARTHEST)
 
 
 def _base(T_world_base: Any) -> Array:
     return np.eye(4) if T_world_base is None else one_pose(T_world_base, "T_world_base")
-
-
-def _speeds(robot: KinematicModel, velocity: Any, n: int) -> Array:
-    """The largest speeds (n,), or (0,) for none."""
-    if velocity is False:
-        return NO_SPEED
-    given = robot.limits.velocity if velocity is True else velocity
-    speeds = as_floats(given, "velocity", last=(n,), finite=False)
-    if speeds.ndim != 1 or not (speeds >= 0).all():
-        raise InputError(f"velocity must be ({n},) speeds, 0 or more, one per joint of {robot.name}")
-    return np.ascontiguousarray(speeds)

@@ -39,6 +39,18 @@ class Question:
     tolerance: float
 
 
+def largest_speeds(robot: KinematicModel, velocity: Any) -> Array:
+    """The largest speeds of the joints (n,), or (0,) for none."""
+    if velocity is False:
+        return np.empty(0)
+    n = len(robot.joint_names)
+    given = robot.limits.velocity if velocity is True else velocity
+    speeds = as_floats(given, "velocity", last=(n,), finite=False)
+    if speeds.ndim != 1 or not (speeds >= 0).all():
+        raise InputError(f"velocity must be ({n},) speeds, 0 or more, one per joint of {robot.name}")
+    return np.ascontiguousarray(speeds)
+
+
 def pose_problem(
     robot: KinematicModel,
     goal: Any,

@@ -10,6 +10,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.ik.numeric.problem import largest_speeds
 from cspace.kinematics.batch import thread_count
 from cspace.kinematics.jacobian import jacobian
 from cspace.tolerances import FARTHEST, WEAK_DIRECTION
@@ -74,12 +75,15 @@ def resolved_rate(
         return np.ascontiguousarray(np.broadcast_to(array, lead + last).reshape(number, *last))
 
     workers = thread_count(threads, lead)
+    speeds = largest_speeds(robot, velocity)
+    if speeds.size:  # those of a floating base are unlimited
+        speeds = np.concatenate([np.full(dof - speeds.size, np.inf), speeds])
     qd = np.empty((number, dof))
     _core._resolved_rate(
         rows(J, 2),
         rows(wanted, 1),
         np.empty((0, dof)) if wish is None else rows(wish, 1),
-        _speeds(robot, velocity),
+        speeds,
         -1.0 if damping is None else _damping(damping),
         WEAK_DIRECTION,
         workers,
@@ -94,16 +98,3 @@ def _damping(value: Any) -> float:
     if number.ndim or number < 0:
         raise InputError(f"damping is {value!r}; it must be one number, 0 or more")
     return float(number)
-
-
-def _speeds(robot: KinematicModel, velocity: Any) -> Array:
-    """The largest speeds (dof,), those of a floating base unlimited; (0,) for none."""
-    if velocity is False:
-        return np.empty(0)
-    n = robot.limits.velocity.size
-    speeds = as_floats(
-        robot.limits.velocity if velocity is True else velocity, "velocity", last=(n,), finite=False
-    )
-    if speeds.ndim != 1 or not (speeds >= 0).all():
-        raise InputError(f"velocity must be ({n},) speeds, 0 or more, one per joint of {robot.name}")
-    return np.concatenate([np.full(robot.dof - n, np.inf), speeds])

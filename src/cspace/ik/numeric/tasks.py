@@ -7,7 +7,7 @@ from typing import Any, Final, TypeAlias
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, positive_number
+from cspace.arrays import Array, as_floats, one_array, positive_number
 from cspace.errors import InputError
 from cspace.spatial.checks import PoseLike, one_pose
 from cspace.spatial.vectors import length_and_direction
@@ -158,10 +158,7 @@ def _weights(value: Any, n: int) -> Array:
 
 
 def _vector(value: Any, subject: str) -> Array:
-    vector = as_floats(value, subject, last=(3,), largest=FARTHEST)
-    if vector.ndim != 1:
-        raise InputError(f"{subject} has shape {vector.shape}, expected (3,)")
-    return vector
+    return one_array(value, subject, (3,), largest=FARTHEST)
 
 
 def _unit(value: Any, subject: str) -> Array:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.numeric import ik_numeric
@@ -136,9 +136,7 @@ def starts_of(robot: KinematicModel, question: Question, T: Array, start: Any) -
     """Where the branches begin."""
     first, n = T[0], len(robot.joint_names)
     if start is not None:
-        seed = as_floats(start, "start", last=(n,), largest=FARTHEST)
-        if seed.ndim != 1:
-            raise InputError(f"start has shape {seed.shape}, expected ({n},): one configuration")
+        seed = one_array(start, "start", (n,), "one configuration", largest=FARTHEST)
         return nearest_start(robot, question, first, seed)
     if is_redundant(robot, question):
         q, numbers, complete, note = nearest_start(

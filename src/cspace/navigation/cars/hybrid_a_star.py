@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.navigation.cars.car_route import CarRoute
 from cspace.navigation.checks import need_grid, need_number
@@ -83,9 +83,7 @@ def hybrid_a_star(
 
 def check_pose(grid: Any, body: Array, pose: Any, name: str) -> Array:
     """A pose (3,) at which the vehicle touches nothing."""
-    p = np.ascontiguousarray(as_floats(pose, name, last=(3,), largest=LARGEST_NUMBER))
-    if p.ndim != 1:
-        raise InputError(f"{name} has shape {p.shape}, expected (3,): x, y, theta")
+    p = one_array(pose, name, (3,), "x, y, theta", largest=LARGEST_NUMBER)
     clear = np.empty(1, dtype=np.bool_)
     _core._car_clear(grid, body, p[None], clear)
     if not clear[0]:
