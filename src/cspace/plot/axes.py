@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any, Final
 
+from cspace.arrays import Array
 from cspace.errors import InputError, MissingExtraError
 
 SQUARE: Final = 6.4
@@ -43,3 +45,24 @@ def flat_axes(ax: Any | None) -> Any:
     if hasattr(ax, "get_proj"):
         raise InputError("this picture needs 2-D axes; make them with plt.subplots()")
     return ax
+
+
+def draw_lines(axes: Any, pieces: Iterable[Array], **style: Any) -> list[Any]:
+    """Polylines (m, 2) each."""
+    from matplotlib.collections import LineCollection
+
+    return [axes.add_collection(LineCollection(list(pieces), **style))]
+
+
+def draw_polygons(axes: Any, shapes: Iterable[Array], **style: Any) -> list[Any]:
+    """Polygons (m, 2) each."""
+    from matplotlib.collections import PolyCollection
+
+    return [axes.add_collection(PolyCollection(list(shapes), **style))]
+
+
+def draw_image(axes: Any, grid: Any, shade: Array, **style: Any) -> list[Any]:
+    """The colours or numbers of the cells of a grid (rows, columns, ...)."""
+    xmin, ymin, xmax, ymax = grid.bounds
+    box = (xmin, xmax, ymin, ymax)
+    return [axes.imshow(shade, extent=box, origin="lower", interpolation="nearest", **style)]

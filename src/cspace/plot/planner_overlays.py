@@ -11,6 +11,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.plot import colors
+from cspace.plot.axes import draw_image, draw_lines, draw_polygons
 from cspace.plot.fields import draw_bands
 
 MOST_EVENTS: Final = 20_000
@@ -27,13 +28,6 @@ def draw_idea(axes: Any, route: Any) -> list[Any]:
     artists = prepared(axes, route) if prepared else []
     drawn = SEARCHED.get(route.planner, draw_events)
     return artists + drawn(axes, route)
-
-
-def draw_lines(axes: Any, pieces: Array, **style: Any) -> list[Any]:
-    """Segments (k, 2, 2)."""
-    from matplotlib.collections import LineCollection
-
-    return [axes.add_collection(LineCollection(list(pieces), **style))]
 
 
 def shown_events(route: Any) -> Any:
@@ -119,11 +113,7 @@ def draw_cells(axes: Any, route: Any) -> list[Any]:
     column, row = np.floor((events.end - grid.origin) / grid.resolution).astype(int).T
     inside = (row >= 0) & (row < grid.rows) & (column >= 0) & (column < grid.columns)
     when[row[inside], column[inside]] = np.linspace(0, 1, len(events))[inside]
-    xmin, ymin, xmax, ymax = grid.bounds
-    box = (xmin, xmax, ymin, ymax)
-    return [
-        axes.imshow(when, extent=box, origin="lower", cmap="viridis", alpha=0.75, interpolation="nearest")
-    ]
+    return draw_image(axes, grid, when, cmap="viridis", alpha=0.75)
 
 
 def draw_walk(axes: Any, route: Any) -> list[Any]:
@@ -161,44 +151,32 @@ def draw_visibility_graph(axes: Any, route: Any) -> list[Any]:
 
 
 def draw_exact_cells(axes: Any, route: Any) -> list[Any]:
-    from matplotlib.collections import PolyCollection
-
     from cspace.navigation.cells.exact_cells import exact_cells
 
     corners, _ = exact_cells(route.world)
     wide = corners[:, 1, 0] > corners[:, 0, 0]
-    cells = PolyCollection(
-        list(corners[wide]), facecolors="none", edgecolors=[FAINT], linewidths=0.7, zorder=2
-    )
-    return [axes.add_collection(cells)]
+    style = dict(facecolors="none", edgecolors=[FAINT], linewidths=0.7, zorder=2)
+    return draw_polygons(axes, corners[wide], **style)
 
 
 def draw_squares(axes: Any, route: Any) -> list[Any]:
     """The free squares that were made, beneath them those that were split."""
-    from matplotlib.collections import PolyCollection
-
-    artists = []
+    artists: list[Any] = []
     for word, face in (("split", "none"), ("free", (*FAINT, 0.35))):
         made = route.trace.only(word)
         if len(made):
             (x, y), (u, v) = made.start.T, made.end.T
             corners = np.stack([x, y, u, y, u, v, x, v], axis=1).reshape(-1, 4, 2)
-            shown = PolyCollection(
-                list(corners), facecolors=[face], edgecolors=[FAINT], linewidths=0.5, zorder=2
-            )
-            artists.append(axes.add_collection(shown))
+            style = dict(facecolors=[face], edgecolors=[FAINT], linewidths=0.5, zorder=2)
+            artists += draw_polygons(axes, corners, **style)
     return artists
 
 
 def draw_convex_polygons(axes: Any, route: Any) -> list[Any]:
-    from matplotlib.collections import PolyCollection
-
     if route.world.kind == "grid":  # runs of cells, which are to be seen already
         return []
     shapes = route.world._core.convex_polygons()
-    return [
-        axes.add_collection(PolyCollection(shapes, facecolors="none", edgecolors=[FAINT], linewidths=0.6))
-    ]
+    return draw_polygons(axes, shapes, facecolors="none", edgecolors=[FAINT], linewidths=0.6)
 
 
 def draw_brushfire(axes: Any, route: Any) -> list[Any]:
@@ -208,12 +186,10 @@ def draw_brushfire(axes: Any, route: Any) -> list[Any]:
     grid = route.world
     diagram = brushfire_diagram(grid)
     far = np.where(diagram.clearance > 0, diagram.clearance, np.nan)
-    xmin, ymin, xmax, ymax = grid.bounds
-    box = (xmin, xmax, ymin, ymax)
-    shade = axes.imshow(far, extent=box, origin="lower", cmap="Blues", alpha=0.9, interpolation="nearest")
+    shade = draw_image(axes, grid, far, cmap="Blues", alpha=0.9)
     row, column = np.nonzero(diagram.cells)
     centers = grid.center_of(np.stack([row, column], axis=1))
-    return [shade, axes.scatter(*centers.T, s=2, color=colors.INK, linewidths=0, zorder=3)]
+    return [*shade, axes.scatter(*centers.T, s=2, color=colors.INK, linewidths=0, zorder=3)]
 
 
 def draw_voronoi(axes: Any, route: Any) -> list[Any]:
@@ -221,9 +197,7 @@ def draw_voronoi(axes: Any, route: Any) -> list[Any]:
     from cspace.navigation.voronoi.voronoi import voronoi_diagram
 
     arcs = [points for points, _ in voronoi_diagram(route.world).arcs]
-    from matplotlib.collections import LineCollection
-
-    return [axes.add_collection(LineCollection(arcs, colors=[colors.JOINT], linewidths=0.8, zorder=2))]
+    return draw_lines(axes, arcs, colors=[colors.JOINT], linewidths=0.8, zorder=2)
 
 
 def draw_navigation_function(axes: Any, route: Any) -> list[Any]:

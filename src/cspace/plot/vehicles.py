@@ -9,8 +9,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
-from cspace.plot.axes import flat_axes
-from cspace.plot.planner_overlays import draw_lines
+from cspace.plot.axes import draw_image, draw_lines, draw_polygons, flat_axes
 from cspace.plot.worlds import world
 
 BODIES: Final = 24
@@ -65,8 +64,7 @@ def coverage(coverage: Any, *, ax: Any | None = None) -> list[Any]:
     inside = coverage.regions >= 0
     shade[inside, :3] = tints[coverage.regions[inside] % len(tints)]
     shade[inside, 3] = 1.0
-    box = (xmin, xmax, ymin, ymax)
-    artists.append(axes.imshow(shade, extent=box, origin="lower", interpolation="nearest"))
+    artists += draw_image(axes, coverage.grid, shade)
     pieces = np.stack([coverage.path[:-1], coverage.path[1:]], axis=1)
     when = np.linspace(0.0, 0.85, len(pieces))
     artists += draw_lines(axes, pieces, array=when, cmap="viridis", clim=(0.0, 1.0), linewidths=1.4, zorder=4)
@@ -107,8 +105,6 @@ def space_evenly(poses: Array, count: int) -> Array:
 
 def draw_outlines(axes: Any, vehicle: Any, poses: Array, **style: Any) -> list[Any]:
     """The outline of a vehicle at poses (k, 3)."""
-    from matplotlib.collections import PolyCollection
-
     behind, ahead, aside, disc = vehicle._footprint
     angles = np.linspace(0.0, 2 * np.pi, ROUND, endpoint=False)
     around = disc * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -117,7 +113,7 @@ def draw_outlines(axes: Any, vehicle: Any, poses: Array, **style: Any) -> list[A
     c, s = np.cos(poses[:, 2]), np.sin(poses[:, 2])
     turned = np.einsum("kij,mj->kmi", np.array([[c, -s], [s, c]]).transpose(2, 0, 1), body)
     drawn = {"facecolors": [colors.JOINT], "edgecolors": [colors.INK], "zorder": 2, **style}
-    return [axes.add_collection(PolyCollection(list(turned + poses[:, None, :2]), **drawn))]
+    return draw_polygons(axes, turned + poses[:, None, :2], **drawn)
 
 
 def draw_directions(axes: Any, poses: Array) -> list[Any]:

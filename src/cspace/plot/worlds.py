@@ -12,7 +12,7 @@ import numpy as np
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
 from cspace.plot.animation import Steps
-from cspace.plot.axes import flat_axes, need_matplotlib
+from cspace.plot.axes import draw_image, draw_polygons, flat_axes, need_matplotlib
 from cspace.plot.planner_overlays import draw_idea, replaced_at, shown_events
 
 SHUT: Final = (0.72, 0.74, 0.77)
@@ -48,25 +48,21 @@ def _ground(axes: Any, world: Any, asked: Any) -> list[Any]:
     box = Rectangle((xmin, ymin), xmax - xmin, ymax - ymin, color=colors.WALL, linewidth=0, zorder=0)
     below = [axes.add_patch(box)]
     if asked is not world:
-        below.append(_free(axes, asked, SHUT))
-    return [*below, _free(axes, world, FREE)]
+        below += _free(axes, asked, SHUT)
+    return [*below, *_free(axes, world, FREE)]
 
 
-def _free(axes: Any, world: Any, color: tuple[float, float, float]) -> Any:
+def _free(axes: Any, world: Any, color: tuple[float, float, float]) -> list[Any]:
     """The free space of a world in a colour."""
     if world.kind == "grid":
-        xmin, ymin, xmax, ymax = world.bounds
         shade = np.broadcast_to(np.array([*color, 1.0]), (*world.shape, 4)).copy()
         shade[world.blocked] = (*colors.WALL, 0.0)
-        shown, box = axes.axis(), (xmin, xmax, ymin, ymax)
-        drawn = axes.imshow(shade, extent=box, origin="lower", interpolation="nearest", zorder=0)
+        shown = axes.axis()
+        drawn = draw_image(axes, world, shade, zorder=0)
         axes.axis(shown)
         return drawn
-    from matplotlib.collections import PolyCollection
-
-    triangles = world._core.triangles()
-    free = PolyCollection(triangles, facecolors=[color], edgecolors=[color], linewidths=0.6, zorder=0)
-    return axes.add_collection(free)
+    style = dict(facecolors=[color], edgecolors=[color], linewidths=0.6, zorder=0)
+    return draw_polygons(axes, world._core.triangles(), **style)
 
 
 def route(route: Any, *, ax: Any | None = None, idea: bool = True) -> list[Any]:
