@@ -49,6 +49,10 @@ def declared(path: Path) -> set[str]:
     return {name for name in names if not name.startswith("_")}
 
 
+def module_of(path: Path) -> ModuleType:
+    return importlib.import_module(tree.module_name(path))
+
+
 def exports(module: ModuleType) -> list[str]:
     """The names in `__all__`; a folder whose files are imported one by one exports none."""
     return getattr(module, "__all__", [])
@@ -56,7 +60,7 @@ def exports(module: ModuleType) -> list[str]:
 
 @pytest.mark.parametrize("path", public_modules(), ids=tree.module_name)
 def test_all_is_complete_and_importable(path):
-    module = importlib.import_module(tree.module_name(path))
+    module = module_of(path)
     exported = exports(module)
     assert len(set(exported)) == len(exported), "a name twice"
     for name in exported:
@@ -72,10 +76,32 @@ def test_all_stands_in_no_internal_module():
         assert not found, f"{path.relative_to(tree.ROOT)}: remove __all__"
 
 
+ONE_WORD = {
+    *("cross", "determinant", "perpendicular", "sinc", "skew", "unskew"),
+    *("arguments", "main", "run"),  # what a verb of the command line, and a process, offer
+    "solve",  # the core calls it by this name
+}
+"""Functions inside the rooms that one word names: operators of mathematics, and parts of a protocol."""
+STANDALONE = {"export/python", "spatial/single.py"}
+"""Files for users without cspace; the functions of single poses, called as single.inverse."""
+
+
+def test_functions_inside_a_room_are_a_verb_and_an_object():
+    exported = {name for path in public_modules() for name in exports(module_of(path))}
+    for path in tree.python_files():
+        where = path.relative_to(tree.PACKAGE)
+        if str(where).startswith(tuple(STANDALONE)):
+            continue
+        for node in ast.parse(path.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.FunctionDef) and "_" not in node.name:
+                known = node.name in exported | ONE_WORD
+                assert known, f"{where}: {node.name} needs an object, such as read_{node.name}"
+
+
 def exported_objects() -> list[tuple[str, object]]:
     found = {}
     for path in public_modules():
-        module = importlib.import_module(tree.module_name(path))
+        module = module_of(path)
         for name in exports(module):
             thing = getattr(module, name)
             if inspect.isclass(thing) or inspect.isroutine(thing):
