@@ -110,7 +110,7 @@ def test_bad_worlds_are_refused_with_a_reason(make, error, words):
         ((5, 5), ["start", "inside obstacle 0", "1 m deep", "nearest free point"]),
         ((11, 5), ["start", "outside the world", "x from 0 to 10"]),
         ((np.nan, 5), ["start", "finite"]),
-        ((1, 2, 3), ["start", "(..., 2)"]),
+        ((1, 2, 3), ["start", "(3,)", "(2,)"]),
         ([[1, 2]], ["start", "(1, 2)", "(2,)"]),
     ],
 )

@@ -74,7 +74,7 @@ def test_paths_that_touch_cross_or_lie_in_walls_have_none():
     for path in ([(1, 3), (9, 3)], [(3, 3), (4, 4)], [(2, 1), (2, 6)], [(-5, 1), (-4, 1)], [(2, 2)]):
         assert world.path_clearance(path) == 0 == grid.path_clearance(path)
     assert np.isnan(world.path_clearance(np.empty((0, 2))))
-    with pytest.raises(InputError, match=r"path has shape \(2,\), expected \(m, 2\)"):
+    with pytest.raises(InputError, match=r"path has shape \(2,\), expected \(n, 2\)"):
         world.path_clearance((1, 2))
 
 
