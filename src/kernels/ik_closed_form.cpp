@@ -1,7 +1,7 @@
 #include "ik_closed_form.hpp"
 
 #include "cspace/ik/arm.hpp"
-#include "cspace/ik/fast_path.hpp"
+#include "cspace/ik/closed_form.hpp"
 #include "cspace/math/stream.hpp"
 #include "once.hpp"
 

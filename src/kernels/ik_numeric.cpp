@@ -1,6 +1,6 @@
 #include "ik_numeric.hpp"
 
-#include "cspace/ik/numeric/many_starts.hpp"
+#include "cspace/ik/numeric/descent.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 

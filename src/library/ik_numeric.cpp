@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "cspace/ik/numeric/distinct.hpp"
+#include "cspace/ik/numeric/search.hpp"
 #include "cspace/math/threads.hpp"
 #include "kernels/ik_numeric.hpp"
 #include "robot_path.hpp"

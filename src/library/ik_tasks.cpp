@@ -5,8 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "cspace/ik/numeric/multi_task.hpp"
 #include "cspace/ik/numeric/resolved_rate.hpp"
+#include "cspace/ik/numeric/tasks.hpp"
 #include "cspace/kinematics/forward.hpp"
 #include "cspace/math/threads.hpp"
 

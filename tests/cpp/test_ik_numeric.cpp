@@ -4,7 +4,7 @@
 
 #include "check.hpp"
 #include "cspace/ik/arm.hpp"
-#include "cspace/ik/numeric/many_starts.hpp"
+#include "cspace/ik/numeric/descent.hpp"
 #include "kernels/ik_numeric.hpp"
 #include "random_arms.hpp"
 

@@ -16,7 +16,6 @@ BINDING_FILES = sorted((tree.ROOT / "src/bindings").glob("*.cpp"))
 # Rooms whose solvers src/kernels and src/library compile, and the headers of plain data that bindings share.
 COMPILED_ROOMS = {"ik", "maps", "navigation", "search"}
 PLAIN_HEADERS = {
-    "cspace/ik/branches.hpp",
     "cspace/ik/chain.hpp",
     "cspace/ik/solution.hpp",
     "cspace/maps/boundary.hpp",

@@ -5,8 +5,8 @@
 // Written for both ends of the remaining joints, these are the two equations.
 #pragma once
 
-#include "cspace/ik/branches.hpp"
 #include "cspace/ik/dh_form.hpp"
+#include "cspace/ik/solution.hpp"
 #include "cspace/ik/subproblems/two_angles.hpp"
 #include "cspace/ik/trig_steps.hpp"
 

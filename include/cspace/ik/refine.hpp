@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
+#include "cspace/math/linear.hpp"
 #include "cspace/math/small_svd.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -17,6 +18,11 @@ struct PoseError {
     double position;  // [m]
     double rotation;  // [rad]
     PoseSvd jacobian;
+};
+
+// The smallest singular value with its vectors: J v = σ u.
+struct WeakDirection {
+    double sigma, v[6], u[6];
 };
 
 }  // namespace cspace::ik
@@ -191,6 +197,85 @@ inline double refine(const Chain& chain, const Posed& goal, double length, doubl
     const bool arrived = newton(chain, goal, length, q, error) ||
                          (chain.n == 6 && follow_valley(chain, goal, length, q, error));
     return descend(chain, goal, length, q, error, arrived ? 2 : most_steps);
+}
+
+// Two Newton steps on the true chain, on lanes. They remove the error of a closed form for an idealised or
+// ill-conditioned geometry. The second step shows whether the first has converged.
+
+// One step of q (n = 6) to the goal, shortened if a joint would rotate by more than `stride` [rad]. Returns
+// the largest joint change of the full step. Prismatic joints are divided by `length`.
+template <class V>
+CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double length, V* q,
+                              double stride = 1e300) {
+    Vec3<V> axis[6], point[6];
+    const auto keep_axis = [&](int i, const Vec3<V>& h, const Vec3<V>& p) { axis[i] = h, point[i] = p; };
+    const Pose<V> T = move_joints(chain, 6, q, keep_axis) * fill_pose<V>(chain.tip);
+    const Vec3<V> dp = (1 / length) * (goal.t - T.t);
+    const Vec3<V> w = spatial::sine_between(T.R, goal.R);
+    V A[6][6], b[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
+    for (int i = 0; i < 6; ++i) {
+        const bool slides = chain.prismatic[i];
+        const Vec3<V> v = slides ? axis[i] : (1 / length) * cross(axis[i], T.t - point[i]);
+        const double turns = slides ? 0.0 : 1.0;
+        const V col[6] = {v.x, v.y, v.z, turns * axis[i].x, turns * axis[i].y, turns * axis[i].z};
+        for (int k = 0; k < 6; ++k) A[k][i] = col[k];
+    }
+    solve_linear(A, b);
+    V largest = fill<V>(0.0);
+    for (int i = 0; i < 6; ++i) largest = max(largest, abs(b[i]));
+    const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
+    for (int i = 0; i < 6; ++i) q[i] = mul_add(chain.prismatic[i] ? length * keep : keep, b[i], q[i]);
+    // Half a turn off, the sum of cross products vanishes as at the goal: nothing beyond a right angle has
+    // settled.
+    return select(spatial::trace_between(T.R, goal.R) < 1.0, max(largest, fill<V>(1.0)), largest);
+}
+
+// True if q, a candidate near a solution, has converged to it.
+template <class V>
+CSPACE_INLINE mask_of<V> polish(const Chain& chain, const Pose<V>& goal, double length, V* q) {
+    const V first = newton_step(chain, goal, length, q);
+    const V second = newton_step(chain, goal, length, q);
+    return (first < tolerance::polish_reach) && (second < tolerance::polished);
+}
+
+// The direction in which an arm of six joints can hardly move its tip, by inverse iteration on the Jacobian.
+
+inline double make_unit6(double* v) {
+    const double size = std::sqrt(dot_n(v, v, 6));
+    for (int i = 0; i < 6; ++i) v[i] /= size > 0 ? size : 1;
+    return size;
+}
+
+// Of six columns, as `measure` leaves them.
+inline WeakDirection weak_direction(const double (*columns)[6]) {
+    double A[6][6], diagonal[6], factor[6];
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 6; ++j) A[i][j] = columns[j][i];
+    linear::factor_qr(A, diagonal, factor);
+    double floor = 0;
+    for (const double d : diagonal) floor = max(floor, 1e-15 * std::fabs(d));
+    for (double& d : diagonal)
+        if (std::fabs(d) < floor) d = std::copysign(floor, d);
+    WeakDirection out{1, {0.41, -0.37, 0.43, 0.31, -0.47, 0.45}, {}};
+    double growth = 1;
+    for (int step = 0; step < 4; ++step) {
+        double* v = out.v;
+        make_unit6(v);
+        for (int k = 0; k < 6; ++k) {  // Rᵀ y = v
+            for (int j = 0; j < k; ++j) v[k] -= A[j][k] * v[j];
+            v[k] /= diagonal[k];
+        }
+        for (int k = 5; k >= 0; --k) {  // R z = y
+            for (int j = k + 1; j < 6; ++j) v[k] -= A[k][j] * v[j];
+            v[k] /= diagonal[k];
+        }
+        growth = make_unit6(v);
+    }
+    out.sigma = 1 / std::sqrt(growth);
+    for (int j = 0; j < 6; ++j)
+        for (int i = 0; i < 6; ++i) out.u[i] += columns[j][i] * out.v[j];
+    make_unit6(out.u);
+    return out;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

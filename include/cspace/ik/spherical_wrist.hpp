@@ -2,9 +2,9 @@
 // point, the last three orient the tool (Pieper 1968). Up to 4 × 2 solutions.
 #pragma once
 
-#include "cspace/ik/branches.hpp"
 #include "cspace/ik/dh_form.hpp"
-#include "cspace/ik/pieper_quartic.hpp"
+#include "cspace/ik/pieper.hpp"
+#include "cspace/ik/solution.hpp"
 
 namespace cspace::ik {
 

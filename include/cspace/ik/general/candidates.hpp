@@ -6,9 +6,8 @@
 #include "cspace/ik/closed_form.hpp"
 #include "cspace/ik/general/isolate.hpp"
 #include "cspace/ik/general/loop.hpp"
-#include "cspace/ik/general/weak_direction.hpp"
 #include "cspace/ik/near_singular.hpp"
-#include "cspace/ik/polish.hpp"
+#include "cspace/ik/refine.hpp"
 #include "cspace/math/rows.hpp"
 
 namespace cspace::ik {

@@ -2,10 +2,10 @@
 //
 // Both sides of
 //   M5 Rz(a0) M0 Rz(a1) M1 Rz(a2) M2 = Rz(−a5) M4⁻¹ Rz(−a4) M3⁻¹ Rz(−a3)
-// move the z axis and the origin alike, which are invariant under a3: their invariants agree
-// (invariants.hpp). Of the right side, the parts along z and the two scalars do not see a5, and four
-// combinations of them do not see a4 either; the parts across z, as complex numbers, turn with a5, and one
-// combination of them vanishes. That is six equations in the nine products of (S1², S1C1, C1²) and (S2²,
+// move the z axis and the origin alike, which are invariant under a3: their invariants agree.
+// Of the right side, the parts along z and the two scalars do not see a5, and four combinations of them do
+// not see a4 either; the parts across z, as complex numbers, turn with a5, and one combination of them
+// vanishes. That is six equations in the nine products of (S1², S1C1, C1²) and (S2²,
 // S2C2, C2²), the sines and cosines of half the angles a1 and a2, which no angle makes infinite:
 //   E(a0) = level + cos a0 · across + sin a0 · quarter.
 // A prismatic joint has (a², a, 1) where a revolute one has (S², SC, C²), and (a², a) for (cos, sin): any
@@ -14,11 +14,17 @@
 
 #include <cstring>
 
-#include "cspace/ik/general/invariants.hpp"
 #include "cspace/ik/general/loop.hpp"
+#include "cspace/math/linear.hpp"
 #include "cspace/math/rows.hpp"
+#include "cspace/math/vec.hpp"
 
 namespace cspace::ik {
+
+struct Invariants {
+    Vec3d l, p, m, q;
+    double pp, pl, one;
+};
 
 struct Elimination {
     static constexpr int lanes = 8;  // six equations and two zeros, by their nine monomials
@@ -33,6 +39,78 @@ struct Elimination {
 }  // namespace cspace::ik
 
 namespace cspace::ik::inline CSPACE_ISA {
+
+// What a directed line with a point on it turns into under a rigid motion, as a linear map.
+//
+// From the unit direction l and the point p follow fourteen quantities (Raghavan & Roth 1993):
+//   l, p, m = p × l, q = (p·p) l − 2 (p·l) p, p·p, p·l.
+// With a one put beside them a displacement acts on the fifteen linearly, and so do they depend on the cosine
+// and sine of each angle on the way, and on a slide and its square.
+
+// The z axis with the origin on it.
+inline Invariants axis_invariants() {
+    const Vec3d zero = {0, 0, 0};
+    return {{0, 0, 1}, zero, zero, zero, 0, 0, 1};
+}
+
+inline Invariants operator+(const Invariants& a, const Invariants& b) {
+    return {a.l + b.l, a.p + b.p, a.m + b.m, a.q + b.q, a.pp + b.pp, a.pl + b.pl, a.one + b.one};
+}
+inline Invariants operator*(double s, const Invariants& a) {
+    return {s * a.l, s * a.p, s * a.m, s * a.q, s * a.pp, s * a.pl, s * a.one};
+}
+inline Invariants operator-(const Invariants& a, const Invariants& b) { return a + -1.0 * b; }
+
+inline Invariants moved(const Posed& T, const Invariants& v) {
+    const Vec3d &t = T.t, l = T.R * v.l, p = T.R * v.p, m = T.R * v.m, q = T.R * v.q;
+    const double tt = dot(t, t), tl = dot(t, l);
+    return {l,
+            p + v.one * t,
+            m + cross(t, l),
+            q - 2.0 * cross(t, m) + tt * l - (2 * v.pl + 2 * tl) * t,
+            v.pp + 2 * dot(t, p) + tt * v.one,
+            v.pl + tl,
+            v.one};
+}
+// The functional v ↦ g(moved(T, v)) for the functional g, given and returned by its coefficients.
+inline Invariants pulled_back(const Posed& T, const Invariants& g) {
+    const Vec3d& t = T.t;
+    const double tt = dot(t, t), qt = dot(g.q, t);
+    return {transpose_times(T.R, g.l + cross(g.m, t) + tt * g.q + (g.pl - 2 * qt) * t),
+            transpose_times(T.R, g.p + 2 * g.pp * t),
+            transpose_times(T.R, g.m - 2.0 * cross(g.q, t)),
+            transpose_times(T.R, g.q),
+            g.pp,
+            g.pl - 2 * qt,
+            g.one + dot(g.p, t) + g.pp * tt};
+}
+inline double apply(const Invariants& g, const Invariants& v) {
+    return dot(g.l, v.l) + dot(g.p, v.p) + dot(g.m, v.m) + dot(g.q, v.q) + g.pp * v.pp + g.pl * v.pl +
+           g.one * v.one;
+}
+
+// Rz(a) v = level + cos a · across + sin a · quarter.
+inline Vec3d level(const Vec3d& a) { return {0, 0, a.z}; }
+inline Vec3d across(const Vec3d& a) { return {a.x, a.y, 0}; }
+inline Vec3d quarter(const Vec3d& a) { return {-a.y, a.x, 0}; }
+inline Invariants level(const Invariants& v) {
+    return {level(v.l), level(v.p), level(v.m), level(v.q), v.pp, v.pl, v.one};
+}
+inline Invariants across(const Invariants& v) {
+    return {across(v.l), across(v.p), across(v.m), across(v.q), 0, 0, 0};
+}
+inline Invariants quarter(const Invariants& v) {
+    return {quarter(v.l), quarter(v.p), quarter(v.m), quarter(v.q), 0, 0, 0};
+}
+
+// Tz(d) v = v + d · once + d² · twice.
+inline Invariants once(const Invariants& v) {
+    const Vec3d z = {0, 0, 1};
+    return {{0, 0, 0}, v.one * z, cross(z, v.l), -2.0 * cross(z, v.m) - (2 * v.pl) * z, 2 * v.p.z, v.l.z, 0};
+}
+inline Invariants twice(const Invariants& v) {
+    return {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {v.l.x, v.l.y, -v.l.z}, v.one, 0, 0};
+}
 
 // Angles at which the half angles of a1 and a2 are zero: away from what arms are fond of.
 inline constexpr double a1_origin = 0.7, a2_origin = 2.1;
@@ -259,6 +337,63 @@ inline Elimination eliminate(const Loop& loop) {
         store(e.quarter[m], scale * quarter[m]);
     }
     return e;
+}
+
+// The determinant that vanishes where the hidden angle a0 belongs to a solution, and its null vector there.
+//
+// The six equations of the elimination, each times S1 and times C1, are twelve linear ones in the twelve
+// products of (S1³, S1²C1, S1C1², C1³) and (S2², S2C2, C2²) (Raghavan & Roth 1993):
+//   [E2 E1 E0  0 ]
+//   [ 0 E2 E1 E0],  E2, E1, E0 the 6 × 3 blocks of S1², S1C1, C1².
+// Reflections first take E0 out of the last block column, then what is left of it; no pivoting, no branches.
+
+template <class V>
+CSPACE_INLINE V equation(const Elimination& e, int i, int monomial, V c, V s) {
+    return mul_add(s, fill<V>(e.quarter[monomial][i]),
+                   mul_add(c, fill<V>(e.across[monomial][i]), fill<V>(e.level[monomial][i])));
+}
+
+template <int reduced, class V>
+CSPACE_INLINE V product_of(const V (&diagonal)[reduced]) {
+    V out = diagonal[0];
+    for (int k = 1; k < reduced; ++k) out = out * diagonal[k];
+    return out;
+}
+
+// The determinant at the hidden angle with cosine c and sine s, up to a constant factor.
+template <class V>
+CSPACE_NOINLINE V determinant(const Elimination& e, V c, V s) {
+    V A[6][9];  // [E0 E1 E2]
+    for (int i = 0; i < 6; ++i)
+        for (int j = 0; j < 3; ++j)
+            for (int block = 0; block < 3; ++block)
+                A[i][3 * block + j] = equation(e, i, 3 * (2 - block) + j, c, s);
+    V d3[3], d6[6], factor3[3], factor6[6];
+    linear::factor_qr(A, d3, factor3);  // [R0 b1 b2; 0 a1 a2]
+    const V zero = fill<V>(0.0);
+    V out = product_of(d3);
+    V B[6][9];  // [R0 b2 b1; a1 0 a2]
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            B[i][j] = j > i ? A[i][j] : j == i ? d3[i] : zero;
+            B[i][3 + j] = A[i][6 + j];
+            B[i][6 + j] = A[i][3 + j];
+            B[3 + i][j] = A[3 + i][3 + j];
+            B[3 + i][3 + j] = zero;
+            B[3 + i][6 + j] = A[3 + i][6 + j];
+        }
+    linear::factor_qr(B, d3, factor3);
+    out = out * product_of(d3);
+    V D[6][6];  // [a2 a1; d2 d1]
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) {
+            D[i][j] = A[3 + i][6 + j];
+            D[i][3 + j] = A[3 + i][3 + j];
+            D[3 + i][j] = B[3 + i][3 + j];
+            D[3 + i][3 + j] = B[3 + i][6 + j];
+        }
+    linear::factor_qr(D, d6, factor6);
+    return out * product_of(d6);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -4,7 +4,7 @@
 #include <initializer_list>
 #include <type_traits>
 
-#include "cspace/ik/general/determinant.hpp"
+#include "cspace/ik/general/elimination.hpp"
 #include "cspace/ik/general/sampler.hpp"
 
 namespace cspace::ik {

@@ -6,7 +6,7 @@
 #pragma once
 
 #include "cspace/ik/dh_form.hpp"
-#include "cspace/ik/general/position_first.hpp"
+#include "cspace/ik/general/decoupled.hpp"
 #include "cspace/ik/solution.hpp"
 
 namespace cspace::ik {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "cspace/ik/general/plan.hpp"
-#include "cspace/ik/perturbed_goals.hpp"
+#include "cspace/ik/near_singular.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 

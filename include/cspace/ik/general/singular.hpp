@@ -3,7 +3,7 @@
 
 #include "cspace/ik/general/representatives.hpp"
 #include "cspace/ik/general/virtual_joints.hpp"
-#include "cspace/ik/perturbed_goals.hpp"
+#include "cspace/ik/near_singular.hpp"
 #include "cspace/ik/self_motion/self_motion.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {

@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "cspace/ik/general/candidates.hpp"
+#include "cspace/ik/general/decoupled.hpp"
 #include "cspace/ik/general/isolate.hpp"
-#include "cspace/ik/general/near_double_roots.hpp"
-#include "cspace/ik/general/orientation_first.hpp"
+#include "cspace/ik/general/recover.hpp"
 #include "cspace/ik/general/two_prismatic.hpp"
 #include "cspace/ik/near_singular.hpp"
 

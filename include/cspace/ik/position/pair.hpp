@@ -2,15 +2,133 @@
 //
 // Two circles: two_angles.hpp, a quartic. A circle and a line: eliminating the line's coordinate leaves a
 // trigonometric polynomial of degree two in the angle (one, if both conditions are linear). Two lines: a line
-// and a conic, or two lines. Conditions that are one: one_condition.hpp. The results are candidates, which
+// and a conic, or two lines. Conditions that are one: see below. The results are candidates, which
 // are then refined on the arm itself. If none is a solution, further candidates represent a self-motion. The
 // first joint is at zero if the last can follow; otherwise the last is at zero; otherwise either is where it
 // is nearest to the middle joint.
 #pragma once
 
-#include "cspace/ik/position/one_condition.hpp"
+#include "cspace/ik/position/curve.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
+
+// Degenerate pair of conditions: the two conditions on q1 and q3 are equivalent to one, f(q1) = g(q3). One
+// pair (q1, q3) is returned for each curve of solutions.
+//
+// On a circle each side is monotonic between its minimum and its maximum. On a line a side has one extremum
+// or none. If the range of one side lies within the range of the other, its joint can take any value. The
+// other joint follows on either slope: two curves (or one curve, if there is a single slope). If the ranges
+// only overlap, both joints reverse where a range ends, and there is one curve. These are the curves of a
+// four-bar linkage: the first case satisfies Grashof's condition, the second does not (Grashof 1883).
+
+namespace pair {
+
+struct Range {
+    double least, most;
+};
+// Whether a side has an extremum. On a circle it has two, on a line one or none; a constant side has none.
+inline bool has_end(const OnCurve& f) {
+    return (f.line ? f.square : std::hypot(f.a, f.b)) > tolerance::rounding;
+}
+inline Range range(const OnCurve& f) {
+    constexpr double without_end = std::numeric_limits<double>::infinity();
+    if (!f.line) {
+        const double reach = std::hypot(f.a, f.b);
+        return {f.k - reach, f.k + reach};
+    }
+    if (!has_end(f)) return {-without_end, without_end};
+    return {f.k - f.a * f.a / (4 * f.square), without_end};
+}
+// Where ends nearly coincide, curves nearly cross, and a continuation may switch between them. They are
+// distinguished as if they crossed.
+inline bool is_within(const Range& inner, const Range& outer) {
+    constexpr double nearly = 1e-8;
+    return inner.least >= outer.least - nearly && inner.most <= outer.most + nearly;
+}
+inline bool holds(const Range& r, double value) {
+    return value >= r.least - tolerance::rounding && value <= r.most + tolerance::rounding;
+}
+
+// The joint value at the extremum of its side: the maximum, or the minimum.
+inline double at_most(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(f.b, f.a); }
+inline double at_least(const OnCurve& f) { return f.line ? vertex(f) : std::atan2(-f.b, -f.a); }
+
+// Whether the conditions f_i = g_i are equivalent to one; `k` is then the number of the non-trivial one.
+inline bool is_one_condition(const OnCurve f[2], const OnCurve g[2], int& k) {
+    double v[2][7], size[2] = {0, 0}, both = 0;
+    for (int i = 0; i < 2; ++i) {
+        const double terms[7] = {f[i].k - g[i].k, f[i].a, f[i].b, f[i].square, g[i].a, g[i].b, g[i].square};
+        for (int j = 0; j < 7; ++j) v[i][j] = terms[j], size[i] += terms[j] * terms[j];
+    }
+    k = size[1] > size[0];
+    if (size[k] <= tolerance::rounding * tolerance::rounding) return false;
+    for (int j = 0; j < 7; ++j) both += v[0][j] * v[1][j];
+    double apart = 0;
+    for (int j = 0; j < 7; ++j) {
+        const double d = v[1 - k][j] - both / size[k] * v[k][j];
+        apart += d * d;
+    }
+    return apart <= tolerance::rounding * tolerance::rounding &&
+           weight(f[k]) + weight(g[k]) > tolerance::rounding;
+}
+
+// Where an extremum of f coincides with an extremum of g, two curves cross, or one curve crosses itself. Both
+// joints move, and either slope of one combines with either slope of the other.
+struct Touching {
+    bool most, least;
+};
+inline Touching touching(const Range& f, const Range& g) {
+    const auto same = [](double a, double b) { return std::fabs(a - b) <= tolerance::rounding; };
+    return {same(f.most, g.most), same(f.least, g.least)};
+}
+
+// Whether a joint is near an extremum of its side, where curves may cross or nearly cross.
+inline bool is_near_end(const OnCurve& f, double q) {
+    constexpr double near = 0.3;
+    const double way = q - at_most(f);
+    return has_end(f) && std::fabs(f.line ? way : std::sin(way)) < near;
+}
+inline double away_from_ends(const OnCurve& f) {
+    constexpr double line_away = 1;  // of the arm's size
+    if (!is_near_end(f, 0)) return 0;
+    return at_most(f) + (f.line ? line_away : 0.5 * pi);
+}
+
+// One pair per curve of f(q1) = g(q3), away from crossings of two curves. An unconstrained joint is at 0, or
+// at π/2 from an extremum. Otherwise the first joint is at 0, or the last joint is at 0, or both sides are
+// halfway between the ends of their curve.
+inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& found) {
+    const Range of_f = range(f), of_g = range(g);
+    const Touching ends = touching(of_f, of_g);
+    // The two slopes of a side are one curve that passes from one to the other where it crosses itself.
+    const bool once = (!f.line || !g.line) && ends.most != ends.least;
+    double q[2];
+    if (is_within(of_f, of_g)) {
+        const double first = away_from_ends(f);
+        const int n = values(g, value(f, first), q);
+        for (int i = 0; i < (once ? 1 : n); ++i) add(found, first, q[i]);
+    } else if (is_within(of_g, of_f)) {
+        const double last = away_from_ends(g);
+        const int n = values(f, value(g, last), q);
+        for (int i = 0; i < (once ? 1 : n); ++i) add(found, q[i], last);
+    } else if (!is_near_end(f, 0) && holds(of_g, value(f, 0))) {
+        if (values(g, value(f, 0), q) > 0) add(found, 0, q[0]);
+    } else if (!is_near_end(g, 0) && holds(of_f, value(g, 0))) {
+        if (values(f, value(g, 0), q) > 0) add(found, q[0], 0);
+    } else {
+        const double least = std::fmax(of_f.least, of_g.least), most = std::fmin(of_f.most, of_g.most);
+        const double halfway = 0.5 * (least + most);
+        double first[2], last[2];
+        if (values(f, halfway, first) > 0 && values(g, halfway, last) > 0) add(found, first[0], last[0]);
+    }
+    // Where both sides are least, both points may lie on the axis between, whose joint is then free.
+    if (!ends.least) return;
+    const int next = found.count;
+    add(found, at_least(f), at_least(g));
+    if (found.count > next) found.on_axis = next;
+}
+
+}  // namespace pair
 
 namespace pair {
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
+#include "cspace/ik/subproblems/refine.hpp"
 
 namespace cspace::ik {
 
@@ -34,3 +35,103 @@ struct FewJointSolutions {
 };
 
 }  // namespace cspace::ik
+
+namespace cspace::ik::inline CSPACE_ISA {
+
+// Solutions of a small system of joints: which are equal, and which belong to a self-motion.
+//
+// A System is as in refine.hpp, over joints as numbers, with `prismatic[i]` and the residual `reached` that
+// counts as zero.
+
+// Whether joints a and b are the same configuration, with angles modulo 2π.
+template <class System>
+bool same_joints(const System& g, const double* a, const double* b) {
+    for (int i = 0; i < System::angles; ++i) {
+        const double d = a[i] - b[i];
+        if (std::fabs(g.prismatic[i] ? d : 2 * std::sin(0.5 * d)) > tolerance::same_turns) return false;
+    }
+    return true;
+}
+
+// Eigenvectors of a symmetric matrix as columns of v, eigenvalues on the diagonal of a (Jacobi 1846).
+template <int n>
+void eigenvectors(double (*a)[n], double (*v)[n]) {
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) v[i][j] = i == j;
+    for (int sweep = 0; sweep < 12; ++sweep)
+        for (int i = 0; i < n; ++i)
+            for (int j = i + 1; j < n; ++j) {
+                if (std::fabs(a[i][j]) <= 1e-18 * (std::fabs(a[i][i]) + std::fabs(a[j][j]))) continue;
+                const double half = 0.5 * std::atan2(2 * a[i][j], a[j][j] - a[i][i]);
+                const double c = std::cos(half), s = std::sin(half);
+                for (int k = 0; k < n; ++k) {
+                    const double x = a[k][i], y = a[k][j];
+                    a[k][i] = c * x - s * y, a[k][j] = s * x + c * y;
+                }
+                for (int k = 0; k < n; ++k) {
+                    const double x = a[i][k], y = a[j][k], p = v[k][i], r = v[k][j];
+                    a[i][k] = c * x - s * y, a[j][k] = s * x + c * y;
+                    v[k][i] = c * p - s * r, v[k][j] = s * p + c * r;
+                }
+            }
+}
+
+// Cheap test for regularity: no eigenvalue of a positive matrix is below its determinant divided by the other
+// eigenvalues, each at most n times the largest diagonal entry.
+template <int n>
+bool surely_regular(const double (*a)[n], double largest) {
+    double determinant = a[0][0];
+    if constexpr (n == 2) determinant = a[0][0] * a[1][1] - a[0][1] * a[1][0];
+    if constexpr (n == 3)
+        determinant = a[0][0] * (a[1][1] * a[2][2] - a[1][2] * a[2][1]) -
+                      a[0][1] * (a[1][0] * a[2][2] - a[1][2] * a[2][0]) +
+                      a[0][2] * (a[1][0] * a[2][1] - a[1][1] * a[2][0]);
+    double scale = largest;
+    for (int i = 1; i < n; ++i) scale *= n * largest;
+    return determinant > n * tolerance::degenerate_pair * tolerance::degenerate_pair * scale &&
+           largest > tolerance::sure_candidate;
+}
+
+// Whether the solution q belongs to a self-motion. Its unit direction is written to `along`. close: whether
+// some motion there changes the residual by rounding only.
+template <class System>
+bool is_free(const System& g, const double* q, double* along, bool& close) {
+    constexpr int n = System::angles;
+    constexpr double merged = 1e-7;  // rounding parts a double root by its square root
+    Linearised<System> at;
+    linearise(g, q, at);
+    double normal[n][n], down[n], v[n][n], largest = 0;
+    normal_equations(at, normal, down);
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < i; ++j) normal[i][j] = normal[j][i];
+    for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
+    close = false;
+    if (surely_regular<n>(normal, largest)) return false;
+    eigenvectors<n>(normal, v);
+    largest = 0;
+    for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
+    const double floor = std::fmax(tolerance::degenerate_pair * std::sqrt(largest), tolerance::rounding);
+    for (int i = 0; i < n; ++i) {
+        if (normal[i][i] > floor * floor) continue;
+        close = close || normal[i][i] <= merged * merged * largest;
+        for (int j = 0; j < n; ++j) along[j] = v[j][i];
+        if (continues_along(g, q, along, g.reached)) return true;
+    }
+    return false;
+}
+
+// Appends the refined solution q of a system if it is new.
+template <class System, class Solutions>
+void keep_distinct(const System& g, double* q, Solutions& found) {
+    constexpr int n = System::angles;
+    if (found.count == max_position_solutions) return;
+    for (int i = 0; i < n; ++i)
+        if (!g.prismatic[i]) q[i] = angle_of(turn_by(q[i]));
+    for (int i = 0; i < found.count; ++i)
+        if (same_joints(g, q, found.q[i])) return;
+    for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
+    const int k = found.count++;
+    found.free[k] = is_free(g, q, found.direction[k], found.close[k]);
+}
+
+}  // namespace cspace::ik::inline CSPACE_ISA

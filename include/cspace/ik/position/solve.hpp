@@ -10,10 +10,9 @@
 
 #include <initializer_list>
 
-#include "cspace/ik/position/nearest.hpp"
 #include "cspace/ik/position/pair.hpp"
-#include "cspace/ik/position/self_motions.hpp"
 #include "cspace/ik/position/solutions.hpp"
+#include "cspace/ik/position/tip_gap.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 

@@ -2,7 +2,9 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
+#include "cspace/ik/subproblems/least_squares.hpp"
 #include "cspace/ik/subproblems/refine.hpp"
+#include "cspace/ik/subproblems/sp1.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 
@@ -71,6 +73,109 @@ TipGap<n> tip_gap(const Chain& chain, const Vec3d& goal, const PositionScale& sc
     g.tip = {0, 0, 0};
     g.goal = f * (goal - chain.tip.t);
     return g;
+}
+
+// The configuration of an arm with up to three joints whose tip is nearest to a point out of reach.
+//
+// The gradient of the distance vanishes there. A sweep over two joints locates the valleys, and Newton's
+// method finds their minima. The revolute joints are swept, and the prismatic joints follow by linear least
+// squares. Of three revolute joints the outer two are swept, and the middle one follows by subproblem 1.
+
+// The value of a joint that moves `from` to `to`, or as near to it as possible.
+template <int n>
+double joint_between(const TipGap<n>& g, int joint, const Vec3d& from, const Vec3d& to) {
+    if (g.prismatic[joint]) return dot(g.axis[joint], to - from);
+    const Vec3d& o = g.point[joint];
+    return angle_of(subproblem_1(g.axis[joint], from - o, to - o).theta);
+}
+// x moved by joint i, or by its inverse for −q.
+template <int n>
+Vec3d moved(const TipGap<n>& g, int i, double q, const Vec3d& x) {
+    if (g.prismatic[i]) return x + q * g.axis[i];
+    return g.point[i] + rotate(g.axis[i], turn_by(q), x - g.point[i]);
+}
+
+namespace nearest {
+
+inline constexpr int steps = 24;
+
+// The joints that are swept: all revolute joints, except the middle one of three.
+template <int n>
+int swept_joints(const TipGap<n>& g, int* swept) {
+    int revolute = 0, count = 0;
+    for (int i = 0; i < n; ++i) revolute += !g.prismatic[i];
+    for (int i = 0; i < n; ++i)
+        if (!g.prismatic[i] && (revolute < 3 || i != 1)) swept[count++] = i;
+    return count;
+}
+// The prismatic joints minimise the gap while the others are fixed: one linear least-squares step is exact.
+template <int n>
+void slide(const TipGap<n>& g, double* q) {
+    Linearised<TipGap<n>> at;
+    double normal[n][n], step[n];
+    linearise(g, q, at);
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < 3 && !g.prismatic[j]; ++i) at.slope[i][j] = 0;
+    normal_equations(at, normal, step);
+    if (!solve_damped(normal, tolerance::exact, step)) return;
+    for (int j = 0; j < n; ++j)
+        if (g.prismatic[j]) q[j] += step[j];
+}
+// Computes the joints that are not swept; returns the remaining gap.
+template <int n>
+double follow(const TipGap<n>& g, int dimension, double* q) {
+    bool slides = false;
+    for (int i = 0; i < n; ++i) slides = slides || g.prismatic[i];
+    if (slides)
+        slide(g, q);
+    else if (n == 3 && dimension == 2)
+        q[1] = joint_between(g, 1, moved(g, 2, q[2], g.tip), moved(g, 0, -q[0], g.goal));
+    Linearised<TipGap<n>> at;
+    return linearise(g, q, at);
+}
+
+}  // namespace nearest
+
+template <int n>
+double nearest_configuration(const TipGap<n>& g, double* best_q) {
+    using nearest::steps;
+    constexpr int most = 10;
+    int swept[2], dimension = nearest::swept_joints(g, swept), count = 0;
+    const int rows = dimension > 0 ? steps : 1, columns = dimension > 1 ? steps : 1;
+    double field[steps][steps], lowest[most], at[most][n];
+    const auto start = [&](int i, int j, double* q) {
+        for (int k = 0; k < n; ++k) q[k] = 0;
+        if (dimension > 0) q[swept[0]] = 2 * pi * (i + 0.37) / steps - pi;
+        if (dimension > 1) q[swept[1]] = 2 * pi * (j + 0.37) / steps - pi;
+        return nearest::follow(g, dimension, q);
+    };
+    double q[n];
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) field[i][j] = start(i, j, q);
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) {
+            const double here = field[i][j];
+            const bool valley = here <= field[(i + 1) % rows][j] && here <= field[(i + rows - 1) % rows][j] &&
+                                here <= field[i][(j + 1) % columns] &&
+                                here <= field[i][(j + columns - 1) % columns];
+            if (!valley || (count == most && here >= lowest[most - 1])) continue;
+            start(i, j, q);
+            int k = count < most ? count++ : most - 1;
+            for (; k > 0 && lowest[k - 1] > here; --k) {
+                lowest[k] = lowest[k - 1];
+                for (int m = 0; m < n; ++m) at[k][m] = at[k - 1][m];
+            }
+            lowest[k] = here;
+            for (int m = 0; m < n; ++m) at[k][m] = q[m];
+        }
+    double best = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < count; ++k) {
+        const double error = descend(g, at[k]);
+        if (error >= best) continue;
+        best = error;
+        for (int i = 0; i < n; ++i) best_q[i] = at[k][i];
+    }
+    return best;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -12,7 +12,6 @@
 // any branch.
 #pragma once
 
-#include "cspace/ik/redundancy/nearest.hpp"
 #include "cspace/ik/redundancy/split_chain.hpp"
 #include "cspace/math/linear.hpp"
 #include "cspace/tolerances.hpp"

@@ -4,8 +4,8 @@
 #pragma once
 
 #include "cspace/ik/closed_form.hpp"
-#include "cspace/ik/polish.hpp"
 #include "cspace/ik/redundancy/redundant_arm.hpp"
+#include "cspace/ik/refine.hpp"
 
 namespace cspace::ik {
 

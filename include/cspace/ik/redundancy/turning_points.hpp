@@ -1,6 +1,6 @@
 // Folds of the branches as functions of a locked joint: the double roots of a closed form.
 //
-// With axes 1 and 2 of the form meeting (see pieper_position.hpp), t3 solves a cos t3 + b sin t3 = r(v),
+// With axes 1 and 2 of the form meeting (see pieper.hpp), t3 solves a cos t3 + b sin t3 = r(v),
 // where r is of first degree in the cosine and sine of v, so that n² − r² is a trigonometric polynomial of
 // degree 2. The discriminant of t2 is U ± √(n² − r²) W for the two t3. The product U² − (n² − r²) W² has
 // degree 4. All roots are isolated by the method of the general solver's determinant.

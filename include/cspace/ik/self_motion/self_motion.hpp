@@ -4,7 +4,7 @@
 
 #include <initializer_list>
 
-#include "cspace/ik/general/weak_direction.hpp"
+#include "cspace/ik/refine.hpp"
 #include "cspace/ik/self_motion/continuation.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {

@@ -1,5 +1,5 @@
 """A wrist behind three joints of any kind, and three turns with three prismatic joints:
-general/position_first.hpp and orientation_first.hpp."""
+general/decoupled.hpp."""
 
 from __future__ import annotations
 
