@@ -1,6 +1,7 @@
 // Serial chain: the joint axes of an arm at zero, from which the inverse kinematics solvers are built.
 #pragma once
 
+#include "cspace/kinematics/jacobian.hpp"
 #include "cspace/math/vec.hpp"
 #include "cspace/math/wrapping.hpp"
 #include "cspace/spatial/rotation.hpp"
@@ -72,6 +73,23 @@ inline Posed forward(const Chain& chain, const double* q) {
     return move_joints(chain, chain.n, q) * chain.tip;
 }
 
+// [Δp / length; rotation vector] from the pose of the tip to a goal, to first order in the rotation. Returns
+// the trace of that rotation: 3 at the goal, −1 half a turn from it, where the first order vanishes too.
+template <class V>
+CSPACE_INLINE V tip_error(const Pose<V>& tip, const Pose<V>& goal, double length, V* error) {
+    const Vec3<V> dp = (1 / length) * (goal.t - tip.t), w = spatial::sine_between(tip.R, goal.R);
+    const V entries[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
+    for (int k = 0; k < 6; ++k) error[k] = entries[k];
+    return spatial::trace_between(tip.R, goal.R);
+}
+// [per_length · v; ω]
+template <class V>
+CSPACE_INLINE void write_twist(const kinematics::Twist<V>& twist, double per_length, V* out) {
+    const Vec3<V> v = per_length * twist.v;
+    const V entries[6] = {v.x, v.y, v.z, twist.w.x, twist.w.y, twist.w.z};
+    for (int k = 0; k < 6; ++k) out[k] = entries[k];
+}
+
 // The same arm from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.
 inline Chain reversed(const Chain& chain) {
     const Posed T_tip_base = inverse(chain.tip);
@@ -87,20 +105,24 @@ inline Chain reversed(const Chain& chain) {
     return back;
 }
 
-// A characteristic length of the arm [m]: the largest distance between consecutive axes or to the tip, or 1
-// if all intersect.
-inline double characteristic_length(const Chain& chain) {
+// The largest distance between consecutive axes, or from an axis to the next point, or 1 if all intersect.
+// axis(i) (i < n) and point(i) (i ≤ n; the last is the tip) of joints of which slides(i) are prismatic.
+template <class AxisOf, class PointOf, class Slides>
+double largest_offset(int n, const AxisOf& axis, const PointOf& point, const Slides& slides) {
     double longest = 0;
-    for (int i = 0; i < chain.n; ++i) {
-        const Vec3d next = i + 1 < chain.n ? chain.point[i + 1] : chain.tip.t;
-        const Vec3d across = cross(next - chain.point[i], chain.axis[i]);
-        longest = max(longest, norm(across));
-        if (i + 1 < chain.n && !chain.prismatic[i + 1]) {
-            const Vec3d back = cross(next - chain.point[i], chain.axis[i + 1]);
-            longest = max(longest, norm(back));
-        }
+    for (int i = 0; i < n; ++i) {
+        const Vec3d step = point(i + 1) - point(i);
+        longest = max(longest, norm(cross(step, axis(i))));
+        if (i + 1 < n && !slides(i + 1)) longest = max(longest, norm(cross(step, axis(i + 1))));
     }
     return longest > 0 ? longest : 1.0;
+}
+// A characteristic length of the arm [m].
+inline double characteristic_length(const Chain& chain) {
+    return largest_offset(
+        chain.n, [&](int i) { return chain.axis[i]; },
+        [&](int i) { return i < chain.n ? chain.point[i] : chain.tip.t; },
+        [&](int i) { return chain.prismatic[i]; });
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
-#include "cspace/math/linear.hpp"
+#include "cspace/math/least_squares.hpp"
 #include "cspace/math/small_svd.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -41,44 +41,28 @@ inline void measure_error(const Chain& chain, const Posed& goal, double length, 
     for (int k = 0; k < 6; ++k) out.e[k] = e[k];
     out.jacobian.rows = 6;
     out.jacobian.columns = chain.n;
-    for (int i = 0; i < chain.n; ++i) {
-        const Vec3d v = chain.prismatic[i] ? axis[i] : cross(axis[i], T.t - point[i]);
-        const Vec3d h = chain.prismatic[i] ? Vec3d{0, 0, 0} : axis[i];
-        double* const column_i = out.jacobian.us[i];
-        const double col[6] = {v.x / length, v.y / length, v.z / length, h.x, h.y, h.z};
-        for (int k = 0; k < 6; ++k) column_i[k] = col[k];
-    }
+    for (int i = 0; i < chain.n; ++i)
+        write_twist(kinematics::joint_twist(chain.prismatic[i], axis[i], point[i], T.t), 1 / length,
+                    out.jacobian.us[i]);
 }
 
 inline double size_of_error(const PoseError& error) { return std::sqrt(dot_n(error.e, error.e, 6)); }
 
 // The damped least-squares step from a decomposed Jacobian. The step has no component in the null space: the
 // remaining error there is rounding, and would move joints along their self-motion.
-inline void damped_step(const PoseError& error, double damping, double* dq) {
-    const PoseSvd& J = error.jacobian;
-    for (int i = 0; i < J.columns; ++i) dq[i] = 0;
-    for (int j = 0; j < J.columns; ++j) {
-        const double s2 = J.sigma[j] * J.sigma[j];
-        if (J.sigma[j] <= tolerance::free_joint) continue;
-        const double along = dot_n(J.us[j], error.e, 6) / (s2 + damping);
-        for (int i = 0; i < J.columns; ++i) dq[i] += along * J.v[j][i];
-    }
+inline void damped_pose_step(const PoseError& error, double damping, double* dq) {
+    least_norm_step(error.jacobian, error.e, damping, tolerance::free_joint, -1, dq);
 }
-
-inline int weakest_direction(const PoseSvd& J) {
-    int k = 0;
-    for (int j = 1; j < J.columns; ++j)
-        if (J.sigma[j] < J.sigma[k]) k = j;
-    return k;
+// Newton's step without its component along the weakest direction: to the floor of the valley, not along it.
+inline void step_to_floor(const PoseError& error, int weak, double* dq) {
+    least_norm_step(error.jacobian, error.e, 0, tolerance::free_joint, weak, dq);
 }
 
 // Applies a step, shortened to a stride; returns the remaining error.
 inline double take_step(const Chain& chain, const Posed& goal, double length, const double* from,
                         const double* dq, double* to, PoseError& error) {
     constexpr double stride = 0.3;
-    double reach = 0;
-    for (int i = 0; i < chain.n; ++i) reach = max(reach, std::fabs(dq[i]));
-    const double keep = reach > stride ? stride / reach : 1.0;
+    const double keep = shortening(largest_of(dq, chain.n), stride);
     for (int i = 0; i < chain.n; ++i) to[i] = from[i] + keep * dq[i];
     measure_error(chain, goal, length, to, error);
     return size_of_error(error);
@@ -97,7 +81,7 @@ inline bool newton(const Chain& chain, const Posed& goal, double length, double*
     for (int step = 0; step < most_steps && least >= settled; ++step) {
         double dq[max_joints];
         decompose(error.jacobian);
-        damped_step(error, 0, dq);
+        damped_pose_step(error, 0, dq);
         const double size = take_step(chain, goal, length, at, dq, at, error);
         const bool better = size < least;
         if (better) {
@@ -109,17 +93,6 @@ inline bool newton(const Chain& chain, const Posed& goal, double length, double*
     if (!(least < arrived)) return false;
     for (int i = 0; i < chain.n; ++i) q[i] = best[i];
     return true;
-}
-
-// Newton's step without its component along the weakest direction: to the floor of the valley, not along it.
-inline void step_to_floor(const PoseError& error, int weak, double* dq) {
-    const PoseSvd& J = error.jacobian;
-    for (int i = 0; i < J.columns; ++i) dq[i] = 0;
-    for (int j = 0; j < J.columns; ++j) {
-        if (j == weak || J.sigma[j] <= tolerance::free_joint) continue;
-        const double part = dot_n(J.us[j], error.e, 6) / (J.sigma[j] * J.sigma[j]);
-        for (int i = 0; i < J.columns; ++i) dq[i] += part * J.v[j][i];
-    }
 }
 
 // In a valley with an almost flat floor, Newton's steps along the floor leave it sideways by more than the
@@ -167,7 +140,7 @@ inline double descend(const Chain& chain, const Posed& goal, double length, doub
     for (int step = 0; step < most_steps && size > settled && stalls < 6; ++step) {
         double dq[max_joints], next[max_joints];
         PoseError trial;
-        damped_step(error, damping + size * size, dq);
+        damped_pose_step(error, damping + size * size, dq);
         const double trial_size = take_step(chain, goal, length, q, dq, next, trial);
         const bool closer = trial_size < size, stalled = trial_size > 0.99 * size;
         const double sigma = error.jacobian.sigma[weakest_direction(error.jacobian)];
@@ -210,24 +183,19 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
     Vec3<V> axis[6], point[6];
     const auto keep_axis = [&](int i, const Vec3<V>& h, const Vec3<V>& p) { axis[i] = h, point[i] = p; };
     const Pose<V> T = move_joints(chain, 6, q, keep_axis) * fill_pose<V>(chain.tip);
-    const Vec3<V> dp = (1 / length) * (goal.t - T.t);
-    const Vec3<V> w = spatial::sine_between(T.R, goal.R);
-    V A[6][6], b[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
+    V A[6][6], b[6], twist[6];
+    const V aligned = tip_error(T, goal, length, b);
     for (int i = 0; i < 6; ++i) {
-        const bool slides = chain.prismatic[i];
-        const Vec3<V> v = slides ? axis[i] : (1 / length) * cross(axis[i], T.t - point[i]);
-        const double turns = slides ? 0.0 : 1.0;
-        const V col[6] = {v.x, v.y, v.z, turns * axis[i].x, turns * axis[i].y, turns * axis[i].z};
-        for (int k = 0; k < 6; ++k) A[k][i] = col[k];
+        write_twist(kinematics::joint_twist(chain.prismatic[i], axis[i], point[i], T.t),
+                    chain.prismatic[i] ? 1 : 1 / length, twist);
+        for (int k = 0; k < 6; ++k) A[k][i] = twist[k];
     }
     solve_linear(A, b);
-    V largest = fill<V>(0.0);
-    for (int i = 0; i < 6; ++i) largest = max(largest, abs(b[i]));
-    const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
+    const V largest = largest_of(b, 6), keep = shortening(largest, stride);
     for (int i = 0; i < 6; ++i) q[i] = mul_add(chain.prismatic[i] ? length * keep : keep, b[i], q[i]);
     // Half a turn off, the sum of cross products vanishes as at the goal: nothing beyond a right angle has
     // settled.
-    return select(spatial::trace_between(T.R, goal.R) < 1.0, max(largest, fill<V>(1.0)), largest);
+    return select(aligned < 1.0, max(largest, fill<V>(1.0)), largest);
 }
 
 // True if q, a candidate near a solution, has converged to it.

@@ -55,4 +55,3 @@ struct Abreast {
 };
 
 }  // namespace cspace::ik
-

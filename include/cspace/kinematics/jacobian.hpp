@@ -4,8 +4,7 @@
 // along d gives [d; 0] (Whitney 1969; Siciliano et al., Robotics, 2009, section 3.1).
 #pragma once
 
-#include "cspace/math/vec.hpp"
-#include "cspace/model/chain.hpp"
+#include "cspace/kinematics/forward.hpp"
 
 namespace cspace::kinematics {
 // The axis of a joint where it is at a configuration.
@@ -13,9 +12,31 @@ template <class V>
 struct Axis {
     Vec3<V> point, direction;
 };
+// How fast something moves: the velocity of its reference point and its angular velocity.
+template <class V>
+struct Twist {
+    Vec3<V> v, w;
+};
 }  // namespace cspace::kinematics
 
 namespace cspace::kinematics::inline CSPACE_ISA {
+
+// Follows a chain as follow_chain does; axes[i] becomes the axis of joint i. s, c: as of chain_sines.
+template <class V>
+CSPACE_INLINE Pose<V> place_axes(const model::Chain& chain, const Pose<V>& first, const V* q, V* s, V* c,
+                                 Axis<V>* axes) {
+    chain_sines(chain, q, s, c);
+    return follow_chain(chain, first, q, s, c,
+                        [&](int i, const Vec3<V>& o, const Vec3<V>& d) { axes[i] = {o, d}; });
+}
+
+// The twist of the point p per unit velocity of a joint along the direction d, or about it through o.
+template <class V>
+CSPACE_INLINE Twist<V> joint_twist(bool prismatic, const Vec3<V>& d, const Vec3<V>& o, const Vec3<V>& p) {
+    const V zero = fill<V>(0.0);
+    if (prismatic) return {d, {zero, zero, zero}};
+    return {cross(d, p - o), d};
+}
 
 // One column of a matrix of `columns` columns, rows first to first + 2.
 template <class V>
@@ -39,12 +60,11 @@ template <class V>
 CSPACE_INLINE void joint_columns(const model::Chain& chain, const Axis<V>* axes, const Vec3<V>& p, V* J,
                                  int columns, int first) {
     if (chain.ordered) {
-        const V zero = fill<V>(0.0);
         for (int i = 0; i < chain.n; ++i) {
-            const Vec3<V>& d = axes[i].direction;
-            const bool slides = chain.joints[i].prismatic;
-            put_column(J, columns, first + i, 0, slides ? d : cross(d, p - axes[i].point));
-            put_column(J, columns, first + i, 3, slides ? Vec3<V>{zero, zero, zero} : d);
+            const Twist<V> twist =
+                joint_twist(chain.joints[i].prismatic, axes[i].direction, axes[i].point, p);
+            put_column(J, columns, first + i, 0, twist.v);
+            put_column(J, columns, first + i, 3, twist.w);
         }
         return;
     }
@@ -54,9 +74,9 @@ CSPACE_INLINE void joint_columns(const model::Chain& chain, const Axis<V>* axes,
     for (int i = 0; i < chain.n; ++i) {
         const model::ChainJoint& joint = chain.joints[i];
         const Vec3<V> d = joint.ratio * axes[i].direction;
-        add_to_column(J, columns, first + joint.coordinate, 0,
-                      joint.prismatic ? d : cross(d, p - axes[i].point));
-        if (!joint.prismatic) add_to_column(J, columns, first + joint.coordinate, 3, d);
+        const Twist<V> twist = joint_twist(joint.prismatic, d, axes[i].point, p);
+        add_to_column(J, columns, first + joint.coordinate, 0, twist.v);
+        if (!joint.prismatic) add_to_column(J, columns, first + joint.coordinate, 3, twist.w);
     }
 }
 

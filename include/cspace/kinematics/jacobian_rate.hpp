@@ -7,14 +7,6 @@
 
 #include "cspace/kinematics/jacobian.hpp"
 
-namespace cspace::kinematics {
-// How fast something moves: the velocity of its reference point and its angular velocity.
-template <class V>
-struct Twist {
-    Vec3<V> v, w;
-};
-}  // namespace cspace::kinematics
-
 namespace cspace::kinematics::inline CSPACE_ISA {
 
 // The rates of all axes of a chain, and, returned, the twist of the point p at its end. base is the twist
@@ -40,6 +32,16 @@ CSPACE_INLINE Twist<V> axis_rates(const model::Chain& chain, const Axis<V>* axes
     return link;
 }
 
+// The derivative of joint_twist: the axis and the point p change at the given rates.
+template <class V>
+CSPACE_INLINE Twist<V> joint_twist_rate(bool prismatic, const Axis<V>& axis, const Axis<V>& rate,
+                                        const Vec3<V>& p, const Vec3<V>& p_rate) {
+    const V zero = fill<V>(0.0);
+    if (prismatic) return {rate.direction, {zero, zero, zero}};
+    return {cross(rate.direction, p - axis.point) + cross(axis.direction, p_rate - rate.point),
+            rate.direction};
+}
+
 // The columns of the joints of a chain, differentiated; the other columns from `first` on are set to zero.
 template <class V>
 CSPACE_INLINE void joint_column_rates(const model::Chain& chain, const Axis<V>* axes, const Axis<V>* rates,
@@ -49,15 +51,9 @@ CSPACE_INLINE void joint_column_rates(const model::Chain& chain, const Axis<V>* 
     }
     for (int i = 0; i < chain.n; ++i) {
         const model::ChainJoint& joint = chain.joints[i];
-        const Vec3<V> rate = joint.ratio * rates[i].direction;
-        const int j = first + joint.coordinate;
-        if (joint.prismatic) {
-            add_to_column(J, columns, j, 0, rate);
-            continue;
-        }
-        const Vec3<V> d = joint.ratio * axes[i].direction;
-        add_to_column(J, columns, j, 0, cross(rate, p - axes[i].point) + cross(d, p_rate - rates[i].point));
-        add_to_column(J, columns, j, 3, rate);
+        const Twist<V> rate = joint_twist_rate(joint.prismatic, axes[i], rates[i], p, p_rate);
+        add_to_column(J, columns, first + joint.coordinate, 0, joint.ratio * rate.v);
+        if (!joint.prismatic) add_to_column(J, columns, first + joint.coordinate, 3, joint.ratio * rate.w);
     }
 }
 

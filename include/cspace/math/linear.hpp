@@ -44,19 +44,20 @@ CSPACE_INLINE mask_of<V> full_rank(const V (&diagonal)[n]) {
     return smallest > (n * std::numeric_limits<double>::epsilon()) * largest;
 }
 
-// One reflection of factor_qr: it takes column k below the diagonal out of the first `rows` rows.
-template <int m, int n, class V>
-CSPACE_INLINE void reduce_column(V (&A)[m][n], int k, int rows, V& diagonal, V& factor) {
+// One step of factor_qr on the m rows and n columns of A, anything with rows A[i]: the reflection of column
+// k.
+template <class Matrix, class V>
+CSPACE_INLINE void reduce_column(Matrix& A, int m, int n, int k, V& diagonal, V& factor) {
     V square = A[k][k] * A[k][k];
-    for (int i = k + 1; i < rows; ++i) square = mul_add(A[i][k], A[i][k], square);
+    for (int i = k + 1; i < m; ++i) square = mul_add(A[i][k], A[i][k], square);
     diagonal = -copysign(sqrt(square), A[k][k]);
     A[k][k] = A[k][k] - diagonal;
     factor = -safe_inverse(diagonal * A[k][k]);
     for (int j = k + 1; j < n; ++j) {
         V along = A[k][k] * A[k][j];
-        for (int i = k + 1; i < rows; ++i) along = mul_add(A[i][k], A[i][j], along);
+        for (int i = k + 1; i < m; ++i) along = mul_add(A[i][k], A[i][j], along);
         along = along * factor;
-        for (int i = k; i < rows; ++i) A[i][j] = mul_add(-along, A[i][k], A[i][j]);
+        for (int i = k; i < m; ++i) A[i][j] = mul_add(-along, A[i][k], A[i][j]);
     }
 }
 // The triangle and the reflections of A = Q R (Householder 1958; Golub & Van Loan 2013, section 5.2): R above
@@ -64,14 +65,14 @@ CSPACE_INLINE void reduce_column(V (&A)[m][n], int k, int rows, V& diagonal, V& 
 // more columns than `diagonal` the first ones are reduced, and the reflections reach the others.
 template <int m, int n, int reduced, class V>
 CSPACE_INLINE void factor_qr(V (&A)[m][n], V (&diagonal)[reduced], V (&factor)[reduced]) {
-    for (int k = 0; k < reduced; ++k) reduce_column(A, k, m, diagonal[k], factor[k]);
+    for (int k = 0; k < reduced; ++k) reduce_column(A, m, n, k, diagonal[k], factor[k]);
 }
-// b := (I − factor_k v_k v_kᵀ) b
-template <int m, int n, int reduced, class V>
-CSPACE_INLINE void reflect(const V (&A)[m][n], const V (&factor)[reduced], int k, V (&b)[m]) {
+// b := (I − factor v_k v_kᵀ) b, of m numbers.
+template <class Matrix, class V>
+CSPACE_INLINE void reflect(const Matrix& A, int m, int k, V factor, V* b) {
     V along = A[k][k] * b[k];
     for (int i = k + 1; i < m; ++i) along = mul_add(A[i][k], b[i], along);
-    along = along * factor[k];
+    along = along * factor;
     for (int i = k; i < m; ++i) b[i] = mul_add(-along, A[i][k], b[i]);
 }
 
@@ -144,7 +145,7 @@ CSPACE_INLINE mask_of<V> least_squares(V (&A)[m][n], V (&b)[m], V (&x)[n]) {
     if constexpr (m >= n) {
         V diagonal[n], factor[n];
         linear::factor_qr(A, diagonal, factor);
-        for (int k = 0; k < n; ++k) linear::reflect(A, factor, k, b);
+        for (int k = 0; k < n; ++k) linear::reflect(A, m, k, factor[k], b);
         for (int k = n - 1; k >= 0; --k) {
             x[k] = b[k];
             for (int j = k + 1; j < n; ++j) x[k] = mul_add(-A[k][j], x[j], x[k]);
@@ -164,7 +165,7 @@ CSPACE_INLINE mask_of<V> least_squares(V (&A)[m][n], V (&b)[m], V (&x)[n]) {
             for (int j = 0; j < k; ++j) x[k] = mul_add(-transposed[j][k], x[j], x[k]);
             x[k] = x[k] * linear::safe_inverse(diagonal[k]);
         }
-        for (int k = m - 1; k >= 0; --k) linear::reflect(transposed, factor, k, x);
+        for (int k = m - 1; k >= 0; --k) linear::reflect(transposed, n, k, factor[k], x);
         return linear::full_rank(diagonal);
     }
 }

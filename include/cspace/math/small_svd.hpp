@@ -65,4 +65,25 @@ void decompose(SmallSvd<R, C>& m) {
     for (int j = 0; j < m.columns; ++j) m.sigma[j] = std::sqrt(dot_n(m.us[j], m.us[j], m.rows));
 }
 
+template <int R, int C>
+int weakest_direction(const SmallSvd<R, C>& m) {
+    int k = 0;
+    for (int j = 1; j < m.columns; ++j)
+        if (m.sigma[j] < m.sigma[k]) k = j;
+    return k;
+}
+
+// The x of least |A x − e|² + damping |x|² without a part along the directions whose singular values are at
+// most `floor`, nor along direction `skipped` (−1: none). A is decomposed.
+template <int R, int C>
+void least_norm_step(const SmallSvd<R, C>& m, const double* e, double damping, double floor, int skipped,
+                     double* x) {
+    for (int i = 0; i < m.columns; ++i) x[i] = 0;
+    for (int j = 0; j < m.columns; ++j) {
+        if (j == skipped || m.sigma[j] <= floor) continue;
+        const double along = dot_n(m.us[j], e, m.rows) / (m.sigma[j] * m.sigma[j] + damping);
+        for (int i = 0; i < m.columns; ++i) x[i] += along * m.v[j][i];
+    }
+}
+
 }  // namespace cspace::inline CSPACE_ISA

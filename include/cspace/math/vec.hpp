@@ -109,11 +109,24 @@ template <class V>
 CSPACE_INLINE Pose<V> fill_pose(const Pose<double>& T) {
     return {fill33<V>(T.R), fill3<V>(T.t)};
 }
+template <class V>
+CSPACE_INLINE void set_pose_lane(Pose<V>& to, int l, const Posed& from) {
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j) set_lane(to.R.m[i][j], l, from.R.m[i][j]);
+    set_lane(to.t.x, l, from.t.x);
+    set_lane(to.t.y, l, from.t.y);
+    set_lane(to.t.z, l, from.t.z);
+}
 // A unit vector square to the unit vector h.
 inline Vec3d any_perpendicular(const Vec3d& h) {
     const Vec3d other = abs(h.x) < 0.6 ? Vec3d{1, 0, 0} : Vec3d{0, 1, 0};
     const Vec3d n = cross(h, other);
     return (1 / norm(n)) * n;
+}
+// A rotation whose third column is the unit vector z.
+inline Mat3d frame_along(const Vec3d& z) {
+    const Vec3d x = any_perpendicular(z);
+    return from_columns(x, cross(z, x), z);
 }
 
 }  // namespace cspace::inline CSPACE_ISA

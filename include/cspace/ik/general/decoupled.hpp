@@ -1,5 +1,5 @@
-// Six joints of which three revolute ones make the orientation alone, in up to two ways: a spherical wrist, or
-// three revolute joints among three prismatic ones. The other three joints then place a point.
+// Six joints of which three revolute ones make the orientation alone, in up to two ways: a spherical wrist,
+// or three revolute joints among three prismatic ones. The other three joints then place a point.
 #pragma once
 
 #include <initializer_list>

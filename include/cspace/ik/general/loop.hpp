@@ -73,9 +73,8 @@ inline LoopFrames loop_frames(const Chain& chain) {
     Vec3d before = chain.point[1];
     for (int i = 0; i < 6; ++i) {
         const Vec3d& z = chain.axis[i];
-        const Vec3d x = any_perpendicular(z);
         if (!chain.prismatic[i]) before = chain.point[i] + dot(before - chain.point[i], z) * z;
-        frame[i] = {from_columns(x, cross(z, x), z), before};
+        frame[i] = {frame_along(z), before};
     }
     for (int i = 0; i < 5; ++i) out.between[i] = inverse(frame[i]) * frame[i + 1];
     out.first = frame[0];

@@ -47,12 +47,12 @@ CSPACE_NOINLINE void reduce_equations(const Elimination& e, V c, V s, ReducedEqu
     for (int i = 0; i < 6; ++i)
         for (int m = 0; m < 9; ++m) out.A[m][i] = out.A[3 + m][6 + i] = equation(e, i, m, c, s);
     for (int k = 0; k < 12; ++k)  // the first six columns end at row nine
-        linear::reduce_column(out.A, k, k < 6 ? 9 : 12, out.diagonal[k], out.factor[k]);
+        linear::reduce_column(out.A, k < 6 ? 9 : 12, 12, k, out.diagonal[k], out.factor[k]);
 }
 // Q y, for the Q of the reduction.
 template <class V>
 CSPACE_INLINE void turn_back(const ReducedEquations<V>& r, V (&y)[12]) {
-    for (int k = 11; k >= 0; --k) linear::reflect(r.A, r.factor, k, y);
+    for (int k = 11; k >= 0; --k) linear::reflect(r.A, 12, k, r.factor[k], y);
 }
 // The monomials that all equations but the last in line annihilate.
 template <class V>

@@ -11,7 +11,8 @@
 #include <cstdint>
 
 #include "cspace/ik/goal.hpp"
-#include "cspace/ik/numeric/step.hpp"
+#include "cspace/ik/numeric/error.hpp"
+#include "cspace/math/least_squares.hpp"
 
 namespace cspace::ik {
 
@@ -125,11 +126,9 @@ CSPACE_INLINE void next_trial(const Path& path, const Task& task, const Rows& ro
                 damping = mul_add(descent::newton_floor * d.at.J[r][j], d.at.J[r][j], damping);
     }
     damped_step(rows.m, path.n, d.at.J, d.at.e, loose, damping, dx);
-    V reach = zero;
-    for (int j = 0; j < path.n; ++j) reach = max(reach, abs(dx[j]));
-    const V keep = select(reach > descent::stride, descent::stride / reach, one);
+    const V keep = shortening(largest_of(dx, path.n), descent::stride);
     for (int j = 0; j < path.n; ++j) {
-        V to = mul_add(keep * (path.slides[j] ? path.length : 1.0), dx[j], d.q[j]);
+        V to = mul_add(keep * unit_of(path, j), dx[j], d.q[j]);
         if (task.limited) to = min(max(to, fill<V>(task.lower[j])), fill<V>(task.upper[j]));
         d.trial[j] = to;
     }
@@ -139,13 +138,8 @@ CSPACE_INLINE void next_trial(const Path& path, const Task& task, const Rows& ro
 template <class V>
 void begin_lane(const DescentRows& rows, std::size_t row, int l, Descent<V>& d) {
     const Posed goal = read_goal(rows.goals + row * rows.goal_stride).T;
-    const Posed first = inverse(goal) * rows.path->T_base_first;
     const double* start = rows.starts + row * rows.start_stride;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) set_lane(d.T_goal_first.R.m[i][j], l, first.R.m[i][j]);
-    set_lane(d.T_goal_first.t.x, l, first.t.x);
-    set_lane(d.T_goal_first.t.y, l, first.t.y);
-    set_lane(d.T_goal_first.t.z, l, first.t.z);
+    set_pose_lane(d.T_goal_first, l, inverse(goal) * rows.path->T_base_first);
     for (int j = 0; j < rows.path->n; ++j) {
         double q = start[j];
         if (rows.task->limited) q = min(max(q, rows.task->lower[j]), rows.task->upper[j]);

@@ -94,14 +94,8 @@ template <class V>
 CSPACE_INLINE void measure_gap(const Path& path, const Rows& rows, const Pose<V>& T_goal_first, const V* q,
                                Gap<V>& out) {
     V s[max_path + 3], c[max_path + 3];
-    Vec3<V> point[max_path], axis[max_path];
-    const model::Chain chain = view_of(path);
-    kinematics::chain_sines(chain, q, s, c);
-    const Pose<V> T = kinematics::follow_chain(chain, T_goal_first, q, s, c,
-                                               [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
-                                                   point[i] = p;
-                                                   axis[i] = d;
-                                               });
+    kinematics::Axis<V> axes[max_path];
+    const Pose<V> T = kinematics::place_axes(view_of(path), T_goal_first, q, s, c, axes);
     const V zero = fill<V>(0.0);
     const Vec3<V> w = rows.turns ? spatial::rotvec_of_rotation(T.R) : Vec3<V>{zero, zero, zero};
     const V error[6] = {T.t.x, T.t.y, T.t.z, w.x, w.y, w.z};
@@ -119,11 +113,12 @@ CSPACE_INLINE void measure_gap(const Path& path, const Rows& rows, const Pose<V>
     for (int i = 0; i < path.joints; ++i) {
         const model::ChainJoint& joint = path.joint[i];
         const int j = joint.coordinate;
-        const double unit = joint.ratio * (path.slides[j] ? path.length : 1.0);
-        const Vec3<V> v = joint.prismatic ? axis[i] : cross(axis[i], T.t - point[i]);
-        Vec3<V> h = {zero, zero, zero};
-        if (rows.turns && !joint.prismatic) h = rows.even ? axis[i] : rate * axis[i];
-        const V column[6] = {per_length * v.x, per_length * v.y, per_length * v.z, h.x, h.y, h.z};
+        const double unit = joint.ratio * unit_of(path, j);
+        kinematics::Twist<V> twist =
+            kinematics::joint_twist(joint.prismatic, axes[i].direction, axes[i].point, T.t);
+        if (!rows.even && !joint.prismatic) twist.w = rate * twist.w;
+        V column[6];
+        write_twist(twist, per_length, column);
         for (int r = 0; r < rows.m; ++r)
             out.J[r][j] = mul_add(fill<V>(unit * rows.weight[r]), column[rows.row[r]], out.J[r][j]);
     }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
-#include "cspace/kinematics/forward.hpp"
+#include "cspace/kinematics/jacobian.hpp"
 #include "cspace/model/reduce_joint.hpp"
 
 namespace cspace::ik {
@@ -28,33 +28,18 @@ CSPACE_INLINE model::Chain view_of(const Path& path) {
     return {path.joint, path.joints, path.n, false, path.T_base_first, path.cos_last, path.sin_last};
 }
 
-// The largest distance between consecutive axes, or from an axis to the tip, with every coordinate at zero; 1
-// if all intersect.
+// What a unit of coordinate j, a radian or the length of the path, is in radians or metres.
+CSPACE_INLINE double unit_of(const Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
+
+// The characteristic length of a path with every coordinate at zero.
 inline double length_of(const Path& path) {
     double q[max_joints] = {}, s[max_path + 3], c[max_path + 3];
-    Vec3d point[max_path + 1], axis[max_path];
-    const model::Chain chain = view_of(path);
-    kinematics::chain_sines(chain, q, s, c);
-    const Posed tip = kinematics::follow_chain(chain, path.T_base_first, q, s, c,
-                                               [&](int i, const Vec3d& p, const Vec3d& d) {
-                                                   point[i] = p;
-                                                   axis[i] = d;
-                                               });
-    point[path.joints] = tip.t;
-    double longest = 0;
-    for (int i = 0; i < path.joints; ++i) {
-        const Vec3d step = point[i + 1] - point[i];
-        longest = max(longest, norm(cross(step, axis[i])));
-        if (i + 1 < path.joints && !path.joint[i + 1].prismatic)
-            longest = max(longest, norm(cross(step, axis[i + 1])));
-    }
-    return longest > 0 ? longest : 1.0;
-}
-
-// A rotation whose third column is the unit vector z.
-inline Mat3d turned_to(const Vec3d& z) {
-    const Vec3d x = any_perpendicular(z);
-    return from_columns(x, cross(z, x), z);
+    kinematics::Axis<double> axes[max_path];
+    const Posed tip = kinematics::place_axes(view_of(path), path.T_base_first, q, s, c, axes);
+    return largest_offset(
+        path.joints, [&](int i) { return axes[i].direction; },
+        [&](int i) { return i < path.joints ? axes[i].point : tip.t; },
+        [&](int i) { return path.joint[i].prismatic; });
 }
 
 // The path of an arm given by its joint axes; joint i is coordinate i.
@@ -62,7 +47,7 @@ inline Path path_of(const Chain& chain) {
     Path path;
     path.joints = path.n = chain.n;
     Posed frame[max_joints + 1];  // of each joint at zero, its axis along z
-    for (int i = 0; i < chain.n; ++i) frame[i] = {turned_to(chain.axis[i]), chain.point[i]};
+    for (int i = 0; i < chain.n; ++i) frame[i] = {frame_along(chain.axis[i]), chain.point[i]};
     frame[chain.n] = chain.tip;
     path.T_base_first = frame[0];
     double carried = 0;

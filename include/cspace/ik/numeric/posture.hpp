@@ -5,7 +5,8 @@
 // until it reduces the cost.
 #pragma once
 
-#include "cspace/ik/numeric/step.hpp"
+#include "cspace/ik/numeric/error.hpp"
+#include "cspace/math/least_squares.hpp"
 
 namespace cspace::ik {
 
@@ -37,8 +38,6 @@ struct SelfMotion {
     Rows rows;
     Posed T_goal_first;
 };
-
-inline double unit_of(const Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
 
 inline double posture_cost(const SelfMotion& at, const double* q) {
     double cost = 0;

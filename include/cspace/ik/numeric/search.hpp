@@ -235,4 +235,3 @@ inline std::size_t pick_distinct(const Path& path, const Task& task, const doubl
 }
 
 }  // namespace cspace::ik
-

@@ -103,10 +103,8 @@ inline Posed measure_frame(const TaskProblem& problem, const TaskPlace& at, int 
                            TaskWork& work) {
     const model::Chain& chain = problem.model->chain(frame);
     const int dof = dof_of(problem), first = problem.floating ? 6 : 0;
-    kinematics::chain_sines(chain, at.q.data(), work.s.data(), work.c.data());
-    const Posed T = kinematics::follow_chain(
-        chain, at.T_world_base * chain.T_base_first, at.q.data(), work.s.data(), work.c.data(),
-        [&](int i, const Vec3d& o, const Vec3d& d) { work.axes[std::size_t(i)] = {o, d}; });
+    const Posed T = kinematics::place_axes(chain, at.T_world_base * chain.T_base_first, at.q.data(),
+                                           work.s.data(), work.c.data(), work.axes.data());
     kinematics::joint_columns(chain, work.axes.data(), T * p, work.J.data(), dof, first);
     if (problem.floating) kinematics::base_columns(T * p - at.T_world_base.t, work.J.data(), dof, 6);
     return T;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cspace/ik/chain.hpp"
-#include "cspace/ik/subproblems/refine.hpp"
+#include "cspace/ik/subproblems/least_squares.hpp"
 
 namespace cspace::ik {
 
@@ -40,8 +40,8 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 // Solutions of a small system of joints: which are equal, and which belong to a self-motion.
 //
-// A System is as in refine.hpp, over joints as numbers, with `prismatic[i]` and the residual `reached` that
-// counts as zero.
+// A System is as in least_squares.hpp, over joints as numbers, with `prismatic[i]` and the residual `reached`
+// that counts as zero.
 
 // Whether joints a and b are the same configuration, with angles modulo 2π.
 template <class System>

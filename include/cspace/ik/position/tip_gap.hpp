@@ -3,7 +3,6 @@
 
 #include "cspace/ik/chain.hpp"
 #include "cspace/ik/subproblems/least_squares.hpp"
-#include "cspace/ik/subproblems/refine.hpp"
 #include "cspace/ik/subproblems/sp1.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
@@ -97,8 +96,6 @@ Vec3d moved(const TipGap<n>& g, int i, double q, const Vec3d& x) {
 
 namespace nearest {
 
-inline constexpr int steps = 24;
-
 // The joints that are swept: all revolute joints, except the middle one of three.
 template <int n>
 int swept_joints(const TipGap<n>& g, int* swept) {
@@ -112,14 +109,12 @@ int swept_joints(const TipGap<n>& g, int* swept) {
 template <int n>
 void slide(const TipGap<n>& g, double* q) {
     Linearised<TipGap<n>> at;
-    double normal[n][n], step[n];
+    double gap[3], loose[n], step[n];
     linearise(g, q, at);
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < 3 && !g.prismatic[j]; ++i) at.slope[i][j] = 0;
-    normal_equations(at, normal, step);
-    if (!solve_damped(normal, tolerance::exact, step)) return;
-    for (int j = 0; j < n; ++j)
-        if (g.prismatic[j]) q[j] += step[j];
+    for (int i = 0; i < 3; ++i) gap[i] = -at.value[i];
+    for (int j = 0; j < n; ++j) loose[j] = g.prismatic[j];
+    damped_step(3, n, at.slope, gap, loose, tolerance::exact, step);
+    for (int j = 0; j < n; ++j) q[j] += step[j];
 }
 // Computes the joints that are not swept; returns the remaining gap.
 template <int n>
@@ -138,11 +133,12 @@ double follow(const TipGap<n>& g, int dimension, double* q) {
 
 template <int n>
 double nearest_configuration(const TipGap<n>& g, double* best_q) {
-    using nearest::steps;
-    constexpr int most = 10;
-    int swept[2], dimension = nearest::swept_joints(g, swept), count = 0;
-    const int rows = dimension > 0 ? steps : 1, columns = dimension > 1 ? steps : 1;
-    double field[steps][steps], lowest[most], at[most][n];
+    constexpr int most = 10, steps = AngleSweep::steps;
+    int swept[2];
+    const int dimension = nearest::swept_joints(g, swept);
+    AngleSweep sweep;
+    sweep.rows = dimension > 0 ? steps : 1;
+    sweep.columns = dimension > 1 ? steps : 1;
     const auto start = [&](int i, int j, double* q) {
         for (int k = 0; k < n; ++k) q[k] = 0;
         if (dimension > 0) q[swept[0]] = 2 * pi * (i + 0.37) / steps - pi;
@@ -150,30 +146,17 @@ double nearest_configuration(const TipGap<n>& g, double* best_q) {
         return nearest::follow(g, dimension, q);
     };
     double q[n];
-    for (int i = 0; i < rows; ++i)
-        for (int j = 0; j < columns; ++j) field[i][j] = start(i, j, q);
-    for (int i = 0; i < rows; ++i)
-        for (int j = 0; j < columns; ++j) {
-            const double here = field[i][j];
-            const bool valley = here <= field[(i + 1) % rows][j] && here <= field[(i + rows - 1) % rows][j] &&
-                                here <= field[i][(j + 1) % columns] &&
-                                here <= field[i][(j + columns - 1) % columns];
-            if (!valley || (count == most && here >= lowest[most - 1])) continue;
-            start(i, j, q);
-            int k = count < most ? count++ : most - 1;
-            for (; k > 0 && lowest[k - 1] > here; --k) {
-                lowest[k] = lowest[k - 1];
-                for (int m = 0; m < n; ++m) at[k][m] = at[k - 1][m];
-            }
-            lowest[k] = here;
-            for (int m = 0; m < n; ++m) at[k][m] = q[m];
-        }
+    for (int i = 0; i < sweep.rows; ++i)
+        for (int j = 0; j < sweep.columns; ++j) sweep.value[i][j] = start(i, j, q);
+    Valley valleys[most];
+    const int count = find_valleys(sweep, most, valleys);
     double best = std::numeric_limits<double>::infinity();
     for (int k = 0; k < count; ++k) {
-        const double error = descend(g, at[k]);
+        start(valleys[k].row, valleys[k].column, q);
+        const double error = descend(g, q);
         if (error >= best) continue;
         best = error;
-        for (int i = 0; i < n; ++i) best_q[i] = at[k][i];
+        for (int i = 0; i < n; ++i) best_q[i] = q[i];
     }
     return best;
 }

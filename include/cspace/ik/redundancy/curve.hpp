@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
+#include "cspace/math/least_squares.hpp"
 
 namespace cspace::ik {
 
@@ -40,11 +41,8 @@ CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, dou
     const double back[6] = {-linear.x, -linear.y, -linear.z, -angular.x, -angular.y, -angular.z};
     shortest_step<0>(split, n, back, at.bend);
     shortest_step<0>(split, n, motion.error, step);
-    at.error = 0;
-    for (int k = 0; k < 6; ++k) at.error = max(at.error, std::fabs(motion.error[k]));
-    double largest = 0;
-    for (int i = 0; i < n; ++i) largest = max(largest, std::fabs(step[i]));
-    const double keep = largest > 0.3 ? 0.3 / largest : 1;
+    at.error = largest_of(motion.error, 6);
+    const double keep = shortening(largest_of(step, n), 0.3);
     for (int i = 0; i < n; ++i) at.q[i] += keep * step[i];
 }
 
@@ -57,8 +55,8 @@ inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int
         for (int k = 0; k < split.rank; ++k) {
             const int c = split.chosen[k];
             y[k] = other.motion.column[i][c] - at.motion.column[i][c];
-            for (int j = 0; j < k; ++j) y[k] -= split.upper[j][k] * y[j];
-            y[k] /= away_from_zero(split.upper[k][k]);
+            for (int j = 0; j < k; ++j) y[k] -= split.A[j][k] * y[j];
+            y[k] /= away_from_zero(split.diagonal[k]);
             square += y[k] * y[k];
         }
     return std::sqrt(square);

@@ -88,11 +88,7 @@ CSPACE_INLINE void move_halves(const Halves& arm, const Posed& goal, double per_
     V s[4], c[4];
     turns_of(arm, q, s, c);
     Pose<V> T = fill_pose<V>(identity_pose());
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) set_lane(T.R.m[i][j], 1, goal.R.m[i][j]);
-    set_lane(T.t.x, 1, per_length * goal.t.x);
-    set_lane(T.t.y, 1, per_length * goal.t.y);
-    set_lane(T.t.z, 1, per_length * goal.t.z);
+    set_pose_lane(T, 1, {goal.R, per_length * goal.t});
     Vec3<V> point[4];
     for (int k = 0; k < 4; ++k) {
         T.t = T * load_vector<3, V>(arm.at[k]);

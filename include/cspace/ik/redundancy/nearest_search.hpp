@@ -110,12 +110,9 @@ CSPACE_NOINLINE V step_to_nearest(const Chain& chain, int rank, const Pose<V>& g
         solve_positive(G, free, plain);
         for (int k = 0; k < free; ++k) newton[k] = select(curved, newton[k], plain[k]);
     }
-    V largest = fill<V>(0.0);
-    for (int i = 0; i < n; ++i) {
+    for (int i = 0; i < n; ++i)
         for (int k = 0; k < free; ++k) step[i] = mul_add(newton[k], along[k][i], step[i]);
-        largest = max(largest, abs(step[i]));
-    }
-    const V keep = select(largest > stride, stride / largest, fill<V>(1.0));
+    const V largest = largest_of(step, n), keep = shortening(largest, stride);
     for (int i = 0; i < n; ++i) q[i] = mul_add(keep, step[i], q[i]);
     return largest;
 }

@@ -32,10 +32,6 @@ struct Halves {
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-inline Mat3d frame_along(const Vec3d& z) {
-    const Vec3d x = any_perpendicular(z);
-    return from_columns(x, cross(z, x), z);
-}
 inline double to_the_three_halves(int k) { return k * std::sqrt(double(k)); }
 
 // The halves of a chain with `front` joints before the middle. The middle is at the point c (at q = 0).

@@ -3,8 +3,10 @@
 // null space, which moves along the manifold.
 #pragma once
 
+#include <utility>
+
 #include "cspace/ik/chain.hpp"
-#include "cspace/math/lanes.hpp"
+#include "cspace/math/linear.hpp"
 
 namespace cspace::ik {
 
@@ -21,9 +23,7 @@ struct TipMotion {
 // `chosen`; the others depend on them.
 template <class V>
 struct SplitJacobian {
-    V reflector[max_joints][6];  // v_k below and on the diagonal
-    V upper[6][6];               // R
-    V factor[6];
+    V A[max_joints][6], diagonal[6], factor[6];  // as of linear::factor_qr
     int rank = 6;
     int chosen[6] = {0, 1, 2, 3, 4, 5};
 };
@@ -50,19 +50,10 @@ CSPACE_INLINE void tip_motion(const Chain& chain, const Pose<V>& goal, double le
     Vec3<V> axis[max_joints], point[max_joints];
     const auto keep_axis = [&](int i, const Vec3<V>& h, const Vec3<V>& p) { axis[i] = h, point[i] = p; };
     const Pose<V> T = move_joints(chain, n, q, keep_axis) * fill_pose<V>(chain.tip);
-    const Vec3<V> dp = (1 / length) * (goal.t - T.t);
-    const Vec3<V> w = spatial::sine_between(T.R, goal.R);
-    out.aligned = spatial::trace_between(T.R, goal.R);
-    const V error[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
-    for (int k = 0; k < 6; ++k) out.error[k] = error[k];
-    const V zero = fill<V>(0.0);
-    for (int i = 0; i < n; ++i) {
-        const bool slides = chain.prismatic[i];
-        const Vec3<V> v = (1 / length) * (slides ? axis[i] : cross(axis[i], T.t - point[i]));
-        const Vec3<V> h = slides ? Vec3<V>{zero, zero, zero} : axis[i];
-        const V entries[6] = {v.x, v.y, v.z, h.x, h.y, h.z};
-        for (int k = 0; k < 6; ++k) out.column[i][k] = entries[k];
-    }
+    out.aligned = tip_error(T, goal, length, out.error);
+    for (int i = 0; i < n; ++i)
+        write_twist(kinematics::joint_twist(chain.prismatic[i], axis[i], point[i], T.t), 1 / length,
+                    out.column[i]);
 }
 
 // Moves the coordinate with the largest remainder to place k.
@@ -71,19 +62,13 @@ inline void choose_coordinate(SplitJacobian<double>& out, int n, int k) {
     double most = -1;
     for (int j = k; j < 6; ++j) {
         double square = 0;
-        for (int i = k; i < n; ++i) square += out.reflector[i][j] * out.reflector[i][j];
+        for (int i = k; i < n; ++i) square += out.A[i][j] * out.A[i][j];
         if (!(square > most)) continue;
         most = square;
         best = j;
     }
-    for (int i = 0; i < n; ++i) {
-        const double kept = out.reflector[i][k];
-        out.reflector[i][k] = out.reflector[i][best];
-        out.reflector[i][best] = kept;
-    }
-    const int kept = out.chosen[k];
-    out.chosen[k] = out.chosen[best];
-    out.chosen[best] = kept;
+    for (int i = 0; i < n; ++i) std::swap(out.A[i][k], out.A[i][best]);
+    std::swap(out.chosen[k], out.chosen[best]);
 }
 
 // rank: the number of pose coordinates that the joints move independently. A rank below six is supported on
@@ -91,49 +76,22 @@ inline void choose_coordinate(SplitJacobian<double>& out, int n, int k) {
 template <int N, class V>
 CSPACE_INLINE void split_jacobian(const TipMotion<V>& motion, int size, int rank, SplitJacobian<V>& out) {
     const int n = size_or<N>(size);
-    V(*A)[6] = out.reflector;
     for (int i = 0; i < n; ++i)
-        for (int k = 0; k < 6; ++k) A[i][k] = motion.column[i][k];
+        for (int k = 0; k < 6; ++k) out.A[i][k] = motion.column[i][k];
     out.rank = rank;
     for (int k = 0; k < 6; ++k) out.chosen[k] = k;
     for (int k = 0; k < rank_in<N>(out); ++k) {
         if constexpr (N == 0 && Lanes<V>::count == 1)
             if (rank < 6) choose_coordinate(out, n, k);
-        V square = A[k][k] * A[k][k];
-        for (int i = k + 1; i < n; ++i) square = mul_add(A[i][k], A[i][k], square);
-        const V diagonal = -copysign(sqrt(square), A[k][k]);
-        for (int j = 0; j < k; ++j) out.upper[j][k] = A[j][k];
-        out.upper[k][k] = diagonal;
-        A[k][k] = A[k][k] - diagonal;
-        const V scale = diagonal * A[k][k];
-        out.factor[k] = -1.0 / select(scale == 0.0, fill<V>(1.0), scale);
-        for (int j = k + 1; j < 6; ++j) {
-            V along = A[k][k] * A[k][j];
-            for (int i = k + 1; i < n; ++i) along = mul_add(A[i][k], A[i][j], along);
-            along = along * out.factor[k];
-            for (int i = k; i < n; ++i) A[i][j] = mul_add(-along, A[i][k], A[i][j]);
-        }
+        linear::reduce_column(out.A, n, 6, k, out.diagonal[k], out.factor[k]);
     }
 }
 
-template <int N, class V>
-CSPACE_INLINE void reflect_once(const SplitJacobian<V>& split, int size, int k, V* b) {
-    const int n = size_or<N>(size);
-    V along = split.reflector[k][k] * b[k];
-    for (int i = k + 1; i < n; ++i) along = mul_add(split.reflector[i][k], b[i], along);
-    along = along * split.factor[k];
-    for (int i = k; i < n; ++i) b[i] = mul_add(-along, split.reflector[i][k], b[i]);
-}
-// b := Q b and b := Qᵀ b.
+// b := Q b.
 template <int N, class V>
 CSPACE_INLINE void turn_out(const SplitJacobian<V>& split, int size, V* b) {
     const int n = size_or<N>(size);
-    for (int k = rank_in<N>(split) - 1; k >= 0; --k) reflect_once<N>(split, n, k, b);
-}
-template <int N, class V>
-CSPACE_INLINE void turn_in(const SplitJacobian<V>& split, int size, V* b) {
-    const int n = size_or<N>(size);
-    for (int k = 0; k < rank_in<N>(split); ++k) reflect_once<N>(split, n, k, b);
+    for (int k = rank_in<N>(split) - 1; k >= 0; --k) linear::reflect(split.A, n, k, split.factor[k], b);
 }
 
 template <class V>
@@ -148,8 +106,8 @@ CSPACE_INLINE void shortest_step(const SplitJacobian<V>& split, int size, const 
     for (int i = rank; i < n; ++i) step[i] = fill<V>(0.0);
     for (int k = 0; k < rank; ++k) {
         step[k] = e[N ? k : split.chosen[k]];
-        for (int j = 0; j < k; ++j) step[k] = mul_add(-split.upper[j][k], step[j], step[k]);
-        step[k] = step[k] / away_from_zero(split.upper[k][k]);
+        for (int j = 0; j < k; ++j) step[k] = mul_add(-split.A[j][k], step[j], step[k]);
+        step[k] = step[k] / away_from_zero(split.diagonal[k]);
     }
     turn_out<N>(split, n, step);
 }
@@ -166,11 +124,11 @@ CSPACE_INLINE void multipliers(const SplitJacobian<V>& split, int size, const V*
     const int n = size_or<N>(size), rank = rank_in<N>(split);
     V b[max_joints];
     for (int i = 0; i < n; ++i) b[i] = g[i];
-    turn_in<N>(split, n, b);
+    for (int k = 0; k < rank; ++k) linear::reflect(split.A, n, k, split.factor[k], b);
     for (int k = rank; k < 6; ++k) lambda[N ? k : split.chosen[k]] = fill<V>(0.0);
     for (int k = rank - 1; k >= 0; --k) {
-        for (int j = k + 1; j < rank; ++j) b[k] = mul_add(-split.upper[k][j], b[j], b[k]);
-        b[k] = b[k] / away_from_zero(split.upper[k][k]);
+        for (int j = k + 1; j < rank; ++j) b[k] = mul_add(-split.A[k][j], b[j], b[k]);
+        b[k] = b[k] / away_from_zero(split.diagonal[k]);
         lambda[N ? k : split.chosen[k]] = b[k];
     }
 }

@@ -88,17 +88,6 @@ struct Room {
     }
 };
 
-// The minimum-norm joint step that corrects the error, in joint units, without a component along the curve.
-inline void shortest_step(const PoseError& at, double* dq) {
-    const PoseSvd& J = at.jacobian;
-    for (int i = 0; i < J.columns; ++i) dq[i] = 0;
-    for (int j = 0; j < J.columns; ++j) {
-        if (J.sigma[j] <= still) continue;
-        const double along = dot_n(J.us[j], at.e, 6) / (J.sigma[j] * J.sigma[j]);
-        for (int i = 0; i < J.columns; ++i) dq[i] += along * J.v[j][i];
-    }
-}
-
 // Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
 inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q, PoseError& at) {
     constexpr int most_steps = 12;
@@ -107,7 +96,7 @@ inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, doub
     for (int step = 0; step < most_steps && size > settled; ++step) {
         double dq[max_joints], next[max_joints];
         PoseError trial;
-        shortest_step(at, dq);
+        least_norm_step(at.jacobian, at.e, 0, still, -1, dq);
         for (int i = 0; i < chain.n; ++i) next[i] = q[i] + unit_of(chain, i, constraint.length) * dq[i];
         const double left = measure_constrained(chain, constraint, next, trial);
         if (!(left < size)) break;

@@ -1,84 +1,182 @@
-// Global least squares of a system of two angles: a sweep of the torus, then refinement of the local minima.
+// Least squares on a few angles: refinement of candidates, and the global minimum where no exact solution
+// exists.
+//
+// A System has `angles` and `equations`, and as a function (turns, value, slope) gives the residuals and
+// their derivatives with respect to the angles. Lengths in it are about one.
 #pragma once
 
-#include "cspace/ik/subproblems/refine.hpp"
+#include "cspace/math/least_squares.hpp"
+#include "cspace/math/turn.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-// The lowest points of a coarse sweep, at most `most` ≤ 16; returns their number.
+inline Turn<double> step_angles(const Turn<double>& t, double step) {
+    const double length = std::sqrt(1 + step * step);
+    return t + Turn<double>{1 / length, step / length};
+}
+inline double step_angles(double q, double step) { return q + step; }
+inline double difference(const Turn<double>& a, const Turn<double>& b) { return (a - b).s; }
+inline double difference(double a, double b) { return a - b; }
+
 template <class System>
-int valleys(const System& system, int most, Turn<double> (*at)[2]) {
-    constexpr int steps = 24;
-    Turn<double> turns[steps];
-    for (int i = 0; i < steps; ++i) turns[i] = turn_by(2 * pi * i / steps);
-    double field[steps][steps];
-    double lowest[16];
-    Linearised<System> point;
-    for (int i = 0; i < steps; ++i)
-        for (int j = 0; j < steps; ++j) {
-            const Turn<double> t[2] = {turns[i], turns[j]};
-            field[i][j] = linearise(system, t, point);
-        }
-    int count = 0;
-    for (int i = 0; i < steps; ++i)
-        for (int j = 0; j < steps; ++j) {
-            const double here = field[i][j];
-            const bool valley =
-                here <= field[(i + 1) % steps][j] && here <= field[(i + steps - 1) % steps][j] &&
-                here <= field[i][(j + 1) % steps] && here <= field[i][(j + steps - 1) % steps];
-            if (!valley || (count == most && here >= lowest[count - 1])) continue;
-            int k = count < most ? count++ : most - 1;
-            for (; k > 0 && lowest[k - 1] > here; --k)
-                lowest[k] = lowest[k - 1], at[k][0] = at[k - 1][0], at[k][1] = at[k - 1][1];
-            lowest[k] = here, at[k][0] = turns[i], at[k][1] = turns[j];
-        }
-    return count;
+struct Linearised {
+    double value[System::equations], slope[System::equations][System::angles];
+};
+template <class System, class Unknown>
+double linearise(const System& system, const Unknown* t, Linearised<System>& at) {
+    system(t, at.value, at.slope);
+    double sum = 0;
+    for (double v : at.value) sum += v * v;
+    return std::sqrt(sum);
 }
 
-// Newton's method on half the squared residual, with second derivatives from differences of the gradient.
-// Where the residual remains large, Gauss–Newton alone converges slowly.
-template <class System, class Unknown>
-double descend(const System& system, Unknown* t) {
-    constexpr int n = System::angles;
-    constexpr double h = 1e-5;
-    double error = refine(system, t), damping = 0;
-    for (int iteration = 0; iteration < 60 && error > tolerance::exact; ++iteration) {
-        Linearised<System> at;
-        double normal[n][n], hessian[n][n], down[n], step[n], length = 0;
-        linearise(system, t, at);
-        normal_equations(at, normal, down);
+// The upper triangle of JᵀJ, and −Jᵀ value; returns the length of the latter.
+template <class System>
+double normal_equations(const Linearised<System>& at, double (*a)[System::angles], double* down) {
+    double length = 0;
+    for (int i = 0; i < System::angles; ++i) {
+        down[i] = 0;
+        for (int k = 0; k < System::equations; ++k) down[i] -= at.slope[k][i] * at.value[k];
+        length = std::hypot(length, down[i]);
+        for (int j = i; j < System::angles; ++j) {
+            a[i][j] = 0;
+            for (int k = 0; k < System::equations; ++k) a[i][j] += at.slope[k][i] * at.slope[k][j];
+        }
+    }
+    return length;
+}
+
+// A system as a problem of descend_damped: by Gauss–Newton.
+template <class System>
+struct AngleProblem {
+    static constexpr int size = System::angles, n = size;
+    const System& system;
+
+    template <class Unknown>
+    double measure(const Unknown* t, Linearised<System>& at) const {
+        return linearise(system, t, at);
+    }
+    template <class Unknown>
+    bool model(const Unknown*, const Linearised<System>& at, double (*A)[size], double* down) const {
+        return normal_equations(at, A, down) > 0;
+    }
+    template <class Unknown>
+    Unknown moved(const Unknown& t, double step) const {
+        return step_angles(t, step);
+    }
+};
+// By Newton's method, with second derivatives from differences of the gradient. Where the residual remains
+// large, Gauss–Newton alone converges slowly.
+template <class System>
+struct CurvedAngleProblem : AngleProblem<System> {
+    static constexpr int n = System::angles;
+
+    template <class Unknown>
+    bool model(const Unknown* t, const Linearised<System>& at, double (*H)[n], double* down) const {
+        constexpr double h = 1e-5;
+        double normal[n][n];
         for (int j = 0; j < n; ++j) {
             Unknown aside[n];
             double sides[2][n];
             for (int side = 0; side < 2; ++side) {
+                Linearised<System> there;
                 for (int i = 0; i < n; ++i) aside[i] = i == j ? step_angles(t[i], side ? h : -h) : t[i];
-                linearise(system, aside, at);
-                normal_equations(at, normal, sides[side]);
+                linearise(this->system, aside, there);
+                normal_equations(there, normal, sides[side]);
             }
-            for (int i = j; i < n; ++i) hessian[j][i] = (sides[0][i] - sides[1][i]) / (2 * h);
+            for (int i = j; i < n; ++i) H[j][i] = (sides[0][i] - sides[1][i]) / (2 * h);
         }
-        for (int i = 0; i < n; ++i) step[i] = down[i];
-        const bool convex = solve_damped(hessian, damping, step);
-        Unknown next[n];
-        for (int i = 0; i < n; ++i) next[i] = step_angles(t[i], step[i]), length += std::fabs(step[i]);
-        const double next_error = convex ? linearise(system, next, at) : error + 1;
-        if (next_error > error * (1 + 4 * std::numeric_limits<double>::epsilon())) {
-            damping = 4 * damping + 1e-3;
-            continue;
-        }
-        for (int i = 0; i < n; ++i) t[i] = next[i];
-        error = next_error;
-        damping *= 0.1;
-        if (damping < 1e-4) damping = 0;
-        if (length < 1e-12) break;
+        return normal_equations(at, normal, down) > 0;
     }
-    return error;
+};
+
+// Moves the unknowns to a local minimum of the residual; returns its length there.
+template <class System, class Unknown>
+double refine(const System& system, Unknown* t, int most_steps = 30) {
+    // A slope that is only rounding must not throw an unknown about.
+    constexpr double least = tolerance::exact * tolerance::exact;
+    Linearised<System> at;
+    return descend_damped(AngleProblem<System>{system}, t, at,
+                          GaussNewtonDamping{2 * std::numeric_limits<double>::epsilon(), 1e-10, least},
+                          most_steps);
+}
+// The same where the residual there may be large.
+template <class System, class Unknown>
+double descend(const System& system, Unknown* t) {
+    Linearised<System> at;
+    refine(system, t);
+    return descend_damped(CurvedAngleProblem<System>{{system}}, t, at,
+                          NewtonDamping{tolerance::exact, 1e-12, 1e300, 1e-3, 0}, 60);
 }
 
+// Whether the zero t lies on a curve of zeros with the unit tangent `along`. After a step along a curve,
+// refinement finds a residual below `zero` nearby; from an isolated multiple zero it must return all the way.
+template <class System, class Unknown>
+bool continues_along(const System& system, const Unknown* t, const double* along, double zero) {
+    constexpr double reach = 1e-3;
+    Unknown start[System::angles], found[System::angles];
+    for (int j = 0; j < System::angles; ++j) found[j] = start[j] = step_angles(t[j], reach * along[j]);
+    if (refine(system, found) > zero) return false;
+    double drift = 0;
+    for (int j = 0; j < System::angles; ++j) drift = std::hypot(drift, difference(found[j], start[j]));
+    return drift < 0.5 * reach;
+}
+
+// A sweep of two angles, and its lowest points: each is below its neighbours, modulo 2π.
+struct AngleSweep {
+    static constexpr int steps = 24;
+    int rows = steps, columns = steps;  // 1 for an angle that is not swept
+    double value[steps][steps];
+};
+struct Valley {
+    int row, column;
+    double value;
+};
+// The lowest first, at most `most`; returns their number.
+inline int find_valleys(const AngleSweep& sweep, int most, Valley* found) {
+    const int rows = sweep.rows, columns = sweep.columns;
+    int count = 0;
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) {
+            const double here = sweep.value[i][j];
+            const auto is_below = [&](int row, int column) {
+                return here <= sweep.value[(i + row) % rows][(j + column) % columns];
+            };
+            if (!is_below(1, 0) || !is_below(rows - 1, 0) || !is_below(0, 1) || !is_below(0, columns - 1) ||
+                (count == most && here >= found[most - 1].value))
+                continue;
+            int k = count < most ? count++ : most - 1;
+            for (; k > 0 && found[k - 1].value > here; --k) found[k] = found[k - 1];
+            found[k] = {i, j, here};
+        }
+    return count;
+}
+
+// The lowest points of a coarse sweep of both angles, at most `most` ≤ 16; returns their number.
+template <class System>
+int sweep_valleys(const System& system, int most, Turn<double> (*at)[2]) {
+    constexpr int steps = AngleSweep::steps;
+    Turn<double> turns[steps];
+    for (int i = 0; i < steps; ++i) turns[i] = turn_by(2 * pi * i / steps);
+    AngleSweep sweep;
+    Linearised<System> point;
+    for (int i = 0; i < steps; ++i)
+        for (int j = 0; j < steps; ++j) {
+            const Turn<double> t[2] = {turns[i], turns[j]};
+            sweep.value[i][j] = linearise(system, t, point);
+        }
+    Valley found[16];
+    const int count = find_valleys(sweep, most, found);
+    for (int k = 0; k < count; ++k) at[k][0] = turns[found[k].row], at[k][1] = turns[found[k].column];
+    return count;
+}
+
+// The global minimum over both angles; returns the length of the residual there.
 template <class System>
 double least_squares(const System& system, Turn<double>* t) {
     Turn<double> at[6][2];
-    const int count = valleys(system, 6, at);
+    const int count = sweep_valleys(system, 6, at);
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < count; ++i) {
         const double error = descend(system, at[i]);

@@ -111,7 +111,7 @@ inline Sp5Problem scaled(const Sp5Problem& s, double size) {
 // The least-squares solution.
 inline Sp5 nearest(const Sp5Problem& s, double size) {
     Turn<double> at[6][2];
-    const int count = valleys(HalfPlaneDistance{s}, 6, at);
+    const int count = sweep_valleys(HalfPlaneDistance{s}, 6, at);
     Sp5 best;
     for (int i = 0; i < count; ++i) {
         Sp5 r;

@@ -12,7 +12,7 @@
 // refined by Newton's method on the two equations, where pairs of solutions with the same θ differ in φ.
 #pragma once
 
-#include "cspace/ik/subproblems/refine.hpp"
+#include "cspace/ik/subproblems/least_squares.hpp"
 #include "cspace/math/cos_sin.hpp"
 #include "cspace/math/trig_polynomial.hpp"
 

@@ -60,7 +60,7 @@ inline Outside meet_limit(const Track& t, Walker& w) {
         Motion<double> motion;
         for (int k = 0; k < track::most_corrections; ++k) {
             measure_motion(*t.path, goal, twist_of(way, t.path->length), q, motion);
-            for (int j = 0; j < n; ++j) q[j] += scale_of(*t.path, j) * motion.correction[j];
+            for (int j = 0; j < n; ++j) q[j] += unit_of(*t.path, j) * motion.correction[j];
             if (largest_of(motion.correction, n) < track::small) break;
         }
         const Outside here = outside(t, w, q);
@@ -99,13 +99,6 @@ inline void finish_branch(const Track& t, const Walker& w, Fate fate, int joint,
     }
 }
 
-template <class V>
-CSPACE_INLINE void set_vector_lane(Vec3<V>& to, int l, const Vec3d& from) {
-    set_lane(to.x, l, from.x);
-    set_lane(to.y, l, from.y);
-    set_lane(to.z, l, from.z);
-}
-
 // Loads the trial of a walker into lane l. The evaluation there also serves the following step.
 template <class V>
 CSPACE_INLINE void load_trial(const Track& t, const Walker& w, int l, TrackLanes<V>& lanes) {
@@ -114,9 +107,7 @@ CSPACE_INLINE void load_trial(const Track& t, const Walker& w, int l, TrackLanes
     const Posed goal = row || w.starts ? to_row : pose_on(t.ways[w.row], w.u + w.du);
     const std::size_t next = row && w.row + 2 < t.count ? w.row + 1 : w.row;
     const Twist<double> twist = twist_of(t.ways[next], t.path->length);
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) set_lane(lanes.goal.R.m[i][j], l, goal.R.m[i][j]);
-    set_vector_lane(lanes.goal.t, l, goal.t);
+    set_pose_lane(lanes.goal, l, goal);
     for (int r = 0; r < 6; ++r) set_lane(lanes.twist.entry[r], l, twist.entry[r]);
     for (int j = 0; j < t.path->n; ++j) set_lane(lanes.q[j], l, w.trial[j]);
 }

@@ -9,13 +9,15 @@
 #pragma once
 
 #include "cspace/ik/numeric/path.hpp"
+#include "cspace/kinematics/jacobian_rate.hpp"
+#include "cspace/math/least_squares.hpp"
 
 namespace cspace::ik {
 
 // The joints of a path at configurations, in base coordinates.
 template <class V>
 struct PlacedJoints {
-    Vec3<V> point[max_path], axis[max_path];
+    kinematics::Axis<V> axes[max_path];
     Pose<V> tip;
 };
 
@@ -53,26 +55,21 @@ template <class V>
 CSPACE_INLINE PlacedJoints<V> place_joints(const Path& path, const V* q) {
     V s[max_path + 3], c[max_path + 3];
     PlacedJoints<V> at;
-    const model::Chain chain = view_of(path);
-    kinematics::chain_sines(chain, q, s, c);
-    at.tip = kinematics::follow_chain(chain, fill_pose<V>(path.T_base_first), q, s, c,
-                                      [&](int i, const Vec3<V>& p, const Vec3<V>& d) {
-                                          at.point[i] = p;
-                                          at.axis[i] = d;
-                                      });
+    at.tip = kinematics::place_axes(view_of(path), fill_pose<V>(path.T_base_first), q, s, c, at.axes);
     return at;
 }
 
 // The motion of joint i per unit of its scaled coordinate.
 CSPACE_INLINE double joint_unit(const Path& path, int i) {
     const model::ChainJoint& joint = path.joint[i];
-    return joint.ratio * (path.slides[joint.coordinate] ? path.length : 1.0);
+    return joint.ratio * unit_of(path, joint.coordinate);
 }
 
 template <class V>
-CSPACE_INLINE void add_twist(double unit, double per_length, const Vec3<V>& v, const Vec3<V>& w,
+CSPACE_INLINE void add_twist(double unit, double per_length, const kinematics::Twist<V>& twist,
                              Twist<V>& to) {
-    const V entry[6] = {per_length * v.x, per_length * v.y, per_length * v.z, w.x, w.y, w.z};
+    V entry[6];
+    write_twist(twist, per_length, entry);
     for (int r = 0; r < 6; ++r) to.entry[r] = mul_add(fill<V>(unit), entry[r], to.entry[r]);
 }
 
@@ -84,15 +81,13 @@ CSPACE_INLINE void clear(Twist<V>& twist) {
 // The columns of J, one twist per coordinate.
 template <class V>
 CSPACE_INLINE void columns_of(const Path& path, int n, const PlacedJoints<V>& at, Twist<V>* J) {
-    const V zero = fill<V>(0.0);
-    const double per_length = 1 / path.length;
     for (int j = 0; j < n; ++j) clear(J[j]);
     for (int i = 0; i < path.joints; ++i) {
         const model::ChainJoint& joint = path.joint[i];
-        const Vec3<V>& h = at.axis[i];
-        const Vec3<V> none = {zero, zero, zero};
-        const Vec3<V> v = joint.prismatic ? h : cross(h, at.tip.t - at.point[i]);
-        add_twist(joint_unit(path, i), per_length, v, joint.prismatic ? none : h, J[joint.coordinate]);
+        const kinematics::Axis<V>& axis = at.axes[i];
+        add_twist(joint_unit(path, i), 1 / path.length,
+                  kinematics::joint_twist(joint.prismatic, axis.direction, axis.point, at.tip.t),
+                  J[joint.coordinate]);
     }
 }
 
@@ -102,25 +97,17 @@ CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& 
                                 Twist<V>* J) {
     const V zero = fill<V>(0.0);
     const Vec3<V> none = {zero, zero, zero};
-    Vec3<V> v_point[max_path], w_joint[max_path];  // of the link that carries joint i
-    Vec3<V> v = none, w = none, p = at.point[0];
-    for (int i = 0; i < path.joints; ++i) {
-        v = v + cross(w, at.point[i] - p);
-        p = at.point[i];
-        v_point[i] = v;
-        w_joint[i] = w;
-        const Vec3<V> moved = (joint_unit(path, i) * slope[path.joint[i].coordinate]) * at.axis[i];
-        (path.joint[i].prismatic ? v : w) = (path.joint[i].prismatic ? v : w) + moved;
-    }
-    const Vec3<V> v_tip = v + cross(w, at.tip.t - p);
+    kinematics::Axis<V> rates[max_path];
+    V speed[max_joints];
+    for (int j = 0; j < n; ++j) speed[j] = unit_of(path, j) * slope[j];
+    const Vec3<V> v_tip =
+        kinematics::axis_rates(view_of(path), at.axes, at.tip.t, speed, {none, none}, at.axes[0].point, rates)
+            .v;
     for (int j = 0; j < n; ++j) clear(J[j]);
     for (int i = 0; i < path.joints; ++i) {
         const model::ChainJoint& joint = path.joint[i];
-        const Vec3<V> h_rate = cross(w_joint[i], at.axis[i]);
-        const Vec3<V> rate =
-            joint.prismatic ? h_rate
-                            : cross(h_rate, at.tip.t - at.point[i]) + cross(at.axis[i], v_tip - v_point[i]);
-        add_twist(joint_unit(path, i), 1 / path.length, rate, joint.prismatic ? none : h_rate,
+        add_twist(joint_unit(path, i), 1 / path.length,
+                  kinematics::joint_twist_rate(joint.prismatic, at.axes[i], rates[i], at.tip.t, v_tip),
                   J[joint.coordinate]);
     }
 }
@@ -205,19 +192,12 @@ CSPACE_INLINE void add_rate_of_inverse(const Factors<V>& f, const Twist<V>* J_ra
     for (int j = 0; j < f.width; ++j) bend[j] = bend[j] + g[j];
 }
 
-// The tip error relative to the goal, to first order in the rotation, and its largest component.
+// The tip error relative to the goal, and its largest component.
 template <class V>
 CSPACE_INLINE Twist<V> error_of(const Pose<V>& tip, const Pose<V>& goal, double length, V& largest) {
-    const Vec3<V> dp = (1 / length) * (goal.t - tip.t);
-    Vec3<V> w = 0.5 * cross(column(tip.R, 0), column(goal.R, 0));
-    V trace = dot(column(tip.R, 0), column(goal.R, 0));
-    for (int k = 1; k < 3; ++k) {
-        w = w + 0.5 * cross(column(tip.R, k), column(goal.R, k));
-        trace = trace + dot(column(tip.R, k), column(goal.R, k));
-    }
-    const Twist<V> e = {{dp.x, dp.y, dp.z, w.x, w.y, w.z}};
-    largest = abs(3.0 - trace);  // a half turn has no first order
-    for (const V& x : e.entry) largest = max(largest, abs(x));
+    Twist<V> e;
+    const V aligned = tip_error(tip, goal, length, e.entry);
+    largest = max(largest_of(e.entry, 6), abs(3.0 - aligned));  // a half turn has no first order
     return e;
 }
 

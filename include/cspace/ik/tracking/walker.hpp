@@ -103,18 +103,10 @@ inline constexpr double whole_turn = 6.283185307179586476925287;
 CSPACE_INLINE double* row_of(const Track& t, const Walker& w, std::size_t row) {
     return t.q + (w.branch * t.count + row) * std::size_t(t.path->n);
 }
-CSPACE_INLINE double scale_of(const Path& path, int j) { return path.slides[j] ? path.length : 1.0; }
 
 CSPACE_INLINE void copy_numbers(const double* from, int n, double* to) {
     for (int j = 0; j < n; ++j) to[j] = from[j];
 }
-// The largest absolute value of n numbers.
-CSPACE_INLINE double largest_of(const double* x, int n) {
-    double largest = 0;
-    for (int j = 0; j < n; ++j) largest = max(largest, std::fabs(x[j]));
-    return largest;
-}
-
 // The step estimated from the last three rows: the parabola through them, by the lengths of the segments
 // between them.
 inline void plan_by_rows(const Track& t, Walker& w) {
@@ -123,7 +115,7 @@ inline void plan_by_rows(const Track& t, Walker& w) {
     for (int j = 0; j < t.path->n; ++j) {
         const double first = (q1[j] - q0[j]) / a, second = (w.q[j] - q1[j]) / b;
         const double bend = (second - first) / (a + b);
-        w.planned[j] = h * (second + (b + h) * bend) / scale_of(*t.path, j);
+        w.planned[j] = h * (second + (b + h) * bend) / unit_of(*t.path, j);
     }
 }
 CSPACE_INLINE bool rows_can_tell(const Track& t, const Walker& w) {
@@ -165,7 +157,7 @@ inline bool plan(const Track& t, Walker& w) {
         if (short_step && w.du < left) return false;
         for (int j = 0; j < t.path->n; ++j) w.planned[j] = w.du * (w.slope[j] + 0.5 * w.du * w.bend[j]);
     }
-    for (int j = 0; j < t.path->n; ++j) w.trial[j] = w.q[j] + scale_of(*t.path, j) * w.planned[j];
+    for (int j = 0; j < t.path->n; ++j) w.trial[j] = w.q[j] + unit_of(*t.path, j) * w.planned[j];
     return true;
 }
 CSPACE_INLINE bool to_a_row(const Walker& w) { return w.du == 1 - w.u; }
@@ -177,7 +169,7 @@ inline Verdict judge_step(const Track& t, Walker& w, const Motion<double>& at) {
     const int n = t.path->n;
     double total = 0;
     for (int j = 0; j < n; ++j) {
-        const double scale = scale_of(*t.path, j);
+        const double scale = unit_of(*t.path, j);
         w.trial[j] += scale * at.correction[j];
         total = max(total, std::fabs((w.trial[j] - w.q[j]) / scale - w.planned[j]));
     }
