@@ -43,6 +43,36 @@ CONCEPTS = [
         r"(?i)cholesky|A = L D Lᵀ|i == j \? (std::)?sqrt\(",
     ),
     Concept(
+        "Householder reflection",
+        "include/cspace/math/linear.hpp",
+        r"copysign\((std::)?(sqrt\(\w+\)|length), A\[",
+    ),
+    Concept(
+        "damped normal equations",
+        "include/cspace/math/least_squares.hpp",
+        r"\[(\w)\]\[\1\] (\+=|= \w+\[\1\]\[\1\] \+) ([\w.]+\.)?damping;",
+    ),
+    Concept(
+        "step shortened to a stride",
+        "include/cspace/math/least_squares.hpp",
+        r"> ([\w:.]*stride|0\.\d+)(,| \?) \1 / ",
+    ),
+    Concept(
+        "predictor along a curve",
+        "include/cspace/math/continuation.hpp",
+        r"0\.5 \* ([\w.]+) \* (\1 \* )?([\w.]+\.)?bend\[",
+    ),
+    Concept(
+        "twist of a joint",
+        "include/cspace/kinematics/jacobian.hpp",
+        r"\? ([\w.]+(\[\w\])?) : cross\(\1, |\{cross\(d, p - o\), d\}",
+    ),
+    Concept(
+        "error of the tip to first order",
+        "include/cspace/ik/chain.hpp",
+        r"sine_between\(\w+\.R, goal\.R\)",
+    ),
+    Concept(
         "product of exponentials",
         "include/cspace/ik/chain.hpp",
         r"T = T \* joint_motion\(|R = (\w+\.)?R \* (spatial::)?rotation_about\(\w+, c, s\)",

@@ -44,8 +44,7 @@ CSPACE_ONCE Arm make_arm(const Chain& chain, bool with_general = true) {
 }
 
 // The solutions of an arm with fewer than six joints for a position or a pose, in the common format.
-template <class Found>
-Solutions from_few_joints(const Chain& chain, const Found& found) {
+inline Solutions from_few_joints(const Chain& chain, const FewJointRows& found) {
     Solutions out;
     out.count = found.count;
     out.status = found.count ? Status::exact : Status::unreachable;

@@ -20,6 +20,9 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 inline SphericalWrist make_spherical_wrist(const DhForm& f) {
     SphericalWrist arm;
+    const Vec3d w = {f.a[2], -f.sa[2] * f.d[3], f.d[2] + f.ca[2] * f.d[3]};
+    const double reach = std::hypot(w.x, w.y);
+    const Turn<double> w_angle = {reach > 0 ? w.x / reach : 1, reach > 0 ? w.y / reach : 0};
     ThreeJoints& g = arm.first;
     g = {FirstThree::general,
          f.a[0],
@@ -29,13 +32,10 @@ inline SphericalWrist make_spherical_wrist(const DhForm& f) {
          f.a[1],
          f.ca[1],
          f.sa[1],
-         {},
+         w,
          f.length,
-         0,
-         {1, 0}};
-    g.w = {f.a[2], -f.sa[2] * f.d[3], f.d[2] + f.ca[2] * f.d[3]};
-    g.wrist_reach = std::hypot(g.w.x, g.w.y);
-    if (g.wrist_reach > 0) g.w_angle = {g.w.x / g.wrist_reach, g.w.y / g.wrist_reach};
+         reach,
+         w_angle};
     // A planar pair of links first: it is the cheapest and the best conditioned.
     if (f.parallel[1])
         g.kind = FirstThree::last_parallel;
@@ -49,13 +49,6 @@ inline SphericalWrist make_spherical_wrist(const DhForm& f) {
     arm.ca3 = f.ca[2];
     arm.sa3 = f.sa[2];
     return arm;
-}
-
-// Rᵀ v for R = Rz(t) Rx(α).
-template <class V>
-CSPACE_INLINE Vec3<V> undo_joint(const Turn<V>& t, double ca, double sa, const Vec3<V>& v) {
-    const V x = t.c * v.x + t.s * v.y, y = t.c * v.y - t.s * v.x;
-    return {x, ca * y + sa * v.z, ca * v.z - sa * y};
 }
 
 template <FirstThree kind, class V>

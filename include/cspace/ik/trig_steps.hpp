@@ -33,6 +33,12 @@ template <class V>
 CSPACE_INLINE Turn<V> choose(mask_of<V> m, const Turn<double>& yes, const Turn<V>& no) {
     return {select(m, fill<V>(yes.c), no.c), select(m, fill<V>(yes.s), no.s)};
 }
+// Rᵀ v for R = Rz(t) Rx(α).
+template <class V>
+CSPACE_INLINE Vec3<V> undo_joint(const Turn<V>& t, double ca, double sa, const Vec3<V>& v) {
+    const V x = t.c * v.x + t.s * v.y, y = t.c * v.y - t.s * v.x;
+    return {x, ca * y + sa * v.z, ca * v.z - sa * y};
+}
 // The rotation that takes the plane vector (x, y) to (u, v), both of squared length n2.
 template <class V>
 struct Aligned {
@@ -47,6 +53,25 @@ CSPACE_INLINE Aligned<V> align(V x, V y, V u, V v, double unit, const Care& care
     const V scale = 1.0 / select(is_free, fill<V>(1.0), n2);
     const Turn<V> t = {(x * u + y * v) * scale, (x * v - y * u) * scale};
     return {choose(is_free, unconstrained, t), n2 <= care.band * unit * unit};
+}
+// The turn about the unit axis h that takes v to u, both at one angle from h; none where they lie on it.
+template <class V>
+CSPACE_INLINE Turn<V> turn_onto(const Vec3<V>& h, const Vec3<V>& v, const Vec3<V>& u, double free) {
+    const Vec3<V> a = v - dot(v, h) * h, b = u - dot(u, h) * h;
+    const V size2 = max(dot(a, a), fill<V>(1e-300));
+    const V inverse = 1.0 / size2;
+    return choose(size2 <= free * free, {1, 0}, Turn<V>{dot(a, b) * inverse, dot(h, cross(a, b)) * inverse});
+}
+// The first and the last turn of R = e^{h1 t1} e^{h2 t2} e^{h3 t3} about three axes, given the middle one.
+template <class V>
+CSPACE_INLINE void outer_turns(const Vec3d* axis, const Turn<V>& middle, const Mat3<V>& R, double free,
+                               Turn<V>& first, Turn<V>& last) {
+    const Vec3<V> h1 = fill3<V>(axis[0]), h2 = fill3<V>(axis[1]), h3 = fill3<V>(axis[2]);
+    first = turn_onto(h1, rotate(h2, middle, h3), R * h3, free);
+    const Vec3<V> across = fill3<V>(any_perpendicular(axis[2]));
+    const Vec3<V> x =
+        rotate(h2, Turn<V>{middle.c, -middle.s}, rotate(h1, Turn<V>{first.c, -first.s}, R * across));
+    last = {dot(x, across), dot(x, cross(h3, across))};
 }
 // sqrt(x) with x clipped below at floor ≥ 0.
 template <class V>
@@ -73,6 +98,15 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
     out.ok = (room >= -band) || (is_free && (abs(r) <= tolerance::reached * unit));
     out.doubt = (out.ok && (room <= band)) || (n2 <= band);
     return out;
+}
+
+// The turn t1 that brings p to a height over the plane of joint 1 = Rz(t1) Tx(a1) Rx(α1):
+// (s1 px − c1 py) sin α1 + pz cos α1 = height.
+template <class V>
+CSPACE_INLINE TwoAngles<V> turn_to_height(double ca1, double sa1, double height, double length,
+                                          const Vec3<V>& p, const Care& care) {
+    const V k = (height - ca1 * p.z) * (1 / sa1);
+    return linear_equation<V>(-p.y, p.x, k, length, care, care.unconstrained[0]);
 }
 
 // A planar arm of links l1, l2 reaching (x, y): γ is the angle at the elbow, ± for its two sides.

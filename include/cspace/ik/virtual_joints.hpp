@@ -5,7 +5,7 @@
 
 #include <initializer_list>
 
-#include "cspace/ik/plan.hpp"
+#include "cspace/ik/closed_form.hpp"
 #include "cspace/ik/refine.hpp"
 
 namespace cspace::ik {

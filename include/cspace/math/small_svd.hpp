@@ -37,6 +37,20 @@ inline double dot_n(const double* a, const double* b, int n) {
     return sum;
 }
 
+// The projection of v onto the span of the orthonormal vectors basis[0 … k), of unit length. Returns its
+// length before that.
+inline double project(const double* const* basis, int k, int n, double* v) {
+    double part[16];
+    for (int j = 0; j < k; ++j) part[j] = dot_n(basis[j], v, n);
+    for (int i = 0; i < n; ++i) {
+        v[i] = 0;
+        for (int j = 0; j < k; ++j) v[i] += part[j] * basis[j][i];
+    }
+    const double size = std::sqrt(dot_n(v, v, n));
+    for (int i = 0; i < n; ++i) v[i] = size > 0 ? v[i] / size : 0;
+    return size;
+}
+
 // On entry us contains the columns of A.
 template <int R, int C>
 void decompose(SmallSvd<R, C>& m) {

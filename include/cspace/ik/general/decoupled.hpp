@@ -5,7 +5,9 @@
 #include <initializer_list>
 
 #include "cspace/ik/chain.hpp"
+#include "cspace/ik/dh_form.hpp"
 #include "cspace/ik/position/solve.hpp"
+#include "cspace/ik/trig_steps.hpp"
 #include "cspace/math/linear.hpp"
 #include "cspace/math/turn.hpp"
 
@@ -66,27 +68,23 @@ inline ThreeTurns three_turns(const Vec3d& h1, const Vec3d& h2, const Vec3d& h3)
 // Whether they make more than a two-parameter set of rotations.
 inline bool is_regular(const ThreeTurns& turns) { return turns.a * turns.a + turns.b * turns.b > 1e-12; }
 
-// The angle about h that takes v to u, both at one angle from h.
-inline double angle_between(const Vec3d& h, const Vec3d& v, const Vec3d& u) {
-    return std::atan2(dot(h, cross(v, u)), dot(v, u) - dot(h, v) * dot(h, u));
-}
-
 inline TurnedTwice solve(const ThreeTurns& turns, const Mat3d& G) {
     constexpr double slack = 1e-9;  // a double solution may be lost by its square root
     TurnedTwice out;
-    const Vec3d &h1 = turns.h[0], &h2 = turns.h[1], &h3 = turns.h[2], target = G * h3;
-    const double square = turns.a * turns.a + turns.b * turns.b, k = dot(h1, target) - turns.constant;
+
+    const double square = turns.a * turns.a + turns.b * turns.b,
+                 k = dot(turns.h[0], G * turns.h[2]) - turns.constant;
     out.inside = (square - k * k) / square;
     if (!(out.inside > -slack)) return out;
     const double root = std::sqrt(max(out.inside, 0.0) / square), along = k / square;
-    const Vec3d x = any_perpendicular(h3), moved_x = G * x;
     for (const double sign : {root, -root}) {
         const Turn<double> t2 = {turns.a * along - sign * turns.b, turns.b * along + sign * turns.a};
         double* const q = out.q[out.count++];
-        q[0] = angle_between(h1, rotate(h2, t2, h3), target);
+        Turn<double> t1, t3;
+        outer_turns(turns.h, t2, G, tolerance::free_joint, t1, t3);
+        q[0] = angle_of(t1);
         q[1] = angle_of(t2);
-        const Vec3d seen = rotate(h2, Turn<double>{t2.c, -t2.s}, rotate(h1, turn_by(-q[0]), moved_x));
-        q[2] = angle_between(h3, x, seen);
+        q[2] = angle_of(t3);
         if (root == 0) break;
     }
     return out;
@@ -100,8 +98,7 @@ inline bool wrist_centre(const Chain& six, Vec3d& centre) {
     const Vec3d &h4 = six.axis[3], &h5 = six.axis[4], &h6 = six.axis[5];
     const bool parallel = norm(cross(h4, h5)) < tolerance::axis_relation;
     if (parallel || six.prismatic[3] || six.prismatic[4] || six.prismatic[5]) return false;
-    const Vec3d n = cross(h4, h5), gap = six.point[4] - six.point[3];
-    centre = six.point[3] + (dot(cross(gap, h5), n) / dot(n, n)) * h4;
+    centre = common_normal(h4, six.point[3], h5, six.point[4], false, centre).from;
     const auto off = [&](int i) { return norm(cross(centre - six.point[i], six.axis[i])); };
     return max(off(4), off(5)) < tolerance::geometry_exact * 10 && is_regular(three_turns(h4, h5, h6));
 }

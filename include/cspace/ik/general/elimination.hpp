@@ -124,42 +124,23 @@ struct Complex {
 
 // The orthogonal complement of two columns of six, and their least-squares inverse, by reflections.
 inline void eliminate_a4(Elimination& e, double (&N)[4][6]) {
-    double A[6][2], H[6][6] = {};
-    double size[2] = {};
+    double A[6][8] = {}, diagonal[2], factor[2], size[2] = {};  // [W, I]
     for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 2; ++j) size[j] += e.W[i][j] * e.W[i][j];
     const int large = size[1] > size[0];
     for (int i = 0; i < 6; ++i) {
         A[i][0] = e.W[i][large];
         A[i][1] = e.W[i][1 - large];
-        H[i][i] = 1;
+        A[i][2 + i] = 1;
     }
-    double diagonal[2] = {};
-    for (int k = 0; k < 2; ++k) {
-        double square = 0;
-        for (int i = k; i < 6; ++i) square += A[i][k] * A[i][k];
-        const double length = std::sqrt(square);
-        if (length < 1e-150) continue;
-        diagonal[k] = -std::copysign(length, A[k][k]);
-        double v[6] = {};
-        for (int i = k; i < 6; ++i) v[i] = A[i][k];
-        v[k] -= diagonal[k];
-        const double factor = -1 / (diagonal[k] * v[k]);
-        const auto reflect_column = [&](double* first, int stride) {
-            double along = 0;
-            for (int i = k; i < 6; ++i) along += v[i] * first[i * stride];
-            for (int i = k; i < 6; ++i) first[i * stride] -= factor * along * v[i];
-        };
-        for (int j = k; j < 2; ++j) reflect_column(&A[0][j], 2);
-        for (int j = 0; j < 6; ++j) reflect_column(&H[0][j], 6);
-    }
+    linear::factor_qr(A, diagonal, factor);
     for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 6; ++j) N[i][j] = H[2 + i][j];
+        for (int j = 0; j < 6; ++j) N[i][j] = A[2 + i][2 + j];
     e.a4_rank = diagonal[0] != 0 ? std::fabs(diagonal[1] / diagonal[0]) : 0;
     const bool full = e.a4_rank > 1e-9;
     for (int j = 0; j < 6; ++j) {
-        const double y = full ? H[1][j] / diagonal[1] : 0;
-        const double x = diagonal[0] != 0 ? (H[0][j] - A[0][1] * y) / diagonal[0] : 0;
+        const double y = full ? A[1][2 + j] / diagonal[1] : 0;
+        const double x = diagonal[0] != 0 ? (A[0][2 + j] - A[0][1] * y) / diagonal[0] : 0;
         e.inverse_w[large][j] = x;
         e.inverse_w[1 - large][j] = y;
     }

@@ -53,9 +53,8 @@ inline bool with_virtual_wrist(const Chain& chain, Chain& best) {
     six.n = 6;
     Vec3d centre = chain.point[chain.n - 1] + dot(chain.tip.t - chain.point[chain.n - 1], last) * last;
     if (chain.n == 5) {
-        const Vec3d n = cross(chain.axis[3], last), gap = chain.point[4] - chain.point[3];
-        if (!(dot(n, n) > 1e-6)) return false;
-        centre = chain.point[3] + (dot(cross(gap, last), n) / dot(n, n)) * chain.axis[3];
+        if (!(norm(cross(chain.axis[3], last)) > 1e-3)) return false;
+        centre = common_normal(chain.axis[3], chain.point[3], last, chain.point[4], false, centre).from;
     }
     const Vec3d x = any_perpendicular(last);
     for (int i = chain.n; i < 6; ++i) {

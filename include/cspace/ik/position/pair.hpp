@@ -174,15 +174,11 @@ inline void circle_and_line(const OnCurve f[2], const OnCurve g[2], PairCandidat
     }
     const TrigRoots u = trig_roots(p, scale);
     for (int i = 0; i < u.count; ++i) follow_last(f, g, angle_of(u.theta[i]), found);
-    if (std::fabs(a0) < tolerance::degenerate_pair) {
-        // The first condition hardly sees the line: it gives the angle alone.
+    // A condition that hardly sees the line gives the angle alone.
+    for (int k = 0; k < 2; ++k) {
+        if (!(std::fabs(g[k].a) < tolerance::degenerate_pair) || g[k].square != 0) continue;
         double q[2];
-        const int n = weight(f[0]) > tolerance::rounding ? values(f[0], g[0].k, q) : 0;
-        for (int i = 0; i < n; ++i) follow_last(f, g, q[i], found);
-    }
-    if (std::fabs(a1) < tolerance::degenerate_pair && square == 0) {
-        double q[2];
-        const int n = weight(f[1]) > tolerance::rounding ? values(f[1], g[1].k, q) : 0;
+        const int n = weight(f[k]) > tolerance::rounding ? values(f[k], g[k].k, q) : 0;
         for (int i = 0; i < n; ++i) follow_last(f, g, q[i], found);
     }
 }

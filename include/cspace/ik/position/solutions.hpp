@@ -3,35 +3,34 @@
 
 #include "cspace/ik/chain.hpp"
 #include "cspace/ik/subproblems/least_squares.hpp"
+#include "cspace/math/small_svd.hpp"
 
 namespace cspace::ik {
 
 inline constexpr int max_position_joints = 3, max_position_solutions = 8;
 
-// The result of a position goal.
-struct PositionSolutions {
+// The configurations that reach a goal. Whether solution i belongs to a family, and the unit direction in
+// which its joints move without the tip; close: whether it does, or merges with another, but for what
+// rounding leaves.
+struct FewJointRows {
     int count = 0;
     double q[max_position_solutions][max_position_joints] = {};
-    double residual[max_position_solutions] = {};  // ‖tip − goal‖ [m]
-    // Whether solution i belongs to a family, and the unit direction in which its joints move without the
-    // tip; close: whether it does, or merges with another, but for what rounding leaves.
     bool free[max_position_solutions] = {};
     bool close[max_position_solutions] = {};
     double direction[max_position_solutions][max_position_joints] = {};
+};
+// The result of a position goal.
+struct PositionSolutions : FewJointRows {
+    double residual[max_position_solutions] = {};  // ‖tip − goal‖ [m]
     // Without a solution: the distance that is missing [m], and the joints that come nearest.
     double out_of_reach = 0;
     double nearest[max_position_joints] = {};
 };
 
 // The result of a pose goal for such an arm.
-struct FewJointSolutions {
-    int count = 0;
-    double q[max_position_solutions][max_position_joints] = {};
+struct FewJointSolutions : FewJointRows {
     double position_error[max_position_solutions] = {};  // [m]
     double rotation_error[max_position_solutions] = {};  // [rad]
-    bool free[max_position_solutions] = {};
-    bool close[max_position_solutions] = {};
-    double direction[max_position_solutions][max_position_joints] = {};
 };
 
 }  // namespace cspace::ik
@@ -51,29 +50,6 @@ bool same_joints(const System& g, const double* a, const double* b) {
         if (std::fabs(g.prismatic[i] ? d : 2 * std::sin(0.5 * d)) > tolerance::same_turns) return false;
     }
     return true;
-}
-
-// Eigenvectors of a symmetric matrix as columns of v, eigenvalues on the diagonal of a (Jacobi 1846).
-template <int n>
-void eigenvectors(double (*a)[n], double (*v)[n]) {
-    for (int i = 0; i < n; ++i)
-        for (int j = 0; j < n; ++j) v[i][j] = i == j;
-    for (int sweep = 0; sweep < 12; ++sweep)
-        for (int i = 0; i < n; ++i)
-            for (int j = i + 1; j < n; ++j) {
-                if (std::fabs(a[i][j]) <= 1e-18 * (std::fabs(a[i][i]) + std::fabs(a[j][j]))) continue;
-                const double half = 0.5 * std::atan2(2 * a[i][j], a[j][j] - a[i][i]);
-                const double c = std::cos(half), s = std::sin(half);
-                for (int k = 0; k < n; ++k) {
-                    const double x = a[k][i], y = a[k][j];
-                    a[k][i] = c * x - s * y, a[k][j] = s * x + c * y;
-                }
-                for (int k = 0; k < n; ++k) {
-                    const double x = a[i][k], y = a[j][k], p = v[k][i], r = v[k][j];
-                    a[i][k] = c * x - s * y, a[j][k] = s * x + c * y;
-                    v[k][i] = c * p - s * r, v[k][j] = s * p + c * r;
-                }
-            }
 }
 
 // Cheap test for regularity: no eigenvalue of a positive matrix is below its determinant divided by the other
@@ -100,29 +76,31 @@ bool is_free(const System& g, const double* q, double* along, bool& close) {
     constexpr double merged = 1e-7;  // rounding parts a double root by its square root
     Linearised<System> at;
     linearise(g, q, at);
-    double normal[n][n], down[n], v[n][n], largest = 0;
+    double normal[n][n], down[n], largest = 0;
     normal_equations(at, normal, down);
     for (int i = 0; i < n; ++i)
         for (int j = 0; j < i; ++j) normal[i][j] = normal[j][i];
     for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
     close = false;
     if (surely_regular<n>(normal, largest)) return false;
-    eigenvectors<n>(normal, v);
-    largest = 0;
-    for (int i = 0; i < n; ++i) largest = std::fmax(largest, normal[i][i]);
-    const double floor = std::fmax(tolerance::degenerate_pair * std::sqrt(largest), tolerance::rounding);
+    SmallSvd<System::equations, n> J{System::equations, n, {}, {}, {}};
+    for (int j = 0; j < n; ++j)
+        for (int k = 0; k < System::equations; ++k) J.us[j][k] = at.slope[k][j];
+    decompose(J);
+    largest = largest_of(J.sigma, n);
+    const double floor = std::fmax(tolerance::degenerate_pair * largest, tolerance::rounding);
     for (int i = 0; i < n; ++i) {
-        if (normal[i][i] > floor * floor) continue;
-        close = close || normal[i][i] <= merged * merged * largest;
-        for (int j = 0; j < n; ++j) along[j] = v[j][i];
+        if (J.sigma[i] > floor) continue;
+        close = close || J.sigma[i] <= merged * largest;
+        for (int j = 0; j < n; ++j) along[j] = J.v[i][j];
         if (continues_along(g, q, along, g.reached)) return true;
     }
     return false;
 }
 
 // Appends the refined solution q of a system if it is new.
-template <class System, class Solutions>
-void keep_distinct(const System& g, double* q, Solutions& found) {
+template <class System>
+void keep_distinct(const System& g, double* q, FewJointRows& found) {
     constexpr int n = System::angles;
     if (found.count == max_position_solutions) return;
     for (int i = 0; i < n; ++i)

@@ -96,31 +96,17 @@ inline SwivelArm make_swivel_arm(const Chain& chain) {
 template <class V>
 CSPACE_INLINE SphericalTurns<V> three_turns(const Vec3d* axis, const Mat3<V>& R) {
     const Care care;
-    const Vec3<V> h1 = fill3<V>(axis[0]), h2 = fill3<V>(axis[1]), h3 = fill3<V>(axis[2]);
     const Vec3d along = dot(axis[1], axis[2]) * axis[1];  // the part of h3 that q2 does not change
     const Vec3d lean = axis[2] - along, turned = cross(axis[1], axis[2]);
-    const Vec3<V> goal = R * h3;
-    const TwoAngles<V> middle = linear_equation<V>(fill<V>(dot(axis[0], lean)), fill<V>(dot(axis[0], turned)),
-                                                   dot(h1, goal) - dot(axis[0], along), 1.0, care, {1, 0});
+    const Vec3<V> goal = R * fill3<V>(axis[2]);
+    const TwoAngles<V> middle =
+        linear_equation<V>(fill<V>(dot(axis[0], lean)), fill<V>(dot(axis[0], turned)),
+                           dot(fill3<V>(axis[0]), goal) - dot(axis[0], along), 1.0, care, {1, 0});
     SphericalTurns<V> out;
     out.ok = middle.ok;
-    const Vec3d across = any_perpendicular(axis[2]);
     for (int k = 0; k < 2; ++k) {
-        const Vec3<V> seen = rotate(h2, middle.root[k], h3);
-        // Square to h1, `seen` is turned into `goal`.
-        const Vec3<V> a = seen - dot(seen, h1) * h1, b = goal - dot(goal, h1) * h1;
-        const V size2 = max(dot(a, a), fill<V>(1e-300));
-        const V inverse = 1.0 / size2;
-        const mask_of<V> is_free = size2 <= care.free * care.free;
-        const Turn<V> first =
-            choose(is_free, {1, 0}, Turn<V>{dot(a, b) * inverse, dot(h1, cross(a, b)) * inverse});
-        Vec3<V> x = R * fill3<V>(across);
-        x = rotate(h2, Turn<V>{middle.root[k].c, -middle.root[k].s},
-                   rotate(h1, Turn<V>{first.c, -first.s}, x));
-        const Turn<V> last = {dot(x, fill3<V>(across)), dot(x, fill3<V>(cross(axis[2], across)))};
-        out.turn[k][0] = first;
         out.turn[k][1] = middle.root[k];
-        out.turn[k][2] = last;
+        outer_turns(axis, middle.root[k], R, care.free, out.turn[k][0], out.turn[k][2]);
     }
     return out;
 }

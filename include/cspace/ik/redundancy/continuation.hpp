@@ -3,8 +3,9 @@
 // parameter that a step passes.
 #pragma once
 
-#include "cspace/ik/redundancy/curve.hpp"
 #include "cspace/ik/redundancy/feasible_intervals.hpp"
+#include "cspace/ik/redundancy/tip_jacobian.hpp"
+#include "cspace/math/continuation.hpp"
 
 namespace cspace::ik {
 
@@ -42,11 +43,6 @@ inline void put_on_curve(const Tracer& tracer, CurvePoint& at) {
         if (at.error < settled) break;
     }
 }
-inline void orient_tangent(CurvePoint& at, const double* along, int n) {
-    if (dot_n(at.tangent, along, n) >= 0) return;
-    for (int i = 0; i < n; ++i) at.tangent[i] = -at.tangent[i];
-}
-
 // Position of a solution on the chord of a step, from 0 to 1; −1 if it is off the chord. A chord deviates
 // from the curve by less than the width of the tube, and no other arc enters the tube: see step_along.
 inline double part_of_chord(const Chain& chain, const double* from, const double* to, const double* q) {
@@ -86,10 +82,10 @@ inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride
                      CurvePoint& to) {
     const int n = tracer.arm->chain.n;
     double guess[max_joints], off = 0;
-    for (int i = 0; i < n; ++i)
-        to.q[i] = guess[i] = from.q[i] + stride * from.tangent[i] + 0.5 * stride * stride * from.bend[i];
+    predict_along(from.q, from.tangent, from.bend, stride, n, guess);
+    for (int i = 0; i < n; ++i) to.q[i] = guess[i];
     put_on_curve(tracer, to);
-    orient_tangent(to, from.tangent, n);
+    orient_tangent(to.tangent, from.tangent, n);
     for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
     return to.error < 1e-9 && off < most_off * stride && dot_n(to.tangent, from.tangent, n) > 0.95;
 }
@@ -104,7 +100,7 @@ inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& str
     stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + 1e-3));
     bool crosses = false;
     while (stride > shortest) {
-        if (!try_step(tracer, from, stride, 0.1, to)) {
+        if (!try_step(tracer, from, stride, most_correction, to)) {
             stride *= 0.5;
             continue;
         }
@@ -150,10 +146,9 @@ inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) 
         const double gap = joint_difference(arm.chain, i, limit - at.q[i]);
         double step = gap / (std::fabs(at.tangent[i]) > 1e-9 ? at.tangent[i] : 1e-9);
         step = max(-0.1, min(0.1, step));
-        for (int j = 0; j < arm.chain.n; ++j)
-            at.q[j] += step * at.tangent[j] + 0.5 * step * step * at.bend[j];
+        predict_along(at.q, at.tangent, at.bend, step, arm.chain.n, at.q);
         put_on_curve(tracer, at);
-        orient_tangent(at, along, arm.chain.n);
+        orient_tangent(at.tangent, along, arm.chain.n);
         if (std::fabs(gap) < 1e-13) return;
     }
 }
@@ -203,7 +198,7 @@ inline int stop_at_limit(const Tracer& tracer, const CurvePoint& at, CurvePoint&
     const LimitPoint& point = tracer.points->point[passed];
     for (int i = 0; i < chain.n; ++i) next.q[i] = at.q[i] + joint_difference(chain, i, point.q[i] - at.q[i]);
     put_on_curve(tracer, next);
-    orient_tangent(next, at.tangent, chain.n);
+    orient_tangent(next.tangent, at.tangent, chain.n);
     side = point.side;
     return point.joint;
 }
@@ -215,7 +210,7 @@ inline CurvePoint point_over_chord(const Tracer& tracer, const CurvePoint& from,
     CurvePoint out;
     for (int i = 0; i < n; ++i) out.q[i] = from.q[i] + part * (to.q[i] - from.q[i]);
     put_on_curve(tracer, out);
-    orient_tangent(out, from.tangent, n);
+    orient_tangent(out.tangent, from.tangent, n);
     return out;
 }
 

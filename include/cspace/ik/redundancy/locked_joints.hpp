@@ -100,13 +100,7 @@ inline Solutions solve_by_descent(const Chain& chain, const Posed& goal) {
     constexpr int starts = 48;
     Solutions out;
     out.complete = false;
-    const double length = characteristic_length(chain);
-    for (int k = 0; k < starts && out.count < max_solutions; ++k) {
-        double q[max_joints];
-        spread_configuration(k, chain.n, q);
-        accept_solution(out, chain, goal, length, q, out.count, 60);
-    }
-    classify_solutions(out);
+    search_by_descent(chain, goal, characteristic_length(chain), starts, out);
     return out;
 }
 

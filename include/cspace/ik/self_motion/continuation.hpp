@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "cspace/ik/refine.hpp"
+#include "cspace/math/continuation.hpp"
 
 namespace cspace::ik {
 
@@ -51,16 +52,12 @@ inline constexpr double still = 1e-7;
 // The tangent of the curve at a point: the projection of `along` onto the null space, unit. False if it
 // vanishes.
 inline bool tangent_at(const Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
-    for (int i = 0; i < chain.n; ++i) tangent[i] = 0;
-    for (int j = 0; j < J.columns; ++j) {
-        if (J.sigma[j] > still) continue;
-        const double part = dot_n(J.v[j], along, chain.n);
-        for (int i = 0; i < chain.n; ++i) tangent[i] += part * J.v[j][i];
-    }
-    const double size2 = dot_n(tangent, tangent, chain.n);
-    if (!(size2 > 1e-4)) return false;
-    for (int i = 0; i < chain.n; ++i) tangent[i] /= std::sqrt(size2);
-    return true;
+    const double* basis[max_joints];
+    int k = 0;
+    for (int j = 0; j < J.columns; ++j)
+        if (J.sigma[j] <= still) basis[k++] = J.v[j];
+    for (int i = 0; i < chain.n; ++i) tangent[i] = along[i];
+    return project(basis, k, chain.n, tangent) > 1e-2;
 }
 
 // The smallest of the other singular values. It vanishes where two curves cross.
@@ -111,7 +108,7 @@ inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, doub
 // One step of length h from q along its tangent. False if the curve bends too much for this length.
 inline bool step_along(const Chain& chain, const TipConstraint& constraint, const double* q,
                        const double* tangent, double h, double* next, double* next_tangent, double* margin) {
-    constexpr double least_cosine = 0.995, largest_return = 0.1;
+    constexpr double least_cosine = 0.995;
     PoseError at;
     for (int i = 0; i < chain.n; ++i) next[i] = q[i] + h * unit_of(chain, i, constraint.length) * tangent[i];
     if (!onto_curve(chain, constraint, next, at) || !tangent_at(chain, at.jacobian, tangent, next_tangent))
@@ -122,7 +119,7 @@ inline bool step_along(const Chain& chain, const TipConstraint& constraint, cons
         back2 += moved * moved;
     }
     *margin = margin_on_curve(at.jacobian);
-    return back2 <= largest_return * largest_return * h * h &&
+    return back2 <= most_correction * most_correction * h * h &&
            dot_n(tangent, next_tangent, chain.n) >= least_cosine;
 }
 
@@ -206,8 +203,10 @@ CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const
             return CurveEnd::closed;
         }
         const double last_margin = margin;
-        while (!step_along(chain, constraint, q, t, h, next, next_t, &margin))
-            if ((h *= 0.5) < shortest) return CurveEnd::lost;
+        const auto attempt = [&](double step) {
+            return step_along(chain, constraint, q, t, step, next, next_t, &margin);
+        };
+        if (!halve_step(h, shortest, attempt)) return CurveEnd::lost;
         double turning = 0, away = 0;
         for (int i = 0; i < n; ++i) {
             q[i] = next[i], t[i] = next_t[i];

@@ -85,18 +85,6 @@ inline bool lies_in_valley(const Chain& chain, const Posed& goal, double length,
     return false;
 }
 
-// The projection of v onto the span of the orthonormal vectors basis[0 … k), normalised.
-inline bool project(const double* const* basis, int k, int n, double* v) {
-    double out[max_joints] = {};
-    for (int j = 0; j < k; ++j) {
-        const double along = dot_n(basis[j], v, n);
-        for (int i = 0; i < n; ++i) out[i] += along * basis[j][i];
-    }
-    const double size = std::sqrt(dot_n(out, out, n));
-    for (int i = 0; i < n; ++i) v[i] = size > 0 ? out[i] / size : 0;
-    return size > 0;
-}
-
 // The direction in the null space to which a stride along `trial` leads; false if it leads back.
 inline bool led_away(const Chain& chain, const Posed& goal, double length, const double* q,
                      const double* const* basis, int k, double* trial) {
@@ -110,7 +98,7 @@ inline bool led_away(const Chain& chain, const Posed& goal, double length, const
         trial[i] = moved[i] - q[i];
         away += trial[i] * trial[i];
     }
-    return away > 0.25 * stride * stride && project(basis, k, chain.n, trial);
+    return away > 0.25 * stride * stride && project(basis, k, chain.n, trial) > 0;
 }
 
 // The vectors of a null space of dimension 2 or 3 in which one or two joints do not move. Self-motions of

@@ -81,11 +81,12 @@ CSPACE_INLINE void clear(Twist<V>& twist) {
 // The columns of J, one twist per coordinate.
 template <class V>
 CSPACE_INLINE void columns_of(const Path& path, int n, const PlacedJoints<V>& at, Twist<V>* J) {
+    const double per_length = 1 / path.length;
     for (int j = 0; j < n; ++j) clear(J[j]);
     for (int i = 0; i < path.joints; ++i) {
         const model::ChainJoint& joint = path.joint[i];
         const kinematics::Axis<V>& axis = at.axes[i];
-        add_twist(joint_unit(path, i), 1 / path.length,
+        add_twist(joint_unit(path, i), per_length,
                   kinematics::joint_twist(joint.prismatic, axis.direction, axis.point, at.tip.t),
                   J[joint.coordinate]);
     }
@@ -97,6 +98,7 @@ CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& 
                                 Twist<V>* J) {
     const V zero = fill<V>(0.0);
     const Vec3<V> none = {zero, zero, zero};
+    const double per_length = 1 / path.length;
     kinematics::Axis<V> rates[max_path];
     V speed[max_joints];
     for (int j = 0; j < n; ++j) speed[j] = unit_of(path, j) * slope[j];
@@ -106,7 +108,7 @@ CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& 
     for (int j = 0; j < n; ++j) clear(J[j]);
     for (int i = 0; i < path.joints; ++i) {
         const model::ChainJoint& joint = path.joint[i];
-        add_twist(joint_unit(path, i), 1 / path.length,
+        add_twist(joint_unit(path, i), per_length,
                   kinematics::joint_twist_rate(joint.prismatic, at.axes[i], rates[i], at.tip.t, v_tip),
                   J[joint.coordinate]);
     }

@@ -7,6 +7,7 @@
 
 #include "cspace/ik/numeric/error.hpp"
 #include "cspace/ik/tracking/motion.hpp"
+#include "cspace/math/continuation.hpp"
 
 namespace cspace::ik {
 
@@ -80,9 +81,6 @@ namespace track {
 // Largest change of a coordinate in one step [rad, lengths of the path], and largest fraction of it from the
 // second derivative. The neglected third derivative then contributes a few percent.
 inline constexpr double longest_step = 0.25, most_bend = 0.15;
-// Largest fraction of a step that corrections may have. Branches closer to each other than this cannot be
-// distinguished.
-inline constexpr double most_correction = 0.1;
 inline constexpr double free_correction = 1e-8;  // [rad, lengths] that is never too much
 inline constexpr int most_corrections = 6;
 // A fold takes some hundred steps, a joint a hundred per revolution. A branch that exceeds this bound makes
@@ -155,7 +153,8 @@ inline bool plan(const Track& t, Walker& w) {
         const bool short_step =
             w.du < track::least_share || w.du * t.ways[w.row].length < track::least_length;
         if (short_step && w.du < left) return false;
-        for (int j = 0; j < t.path->n; ++j) w.planned[j] = w.du * (w.slope[j] + 0.5 * w.du * w.bend[j]);
+        const double from[max_joints] = {};
+        predict_along(from, w.slope, w.bend, w.du, t.path->n, w.planned);
     }
     for (int j = 0; j < t.path->n; ++j) w.trial[j] = w.q[j] + unit_of(*t.path, j) * w.planned[j];
     return true;
@@ -174,7 +173,7 @@ inline Verdict judge_step(const Track& t, Walker& w, const Motion<double>& at) {
         total = max(total, std::fabs((w.trial[j] - w.q[j]) / scale - w.planned[j]));
     }
     const double size = largest_of(w.planned, n), last = largest_of(at.correction, n);
-    const double allowed = track::most_correction * size + track::free_correction;
+    const double allowed = most_correction * size + track::free_correction;
     if (!w.starts && !(total <= allowed)) return Verdict::failed;
     // A pose that is singular itself leaves joints free: the rows before it tell where they go on.
     if (at.weakest < track::singular_row && !w.by_rows && !w.rows_tried && rows_can_tell(t, w))
