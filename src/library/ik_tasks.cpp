@@ -89,7 +89,7 @@ bool task_velocity(const TaskRows& rows, const double* q, const double* T_world_
     const int dof = dof_of(problem), first = problem.floating ? 6 : 0;
     TaskWork work = task_work(problem);
     TaskPlace at = place_at(problem, q, T_world_base);
-    look(problem, work, at);
+    measure_tasks(problem, work, at);
     BoxQp qp(dof);
     bound_by_speed(problem, q, speed, dt, qp);
     if (!best_step(at, damping, true, qp, qd)) return false;
@@ -107,7 +107,7 @@ TaskEnding serve_tasks(const TaskRows& rows, int most_steps, double settled, dou
                        double* errors) {
     const TaskProblem problem = problem_from(rows);
     TaskPlace at = place_at(problem, q, T_world_base);
-    const Served served = serve(problem, {most_steps, settled}, at);
+    const Served served = serve_tasks(problem, {most_steps, settled}, at);
     std::copy(at.q.begin(), at.q.end(), q);
     kinematics::write_matrix(at.T_world_base, T_world_base);
     write_errors(at, errors);
@@ -134,7 +134,7 @@ int solve_box_program(const double* H, const double* g, const double* lower, con
     std::copy_n(g, n, qp.g.begin());
     std::copy_n(lower, n, qp.lower.begin());
     std::copy_n(upper, n, qp.upper.begin());
-    return solve(qp, x);
+    return solve_box_qp(qp, x);
 }
 
 }  // namespace cspace::ik

@@ -65,7 +65,7 @@ struct Bent {
     struct Place {
         double value[4], slope[4][3];
     };
-    double measure(const double* x, Place& at) const {
+    double evaluate(const double* x, Place& at) const {
         double sum = 0;
         for (int k = 0; k < 4; ++k) {
             at.value[k] = k == 3 ? offset : 0;
@@ -128,7 +128,7 @@ TEST(a_descent_reaches_a_zero_whatever_the_rank) {
         Bent::Place at;
         const double left = descend_damped(problem, x, at, GaussNewtonDamping{1e-15, 1e-12, 1e-24}, 60);
         CHECK(left < 1e-12);
-        CHECK_NEAR(problem.measure(x, at), left, 0.0);
+        CHECK_NEAR(problem.evaluate(x, at), left, 0.0);
     }
 }
 
@@ -155,7 +155,7 @@ TEST(newtons_method_ends_where_the_gradient_vanishes) {
         const Bent problem = random_bent(random, false, 1);
         double x[3] = {problem.z[0], problem.z[1], problem.z[2]};
         Bent::Place at;
-        const double first = problem.measure(x, at);
+        const double first = problem.evaluate(x, at);
         const double left = descend_damped(problem, x, at, NewtonDamping{0, 1e-12, 0.5, 1e-6, 1e-13}, 100);
         CHECK(left <= first);
         double A[3][3], down[3];

@@ -68,7 +68,7 @@ inline void refine_few_joints(const Chain& chain, const Posed& goal, double leng
         PoseError error;
         measure_error(chain, goal, length, q, error);
         if (size_of_error(error) <= tolerance::exact) continue;
-        refine(chain, goal, length, q, error, 10);
+        refine_solution(chain, goal, length, q, error, 10);
         for (int i = 0; i < chain.n; ++i) out.q[k][i] = wrap_joint(chain, i, q[i]);
     }
 }
@@ -174,8 +174,8 @@ CSPACE_ONCE NearestPose nearest_to_goal(const Arm& arm, const Posed& goal, doubl
                 q[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
         PoseError error;
         for (double w = min(weight, 1.0); w < weight; w *= 10)
-            minimise(plan.chain, goal, plan.form.length, w, q, error);
-        const double cost = minimise(plan.chain, goal, plan.form.length, weight, q, error);
+            minimise_pose_error(plan.chain, goal, plan.form.length, w, q, error);
+        const double cost = minimise_pose_error(plan.chain, goal, plan.form.length, weight, q, error);
         if (!(cost < best.cost)) continue;
         best.cost = cost;
         best.position = error.position;

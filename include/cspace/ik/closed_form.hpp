@@ -174,7 +174,7 @@ CSPACE_INLINE V joint_angle(const Plan& plan, int i, V t) {
 // Refines angles on the true chain; false if this did not converge.
 template <class W>
 CSPACE_INLINE mask_of<W> polished_angles(const Plan& plan, const Pose<W>& goal, W* q) {
-    const mask_of<W> settled = polish(plan.chain, goal, plan.form.length, q);
+    const mask_of<W> settled = polish_solution(plan.chain, goal, plan.form.length, q);
     for (int i = 0; i < 6; ++i) q[i] = wrap_once(q[i]);
     return settled;
 }

@@ -18,7 +18,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 // The rotation nearest to R for an R that is one up to a small error e = RᵀR − I: R (I − e/2), twice.
 template <class V>
-CSPACE_INLINE Mat3<V> straightened(const Mat3<V>& R) {
+CSPACE_INLINE Mat3<V> straighten_rotation(const Mat3<V>& R) {
     Mat3<V> out = R;
     for (int step = 0; step < 2; ++step) {
         const Vec3<V> x = column(out, 0), y = column(out, 1), z = column(out, 2);
@@ -47,7 +47,7 @@ CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     out.is_pose = (abs(dot(x, x) + dot(y, y) + dot(z, z) + dot(x, y) + dot(y, z) + dot(x, z)) <= 100.0) &&
                   (error <= tolerance::rotation_error) && (last_row <= tolerance::last_row) &&
                   (size <= tolerance::farthest) && (dot(cross(x, y), z) > 0.0);
-    if (any(error > 1e-14)) R = straightened(R);
+    if (any(error > 1e-14)) R = straighten_rotation(R);
     return out;
 }
 

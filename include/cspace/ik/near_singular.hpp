@@ -67,7 +67,7 @@ inline bool are_one(const Chain& chain, const Posed& goal, double length, const 
 CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed& goal, double length,
                                  double* q, int branch, int most_steps) {
     PoseError error;
-    const double size = refine(chain, goal, length, q, error, most_steps);
+    const double size = refine_solution(chain, goal, length, q, error, most_steps);
     if (!(size <= tolerance::reached) || out.count == max_solutions) return;
     const int weak = weakest_direction(error.jacobian);
     const double conditioning = max(error.jacobian.sigma[weak], 1e-9);
@@ -267,7 +267,7 @@ inline void descend_to_solution(const Chain& chain, const Posed& goal, double le
                                 Solutions& out) {
     if (out.count == max_solutions) return;
     PoseError error;
-    const double left = refine(chain, goal, length, q, error, steps);
+    const double left = refine_solution(chain, goal, length, q, error, steps);
     if (left <= (out.count ? tolerance::exact : tolerance::reached))
         accept_solution(out, chain, goal, length, q, out.count, 2);
 }

@@ -33,7 +33,7 @@ struct NearestPoseProblem {
     double length, weight;
     int n = chain.n;
 
-    double measure(const double* q, PoseError& at) const {
+    double evaluate(const double* q, PoseError& at) const {
         measure_error(chain, goal, length, q, at);
         return cost_of(at, weight);
     }
@@ -55,8 +55,8 @@ struct NearestPoseProblem {
 };
 
 // Descends from q to a local minimum of the cost; `error` belongs to q on return.
-inline double minimise(const Chain& chain, const Posed& goal, double length, double weight, double* q,
-                       PoseError& error) {
+inline double minimise_pose_error(const Chain& chain, const Posed& goal, double length, double weight,
+                                  double* q, PoseError& error) {
     constexpr double stride = 0.5, settled = 1e-10, definite = 1e-13;
     const double first_damping = 1e-6 * (1 + weight * weight);
     return descend_damped(NearestPoseProblem{chain, goal, length, weight}, q, error,

@@ -71,7 +71,8 @@ inline double take_step(const Chain& chain, const Posed& goal, double length, co
 // Newton's method. It may leave the valley of small errors on its way: near a singularity the solution can
 // lie farther along the valley than any descent would go. True if it converged; q is then a solution, else
 // unchanged.
-inline bool newton(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
+inline bool solve_by_newton(const Chain& chain, const Posed& goal, double length, double* q,
+                            PoseError& error) {
     constexpr int most_steps = 16;
     constexpr double settled = 1e-15, arrived = 1e-12;
     double best[max_joints], at[max_joints];
@@ -128,8 +129,8 @@ inline bool follow_valley(const Chain& chain, const Posed& goal, double length, 
 // Damping by the square of the error converges fast to a self-motion (Yamashita & Fukushima 2001). Larger
 // damping starts at the square of the smallest singular value, where it begins to restrain the weakest
 // direction.
-inline double descend(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
-                      int most_steps) {
+inline double descend_to_goal(const Chain& chain, const Posed& goal, double length, double* q,
+                              PoseError& error, int most_steps) {
     constexpr double settled = 1e-15, noise = 1e-13;
     constexpr double growth = 4;
     double damping = 0, grow = growth;
@@ -165,11 +166,11 @@ inline double descend(const Chain& chain, const Posed& goal, double length, doub
 }
 
 // Refines a candidate to a solution, or as near to one as descent leads.
-inline double refine(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error,
-                     int most_steps = 60) {
-    const bool arrived = newton(chain, goal, length, q, error) ||
+inline double refine_solution(const Chain& chain, const Posed& goal, double length, double* q,
+                              PoseError& error, int most_steps = 60) {
+    const bool arrived = solve_by_newton(chain, goal, length, q, error) ||
                          (chain.n == 6 && follow_valley(chain, goal, length, q, error));
-    return descend(chain, goal, length, q, error, arrived ? 2 : most_steps);
+    return descend_to_goal(chain, goal, length, q, error, arrived ? 2 : most_steps);
 }
 
 // Two Newton steps on the true chain, on lanes. They remove the error of a closed form for an idealised or
@@ -200,7 +201,7 @@ CSPACE_NOINLINE V newton_step(const Chain& chain, const Pose<V>& goal, double le
 
 // True if q, a candidate near a solution, has converged to it.
 template <class V>
-CSPACE_INLINE mask_of<V> polish(const Chain& chain, const Pose<V>& goal, double length, V* q) {
+CSPACE_INLINE mask_of<V> polish_solution(const Chain& chain, const Pose<V>& goal, double length, V* q) {
     const V first = newton_step(chain, goal, length, q);
     const V second = newton_step(chain, goal, length, q);
     return (first < tolerance::polish_reach) && (second < tolerance::polished);

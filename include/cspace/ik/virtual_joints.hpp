@@ -101,14 +101,14 @@ inline bool is_always_singular(const Chain& chain, const int* source, double len
 }
 
 // `source[i]`: the joint of the arm that is joint i of the completed arm, or −1 for a virtual joint.
-inline bool complete(Plan& plan, const Chain& c, const int* source) {
+inline bool complete_plan(Plan& plan, const Chain& c, const int* source) {
     if (c.n == 6) return is_regular(c, source, characteristic_length(c)) && plan_six(plan, c, source);
     for (int at = c.n; at >= 0; --at) {
         const AxisChoices choices = axes_to_insert(c, at);
         int longer_source[6];
         for (int i = 0; i <= c.n; ++i) longer_source[i] = i < at ? source[i] : i == at ? -1 : source[i - 1];
         for (int k = 0; k < choices.count; ++k)
-            if (complete(plan, with_axis(c, at, choices.axis[k]), longer_source)) return true;
+            if (complete_plan(plan, with_axis(c, at, choices.axis[k]), longer_source)) return true;
     }
     return false;
 }
@@ -125,7 +125,7 @@ CSPACE_ONCE bool make_plan(Plan& plan, const Chain& chain) {
     constexpr double rounding = tolerance::always_singular;
     if (chain.n < 6)
         return !is_always_singular(chain, source, characteristic_length(chain), rounding) &&
-               complete(plan, chain, source);
+               complete_plan(plan, chain, source);
     if (plan_six(plan, chain, source) &&
         !is_always_singular(chain, source, plan.form.length, max(rounding, 10 * plan.form.deviation)))
         return true;

@@ -62,7 +62,7 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[rows][columns], const 
 // return. A step that does not reduce the error is rejected, and the damping increased.
 //
 // A Problem has `size`, the largest number of unknowns, their number n, and
-//   measure(x, at)          the error at x, and in `at` what the model needs;
+//   evaluate(x, at)          the error at x, and in `at` what the model needs;
 //   model(x, at, A, down)   the upper triangle of the Hessian of the squared error, or of JᵀJ, and the
 //                           negative gradient; false at a stationary point;
 //   moved(value, step)      one unknown after a step.
@@ -73,7 +73,7 @@ template <class Problem, class Unknown, class Place, class Rule>
 double descend_damped(const Problem& problem, Unknown* x, Place& at, Rule rule, int most_steps) {
     constexpr int size = Problem::size;
     const int n = problem.n;
-    double error = problem.measure(x, at);
+    double error = problem.evaluate(x, at);
     rule.accept(error);
     for (int k = 0; k < most_steps && error > rule.enough; ++k) {
         double A[size][size], step[size], diagonal = 0;
@@ -90,7 +90,7 @@ double descend_damped(const Problem& problem, Unknown* x, Place& at, Rule rule, 
         Unknown to[size];
         Place there;
         for (int i = 0; i < n; ++i) to[i] = problem.moved(x[i], keep * step[i]);
-        const double left = problem.measure(to, there);
+        const double left = problem.evaluate(to, there);
         if (left < error * (1 + rule.slack)) {
             for (int i = 0; i < n; ++i) x[i] = to[i];
             at = there;

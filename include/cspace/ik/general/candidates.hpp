@@ -156,7 +156,7 @@ inline void refine_unsettled(const GeneralPlan& plan, const Posed& goal, Candida
     for (int k = 0; k < direct; ++k) {
         if (all.settled[k]) continue;
         PoseError error;
-        const double left = refine(plan.chain, goal, 1.0, all.q[k], error, 10);
+        const double left = refine_solution(plan.chain, goal, 1.0, all.q[k], error, 10);
         // Beside solutions a valley that almost reaches the goal is none of them.
         if (!(left <= (out.count ? tolerance::exact : tolerance::reached))) continue;
         const int before = out.count;

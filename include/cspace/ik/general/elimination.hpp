@@ -155,7 +155,7 @@ inline double square_of(Complex a) { return a.re * a.re + a.im * a.im; }
 
 // The row n with n W = 0 for three complex columns of four (n̄ spans their complement), by reflections with
 // the largest column first. Returns how the last column's size compares with the first's.
-inline double annihilator(Complex (&A)[4][3], Complex (&n)[4]) {
+inline double find_annihilator(Complex (&A)[4][3], Complex (&n)[4]) {
     Complex H[4][4] = {};
     for (int i = 0; i < 4; ++i) H[i][i] = {1, 0};
     double first = 0, last = 0;
@@ -224,7 +224,7 @@ inline void right_side(const Loop& loop, Elimination& e, Invariants (&g)[6]) {
                 N[i][4],         N[i][5],         -constant};
     }
     Complex n[4];
-    e.a5_rank = annihilator(W, n);
+    e.a5_rank = find_annihilator(W, n);
     const auto rows = [&](double sx, double sy, auto pick_x, auto pick_y) {
         const auto half = [&](int i) { return Vec3d{sx * pick_x(n[i]), sy * pick_y(n[i]), 0}; };
         return Invariants{half(0), half(1), half(2), half(3), 0, 0, 0};
@@ -287,7 +287,7 @@ inline Functionals<Pack<Elimination::lanes>> functionals_behind(const Posed& T, 
             v[14]};
 }
 
-inline Elimination eliminate(const Loop& loop) {
+inline Elimination eliminate_angles(const Loop& loop) {
     using V = Pack<Elimination::lanes>;
     Elimination e;
     Invariants g[6], B[9];

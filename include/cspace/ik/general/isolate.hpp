@@ -135,7 +135,7 @@ inline void find_simple_roots(const Pieces& simple, double last_step, HiddenAngl
 
 inline double value_halfway(const Arc& arc) {
     double half[padded];
-    combine(sampler_tables().lower_half, arc.b, degree + 1, half);
+    combine_rows(sampler_tables().lower_half, arc.b, degree + 1, half);
     return half[degree];
 }
 
@@ -164,7 +164,7 @@ inline void divide_arc(const SamplerTables& t, const Arc& arc, Pieces& pieces) {
     const double middle = 0.5 * (arc.from + arc.to);
     for (const bool upper : {false, true}) {
         Arc& half = pieces.piece[pieces.count].arc;
-        combine(upper ? t.upper_half : t.lower_half, arc.b, degree + 1, half.b);
+        combine_rows(upper ? t.upper_half : t.lower_half, arc.b, degree + 1, half.b);
         half.centre = arc.centre;
         half.quarter = arc.quarter;
         half.from = upper ? middle : arc.from;
@@ -190,7 +190,7 @@ inline void sample_circle(const SamplerTables& t, const Function& f, double* out
 // f(c, s) on packs of four: a trigonometric polynomial of degree 8. The roots are as exact as Newton's method
 // is behind its last step [arc].
 template <class Function>
-inline void isolate(const Function& f, double last_step, HiddenAngles& out) {
+inline void isolate_roots(const Function& f, double last_step, HiddenAngles& out) {
     const SamplerTables& tables = sampler_tables();
     double sampled[2 * samples];
     sample_circle(tables, f, sampled);
@@ -230,7 +230,8 @@ inline void isolate(const Function& f, double last_step, HiddenAngles& out) {
             ++samplings;
             out.evaluations += padded / 4;
             const double from = angle_at(arc, 0), to = angle_at(arc, 1);
-            resample(tables, f, largest, 0.5 * (from + to), 0.25 * (to - from), stack.piece[stack.count].arc);
+            resample_arc(tables, f, largest, 0.5 * (from + to), 0.25 * (to - from),
+                         stack.piece[stack.count].arc);
             keep_if_crossed(stack);
             continue;
         }

@@ -125,7 +125,7 @@ inline double pose_sensitivity(const GeneralPlan& plan, const Posed& goal, int n
     const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal, formulation(number));
     if (!is_possible(loop, formulation(number))) return useless_sensitivity;
     if (plan.slides == 2) return 0;
-    const Elimination e = eliminate(loop);
+    const Elimination e = eliminate_angles(loop);
     Elimination slipped = e;
     int sign = 1;
     for (int i = 0; i < 6; ++i)
@@ -226,8 +226,8 @@ inline void find_ghosts(const Posed* goal, int number, GeneralPlan& plan) {
     HiddenAngles hidden[3];
     for (int k = 0; k < 3; ++k) {
         const Loop loop = make_loop(plan.frames, plan.chain.prismatic, goal[k], formulation(number));
-        const Elimination e = eliminate(loop);
-        isolate([&](auto c, auto s) { return determinant(e, c, s); }, fine, hidden[k]);
+        const Elimination e = eliminate_angles(loop);
+        isolate_roots([&](auto c, auto s) { return determinant(e, c, s); }, fine, hidden[k]);
     }
     const auto has = [&](const HiddenAngles& h, const HiddenAngle& root) {
         const double spread = root.order > 2 ? order_seen : same;  // several on one place are known less well

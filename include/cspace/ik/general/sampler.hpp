@@ -154,7 +154,7 @@ inline const SamplerTables& sampler_tables() {
 #endif
 
 // out = Σ x_j row_j
-CSPACE_INLINE void combine(const double (*row)[padded], const double* x, int count, double* out) {
+CSPACE_INLINE void combine_rows(const double (*row)[padded], const double* x, int count, double* out) {
     using V = Pack<native_width>;
     constexpr int whole = padded / native_width, rest = padded % native_width;  // rest: none or four
     V sum[whole];
@@ -172,7 +172,7 @@ CSPACE_INLINE void combine(const double (*row)[padded], const double* x, int cou
 
 // The arc that starts at sample 2 k; f: the samples, twice round.
 inline void read_arc(const SamplerTables& t, const double* f, int k, Arc& arc) {
-    combine(t.to_arc, f + 2 * k, samples, arc.b);
+    combine_rows(t.to_arc, f + 2 * k, samples, arc.b);
     arc.centre = t.angle[2 * k] + pi / samples;
     arc.quarter = 2 * pi / arcs / 4;
     arc.from = 0;
@@ -184,8 +184,8 @@ inline void read_arc(const SamplerTables& t, const double* f, int k, Arc& arc) {
 // drown in the noise of the samples are dropped: what they would put into the Bernstein form is noise
 // enlarged.
 template <class Function>
-inline void resample(const SamplerTables& t, const Function& f, double unit, double centre, double quarter,
-                     Arc& arc) {
+inline void resample_arc(const SamplerTables& t, const Function& f, double unit, double centre,
+                         double quarter, Arc& arc) {
     using V = Pack<4>;
     double g[padded], largest = 0;
     for (int m = 0; m < padded; m += 4) {
@@ -212,7 +212,7 @@ inline void resample(const SamplerTables& t, const Function& f, double unit, dou
     int top = 0;
     for (int n = 0; n <= degree; ++n)
         if (std::fabs(c[n]) > noise) top = n;
-    combine(t.to_bernstein, c, top + 1, arc.b);
+    combine_rows(t.to_bernstein, c, top + 1, arc.b);
     arc.centre = centre;
     arc.quarter = quarter;
     arc.from = 0;

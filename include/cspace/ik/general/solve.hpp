@@ -248,7 +248,7 @@ inline Certificate solve_by_hidden_angle(const GeneralPlan& plan, const Posed& g
     Certificate seen;
     seen.slip = slip;
     HiddenAngles& hidden = seen.hidden;
-    isolate(f, rough_root, hidden);
+    isolate_roots(f, rough_root, hidden);
     seen.joint = loop.joint[0];
     seen.sign = loop.sign;
     seen.work = hidden.evaluations;
@@ -308,7 +308,7 @@ inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal,
         };
         return solve_by_hidden_angle(plan, goal, number, loop, 0, f, follow, out);
     }
-    const Elimination e = eliminate(loop);
+    const Elimination e = eliminate_angles(loop);
     const auto f = [&](auto c, auto s) { return determinant(e, c, s); };
     const auto follow = [&](const HiddenAngles& hidden, const bool* close, bool again, Candidates& found) {
         return follow_angles(loop, e, hidden, close, again, found);

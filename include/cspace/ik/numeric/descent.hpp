@@ -93,7 +93,7 @@ CSPACE_INLINE void take_trial(const Path& path, const Rows& rows, bool always, D
 // The lanes that have finished. A descent within the tolerance continues while it makes good progress: the
 // last steps cost little and reduce the error to rounding.
 template <class V>
-CSPACE_INLINE mask_of<V> ended(const Path& path, const Task& task, Descent<V>& d) {
+CSPACE_INLINE mask_of<V> find_ended(const Path& path, const Task& task, Descent<V>& d) {
     const V gap = max(d.at.position, d.at.rotation);
     const mask_of<V> inside = gap <= task.tolerance;
     const mask_of<V> settled =
@@ -192,7 +192,7 @@ void run_descents(const DescentRows& rows) {
     for (;;) {
         measure_gap(*rows.path, counted, d.T_goal_first, d.trial, d.there);
         take_trial(*rows.path, counted, always, d);
-        const mask_of<V> done = ended(*rows.path, *rows.task, d);
+        const mask_of<V> done = find_ended(*rows.path, *rows.task, d);
         next_trial(*rows.path, *rows.task, counted, d);
         if (!any(done)) continue;
         bool alive = false;

@@ -7,10 +7,10 @@
 // Not for kernels: it uses the standard library.
 #pragma once
 
-#include "cspace/ik/numeric/box_qp.hpp"
 #include "cspace/ik/numeric/error.hpp"
 #include "cspace/kinematics/center_of_mass.hpp"
 #include "cspace/kinematics/jacobian.hpp"
+#include "cspace/math/box_qp.hpp"
 #include "cspace/model/robot_model.hpp"
 
 namespace cspace::ik {
@@ -198,7 +198,7 @@ inline TaskError add_task(const TaskProblem& problem, const FrameTask& task, Tas
 }
 
 // Evaluates the tasks at at.q and at.T_world_base.
-inline void look(const TaskProblem& problem, TaskWork& work, TaskPlace& at) {
+inline void measure_tasks(const TaskProblem& problem, TaskWork& work, TaskPlace& at) {
     const std::size_t dof = std::size_t(dof_of(problem)), first = problem.floating ? 6 : 0;
     at.cost = 0;
     at.H.assign(dof * dof, 0.0);
@@ -228,7 +228,7 @@ inline bool best_step(const TaskPlace& at, double damping, bool postures, BoxQp&
         qp.g[j] += postures ? at.pull[j] : 0;
         step[j] = 0;
     }
-    return solve(qp, step) >= 0;
+    return solve_box_qp(qp, step) >= 0;
 }
 
 // The state after a step. The base rotates and translates in the world.
@@ -271,25 +271,25 @@ inline void back_to_the_valley(const TaskProblem& problem, TaskWork& work, BoxQp
     bound_step(problem, there, qp);
     if (!best_step(there, serving::floor, false, qp, step)) return;
     move_by(problem, there, step, spare);
-    look(problem, work, spare);
+    measure_tasks(problem, work, spare);
     if (spare.cost < there.cost) std::swap(there, spare);
 }
 
 // Minimises the task error locally, from at.q (within the limits) and at.T_world_base.
-inline Served serve(const TaskProblem& problem, const ServeSettings& settings, TaskPlace& at) {
+inline Served serve_tasks(const TaskProblem& problem, const ServeSettings& settings, TaskPlace& at) {
     TaskWork work = task_work(problem);
     BoxQp qp(dof_of(problem));
     TaskPlace there, spare;
     std::vector<double> step(std::size_t(qp.n));
     double mu = serving::first_mu;
-    look(problem, work, at);
+    measure_tasks(problem, work, at);
     for (int k = 0; k < settings.most_steps; ++k) {
         bound_step(problem, at, qp);
         if (!best_step(at, 2 * mu * at.cost + serving::floor, true, qp, step.data())) return {k, false};
         double reach = 0;
         for (const double d : step) reach = std::max(reach, std::fabs(d));
         move_by(problem, at, step.data(), there);
-        look(problem, work, there);
+        measure_tasks(problem, work, there);
         if (there.cost >= at.cost && !problem.postures.empty())
             back_to_the_valley(problem, work, qp, step.data(), there, spare);
         const bool better = there.cost < at.cost;

@@ -62,7 +62,7 @@ struct Search {
     void propose(const double* q) {
         double scaled[n];
         for (int i = 0; i < n; ++i) scaled[i] = chain.prismatic[i] ? q[i] / size : q[i];
-        if (refine(gap, scaled) > gap.reached) return;
+        if (refine_angles(gap, scaled) > gap.reached) return;
         Linearised<PoseGap<n>> at;
         if (linearise(gap, scaled, at) > gap.reached || opposed(scaled)) return;
         keep_distinct(gap, scaled, found);

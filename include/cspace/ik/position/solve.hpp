@@ -34,7 +34,7 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
 // Refines a candidate and appends it if it reaches the goal.
 template <int n>
 void propose(const TipGap<n>& g, double* q, PositionSolutions& found) {
-    if (refine(g, q) <= g.reached) keep_distinct(g, q, found);
+    if (refine_angles(g, q) <= g.reached) keep_distinct(g, q, found);
 }
 
 inline void candidates(const TipGap<1>& g, PositionSolutions& found) {

@@ -153,7 +153,7 @@ double nearest_configuration(const TipGap<n>& g, double* best_q) {
     double best = std::numeric_limits<double>::infinity();
     for (int k = 0; k < count; ++k) {
         start(valleys[k].row, valleys[k].column, q);
-        const double error = descend(g, q);
+        const double error = descend_angles(g, q);
         if (error >= best) continue;
         best = error;
         for (int i = 0; i < n; ++i) best_q[i] = q[i];

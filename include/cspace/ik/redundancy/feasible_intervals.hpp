@@ -92,8 +92,8 @@ inline const CellView& look_at(const Redundant& arm, const Sweep& sweep, Looks& 
 }
 
 // By bisection, the value at which a branch changes between two values with different results, and the cause.
-inline Critical bisected(const Redundant& arm, const Sweep& sweep, Looks& looks, int branch, double in,
-                         double out) {
+inline Critical bisect_change(const Redundant& arm, const Sweep& sweep, Looks& looks, int branch, double in,
+                              double out) {
     constexpr double found_to = 1e-13;
     int cause = end_fold, side = 0;
     for (int step = 0; step < 60 && std::fabs(out - in) > found_to; ++step) {
@@ -142,7 +142,7 @@ inline Critical end_between(const Walk& walk, int branch, const CellView& out, d
             if (by_fold ? vanishes && folds : c.end != end_fold && c.branch == branch)
                 return {c.value + turn, c.end, c.side, branch};
         }
-    return bisected(*walk.arm, *walk.sweep, *walk.looks, branch, in_at, out_at);
+    return bisect_change(*walk.arm, *walk.sweep, *walk.looks, branch, in_at, out_at);
 }
 
 inline void open_interval(Walk& walk, int branch, const CellView& view, const Critical& end) {

@@ -86,7 +86,7 @@ CSPACE_NOINLINE V step_to_nearest(const Chain& chain, int rank, const Pose<V>& g
     V gap[room], step[room], bent[room], along[most_free][room];
     V newton[max_free], plain[max_free], H[max_free][max_free], G[max_free][max_free];
     from_seed<N>(chain, seed, weight, q, gap);
-    multipliers<N>(split, n, gap, lambda);
+    find_multipliers<N>(split, n, gap, lambda);
     shortest_step<N>(split, n, motion.error, step);
     for (int k = 0; k < free; ++k) {
         free_direction<N>(split, n, k, along[k]);
@@ -322,10 +322,10 @@ inline void nearest_by_descent(const Redundant& arm, const Posed& goal, const do
         for (int i = 0; i < arm.chain.n; ++i)
             q[i] = seed[i] + (arm.chain.prismatic[i] ? arm.length / pi : k / (most - 1.0)) * q[i];
         PoseError error;
-        double left = refine(arm.chain, goal, arm.length, q, error);
+        double left = refine_solution(arm.chain, goal, arm.length, q, error);
         // On the floor of a valley that rounded axes have made: from there Newton's method goes along it.
         if (left > tolerance::reached && left < on_floor)
-            left = refine(arm.chain, goal, arm.length, q, error);
+            left = refine_solution(arm.chain, goal, arm.length, q, error);
         if (left <= tolerance::reached) keep_start(arm, starts, q, distance_from_seed(arm, seed, q));
     }
     settle_starts(arm, goal, seed, starts, nullptr, best);

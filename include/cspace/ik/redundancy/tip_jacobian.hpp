@@ -130,7 +130,7 @@ CSPACE_INLINE void free_direction(const SplitJacobian<V>& split, int size, int k
 }
 // The λ that minimises |Jᵀ λ − g|.
 template <int N, class V>
-CSPACE_INLINE void multipliers(const SplitJacobian<V>& split, int size, const V* g, V* lambda) {
+CSPACE_INLINE void find_multipliers(const SplitJacobian<V>& split, int size, const V* g, V* lambda) {
     const int n = size_or<N>(size), rank = rank_in<N>(split);
     V b[max_joints];
     for (int i = 0; i < n; ++i) b[i] = g[i];

@@ -55,7 +55,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 // closed form is evaluated for several values at once, on lanes.
 
 // a + b − c and the like, entry by entry.
-inline Posed combined(const Posed& A, double a, const Posed& B, double b) {
+inline Posed combine_poses(const Posed& A, double a, const Posed& B, double b) {
     Posed out;
     for (int i = 0; i < 3; ++i)
         for (int j = 0; j < 3; ++j) out.R.m[i][j] = a * A.R.m[i][j] + b * B.R.m[i][j];
@@ -70,14 +70,14 @@ inline MovingGoal moving_goal(bool slides, const GoalAt& goal_at) {
     const Posed zero = goal_at(0.0);
     if (slides) {
         out.still = zero;
-        out.cosine = combined(goal_at(1.0), 1, zero, -1);
-        out.sine = combined(zero, 0, zero, 0);
+        out.cosine = combine_poses(goal_at(1.0), 1, zero, -1);
+        out.sine = combine_poses(zero, 0, zero, 0);
         return out;
     }
     const Posed half = goal_at(pi), quarter = goal_at(0.5 * pi);
-    out.still = combined(zero, 0.5, half, 0.5);
-    out.cosine = combined(zero, 0.5, half, -0.5);
-    out.sine = combined(quarter, 1, out.still, -1);
+    out.still = combine_poses(zero, 0.5, half, 0.5);
+    out.cosine = combine_poses(zero, 0.5, half, -0.5);
+    out.sine = combine_poses(quarter, 1, out.still, -1);
     return out;
 }
 template <class V>
@@ -149,7 +149,7 @@ CSPACE_NOINLINE void branches_at(const Sweep& sweep, V value, Branches<V>& b) {
         for (int i = 0; i < 6; ++i) angles[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
         if (plan.polish && any(b.ok[k])) {
             const Pose<V> goal = goal_at(sweep.in_chain, c, s);
-            b.doubt = b.doubt || (b.ok[k] && !polish(plan.chain, goal, plan.form.length, angles));
+            b.doubt = b.doubt || (b.ok[k] && !polish_solution(plan.chain, goal, plan.form.length, angles));
             for (int i = 0; i < 6; ++i) angles[i] = wrap_once(angles[i]);
         }
         for (int i = 0; i < 6; ++i) b.t[k][i] = angles[i];
@@ -268,7 +268,7 @@ inline double settled_root(const Function& f, double value) {
 template <class Function>
 inline void add_roots(const Redundant& arm, const Sweep& sweep, const Function& f, FoldValues& out) {
     HiddenAngles hidden;
-    isolate(f, 1e-8, hidden);
+    isolate_roots(f, 1e-8, hidden);
     out.exact = out.exact && !hidden.overflow;
     for (int k = 0; k < hidden.count; ++k) {
         hidden.root[k].angle = settled_root(f, hidden.root[k].angle);

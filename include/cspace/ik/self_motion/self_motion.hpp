@@ -24,7 +24,7 @@ inline double kept_of_stride(const Chain& chain, const Posed& goal, double lengt
     if (floor)
         onto_curve(chain, {goal, true, length}, moved, error);
     else
-        refine(chain, goal, length, moved, error, steps_back);
+        refine_solution(chain, goal, length, moved, error, steps_back);
     for (int i = 0; i < chain.n; ++i) along += (moved[i] - q[i]) * direction[i];
     return size_of_error(error) <= most ? along / stride : 0;
 }
@@ -92,7 +92,7 @@ inline bool led_away(const Chain& chain, const Posed& goal, double length, const
     double moved[max_joints];
     for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * trial[i];
     PoseError error;
-    if (refine(chain, goal, length, moved, error, steps_back) > 1e-12) return false;
+    if (refine_solution(chain, goal, length, moved, error, steps_back) > 1e-12) return false;
     double away = 0;
     for (int i = 0; i < chain.n; ++i) {
         trial[i] = moved[i] - q[i];

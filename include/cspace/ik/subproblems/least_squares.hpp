@@ -54,7 +54,7 @@ struct AngleProblem {
     const System& system;
 
     template <class Unknown>
-    double measure(const Unknown* t, Linearised<System>& at) const {
+    double evaluate(const Unknown* t, Linearised<System>& at) const {
         return linearise(system, t, at);
     }
     template <class Unknown>
@@ -93,7 +93,7 @@ struct CurvedAngleProblem : AngleProblem<System> {
 
 // Moves the unknowns to a local minimum of the residual; returns its length there.
 template <class System, class Unknown>
-double refine(const System& system, Unknown* t, int most_steps = 30) {
+double refine_angles(const System& system, Unknown* t, int most_steps = 30) {
     // A slope that is only rounding must not throw an unknown about.
     constexpr double least = tolerance::exact * tolerance::exact;
     Linearised<System> at;
@@ -103,9 +103,9 @@ double refine(const System& system, Unknown* t, int most_steps = 30) {
 }
 // The same where the residual there may be large.
 template <class System, class Unknown>
-double descend(const System& system, Unknown* t) {
+double descend_angles(const System& system, Unknown* t) {
     Linearised<System> at;
-    refine(system, t);
+    refine_angles(system, t);
     return descend_damped(CurvedAngleProblem<System>{{system}}, t, at,
                           NewtonDamping{tolerance::exact, 1e-12, 1e300, 1e-3, 0}, 60);
 }
@@ -117,7 +117,7 @@ bool continues_along(const System& system, const Unknown* t, const double* along
     constexpr double reach = 1e-3;
     Unknown start[System::angles], found[System::angles];
     for (int j = 0; j < System::angles; ++j) found[j] = start[j] = step_angles(t[j], reach * along[j]);
-    if (refine(system, found) > zero) return false;
+    if (refine_angles(system, found) > zero) return false;
     double drift = 0;
     for (int j = 0; j < System::angles; ++j) drift = std::hypot(drift, difference(found[j], start[j]));
     return drift < 0.5 * reach;
@@ -179,7 +179,7 @@ double least_squares(const System& system, Turn<double>* t) {
     const int count = sweep_valleys(system, 6, at);
     double best = std::numeric_limits<double>::infinity();
     for (int i = 0; i < count; ++i) {
-        const double error = descend(system, at[i]);
+        const double error = descend_angles(system, at[i]);
         if (error < best) best = error, t[0] = at[i][0], t[1] = at[i][1];
     }
     return best;

@@ -99,7 +99,7 @@ inline double append(const Sp5Problem& s, const Turn<double>& first, const Turn<
     Turn<double>* theta = r.theta[r.count++];
     theta[0] = first, theta[1] = second.theta, theta[2] = third;
     r.free = r.free || second.free;
-    return refine(Gap{s}, theta, 100);
+    return refine_angles(Gap{s}, theta, 100);
 }
 
 // Divides all lengths by their sum, which is one afterwards.
@@ -116,7 +116,7 @@ inline Sp5 nearest(const Sp5Problem& s, double size) {
     for (int i = 0; i < count; ++i) {
         Sp5 r;
         append(s, at[i][0], at[i][1], r);
-        r.error = size * descend(Gap{s}, r.theta[0]);
+        r.error = size * descend_angles(Gap{s}, r.theta[0]);
         if (i == 0 || r.error < best.error) best = r;
     }
     best.exact = best.error <= tolerance::exact * size;

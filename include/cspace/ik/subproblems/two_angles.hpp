@@ -113,8 +113,9 @@ inline bool continues(const TwoTurnEquations& e, const Turn<double>* t) {
 inline void propose_candidates(const TwoTurnEquations& e, const Turn<double>& u, const Turn<double>& w,
                                TwoTurns& found) {
     Turn<double> t[2] = {u, w};
-    refine(Residual{e}, t);
-    if (refine(Residual{e, {e.weight[0], e.weight[1]}}, t) > tolerance::exact || found.count == 4) return;
+    refine_angles(Residual{e}, t);
+    if (refine_angles(Residual{e, {e.weight[0], e.weight[1]}}, t) > tolerance::exact || found.count == 4)
+        return;
     for (int i = 0; i < found.count; ++i)
         if (chord(t[0], found.u[i]) + chord(t[1], found.w[i]) < tolerance::same_turns) return;
     found.free = found.free || continues(e, t);

@@ -48,7 +48,7 @@ inline Outside meet_limit(const Track& t, Walker& w) {
     const Way& way = t.ways[w.row];
     double low = w.u, high = w.u + w.du, q_high[max_joints], q[max_joints];
     copy_numbers(w.trial, n, q_high);
-    Outside at_low = outside(t, w, w.q), at_high = outside(t, w, q_high), met = at_high;
+    Outside at_low = measure_violation(t, w, w.q), at_high = measure_violation(t, w, q_high), met = at_high;
     double f_low = at_low.by, f_high = at_high.by;
     int kept = 0;
     for (int step = 0; step < 100 && high - low > 1e-15 && f_low < 0; ++step) {
@@ -63,7 +63,7 @@ inline Outside meet_limit(const Track& t, Walker& w) {
             for (int j = 0; j < n; ++j) q[j] += unit_of(*t.path, j) * motion.correction[j];
             if (largest_of(motion.correction, n) < track::small) break;
         }
-        const Outside here = outside(t, w, q);
+        const Outside here = measure_violation(t, w, q);
         if (here.by <= 0) {
             low = u;
             copy_numbers(q, n, w.q);
@@ -143,7 +143,7 @@ inline bool arrive_at_pose(const Track& t, Walker& w) {
 
 // Accepts the trial as the state of the walker; true if the branch has ended.
 inline bool take_step(const Track& t, Walker& w) {
-    const int broken = run_to(t, w, w.trial);
+    const int broken = extend_ranges(t, w, w.trial);
     if (w.starts) {
         copy_numbers(w.trial, t.path->n, w.q);
         if (broken >= 0) finish_branch(t, w, Fate::limit, broken, 0);
@@ -170,7 +170,7 @@ inline bool take_step(const Track& t, Walker& w) {
 }
 
 // After a rejected step: a step estimated from the previous rows, else one half as long.
-inline void think_again(const Track& t, Walker& w) {
+inline void plan_again(const Track& t, Walker& w) {
     if (w.by_rows) {
         w.by_rows = false;
         return;
@@ -180,7 +180,7 @@ inline void think_again(const Track& t, Walker& w) {
 }
 
 // Evaluates the trial of a walker and plans the next evaluation; true if its branch has ended.
-inline bool go_on(const Track& t, Walker& w, const Motion<double>& at) {
+inline bool evaluate_trial(const Track& t, Walker& w, const Motion<double>& at) {
     const std::size_t reached = w.row + !w.starts;
     switch (judge_step(t, w, at)) {
         case Verdict::again:
@@ -193,14 +193,14 @@ inline bool go_on(const Track& t, Walker& w, const Motion<double>& at) {
                 finish_branch(t, w, Fate::singularity, -1, 0);
                 return true;
             }
-            think_again(t, w);
+            plan_again(t, w);
             break;
         case Verdict::taken:
             if (take_step(t, w)) return true;
             copy_numbers(at.slope, t.path->n, w.slope);
             copy_numbers(at.bend, t.path->n, w.bend);
     }
-    if (++w.tries < track::most_tries && plan(t, w)) return false;
+    if (++w.tries < track::most_tries && plan_step(t, w)) return false;
     finish_branch(t, w, Fate::singularity, -1, reached);
     t.fate[w.branch] = t.weakest[w.branch] < track::near_singular ? Fate::singularity : Fate::jump;
     return true;
@@ -238,7 +238,7 @@ void follow_branches(const Track& t) {
         for (int l = 0; l < lanes; ++l) {
             Walker& w = walker[l];
             if (!live[l]) continue;
-            if (go_on(t, w, lane_of(at.motion, t.path->n, l))) {
+            if (evaluate_trial(t, w, lane_of(at.motion, t.path->n, l))) {
                 live[l] = next < t.branches;
                 if (!live[l]) continue;
                 begin_branch(t, next++, w);

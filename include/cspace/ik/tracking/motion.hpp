@@ -74,7 +74,7 @@ CSPACE_INLINE void add_twist(double unit, double per_length, const kinematics::T
 }
 
 template <class V>
-CSPACE_INLINE void clear(Twist<V>& twist) {
+CSPACE_INLINE void clear_twist(Twist<V>& twist) {
     for (V& x : twist.entry) x = fill<V>(0.0);
 }
 
@@ -82,7 +82,7 @@ CSPACE_INLINE void clear(Twist<V>& twist) {
 template <class V>
 CSPACE_INLINE void columns_of(const Path& path, int n, const PlacedJoints<V>& at, Twist<V>* J) {
     const double per_length = 1 / path.length;
-    for (int j = 0; j < n; ++j) clear(J[j]);
+    for (int j = 0; j < n; ++j) clear_twist(J[j]);
     for (int i = 0; i < path.joints; ++i) {
         const model::ChainJoint& joint = path.joint[i];
         const kinematics::Axis<V>& axis = at.axes[i];
@@ -105,7 +105,7 @@ CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& 
     const Vec3<V> v_tip =
         kinematics::axis_rates(view_of(path), at.axes, at.tip.t, speed, {none, none}, at.axes[0].point, rates)
             .v;
-    for (int j = 0; j < n; ++j) clear(J[j]);
+    for (int j = 0; j < n; ++j) clear_twist(J[j]);
     for (int i = 0; i < path.joints; ++i) {
         const model::ChainJoint& joint = path.joint[i];
         add_twist(joint_unit(path, i), per_length,
@@ -116,7 +116,7 @@ CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& 
 
 // By the modified Gram–Schmidt process (Björck 1967).
 template <class V>
-CSPACE_INLINE void factor(int n, const Twist<V>* J, Factors<V>& f) {
+CSPACE_INLINE void factor_columns(int n, const Twist<V>* J, Factors<V>& f) {
     f.wide = n >= 6;
     f.k = f.wide ? 6 : n;
     f.width = f.wide ? n : 6;
@@ -210,14 +210,14 @@ CSPACE_INLINE void measure_coordinates(const Path& path, int n, const Pose<V>& g
     Twist<V> J[max_joints], turning;
     columns_of(path, n, at, J);
     Factors<V> f;
-    factor(n, J, f);
+    factor_columns(n, J, f);
     out.weakest = f.weakest;
     V y[6], unused[6];
     const Twist<V> e = error_of(at.tip, goal, path.length, out.error);
     solve_for(f, e.entry, out.correction, unused);
     solve_for(f, twist.entry, out.slope, y);
     column_rates(path, n, at, out.slope, J);
-    clear(turning);
+    clear_twist(turning);
     for (int j = 0; j < n; ++j)
         for (int r = 0; r < 6; ++r)
             turning.entry[r] = mul_add(-out.slope[j], J[j].entry[r], turning.entry[r]);

@@ -133,7 +133,7 @@ inline double hopeful_step(const Track& t, const Walker& w) {
 }
 
 // Sets du, planned and trial; false if the step would be too short.
-inline bool plan(const Track& t, Walker& w) {
+inline bool plan_step(const Track& t, Walker& w) {
     const double left = 1 - w.u;
     w.corrections = 0;
     w.du = hopeful_step(t, w);
@@ -207,7 +207,7 @@ struct Outside {
     double by;
     int joint;
 };
-inline Outside outside(const Track& t, const Walker& w, const double* q) {
+inline Outside measure_violation(const Track& t, const Walker& w, const double* q) {
     Outside worst = {-1e300, -1};
     for (int j = 0; j < t.path->n; ++j) {
         const double by = max(w.lower[j] - q[j], q[j] - w.upper[j]);
@@ -219,7 +219,7 @@ inline Outside outside(const Track& t, const Walker& w, const double* q) {
 
 // Extends the traversed ranges of the coordinates to q. Returns the coordinate whose limits no multiple of 2π
 // satisfies, or −1.
-inline int run_to(const Track& t, Walker& w, const double* q) {
+inline int extend_ranges(const Track& t, Walker& w, const double* q) {
     int broken = -1;
     for (int j = 0; j < t.path->n; ++j) {
         w.least[j] = min(w.least[j], q[j]);

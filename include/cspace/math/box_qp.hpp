@@ -14,7 +14,7 @@
 
 #include "cspace/math/linear.hpp"
 
-namespace cspace::ik {
+namespace cspace {
 
 struct BoxQp {
     int n;
@@ -70,7 +70,7 @@ inline bool find_step(BoxQp& p, int m) {
 
 // Moves x by the step of the free unknowns, up to the first bound, which becomes active. Returns true if the
 // full step was taken.
-inline bool go(BoxQp& p, int m, double* x) {
+inline bool step_to_bound(BoxQp& p, int m, double* x) {
     double share = 1;
     int first = -1;
     for (int k = 0; k < m; ++k) {
@@ -113,7 +113,7 @@ inline int to_release(const BoxQp& p) {
 
 // x: the start, which is clipped to the box first; the solution on return. Returns the number of steps, or −1
 // if H is not positive definite or contains NaN.
-inline int solve(BoxQp& p, double* x) {
+inline int solve_box_qp(BoxQp& p, double* x) {
     for (int i = 0; i < p.n; ++i) {
         const std::size_t k = std::size_t(i);
         x[k] = std::clamp(x[k], p.lower[k], p.upper[k]);
@@ -126,7 +126,7 @@ inline int solve(BoxQp& p, double* x) {
             if (!p.active[std::size_t(i)]) p.loose[std::size_t(m++)] = i;
         box_qp::find_gradient(p, x);
         if (!box_qp::find_step(p, m)) return -1;
-        if (!box_qp::go(p, m, x)) continue;
+        if (!box_qp::step_to_bound(p, m, x)) continue;
         box_qp::find_gradient(p, x);
         const int released = box_qp::to_release(p);
         if (released < 0) return step + 1;
@@ -135,4 +135,4 @@ inline int solve(BoxQp& p, double* x) {
     return -1;
 }
 
-}  // namespace cspace::ik
+}  // namespace cspace
