@@ -78,16 +78,16 @@ inline Posed forward(const Chain& chain, const double* q) {
 template <class V>
 CSPACE_INLINE V tip_error(const Pose<V>& tip, const Pose<V>& goal, double length, V* error) {
     const Vec3<V> dp = (1 / length) * (goal.t - tip.t), w = spatial::sine_between(tip.R, goal.R);
-    const V entries[6] = {dp.x, dp.y, dp.z, w.x, w.y, w.z};
-    for (int k = 0; k < 6; ++k) error[k] = entries[k];
+    error[0] = dp.x, error[1] = dp.y, error[2] = dp.z;
+    error[3] = w.x, error[4] = w.y, error[5] = w.z;
     return spatial::trace_between(tip.R, goal.R);
 }
 // [per_length · v; ω]
 template <class V>
 CSPACE_INLINE void write_twist(const kinematics::Twist<V>& twist, double per_length, V* out) {
     const Vec3<V> v = per_length * twist.v;
-    const V entries[6] = {v.x, v.y, v.z, twist.w.x, twist.w.y, twist.w.z};
-    for (int k = 0; k < 6; ++k) out[k] = entries[k];
+    out[0] = v.x, out[1] = v.y, out[2] = v.z;
+    out[3] = twist.w.x, out[4] = twist.w.y, out[5] = twist.w.z;
 }
 
 // The same arm from the tip to the base: reversed(chain) at (qn, …, q1) is the inverse of chain at q.

@@ -45,7 +45,9 @@ namespace cspace::ik::inline CSPACE_ISA {
 template <class V>
 CSPACE_INLINE Triples<V> last_parallel(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
-    const TwoAngles<V> shoulder = turn_to_height(g.ca1, g.sa1, g.w.z + g.d2, g.length, p, care);
+    const V k = ((g.w.z + g.d2) - g.ca1 * p.z) * (1 / g.sa1);
+    // s1 px − c1 py = k
+    const TwoAngles<V> shoulder = linear_equation<V>(-p.y, p.x, k, g.length, care, care.unconstrained[0]);
     out.doubt = shoulder.doubt;
     for (int i = 0; i < 2; ++i) {
         const Turn<V>& t1 = shoulder.root[i];

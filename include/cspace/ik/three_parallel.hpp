@@ -38,35 +38,29 @@ inline ThreeParallel make_three_parallel(const DhForm& f) {
             f.a[2], f.a[3],  -f.sa[3] * f.d[4], make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]), f.length};
 }
 
-// Completes one shoulder and one wrist solution by the planar arm: both elbow solutions. p: the wrist behind
-// joint 1.
+// Completes one shoulder and one wrist solution by the planar arm: both elbow solutions.
 template <class V>
-CSPACE_INLINE void finish_in_plane(const ThreeParallel& arm, V angle1, const WristSide<V>& wrist,
-                                   const Vec3<V>& p, V* const out[2], mask_of<V>& ok, mask_of<V>& doubt,
-                                   const Care& care) {
-    const Turn<V>& t234 = wrist.t4;
-    const V x = p.x - arm.a1, y = p.y;
+CSPACE_INLINE void finish_in_plane(const ThreeParallel& arm, const Turn<V>& t234, V x, V y, V* const out[2],
+                                   mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
     const V u = x - (t234.c * arm.x4 - t234.s * arm.y4), v = y - (t234.s * arm.x4 + t234.c * arm.y4);
     const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, arm.length, care, care.unconstrained[1]);
     doubt = doubt || (ok && links.doubt);
     ok = ok && links.ok;
     const V elbow = atan2(links.sin_elbow, links.cos_elbow);
-    const V angle5 = atan2(wrist.t5.s, wrist.t5.c), angle6 = angle_of(wrist.t6);
     for (int j = 0; j < 2; ++j) {
-        out[j][0] = angle1;
         const Turn<V> t3 = {links.cos_elbow, j == 0 ? links.sin_elbow : -links.sin_elbow};
         out[j][1] = angle_of(links.first[j]);
         out[j][2] = j == 0 ? elbow : -elbow;
         out[j][3] = angle_of(t234 - (links.first[j] + t3));
-        out[j][4] = angle5;
-        out[j][5] = angle6;
     }
 }
 
 template <class V>
 CSPACE_INLINE Branches<V> solve(const ThreeParallel& arm, const Pose<V>& goal, const Care& care) {
     Branches<V> out;
-    const TwoAngles<V> shoulder = turn_to_height(arm.ca1, arm.sa1, arm.height, arm.length, goal.t, care);
+    const Vec3<V>& p = goal.t;
+    const V k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
+    const TwoAngles<V> shoulder = linear_equation<V>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
     out.doubt = shoulder.doubt;
     for (int i = 0; i < 2; ++i) {
         const Turn<V>& t1 = shoulder.root[i];
@@ -75,13 +69,19 @@ CSPACE_INLINE Branches<V> solve(const ThreeParallel& arm, const Pose<V>& goal, c
             wrist(arm.last, undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2)),
                   undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 0)), care, care.unconstrained[3]);
         out.doubt = out.doubt || (shoulder.ok && r.doubt);
-        const Vec3<V> p = undo_joint(t1, arm.ca1, arm.sa1, goal.t);
+        const V x = t1.c * p.x + t1.s * p.y - arm.a1;
+        const V y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
         for (int j = 0; j < 2; ++j) {
             const int n = 4 * i + 2 * j;
             V* const rows[2] = {out.t[n], out.t[n + 1]};
             mask_of<V> ok = shoulder.ok && r.ok;
-            const WristSide<V> side = {r.t4[j], r.t5[j], r.t6[j]};
-            finish_in_plane(arm, angle1, side, p, rows, ok, out.doubt, care);
+            finish_in_plane(arm, r.t4[j], x, y, rows, ok, out.doubt, care);
+            const V angle5 = atan2(r.t5[j].s, r.t5[j].c), angle6 = angle_of(r.t6[j]);
+            for (V* row : rows) {
+                row[0] = angle1;
+                row[4] = angle5;
+                row[5] = angle6;
+            }
             out.ok[n] = out.ok[n + 1] = ok;
         }
     }
@@ -91,7 +91,10 @@ CSPACE_INLINE Branches<V> solve(const ThreeParallel& arm, const Pose<V>& goal, c
 // One goal: the lanes are (shoulder, wrist) = (0, 0), (0, 1), (1, 0), (1, 1); t[0] and t[1] differ in the
 // elbow.
 CSPACE_INLINE Abreast solve_abreast(const ThreeParallel& arm, const Posed& goal, const Care& care) {
-    const TwoAngles<double> shoulder = turn_to_height(arm.ca1, arm.sa1, arm.height, arm.length, goal.t, care);
+    const Vec3d& p = goal.t;
+    const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
+    const TwoAngles<double> shoulder =
+        linear_equation<double>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
     const Turn<double> each[4] = {shoulder.root[0], shoulder.root[0], shoulder.root[1], shoulder.root[1]};
     const Turn<Four> t1 = side_by_side(each);
     const Mat3<Four> R = fill33<Four>(goal.R);
@@ -101,12 +104,18 @@ CSPACE_INLINE Abreast solve_abreast(const ThreeParallel& arm, const Posed& goal,
     set_lane(side, 1, -1.0);
     set_lane(side, 3, -1.0);
     const WristSide<Four> r = wrist_side(arm.last, view, side * view.s5, care.unconstrained[3]);
-    const Vec3<Four> p = undo_joint(t1, arm.ca1, arm.sa1, fill3<Four>(goal.t));
+    const Four x = t1.c * p.x + t1.s * p.y - arm.a1, y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
     Abreast out;
     const Mask<4> reached = shoulder.ok ? view.ok : fill<Four>(0.0) > 1.0;
     Mask<4> ok = reached, doubt = reached && view.doubt;
     Four* const rows[2] = {out.t[0], out.t[1]};
-    finish_in_plane(arm, angle_of(t1), r, p, rows, ok, doubt, care);
+    finish_in_plane(arm, r.t4, x, y, rows, ok, doubt, care);
+    const Four angle1 = angle_of(t1), angle5 = atan2(r.t5.s, r.t5.c), angle6 = angle_of(r.t6);
+    for (Four* row : rows) {
+        row[0] = angle1;
+        row[4] = angle5;
+        row[5] = angle6;
+    }
     out.ok[0] = out.ok[1] = ok;
     out.doubt = shoulder.doubt || any(doubt);
     return out;
@@ -151,14 +160,18 @@ inline void add_ends(FreeSums& out, const ThreeParallel& arm, double x, double y
 inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, double unconstrained,
                           const Care& care) {
     FreeSums out;
-    const TwoAngles<double> shoulder = turn_to_height(arm.ca1, arm.sa1, arm.height, arm.length, goal.t, care);
+    const Vec3d& p = goal.t;
+    const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
+    const TwoAngles<double> shoulder =
+        linear_equation<double>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
     const Turn<double>& t1 = shoulder.root[i];
     const bool is_same = i == 1 && std::fabs(angle_of(t1 - shoulder.root[0])) < 1e-4;
     const Vec3d z = undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2));
     if (!shoulder.ok || is_same || z.x * z.x + z.y * z.y > care.free * care.free) return out;
-    const Vec3d p = undo_joint(t1, arm.ca1, arm.sa1, goal.t);
+    const double x = t1.c * p.x + t1.s * p.y - arm.a1;
+    const double y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
     for (const double reach : {arm.l2 + arm.l3, arm.l2 - arm.l3})
-        add_ends(out, arm, p.x - arm.a1, p.y, reach, unconstrained, care);
+        add_ends(out, arm, x, y, reach, unconstrained, care);
     return out;
 }
 

@@ -100,15 +100,6 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
     return out;
 }
 
-// The turn t1 that brings p to a height over the plane of joint 1 = Rz(t1) Tx(a1) Rx(α1):
-// (s1 px − c1 py) sin α1 + pz cos α1 = height.
-template <class V>
-CSPACE_INLINE TwoAngles<V> turn_to_height(double ca1, double sa1, double height, double length,
-                                          const Vec3<V>& p, const Care& care) {
-    const V k = (height - ca1 * p.z) * (1 / sa1);
-    return linear_equation<V>(-p.y, p.x, k, length, care, care.unconstrained[0]);
-}
-
 // A planar arm of links l1, l2 reaching (x, y): γ is the angle at the elbow, ± for its two sides.
 template <class V>
 struct TwoLink {

@@ -78,7 +78,7 @@ struct CurvedAngleProblem : AngleProblem<System> {
         double normal[n][n];
         for (int j = 0; j < n; ++j) {
             Unknown aside[n];
-            double sides[2][n];
+            double sides[2][n] = {};
             for (int side = 0; side < 2; ++side) {
                 Linearised<System> there;
                 for (int i = 0; i < n; ++i) aside[i] = i == j ? step_angles(t[i], side ? h : -h) : t[i];

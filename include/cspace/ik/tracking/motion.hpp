@@ -101,7 +101,7 @@ CSPACE_INLINE void column_rates(const Path& path, int n, const PlacedJoints<V>& 
     const double per_length = 1 / path.length;
     kinematics::Axis<V> rates[max_path];
     V speed[max_joints];
-    for (int j = 0; j < n; ++j) speed[j] = unit_of(path, j) * slope[j];
+    for (int j = 0; j < n; ++j) speed[j] = path.slides[j] ? path.length * slope[j] : slope[j];
     const Vec3<V> v_tip =
         kinematics::axis_rates(view_of(path), at.axes, at.tip.t, speed, {none, none}, at.axes[0].point, rates)
             .v;
