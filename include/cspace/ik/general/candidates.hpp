@@ -1,6 +1,7 @@
 // Configurations near solutions become solutions: refined, distinguished, with their partners near folds.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 
 #include "cspace/ik/closed_form.hpp"
@@ -42,7 +43,7 @@ inline void put_lane(Candidates& out, const V* q, int k, bool close) {
 inline void polish_candidates(const GeneralPlan& plan, const Posed& goal, int first, Candidates& all) {
     for_each_pack(all.count - first, [&](auto pack, int i) {
         using V = decltype(pack);
-        const int row = first + i, lanes = min(all.count - row, Lanes<V>::count);
+        const int row = first + i, lanes = std::min(all.count - row, Lanes<V>::count);
         const Pose<V> goals = fill_pose<V>(goal);
         V q[6], step = fill<V>(1.0);
         load_rows(&all.q[row][0], 6, lanes, 6, q);

@@ -1,6 +1,7 @@
 // The hidden angles at which the determinant vanishes: simple roots one by one, close ones as clusters.
 #pragma once
 
+#include <algorithm>
 #include <initializer_list>
 #include <type_traits>
 
@@ -124,7 +125,7 @@ inline void close_roots(const Function& f, const Arc& arc, const Variations& sig
 inline void find_simple_roots(const Pieces& simple, double last_step, HiddenAngles& out) {
     for_each_pack(simple.count, [&](auto pack, int first) {
         using V = decltype(pack);
-        const int lanes = min(simple.count - first, Lanes<V>::count);
+        const int lanes = std::min(simple.count - first, Lanes<V>::count);
         V b[padded];
         load_rows(simple.piece[first].arc.b, sizeof(Piece) / sizeof(double), lanes, degree + 1, b);
         const V u = only_roots<degree>(b, last_step);

@@ -43,7 +43,7 @@ inline void follow_roots(const Loop& loop, const Elimination& e, const double* a
     const bool doubled = !(e.a4_rank > 1e-6);
     for_each_pack(count, [&](auto pack, int first) {
         using V = decltype(pack);
-        const int lanes = min(count - first, Lanes<V>::count);
+        const int lanes = std::min(count - first, Lanes<V>::count);
         V q[6], second[6];
         const Turn<V> a0 = turn_by(load<V>(angle + first, lanes));
         ReducedEquations<V> reduced;
