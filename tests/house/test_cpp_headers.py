@@ -38,6 +38,21 @@ def test_headers_open_the_namespace_of_their_room(path):
     )
 
 
+def includes(path):
+    """The headers of the project that a header includes itself."""
+    return [
+        tree.ROOT / "include" / target.strip('"') for _, target in tree.includes(path) if target[0] == '"'
+    ]
+
+
 def test_the_umbrella_header_includes_every_header():
-    included = [target for _, target in tree.includes(UMBRELLA)]
-    assert included == [f'"cspace/{path.relative_to(FOLDER).as_posix()}"' for path in HEADERS]
+    listed, reached = includes(UMBRELLA), set()
+    waiting = list(listed)
+    while waiting:
+        path = waiting.pop()
+        if path not in reached:
+            reached.add(path)
+            waiting += includes(path)
+    assert reached == set(HEADERS)
+    included = {target for path in HEADERS for target in includes(path)}
+    assert listed == [path for path in HEADERS if path not in included], "list what no other header includes"
