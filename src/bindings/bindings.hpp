@@ -1,37 +1,23 @@
+// The parts of the compiled half, in the order in which they are filled: bind_<part> stands in <part>.cpp.
 #pragma once
+
 #include <nanobind/nanobind.h>
 
-void bind_navigation_cells(nanobind::module_& m);
-void bind_navigation_cars(nanobind::module_& m);
-void bind_navigation_coverage(nanobind::module_& m);
-void bind_navigation_fields_brushfire(nanobind::module_& m);
-void bind_navigation_fields_potential(nanobind::module_& m);
-void bind_navigation_fields_harmonic(nanobind::module_& m);
-void bind_navigation_fields_function(nanobind::module_& m);
-void bind_navigation_fields_grid(nanobind::module_& m);
-void bind_navigation_bugs(nanobind::module_& m);
-void bind_navigation_curves(nanobind::module_& m);
-void bind_navigation_curves_fast(nanobind::module_& m);
-void bind_navigation_following(nanobind::module_& m);
-void bind_math(nanobind::module_& m);
-void bind_kinematics(nanobind::module_& m);
-void bind_robot(nanobind::module_& m);
-void bind_spatial_rotations(nanobind::module_& m);
-void bind_ik_subproblems(nanobind::module_& m);
-void bind_ik(nanobind::module_& m);
-void bind_ik_solver(nanobind::module_& m);
-void bind_ik_goals(nanobind::module_& m);
-void bind_ik_description(nanobind::module_& m);
-void bind_ik_numeric(nanobind::module_& m);
-void bind_ik_redundancy(nanobind::module_& m);
-void bind_ik_arm_angle(nanobind::module_& m);
-void bind_ik_tasks(nanobind::module_& m);
-void bind_ik_tracking(nanobind::module_& m);
-void bind_navigation_route(nanobind::module_& m);
-void bind_navigation_grid(nanobind::module_& m);
-void bind_navigation_any_angle(nanobind::module_& m);
-void bind_navigation_polygons(nanobind::module_& m);
-void bind_navigation_voronoi(nanobind::module_& m);
-void bind_navigation_sampling(nanobind::module_& m);
-void bind_maps_polygon_world(nanobind::module_& m);
-void bind_navigation_grid_replanning(nanobind::module_& m);
+#define CSPACE_BINDINGS(bind)                                                                              \
+    bind(math) bind(navigation_curves) bind(navigation_curves_fast) bind(kinematics) bind(kinematics_rows) \
+        bind(spatial_rotations) bind(ik_subproblems) bind(ik_solver) bind(robot) bind(ik_result) bind(ik)  \
+            bind(ik_self_motion) bind(ik_goals) bind(ik_numeric) bind(ik_redundancy) bind(ik_arm_angle)    \
+                bind(ik_tasks) bind(ik_tracking) bind(ik_description) bind(navigation_route)               \
+                    bind(navigation_grid) bind(navigation_any_angle) bind(navigation_coverage)             \
+                        bind(navigation_cars) bind(navigation_following) bind(navigation_fields_brushfire) \
+                            bind(navigation_polygons) bind(navigation_cells) bind(navigation_bugs)         \
+                                bind(navigation_fields_grid) bind(navigation_fields_potential)             \
+                                    bind(navigation_fields_harmonic) bind(navigation_fields_function)      \
+                                        bind(navigation_voronoi) bind(navigation_sampling)                 \
+                                            bind(maps_polygon_world) bind(navigation_grid_replanning)
+
+#define CSPACE_DECLARE_BINDING(part) void bind_##part(nanobind::module_& m);
+CSPACE_BINDINGS(CSPACE_DECLARE_BINDING)
+
+// Adds a raw type to the module, for good.
+PyTypeObject* add_type(nanobind::module_& m, PyType_Spec& spec, PyTypeObject* base = nullptr);

@@ -1,14 +1,19 @@
 // solver.solve(T): the compiled entry. One 4×4 goal without keywords is answered here; everything else goes
 // to cspace.ik.solve, which checks it and comes back with plain arrays.
+#include "ik.hpp"
+
+#include <nanobind/stl/tuple.h>
+
 #include <algorithm>
-#include <cstring>
 #include <limits>
+#include <tuple>
 
 #include "bindings.hpp"
-#include "ik_shared.hpp"
 #include "kernels/ik_closed_form.hpp"
 #include "library/ik_arm.hpp"
 
+namespace nb = nanobind;
+using namespace nb::literals;
 using namespace cspace;
 
 const char solve_doc[] =
@@ -44,36 +49,11 @@ is not a pose, and NoClosedFormError for mimic joints, a floating base or more t
 
 namespace {
 
-// The solutions as Python sees them; null with an error set.
-PyObject* to_python(PyObject* solver, const double* goal, int dof, const ik::Solutions& found) {
-    SolutionsObject* made = new_solutions(solver, goal, found.count, dof, found.status);
-    if (!made) return nullptr;
-    made->complete = found.complete;
-    for (int k = 0; k < found.count; ++k) {
-        std::memcpy(made->q + k * dof, found.q[k], dof * sizeof(double));
-        branches_of(made)[k] = found.branch[k];
-        self_motions_of(made)[k] = found.self_motion[k];
-    }
-    return reinterpret_cast<PyObject*>(made);
-}
+constexpr int most_threads = 1024;
+
 PyObject* answer_slowly(PyObject* solver, const ik::BuiltArm& arm, const double* goal,
                         const double* unconstrained) {
-    return to_python(solver, goal, arm.dof, ik::solve_goal(arm, goal, unconstrained));
-}
-
-// The 16 numbers of a float64 4×4 array, in `copy` if they are not contiguous; null if it is something else.
-const double* goal_in_place(PyObject* value, double* copy) {
-    if (!PyArray_CheckExact(value)) return nullptr;
-    auto* array = reinterpret_cast<PyArrayObject*>(value);
-    if (PyArray_TYPE(array) != NPY_DOUBLE || PyArray_NDIM(array) != 2 || PyArray_DIM(array, 0) != 4 ||
-        PyArray_DIM(array, 1) != 4 || !PyArray_ISBEHAVED_RO(array))
-        return nullptr;
-    if (PyArray_IS_C_CONTIGUOUS(array)) return static_cast<const double*>(PyArray_DATA(array));
-    const npy_intp rows = PyArray_STRIDE(array, 0), columns = PyArray_STRIDE(array, 1);
-    for (int i = 0; i < 4; ++i)
-        for (int j = 0; j < 4; ++j)
-            copy[4 * i + j] = *reinterpret_cast<const double*>(PyArray_BYTES(array) + i * rows + j * columns);
-    return copy;
+    return new_solutions(solver, goal, rows_of(ik::solve_goal(arm, goal, unconstrained)));
 }
 
 // Null without an error for an invalid goal.
@@ -84,12 +64,8 @@ PyObject* answer_single(PyObject* solver, const ik::BuiltArm& arm, const double*
     const ik::FastPath quick = kernels::ik_one(*arm.arm, goal, q, branch, &count);
     if (quick == ik::FastPath::refused) return nullptr;
     if (quick == ik::FastPath::doubtful) return answer_slowly(solver, arm, goal, nullptr);
-    SolutionsObject* made =
-        new_solutions(solver, goal, count, 6, count ? ik::Status::exact : ik::Status::unreachable);
-    if (!made) return nullptr;
-    std::memcpy(made->q, q, sizeof(double) * std::size_t(6 * count));
-    std::memcpy(branches_of(made), branch, std::size_t(count));
-    return reinterpret_cast<PyObject*>(made);
+    const ik::Status status = count ? ik::Status::exact : ik::Status::unreachable;
+    return new_solutions(solver, goal, {count, q, 6, branch, nullptr, status});
 }
 
 // The answer where near= or locked= is the one keyword of one goal; null without an error for what is not
@@ -100,19 +76,20 @@ PyObject* answer_keyword(PyObject* solver, PyObject* const* args, Py_ssize_t nar
     const bool near = PyUnicode_CompareWithASCIIString(name, "near") == 0;
     if (!near && PyUnicode_CompareWithASCIIString(name, "locked") != 0) return nullptr;
     double copy[16];
-    const double* goal = goal_in_place(args[0], copy);
+    const double* goal = read_in_place(args[0], 4, 4, copy);
     if (!goal) return nullptr;
-    return near ? ik_near(solver, goal, args[1]) : ik_locked(solver, goal, args[1]);
+    return near ? solve_near(solver, goal, args[1]) : solve_locked(solver, goal, args[1]);
 }
 
 }  // namespace
 
 PyObject* solver_solve(PyObject* self, const char* method, PyObject* const* args, Py_ssize_t nargs,
                        PyObject* kwnames) {
-    ik::Solver* solver = reinterpret_cast<SolverObject*>(self)->solver.get();
-    const ik::BuiltArm* arm = solver ? &solver->arm() : nullptr;
+    ik::Solver* core = solver_object(self)->core.get();
+    const ik::BuiltArm* arm = core ? &core->arm() : nullptr;
     double copy[16];
-    const double* goal = arm && arm->room && nargs == 1 && !kwnames ? goal_in_place(args[0], copy) : nullptr;
+    const double* goal =
+        arm && arm->room && nargs == 1 && !kwnames ? read_in_place(args[0], 4, 4, copy) : nullptr;
     PyObject* answer = goal ? answer_single(self, *arm, goal) : nullptr;
     if (!answer && arm && !PyErr_Occurred()) answer = answer_keyword(self, args, nargs, kwnames);
     if (answer || PyErr_Occurred()) return answer;
@@ -121,151 +98,109 @@ PyObject* solver_solve(PyObject* self, const char* method, PyObject* const* args
 
 namespace {
 
-// _ik_room(solver) → rows that a goal's solutions may need; 0 where some joints are redundant
-PyObject* room(PyObject*, PyObject* solver) {
-    const ik::BuiltArm* arm = arm_of(solver);
-    if (arm) return PyLong_FromLong(arm->room);
-    PyErr_SetString(PyExc_TypeError, "_ik_room takes a solver");
-    return nullptr;
+void require(bool fits) {
+    if (!fits) throw nb::type_error("the arm of the solver and the sizes of the arrays do not fit together");
+}
+const ik::BuiltArm& arm_for_points(const SolverArgument& solver, bool sizes_match) {
+    if (!solver.arm().has_few_joints || !sizes_match)
+        throw nb::type_error("points (3,) take an arm of up to three joints");
+    return solver.arm();
 }
 
-// _ik_near_singular(solver, goal (4, 4), unconstrained (n,)) → solutions
-PyObject* careful(PyObject*, PyObject* args) {
-    PyObject *solver, *goal, *unconstrained;
-    if (!PyArg_ParseTuple(args, "OOO", &solver, &goal, &unconstrained)) return nullptr;
-    const ik::BuiltArm* arm = arm_of(solver);
-    if (!arm || !arm->room || !is_doubles(goal, 16) || !is_doubles(unconstrained, arm->dof)) {
-        PyErr_SetString(PyExc_TypeError, "_ik_near_singular takes a solver and contiguous float64 arrays");
-        return nullptr;
-    }
-    return answer_slowly(solver, *arm, data_of(goal), data_of(unconstrained));
-}
-
-// _ik_nearest_pose(solver, goal (4, 4), stiffness) → (q, position error [m], rotation error [rad])
-PyObject* miss(PyObject*, PyObject* args) {
-    PyObject *solver, *goal;
-    double stiffness;
-    if (!PyArg_ParseTuple(args, "OOd", &solver, &goal, &stiffness)) return nullptr;
-    const ik::BuiltArm* arm = arm_of(solver);
-    if (!arm || !is_doubles(goal, 16)) {
-        PyErr_SetString(PyExc_TypeError, "_ik_nearest_pose takes a solver and a contiguous float64 goal");
-        return nullptr;
-    }
-    const ik::NearestMiss best = ik::nearest_to_goal(*arm, data_of(goal), stiffness);
-    npy_intp n = arm->dof;
-    PyObject* q = PyArray_SimpleNew(1, &n, NPY_DOUBLE);
-    if (!q) return nullptr;
-    std::memcpy(data_of(q), best.q, sizeof(double) * std::size_t(n));
-    return Py_BuildValue("Ndd", q, best.position, best.rotation);
-}
-
-// _ik_exceeds_reach(solver, goal (4, 4)) → whether the lengths and directions of its axes rule the goal out
-PyObject* beyond(PyObject*, PyObject* args) {
-    PyObject *solver, *goal;
-    if (!PyArg_ParseTuple(args, "OO", &solver, &goal)) return nullptr;
-    const ik::BuiltArm* arm = arm_of(solver);
-    if (!arm || !is_doubles(goal, 16)) {
-        PyErr_SetString(PyExc_TypeError, "_ik_exceeds_reach takes a solver and a contiguous float64 goal");
-        return nullptr;
-    }
-    return PyBool_FromLong(solver_of(solver)->exceeds_reach(data_of(goal)));
-}
-
-// The arm and the goal of a call about a position; null with an error set.
-const ik::BuiltArm* position_arm(PyObject* args, const char* function, PyObject*& solver, Vec3d& p) {
-    PyObject* goal;
-    if (!PyArg_ParseTuple(args, "OO", &solver, &goal)) return nullptr;
-    const ik::BuiltArm* arm = arm_of(solver);
-    if (!arm || !arm->has_few_joints || !is_doubles(goal, 3)) {
-        PyErr_Format(PyExc_TypeError, "%s takes an arm of up to three joints and a float64 point (3,)",
-                     function);
-        return nullptr;
-    }
-    const double* x = data_of(goal);
-    p = {x[0], x[1], x[2]};
-    return arm;
-}
-
-// _ik_position(solver, p (3,)) → solutions
-PyObject* position(PyObject*, PyObject* args) {
-    PyObject* solver;
-    Vec3d p;
-    const ik::BuiltArm* arm = position_arm(args, "_ik_position", solver, p);
-    if (!arm) return nullptr;
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
-    const double goal[16] = {none, none, none, p.x, none, none, none, p.y,
-                             none, none, none, p.z, none, none, none, none};
-    return to_python(solver, goal, arm->dof, ik::solve_point(*arm, p));
-}
-
-// _ik_nearest_position(solver, p (3,)) → (q that comes nearest (n,), what is missing there [m])
-PyObject* position_miss(PyObject*, PyObject* args) {
-    PyObject* solver;
-    Vec3d p;
-    const ik::BuiltArm* arm = position_arm(args, "_ik_nearest_position", solver, p);
-    if (!arm) return nullptr;
-    const ik::NearestMiss best = ik::nearest_to_point(*arm, p);
-    npy_intp n = arm->dof;
-    PyObject* q = PyArray_SimpleNew(1, &n, NPY_DOUBLE);
-    if (!q) return nullptr;
-    std::copy(best.q, best.q + n, data_of(q));
-    return Py_BuildValue("Nd", q, best.position);
-}
-
-// _ik_single(solver, goal (4, 4)) → solutions, or None for an invalid goal
-PyObject* single(PyObject*, PyObject* args) {
-    PyObject *solver, *goal;
-    if (!PyArg_ParseTuple(args, "OO", &solver, &goal)) return nullptr;
+nb::object solve_single(SolverArgument solver, nb::handle goal) {
     double copy[16];
-    const ik::BuiltArm* arm = arm_of(solver);
-    const double* T = goal_in_place(goal, copy);
-    if (!arm || !arm->room || !T) {
-        PyErr_SetString(PyExc_TypeError, "_ik_single takes a solver and a float64 (4, 4) goal");
-        return nullptr;
-    }
-    PyObject* answer = answer_single(solver, *arm, T);
-    if (answer || PyErr_Occurred()) return answer;
-    Py_RETURN_NONE;
+    const double* T = read_in_place(goal.ptr(), 4, 4, copy);
+    require(solver.arm().room && T);
+    PyObject* answer = answer_single(solver.object, solver.arm(), T);
+    return answer || PyErr_Occurred() ? solutions_from(answer) : nb::none();
 }
 
-// _ik_geometry(solver) → what the classification saw, for cspace.ik to put into words.
-PyObject* geometry(PyObject*, PyObject* solver) {
-    const ik::BuiltArm* arm = arm_of(solver);
-    if (!arm) Py_RETURN_NONE;
-    const ik::ArmGeometry seen = ik::geometry_of(*arm);
-    return Py_BuildValue("{s:i,s:O,s:i,s:i,s:O,s:O,s:d,s:d}", "family", seen.family, "general",
-                         seen.is_general ? Py_True : Py_False, "virtual_joints", seen.virtual_joints,
-                         "first_three", seen.first_three, "reversed", seen.reversed ? Py_True : Py_False,
-                         "polish", seen.polish ? Py_True : Py_False, "deviation", seen.deviation, "length",
-                         seen.length);
+nb::object solve_near_singular(SolverArgument solver, const ConstDoubles& goal,
+                               const ConstDoubles& unconstrained) {
+    const ik::BuiltArm& arm = solver.arm();
+    require(arm.room && goal.size == 16 && unconstrained.size == arm.dof);
+    return solutions_from(answer_slowly(solver.object, arm, goal.data, unconstrained.data));
 }
 
-PyMethodDef functions[] = {
-    {"_ik_build", ik_build, METH_VARARGS, "Reads the arm of a new solver."},
-    {"_ik_room", room, METH_O, "Rows that the solutions of a goal may need; 0 for a redundant arm."},
-    {"_ik_near_singular", careful, METH_VARARGS,
-     "Solves one goal by the careful path, free joints as given."},
-    {"_ik_exceeds_reach", beyond, METH_VARARGS, "Whether the axes of an arm alone rule a goal out."},
-    {"_ik_nearest_pose", miss, METH_VARARGS, "The configuration that comes nearest to a goal out of reach."},
-    {"_ik_follow", ik_follow, METH_VARARGS, "The self-motion through a configuration, as a curve."},
-    {"_ik_onto", ik_onto, METH_VARARGS, "Configurations brought onto the self-motion through another one."},
-    {"_ik_direction", ik_direction, METH_VARARGS,
-     "The direction of the self-motion through a configuration."},
-    {"_ik_position", position, METH_VARARGS, "Solves a position goal of an arm of up to three joints."},
-    {"_ik_nearest_position", position_miss, METH_VARARGS,
-     "The configuration that comes nearest to a position."},
-    {"_ik_positions", ik_positions, METH_VARARGS, "Solves many position goals."},
-    {"_ik_make", ik_make, METH_VARARGS, "A result from its parts."},
-    {"_ik_single", single, METH_VARARGS, "Solves one goal."},
-    {"_ik_many", ik_many, METH_VARARGS, "Solves many goals."},
-    {"_ik_results", ik_results, METH_O, "Sets the class that results are made of."},
-    {"_ik_geometry", geometry, METH_O, "What the classification of an arm saw."},
-    {nullptr, nullptr, 0, nullptr}};
+std::tuple<Doubles, double, double> find_nearest_pose(SolverArgument solver, const ConstDoubles& goal,
+                                                      double stiffness) {
+    require(goal.size == 16);
+    const ik::NearestMiss best = ik::nearest_to_goal(solver.arm(), goal.data, stiffness);
+    return {Doubles({solver.arm().dof}, best.q), best.position, best.rotation};
+}
+
+bool exceeds_reach(SolverArgument solver, const ConstDoubles& goal) {
+    require(goal.size == 16);
+    return solver.core().exceeds_reach(goal.data);
+}
+
+nb::object solve_position(SolverArgument solver, const ConstDoubles& p) {
+    const ik::BuiltArm& arm = arm_for_points(solver, p.size == 3);
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    const double goal[16] = {none, none, none, p.data[0], none, none, none, p.data[1],
+                             none, none, none, p.data[2], none, none, none, none};
+    const ik::Solutions found = ik::solve_point(arm, {p.data[0], p.data[1], p.data[2]});
+    return solutions_from(new_solutions(solver.object, goal, rows_of(found)));
+}
+
+std::tuple<Doubles, double> find_nearest_position(SolverArgument solver, const ConstDoubles& p) {
+    const ik::BuiltArm& arm = arm_for_points(solver, p.size == 3);
+    const ik::NearestMiss best = ik::nearest_to_point(arm, {p.data[0], p.data[1], p.data[2]});
+    return {Doubles({arm.dof}, best.q), best.position};
+}
+
+// What the classification saw, for cspace.ik to put into words; None for what is no solver.
+nb::object describe_geometry(nb::handle object) {
+    SolverArgument solver;
+    if (!solver.read(object.ptr())) return nb::none();
+    const ik::ArmGeometry seen = ik::geometry_of(solver.arm());
+    nb::dict out;
+    out["family"] = seen.family;
+    out["general"] = seen.is_general;
+    out["virtual_joints"] = seen.virtual_joints;
+    out["first_three"] = seen.first_three;
+    out["reversed"] = seen.reversed;
+    out["polish"] = seen.polish;
+    out["deviation"] = seen.deviation;
+    out["length"] = seen.length;
+    return out;
+}
+
+// Goals (n, 4, 4) or points (n, 3) into q (n, k_max, dof), count (n,) and status (n,). Returns the index of
+// the first goal refused, or n.
+template <int numbers, auto solve>
+std::size_t solve_many(SolverArgument solver, const ConstDoubles& goals, const Doubles& q,
+                       const Plain<std::int64_t>& count, const Plain<std::uint8_t>& status, int threads) {
+    const ik::BuiltArm& arm = numbers == 3 ? arm_for_points(solver, true) : solver.arm();
+    const npy_intp n = count.size;
+    require(arm.room && goals.size == numbers * n && q.size == n * arm.room * arm.dof && status.size == n);
+    const nb::gil_scoped_release release;
+    return solve(arm, {goals.data, std::size_t(n), q.data, count.data, status.data,
+                       std::clamp(threads, 1, most_threads)});
+}
 
 }  // namespace
 
-void bind_ik(nanobind::module_& m) {
-    if (ik_add_result_type(m.ptr()) < 0 || PyModule_AddFunctions(m.ptr(), functions) < 0)
-        throw nanobind::python_error();
+void bind_ik(nb::module_& m) {
     m.attr("AXIS_RELATION") = tolerance::axis_relation;
+    m.def(
+        "_ik_room", [](SolverArgument solver) { return solver.arm().room; }, "solver"_a,
+        "Rows that the solutions of a goal may need; 0 for a redundant arm.");
+    m.def("_ik_single", solve_single, "solver"_a, "goal"_a,
+          "Every solution of one goal; None for one that is not a pose.");
+    m.def("_ik_near_singular", solve_near_singular, "solver"_a, "goal"_a, "unconstrained"_a,
+          "Solves one goal by the slow path, unconstrained joints as given.");
+    m.def("_ik_nearest_pose", find_nearest_pose, "solver"_a, "goal"_a, "stiffness"_a,
+          "The configuration that comes nearest to a goal out of reach, and its errors [m], [rad].");
+    m.def("_ik_exceeds_reach", exceeds_reach, "solver"_a, "goal"_a,
+          "Whether the lengths and directions of the axes rule a goal out.");
+    m.def("_ik_position", solve_position, "solver"_a, "p"_a,
+          "Solves a position goal of an arm of up to three joints.");
+    m.def("_ik_nearest_position", find_nearest_position, "solver"_a, "p"_a,
+          "The configuration that comes nearest to a position, and its error [m].");
+    m.def("_ik_many", solve_many<16, ik::solve_goals>, "solver"_a, "goals"_a, "q"_a, "count"_a, "status"_a,
+          "threads"_a, "Solves many goals; returns the index of the first that is not a pose.");
+    m.def("_ik_positions", solve_many<3, ik::solve_points>, "solver"_a, "points"_a, "q"_a, "count"_a,
+          "status"_a, "threads"_a, "Solves many position goals, likewise.");
+    m.def("_ik_geometry", describe_geometry, "solver"_a, "What the classification of an arm saw.");
 }

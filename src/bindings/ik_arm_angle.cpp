@@ -3,7 +3,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "ik_chains.hpp"
+#include "ik.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -12,11 +12,10 @@ using namespace cspace;
 namespace {
 
 using ik::SwivelSolver;
-using Seven = Array<const double, nb::shape<7, 3>>;
 
-void make_solver(SwivelSolver* at, Seven axes, Seven points, Goal T_zero) {
-    const bool slides[7] = {};
-    new (at) SwivelSolver(chain_from(7, axes.data(), points.data(), slides, T_zero.data()));
+void make_solver(SwivelSolver* at, SolverArgument solver) {
+    if (solver.core().chain().n != 7) throw nb::value_error("a swivel needs seven joints");
+    new (at) SwivelSolver(solver.core().chain());
 }
 
 void require_swivel(const SwivelSolver& arm, bool sizes_match) {
@@ -41,8 +40,7 @@ void swivels(const SwivelSolver& arm, Array<const double, nb::shape<-1, 7>> q,
 
 void bind_ik_arm_angle(nb::module_& m) {
     nb::class_<SwivelSolver>(m, "SwivelSolver", "Arms with two spherical joints and an elbow between them.")
-        .def("__init__", &make_solver, "axes"_a, "points"_a, "T_zero"_a,
-             "From the screws of seven revolute joints.")
+        .def("__init__", &make_solver, "solver"_a, "Of an arm of seven revolute joints.")
         .def_prop_ro("serves", &SwivelSolver::serves, "Whether axes 1, 2, 3 and 5, 6, 7 meet.")
         .def("solve", &solve_rows, "goals"_a, "swivels"_a, "q"_a, "Every solution at given swivels.")
         .def("swivels", &swivels, "q"_a, "out"_a, "The swivel of configurations.");

@@ -5,7 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "bindings.hpp"
-#include "ik_shared.hpp"
+#include "ik.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -35,32 +35,27 @@ nb::object to_python(const Value& value) {
     }
 }
 
-nb::object numbers(nb::handle solver) {
-    const ik::BuiltArm* arm = arm_of(solver.ptr());
-    if (!arm || !arm->room) throw nb::type_error("_ik_numbers takes a solver");
-    const auto [kind, plan] = ik::plan_numbers(*arm);
+nb::object describe_numbers(SolverArgument solver) {
+    if (!solver.arm().room) throw nb::type_error("_ik_numbers takes a solver without redundant joints");
+    const auto [kind, plan] = ik::plan_numbers(solver.arm());
     return nb::make_tuple(kind, to_python(plan));
 }
 
-nb::object outline(nb::handle solver) {
-    const ik::BuiltArm* arm = arm_of(solver.ptr());
-    return arm ? to_python(ik::plan_outline(*arm)) : nb::dict();
-}
-
-double determinant(nb::handle solver, const std::vector<double>& goal, int formulation, double a0) {
-    const ik::BuiltArm* arm = arm_of(solver.ptr());
-    if (!arm || !ik::has_hidden_determinant(*arm) || goal.size() != 16)
+double determinant(SolverArgument solver, const std::vector<double>& goal, int formulation, double a0) {
+    if (!ik::has_hidden_determinant(solver.arm()) || goal.size() != 16)
         throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
-    return ik::hidden_determinant(*arm, goal.data(), formulation, a0);
+    return ik::hidden_determinant(solver.arm(), goal.data(), formulation, a0);
 }
 
 }  // namespace
 
 void bind_ik_description(nb::module_& m) {
     m.def(
-        "_ik_numbers", &numbers, "solver"_a,
+        "_ik_numbers", &describe_numbers, "solver"_a,
         "How the arm of a solver is solved (closed, general, few_joints, any) and the numbers of its plan.");
-    m.def("_ik_plan", &outline, "solver"_a, "What a solver rests on.");
+    m.def(
+        "_ik_plan", [](SolverArgument solver) { return to_python(ik::plan_outline(solver.arm())); },
+        "solver"_a, "What a solver rests on.");
     m.def("_ik_determinant", &determinant, "solver"_a, "goal"_a, "formulation"_a, "a0"_a,
           "The determinant of a general arm at one hidden angle.");
 }

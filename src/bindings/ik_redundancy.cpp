@@ -10,7 +10,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "ik_shared.hpp"
+#include "ik.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -20,49 +20,38 @@ namespace {
 
 using ik::RedundantSolver;
 
-ik::Solver& solver_from(nb::handle object) {
-    ik::Solver* solver = solver_of(object.ptr());
-    if (!solver) throw nb::type_error("a solver comes first");
-    return *solver;
-}
-RedundantSolver& redundant_of(nb::handle object) { return solver_from(object).redundant(); }
-SolverObject& slots_of(nb::handle object) {
-    solver_from(object);
-    return *reinterpret_cast<SolverObject*>(object.ptr());
-}
-
 void require_sizes(bool fit) {
     if (!fit) throw nb::value_error("arrays of matching sizes are needed");
 }
 
 // Fills q (N, room, n) with NaN behind the solutions; the solutions themselves stand for what they show.
-void solve_rows(nb::handle object, const std::vector<int>& locked_joint, Matrix at, Goals goals,
+void solve_rows(SolverArgument solver, const std::vector<int>& locked_joint, Matrix at, Goals goals,
                 Row unconstrained, Array<double, nb::ndim<3>> q, Array<std::int8_t, nb::ndim<2>> branch,
                 Array<bool, nb::ndim<2>> self_motion, Array<std::int64_t, nb::ndim<1>> count,
                 Array<std::uint8_t, nb::ndim<1>> status, int threads) {
-    RedundantSolver& solver = redundant_of(object);
-    const ik::LockedArm& locked = solver.lock(locked_joint);
-    const std::size_t n = std::size_t(solver.chain().n), N = goals.shape(0), room = q.shape(1);
+    RedundantSolver& arm = solver.core().redundant();
+    const ik::LockedArm& locked = arm.lock(locked_joint);
+    const std::size_t n = std::size_t(arm.chain().n), N = goals.shape(0), room = q.shape(1);
     require_sizes(at.shape(1) == n && (at.shape(0) == N || at.shape(0) == 1) && q.shape(0) == N &&
                   q.shape(2) == n && branch.shape(0) == N && self_motion.shape(0) == N &&
                   branch.shape(1) == room && self_motion.shape(1) == room && count.shape(0) == N &&
                   status.shape(0) == N && (unconstrained.shape(0) == n || unconstrained.shape(0) == 0));
     const nb::gil_scoped_release release;
-    solver.solve(locked, {goals.data(), N, at.data(), at.shape(0) != 1,
-                          unconstrained.shape(0) ? unconstrained.data() : nullptr, room, q.data(),
-                          branch.data(), self_motion.data(), count.data(), status.data(), threads});
+    arm.solve(locked, {goals.data(), N, at.data(), at.shape(0) != 1,
+                       unconstrained.shape(0) ? unconstrained.data() : nullptr, room, q.data(), branch.data(),
+                       self_motion.data(), count.data(), status.data(), threads});
 }
 
 // Per interval: (lower, upper, branch, what ends it below, at which side, what ends it above, at which side),
 // and a configuration inside; and whether none is missing.
 using IntervalRow = std::tuple<double, double, int, int, int, int, int, std::vector<double>>;
-std::tuple<std::vector<IntervalRow>, bool> intervals_of(nb::handle object, int parameter, Goal goal) {
-    RedundantSolver& solver = redundant_of(object);
+std::tuple<std::vector<IntervalRow>, bool> intervals_of(SolverArgument solver, int parameter, Goal goal) {
+    RedundantSolver& arm = solver.core().redundant();
     bool complete;
     std::vector<ik::FeasibleInterval> found;
     {
         const nb::gil_scoped_release release;
-        found = solver.intervals(parameter, goal.data(), complete);
+        found = arm.intervals(parameter, goal.data(), complete);
     }
     std::vector<IntervalRow> rows;
     for (ik::FeasibleInterval& i : found)
@@ -72,14 +61,14 @@ std::tuple<std::vector<IntervalRow>, bool> intervals_of(nb::handle object, int p
 }
 
 // near= is answered by the compiled entry from now on.
-void serve_near(nb::handle object, nb::handle about) {
-    PyObject*& slot = slots_of(object).nearest_about;
+void serve_near(SolverArgument solver, nb::handle about) {
+    PyObject*& slot = solver_object(solver.object)->nearest_about;
     if (!slot) slot = about.inc_ref().ptr();
 }
 // locked= with these joints is answered by the compiled entry from now on.
-void serve_locked(nb::handle object, const std::vector<int>& locked_joint, nb::handle about) {
-    SolverObject& slots = slots_of(object);
-    LockedSet made = {0, &slots.solver->redundant().lock(locked_joint)};
+void serve_locked(SolverArgument solver, const std::vector<int>& locked_joint, nb::handle about) {
+    SolverObject& slots = *solver_object(solver.object);
+    LockedSet made = {0, &solver.core().redundant().lock(locked_joint)};
     for (const int joint : locked_joint) made.joints |= 1u << joint;
     for (const LockedSet& known : slots.locked_sets)
         if (known.joints == made.joints) return;
@@ -99,26 +88,28 @@ std::vector<ik::Span> united(const Spans& intervals) {
 
 void bind_ik_redundancy(nb::module_& m) {
     m.def(
-        "_ik_default_locked", [](nb::handle solver) { return redundant_of(solver).default_locked(); },
-        "solver"_a, "The redundant joints that are locked unless others are named, ascending.");
+        "_ik_default_locked",
+        [](SolverArgument solver) { return solver.core().redundant().default_locked(); }, "solver"_a,
+        "The redundant joints that are locked unless others are named, ascending.");
     m.def(
         "_ik_redundancy_degree",
-        [](nb::handle solver, const std::vector<int>& locked) {
-            RedundantSolver& arm = redundant_of(solver);
+        [](SolverArgument solver, const std::vector<int>& locked) {
+            RedundantSolver& arm = solver.core().redundant();
             return locked.empty() ? arm.redundant_joints() : arm.redundant_with(locked);
         },
         "solver"_a, "locked"_a, "How many dimensions a goal leaves free with these joints locked.");
     m.def(
-        "_ik_has_closed_form", [](nb::handle solver) { return redundant_of(solver).has_closed_form(); },
-        "solver"_a, "Whether the joints that move have a closed form.");
+        "_ik_has_closed_form",
+        [](SolverArgument solver) { return solver.core().redundant().has_closed_form(); }, "solver"_a,
+        "Whether the joints that move have a closed form.");
     m.def("_ik_serve_near", &serve_near, "solver"_a, "about"_a,
           "Answers near= from now on, for one goal without other keywords.");
     m.def("_ik_serve_locked", &serve_locked, "solver"_a, "locked"_a, "about"_a,
           "Answers locked= with these joints from now on, for one goal without other keywords.");
     m.def(
         "_ik_locked_room",
-        [](nb::handle solver, const std::vector<int>& locked) {
-            RedundantSolver& arm = redundant_of(solver);
+        [](SolverArgument solver, const std::vector<int>& locked) {
+            RedundantSolver& arm = solver.core().redundant();
             return arm.room_for(arm.lock(locked));
         },
         "solver"_a, "locked"_a, "Rows that the solutions of a goal may need with these joints locked.");

@@ -1,8 +1,14 @@
 // The answer for one goal, as a raw Python type: cspace.ik.Solutions is its subclass.
+#include <nanobind/stl/vector.h>
+#include <structmember.h>
+
 #include <cstring>
 
-#include "ik_shared.hpp"
+#include "bindings.hpp"
+#include "ik.hpp"
 
+namespace nb = nanobind;
+using namespace nb::literals;
 using namespace cspace;
 
 namespace {
@@ -10,28 +16,50 @@ namespace {
 PyTypeObject* solutions_type = nullptr;  // the Python class that results are made of
 PyTypeObject* base_type = nullptr;       // SolutionsBase
 
+// Followed in memory by count rows of dof angles, count branch numbers and count flags (self-motions).
+struct SolutionsObject {
+    PyObject_VAR_HEAD PyObject* solver;
+    PyObject* note;   // why rows are missing, where a filter removed them; or null
+    PyObject* about;  // of an invalid goal or leaves freedom: cspace.ik.context.About; or null
+    double goal[16];
+    int count, dof;
+    ik::Status status;
+    bool complete;
+    double q[1];
+
+    std::size_t size() const { return std::size_t(count) * std::size_t(dof); }
+    std::int8_t* branches() { return reinterpret_cast<std::int8_t*>(q + size()); }
+    char* self_motions() { return reinterpret_cast<char*>(branches() + count); }
+};
+SolutionsObject* object_of(PyObject* self) { return reinterpret_cast<SolutionsObject*>(self); }
+
 }  // namespace
 
-SolutionsObject* new_solutions(PyObject* solver, const double* goal, int count, int dof, ik::Status status) {
+PyObject* new_solutions(PyObject* solver, const double* goal, const SolutionRows& rows, PyObject* about) {
     if (!solutions_type) {
         PyObject* room = PyImport_ImportModule("cspace.ik.solutions");
         if (!room) return nullptr;
         Py_DECREF(room);
-        if (!solutions_type) {
-            PyErr_SetString(PyExc_ImportError, "cspace.ik.solutions has not named the class of results");
-            return nullptr;
-        }
+        if (!solutions_type)
+            return PyErr_Format(PyExc_ImportError, "cspace.ik.solutions has not named the class of results");
     }
-    auto* made = reinterpret_cast<SolutionsObject*>(
-        solutions_type->tp_alloc(solutions_type, count * dof + (2 * count + 7) / 8));
-    if (!made) return nullptr;
+    const int dof = solver_object(solver)->core->chain().n;
+    PyObject* self =
+        solutions_type->tp_alloc(solutions_type, rows.count * dof + (2 * rows.count + 7) / 8);  // zeros
+    if (!self) return nullptr;
+    SolutionsObject* made = object_of(self);
     made->solver = Py_NewRef(solver);
+    made->about = Py_XNewRef(about);
     std::memcpy(made->goal, goal, sizeof made->goal);
-    made->count = count;
+    made->count = rows.count;
     made->dof = dof;
-    made->status = status;
-    made->complete = true;
-    return made;
+    made->status = rows.status;
+    made->complete = rows.complete;
+    for (int k = 0; k < rows.count; ++k)
+        std::memcpy(made->q + k * dof, rows.q + k * rows.stride, sizeof(double) * std::size_t(dof));
+    std::memcpy(made->branches(), rows.branch, std::size_t(rows.count));
+    if (rows.self_motion) std::memcpy(made->self_motions(), rows.self_motion, std::size_t(rows.count));
+    return self;
 }
 
 namespace {
@@ -39,15 +67,15 @@ namespace {
 // A solver may hold its own results as an attribute, so results take part in the search for cycles.
 int traverse(PyObject* self, visitproc visit, void* arg) {
     Py_VISIT(Py_TYPE(self));
-    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->solver);
-    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->note);
-    Py_VISIT(reinterpret_cast<SolutionsObject*>(self)->about);
+    Py_VISIT(object_of(self)->solver);
+    Py_VISIT(object_of(self)->note);
+    Py_VISIT(object_of(self)->about);
     return 0;
 }
 int clear(PyObject* self) {
-    Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->solver);
-    Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->note);
-    Py_CLEAR(reinterpret_cast<SolutionsObject*>(self)->about);
+    Py_CLEAR(object_of(self)->solver);
+    Py_CLEAR(object_of(self)->note);
+    Py_CLEAR(object_of(self)->about);
     return 0;
 }
 void destroy(PyObject* self) {
@@ -58,63 +86,53 @@ void destroy(PyObject* self) {
     Py_DECREF(type);
 }
 
-PyObject* get_q(PyObject* self, void*) {
-    auto* s = reinterpret_cast<SolutionsObject*>(self);
-    npy_intp shape[2] = {s->count, s->dof};
-    PyObject* array = PyArray_SimpleNew(2, shape, NPY_DOUBLE);
+PyObject* new_array(int dimensions, npy_intp rows, npy_intp columns, const double* values) {
+    npy_intp shape[2] = {rows, columns};
+    PyObject* array = PyArray_SimpleNew(dimensions, shape, NPY_DOUBLE);
     if (array)
-        std::memcpy(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)), s->q,
-                    sizeof(double) * std::size_t(s->count * s->dof));
+        std::memcpy(data_of(array), values,
+                    sizeof(double) * std::size_t(rows * (dimensions > 1 ? columns : 1)));
     return array;
+}
+PyObject* get_q(PyObject* self, void*) {
+    return new_array(2, object_of(self)->count, object_of(self)->dof, object_of(self)->q);
 }
 // A position goal is kept as a pose whose rotation is NaN.
 PyObject* get_goal(PyObject* self, void*) {
-    const double* goal = reinterpret_cast<SolutionsObject*>(self)->goal;
-    const bool is_position = goal[0] != goal[0];
-    npy_intp shape[2] = {is_position ? 3 : 4, 4};
-    PyObject* array = PyArray_SimpleNew(is_position ? 1 : 2, shape, NPY_DOUBLE);
-    if (!array) return nullptr;
-    auto* out = static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)));
-    for (int i = 0; i < (is_position ? 3 : 16); ++i) out[i] = goal[is_position ? 4 * i + 3 : i];
-    return array;
-}
-PyObject* get_solver(PyObject* self, void*) {
-    return Py_NewRef(reinterpret_cast<SolutionsObject*>(self)->solver);
-}
-PyObject* get_note(PyObject* self, void*) {
-    PyObject* note = reinterpret_cast<SolutionsObject*>(self)->note;
-    return Py_NewRef(note ? note : Py_None);
-}
-PyObject* get_about(PyObject* self, void*) {
-    PyObject* about = reinterpret_cast<SolutionsObject*>(self)->about;
-    return Py_NewRef(about ? about : Py_None);
+    const double* goal = object_of(self)->goal;
+    const double position[3] = {goal[3], goal[7], goal[11]};
+    return goal[0] == goal[0] ? new_array(2, 4, 4, goal) : new_array(1, 3, 1, position);
 }
 PyObject* get_verdict(PyObject* self, void*) {
-    const auto* s = reinterpret_cast<SolutionsObject*>(self);
+    const SolutionsObject* s = object_of(self);
     return PyLong_FromLong(static_cast<long>(s->status) + (s->complete ? 0 : ik::incomplete));
 }
 PyObject* get_branch_numbers(PyObject* self, void*) {
-    auto* s = reinterpret_cast<SolutionsObject*>(self);
+    SolutionsObject* s = object_of(self);
     PyObject* list = PyTuple_New(s->count);
-    for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyLong_FromLong(branches_of(s)[k]));
+    for (int k = 0; list && k < s->count; ++k) PyTuple_SET_ITEM(list, k, PyLong_FromLong(s->branches()[k]));
     return list;
 }
 PyObject* get_is_self_motion(PyObject* self, void*) {
-    auto* s = reinterpret_cast<SolutionsObject*>(self);
+    SolutionsObject* s = object_of(self);
     PyObject* list = PyTuple_New(s->count);
     for (int k = 0; list && k < s->count; ++k)
-        PyTuple_SET_ITEM(list, k, PyBool_FromLong(self_motions_of(s)[k]));
+        PyTuple_SET_ITEM(list, k, PyBool_FromLong(s->self_motions()[k]));
     return list;
 }
-Py_ssize_t length(PyObject* self) { return reinterpret_cast<SolutionsObject*>(self)->count; }
-int truth(PyObject* self) { return reinterpret_cast<SolutionsObject*>(self)->count > 0; }
+Py_ssize_t length(PyObject* self) { return object_of(self)->count; }
+int truth(PyObject* self) { return object_of(self)->count > 0; }
 
+PyMemberDef members[] = {
+    {"solver", T_OBJECT, offsetof(SolutionsObject, solver), READONLY, "The solver that was asked."},
+    {"_note", T_OBJECT, offsetof(SolutionsObject, note), READONLY,
+     "Why rows are missing, if a filter removed them."},
+    {"_about", T_OBJECT, offsetof(SolutionsObject, about), READONLY,
+     "What there is to say about an invalid goal, or None."},
+    {nullptr, 0, 0, 0, nullptr}};
 PyGetSetDef attributes[] = {
     {"q", get_q, nullptr, "The configurations (k, dof) [rad, m].", nullptr},
     {"goal", get_goal, nullptr, "The goal T_base_tip (4, 4).", nullptr},
-    {"solver", get_solver, nullptr, "The solver that was asked.", nullptr},
-    {"_note", get_note, nullptr, "Why rows are missing, if a filter removed them.", nullptr},
-    {"_about", get_about, nullptr, "What there is to say about an invalid goal, or None.", nullptr},
     {"_verdict", get_verdict, nullptr, "The status as a number; 8 more if solutions may be missing.",
      nullptr},
     {"_branch_numbers", get_branch_numbers, nullptr, "Which branch of the closed form each row comes from.",
@@ -124,6 +142,7 @@ PyGetSetDef attributes[] = {
 PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
                        {Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
                        {Py_tp_clear, reinterpret_cast<void*>(&clear)},
+                       {Py_tp_members, members},
                        {Py_tp_getset, attributes},
                        {Py_sq_length, reinterpret_cast<void*>(&length)},
                        {Py_nb_bool, reinterpret_cast<void*>(&truth)},
@@ -133,59 +152,38 @@ PyType_Spec spec = {
     "cspace._core.SolutionsBase", offsetof(SolutionsObject, q), sizeof(double),
     Py_TPFLAGS_DEFAULT | Py_TPFLAGS_BASETYPE | Py_TPFLAGS_HAVE_GC | Py_TPFLAGS_DISALLOW_INSTANTIATION, slots};
 
-constexpr int last_status = static_cast<int>(ik::Status::nearest);
+nb::object make_solutions(SolverArgument solver, const ConstDoubles& goal, int status, const ConstDoubles& q,
+                          const std::vector<int>& branches, const std::vector<bool>& self_motions,
+                          nb::handle note, nb::handle about) {
+    const int code = status & ~ik::incomplete, n = solver.core().chain().n;
+    const std::size_t k = branches.size();
+    if (status < 0 || code > int(ik::Status::nearest))
+        throw nb::type_error("_ik_make takes a status it knows");
+    if (k > 1 << 24 || self_motions.size() != k || q.size != npy_intp(k) * n || goal.size != 16)
+        throw nb::type_error("_ik_make takes rows of the solver's joints and tuples of one length");
+    const std::vector<std::int8_t> numbers(branches.begin(), branches.end());
+    const std::vector<char> flags(self_motions.begin(), self_motions.end());
+    const nb::object result =
+        solutions_from(new_solutions(solver.object, goal.data,
+                                     {int(k), q.data, n, numbers.data(), flags.data(),
+                                      static_cast<ik::Status>(code), !(status & ik::incomplete)},
+                                     about.is_none() ? nullptr : about.ptr()));
+    if (!note.is_none()) object_of(result.ptr())->note = note.inc_ref().ptr();
+    return result;
+}
+
+void set_class(nb::handle cls) {
+    if (!PyType_Check(cls.ptr()) || !PyType_IsSubtype(reinterpret_cast<PyTypeObject*>(cls.ptr()), base_type))
+        throw nb::type_error("_ik_results takes a subclass of SolutionsBase");
+    Py_XDECREF(solutions_type);
+    solutions_type = reinterpret_cast<PyTypeObject*>(cls.inc_ref().ptr());
+}
 
 }  // namespace
 
-int ik_add_result_type(PyObject* module) {
-    PyObject* type = PyType_FromSpec(&spec);
-    if (!type || PyModule_AddObjectRef(module, "SolutionsBase", type) < 0) return -1;
-    base_type = reinterpret_cast<PyTypeObject*>(type);  // kept for good
-    return 0;
-}
-
-// _ik_make(solver, goal (4, 4), status, q (k, dof), branches (k), self_motion (k), note, about=None) →
-// solutions
-PyObject* ik_make(PyObject*, PyObject* args) {
-    PyObject *solver, *goal, *q, *branches, *self_motions, *note, *about = Py_None;
-    int status;
-    if (!PyArg_ParseTuple(args, "OOiOO!O!O|O", &solver, &goal, &status, &q, &PyTuple_Type, &branches,
-                          &PyTuple_Type, &self_motions, &note, &about))
-        return nullptr;
-    const Py_ssize_t k = PyTuple_GET_SIZE(branches);
-    const bool shaped = PyArray_Check(q) && PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) == 2;
-    const npy_intp dof = shaped ? PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 1) : -1;
-    if (!solver_of(solver) || status < 0 || (status & ~ik::incomplete) > last_status) {
-        PyErr_SetString(PyExc_TypeError, "_ik_make takes a solver and a status it knows");
-        return nullptr;
-    }
-    if (!shaped || k > 1 << 24 || PyTuple_GET_SIZE(self_motions) != k || !is_doubles(q, k * dof) ||
-        !is_doubles(goal, 16)) {
-        PyErr_SetString(PyExc_TypeError, "_ik_make takes contiguous float64 arrays and tuples of one length");
-        return nullptr;
-    }
-    SolutionsObject* made = new_solutions(solver, data_of(goal), int(k), int(dof),
-                                          static_cast<ik::Status>(status & ~ik::incomplete));
-    if (!made) return nullptr;
-    made->complete = !(status & ik::incomplete);
-    std::memcpy(made->q, data_of(q), sizeof(double) * std::size_t(k * dof));
-    for (Py_ssize_t i = 0; i < k; ++i) {
-        branches_of(made)[i] = static_cast<std::int8_t>(PyLong_AsLong(PyTuple_GET_ITEM(branches, i)));
-        self_motions_of(made)[i] = PyObject_IsTrue(PyTuple_GET_ITEM(self_motions, i)) == 1;
-    }
-    made->note = note == Py_None ? nullptr : Py_NewRef(note);
-    made->about = about == Py_None ? nullptr : Py_NewRef(about);
-    if (PyErr_Occurred()) Py_CLEAR(made);
-    return reinterpret_cast<PyObject*>(made);
-}
-
-// _ik_results(cls): results are made of this class from now on.
-PyObject* ik_results(PyObject*, PyObject* cls) {
-    if (!PyType_Check(cls) || !PyType_IsSubtype(reinterpret_cast<PyTypeObject*>(cls), base_type)) {
-        PyErr_SetString(PyExc_TypeError, "_ik_results takes a subclass of SolutionsBase");
-        return nullptr;
-    }
-    Py_XDECREF(solutions_type);
-    solutions_type = reinterpret_cast<PyTypeObject*>(Py_NewRef(cls));
-    Py_RETURN_NONE;
+void bind_ik_result(nb::module_& m) {
+    base_type = add_type(m, spec);
+    m.def("_ik_make", make_solutions, "solver"_a, "goal"_a, "status"_a, "q"_a, "branches"_a, "self_motions"_a,
+          "note"_a.none(), "about"_a.none() = nb::none(), "A result from its parts.");
+    m.def("_ik_results", set_class, "cls"_a, "Sets the class that results are made of.");
 }

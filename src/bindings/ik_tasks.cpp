@@ -22,14 +22,12 @@ void require(bool fits) {
 
 ik::TaskRows rows_from(nb::handle robot, const Matrix& tasks, const Matrix& postures, const LimitRows& limits,
                        std::size_t q_size, const Errors& errors) {
-    if (!PyObject_TypeCheck(robot.ptr(), kinematics_type)) throw nb::type_error("a robot comes first");
-    auto* object = reinterpret_cast<KinematicsObject*>(robot.ptr());
-    require(object->model != nullptr);
-    const std::size_t n = std::size_t(object->model->n_coordinates());
+    const KinematicsObject& object = robot_from(robot);
+    const std::size_t n = std::size_t(object.model->n_coordinates());
     require(tasks.shape(1) == ik::task_width && postures.shape(1) == 2 * n + 1 && q_size == n &&
             (limits.shape(1) == 0 || limits.shape(1) == n) && errors.shape(0) == tasks.shape(0));
-    return {*object->model,
-            object->floating,
+    return {*object.model,
+            object.floating,
             tasks.data(),
             tasks.shape(0),
             postures.data(),

@@ -3,7 +3,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "kinematics_chain.hpp"
+#include "kinematics.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;

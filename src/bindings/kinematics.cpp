@@ -7,30 +7,10 @@
 
 #include "bindings.hpp"
 #include "kernels/kinematics.hpp"
-#include "kinematics_load.hpp"
-#include "kinematics_rows.hpp"
 
 using namespace cspace;
 
 PyTypeObject* kinematics_type = nullptr;
-
-// --- reading arguments ---------------------------------------------------------------------------------
-bool read_configuration(const KinematicsObject* robot, PyObject* value, double* copy, const double*& q) {
-    if (!PyArray_CheckExact(value)) return false;
-    auto* array = reinterpret_cast<PyArrayObject*>(value);
-    const int n = robot->model->n_coordinates();
-    if (PyArray_TYPE(array) != NPY_DOUBLE || PyArray_NDIM(array) != 1 || PyArray_DIM(array, 0) != n ||
-        n > stack_joints || !PyArray_ISBEHAVED_RO(array)) {
-        return false;
-    }
-    const npy_intp stride = PyArray_STRIDE(array, 0);
-    const char* data = PyArray_BYTES(array);
-    q = reinterpret_cast<const double*>(data);
-    if (stride == sizeof(double)) return true;
-    for (int i = 0; i < n; ++i) copy[i] = *reinterpret_cast<const double*>(data + i * stride);
-    q = copy;
-    return true;
-}
 
 // "function() got an unexpected …" becomes "method() got an unexpected …"; any other error stays as it is.
 static void name_method(const char* function, const char* method) {
@@ -91,7 +71,7 @@ PyObject* create_kinematics(PyTypeObject* type, PyObject*, PyObject*) {
     return reinterpret_cast<PyObject*>(made);
 }
 void free_kinematics(PyObject* self) {
-    auto* object = reinterpret_cast<KinematicsObject*>(self);
+    auto* object = kinematics_of(self);
     PyTypeObject* type = Py_TYPE(self);
     Py_CLEAR(object->frame_index);
     object->model.~unique_ptr();
@@ -100,6 +80,57 @@ void free_kinematics(PyObject* self) {
 }
 
 namespace {
+
+constexpr char fk_doc[] =
+    R"doc(fk($self, q, frame=None, *, T_world_base=None, out=None, threads=None)
+--
+
+The pose of a frame at a configuration (forward kinematics).
+
+T_base_frame(q) = L₀ M₁(q₁) L₁ M₂(q₂) … Lₙ, with the joint motions Mᵢ (a turn or a slide) and the fixed Lᵢ
+between.
+
+q (..., n): joint coordinates [rad or m], in the order of `joint_names`. frame: its name; without it the tip.
+T_world_base (..., 4, 4): where the base is, for a floating base or to place the robot; the result is then
+T_world_frame. out (..., 4, 4): float64 array to write into. threads: 1 for one configuration, for a batch all
+processors (0 or None).
+
+Returns T (..., 4, 4), which maps coordinates in the frame to coordinates in the base.
+Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame.
+
+Murray, Li and Sastry 1994, section 3.2.)doc";
+
+constexpr char jacobian_doc[] =
+    R"doc(jacobian($self, q, frame=None, *, point=None, expressed_in='base', T_world_base=None, out=None, threads=None)
+--
+
+The geometric Jacobian of a frame, or of a point fixed to it.
+
+[v; ω] = J(q) q̇, where v [m/s] is the velocity of the point and ω [rad/s] the angular velocity of the frame.
+
+q (..., n): joint coordinates [rad or m]. frame: its name; without it the tip. point (..., 3): in
+coordinates of that frame [m]; without it the origin. expressed_in: "base" (the axes in which fk gives its
+result) or "tip" (the axes of the frame itself). T_world_base (..., 4, 4): where the base is. out (..., 6,
+dof): float64 array to write into. threads: as in fk.
+
+Returns J (..., 6, dof), rows [v; ω]; the columns of a floating base, [v; ω] of the base at its origin in
+world axes, come first. Raises InputError for a wrong shape or NaN, UnknownNameError for an unknown frame or
+axes.
+
+Whitney 1969; Siciliano et al. 2009, section 3.1.)doc";
+
+constexpr char fk_jacobian_doc[] =
+    R"doc(fk_jacobian($self, q, frame=None, *, point=None, expressed_in='base', T_world_base=None, out=None, threads=None)
+--
+
+The pose and the Jacobian of a frame in one pass, for less than the price of both.
+
+q, frame, point, expressed_in, T_world_base, threads: as in jacobian. out: the pair of arrays to write into.
+
+Returns (T, J): T (..., 4, 4) as of fk, J (..., 6, dof) as of jacobian.)doc";
+
+// The largest number of coordinates and of joints on a path for which a single call works on the stack.
+constexpr int stack_joints = 32;
 
 // What a single call needs, if it is one: `call(q)` or `call(q, frame)`, the frame by position or by name.
 struct Single {
@@ -128,7 +159,10 @@ bool read_single(const KinematicsObject* robot, PyObject* const* args, Py_ssize_
     }
     if (frame < 0) return false;
     call.chain = &robot->model->chain(frame);
-    return call.chain->n <= stack_joints && read_configuration(robot, args[0], call.copy, call.q);
+    const int n = robot->model->n_coordinates();
+    if (call.chain->n > stack_joints || n > stack_joints) return false;
+    call.q = read_in_place(args[0], 0, n, call.copy);
+    return call.q != nullptr;
 }
 
 // Scratch memory of one configuration: two sines and an axis per joint.
@@ -140,15 +174,12 @@ PyObject* new_array(npy_intp rows, npy_intp columns) {
     npy_intp shape[2] = {rows, columns};
     return PyArray_SimpleNew(2, shape, NPY_DOUBLE);
 }
-double* data_of(PyObject* array) {
-    return static_cast<double*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)));
-}
 
 constexpr const char* words = "cspace.kinematics";
 
 // --- methods -------------------------------------------------------------------------------------------
 PyObject* fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    auto* robot = reinterpret_cast<KinematicsObject*>(self);
+    const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (read_single(robot, args, nargs, kwnames, call)) {
         PyObject* T = new_array(4, 4);
@@ -161,7 +192,7 @@ PyObject* fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* 
 }
 
 PyObject* jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    auto* robot = reinterpret_cast<KinematicsObject*>(self);
+    const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
         PyObject* J = new_array(6, robot->model->n_coordinates());
@@ -174,7 +205,7 @@ PyObject* jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
 }
 
 PyObject* fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    auto* robot = reinterpret_cast<KinematicsObject*>(self);
+    const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
         PyObject* T = new_array(4, 4);
@@ -195,18 +226,16 @@ PyObject* fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, P
 }
 
 PyObject* dof(PyObject* self, void*) {
-    auto* robot = reinterpret_cast<KinematicsObject*>(self);
+    const KinematicsObject* robot = kinematics_of(self);
     if (!robot->model) return PyLong_FromLong(0);
     return PyLong_FromLong(robot->model->n_coordinates() + (robot->floating ? 6 : 0));
 }
 
 // --- the type ------------------------------------------------------------------------------------------
 PyMethodDef methods[] = {
-    {"fk", as_method(&fk), METH_FASTCALL | METH_KEYWORDS, kinematics_fk_doc},
-    {"jacobian", as_method(&jacobian), METH_FASTCALL | METH_KEYWORDS, kinematics_jacobian_doc},
-    {"fk_jacobian", as_method(&fk_jacobian), METH_FASTCALL | METH_KEYWORDS, kinematics_fk_jacobian_doc},
-    {"_chain_rows", as_method(&kinematics_chain_rows), METH_FASTCALL, kinematics_chain_rows_doc},
-    {"_tree_rows", as_method(&kinematics_tree_rows), METH_FASTCALL, kinematics_tree_rows_doc},
+    {"fk", as_method(&fk), METH_FASTCALL | METH_KEYWORDS, fk_doc},
+    {"jacobian", as_method(&jacobian), METH_FASTCALL | METH_KEYWORDS, jacobian_doc},
+    {"fk_jacobian", as_method(&fk_jacobian), METH_FASTCALL | METH_KEYWORDS, fk_jacobian_doc},
     {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef attributes[] = {
     {"dof", &dof, nullptr, "Number of velocities: one per coordinate, and six more for a floating base.",
@@ -232,8 +261,5 @@ int fill_numpy_api() {
 
 void bind_kinematics(nanobind::module_& m) {
     if (fill_numpy_api() < 0) throw nanobind::python_error();
-    PyObject* type = PyType_FromSpec(&spec);
-    if (!type) throw nanobind::python_error();
-    kinematics_type = reinterpret_cast<PyTypeObject*>(Py_NewRef(type));
-    m.attr("KinematicsBase") = nanobind::steal(type);
+    kinematics_type = add_type(m, spec);
 }

@@ -6,6 +6,8 @@
 // and come back through `_chain_rows` and `_tree_rows` with plain arrays.
 #pragma once
 
+#include <nanobind/nanobind.h>
+
 #include <memory>
 
 #include "cspace/model/robot_model.hpp"
@@ -18,8 +20,12 @@ struct KinematicsObject {
     int tip;                // the frame meant where none is named, or -1
     bool floating;
 };
+inline KinematicsObject* kinematics_of(PyObject* self) { return reinterpret_cast<KinematicsObject*>(self); }
 
 extern PyTypeObject* kinematics_type;  // KinematicsBase; null until the module is filled
+
+// KinematicsBase.__init__(assembly): reads the arrays of a cspace.kinematics.assembly.Assembly.
+int kinematics_load(PyObject* self, PyObject* args, PyObject* kwargs);
 
 // For the types built on this one: an object whose kinematics are still to be read, and the end of them.
 PyObject* create_kinematics(PyTypeObject* type, PyObject*, PyObject*);
@@ -29,13 +35,20 @@ PyCFunction as_method(F* f) {
     return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(f));
 }
 
-// The largest number of coordinates and of joints on a path for which a single call works on the stack.
-inline constexpr int stack_joints = 32;
-
-// A configuration that can be read in place: one float64 row of the robot's size. q points to its values, in
-// `copy` if they were not contiguous. False for everything else, and no error is set.
-bool read_configuration(const KinematicsObject* robot, PyObject* value, double* copy, const double*& q);
 // Calls the free function of that name in a Python module, with the robot before the arguments. Complaints
 // about the arguments name the method that was called.
 PyObject* call_python(const char* module, const char* function, const char* method, PyObject* self,
                       PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
+
+// A robot as an argument, and the chain to one of its frames. Throws for what is no robot or has no such
+// frame.
+inline const KinematicsObject& robot_from(nanobind::handle robot) {
+    if (!PyObject_TypeCheck(robot.ptr(), kinematics_type) || !kinematics_of(robot.ptr())->model)
+        throw nanobind::type_error("the first argument must be a robot");
+    return *kinematics_of(robot.ptr());
+}
+inline const cspace::model::Chain& chain_on(nanobind::handle robot, int frame) {
+    const auto& model = robot_from(robot).model;
+    if (frame < 0 || frame >= model->n_frames()) throw nanobind::value_error("unknown frame number");
+    return model->chain(frame);
+}

@@ -1,46 +1,27 @@
-#include "kinematics_load.hpp"
-
 #include <climits>
+#include <string>
 #include <vector>
 
+#include "arrays_in_place.hpp"
 #include "cspace/kinematics/forward.hpp"
 #include "kinematics.hpp"
 
+namespace nb = nanobind;
 using namespace cspace;
 
 namespace {
 
-// An attribute of a Python object as a contiguous array of doubles of a known size; empty, with an error,
-// if not.
-struct Column {
-    PyObject* array = nullptr;
-    const double* data = nullptr;
-
-    Column(PyObject* owner, const char* name, npy_intp size) {
-        PyObject* value = PyObject_GetAttrString(owner, name);
-        if (!value) return;
-        array = PyArray_FROM_OTF(value, NPY_DOUBLE, NPY_ARRAY_IN_ARRAY);
-        Py_DECREF(value);
-        if (!array) return;
-        auto* a = reinterpret_cast<PyArrayObject*>(array);
-        if (PyArray_SIZE(a) != size) {
-            PyErr_Format(PyExc_ValueError, "%s has %zd numbers, expected %zd", name, PyArray_SIZE(a), size);
-            return;
-        }
-        data = static_cast<const double*>(PyArray_DATA(a));
-    }
-    Column(const Column&) = delete;
-    Column& operator=(const Column&) = delete;
-    ~Column() { Py_XDECREF(array); }
-};
-
-long integer(PyObject* owner, const char* name) {
-    PyObject* value = PyObject_GetAttrString(owner, name);
-    if (!value) return -1;
-    const long number = PyLong_AsLong(value);
-    Py_DECREF(value);
-    return number;
+// An attribute of an assembly as doubles.
+ConstDoubles numbers_of(nb::handle assembly, const char* name, npy_intp size) {
+    const nb::object given = assembly.attr(name);
+    const nb::object doubles = nb::steal(PyArray_FROM_OTF(given.ptr(), NPY_DOUBLE, NPY_ARRAY_IN_ARRAY));
+    if (!doubles) throw nb::python_error();
+    ConstDoubles numbers;
+    if (!numbers.read(doubles.ptr()) || numbers.size != size)
+        throw nb::value_error((std::string(name) + " has the wrong number of values").c_str());
+    return numbers;
 }
+long integer_of(nb::handle assembly, const char* name) { return nb::cast<long>(assembly.attr(name)); }
 
 // The indices that the compiled loops follow blindly must be right.
 bool indices_fit(const std::vector<model::Joint>& joints, const std::vector<model::Frame>& frames, long n,
@@ -55,25 +36,31 @@ bool indices_fit(const std::vector<model::Joint>& joints, const std::vector<mode
     return tip >= -1 && tip < int(frames.size());
 }
 
-// Every value of the dict is the number of a frame.
-bool names_fit(PyObject* names, long n_frames) {
-    PyObject *name, *number;
-    for (Py_ssize_t at = 0; PyDict_Next(names, &at, &name, &number);) {
-        const long frame = PyLong_Check(number) ? PyLong_AsLong(number) : -1;
-        if (frame < 0 || frame >= n_frames) return false;
+// A copy of the dict of names, whose every value must be the number of a frame.
+nb::dict read_names(nb::handle assembly, long n_frames) {
+    nb::dict names;
+    for (auto [name, number] : nb::cast<nb::dict>(assembly.attr("frame_index"))) {
+        const long frame = nb::isinstance<nb::int_>(number) ? PyLong_AsLong(number.ptr()) : -1;
+        if (PyErr_Occurred()) throw nb::python_error();
+        if (frame < 0 || frame >= n_frames)
+            throw nb::type_error("frame_index must be a dict of names to numbers of frames");
+        names[name] = number;
     }
-    return !PyErr_Occurred();
+    return names;
 }
 
-std::unique_ptr<const model::RobotModel> read_model(PyObject* assembly, long n_joints, long n_frames, long n,
+std::unique_ptr<const model::RobotModel> read_model(nb::handle assembly, long n_joints, long n_frames, long n,
                                                     long tip) {
-    const Column T_joint(assembly, "T_parent_joint", 16 * n_joints), parent(assembly, "parent", n_joints),
-        coordinate(assembly, "coordinate", n_joints), ratio(assembly, "ratio", n_joints),
-        offset(assembly, "offset", n_joints), prismatic(assembly, "prismatic", n_joints),
-        T_frame(assembly, "T_joint_frame", 16 * n_frames), carrier(assembly, "frame_joint", n_frames),
-        mass(assembly, "mass", n_joints + 1), center(assembly, "center", 3 * (n_joints + 1));
-    if (PyErr_Occurred()) return nullptr;
-
+    const auto T_joint = numbers_of(assembly, "T_parent_joint", 16 * n_joints),
+               parent = numbers_of(assembly, "parent", n_joints),
+               coordinate = numbers_of(assembly, "coordinate", n_joints),
+               ratio = numbers_of(assembly, "ratio", n_joints),
+               offset = numbers_of(assembly, "offset", n_joints),
+               prismatic = numbers_of(assembly, "prismatic", n_joints),
+               T_frame = numbers_of(assembly, "T_joint_frame", 16 * n_frames),
+               carrier = numbers_of(assembly, "frame_joint", n_frames),
+               mass = numbers_of(assembly, "mass", n_joints + 1),
+               center = numbers_of(assembly, "center", 3 * (n_joints + 1));
     std::vector<model::Joint> joints(n_joints);
     for (long k = 0; k < n_joints; ++k) {
         joints[k] = {kinematics::read_matrix(T_joint.data + 16 * k),
@@ -89,13 +76,11 @@ std::unique_ptr<const model::RobotModel> read_model(PyObject* assembly, long n_j
         frames[k] = {kinematics::read_matrix(T_frame.data + 16 * k), int(carrier.data[k])};
     std::vector<model::Body> bodies(n_joints + 1);
     for (long k = 0; k <= n_joints; ++k) {
-        bodies[k] = {{center.data[3 * k], center.data[3 * k + 1], center.data[3 * k + 2]}, mass.data[k]};
+        const double* at = center.data + 3 * k;
+        bodies[k] = {{at[0], at[1], at[2]}, mass.data[k]};
     }
-    if (!indices_fit(joints, frames, n, tip)) {
-        PyErr_SetString(PyExc_ValueError,
-                        "the joints, coordinates and frames of the assembly do not fit together");
-        return nullptr;
-    }
+    if (n < 0 || n > INT_MAX || !indices_fit(joints, frames, n, tip))
+        throw nb::value_error("the joints, coordinates and frames of the assembly do not fit together");
     return std::make_unique<const model::RobotModel>(std::move(joints), std::move(frames), std::move(bodies),
                                                      int(n));
 }
@@ -103,37 +88,29 @@ std::unique_ptr<const model::RobotModel> read_model(PyObject* assembly, long n_j
 }  // namespace
 
 int kinematics_load(PyObject* self, PyObject* args, PyObject* kwargs) {
-    auto* robot = reinterpret_cast<KinematicsObject*>(self);
-    PyObject* assembly;
-    if (!PyArg_ParseTuple(args, "O:KinematicsBase", &assembly)) return -1;
-    if (kwargs && PyDict_GET_SIZE(kwargs) > 0) {
-        PyErr_SetString(PyExc_TypeError, "KinematicsBase takes an assembly and no keywords");
-        return -1;
-    }
-    if (robot->model) {
-        PyErr_SetString(PyExc_TypeError, "a robot is immutable; make another one");
-        return -1;
-    }
-    const long n_joints = integer(assembly, "n_joints"), n_frames = integer(assembly, "n_frames"),
-               n = integer(assembly, "n_coordinates"), tip = integer(assembly, "tip_index"),
-               floating = integer(assembly, "floating");
-    if (PyErr_Occurred()) return -1;
-    PyObject* names = PyObject_GetAttrString(assembly, "frame_index");
-    if (!names) return -1;
-    Py_XSETREF(robot->frame_index, PyDict_Check(names) ? PyDict_Copy(names) : nullptr);
-    Py_DECREF(names);
-    if (!robot->frame_index || n < 0 || n > INT_MAX || !names_fit(robot->frame_index, n_frames)) {
-        if (!PyErr_Occurred())
-            PyErr_SetString(PyExc_TypeError, "frame_index must be a dict of names to numbers of frames");
-        return -1;
-    }
+    KinematicsObject* robot = kinematics_of(self);
+    PyObject* given;
+    if (!PyArg_ParseTuple(args, "O:KinematicsBase", &given)) return -1;
     try {
-        robot->model = read_model(assembly, n_joints, n_frames, n, tip);
-    } catch (const std::bad_alloc&) {
-        PyErr_NoMemory();
+        if (kwargs && PyDict_GET_SIZE(kwargs) > 0)
+            throw nb::type_error("KinematicsBase takes an assembly and no keywords");
+        if (robot->model) throw nb::type_error("a robot is immutable; make another one");
+        const nb::handle assembly = given;
+        const long n_frames = integer_of(assembly, "n_frames"), tip = integer_of(assembly, "tip_index");
+        nb::dict names = read_names(assembly, n_frames);
+        robot->model = read_model(assembly, integer_of(assembly, "n_joints"), n_frames,
+                                  integer_of(assembly, "n_coordinates"), tip);
+        robot->floating = integer_of(assembly, "floating") != 0;
+        robot->tip = int(tip);
+        Py_XSETREF(robot->frame_index, names.release().ptr());
+        return 0;
+    } catch (nb::python_error& error) {
+        error.restore();
+    } catch (const nb::builtin_exception& error) {
+        PyErr_SetString(error.type() == nb::exception_type::type_error ? PyExc_TypeError : PyExc_ValueError,
+                        error.what());
+    } catch (const std::exception& error) {
+        PyErr_SetString(PyExc_TypeError, error.what());
     }
-    if (!robot->model) return -1;
-    robot->tip = int(tip);
-    robot->floating = floating != 0;
-    return 0;
+    return -1;
 }

@@ -1,52 +1,43 @@
-#include "kinematics_rows.hpp"
+// Batches of configurations: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
+#include <nanobind/stl/optional.h>
 
+#include <bit>
 #include <memory>
 #include <new>
 
+#include "arrays_in_place.hpp"
+#include "bindings.hpp"
 #include "cspace/math/threads.hpp"
 #include "kernels/kinematics.hpp"
 #include "kinematics.hpp"
 
+namespace nb = nanobind;
+using namespace nb::literals;
 using namespace cspace;
-
-const char kinematics_chain_rows_doc[] =
-    "_chain_rows(frame, q, qd, T_world_base, point, T, J, J_rate, sigma, chosen, in_tip, threads)\n\n"
-    "Fills the arrays that are not None; False if a value of q is not finite.";
-const char kinematics_tree_rows_doc[] =
-    "_tree_rows(q, T_world_base, T, center, center_columns, threads)\n\n"
-    "Fills the arrays that are not None; False if a value of q is not finite.";
 
 namespace {
 
-// Reads arrays by what they must hold per row; one that does not fit leaves an error behind.
-struct Reader {
-    npy_intp rows;
-    bool good = true;
+using In = std::optional<ConstDoubles>;
+using Out = std::optional<Doubles>;
 
-    double* array(PyObject* value, npy_intp per_row, const char* name, bool written = false,
-                  bool shared = false) {
-        if (value == Py_None || !good) return nullptr;
-        auto* a = reinterpret_cast<PyArrayObject*>(value);
-        if (!PyArray_Check(value) || PyArray_TYPE(a) != NPY_DOUBLE || !PyArray_ISCARRAY_RO(a) ||
-            (written && !PyArray_ISWRITEABLE(a))) {
-            return fail("%s must be a contiguous float64 array", name);
-        }
-        const npy_intp size = PyArray_SIZE(a);
-        if (size != rows * per_row && !(shared && size == per_row))
-            return fail("%s has the wrong size", name);
-        return static_cast<double*>(PyArray_DATA(a));
-    }
-    // Shared by all rows (0) or one each (per_row).
-    std::size_t stride(PyObject* value, npy_intp per_row) const {
-        if (value == Py_None) return 0;
-        return PyArray_SIZE(reinterpret_cast<PyArrayObject*>(value)) == per_row ? 0 : std::size_t(per_row);
-    }
-    double* fail(const char* format, const char* name) {
-        good = false;
-        PyErr_Format(PyExc_ValueError, format, name);
-        return nullptr;
-    }
-};
+// An array by what it must hold per row; null for None.
+template <class T>
+T* values_of(const std::optional<Plain<T>>& array, npy_intp rows, npy_intp per_row) {
+    if (array && array->size != rows * per_row) throw nb::value_error("an array has the wrong size");
+    return array ? array->data : nullptr;
+}
+// The same where one row may serve all: the stride is then 0.
+const double* shared_values(const In& array, npy_intp rows, npy_intp per_row, std::size_t& stride) {
+    stride = !array || array->size == per_row ? 0 : std::size_t(per_row);
+    return values_of(array, stride ? rows : 1, per_row);
+}
+npy_intp row_count(const ConstDoubles& q, int n) {
+    if (q.ndim() != 2 || q.shape(1) != n) throw nb::value_error("q must have two axes, (rows, coordinates)");
+    return q.shape(0);
+}
+int velocities_of(const KinematicsObject& robot) {
+    return robot.model->n_coordinates() + (robot.floating ? 6 : 0);
+}
 
 struct Free {
     void operator()(void* memory) const { ::operator delete(memory, std::align_val_t(64)); }
@@ -54,102 +45,69 @@ struct Free {
 
 constexpr std::size_t lanes = 4, rows_worth_a_thread = 2048;
 
-// Runs a kernel over all rows without the interpreter lock.
+// Runs a kernel over all rows without the interpreter lock. False if a value of q is not finite.
 template <class Rows, class Kernel>
-PyObject* run(const Rows& rows, npy_intp n, long threads, Kernel kernel) {
-    bool finite = true;
+bool run_kernel(const Rows& rows, npy_intp n, int threads, Kernel kernel) {
+    const nb::gil_scoped_release release;
     std::atomic<bool> memory = true;
-    Py_BEGIN_ALLOW_THREADS;
     const std::size_t bytes = scratch_bytes(rows);
-    finite = over_rows(std::size_t(n), int(threads), lanes, rows_worth_a_thread,
-                       [&](std::size_t begin, std::size_t end) {
-                           const std::unique_ptr<void, Free> scratch(
-                               ::operator new(bytes, std::align_val_t(64), std::nothrow));
-                           if (!scratch) {
-                               memory = false;
-                               return false;
-                           }
-                           return kernel(rows, begin, end, scratch.get());
-                       });
-    Py_END_ALLOW_THREADS;
-    if (!memory) return PyErr_NoMemory();
-    return PyBool_FromLong(finite);
+    const bool finite = over_rows(std::size_t(n), threads, lanes, rows_worth_a_thread,
+                                  [&](std::size_t begin, std::size_t end) {
+                                      const std::unique_ptr<void, Free> scratch(
+                                          ::operator new(bytes, std::align_val_t(64), std::nothrow));
+                                      if (!scratch) memory = false;
+                                      return scratch && kernel(rows, begin, end, scratch.get());
+                                  });
+    if (!memory) throw std::bad_alloc();
+    return finite;
 }
 
-const model::RobotModel* loaded(PyObject* self) {
-    const auto& model = reinterpret_cast<KinematicsObject*>(self)->model;
-    if (!model) PyErr_SetString(PyExc_TypeError, "the robot was not initialised");
-    return model.get();
+bool chain_rows(nb::handle robot, int frame, const ConstDoubles& q, const In& qd, const In& T_world_base,
+                const In& point, const Out& T, const Out& J, const Out& J_rate, const Out& sigma,
+                unsigned chosen, bool in_tip, int threads) {
+    const KinematicsObject& object = robot_from(robot);
+    kinematics::ChainRows rows{};
+    rows.chain = chain_on(robot, frame);
+    rows.floating = object.floating;
+    rows.in_tip = in_tip;
+    rows.chosen = chosen & 63u;
+    const int n = object.model->n_coordinates(), dof = velocities_of(object);
+    const npy_intp count = row_count(q, n);
+    rows.q = q.data;
+    rows.qd = values_of(qd, count, dof);
+    rows.T_world_base = shared_values(T_world_base, count, 16, rows.base_stride);
+    rows.point = shared_values(point, count, 3, rows.point_stride);
+    rows.T = values_of(T, count, 16);
+    rows.J = values_of(J, count, 6 * dof);
+    rows.J_rate = values_of(J_rate, count, 6 * dof);
+    rows.sigma = values_of(sigma, count, std::min(std::popcount(rows.chosen), n));
+    if (rows.J_rate && !rows.qd) throw nb::value_error("J_rate needs qd");
+    return run_kernel(rows, count, threads, kernels::chain_rows);
 }
-npy_intp row_count(PyObject* q, int n) {
-    if (!PyArray_Check(q) || PyArray_NDIM(reinterpret_cast<PyArrayObject*>(q)) != 2 ||
-        PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 1) != n) {
-        PyErr_SetString(PyExc_ValueError, "q must have two axes, (rows, coordinates)");
-        return -1;
-    }
-    return PyArray_DIM(reinterpret_cast<PyArrayObject*>(q), 0);
-}
-int count_bits(unsigned bits) {
-    int count = 0;
-    for (; bits; bits &= bits - 1) ++count;
-    return count;
+
+bool tree_rows(nb::handle robot, const ConstDoubles& q, const In& T_world_base, const Out& T,
+               const Out& center, const Out& center_columns, int threads) {
+    const KinematicsObject& object = robot_from(robot);
+    kinematics::TreeRows rows{};
+    rows.tree = object.model->tree();
+    rows.floating = object.floating;
+    const npy_intp count = row_count(q, object.model->n_coordinates());
+    rows.q = q.data;
+    rows.T_world_base = shared_values(T_world_base, count, 16, rows.base_stride);
+    rows.T = values_of(T, count, 16 * npy_intp(object.model->n_frames()));
+    rows.center = values_of(center, count, 3);
+    rows.center_columns = values_of(center_columns, count, 3 * velocities_of(object));
+    return run_kernel(rows, count, threads, kernels::tree_rows);
 }
 
 }  // namespace
 
-PyObject* kinematics_chain_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
-    const model::RobotModel* model = loaded(self);
-    if (!model) return nullptr;
-    if (nargs != 12) return PyErr_Format(PyExc_TypeError, "_chain_rows takes 12 arguments, got %zd", nargs);
-    const bool floating = reinterpret_cast<KinematicsObject*>(self)->floating;
-    const long frame = PyLong_AsLong(args[0]), chosen = PyLong_AsLong(args[9]),
-               threads = PyLong_AsLong(args[11]);
-    const int in_tip = PyObject_IsTrue(args[10]);
-    if (PyErr_Occurred()) return nullptr;
-    if (frame < 0 || frame >= model->n_frames()) return PyErr_Format(PyExc_ValueError, "no frame %ld", frame);
-    const int n = model->n_coordinates(), dof = n + (floating ? 6 : 0);
-    Reader read{row_count(args[1], n)};
-    if (read.rows < 0) return nullptr;
-    const int counted = count_bits(unsigned(chosen) & 63u), k = counted < n ? counted : n;
-    kinematics::ChainRows rows{};
-    rows.chain = model->chain(int(frame));
-    rows.q = read.array(args[1], n, "q");
-    rows.qd = read.array(args[2], dof, "qd");
-    rows.T_world_base = read.array(args[3], 16, "T_world_base", false, true);
-    rows.point = read.array(args[4], 3, "point", false, true);
-    rows.T = read.array(args[5], 16, "T", true);
-    rows.J = read.array(args[6], 6 * dof, "J", true);
-    rows.J_rate = read.array(args[7], 6 * dof, "J_rate", true);
-    rows.sigma = read.array(args[8], k, "sigma", true);
-    rows.floating = floating;
-    rows.in_tip = in_tip != 0;
-    rows.chosen = unsigned(chosen) & 63u;
-    if (!read.good) return nullptr;
-    if (rows.J_rate && !rows.qd) return PyErr_Format(PyExc_ValueError, "J_rate needs qd");
-    rows.base_stride = read.stride(args[3], 16);
-    rows.point_stride = read.stride(args[4], 3);
-    return run(rows, read.rows, threads, kernels::chain_rows);
-}
-
-PyObject* kinematics_tree_rows(PyObject* self, PyObject* const* args, Py_ssize_t nargs) {
-    const model::RobotModel* model = loaded(self);
-    if (!model) return nullptr;
-    if (nargs != 6) return PyErr_Format(PyExc_TypeError, "_tree_rows takes 6 arguments, got %zd", nargs);
-    const bool floating = reinterpret_cast<KinematicsObject*>(self)->floating;
-    const long threads = PyLong_AsLong(args[5]);
-    if (PyErr_Occurred()) return nullptr;
-    const int n = model->n_coordinates(), dof = n + (floating ? 6 : 0);
-    Reader read{row_count(args[0], n)};
-    if (read.rows < 0) return nullptr;
-    kinematics::TreeRows rows{};
-    rows.tree = model->tree();
-    rows.q = read.array(args[0], n, "q");
-    rows.T_world_base = read.array(args[1], 16, "T_world_base", false, true);
-    rows.T = read.array(args[2], 16 * npy_intp(model->n_frames()), "T", true);
-    rows.center = read.array(args[3], 3, "center", true);
-    rows.center_columns = read.array(args[4], 3 * dof, "center_columns", true);
-    rows.floating = floating;
-    if (!read.good) return nullptr;
-    rows.base_stride = read.stride(args[1], 16);
-    return run(rows, read.rows, threads, kernels::tree_rows);
+void bind_kinematics_rows(nb::module_& m) {
+    m.def("_chain_rows", chain_rows, "robot"_a, "frame"_a, "q"_a, "qd"_a.none(), "T_world_base"_a.none(),
+          "point"_a.none(), "T"_a.none(), "J"_a.none(), "J_rate"_a.none(), "sigma"_a.none(), "chosen"_a,
+          "in_tip"_a, "threads"_a,
+          "Fills the arrays that are not None; False if a value of q is not finite.");
+    m.def("_tree_rows", tree_rows, "robot"_a, "q"_a, "T_world_base"_a.none(), "T"_a.none(), "center"_a.none(),
+          "center_columns"_a.none(), "threads"_a,
+          "Fills the arrays that are not None; False if a value of q is not finite.");
 }

@@ -1,6 +1,6 @@
 // The type behind cspace.Robot: its kinematics, and the solver that its `ik` asks.
 #include "bindings.hpp"
-#include "ik_solver.hpp"
+#include "ik.hpp"
 
 namespace {
 
@@ -68,8 +68,4 @@ PyType_Spec robot_spec = {"cspace._core.RobotBase", sizeof(RobotObject), 0,
 
 }  // namespace
 
-void bind_robot(nanobind::module_& m) {
-    PyObject* type = PyType_FromSpecWithBases(&robot_spec, reinterpret_cast<PyObject*>(kinematics_type));
-    if (!type || PyModule_AddObjectRef(m.ptr(), "RobotBase", type) < 0) throw nanobind::python_error();
-    Py_DECREF(type);
-}
+void bind_robot(nanobind::module_& m) { add_type(m, robot_spec, kinematics_type); }

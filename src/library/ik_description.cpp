@@ -1,189 +1,161 @@
 #include "ik_description.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/goal.hpp"
+#include "cspace/kinematics/forward.hpp"
 
 namespace cspace::ik {
 
 namespace {
 
-Value numbers(double x) { return x; }
-Value numbers(int x) { return x; }
-Value numbers(bool x) { return x; }
-Value numbers(Family x) { return int(x); }
-Value numbers(FirstThree x) { return int(x); }
-Value numbers(const Vec3d& v);
-Value numbers(const Mat3d& R);
-Value numbers(const Posed& T);
-Value numbers(const Turn<double>& t);
-Value numbers(const Chain& c);
-Value numbers(const DhForm& f);
-Value numbers(const Wrist& w);
-Value numbers(const ThreeJoints& g);
-Value numbers(const SphericalWrist& s);
-Value numbers(const ThreeParallel& p);
-Value numbers(const LoopFrames& f);
-Value numbers(const GeneralPlan& p);
-Value numbers(const ThreeTurns& t);
-Value numbers(const PositionFirst& p);
-template <class T>
-Value list_of(const T* values, int count) {
-    std::vector<Value> out;
-    for (int i = 0; i < count; ++i) out.push_back(numbers(values[i]));
-    return out;
-}
-template <class T, int n>
-Value numbers(const T (&values)[n]) {
-    return list_of(values, n);
-}
-
-// The parts of a structure by name, one call each.
-class Parts {
-  public:
+// Structures as numbers, lists and parts. PARTS(t.c, t.s) are the parts "c" and "s".
+struct Describe {
+#define PARTS(...) parts(#__VA_ARGS__, __VA_ARGS__)
+    template <class... T>
+    static Value parts(const std::string& names, const T&... values) {
+        Value out;
+        std::size_t end = 0;
+        const auto add = [&](Value value) {
+            end = std::min(names.find(',', end + 1), names.size());
+            const std::size_t dot = names.rfind('.', end - 1);
+            out.add(names.substr(dot + 1, end - dot - 1), std::move(value));
+        };
+        (add(numbers(values)), ...);
+        return out;
+    }
     template <class T>
-    Parts& operator()(const char* name, const T& value) {
-        all_.add(name, numbers(value));
-        return *this;
+    static Value list_of(const T* values, int count) {
+        std::vector<Value> out;
+        for (int i = 0; i < count; ++i) out.push_back(numbers(values[i]));
+        return out;
     }
-    Parts& operator()(const char* name, Value value) {
-        all_.add(name, std::move(value));
-        return *this;
+    template <class T, int n>
+    static Value numbers(const T (&values)[n]) {
+        return list_of(values, n);
     }
-    operator Value() const { return all_; }
+    static Value numbers(double x) { return x; }
+    static Value numbers(int x) { return x; }
+    static Value numbers(bool x) { return x; }
+    static Value numbers(Family x) { return int(x); }
+    static Value numbers(FirstThree x) { return int(x); }
+    static Value numbers(const Vec3d& v) { return PARTS(v.x, v.y, v.z); }
+    static Value numbers(const Mat3d& R) { return PARTS(R.m); }
+    static Value numbers(const Posed& T) { return PARTS(T.R, T.t); }
+    static Value numbers(const Turn<double>& t) { return PARTS(t.c, t.s); }
+    static Value numbers(const Chain& c) {
+        return PARTS(c.n)
+            .add("axis", list_of(c.axis, c.n))
+            .add("point", list_of(c.point, c.n))
+            .add("prismatic", list_of(c.prismatic, c.n))
+            .add("tip", numbers(c.tip));
+    }
+    static Value numbers(const DhForm& f) {
+        return PARTS(f.a, f.d, f.ca, f.sa, f.offset, f.parallel, f.meeting, f.base, f.tool, f.length,
+                     f.deviation, f.degenerate);
+    }
+    static Value numbers(const Wrist& w) {
+        return PARTS(w.ca4, w.sa4, w.ca5, w.sa5, w.c_sum, w.s_sum, w.c_diff, w.s_diff, w.inv, w.right_angled);
+    }
+    static Value numbers(const ThreeJoints& g) {
+        return PARTS(g.kind, g.a1, g.ca1, g.sa1, g.d2, g.a2, g.ca2, g.sa2, g.w, g.length, g.wrist_reach,
+                     g.w_angle);
+    }
+    static Value numbers(const SphericalWrist& s) { return PARTS(s.first, s.last, s.ca3, s.sa3); }
+    static Value numbers(const ThreeParallel& p) {
+        return PARTS(p.a1, p.ca1, p.sa1, p.height, p.l2, p.l3, p.x4, p.y4, p.last, p.length);
+    }
+    static Value numbers(const Plan& p) {
+        const Value wrist = p.family == Family::spherical_wrist ? numbers(p.wrist) : Value();
+        const Value parallel = p.family == Family::three_parallel ? numbers(p.parallel) : Value();
+        Value out = PARTS(p.family, p.reversed, p.joint, p.sign, p.chain, p.form);
+        out.add("wrist", wrist).add("parallel", parallel);
+        return out.add(
+            PARTS(p.to_form_left, p.to_form_right, p.virtual_joints, p.on_lanes, p.idealised, p.polish));
+    }
+    static Value numbers(const LoopFrames& f) { return PARTS(f.between, f.first, f.last); }
+    static Value numbers(const GeneralPlan& p) {
+        return PARTS(p.chain, p.length, p.slides, p.frames)
+            .add("order", list_of(p.order, p.regular))
+            .add(PARTS(p.regular, p.sensitivity, p.paired, p.spurious_roots, p.spurious));
+    }
+    static Value numbers(const ThreeTurns& t) { return PARTS(t.h, t.a, t.b, t.constant); }
+    static Value numbers(const PositionFirst& p) {
+        return PARTS(p.serves, p.backwards, p.arm, p.first, p.centre_in_tip, p.wrist);
+    }
+    static Value numbers(const GeneralArm& a) {
+        return PARTS(a.chain, a.plan)
+            .add("position_first", a.position_first.serves ? numbers(a.position_first) : Value())
+            .add("perturbed", list_of(a.perturbed, a.has_perturbed ? 2 : 0))
+            .add(PARTS(a.alone, a.has_perturbed));
+    }
 
-  private:
-    Value all_;
+    // --- the outline -----------------------------------------------------------------------------------
+    static Value rows_of(const Posed& T) {
+        double m[4][4] = {};
+        kinematics::write_matrix(T, m[0]);
+        return numbers(m);
+    }
+    static Value vector_of(const Vec3d& v) {
+        const double entries[3] = {v.x, v.y, v.z};
+        return numbers(entries);
+    }
+    static Value outline(const Plan& plan) {
+        const DhForm& f = plan.form;
+        return PARTS(plan.joint, plan.sign, f.a, f.d, f.ca, f.sa, f.offset, f.parallel, f.meeting)
+            .add("base", rows_of(f.base))
+            .add("tool", rows_of(f.tool));
+    }
+    // A general arm is solved by a wrist behind three joints (`wrist`: whether it is at the base), or by the
+    // loop, whose frames have lengths over the arm's. order: for each formulation as they are tried its
+    // number, the joints behind a0 … a5 and whether it is read backwards; none where three joints are
+    // prismatic.
+    static Value outline(const GeneralArm& arm) {
+        const GeneralPlan& plan = arm.plan;
+        std::vector<Value> axes, points, order, between;
+        for (int i = 0; i < 6; ++i) {
+            axes.push_back(vector_of(plan.chain.axis[i]));
+            points.push_back(vector_of(plan.length * plan.chain.point[i]));
+        }
+        for (const Posed& link : plan.frames.between) between.push_back(rows_of(link));
+        for (int k = 0; k < plan.regular && plan.slides < 3; ++k) {
+            const Formulation form = formulation(plan.order[k]);
+            const Loop loop = make_loop(plan.frames, plan.chain.prismatic, plan.chain.tip, form);
+            order.push_back(std::vector<Value>{plan.order[k], list_of(loop.joint, 6), form.backwards});
+        }
+        Value out;
+        out.add("axes", std::move(axes))
+            .add("points", std::move(points))
+            .add("prismatic", list_of(plan.chain.prismatic, 6))
+            .add("tip", rows_of({plan.chain.tip.R, plan.length * plan.chain.tip.t}))
+            .add("order", std::move(order))
+            .add("between", std::move(between))
+            .add("first", rows_of(plan.frames.first))
+            .add("last", rows_of(plan.frames.last))
+            .add("length", plan.length)
+            .add("perturbed_arms", arm.has_perturbed);
+        if (arm.position_first.serves) out.add("wrist", arm.position_first.backwards);
+        return out;
+    }
+#undef PARTS
 };
-
-Value numbers(const Vec3d& v) { return Parts()("x", v.x)("y", v.y)("z", v.z); }
-Value numbers(const Mat3d& R) {
-    std::vector<Value> rows;
-    for (const auto& row : R.m) rows.push_back(list_of(row, 3));
-    return Parts()("m", Value(std::move(rows)));
-}
-Value numbers(const Posed& T) { return Parts()("R", T.R)("t", T.t); }
-Value numbers(const Turn<double>& t) { return Parts()("c", t.c)("s", t.s); }
-
-Value numbers(const Chain& c) {
-    return Parts()("n", c.n)("axis", list_of(c.axis, c.n))("point", list_of(c.point, c.n))(
-        "prismatic", list_of(c.prismatic, c.n))("tip", c.tip);
-}
-Value numbers(const DhForm& f) {
-    return Parts()("a", f.a)("d", f.d)("ca", f.ca)("sa", f.sa)("offset", f.offset)("parallel", f.parallel)(
-        "meeting", f.meeting)("base", f.base)("tool", f.tool)("length", f.length)("deviation", f.deviation)(
-        "degenerate", f.degenerate);
-}
-Value numbers(const Wrist& w) {
-    return Parts()("ca4", w.ca4)("sa4", w.sa4)("ca5", w.ca5)("sa5", w.sa5)("c_sum", w.c_sum)(
-        "s_sum", w.s_sum)("c_diff", w.c_diff)("s_diff", w.s_diff)("inv", w.inv)("right_angled",
-                                                                                w.right_angled);
-}
-Value numbers(const ThreeJoints& g) {
-    return Parts()("kind", g.kind)("a1", g.a1)("ca1", g.ca1)("sa1", g.sa1)("d2", g.d2)("a2", g.a2)(
-        "ca2", g.ca2)("sa2", g.sa2)("w", g.w)("length", g.length)("wrist_reach", g.wrist_reach)("w_angle",
-                                                                                                g.w_angle);
-}
-Value numbers(const SphericalWrist& s) {
-    return Parts()("first", s.first)("last", s.last)("ca3", s.ca3)("sa3", s.sa3);
-}
-Value numbers(const ThreeParallel& p) {
-    return Parts()("a1", p.a1)("ca1", p.ca1)("sa1", p.sa1)("height", p.height)("l2", p.l2)("l3", p.l3)(
-        "x4", p.x4)("y4", p.y4)("last", p.last)("length", p.length);
-}
-Value numbers(const Plan& p) {
-    const bool wrist = p.family == Family::spherical_wrist;
-    const bool parallel = p.family == Family::three_parallel;
-    return Parts()("family", p.family)("reversed", p.reversed)("joint", p.joint)("sign", p.sign)(
-        "chain", numbers(p.chain))("form", p.form)("wrist", wrist ? numbers(p.wrist) : Value())(
-        "parallel", parallel ? numbers(p.parallel) : Value())("to_form_left", p.to_form_left)(
-        "to_form_right", p.to_form_right)("virtual_joints", p.virtual_joints)("on_lanes", p.on_lanes)(
-        "idealised", p.idealised)("polish", p.polish);
-}
-Value numbers(const LoopFrames& f) { return Parts()("between", f.between)("first", f.first)("last", f.last); }
-Value numbers(const GeneralPlan& p) {
-    return Parts()("chain", p.chain)("length", p.length)("slides", p.slides)("frames", p.frames)(
-        "order", list_of(p.order, p.regular))("regular", p.regular)("sensitivity", p.sensitivity)(
-        "paired", p.paired)("spurious_roots", p.spurious_roots)("spurious", p.spurious);
-}
-Value numbers(const ThreeTurns& t) { return Parts()("h", t.h)("a", t.a)("b", t.b)("constant", t.constant); }
-Value numbers(const PositionFirst& p) {
-    return Parts()("serves", p.serves)("backwards", p.backwards)("arm", p.arm)("first", p.first)(
-        "centre_in_tip", p.centre_in_tip)("wrist", p.wrist);
-}
-Value numbers(const GeneralArm& a) {
-    return Parts()("chain", a.chain)("plan", a.plan)(
-        "position_first", a.position_first.serves ? numbers(a.position_first) : Value())(
-        "perturbed", list_of(a.perturbed, a.has_perturbed ? 2 : 0))("alone", a.alone)("has_perturbed",
-                                                                                      a.has_perturbed);
-}
-
-// --- the outline ---------------------------------------------------------------------------------------
-
-Value rows_of(const Posed& T) {
-    std::vector<Value> rows;
-    const double t[3] = {T.t.x, T.t.y, T.t.z}, last[4] = {0, 0, 0, 1};
-    for (int i = 0; i < 3; ++i) {
-        Value row = list_of(T.R.m[i], 3);
-        row.items.push_back(t[i]);
-        rows.push_back(std::move(row));
-    }
-    rows.push_back(list_of(last, 4));
-    return rows;
-}
-
-Value form_of(const Plan& plan) {
-    const DhForm& f = plan.form;
-    return Parts()("joint", plan.joint)("sign", plan.sign)("a", f.a)("d", f.d)("ca", f.ca)("sa", f.sa)(
-        "offset", f.offset)("parallel", f.parallel)("meeting", f.meeting)("base", rows_of(f.base))(
-        "tool", rows_of(f.tool));
-}
-
-Value vector_of(const Vec3d& v) {
-    const double entries[3] = {v.x, v.y, v.z};
-    return list_of(entries, 3);
-}
-
-// A general arm is solved by a wrist behind three joints (`wrist`: whether it is at the base), or by the
-// loop, whose frames have lengths over the arm's. order: for each formulation as they are tried its number,
-// the joints behind a0 … a5 and whether it is read backwards; none where three joints are prismatic.
-Value loop_of(const GeneralArm& arm) {
-    const GeneralPlan& plan = arm.plan;
-    std::vector<Value> axes, points, order, between;
-    for (int i = 0; i < 6; ++i) {
-        axes.push_back(vector_of(plan.chain.axis[i]));
-        points.push_back(vector_of(plan.length * plan.chain.point[i]));
-    }
-    for (const Posed& link : plan.frames.between) between.push_back(rows_of(link));
-    for (int k = 0; k < plan.regular && plan.slides < 3; ++k) {
-        const Formulation form = formulation(plan.order[k]);
-        const Loop loop = make_loop(plan.frames, plan.chain.prismatic, plan.chain.tip, form);
-        order.push_back(std::vector<Value>{plan.order[k], list_of(loop.joint, 6), form.backwards});
-    }
-    Parts out;
-    out("axes", Value(std::move(axes)))("points", Value(std::move(points)))("prismatic",
-                                                                            list_of(plan.chain.prismatic, 6))(
-        "tip", rows_of({plan.chain.tip.R, plan.length * plan.chain.tip.t}))("order", Value(std::move(order)))(
-        "between", Value(std::move(between)))("first", rows_of(plan.frames.first))(
-        "last", rows_of(plan.frames.last))("length", plan.length)("perturbed_arms", arm.has_perturbed);
-    if (arm.position_first.serves) out("wrist", arm.position_first.backwards);
-    return out;
-}
 
 }  // namespace
 
 std::pair<std::string, Value> plan_numbers(const BuiltArm& built) {
     const Arm& arm = *built.arm;
-    if (arm.has_plan) return {"closed", numbers(arm.plan)};
-    if (arm.is_general) return {"general", numbers(arm.general)};
-    return {arm.has_few_joints ? "few_joints" : "any", numbers(arm.plan.chain)};
+    if (arm.has_plan) return {"closed", Describe::numbers(arm.plan)};
+    if (arm.is_general) return {"general", Describe::numbers(arm.general)};
+    return {arm.has_few_joints ? "few_joints" : "any", Describe::numbers(arm.plan.chain)};
 }
 
 Value plan_outline(const BuiltArm& built) {
     const Arm& arm = *built.arm;
-    if (arm.has_plan) return Parts()("form", form_of(arm.plan));
-    return arm.is_general ? Value(Parts()("loop", loop_of(arm.general))) : Value();
+    Value out;
+    if (arm.has_plan) return out.add("form", Describe::outline(arm.plan));
+    return arm.is_general ? out.add("loop", Describe::outline(arm.general)) : out;
 }
 
 bool has_hidden_determinant(const BuiltArm& built) {

@@ -26,6 +26,10 @@ struct Value {
         items.push_back(std::move(part));
         return *this;
     }
+    Value& add(const Value& parts) {
+        for (std::size_t k = 0; k < parts.items.size(); ++k) add(parts.names[k], parts.items[k]);
+        return *this;
+    }
 };
 
 }  // namespace cspace

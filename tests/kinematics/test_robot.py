@@ -167,12 +167,12 @@ def test_the_compiled_half_defends_itself():
     assert bare.dof == 0
     with pytest.raises((AttributeError, TypeError)):
         bare.fk(np.zeros(6))
-    with pytest.raises(TypeError, match="not initialised"):
-        bare._chain_rows(*[None] * 12)
+    q = np.zeros((2, 6))
+    with pytest.raises(TypeError, match="must be a robot"):
+        _core._tree_rows(bare, q, None, None, None, None, 1)
     robot = robots.arm(1)
     with pytest.raises(TypeError, match="is immutable"):
         robot.__init__(robot.description)
-    q = np.zeros((2, 6))
     for arguments in [
         (99, q, None, None, None, np.empty((2, 4, 4)), None, None, None, 63, False, 1),
         (0, q, None, None, None, np.empty((1, 4, 4)), None, None, None, 63, False, 1),
@@ -180,8 +180,8 @@ def test_the_compiled_half_defends_itself():
         (0, q[:, ::2], None, None, None, None, None, None, None, 63, False, 1),
         (0, q, None, None, None, None, None, np.empty((2, 6, 6)), None, 63, False, 1),
     ]:
-        with pytest.raises(ValueError, match=r"no frame|wrong size|two axes|needs qd"):
-            robot._chain_rows(*arguments)
+        with pytest.raises((TypeError, ValueError), match=r"frame number|wrong size|incompatible|needs qd"):
+            _core._chain_rows(robot, *arguments)
     assembly = copy.copy(robot._assembly)
     assembly.parent = np.array([-1, 0, 1, 5, 3, 4])
     with pytest.raises(ValueError, match="do not fit together"):

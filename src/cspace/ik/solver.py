@@ -114,12 +114,9 @@ class Solver(_core.SolverBase, KinematicModel):
     @cached_property
     def swivel_solver(self) -> _core.SwivelSolver:
         """The closed form by the swivel. Raises InputError for an arm without two spherical joints."""
-        chain = self.chain
-        if chain.joint_types != "R" * 7:
+        if self.joint_types != "R" * 7:
             raise InputError(f"{self.name} has no swivel, which needs seven revolute joints")
-        made = _core.SwivelSolver(
-            np.ascontiguousarray(chain.axes), np.ascontiguousarray(chain.points), np.array(chain.T_zero)
-        )
+        made = _core.SwivelSolver(self)
         if not made.serves:
             raise InputError(
                 f"{self.name} has no swivel in closed form: axes 1, 2, 3 must meet in a point, axes 5, 6, 7"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from cspace import _core
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.kinematics.batch import Batch, check_output, refuse_infinite, rows_of
@@ -63,5 +64,5 @@ def center_of_mass_jacobian(
 def _compute(robot: KinematicModel, batch: Batch, center: Array | None, columns: Array | None) -> None:
     if robot.mass == 0.0:
         raise InputError(f"no link of {robot.name} has a mass; add inertial data to its description")
-    if not robot._tree_rows(batch.q, batch.T_world_base, None, center, columns, batch.threads):
+    if not _core._tree_rows(robot, batch.q, batch.T_world_base, None, center, columns, batch.threads):
         refuse_infinite(batch)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from numpy.typing import ArrayLike
 
+from cspace import _core
 from cspace.arrays import Array
 from cspace.kinematics.batch import Batch, check_output, frame_number, refuse_infinite, rows_of
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -47,7 +48,7 @@ def forward_kinematics_all(
     """
     batch = rows_of(robot, q, T_world_base=T_world_base, threads=threads)
     T = check_output(out, (*batch.shape, len(robot.frames), 4, 4))
-    if not robot._tree_rows(batch.q, batch.T_world_base, T, None, None, batch.threads):
+    if not _core._tree_rows(robot, batch.q, batch.T_world_base, T, None, None, batch.threads):
         refuse_infinite(batch)
     return T
 
@@ -69,7 +70,8 @@ def compute_chain(
     chosen: bit r set where row r of the Jacobian counts for the singular values. Raises InputError for NaN
     in q.
     """
-    finite = robot._chain_rows(
+    finite = _core._chain_rows(
+        robot,
         frame,
         batch.q,
         batch.qd,

@@ -1,11 +1,10 @@
-// solver.solve(T, locked={…}): the compiled entry for one goal with joints locked at numbers. The first call
-// with a set of joints goes through cspace.ik, which finds out whether they leave freedom.
+// solver.solve(T, near=q) and solver.solve(T, locked={…}): the compiled entry for one goal with one keyword.
+// The first call with a set of joints goes through cspace.ik, which finds out whether they leave freedom.
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "cspace/tolerances.hpp"
-#include "ik_shared.hpp"
+#include "ik.hpp"
 
 using namespace cspace;
 
@@ -43,10 +42,28 @@ unsigned read_locked(PyObject* names, PyObject* locked_values, double* at) {
 
 }  // namespace
 
-PyObject* ik_locked(PyObject* self, const double* goal, PyObject* locked_values) {
-    const auto* object = reinterpret_cast<const SolverObject*>(self);
+PyObject* solve_near(PyObject* self, const double* goal, PyObject* near) {
+    ik::Solver& solver = *solver_object(self)->core;
+    const int n = solver.chain().n;
+    double copy[ik::max_joints], q[ik::max_joints];
+    const double* seed = read_in_place(near, 0, n, copy);
+    if (!seed || !std::all_of(seed, seed + n, [](double x) { return std::fabs(x) <= tolerance::farthest; }))
+        return nullptr;
+    std::int8_t branch = -1;
+    PyObject* about = nullptr;
+    if (solver.is_redundant()) {
+        about = solver_object(self)->nearest_about;
+        if (!about || !solver.redundant().find_nearest_turned(goal, seed, q)) return nullptr;
+    } else if (!ik::nearest_listed(solver.arm(), solver.lower(), solver.upper(), goal, seed, q, &branch)) {
+        return nullptr;
+    }
+    return new_solutions(self, goal, {1, q, n, &branch, nullptr, ik::Status::exact}, about);
+}
+
+PyObject* solve_locked(PyObject* self, const double* goal, PyObject* locked) {
+    const SolverObject* object = solver_object(self);
     double at[ik::max_joints] = {};
-    const unsigned joints = read_locked(object->joint_names, locked_values, at);
+    const unsigned joints = read_locked(object->joint_names, locked, at);
     const std::vector<LockedSet>& known = object->locked_sets;
     const auto set =
         std::find_if(known.begin(), known.end(), [joints](const LockedSet& k) { return k.joints == joints; });
@@ -55,15 +72,8 @@ PyObject* ik_locked(PyObject* self, const double* goal, PyObject* locked_values)
     double q[ik::max_solutions * ik::max_joints];
     // Where nothing reaches the goal there is more to say.
     if (!ik::solve_locked_goal(*set->plan, goal, at, found, q)) return nullptr;
-    const int n = object->solver->chain().n;
-    SolutionsObject* made = new_solutions(self, goal, found.count, n, found.status);
-    if (!made) return nullptr;
-    made->complete = found.complete;
-    std::copy(q, q + n * found.count, made->q);
-    for (int k = 0; k < found.count; ++k) {
-        branches_of(made)[k] = std::int8_t(found.branch[k]);
-        self_motions_of(made)[k] = found.self_motion[k];
-    }
-    made->about = Py_XNewRef(object->locked_about);
-    return reinterpret_cast<PyObject*>(made);
+    SolutionRows rows = rows_of(found);
+    rows.q = q;
+    rows.stride = object->core->chain().n;
+    return new_solutions(self, goal, rows, object->locked_about);
 }
