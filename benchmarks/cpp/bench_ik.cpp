@@ -9,7 +9,7 @@
 
 #include "bench.hpp"
 #include "cspace/ik/arm.hpp"
-#include "kernels/ik_closed_form.hpp"
+#include "kernels/ik.hpp"
 
 using namespace cspace;
 

@@ -6,10 +6,10 @@
 #define CSPACE_BINDINGS(bind)                                                                              \
     bind(math) bind(navigation_curves) bind(navigation_curves_fast) bind(kinematics) bind(kinematics_rows) \
         bind(spatial_rotations) bind(ik_subproblems) bind(ik_solver) bind(robot) bind(ik_result) bind(ik)  \
-            bind(ik_self_motion) bind(ik_goals) bind(ik_numeric) bind(ik_redundancy) bind(ik_arm_angle)    \
-                bind(ik_tasks) bind(ik_tracking) bind(ik_description) bind(navigation_route)               \
-                    bind(navigation_grid) bind(navigation_any_angle) bind(navigation_coverage)             \
-                        bind(navigation_cars) bind(navigation_following) bind(navigation_fields_brushfire) \
+            bind(ik_self_motion) bind(ik_goals) bind(ik_numeric) bind(ik_redundancy) bind(ik_tasks)        \
+                bind(ik_tracking) bind(ik_description) bind(navigation_route) bind(navigation_grid)        \
+                    bind(navigation_any_angle) bind(navigation_coverage) bind(navigation_cars)             \
+                        bind(navigation_following) bind(navigation_fields_brushfire)                       \
                             bind(navigation_polygons) bind(navigation_cells) bind(navigation_bugs)         \
                                 bind(navigation_fields_grid) bind(navigation_fields_potential)             \
                                     bind(navigation_fields_harmonic) bind(navigation_fields_function)      \
@@ -18,6 +18,24 @@
 
 #define CSPACE_DECLARE_BINDING(part) void bind_##part(nanobind::module_& m);
 CSPACE_BINDINGS(CSPACE_DECLARE_BINDING)
+
+// What f returns; null, with what it throws as the error of Python.
+template <class F>
+PyObject* or_error(F f) noexcept {
+    try {
+        return f();
+    } catch (nanobind::python_error& error) {
+        error.restore();
+    } catch (const nanobind::builtin_exception& error) {
+        const bool is_type = error.type() == nanobind::exception_type::type_error;
+        PyErr_SetString(is_type ? PyExc_TypeError : PyExc_ValueError, error.what());
+    } catch (const std::bad_alloc&) {
+        PyErr_NoMemory();
+    } catch (const std::exception& error) {
+        PyErr_SetString(PyExc_RuntimeError, error.what());
+    }
+    return nullptr;
+}
 
 // Adds a raw type to the module, for good.
 PyTypeObject* add_type(nanobind::module_& m, PyType_Spec& spec, PyTypeObject* base = nullptr);

@@ -8,8 +8,8 @@
 #include <limits>
 #include <tuple>
 
+#include "arrays.hpp"
 #include "bindings.hpp"
-#include "kernels/ik_closed_form.hpp"
 #include "library/ik_arm.hpp"
 
 namespace nb = nanobind;
@@ -51,21 +51,11 @@ namespace {
 
 constexpr int most_threads = 1024;
 
-PyObject* answer_slowly(PyObject* solver, const ik::BuiltArm& arm, const double* goal,
-                        const double* unconstrained) {
-    return new_solutions(solver, goal, rows_of(ik::solve_goal(arm, goal, unconstrained)));
-}
-
 // Null without an error for an invalid goal.
 PyObject* answer_single(PyObject* solver, const ik::BuiltArm& arm, const double* goal) {
-    double q[ik::max_branches * 6];
-    std::int8_t branch[ik::max_branches];
-    int count;
-    const ik::FastPath quick = kernels::ik_one(*arm.arm, goal, q, branch, &count);
-    if (quick == ik::FastPath::refused) return nullptr;
-    if (quick == ik::FastPath::doubtful) return answer_slowly(solver, arm, goal, nullptr);
-    const ik::Status status = count ? ik::Status::exact : ik::Status::unreachable;
-    return new_solutions(solver, goal, {count, q, 6, branch, nullptr, status});
+    ik::SolutionStore store;
+    ik::SolutionRows rows;
+    return ik::list_solutions(arm, goal, nullptr, store, rows) ? new_solutions(solver, goal, rows) : nullptr;
 }
 
 // The answer where near= or locked= is the one keyword of one goal; null without an error for what is not
@@ -98,9 +88,6 @@ PyObject* solver_solve(PyObject* self, const char* method, PyObject* const* args
 
 namespace {
 
-void require(bool fits) {
-    if (!fits) throw nb::type_error("the arm of the solver and the sizes of the arrays do not fit together");
-}
 const ik::BuiltArm& arm_for_points(const SolverArgument& solver, bool sizes_match) {
     if (!solver.arm().has_few_joints || !sizes_match)
         throw nb::type_error("points (3,) take an arm of up to three joints");
@@ -110,7 +97,7 @@ const ik::BuiltArm& arm_for_points(const SolverArgument& solver, bool sizes_matc
 nb::object solve_single(SolverArgument solver, nb::handle goal) {
     double copy[16];
     const double* T = read_in_place(goal.ptr(), 4, 4, copy);
-    require(solver.arm().room && T);
+    require_sizes(solver.arm().room && T);
     PyObject* answer = answer_single(solver.object, solver.arm(), T);
     return answer || PyErr_Occurred() ? solutions_from(answer) : nb::none();
 }
@@ -118,19 +105,20 @@ nb::object solve_single(SolverArgument solver, nb::handle goal) {
 nb::object solve_near_singular(SolverArgument solver, const ConstDoubles& goal,
                                const ConstDoubles& unconstrained) {
     const ik::BuiltArm& arm = solver.arm();
-    require(arm.room && goal.size == 16 && unconstrained.size == arm.dof);
-    return solutions_from(answer_slowly(solver.object, arm, goal.data, unconstrained.data));
+    require_sizes(arm.room && goal.size == 16 && unconstrained.size == arm.dof);
+    const ik::Solutions found = ik::solve_goal(arm, goal.data, unconstrained.data);
+    return solutions_from(new_solutions(solver.object, goal.data, ik::rows_of(found)));
 }
 
 std::tuple<Doubles, double, double> find_nearest_pose(SolverArgument solver, const ConstDoubles& goal,
                                                       double stiffness) {
-    require(goal.size == 16);
+    require_sizes(goal.size == 16);
     const ik::NearestMiss best = ik::nearest_to_goal(solver.arm(), goal.data, stiffness);
     return {Doubles({solver.arm().dof}, best.q), best.position, best.rotation};
 }
 
 bool exceeds_reach(SolverArgument solver, const ConstDoubles& goal) {
-    require(goal.size == 16);
+    require_sizes(goal.size == 16);
     return solver.core().exceeds_reach(goal.data);
 }
 
@@ -140,30 +128,13 @@ nb::object solve_position(SolverArgument solver, const ConstDoubles& p) {
     const double goal[16] = {none, none, none, p.data[0], none, none, none, p.data[1],
                              none, none, none, p.data[2], none, none, none, none};
     const ik::Solutions found = ik::solve_point(arm, {p.data[0], p.data[1], p.data[2]});
-    return solutions_from(new_solutions(solver.object, goal, rows_of(found)));
+    return solutions_from(new_solutions(solver.object, goal, ik::rows_of(found)));
 }
 
 std::tuple<Doubles, double> find_nearest_position(SolverArgument solver, const ConstDoubles& p) {
     const ik::BuiltArm& arm = arm_for_points(solver, p.size == 3);
     const ik::NearestMiss best = ik::nearest_to_point(arm, {p.data[0], p.data[1], p.data[2]});
     return {Doubles({arm.dof}, best.q), best.position};
-}
-
-// What the classification saw, for cspace.ik to put into words; None for what is no solver.
-nb::object describe_geometry(nb::handle object) {
-    SolverArgument solver;
-    if (!solver.read(object.ptr())) return nb::none();
-    const ik::ArmGeometry seen = ik::geometry_of(solver.arm());
-    nb::dict out;
-    out["family"] = seen.family;
-    out["general"] = seen.is_general;
-    out["virtual_joints"] = seen.virtual_joints;
-    out["first_three"] = seen.first_three;
-    out["reversed"] = seen.reversed;
-    out["polish"] = seen.polish;
-    out["deviation"] = seen.deviation;
-    out["length"] = seen.length;
-    return out;
 }
 
 // Goals (n, 4, 4) or points (n, 3) into q (n, k_max, dof), count (n,) and status (n,). Returns the index of
@@ -173,7 +144,8 @@ std::size_t solve_many(SolverArgument solver, const ConstDoubles& goals, const D
                        const Plain<std::int64_t>& count, const Plain<std::uint8_t>& status, int threads) {
     const ik::BuiltArm& arm = numbers == 3 ? arm_for_points(solver, true) : solver.arm();
     const npy_intp n = count.size;
-    require(arm.room && goals.size == numbers * n && q.size == n * arm.room * arm.dof && status.size == n);
+    require_sizes(arm.room && goals.size == numbers * n && q.size == n * arm.room * arm.dof &&
+                  status.size == n);
     const nb::gil_scoped_release release;
     return solve(arm, {goals.data, std::size_t(n), q.data, count.data, status.data,
                        std::clamp(threads, 1, most_threads)});
@@ -202,5 +174,4 @@ void bind_ik(nb::module_& m) {
           "threads"_a, "Solves many goals; returns the index of the first that is not a pose.");
     m.def("_ik_positions", solve_many<3, ik::solve_points>, "solver"_a, "points"_a, "q"_a, "count"_a,
           "status"_a, "threads"_a, "Solves many position goals, likewise.");
-    m.def("_ik_geometry", describe_geometry, "solver"_a, "What the classification of an arm saw.");
 }

@@ -57,29 +57,9 @@ PyObject* solve_near(PyObject* solver, const double* goal, PyObject* seed);
 PyObject* solve_locked(PyObject* solver, const double* goal, PyObject* locked);
 
 // --- the result ----------------------------------------------------------------------------------------
-// What a result holds: rows q, `stride` numbers apart, each with a branch number and a flag.
-struct SolutionRows {
-    int count;
-    const double* q;
-    int stride;
-    const std::int8_t* branch;
-    const char* self_motion;  // null: no row stands for a self-motion
-    cspace::ik::Status status;
-    bool complete = true;
-};
-inline SolutionRows rows_of(const cspace::ik::Solutions& found) {
-    return {found.count,
-            found.q[0],
-            cspace::ik::max_arm,
-            found.branch,
-            reinterpret_cast<const char*>(found.self_motion),
-            found.status,
-            found.complete};
-}
-
 // A result with rows of the joints of a solver; about: of an invalid goal or leaves freedom, a
 // cspace.ik.context.About, or null. Null with an error set.
-PyObject* new_solutions(PyObject* solver, const double* goal, const SolutionRows& rows,
+PyObject* new_solutions(PyObject* solver, const double* goal, const cspace::ik::SolutionRows& rows,
                         PyObject* about = nullptr);
 inline nanobind::object solutions_from(PyObject* result) {
     if (!result) throw nanobind::python_error();

@@ -13,17 +13,17 @@ using namespace cspace;
 
 namespace {
 
-nb::object to_python(const Value& value) {
+nb::object to_python(const ik::Value& value) {
     switch (value.kind) {
-        case Value::Kind::truth:
+        case ik::Value::Kind::truth:
             return nb::bool_(value.number != 0);
-        case Value::Kind::integer:
+        case ik::Value::Kind::integer:
             return nb::int_(int(value.number));
-        case Value::Kind::real:
+        case ik::Value::Kind::real:
             return nb::float_(value.number);
-        case Value::Kind::list: {
+        case ik::Value::Kind::list: {
             nb::list out;
-            for (const Value& item : value.items) out.append(to_python(item));
+            for (const ik::Value& item : value.items) out.append(to_python(item));
             return out;
         }
         default: {
@@ -35,13 +35,20 @@ nb::object to_python(const Value& value) {
     }
 }
 
+// None for what is no solver.
+nb::object describe_geometry(nb::handle object) {
+    SolverArgument solver;
+    return solver.read(object.ptr()) ? to_python(ik::arm_geometry(solver.arm())) : nb::none();
+}
+
 nb::object describe_numbers(SolverArgument solver) {
     if (!solver.arm().room) throw nb::type_error("_ik_numbers takes a solver without redundant joints");
     const auto [kind, plan] = ik::plan_numbers(solver.arm());
     return nb::make_tuple(kind, to_python(plan));
 }
 
-double determinant(SolverArgument solver, const std::vector<double>& goal, int formulation, double a0) {
+double compute_determinant(SolverArgument solver, const std::vector<double>& goal, int formulation,
+                           double a0) {
     if (!ik::has_hidden_determinant(solver.arm()) || goal.size() != 16)
         throw nb::type_error("_ik_determinant takes a general arm and the 16 numbers of a goal");
     return ik::hidden_determinant(solver.arm(), goal.data(), formulation, a0);
@@ -53,9 +60,10 @@ void bind_ik_description(nb::module_& m) {
     m.def(
         "_ik_numbers", &describe_numbers, "solver"_a,
         "How the arm of a solver is solved (closed, general, few_joints, any) and the numbers of its plan.");
+    m.def("_ik_geometry", &describe_geometry, "solver"_a, "What the classification of an arm saw.");
     m.def(
         "_ik_plan", [](SolverArgument solver) { return to_python(ik::plan_outline(solver.arm())); },
         "solver"_a, "What a solver rests on.");
-    m.def("_ik_determinant", &determinant, "solver"_a, "goal"_a, "formulation"_a, "a0"_a,
+    m.def("_ik_determinant", &compute_determinant, "solver"_a, "goal"_a, "formulation"_a, "a0"_a,
           "The determinant of a general arm at one hidden angle.");
 }

@@ -84,10 +84,10 @@ nb::object to_arrays(const ik::GoalRequest& request, const std::vector<ik::GoalA
                           self_motion);
 }
 
-nb::object answer(SolverArgument solver, SolverArgument asked, Goals goals, const std::vector<int>& columns,
-                  Row values, int first, bool is_partial, std::optional<Matrix> seeds, int samples,
-                  std::optional<std::vector<int>> locked, std::optional<Matrix> at, int threads,
-                  bool is_single, nb::handle about) {
+nb::object answer_rows(SolverArgument solver, SolverArgument asked, Goals goals,
+                       const std::vector<int>& columns, Row values, int first, bool is_partial,
+                       std::optional<Matrix> seeds, int samples, std::optional<std::vector<int>> locked,
+                       std::optional<Matrix> at, int threads, bool is_single, nb::handle about) {
     ik::Solver& core = asked.core();
     const int own = solver.core().chain().n;
     const std::size_t n = std::size_t(core.chain().n), N = goals.shape(0);
@@ -136,7 +136,7 @@ Doubles find_nearest_poses(SolverArgument solver, Goals goals, double stiffness,
 }  // namespace
 
 void bind_ik_goals(nb::module_& m) {
-    m.def("_ik_answer", &answer, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
+    m.def("_ik_answer", &answer_rows, "solver"_a, "asked"_a, "goals"_a, "columns"_a, "values"_a, "first"_a,
           "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
           "is_single"_a, "about"_a,
           "Answers goals that leave freedom: a result for one goal, arrays for many.");

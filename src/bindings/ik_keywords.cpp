@@ -68,12 +68,9 @@ PyObject* solve_locked(PyObject* self, const double* goal, PyObject* locked) {
     const auto set =
         std::find_if(known.begin(), known.end(), [joints](const LockedSet& k) { return k.joints == joints; });
     if (!joints || set == known.end()) return nullptr;
-    ik::Solutions found;
-    double q[ik::max_solutions * ik::max_joints];
+    ik::LockedStore store;
+    ik::SolutionRows rows;
     // Where nothing reaches the goal there is more to say.
-    if (!ik::solve_locked_goal(*set->plan, goal, at, found, q)) return nullptr;
-    SolutionRows rows = rows_of(found);
-    rows.q = q;
-    rows.stride = object->core->chain().n;
+    if (!ik::solve_locked_goal(*set->plan, goal, at, store, rows) || !rows.count) return nullptr;
     return new_solutions(self, goal, rows, object->locked_about);
 }

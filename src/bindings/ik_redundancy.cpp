@@ -20,10 +20,6 @@ namespace {
 
 using ik::RedundantSolver;
 
-void require_sizes(bool fit) {
-    if (!fit) throw nb::value_error("arrays of matching sizes are needed");
-}
-
 // Fills q (N, room, n) with NaN behind the solutions; the solutions themselves stand for what they show.
 void solve_rows(SolverArgument solver, const std::vector<int>& locked_joint, Matrix at, Goals goals,
                 Row unconstrained, Array<double, nb::ndim<3>> q, Array<std::int8_t, nb::ndim<2>> branch,
@@ -32,10 +28,9 @@ void solve_rows(SolverArgument solver, const std::vector<int>& locked_joint, Mat
     RedundantSolver& arm = solver.core().redundant();
     const ik::LockedArm& locked = arm.lock(locked_joint);
     const std::size_t n = std::size_t(arm.chain().n), N = goals.shape(0), room = q.shape(1);
-    require_sizes(at.shape(1) == n && (at.shape(0) == N || at.shape(0) == 1) && q.shape(0) == N &&
-                  q.shape(2) == n && branch.shape(0) == N && self_motion.shape(0) == N &&
-                  branch.shape(1) == room && self_motion.shape(1) == room && count.shape(0) == N &&
-                  status.shape(0) == N && (unconstrained.shape(0) == n || unconstrained.shape(0) == 0));
+    require_sizes(at.shape(1) == n && (at.shape(0) == N || at.shape(0) == 1) && has_shape(q, N, room, n) &&
+                  has_shape(branch, N, room) && has_shape(self_motion, N, room) && has_shape(count, N) &&
+                  has_shape(status, N) && (unconstrained.shape(0) == n || unconstrained.shape(0) == 0));
     const nb::gil_scoped_release release;
     arm.solve(locked, {goals.data(), N, at.data(), at.shape(0) != 1,
                        unconstrained.shape(0) ? unconstrained.data() : nullptr, room, q.data(), branch.data(),
@@ -76,8 +71,26 @@ void serve_locked(SolverArgument solver, const std::vector<int>& locked_joint, n
     slots.locked_sets.push_back(made);
 }
 
+// The solver of an arm by the swivel of its elbow.
+const RedundantSolver& swivel_solver(const SolverArgument& solver, bool sizes_match) {
+    const RedundantSolver& arm = solver.core().redundant();
+    if (!arm.has_swivel()) throw nb::value_error("the arm has no swivel");
+    require_sizes(sizes_match);
+    return arm;
+}
+void solve_swivels(SolverArgument solver, Goals goals, Row swivels, Array<double, nb::shape<-1, 8, 7>> q) {
+    const std::size_t n = swivels.shape(0), N = goals.shape(0);
+    const RedundantSolver& arm = swivel_solver(solver, (N == 1 || N == n) && q.shape(0) == n);
+    const nb::gil_scoped_release release;
+    arm.solve_swivels(goals.data(), N == 1, swivels.data(), n, q.data());
+}
+void measure_swivels(SolverArgument solver, Array<const double, nb::shape<-1, 7>> q, RowOut out) {
+    const RedundantSolver& arm = swivel_solver(solver, out.shape(0) == q.shape(0));
+    for (std::size_t i = 0; i < q.shape(0); ++i) out.data()[i] = arm.swivel_at(q.data() + 7 * i);
+}
+
 using Spans = Array<const double, nb::shape<-1, 2>>;
-std::vector<ik::Span> united(const Spans& intervals) {
+std::vector<ik::Span> unite_rows(const Spans& intervals) {
     std::vector<ik::Span> out;
     for (std::size_t k = 0; k < intervals.shape(0); ++k)
         out.emplace_back(intervals.data()[2 * k], intervals.data()[2 * k + 1]);
@@ -119,9 +132,15 @@ void bind_ik_redundancy(nb::module_& m) {
     m.def("_ik_intervals", &intervals_of, "solver"_a, "parameter"_a, "goal"_a,
           "The feasible intervals of one joint.");
     m.def(
-        "_ik_union", [](Spans intervals) { return united(intervals); }, "intervals"_a,
+        "_ik_has_swivel", [](SolverArgument solver) { return solver.core().redundant().has_swivel(); },
+        "solver"_a, "Whether axes 1, 2, 3 and 5, 6, 7 of an arm of seven revolute joints meet.");
+    m.def("_ik_swivel_rows", &solve_swivels, "solver"_a, "goals"_a, "swivels"_a, "q"_a,
+          "Every solution at given swivels.");
+    m.def("_ik_swivels", &measure_swivels, "solver"_a, "q"_a, "out"_a, "The swivel of configurations.");
+    m.def(
+        "_ik_union", [](Spans intervals) { return unite_rows(intervals); }, "intervals"_a,
         "Intervals (k, 2) as disjoint ones, ascending.");
     m.def(
-        "_ik_spread", [](Spans intervals, int n) { return ik::spread_values(united(intervals), n); },
+        "_ik_spread", [](Spans intervals, int n) { return ik::spread_values(unite_rows(intervals), n); },
         "intervals"_a, "n"_a, "The middles of n equal parts of all that intervals (k, 2) cover.");
 }

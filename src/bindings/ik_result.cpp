@@ -35,7 +35,7 @@ SolutionsObject* object_of(PyObject* self) { return reinterpret_cast<SolutionsOb
 
 }  // namespace
 
-PyObject* new_solutions(PyObject* solver, const double* goal, const SolutionRows& rows, PyObject* about) {
+PyObject* new_solutions(PyObject* solver, const double* goal, const ik::SolutionRows& rows, PyObject* about) {
     if (!solutions_type) {
         PyObject* room = PyImport_ImportModule("cspace.ik.solutions");
         if (!room) return nullptr;
@@ -65,23 +65,23 @@ PyObject* new_solutions(PyObject* solver, const double* goal, const SolutionRows
 namespace {
 
 // A solver may hold its own results as an attribute, so results take part in the search for cycles.
-int traverse(PyObject* self, visitproc visit, void* arg) {
+int visit_references(PyObject* self, visitproc visit, void* arg) {
     Py_VISIT(Py_TYPE(self));
     Py_VISIT(object_of(self)->solver);
     Py_VISIT(object_of(self)->note);
     Py_VISIT(object_of(self)->about);
     return 0;
 }
-int clear(PyObject* self) {
+int clear_references(PyObject* self) {
     Py_CLEAR(object_of(self)->solver);
     Py_CLEAR(object_of(self)->note);
     Py_CLEAR(object_of(self)->about);
     return 0;
 }
-void destroy(PyObject* self) {
+void destroy_result(PyObject* self) {
     PyTypeObject* type = Py_TYPE(self);
     PyObject_GC_UnTrack(self);
-    clear(self);
+    clear_references(self);
     type->tp_free(self);
     Py_DECREF(type);
 }
@@ -120,8 +120,8 @@ PyObject* get_is_self_motion(PyObject* self, void*) {
         PyTuple_SET_ITEM(list, k, PyBool_FromLong(s->self_motions()[k]));
     return list;
 }
-Py_ssize_t length(PyObject* self) { return object_of(self)->count; }
-int truth(PyObject* self) { return object_of(self)->count > 0; }
+Py_ssize_t count_rows(PyObject* self) { return object_of(self)->count; }
+int has_rows(PyObject* self) { return object_of(self)->count > 0; }
 
 PyMemberDef members[] = {
     {"solver", T_OBJECT, offsetof(SolutionsObject, solver), READONLY, "The solver that was asked."},
@@ -139,13 +139,13 @@ PyGetSetDef attributes[] = {
      nullptr},
     {"_is_self_motion", get_is_self_motion, nullptr, "Which rows stand for a self-motion.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
-PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy)},
-                       {Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
-                       {Py_tp_clear, reinterpret_cast<void*>(&clear)},
+PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy_result)},
+                       {Py_tp_traverse, reinterpret_cast<void*>(&visit_references)},
+                       {Py_tp_clear, reinterpret_cast<void*>(&clear_references)},
                        {Py_tp_members, members},
                        {Py_tp_getset, attributes},
-                       {Py_sq_length, reinterpret_cast<void*>(&length)},
-                       {Py_nb_bool, reinterpret_cast<void*>(&truth)},
+                       {Py_sq_length, reinterpret_cast<void*>(&count_rows)},
+                       {Py_nb_bool, reinterpret_cast<void*>(&has_rows)},
                        {Py_tp_doc, const_cast<char*>("The compiled half of cspace.ik.Solutions.")},
                        {0, nullptr}};
 PyType_Spec spec = {

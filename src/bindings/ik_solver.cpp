@@ -30,11 +30,11 @@ void free_solver(PyObject* self) {
     free_kinematics(self);
 }
 
-PyObject* solve(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+PyObject* solve_goal(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     return solver_solve(self, "solve", args, nargs, kwnames);
 }
 
-PyMethodDef methods[] = {{"solve", as_method(&solve), METH_FASTCALL | METH_KEYWORDS, solve_doc},
+PyMethodDef methods[] = {{"solve", as_method(&solve_goal), METH_FASTCALL | METH_KEYWORDS, solve_doc},
                          {nullptr, nullptr, 0, nullptr}};
 PyType_Slot slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_solver)},
                        {Py_tp_dealloc, reinterpret_cast<void*>(&free_solver)},

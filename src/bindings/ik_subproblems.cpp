@@ -12,78 +12,48 @@ using Theta = Array<double, nb::ndim<3>>;
 using Count = Array<std::int32_t, nb::shape<-1>>;
 using Flags = Array<bool, nb::shape<-1>>;
 
-// The kernels write a row per problem into every array of the answer.
-template <class... Inputs>
-void same_rows(const Theta& theta, std::size_t most, std::size_t angles, std::size_t rows,
-               const Inputs&... arrays) {
-    if (theta.shape(0) != rows || theta.shape(1) != most || theta.shape(2) != angles ||
-        ((arrays.shape(0) != rows) || ...))
-        throw nb::value_error("every array needs one row per problem, and theta room for all answers");
-}
+template <int... shape>
+using Rows = Array<const double, nb::shape<-1, shape...>>;
 
-cspace::ik::SubproblemAnswers answers(Theta& theta, RowOut& residual, Count& count, Flags& exact,
-                                      Flags& free) {
-    return {theta.data(), residual.data(), count.data(), exact.data(), free.data()};
+// Defines what calls a kernel for rows: the answers go into its last five arguments.
+template <class... Inputs, class Kernel, class... Names>
+void def_rows(nb::module_& m, const char* name, Kernel kernel, std::size_t most, std::size_t angles,
+              const char* doc, Names... names) {
+    const auto solve = [=](Inputs... inputs, Theta theta, RowOut residual, Count count, Flags exact,
+                           Flags free) {
+        const std::size_t n = residual.size();
+        const auto has_rows = [n](const auto&... arrays) { return ((arrays.shape(0) == n) && ...); };
+        if (!has_rows(theta, inputs..., count, exact, free) || theta.shape(1) != most ||
+            theta.shape(2) != angles)
+            throw nb::value_error("every array needs one row per problem, and theta room for all answers");
+        const nb::gil_scoped_release released;
+        kernel(inputs.data()..., n, {theta.data(), residual.data(), count.data(), exact.data(), free.data()});
+    };
+    m.def(name, solve, nb::arg(names)..., "theta"_a, "residual"_a, "count"_a, "exact"_a, "free"_a, doc);
 }
 
 }  // namespace
 
-#define ANSWERS_OUT Theta theta, RowOut residual, Count count, Flags exact, Flags free
-#define ANSWERS_ARGS "theta"_a, "residual"_a, "count"_a, "exact"_a, "free"_a
-#define SOLVE(kernel, ...)                                         \
-    const auto out = answers(theta, residual, count, exact, free); \
-    nb::gil_scoped_release released;                               \
-    cspace::kernels::kernel(__VA_ARGS__, residual.size(), out)
-
 void bind_ik_subproblems(nb::module_& m) {
-    m.def(
-        "subproblem_1",
-        [](Vectors k, Vectors p1, Vectors p2, ANSWERS_OUT) {
-            same_rows(theta, 1, 1, residual.size(), k, p1, p2, count, exact, free);
-            SOLVE(subproblem_1_n, k.data(), p1.data(), p2.data());
-        },
-        "k"_a, "p1"_a, "p2"_a, ANSWERS_ARGS,
-        "Subproblem 1 for rows (n, 3), answers written into the last five.");
-    m.def(
-        "subproblem_2",
-        [](Vectors k1, Vectors k2, Vectors p1, Vectors p2, ANSWERS_OUT) {
-            same_rows(theta, 2, 2, residual.size(), k1, k2, p1, p2, count, exact, free);
-            SOLVE(subproblem_2_n, k1.data(), k2.data(), p1.data(), p2.data());
-        },
-        "k1"_a, "k2"_a, "p1"_a, "p2"_a, ANSWERS_ARGS,
-        "Subproblem 2 for rows (n, 3), answers written into the last five.");
-    m.def(
-        "subproblem_3",
-        [](Vectors k, Vectors p1, Vectors p2, Row d, ANSWERS_OUT) {
-            same_rows(theta, 2, 1, residual.size(), k, p1, p2, d, count, exact, free);
-            SOLVE(subproblem_3_n, k.data(), p1.data(), p2.data(), d.data());
-        },
-        "k"_a, "p1"_a, "p2"_a, "d"_a, ANSWERS_ARGS,
-        "Subproblem 3 for rows (n, 3) and d (n,), answers written into the last five.");
-    m.def(
-        "subproblem_4",
-        [](Vectors h, Vectors k, Vectors p, Row d, ANSWERS_OUT) {
-            same_rows(theta, 2, 1, residual.size(), h, k, p, d, count, exact, free);
-            SOLVE(subproblem_4_n, h.data(), k.data(), p.data(), d.data());
-        },
-        "h"_a, "k"_a, "p"_a, "d"_a, ANSWERS_ARGS,
-        "Subproblem 4 for rows (n, 3) and d (n,), answers written into the last five.");
-    m.def(
-        "subproblem_5",
-        [](Array<const double, nb::shape<-1, 5, 3>> points, Array<const double, nb::shape<-1, 3, 3>> axes,
-           ANSWERS_OUT) {
-            same_rows(theta, 4, 3, residual.size(), points, axes, count, exact, free);
-            SOLVE(subproblem_5_n, points.data(), axes.data());
-        },
-        "points"_a, "axes"_a, ANSWERS_ARGS,
-        "Subproblem 5 for points (n, 5, 3) and axes (n, 3, 3), answers written into the last five.");
-    m.def(
-        "subproblem_6",
-        [](Array<const double, nb::shape<-1, 4, 3>> h, Array<const double, nb::shape<-1, 4, 3>> k,
-           Array<const double, nb::shape<-1, 4, 3>> p, Array<const double, nb::shape<-1, 2>> d, ANSWERS_OUT) {
-            same_rows(theta, 4, 2, residual.size(), h, k, p, d, count, exact, free);
-            SOLVE(subproblem_6_n, h.data(), k.data(), p.data(), d.data());
-        },
-        "h"_a, "k"_a, "p"_a, "d"_a, ANSWERS_ARGS,
-        "Subproblem 6 for h, k, p (n, 4, 3) and d (n, 2), answers written into the last five.");
+    using namespace cspace::kernels;
+    def_rows<Vectors, Vectors, Vectors>(m, "subproblem_1", subproblem_1_n, 1, 1,
+                                        "Subproblem 1 for rows (n, 3), answers written into the last five.",
+                                        "k", "p1", "p2");
+    def_rows<Vectors, Vectors, Vectors, Vectors>(
+        m, "subproblem_2", subproblem_2_n, 2, 2,
+        "Subproblem 2 for rows (n, 3), answers written into the last five.", "k1", "k2", "p1", "p2");
+    def_rows<Vectors, Vectors, Vectors, Row>(
+        m, "subproblem_3", subproblem_3_n, 2, 1,
+        "Subproblem 3 for rows (n, 3) and d (n,), answers written into the last five.", "k", "p1", "p2", "d");
+    def_rows<Vectors, Vectors, Vectors, Row>(
+        m, "subproblem_4", subproblem_4_n, 2, 1,
+        "Subproblem 4 for rows (n, 3) and d (n,), answers written into the last five.", "h", "k", "p", "d");
+    def_rows<Rows<5, 3>, Rows<3, 3>>(
+        m, "subproblem_5", subproblem_5_n, 4, 3,
+        "Subproblem 5 for points (n, 5, 3) and axes (n, 3, 3), answers written into the last five.", "points",
+        "axes");
+    def_rows<Rows<4, 3>, Rows<4, 3>, Rows<4, 3>, Rows<2>>(
+        m, "subproblem_6", subproblem_6_n, 4, 2,
+        "Subproblem 6 for h, k, p (n, 4, 3) and d (n, 2), answers written into the last five.", "h", "k", "p",
+        "d");
 }

@@ -1,62 +1,41 @@
 #define CSPACE_FILLS_NUMPY_API
 #include "kinematics.hpp"
 
-#include <cstring>
+#include <nanobind/stl/string.h>
+
 #include <new>
 #include <string>
+#include <vector>
 
 #include "bindings.hpp"
 #include "kernels/kinematics.hpp"
 
+namespace nb = nanobind;
 using namespace cspace;
 
 PyTypeObject* kinematics_type = nullptr;
 
-// "function() got an unexpected …" becomes "method() got an unexpected …"; any other error stays as it is.
-static void name_method(const char* function, const char* method) {
-    PyObject *type, *value, *traceback;
-    PyErr_Fetch(&type, &value, &traceback);
-    PyObject* text = type == PyExc_TypeError && value ? PyObject_Str(value) : nullptr;
-    const char* said = text ? PyUnicode_AsUTF8(text) : nullptr;
-    const std::size_t length = std::strlen(function);
-    if (said && !std::strncmp(said, function, length) && !std::strncmp(said + length, "()", 2)) {
-        PyObject* errors = PyImport_ImportModule("cspace.errors");  // which knows names that people bring
-        PyObject* error = errors ? PyObject_CallMethod(errors, "keyword_error", "N",
-                                                       PyUnicode_FromFormat("%s%s", method, said + length))
-                                 : nullptr;
-        if (error) PyErr_SetObject(reinterpret_cast<PyObject*>(Py_TYPE(error)), error);
-        Py_XDECREF(error);
-        Py_XDECREF(errors);
-        Py_DECREF(type);
-        Py_XDECREF(value);
-        Py_XDECREF(traceback);
-    } else {
-        PyErr_Restore(type, value, traceback);
-    }
-    Py_XDECREF(text);
-}
-
 PyObject* call_python(const char* module, const char* function, const char* method, PyObject* self,
                       PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    PyObject* room = PyImport_ImportModule(module);
-    if (!room) return nullptr;
-    PyObject* callee = PyObject_GetAttrString(room, function);
-    Py_DECREF(room);
-    if (!callee) return nullptr;
-    const Py_ssize_t given = nargs + (kwnames ? PyTuple_GET_SIZE(kwnames) : 0);
-    auto** all = static_cast<PyObject**>(PyMem_Malloc(sizeof(PyObject*) * (given + 1)));
-    PyObject* result = nullptr;
-    if (all) {
-        all[0] = self;
-        for (Py_ssize_t i = 0; i < given; ++i) all[i + 1] = args[i];
-        result = PyObject_Vectorcall(callee, all, nargs + 1, kwnames);
-        PyMem_Free(all);
-    } else {
-        PyErr_NoMemory();
-    }
-    Py_DECREF(callee);
-    if (!result) name_method(function, method);
-    return result;
+    return or_error([&]() -> PyObject* {
+        const nb::object callee = nb::module_::import_(module).attr(function);
+        std::vector<PyObject*> all = {self};
+        all.insert(all.end(), args, args + nargs + (kwnames ? PyTuple_GET_SIZE(kwnames) : 0));
+        PyObject* answer = PyObject_Vectorcall(callee.ptr(), all.data(), std::size_t(nargs) + 1, kwnames);
+        if (answer || !PyErr_ExceptionMatches(PyExc_TypeError)) return answer;
+        // "function() got an unexpected …" becomes "method() got an unexpected …".
+        nb::python_error error;
+        const std::string text = nb::str(error.value()).c_str(), name = function;
+        if (!text.starts_with(name + "()")) {
+            error.restore();
+            return nullptr;
+        }
+        const nb::object renamed =
+            nb::module_::import_("cspace.errors")  // which knows names that people bring
+                .attr("keyword_error")(method + text.substr(name.size()));
+        PyErr_SetObject(renamed.type().ptr(), renamed.ptr());
+        return nullptr;
+    });
 }
 
 // It holds no reference that could come back to it (a dict of strings and integers), so it takes no part in
@@ -178,7 +157,7 @@ PyObject* new_array(npy_intp rows, npy_intp columns) {
 constexpr const char* words = "cspace.kinematics";
 
 // --- methods -------------------------------------------------------------------------------------------
-PyObject* fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+PyObject* compute_fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (read_single(robot, args, nargs, kwnames, call)) {
@@ -191,7 +170,7 @@ PyObject* fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* 
     return call_python(words, "forward_kinematics", "fk", self, args, nargs, kwnames);
 }
 
-PyObject* jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+PyObject* compute_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
@@ -204,7 +183,7 @@ PyObject* jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyOb
     return call_python(words, "jacobian", "jacobian", self, args, nargs, kwnames);
 }
 
-PyObject* fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
+PyObject* compute_fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
@@ -225,7 +204,7 @@ PyObject* fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, P
     return call_python(words, "fk_jacobian", "fk_jacobian", self, args, nargs, kwnames);
 }
 
-PyObject* dof(PyObject* self, void*) {
+PyObject* get_dof(PyObject* self, void*) {
     const KinematicsObject* robot = kinematics_of(self);
     if (!robot->model) return PyLong_FromLong(0);
     return PyLong_FromLong(robot->model->n_coordinates() + (robot->floating ? 6 : 0));
@@ -233,12 +212,12 @@ PyObject* dof(PyObject* self, void*) {
 
 // --- the type ------------------------------------------------------------------------------------------
 PyMethodDef methods[] = {
-    {"fk", as_method(&fk), METH_FASTCALL | METH_KEYWORDS, fk_doc},
-    {"jacobian", as_method(&jacobian), METH_FASTCALL | METH_KEYWORDS, jacobian_doc},
-    {"fk_jacobian", as_method(&fk_jacobian), METH_FASTCALL | METH_KEYWORDS, fk_jacobian_doc},
+    {"fk", as_method(&compute_fk), METH_FASTCALL | METH_KEYWORDS, fk_doc},
+    {"jacobian", as_method(&compute_jacobian), METH_FASTCALL | METH_KEYWORDS, jacobian_doc},
+    {"fk_jacobian", as_method(&compute_fk_jacobian), METH_FASTCALL | METH_KEYWORDS, fk_jacobian_doc},
     {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef attributes[] = {
-    {"dof", &dof, nullptr, "Number of velocities: one per coordinate, and six more for a floating base.",
+    {"dof", &get_dof, nullptr, "Number of velocities: one per coordinate, and six more for a floating base.",
      nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot slots[] = {

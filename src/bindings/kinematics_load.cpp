@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "arrays_in_place.hpp"
+#include "bindings.hpp"
 #include "cspace/kinematics/forward.hpp"
 #include "kinematics.hpp"
 
@@ -88,10 +89,10 @@ std::unique_ptr<const model::RobotModel> read_model(nb::handle assembly, long n_
 }  // namespace
 
 int kinematics_load(PyObject* self, PyObject* args, PyObject* kwargs) {
-    KinematicsObject* robot = kinematics_of(self);
     PyObject* given;
     if (!PyArg_ParseTuple(args, "O:KinematicsBase", &given)) return -1;
-    try {
+    const auto load = [&] {
+        KinematicsObject* robot = kinematics_of(self);
         if (kwargs && PyDict_GET_SIZE(kwargs) > 0)
             throw nb::type_error("KinematicsBase takes an assembly and no keywords");
         if (robot->model) throw nb::type_error("a robot is immutable; make another one");
@@ -103,14 +104,7 @@ int kinematics_load(PyObject* self, PyObject* args, PyObject* kwargs) {
         robot->floating = integer_of(assembly, "floating") != 0;
         robot->tip = int(tip);
         Py_XSETREF(robot->frame_index, names.release().ptr());
-        return 0;
-    } catch (nb::python_error& error) {
-        error.restore();
-    } catch (const nb::builtin_exception& error) {
-        PyErr_SetString(error.type() == nb::exception_type::type_error ? PyExc_TypeError : PyExc_ValueError,
-                        error.what());
-    } catch (const std::exception& error) {
-        PyErr_SetString(PyExc_TypeError, error.what());
-    }
-    return -1;
+        return self;
+    };
+    return or_error(load) ? 0 : -1;
 }

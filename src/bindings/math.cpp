@@ -4,41 +4,25 @@
 
 namespace nb = nanobind;
 
-// The kernels write as many values as they read.
-template <class... Others>
-void same_size(const Row& x, const Others&... others) {
-    if (((others.size() != x.size()) || ...)) throw nb::value_error("the arrays must have equal lengths");
+// Defines what calls a kernel for arrays of one length, of which it writes the last.
+template <class... Arrays, class Kernel, class... Names>
+void def_elementwise(nb::module_& m, const char* name, Kernel kernel, const char* doc, Names... names) {
+    const auto call = [kernel](const Row& x, const Arrays&... others) {
+        if (((others.size() != x.size()) || ...)) throw nb::value_error("the arrays must have equal lengths");
+        kernel(x.data(), others.data()..., x.size());
+    };
+    m.def(name, call, nb::arg(names)..., doc);
 }
 
 void bind_math(nb::module_& m) {
-    m.def(
-        "sincos",
-        [](Row x, RowOut s, RowOut c) {
-            same_size(x, s, c);
-            cspace::kernels::sincos_n(x.data(), s.data(), c.data(), x.size());
-        },
-        nb::arg("x"), nb::arg("sin"), nb::arg("cos"),
-        "Sine and cosine of x (n,) [rad], written into sin and cos.");
-    m.def(
-        "atan2",
-        [](Row y, Row x, RowOut a) {
-            same_size(x, y, a);
-            cspace::kernels::atan2_n(y.data(), x.data(), a.data(), x.size());
-        },
-        nb::arg("y"), nb::arg("x"), nb::arg("angle"),
-        "Angle of the vectors (x, y) [rad], written into angle.");
-    m.def(
-        "acos",
-        [](Row x, RowOut a) {
-            same_size(x, a);
-            cspace::kernels::acos_n(x.data(), a.data(), x.size());
-        },
-        nb::arg("x"), nb::arg("angle"), "Inverse cosine of x (n,) [rad], written into angle.");
-    m.def(
-        "asin",
-        [](Row x, RowOut a) {
-            same_size(x, a);
-            cspace::kernels::asin_n(x.data(), a.data(), x.size());
-        },
-        nb::arg("x"), nb::arg("angle"), "Inverse sine of x (n,) [rad], written into angle.");
+    using namespace cspace::kernels;
+    def_elementwise<RowOut, RowOut>(m, "sincos", sincos_n,
+                                    "Sine and cosine of x (n,) [rad], written into sin and cos.", "x", "sin",
+                                    "cos");
+    def_elementwise<Row, RowOut>(m, "atan2", atan2_n,
+                                 "Angle of the vectors (x, y) [rad], written into angle.", "y", "x", "angle");
+    def_elementwise<RowOut>(m, "acos", acos_n, "Inverse cosine of x (n,) [rad], written into angle.", "x",
+                            "angle");
+    def_elementwise<RowOut>(m, "asin", asin_n, "Inverse sine of x (n,) [rad], written into angle.", "x",
+                            "angle");
 }

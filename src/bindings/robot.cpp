@@ -10,18 +10,18 @@ struct RobotObject {
 };
 RobotObject* robot_of(PyObject* self) { return reinterpret_cast<RobotObject*>(self); }
 
-int traverse(PyObject* self, visitproc visit, void* arg) {
+int visit_references(PyObject* self, visitproc visit, void* arg) {
     Py_VISIT(Py_TYPE(self));
     Py_VISIT(robot_of(self)->solver);
     return 0;
 }
-int clear(PyObject* self) {
+int clear_references(PyObject* self) {
     Py_CLEAR(robot_of(self)->solver);
     return 0;
 }
 void free_robot(PyObject* self) {
     PyObject_GC_UnTrack(self);
-    clear(self);
+    clear_references(self);
     free_kinematics(self);
 }
 
@@ -57,8 +57,8 @@ PyGetSetDef robot_attributes[] = {
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot robot_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_kinematics)},
                              {Py_tp_dealloc, reinterpret_cast<void*>(&free_robot)},
-                             {Py_tp_traverse, reinterpret_cast<void*>(&traverse)},
-                             {Py_tp_clear, reinterpret_cast<void*>(&clear)},
+                             {Py_tp_traverse, reinterpret_cast<void*>(&visit_references)},
+                             {Py_tp_clear, reinterpret_cast<void*>(&clear_references)},
                              {Py_tp_methods, robot_methods},
                              {Py_tp_getset, robot_attributes},
                              {Py_tp_doc, const_cast<char*>("The compiled half of cspace.Robot.")},

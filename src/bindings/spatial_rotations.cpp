@@ -11,20 +11,13 @@ namespace {
 using Quaternions = Array<const double, nb::shape<-1, 4>>;
 using Matrices = Array<double, nb::shape<-1, 3, 3>>;
 
-// The kernels write as many matrices as they read rows.
-template <class... Inputs>
-void same_rows(const Matrices& R, const Inputs&... inputs) {
-    if (((inputs.shape(0) != R.shape(0)) || ...))
-        throw nb::value_error("the arrays must have equally many rows");
-}
-
 }  // namespace
 
 void bind_spatial_rotations(nb::module_& m) {
     m.def(
         "quaternion_matrices",
         [](Quaternions q, bool scalar_last, Matrices R) {
-            same_rows(R, q);
+            require_sizes(q.shape(0) == R.shape(0));
             nb::gil_scoped_release released;
             return cspace::kernels::quaternion_matrices_n(q.data(), scalar_last, R.data(), R.shape(0));
         },
@@ -34,7 +27,7 @@ void bind_spatial_rotations(nb::module_& m) {
     m.def(
         "rotvec_matrices",
         [](Vectors w, Matrices R) {
-            same_rows(R, w);
+            require_sizes(w.shape(0) == R.shape(0));
             nb::gil_scoped_release released;
             return cspace::kernels::rotvec_matrices_n(w.data(), R.data(), R.shape(0));
         },
@@ -43,12 +36,11 @@ void bind_spatial_rotations(nb::module_& m) {
     m.def(
         "axis_angle_matrices",
         [](Vectors axis, Row angle, Matrices R) {
-            same_rows(R, axis, angle);
+            require_sizes(axis.shape(0) == R.shape(0) && angle.shape(0) == R.shape(0));
             nb::gil_scoped_release released;
             return cspace::kernels::axis_angle_matrices_n(axis.data(), angle.data(), R.data(), R.shape(0));
         },
         "axis"_a, "angle"_a, "R"_a,
         "Rotations by angles (n,) [rad] about axes (n, 3) of any length, written into R (n, 3, 3); False if "
-        "a "
-        "row needs care.");
+        "a row needs care.");
 }

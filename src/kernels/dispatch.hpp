@@ -1,8 +1,8 @@
 // Which of the compiled copies of a kernel runs: decided once, by what the processor can do.
 //
 // A kernel is declared with CSPACE_KERNEL(room, result, name, (parameters)) in a header of this folder; the
-// room is its namespace, such as cspace::ik. It is defined in `namespace room::inline CSPACE_ISA` in the .cpp
-// of the same name (compiled once per instruction set), and called as kernels::name(...).
+// room is its namespace, such as cspace::ik. It is defined in `namespace room::inline CSPACE_ISA` in a .cpp
+// of this folder (compiled once per instruction set), and called as kernels::name(...).
 // CSPACE_NARROW_KERNEL declares one whose packs hold four numbers: its widest copy is that for AVX2, for an
 // AVX-512 copy would gain nothing (cmake/kernels.cmake lists the others). The files compiled per instruction
 // set hold plain arrays only: a standard container instantiated there could leak its AVX2 copy into the rest
@@ -51,21 +51,16 @@ const char* isa_name();
 
 #if defined(CSPACE_COMPILING_KERNELS)
 // The namespace of this copy is inline, and has to be so where it is opened first.
-#define CSPACE_KERNEL(room, result, name, parameters) \
-    namespace room::inline CSPACE_ISA {}              \
-    CSPACE_KERNEL_COPIES(room, result, name, parameters)
-#define CSPACE_NARROW_KERNEL(room, result, name, parameters) \
-    namespace room::inline CSPACE_ISA {}                     \
-    CSPACE_NARROW_COPIES(room, result, name, parameters)
+#define CSPACE_DECLARE_KERNEL(room, name, copies, choice) \
+    namespace room::inline CSPACE_ISA {}                  \
+    copies
 #else
-#define CSPACE_KERNEL_POINTER(name, choice) \
-    namespace cspace::kernels {             \
-    static auto* const name = choice;       \
-    }
-#define CSPACE_KERNEL(room, result, name, parameters)    \
-    CSPACE_KERNEL_COPIES(room, result, name, parameters) \
-    CSPACE_KERNEL_POINTER(name, CSPACE_KERNEL_CHOICE(room, name))
-#define CSPACE_NARROW_KERNEL(room, result, name, parameters) \
-    CSPACE_NARROW_COPIES(room, result, name, parameters)     \
-    CSPACE_KERNEL_POINTER(name, CSPACE_NARROW_CHOICE(room, name))
+#define CSPACE_DECLARE_KERNEL(room, name, copies, choice) \
+    copies namespace cspace::kernels { static auto* const name = choice; }
 #endif
+#define CSPACE_KERNEL(room, result, name, parameters)                                       \
+    CSPACE_DECLARE_KERNEL(room, name, CSPACE_KERNEL_COPIES(room, result, name, parameters), \
+                          CSPACE_KERNEL_CHOICE(room, name))
+#define CSPACE_NARROW_KERNEL(room, result, name, parameters)                                \
+    CSPACE_DECLARE_KERNEL(room, name, CSPACE_NARROW_COPIES(room, result, name, parameters), \
+                          CSPACE_NARROW_CHOICE(room, name))

@@ -1,8 +1,8 @@
-#include "ik_arm_angle.hpp"
-
 #include <limits>
 
+#include "cspace/ik/redundancy/arm_angle.hpp"
 #include "cspace/math/rows.hpp"
+#include "ik.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 

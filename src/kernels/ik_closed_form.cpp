@@ -1,8 +1,7 @@
-#include "ik_closed_form.hpp"
-
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/closed_form.hpp"
 #include "cspace/math/stream.hpp"
+#include "ik.hpp"
 #include "once.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
@@ -11,7 +10,7 @@ namespace {
 using V = Pack<native_width>;
 
 // Moves the rows that hold to the front; NaN behind them. Returns how many there are.
-CSPACE_INLINE int compact(unsigned ok, double* rows, int room) {
+CSPACE_INLINE int compact_rows(unsigned ok, double* rows, int room) {
     constexpr unsigned all = (1u << max_branches) - 1;
     if (ok == all && room == max_branches) return max_branches;
     int count = 0;
@@ -61,7 +60,7 @@ void ik_many(const Arm& arm, const double* T, std::size_t n, int room, double* q
             store_rows(angles, 6, stage + 6 * k, row, lanes);
         }
         for (int l = 0; l < lanes; ++l) {
-            count[first + l] = compact(branches_of_lane(b.ok, l), stage + row * l, room);
+            count[first + l] = compact_rows(branches_of_lane(b.ok, l), stage + row * l, room);
             quick[first + l] = !lane(goal.is_pose, l) ? FastPath::refused
                                : lane(b.doubt, l)     ? FastPath::doubtful
                                                       : FastPath::settled;

@@ -1,5 +1,5 @@
 #include "cspace/ik/redundancy/limits.hpp"
-#include "ik_redundancy.hpp"
+#include "ik.hpp"
 #include "once.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {

@@ -1,9 +1,8 @@
-#include "ik_locked_rows.hpp"
-
 #include <limits>
 
 #include "cspace/ik/redundancy/locked_joints.hpp"
 #include "cspace/math/rows.hpp"
+#include "ik.hpp"
 #include "once.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
@@ -11,8 +10,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 void locked_goals(const LockedArm& locked, const double* goals, const double* at, std::size_t stride,
                   std::size_t rows, double* moved) {
     using V = Pack<native_width>;
-    for (std::size_t first = 0; first < rows; first += native_width) {
-        const int count = rows - first < native_width ? int(rows - first) : native_width;
+    over_packs<native_width>(rows, [=, &locked](std::size_t first, int count) {
         V m[16], value[max_joints];
         load_rows(goals + 16 * first, 16, count, 12, m);
         for (int k = 0; k < locked.n_locked; ++k)
@@ -30,7 +28,7 @@ void locked_goals(const LockedArm& locked, const double* goals, const double* at
         m[12] = m[13] = m[14] = zero;
         m[15] = fill<V>(1.0);
         store_rows(m, 16, moved + 16 * first, 16, count);
-    }
+    });
 }
 
 void locked_rows(const LockedArm& locked, const double* at, const double* q, std::int64_t count,

@@ -1,6 +1,5 @@
-#include "ik_numeric.hpp"
-
 #include "cspace/ik/numeric/descent.hpp"
+#include "ik.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 

@@ -1,6 +1,5 @@
-#include "ik_pose.hpp"
-
 #include "cspace/ik/arm.hpp"
+#include "ik.hpp"
 #include "once.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {

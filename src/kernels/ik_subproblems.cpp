@@ -13,28 +13,21 @@ namespace {
 
 using V = Pack<native_width>;
 
-Vec3<V> vectors(const double* rows, std::size_t first, int count) {
+Vec3<V> load_vectors(const double* rows, std::size_t first, int count) {
     V columns[3];
     load_rows(rows + 3 * first, 3, count, 3, columns);
     return {columns[0], columns[1], columns[2]};
 }
-Vec3d vector(const double* row) { return {row[0], row[1], row[2]}; }
+Vec3d read_vector(const double* row) { return {row[0], row[1], row[2]}; }
 
-// Calls f(first, count) for each pack of n problems; the last may be partial.
-template <class F>
-void over_packs(std::size_t n, F f) {
-    for (std::size_t i = 0; i < n; i += native_width)
-        f(i, n - i < native_width ? int(n - i) : int(native_width));
-}
-
-// Writes `angles` angles of answer j of problem i, or NaN where it has none.
-void put_angles(const SubproblemAnswers& out, std::size_t i, int j, int most, int angles,
-                const double* theta) {
-    for (int m = 0; m < angles; ++m)
-        out.theta[(i * most + j) * angles + m] = theta ? theta[m] : std::numeric_limits<double>::quiet_NaN();
-}
-void put_rest(const SubproblemAnswers& out, std::size_t i, int count, double residual, bool exact,
-              bool free) {
+// Answer i: theta(j, m) is angle m of solution j of at most `most`, NaN beyond count.
+template <int most, int angles, class Theta>
+void write_answer(const SubproblemAnswers& out, std::size_t i, int count, double residual, bool exact,
+                  bool free, Theta theta) {
+    for (int j = 0; j < most; ++j)
+        for (int m = 0; m < angles; ++m)
+            out.theta[(i * most + std::size_t(j)) * angles + std::size_t(m)] =
+                j < count ? theta(j, m) : std::numeric_limits<double>::quiet_NaN();
     out.count[i] = count;
     out.residual[i] = residual;
     out.exact[i] = exact;
@@ -43,88 +36,68 @@ void put_rest(const SubproblemAnswers& out, std::size_t i, int count, double res
 
 // Subproblems 3 and 4 have the same shape of answer.
 template <class Answer>
-void put_pair(const SubproblemAnswers& out, std::size_t first, int lanes, const Answer& r) {
+void write_pair(const SubproblemAnswers& out, std::size_t first, int lanes, const Answer& r) {
     const V theta[2] = {angle_of(r.theta[0]), angle_of(r.theta[1])};
-    for (int k = 0; k < lanes; ++k) {
-        const int count = 1 + lane(r.two, k);
-        for (int j = 0; j < 2; ++j) {
-            const double value = lane(theta[j], k);
-            put_angles(out, first + k, j, 2, 1, j < count ? &value : nullptr);
-        }
-        put_rest(out, first + k, count, lane(r.error, k), lane(r.exact, k), lane(r.free, k));
-    }
+    for (int k = 0; k < lanes; ++k)
+        write_answer<2, 1>(out, first + k, 1 + lane(r.two, k), lane(r.error, k), lane(r.exact, k),
+                           lane(r.free, k), [&](int j, int) { return lane(theta[j], k); });
 }
 
 }  // namespace
 
 void subproblem_1_n(const double* k, const double* p1, const double* p2, std::size_t n,
                     SubproblemAnswers out) {
-    over_packs(n, [=](std::size_t i, int lanes) {
-        const auto r = subproblem_1(vectors(k, i, lanes), vectors(p1, i, lanes), vectors(p2, i, lanes));
+    over_packs<native_width>(n, [=](std::size_t i, int lanes) {
+        const auto r =
+            subproblem_1(load_vectors(k, i, lanes), load_vectors(p1, i, lanes), load_vectors(p2, i, lanes));
         const V theta = angle_of(r.theta);
-        for (int j = 0; j < lanes; ++j) {
-            out.theta[i + j] = lane(theta, j);
-            put_rest(out, i + j, 1, lane(r.error, j), lane(r.exact, j), lane(r.free, j));
-        }
+        for (int l = 0; l < lanes; ++l)
+            write_answer<1, 1>(out, i + l, 1, lane(r.error, l), lane(r.exact, l), lane(r.free, l),
+                               [&](int, int) { return lane(theta, l); });
     });
 }
 
 void subproblem_2_n(const double* k1, const double* k2, const double* p1, const double* p2, std::size_t n,
                     SubproblemAnswers out) {
-    over_packs(n, [=](std::size_t i, int lanes) {
-        const auto r = subproblem_2(vectors(k1, i, lanes), vectors(k2, i, lanes), vectors(p1, i, lanes),
-                                    vectors(p2, i, lanes));
+    over_packs<native_width>(n, [=](std::size_t i, int lanes) {
+        const auto r = subproblem_2(load_vectors(k1, i, lanes), load_vectors(k2, i, lanes),
+                                    load_vectors(p1, i, lanes), load_vectors(p2, i, lanes));
         const auto free = r.free1 || r.free2 || r.parallel;
-        for (int j = 0; j < 2; ++j) {
-            const V first = angle_of(r.theta1[j]), second = angle_of(r.theta2[j]);
-            for (int m = 0; m < lanes; ++m) {
-                const double theta[2] = {lane(first, m), lane(second, m)};
-                put_angles(out, i + m, j, 2, 2, j == 0 || lane(r.two, m) ? theta : nullptr);
-            }
-        }
-        for (int m = 0; m < lanes; ++m)
-            put_rest(out, i + m, 1 + lane(r.two, m), lane(r.error, m), lane(r.exact, m), lane(free, m));
+        const V theta[2][2] = {{angle_of(r.theta1[0]), angle_of(r.theta2[0])},
+                               {angle_of(r.theta1[1]), angle_of(r.theta2[1])}};
+        for (int l = 0; l < lanes; ++l)
+            write_answer<2, 2>(out, i + l, 1 + lane(r.two, l), lane(r.error, l), lane(r.exact, l),
+                               lane(free, l), [&](int j, int m) { return lane(theta[j][m], l); });
     });
 }
 
 void subproblem_3_n(const double* k, const double* p1, const double* p2, const double* d, std::size_t n,
                     SubproblemAnswers out) {
-    over_packs(n, [=](std::size_t i, int lanes) {
-        put_pair(out, i, lanes,
-                 subproblem_3(vectors(k, i, lanes), vectors(p1, i, lanes), vectors(p2, i, lanes),
-                              load<V>(d + i, lanes)));
+    over_packs<native_width>(n, [=](std::size_t i, int lanes) {
+        write_pair(out, i, lanes,
+                   subproblem_3(load_vectors(k, i, lanes), load_vectors(p1, i, lanes),
+                                load_vectors(p2, i, lanes), load<V>(d + i, lanes)));
     });
 }
 
 void subproblem_4_n(const double* h, const double* k, const double* p, const double* d, std::size_t n,
                     SubproblemAnswers out) {
-    over_packs(n, [=](std::size_t i, int lanes) {
-        put_pair(out, i, lanes,
-                 subproblem_4(vectors(h, i, lanes), vectors(k, i, lanes), vectors(p, i, lanes),
-                              load<V>(d + i, lanes)));
+    over_packs<native_width>(n, [=](std::size_t i, int lanes) {
+        write_pair(out, i, lanes,
+                   subproblem_4(load_vectors(h, i, lanes), load_vectors(k, i, lanes),
+                                load_vectors(p, i, lanes), load<V>(d + i, lanes)));
     });
 }
-
-namespace {
-
-template <int angles, class Answer>
-void put_answers(const SubproblemAnswers& out, std::size_t i, const Answer& r) {
-    for (int j = 0; j < 4; ++j) {
-        double theta[angles];
-        for (int m = 0; m < angles; ++m) theta[m] = j < r.count ? angle_of(r.theta[j][m]) : 0;
-        put_angles(out, i, j, 4, angles, j < r.count ? theta : nullptr);
-    }
-    put_rest(out, i, r.count, r.error, r.exact, r.free);
-}
-
-}  // namespace
 
 void subproblem_5_n(const double* points, const double* axes, std::size_t n, SubproblemAnswers out) {
     for (std::size_t i = 0; i < n; ++i) {
         const double *p = points + 15 * i, *k = axes + 9 * i;
-        const Sp5Problem problem = {vector(p),      vector(p + 3), vector(p + 6), vector(p + 9),
-                                    vector(p + 12), vector(k),     vector(k + 3), vector(k + 6)};
-        put_answers<3>(out, i, subproblem_5(problem));
+        const Sp5Problem problem = {read_vector(p),     read_vector(p + 3),  read_vector(p + 6),
+                                    read_vector(p + 9), read_vector(p + 12), read_vector(k),
+                                    read_vector(k + 3), read_vector(k + 6)};
+        const auto r = subproblem_5(problem);
+        write_answer<4, 3>(out, i, r.count, r.error, r.exact, r.free,
+                           [&](int j, int m) { return angle_of(r.theta[j][m]); });
     }
 }
 
@@ -133,12 +106,14 @@ void subproblem_6_n(const double* h, const double* k, const double* p, const dou
     for (std::size_t i = 0; i < n; ++i) {
         Sp6Problem problem;
         for (int j = 0; j < 4; ++j) {
-            problem.h[j] = vector(h + 12 * i + 3 * j);
-            problem.k[j] = vector(k + 12 * i + 3 * j);
-            problem.p[j] = vector(p + 12 * i + 3 * j);
+            problem.h[j] = read_vector(h + 12 * i + 3 * j);
+            problem.k[j] = read_vector(k + 12 * i + 3 * j);
+            problem.p[j] = read_vector(p + 12 * i + 3 * j);
         }
         problem.d[0] = d[2 * i], problem.d[1] = d[2 * i + 1];
-        put_answers<2>(out, i, subproblem_6(problem));
+        const auto r = subproblem_6(problem);
+        write_answer<4, 2>(out, i, r.count, r.error, r.exact, r.free,
+                           [&](int j, int m) { return angle_of(r.theta[j][m]); });
     }
 }
 

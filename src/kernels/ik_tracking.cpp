@@ -1,4 +1,5 @@
-#include "ik_tracking.hpp"
+#include "cspace/ik/tracking/follow.hpp"
+#include "ik.hpp"
 
 namespace cspace::ik::inline CSPACE_ISA {
 

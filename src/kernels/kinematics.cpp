@@ -16,7 +16,7 @@ struct Scratch {
     char* next;
 };
 template <class T>
-T* take(Scratch& scratch, int n) {
+T* take_array(Scratch& scratch, int n) {
     T* array = reinterpret_cast<T*>(scratch.next);
     scratch.next += sizeof(T) * std::size_t(n);
     return array;
@@ -54,15 +54,15 @@ template <class V>
 ChainWork<V> chain_work(const ChainRows& rows, void* memory) {
     Scratch scratch{static_cast<char*>(memory)};
     const int n = rows.chain.n, first = rows.floating ? 6 : 0, dof = first + rows.chain.n_coordinates;
-    return {take<V>(scratch, rows.chain.n_coordinates),
-            take<V>(scratch, dof),
-            take<V>(scratch, n + 3),
-            take<V>(scratch, n + 3),
-            take<V>(scratch, 6 * dof),
-            take<V>(scratch, 6 * dof),
-            take<Axis<V>>(scratch, n),
-            take<Axis<V>>(scratch, n),
-            take<double>(scratch, Lanes<V>::count * (6 * dof < 16 ? 16 : 6 * dof)),
+    return {take_array<V>(scratch, rows.chain.n_coordinates),
+            take_array<V>(scratch, dof),
+            take_array<V>(scratch, n + 3),
+            take_array<V>(scratch, n + 3),
+            take_array<V>(scratch, 6 * dof),
+            take_array<V>(scratch, 6 * dof),
+            take_array<Axis<V>>(scratch, n),
+            take_array<Axis<V>>(scratch, n),
+            take_array<double>(scratch, Lanes<V>::count * (6 * dof < 16 ? 16 : 6 * dof)),
             dof,
             first,
             false};
@@ -145,8 +145,8 @@ bool tree_pack(const TreeRows& rows, void* memory, std::size_t i, int count) {
     Scratch scratch{static_cast<char*>(memory)};
     const model::Tree& tree = rows.tree;
     const int n = tree.n_coordinates, first = rows.floating ? 6 : 0, dof = first + n;
-    V* q = take<V>(scratch, n);
-    auto* T_world_joint = take<Pose<V>>(scratch, tree.n_joints);
+    V* q = take_array<V>(scratch, n);
+    auto* T_world_joint = take_array<Pose<V>>(scratch, tree.n_joints);
     load_rows(rows.q + i * n, n, count, n, q);
     if (!all_finite(q, n)) return false;
     const auto T_world_base = load_pose<V>(rows.T_world_base + i * rows.base_stride, rows.base_stride, count);
@@ -160,11 +160,11 @@ bool tree_pack(const TreeRows& rows, void* memory, std::size_t i, int count) {
         }
     }
     if (!rows.center && !rows.center_columns) return true;
-    auto* moments = take<Vec3<V>>(scratch, tree.n_joints);
+    auto* moments = take_array<Vec3<V>>(scratch, tree.n_joints);
     const Vec3<V> center = center_of_mass(tree, T_world_base, T_world_joint, moments);
     if (rows.center) store_rows(&center.x, 3, rows.center + i * 3, 3, count);
     if (!rows.center_columns) return true;
-    V* J = take<V>(scratch, 3 * dof);
+    V* J = take_array<V>(scratch, 3 * dof);
     center_of_mass_columns(tree, T_world_joint, moments, J, dof, first);
     if (rows.floating) base_columns(center - T_world_base.t, J, dof, 3);
     store_rows(J, 3 * dof, rows.center_columns + i * 3 * dof, 3 * dof, count);
@@ -188,8 +188,8 @@ struct OneWork {
 };
 OneWork one_work(const model::Chain& chain, void* memory) {
     Scratch scratch{static_cast<char*>(memory)};
-    return {take<double>(scratch, chain.n + 3), take<double>(scratch, chain.n + 3),
-            take<Axis<double>>(scratch, chain.n)};
+    return {take_array<double>(scratch, chain.n + 3), take_array<double>(scratch, chain.n + 3),
+            take_array<Axis<double>>(scratch, chain.n)};
 }
 // Compiled once for pose and Jacobian, so that both round alike.
 CSPACE_NOINLINE Posed follow_one(const model::Chain& chain, const double* q, const OneWork& work) {

@@ -8,18 +8,10 @@ namespace {
 
 using V = Pack<native_width>;
 
-// Calls f(first, count) for each pack of n values; the last may be partial.
-template <class F>
-CSPACE_INLINE void over_packs(std::size_t n, F f) {
-    std::size_t i = 0;
-    for (; i + native_width <= n; i += native_width) f(i, native_width);
-    if (i < n) f(i, int(n - i));
-}
-
 }  // namespace
 
 void sincos_n(const double* x, double* s, double* c, std::size_t n) {
-    over_packs(n, [=](std::size_t i, int count) {
+    over_packs<native_width>(n, [=](std::size_t i, int count) {
         V sine, cosine;
         sincos(load<V>(x + i, count), sine, cosine);
         store(s + i, sine, count);
@@ -27,15 +19,17 @@ void sincos_n(const double* x, double* s, double* c, std::size_t n) {
     });
 }
 void atan2_n(const double* y, const double* x, double* angle, std::size_t n) {
-    over_packs(n, [=](std::size_t i, int count) {
+    over_packs<native_width>(n, [=](std::size_t i, int count) {
         store(angle + i, atan2(load<V>(y + i, count), load<V>(x + i, count)), count);
     });
 }
 void acos_n(const double* x, double* angle, std::size_t n) {
-    over_packs(n, [=](std::size_t i, int count) { store(angle + i, acos(load<V>(x + i, count)), count); });
+    over_packs<native_width>(
+        n, [=](std::size_t i, int count) { store(angle + i, acos(load<V>(x + i, count)), count); });
 }
 void asin_n(const double* x, double* angle, std::size_t n) {
-    over_packs(n, [=](std::size_t i, int count) { store(angle + i, asin(load<V>(x + i, count)), count); });
+    over_packs<native_width>(
+        n, [=](std::size_t i, int count) { store(angle + i, asin(load<V>(x + i, count)), count); });
 }
 
 }  // namespace cspace::inline CSPACE_ISA

@@ -8,15 +8,11 @@ namespace {
 
 using V = Pack<native_width>;
 
-// Calls f(row, count) for each pack of n rows, the last maybe partial; whether all lanes of all packs are
-// good.
+// Whether f(row, count) of every pack is good in all lanes.
 template <class F>
-CSPACE_INLINE bool over_packs(std::size_t n, F f) {
+CSPACE_INLINE bool all_packs(std::size_t n, F f) {
     bool good = true;
-    for (std::size_t i = 0; i < n; i += native_width) {
-        const std::size_t left = n - i;
-        good &= all(f(i, left < std::size_t(native_width) ? int(left) : native_width));
-    }
+    over_packs<native_width>(n, [&](std::size_t i, int count) { good &= all(f(i, count)); });
     return good;
 }
 CSPACE_INLINE Vec3<V> load_vector(const double* rows, int count) {
@@ -32,7 +28,7 @@ CSPACE_INLINE void store_matrix(const Mat3<V>& m, double* rows, int count) {
 
 bool quaternion_matrices_n(const double* q, bool scalar_last, double* R, std::size_t n) {
     const int w = scalar_last ? 3 : 0, x = scalar_last ? 0 : 1;
-    return over_packs(n, [=](std::size_t i, int count) {
+    return all_packs(n, [=](std::size_t i, int count) {
         V v[4];
         load_rows(q + 4 * i, 4, count, 4, v);
         const V square = v[0] * v[0] + v[1] * v[1] + v[2] * v[2] + v[3] * v[3];
@@ -42,7 +38,7 @@ bool quaternion_matrices_n(const double* q, bool scalar_last, double* R, std::si
     });
 }
 bool rotvec_matrices_n(const double* w, double* R, std::size_t n) {
-    return over_packs(n, [=](std::size_t i, int count) {
+    return all_packs(n, [=](std::size_t i, int count) {
         const Vec3<V> v = load_vector(w + 3 * i, count);
         const V square = dot(v, v);
         store_matrix(rotation_of_rotvec(v, square), R + 9 * i, count);
@@ -50,7 +46,7 @@ bool rotvec_matrices_n(const double* w, double* R, std::size_t n) {
     });
 }
 bool axis_angle_matrices_n(const double* axis, const double* angle, double* R, std::size_t n) {
-    return over_packs(n, [=](std::size_t i, int count) {
+    return all_packs(n, [=](std::size_t i, int count) {
         const Vec3<V> v = load_vector(axis + 3 * i, count);
         const V square = dot(v, v), turned = load<V>(angle + i, count);
         store_matrix(rotation_of_axis_angle(v, turned, square), R + 9 * i, count);

@@ -8,8 +8,7 @@
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/goal.hpp"
 #include "cspace/math/threads.hpp"
-#include "kernels/ik_closed_form.hpp"
-#include "kernels/ik_pose.hpp"
+#include "kernels/ik.hpp"
 
 namespace cspace::ik {
 
@@ -17,25 +16,6 @@ namespace {
 
 constexpr double none = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t rows_worth_a_thread = 256;
-
-// What the first three axes share, of arms with a spherical wrist and of three revolute joints.
-int shared_by_first_three(const Arm& arm) {
-    if (arm.has_plan) return arm.plan.family == Family::spherical_wrist ? int(arm.plan.wrist.first.kind) : -1;
-    const Chain& c = arm.plan.chain;
-    if (c.n != 3 || c.prismatic[0] || c.prismatic[1] || c.prismatic[2]) return -1;
-    bool parallel[2], meeting[2];
-    for (int i = 0; i < 2; ++i) {
-        const Vec3d normal = cross(c.axis[i], c.axis[i + 1]), gap = c.point[i + 1] - c.point[i];
-        parallel[i] = norm(normal) <= tolerance::axis_relation;
-        meeting[i] = !parallel[i] && std::fabs(dot(gap, normal)) <=
-                                         tolerance::axis_relation * arm.plan.form.length * norm(normal);
-    }
-    return int(parallel[1]   ? FirstThree::last_parallel
-               : parallel[0] ? FirstThree::first_parallel
-               : meeting[0]  ? FirstThree::first_meet
-               : meeting[1]  ? FirstThree::last_meet
-                             : FirstThree::general);
-}
 
 // Solutions into one goal's rows, NaN behind them.
 void write_rows(const Solutions& found, int room, int dof, double* q, std::int64_t* count,
@@ -105,17 +85,17 @@ BuiltArm build_arm(const Chain& chain) {
     return {arm, chain.n, solvable ? room_for(*arm) : 0, arm->has_few_joints};
 }
 
-ArmGeometry geometry_of(const BuiltArm& built) {
-    const Arm& arm = *built.arm;
-    const Plan& plan = arm.plan;
-    return {arm.has_plan ? int(plan.family) : -1,
-            arm.is_general && !arm.has_plan,
-            plan.virtual_joints,
-            shared_by_first_three(arm),
-            plan.reversed,
-            plan.polish,
-            plan.form.deviation,
-            plan.form.length};
+bool list_solutions(const BuiltArm& built, const double* goal, const double* unconstrained,
+                    SolutionStore& store, SolutionRows& rows) {
+    int count;
+    const FastPath quick = kernels::ik_one(*built.arm, goal, store.q, store.branch, &count);
+    if (quick == FastPath::doubtful) {
+        kernels::ik_pose(*built.arm, read_goal(goal).T, unconstrained, store.found);
+        rows = rows_of(store.found);
+    } else if (quick == FastPath::settled) {
+        rows = {count, store.q, 6, store.branch, nullptr, count ? Status::exact : Status::unreachable};
+    }
+    return quick != FastPath::refused;
 }
 
 Solutions solve_goal(const BuiltArm& built, const double* goal, const double* unconstrained) {
@@ -186,35 +166,21 @@ void turn_to_seed(const bool* prismatic, int n, const double* lower, const doubl
 
 bool nearest_listed(const BuiltArm& built, const double* lower, const double* upper, const double* goal,
                     const double* seed, double* q, std::int8_t* branch) {
-    const Arm& arm = *built.arm;
-    const Chain& chain = arm.plan.chain;
-    double rows[max_branches * 6];
-    std::int8_t branches[max_branches];
-    int count = 0;
-    Solutions found;
-    const double* row = rows;
-    const std::int8_t* number = branches;
-    int stride = 6;
-    const FastPath quick = kernels::ik_one(arm, goal, rows, branches, &count);
-    if (quick == FastPath::refused) return false;
-    if (quick == FastPath::doubtful) {
-        kernels::ik_pose(arm, read_goal(goal).T, seed, found);
-        if (found.status != Status::exact || !found.complete) return false;
-        row = found.q[0];
-        number = found.branch;
-        stride = max_arm;
-        count = found.count;
-    }
+    const Chain& chain = built.arm->plan.chain;
+    SolutionStore store;
+    SolutionRows rows;
+    if (!list_solutions(built, goal, seed, store, rows) || rows.status != Status::exact || !rows.complete)
+        return false;
     double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < rows.count; ++k) {
         double turned[max_joints], sum = 0;
-        std::copy(row + k * stride, row + k * stride + chain.n, turned);
+        std::copy_n(rows.q + k * rows.stride, chain.n, turned);
         turn_to_seed(chain.prismatic, chain.n, lower, upper, seed, turned);
         for (int i = 0; i < chain.n; ++i) sum += (turned[i] - seed[i]) * (turned[i] - seed[i]);
         if (!(sum < least)) continue;
         least = sum;
         std::copy(turned, turned + chain.n, q);
-        *branch = number[k];
+        *branch = rows.branch[k];
     }
     return std::isfinite(least);
 }

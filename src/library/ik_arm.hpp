@@ -20,16 +20,30 @@ struct BuiltArm {
 };
 BuiltArm build_arm(const Chain& chain);
 
-// What the classification saw.
-struct ArmGeometry {
-    int family;  // −1 without a closed form
-    bool is_general;
-    int virtual_joints;
-    int first_three;  // what the first three axes share; −1 where that does not matter
-    bool reversed, polish;
-    double deviation, length;
+// Rows q, `stride` numbers apart, each with a branch number and a flag.
+struct SolutionRows {
+    int count;
+    const double* q;
+    int stride;
+    const std::int8_t* branch;
+    const char* self_motion;  // which rows stand for a self-motion; null: none
+    Status status;
+    bool complete = true;
 };
-ArmGeometry geometry_of(const BuiltArm& built);
+inline SolutionRows rows_of(const Solutions& found) {
+    const auto* self_motion = reinterpret_cast<const char*>(found.self_motion);
+    return {found.count, found.q[0], max_arm, found.branch, self_motion, found.status, found.complete};
+}
+
+// Every solution of a goal, in the memory of `store`: by the closed form alone where nothing is in doubt.
+// False for a goal that is not a pose.
+struct SolutionStore {
+    double q[max_branches * 6];
+    std::int8_t branch[max_branches];
+    Solutions found;
+};
+bool list_solutions(const BuiltArm& built, const double* goal, const double* unconstrained,
+                    SolutionStore& store, SolutionRows& rows);
 
 Solutions solve_goal(const BuiltArm& built, const double* goal, const double* unconstrained);
 Solutions solve_point(const BuiltArm& built, const Vec3d& goal);

@@ -5,62 +5,21 @@
 #include <cmath>
 
 #include "cspace/ik/goal.hpp"
-#include "cspace/ik/redundancy/locked_joints.hpp"
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
 #include "cspace/ik/refine.hpp"
 #include "cspace/math/linear.hpp"
 #include "cspace/math/threads.hpp"
 #include "ik_self_motion.hpp"
-#include "kernels/ik_closed_form.hpp"
-#include "kernels/ik_redundancy.hpp"
 
 namespace cspace::ik {
 
 namespace {
 
-constexpr int pose_dimensions = 6, max_closed_form = 6;
+constexpr int pose_dimensions = 6;
 constexpr double turn = 6.283185307179586;
 constexpr double same = 1e-8;     // [rad, m] configurations closer than this are one
 constexpr double still = 1e-9;    // part of a self-motion's direction below which a joint rests
 constexpr double behind = -1e-6;  // [m] a point to look at that lies this far behind the tip is refused
-
-void append_row(GoalAnswer& out, const double* q, int n, int branch, bool self_motion) {
-    out.q.insert(out.q.end(), q, q + n);  // of the solver, until map_rows
-    out.branch.push_back(std::int8_t(branch));
-    out.self_motion.push_back(self_motion);
-    ++out.count;
-}
-
-void append_solutions(GoalAnswer& out, const Solutions& found, int n) {
-    for (int k = 0; k < found.count; ++k)
-        append_row(out, found.q[k], n, found.branch[k], found.self_motion[k]);
-    out.status = found.status;
-    out.complete = found.complete;
-}
-
-// By the closed form alone where nothing is in doubt.
-void answer_listed(const BuiltArm& built, const double* goal, GoalAnswer& out) {
-    double q[max_branches * max_closed_form];
-    std::int8_t branch[max_branches];
-    int count = 0;
-    if (kernels::ik_one(*built.arm, goal, q, branch, &count) != FastPath::settled)
-        return append_solutions(out, solve_goal(built, goal, nullptr), built.dof);
-    for (int k = 0; k < count; ++k)
-        append_row(out, q + max_closed_form * k, max_closed_form, branch[k], false);
-    out.status = count ? Status::exact : Status::unreachable;
-}
-
-void answer_locked(const GoalRequest& request, const double* goal, const double* at, GoalAnswer& out) {
-    Solutions found;
-    kernels::ik_locked(*request.locked, read_goal(goal).T, at, nullptr, found);
-    double row[max_joints];
-    for (int k = 0; k < found.count; ++k) {
-        whole_row(*request.locked, at, found.q[k], row);
-        append_row(out, row, request.locked->whole.n, found.branch[k], found.self_motion[k]);
-    }
-    out.status = found.status;
-    out.complete = found.complete;
-}
 
 // A search among infinitely many configurations, from a seed or else from the middle of the limits, does not
 // prove that there is none.
@@ -70,24 +29,16 @@ void answer_nearest(Solver& solver, const double* goal, const double* seed, Goal
     out.complete = seed ? arm.find_nearest_turned(goal, seed, q) : arm.find_near_middle(goal, q);
     if (!out.complete) return;
     out.status = Status::exact;
-    append_row(out, q, solver.chain().n, -1, false);
+    out.append_row(q, solver.chain().n, -1, false);
 }
 
 void answer_sampled(Solver& solver, const double* goal, int samples, GoalAnswer& out) {
-    const SampledGoal found = solver.redundant().sample(goal, samples);
-    const int n = solver.chain().n;
-    if (found.branch.empty()) {
-        answer_nearest(solver, goal, nullptr, out);
-        // Where joints almost share their work, single values may reach what no interval does.
-        if (!out.count) out.complete = !found.has_intervals && found.complete && n > pose_dimensions;
-        return;
-    }
-    for (std::size_t k = 0; k < found.branch.size(); ++k)
-        append_row(out, found.q.data() + std::size_t(n) * k, n, found.branch[k], false);
-    out.status = Status::exact;
-    out.complete = found.complete;
-    out.values = found.values;
-    out.feasible = found.feasible;
+    const bool has_intervals = solver.redundant().sample(goal, samples, out), complete = out.complete;
+    if (out.count) return;
+    out = {};
+    answer_nearest(solver, goal, nullptr, out);
+    // Where joints almost share their work, single values may reach what no interval does.
+    if (!out.count) out.complete = !has_intervals && complete && solver.chain().n > pose_dimensions;
 }
 
 // Brings the joints that stand for what a partial goal leaves free (negative in `own_of`) to where they meet
@@ -222,9 +173,15 @@ GoalAnswer answer_goal(Solver& solver, const GoalRequest& request, std::size_t i
     const double* goal = request.goals + 16 * i;
     GoalAnswer out;
     if (request.locked) {
-        answer_locked(request, goal, request.at + (request.at_each ? n * i : 0), out);
+        LockedStore store;
+        SolutionRows rows = {};
+        solve_locked_goal(*request.locked, goal, request.at + (request.at_each ? n * i : 0), store, rows);
+        out.append(rows, int(n));
     } else if (!solver.is_redundant()) {
-        answer_listed(solver.arm(), goal, out);
+        SolutionStore store;
+        SolutionRows rows = {};
+        list_solutions(solver.arm(), goal, nullptr, store, rows);
+        out.append(rows, int(n));
     } else if (solver.exceeds_reach(goal)) {
         return out;
     } else if (request.seeds) {

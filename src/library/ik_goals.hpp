@@ -37,17 +37,6 @@ struct GoalRequest {
     std::function<bool()> is_stopped;  // asked between goals, by the calling thread
 };
 
-struct GoalAnswer {
-    Status status = Status::unreachable;
-    bool complete = true;
-    int count = 0;
-    std::vector<double> q, whole;  // rows of the user's arm and of the whole arm
-    std::vector<std::int8_t> branch;
-    std::vector<char> self_motion;
-    int values = 0;         // of a redundant joint at which branches are listed; 0: one configuration of many
-    bool feasible = false;  // whether these values keep all limits
-};
-
 // One answer per goal; none where the call was stopped.
 std::vector<GoalAnswer> answer_goals(Solver& solver, const GoalRequest& request);
 

@@ -4,7 +4,7 @@
 
 #include "cspace/ik/numeric/search.hpp"
 #include "cspace/math/threads.hpp"
-#include "kernels/ik_numeric.hpp"
+#include "kernels/ik.hpp"
 #include "robot_path.hpp"
 
 namespace cspace::ik {

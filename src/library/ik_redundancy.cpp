@@ -9,11 +9,9 @@
 
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/redundancy/arcs.hpp"
+#include "cspace/ik/redundancy/arm_angle.hpp"
 #include "cspace/math/threads.hpp"
-#include "ik_arm.hpp"
-#include "kernels/ik_closed_form.hpp"
-#include "kernels/ik_locked_rows.hpp"
-#include "kernels/ik_redundancy.hpp"
+#include "kernels/ik.hpp"
 
 namespace cspace::ik {
 
@@ -51,6 +49,7 @@ struct LaneRows {
 struct RedundantSolver::State {
     Redundant arm;
     double unit;  // [m]
+    SwivelArm swivel;
     std::mutex mutex;
     std::unique_ptr<RedundantSolver> scaled;     // the same arm with lengths in its unit
     std::unique_ptr<RedundantSolver> unlimited;  // the same arm without limits
@@ -104,6 +103,7 @@ RedundantSolver::RedundantSolver(const Chain& chain, const double* lower, const 
     : state_(std::make_unique<State>()) {
     kernels::ik_make_redundant(chain, lower, upper, weight, state_->arm);
     state_->unit = unit_of(state_->arm);
+    state_->swivel = make_swivel_arm(chain);
 }
 RedundantSolver::RedundantSolver(RedundantSolver&&) noexcept = default;
 RedundantSolver::~RedundantSolver() = default;
@@ -250,33 +250,26 @@ std::vector<double> spread_values(const std::vector<Span>& disjoint, int n) {
     return out;
 }
 
-SampledGoal RedundantSolver::sample(const double* goal, int n) {
+bool RedundantSolver::sample(const double* goal, int n, GoalAnswer& out) {
     const int parameter = default_locked().front();
-    SampledGoal out;
-    bool complete;
-    std::vector<FeasibleInterval> found = intervals(parameter, goal, complete);
+    std::vector<FeasibleInterval> found = intervals(parameter, goal, out.complete);
     out.feasible = !found.empty();
-    if (found.empty()) found = state_->without_limits().intervals(parameter, goal, complete);
-    out.has_intervals = !found.empty();
-    out.complete = complete;
+    if (found.empty()) found = state_->without_limits().intervals(parameter, goal, out.complete);
     std::vector<Span> spans;
     for (const FeasibleInterval& interval : found) spans.emplace_back(interval.lower, interval.upper);
     const std::vector<double> values = spread_values(unite_intervals(std::move(spans)), n);
-    const std::size_t dof = std::size_t(chain().n);
-    const std::vector<double> at(dof, 0.0);
+    const double at[max_joints] = {};
     std::vector<SweptRows> rows(values.size());
     if (!rows.empty())
-        kernels::ik_sweep(lock({parameter}), parameter, pose_of(goal), at.data(), values.data(),
-                          int(values.size()), rows.data());
+        kernels::ik_sweep(lock({parameter}), parameter, pose_of(goal), at, values.data(), int(values.size()),
+                          rows.data());
     for (const SweptRows& swept : rows) {
         out.complete = out.complete && swept.complete;
-        for (int k = 0; k < swept.count; ++k) {
-            out.q.insert(out.q.end(), swept.q[k], swept.q[k] + dof);
-            out.branch.push_back(std::int8_t(swept.branch[k]));
-        }
+        for (int k = 0; k < swept.count; ++k) out.append_row(swept.q[k], chain().n, swept.branch[k], false);
     }
+    out.status = Status::exact;
     out.values = int(values.size());
-    return out;
+    return !found.empty();
 }
 
 // The first attempt begins in the middle of the limits, further ones around it. A joint that leads ahead
@@ -316,13 +309,29 @@ bool RedundantSolver::find_near_middle(const double* goal, double* q) const {
     return false;
 }
 
-bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, Solutions& found,
-                       double* q) {
+bool RedundantSolver::has_swivel() const { return state_->swivel.serves; }
+
+void RedundantSolver::solve_swivels(const double* goals, bool one_goal, const double* swivels, std::size_t n,
+                                    double* q) const {
+    const std::size_t each = one_goal ? n : 1;
+    for (std::size_t i = 0; i < n; i += each)
+        kernels::swivel_solutions(state_->swivel, pose_of(goals + 16 * (one_goal ? 0 : i)), swivels + i,
+                                  int(each), q + 56 * i);
+}
+
+double RedundantSolver::swivel_at(const double* q) const { return swivel_of(state_->swivel, q); }
+
+bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, LockedStore& store,
+                       SolutionRows& rows) {
     const ReadGoal<double> read = read_goal(goal);
     if (!read.is_pose) return false;
-    kernels::ik_locked(locked, read.T, at, nullptr, found);
-    for (int k = 0; k < found.count; ++k) whole_row(locked, at, found.q[k], q + locked.whole.n * k);
-    return found.count > 0;
+    const int n = locked.whole.n;
+    kernels::ik_locked(locked, read.T, at, nullptr, store.found);
+    for (int k = 0; k < store.found.count; ++k) whole_row(locked, at, store.found.q[k], store.q + n * k);
+    rows = rows_of(store.found);
+    rows.q = store.q;
+    rows.stride = n;
+    return true;
 }
 
 }  // namespace cspace::ik

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "cspace/ik/solution.hpp"
+#include "ik_arm.hpp"
 
 namespace cspace::ik {
 
@@ -23,14 +23,29 @@ struct FeasibleInterval {
     std::vector<double> q;
 };
 
-// All branches of one goal at values of a redundant joint.
-struct SampledGoal {
-    std::vector<double> q;  // rows of dof
+// The configurations that answer one goal.
+struct GoalAnswer {
+    Status status = Status::unreachable;
+    bool complete = true;
+    int count = 0;
+    std::vector<double> q, whole;  // rows of the arm, and of the longer one of a partial goal
     std::vector<std::int8_t> branch;
-    int values = 0;              // at which branches are listed
-    bool feasible = false;       // whether these values keep all limits
-    bool has_intervals = false;  // whether some value reaches the goal, limits aside
-    bool complete = false;       // whether no interval and no branch is missing
+    std::vector<char> self_motion;
+    int values = 0;         // of a redundant joint at which branches are listed; 0: one configuration of many
+    bool feasible = false;  // whether these values keep all limits
+
+    void append(const SolutionRows& rows, int n) {
+        for (int k = 0; k < rows.count; ++k)
+            append_row(rows.q + k * rows.stride, n, rows.branch[k], rows.self_motion && rows.self_motion[k]);
+        status = rows.status;
+        complete = rows.complete;
+    }
+    void append_row(const double* row, int n, int number, bool is_self_motion) {
+        q.insert(q.end(), row, row + n);
+        branch.push_back(std::int8_t(number));
+        self_motion.push_back(is_self_motion);
+        ++count;
+    }
 };
 
 // Intervals as disjoint ones, ascending; and the middles of n equal parts of all that they cover.
@@ -88,12 +103,19 @@ class RedundantSolver {
     std::vector<FeasibleInterval> intervals(int parameter, const double* goal, bool& complete);
 
     // All branches at n values of the default locked joint, spread over its feasible intervals; where none is
-    // feasible, over the values that reach the goal.
-    SampledGoal sample(const double* goal, int n);
+    // feasible, over the values that reach the goal. Returns whether there are any such values.
+    bool sample(const double* goal, int n, GoalAnswer& out);
 
     // A configuration that reaches a goal, near the middle of the limits (0 for joints without). To look at a
     // point far away, the search first looks at a closer one in the same direction.
     bool find_near_middle(const double* goal, double* q) const;
+
+    // Arms with two spherical joints, by the swivel of their elbow: whether axes 1, 2, 3 and 5, 6, 7 meet.
+    bool has_swivel() const;
+    // Goal i at swivel i, or one goal at all of the n swivels: q (n, 8, 7), NaN in rows without a solution.
+    void solve_swivels(const double* goals, bool one_goal, const double* swivels, std::size_t n,
+                       double* q) const;
+    double swivel_at(const double* q) const;
 
   private:
     void start_of_search(const double* goal, int attempt, double* start) const;
@@ -102,9 +124,12 @@ class RedundantSolver {
     std::unique_ptr<State> state_;
 };
 
-// One goal with the locked joints at their values `at` (dof,); q (max_solutions, dof). False where the goal
-// is no pose or nothing reaches it.
-bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, Solutions& found,
-                       double* q);
+// One goal with the locked joints at their values `at` (dof,). False where the goal is no pose.
+struct LockedStore {
+    double q[max_solutions * max_joints];
+    Solutions found;
+};
+bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, LockedStore& store,
+                       SolutionRows& rows);
 
 }  // namespace cspace::ik

@@ -3,7 +3,8 @@
 #include <algorithm>
 
 #include "cspace/ik/goal.hpp"
-#include "kernels/ik_tracking.hpp"
+#include "cspace/ik/tracking/follow.hpp"
+#include "kernels/ik.hpp"
 #include "robot_path.hpp"
 
 namespace cspace::ik {

@@ -5,7 +5,7 @@
 #include "check.hpp"
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/numeric/descent.hpp"
-#include "kernels/ik_numeric.hpp"
+#include "kernels/ik.hpp"
 #include "random_arms.hpp"
 
 using namespace cspace;

@@ -167,4 +167,13 @@ CSPACE_INLINE void store_rows(const V* values, int width, double* rows, std::siz
     }
 }
 
+// --- packs of rows -----------------------------------------------------------------------------------------
+// Calls f(first, count) for every `width` of n rows; the last may be partial.
+template <int width, class F>
+CSPACE_INLINE void over_packs(std::size_t n, F f) {
+    std::size_t first = 0;
+    for (; first + width <= n; first += width) f(first, width);
+    if (first < n) f(first, int(n - first));
+}
+
 }  // namespace cspace::inline CSPACE_ISA

@@ -111,18 +111,16 @@ class Solver(_core.SolverBase, KinematicModel):
         """The redundant joints that are locked unless others are named, by number, ascending."""
         return tuple(_core._ik_default_locked(self))
 
-    @cached_property
-    def swivel_solver(self) -> _core.SwivelSolver:
-        """The closed form by the swivel. Raises InputError for an arm without two spherical joints."""
+    def check_swivel(self) -> Solver:
+        """The solver itself. Raises InputError for an arm without two spherical joints: it has no swivel."""
         if self.joint_types != "R" * 7:
             raise InputError(f"{self.name} has no swivel, which needs seven revolute joints")
-        made = _core.SwivelSolver(self)
-        if not made.serves:
+        if not _core._ik_has_swivel(self):
             raise InputError(
                 f"{self.name} has no swivel in closed form: axes 1, 2, 3 must meet in a point, axes 5, 6, 7"
                 " in another, to rounding; lock a joint with locked= instead"
             )
-        return made
+        return self
 
     def redundancy_degree(self, locked: Sequence[int] = ()) -> int:
         """The number of dimensions that a pose leaves free, with these joints locked at typical values."""

@@ -278,7 +278,7 @@ def folds_known(others: Solver, name: str) -> bool:
 def swivel_of(solver: Solver) -> tuple[Step, ...]:
     """The steps by the swivel, for an arm that has one."""
     try:
-        _ = solver.swivel_solver
+        solver.check_swivel()
     except InputError:
         return ()
     return swivel_steps(solver.chain)

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes
 from cspace.ik.solutions import EXACT, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
@@ -26,10 +27,10 @@ def swivel(robot: HasSolver, q: Any) -> Array:
     axis 1 a fixed direction perpendicular to it stands for r. Raises InputError for an arm that is not built
     so. M. Shimizu et al. 2008, section II.
     """
-    solver = as_solver(robot).swivel_solver
+    solver = as_solver(robot).check_swivel()
     rows = as_floats(q, "q", last=(JOINTS,), largest=FARTHEST)
     out = np.empty(int(np.prod(rows.shape[:-1])))
-    solver.swivels(np.ascontiguousarray(rows.reshape(-1, JOINTS)), out)
+    _core._ik_swivels(solver, np.ascontiguousarray(rows.reshape(-1, JOINTS)), out)
     return out.reshape(rows.shape[:-1])
 
 
@@ -40,7 +41,7 @@ def solve_swivel(solver: Solver, T: Array, angle: Any) -> Solutions | SolutionsB
     goals = np.ascontiguousarray(np.broadcast_to(T, (*shape, 4, 4)))
     swivels = np.ascontiguousarray(np.broadcast_to(angles, shape).reshape(-1))
     q = np.empty((len(swivels), BRANCHES, JOINTS))
-    solver.swivel_solver.solve(goals.reshape(-1, 4, 4), swivels, q)
+    _core._ik_swivel_rows(solver.check_swivel(), goals.reshape(-1, 4, 4), swivels, q)
     if shape:
         return batch_of(solver, goals, q, shape)
     real = np.isfinite(q[0, :, 0])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import numpy.typing as npt
 
+from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import common_point
 from cspace.ik.redundancy.arm_angle import BRANCHES, JOINTS
@@ -61,7 +62,7 @@ def rows_at(solver: Solver, T: Array, swivels: Array) -> Array:
     """Every branch (m, 8, 7) at some swivels (m,), NaN where it is not."""
     q = np.empty((len(swivels), BRANCHES, JOINTS))
     goals = np.ascontiguousarray(np.broadcast_to(T, (len(swivels), 4, 4)))
-    solver.swivel_solver.solve(goals, np.ascontiguousarray(swivels), q)
+    _core._ik_swivel_rows(solver.check_swivel(), goals, np.ascontiguousarray(swivels), q)
     return q
 
 

@@ -1,0 +1,103 @@
+// The kernels of inverse kinematics, file by file. A solver belongs to the instruction set that made it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "cspace/ik/solution.hpp"
+#include "dispatch.hpp"
+
+namespace cspace::ik {
+struct Arm;
+struct DescentRows;
+struct Intervals;
+struct LimitArms;
+struct LockedArm;
+struct NearestPose;
+struct PositionSolutions;
+struct Redundant;
+struct SweptRows;
+struct SwivelArm;
+struct Track;
+struct Trail;
+}  // namespace cspace::ik
+
+// --- ik_closed_form.cpp --------------------------------------------------------------------------------
+// One goal, 16 numbers in row-major order; q takes up to max_branches rows of 6 and branch their numbers.
+CSPACE_KERNEL(cspace::ik, FastPath, ik_one,
+              (const Arm& arm, const double* T, double* q, std::int8_t* branch, int* count))
+// n goals of 16 numbers each; q (n, room, dof), room from max_branches to max_solutions, is filled up with
+// NaN behind the solutions. `quick` takes a verdict per goal.
+CSPACE_KERNEL(cspace::ik, void, ik_many,
+              (const Arm& arm, const double* T, std::size_t n, int room, double* q, std::int64_t* count,
+               FastPath* quick))
+
+// --- ik_pose.cpp ---------------------------------------------------------------------------------------
+CSPACE_KERNEL(cspace::ik, void, ik_make_arm, (const Chain& chain, Arm& arm))
+// Every solution of a pose, by whatever the arm needs; unconstrained: null, or values of the joints that the
+// goal leaves free.
+CSPACE_KERNEL(cspace::ik, void, ik_pose,
+              (const Arm& arm, const Posed& goal, const double* unconstrained, Solutions& out))
+// The configuration that comes nearest to a pose; weight: of a radian, in lengths of the arm.
+CSPACE_KERNEL(cspace::ik, void, ik_nearest_miss,
+              (const Arm& arm, const Posed& goal, double weight, NearestPose& out))
+// Every configuration of up to three joints that brings the tip to a point, and the nearest one if there is
+// none.
+CSPACE_KERNEL(cspace::ik, void, ik_position,
+              (const Chain& chain, const Vec3d& goal, bool with_nearest, PositionSolutions& out))
+
+// --- ik_locked.cpp: plans of a redundant arm and of an arm with joints locked ------------------------------
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_make_redundant,
+                     (const Chain& chain, const double* lower, const double* upper, const double* weight,
+                      Redundant& arm))
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_lock_joints,
+                     (const Redundant& arm, const int* joints, int count, LockedArm& out))
+// Every solution for the joints that move, those locked at their values `at`; unconstrained: as of ik_pose.
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_locked,
+                     (const LockedArm& locked, const Posed& goal, const double* at,
+                      const double* unconstrained, Solutions& out))
+
+// --- ik_locked_rows.cpp --------------------------------------------------------------------------------
+// The goals (rows, 16) of the joints that move, where those locked are the first or the last; at: the values
+// of all joints, rows `stride` apart.
+CSPACE_KERNEL(cspace::ik, void, locked_goals,
+              (const LockedArm& locked, const double* goals, const double* at, std::size_t stride,
+               std::size_t rows, double* moved))
+// Rows (count, 6) of the joints that move together with the locked ones, in `room` rows, NaN behind them.
+CSPACE_KERNEL(cspace::ik, void, locked_rows,
+              (const LockedArm& locked, const double* at, const double* q, std::int64_t count,
+               std::size_t room, double* rows))
+
+// --- ik_nearest.cpp ------------------------------------------------------------------------------------
+// The configuration on the self-motion of a goal nearest to a seed; false where nothing reaches the goal.
+CSPACE_NARROW_KERNEL(cspace::ik, bool, ik_nearest,
+                     (const Redundant& arm, const Posed& goal, const double* seed, double* q))
+
+// --- ik_intervals.cpp: the feasible intervals of joint `parameter`, which `locked` locks -------------------
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_make_limit_arms, (const Redundant& arm, LimitArms& out))
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_intervals,
+                     (const Redundant& arm, const LockedArm& locked, int parameter, const LimitArms& arms,
+                      const Posed& goal, Trail& trail, Intervals& out))
+
+// --- ik_sweep.cpp --------------------------------------------------------------------------------------
+// All solutions at n values of joint `parameter`, the other locked joints at their values `at`.
+CSPACE_NARROW_KERNEL(cspace::ik, void, ik_sweep,
+                     (const LockedArm& locked, int parameter, const Posed& goal, const double* at,
+                      const double* values, int n, SweptRows* rows))
+
+// --- ik_arm_angle.cpp ----------------------------------------------------------------------------------
+// All solutions of a goal at n swivels: q (n, 8, 7), NaN in rows without a solution.
+CSPACE_NARROW_KERNEL(cspace::ik, void, swivel_solutions,
+                     (const SwivelArm& arm, const Posed& goal, const double* swivels, int n, double* q))
+
+// --- ik_numeric.cpp ------------------------------------------------------------------------------------
+// Descents on the pose error: see cspace/ik/numeric/descent.hpp.
+CSPACE_KERNEL(cspace::ik, void, ik_descend, (const DescentRows& rows))
+// One descent per start to one goal: see cspace/ik/numeric/many_starts.hpp.
+CSPACE_KERNEL(cspace::ik, void, ik_many_starts,
+              (const Chain& chain, const double* T, const double* starts, std::size_t count, double* q,
+               double* residual))
+
+// --- ik_tracking.cpp -----------------------------------------------------------------------------------
+// Branches along a path of poses: see cspace/ik/tracking/follow.hpp.
+CSPACE_KERNEL(cspace::ik, void, ik_track, (const Track& track))
