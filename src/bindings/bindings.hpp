@@ -3,18 +3,15 @@
 
 #include <nanobind/nanobind.h>
 
+// clang-format off
 #define CSPACE_BINDINGS(bind)                                                                              \
-    bind(math) bind(navigation_curves) bind(navigation_curves_fast) bind(kinematics) bind(kinematics_rows) \
-        bind(spatial_rotations) bind(ik_subproblems) bind(ik_solver) bind(robot) bind(ik_result) bind(ik)  \
-            bind(ik_self_motion) bind(ik_goals) bind(ik_numeric) bind(ik_redundancy) bind(ik_tasks)        \
-                bind(ik_tracking) bind(ik_description) bind(navigation_route) bind(navigation_grid)        \
-                    bind(navigation_any_angle) bind(navigation_coverage) bind(navigation_cars)             \
-                        bind(navigation_following) bind(navigation_fields_brushfire)                       \
-                            bind(navigation_polygons) bind(navigation_cells) bind(navigation_bugs)         \
-                                bind(navigation_fields_grid) bind(navigation_fields_potential)             \
-                                    bind(navigation_fields_harmonic) bind(navigation_fields_function)      \
-                                        bind(navigation_voronoi) bind(navigation_sampling)                 \
-                                            bind(maps_polygon_world) bind(navigation_grid_replanning)
+    bind(math) bind(kinematics) bind(kinematics_rows) bind(spatial_rotations) bind(ik_subproblems)         \
+    bind(ik_solver) bind(robot) bind(ik_result) bind(ik) bind(ik_self_motion) bind(ik_goals)               \
+    bind(ik_numeric) bind(ik_redundancy) bind(ik_tasks) bind(ik_tracking) bind(ik_description)             \
+    bind(navigation_route) bind(navigation_grid) bind(navigation_coverage) bind(navigation_cars)           \
+    bind(navigation_following) bind(navigation_polygons) bind(navigation_bugs)                             \
+    bind(navigation_fields_grid) bind(navigation_fields_polygons) bind(maps_polygon_world)
+// clang-format on
 
 #define CSPACE_DECLARE_BINDING(part) void bind_##part(nanobind::module_& m);
 CSPACE_BINDINGS(CSPACE_DECLARE_BINDING)

@@ -2,6 +2,7 @@
 #include "library/maps_polygon_world.hpp"
 
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include "maps_points.hpp"
@@ -31,31 +32,32 @@ PolygonCore* from_cells(Array<const std::uint8_t, nb::ndim<2>> blocked, double s
                            tolerance);
 }
 
-nb::tuple crossings(const PolygonCore& core) {
+auto crossings(const PolygonCore& core) {
     std::vector<Point> at;
-    nb::list pairs;
+    std::vector<std::pair<int, int>> pairs;
     for (const auto& crossing : core.crossings()) {
         at.push_back(crossing.at);
-        pairs.append(nb::make_tuple(crossing.obstacles.first, crossing.obstacles.second));
+        pairs.push_back(crossing.obstacles);
     }
-    return nb::make_tuple(point_table(at), pairs);
+    return std::tuple(point_table(std::move(at)), std::move(pairs));
 }
 
-nb::tuple walls(const PolygonCore& core) {
+auto walls(const PolygonCore& core) {
     maps::Boundary b = core.walls();
-    return nb::make_tuple(point_table(b.points), table(std::move(b.next)), table(std::move(b.ring)),
-                          table(std::move(b.component)));
+    return std::tuple(point_table(std::move(b.points)), table(std::move(b.next)), table(std::move(b.ring)),
+                      table(std::move(b.component)));
 }
 
-nb::list tables(const std::vector<std::vector<Point>>& polygons) {
-    nb::list all;
-    for (const auto& corners : polygons) all.append(point_table(corners));
+template <auto polygons>
+std::vector<Numbers<double>> tables_of(const PolygonCore& core) {
+    std::vector<Numbers<double>> all;
+    for (auto& corners : (core.*polygons)()) all.push_back(point_table(std::move(corners)));
     return all;
 }
 
-nb::tuple nearest_wall(const PolygonCore& core, double x, double y) {
+std::tuple<double, double, double> nearest_wall(const PolygonCore& core, double x, double y) {
     const auto [far, at] = core.nearest_wall({x, y});
-    return nb::make_tuple(far, at.x, at.y);
+    return {far, at.x, at.y};
 }
 
 double path_least(const PolygonCore& core, Points path) {
@@ -81,21 +83,11 @@ void bind_maps_polygon_world(nb::module_& m) {
              "Marks in blocked (rows, columns) the cells that obstacles reach into.")
         .def_prop_ro("complete", &PolygonCore::complete, "False where the outlines cross too often.")
         .def_prop_ro("components", &PolygonCore::components, "How many components free space has.")
-        .def("crossings", crossings,
-             nb::sig("def crossings(self) -> tuple[NDArray[numpy.float64], list[tuple[int, int]]]"),
-             "Where outlines cross (k, 2), and the two obstacles of each.")
-        .def("walls", walls,
-             nb::sig("def walls(self) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], "
-                     "NDArray[numpy.int32], NDArray[numpy.int32]]"),
-             "Points (k, 2), next (k,), ring (k,), component of each ring.")
-        .def(
-            "triangles", [](const PolygonCore& core) { return tables(core.triangles()); },
-            nb::sig("def triangles(self) -> list[NDArray[numpy.float64]]"),
-            "The free triangles, (3, 2) each.")
-        .def(
-            "convex_polygons", [](const PolygonCore& core) { return tables(core.convex_polygons()); },
-            nb::sig("def convex_polygons(self) -> list[NDArray[numpy.float64]]"),
-            "Free space as convex polygons, (n, 2) each.")
+        .def("crossings", crossings, "Where outlines cross (k, 2), and the two obstacles of each.")
+        .def("walls", walls, "Points (k, 2), next (k,), ring (k,), component of each ring.")
+        .def("triangles", tables_of<&PolygonCore::triangles>, "The free triangles, (3, 2) each.")
+        .def("convex_polygons", tables_of<&PolygonCore::convex_polygons>,
+             "Free space as convex polygons, (n, 2) each.")
         .def(
             "components_at",
             [](const PolygonCore& core, double x, double y) { return core.components_at({x, y}); }, "x"_a,
@@ -104,8 +96,6 @@ void bind_maps_polygon_world(nb::module_& m) {
             "obstacle_at",
             [](const PolygonCore& core, double x, double y) { return core.obstacle_at({x, y}); }, "x"_a,
             "y"_a, "An obstacle that covers a point, or -1.")
-        .def("nearest_wall", nearest_wall,
-             nb::sig("def nearest_wall(self, x: float, y: float) -> tuple[float, float, float]"), "x"_a,
-             "y"_a, "Distance to the nearest wall, and its point.")
+        .def("nearest_wall", nearest_wall, "x"_a, "y"_a, "Distance to the nearest wall, and its point.")
         .def("path_clearance", path_least, "path"_a, "The least distance from a path to a wall.");
 }

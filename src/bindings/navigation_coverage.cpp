@@ -1,12 +1,12 @@
 // Coverage of a grid: a start and a bar in, the way cell by cell and what it swept out.
 #include "library/navigation_coverage.hpp"
 
-#include "maps_grid.hpp"
 #include "maps_points.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 using namespace cspace::navigation;
+using cspace::maps::GridWorld;
 
 namespace {
 
@@ -16,12 +16,10 @@ nb::tuple covered(const GridWorld& world, int row, int column, int half, bool al
         const nb::gil_scoped_release free;
         made = cover_grid(world, row, column, half, along_rows);
     }
-    const std::size_t rows = std::size_t(world.rows()), columns = std::size_t(world.columns());
-    const std::size_t steps = made.path.size() / 2, regions = made.order.size();
-    return nb::make_tuple(table(std::move(made.path), steps, 2), table(std::move(made.region), rows, columns),
-                          table(std::move(made.order), 1, regions),
-                          table(std::move(made.passes), rows, columns), made.reached, made.free, made.lanes,
-                          made.leftover);
+    const auto columns = std::size_t(world.columns());
+    return nb::make_tuple(table(std::move(made.path), 2), table(std::move(made.region), columns),
+                          table(std::move(made.order)), table(std::move(made.passes), columns), made.reached,
+                          made.free, made.lanes, made.leftover);
 }
 
 }  // namespace

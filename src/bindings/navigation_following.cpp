@@ -4,13 +4,13 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
-#include "maps_grid.hpp"
 #include "maps_points.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
 using namespace cspace;
 using namespace cspace::navigation;
+using cspace::maps::GridWorld;
 
 namespace {
 
@@ -33,8 +33,7 @@ nb::tuple run(Points points, std::vector<std::pair<std::size_t, int>> runs, Row 
         const nb::gil_scoped_release free;
         outcome = follow_path(points_of(points), parts, task, rows);
     }
-    const std::size_t steps = rows.size() / follow_width;
-    return nb::make_tuple(outcome, table(std::move(rows), steps, follow_width));
+    return nb::make_tuple(outcome, table(std::move(rows), follow_width));
 }
 
 void ranges(const GridWorld& world, Points from, Row angles, double most, RowOut out) {

@@ -11,8 +11,7 @@
 // Followed in memory by the points of the path.
 struct RouteObject {
     PyObject_VAR_HEAD PyObject* world;
-    PyObject* planner;   // its name
-    PyObject* options;   // the options it was called with, a dict; or null
+    PyObject* planner;   // with the options in force
     PyObject* evidence;  // what backs the verdict beyond the numbers here; or null
     cspace::Point start, goal;
     double length, seconds;
@@ -22,36 +21,22 @@ struct RouteObject {
     cspace::Point path[1];
 };
 
-// A route whose path, length, stats and seconds are still to be written; null with an error set. `options`
-// may be null or None.
-RouteObject* new_route(PyObject* world, PyObject* planner, PyObject* options, cspace::Point start,
-                       cspace::Point goal, cspace::navigation::Status status, int count);
+// A whole route from what a planner returned. evidence: taken over, also on failure; null for none, or with
+// an error set, which the caller gets.
+PyObject* make_route(PyObject* world, PyObject* planner, cspace::Point start, cspace::Point goal,
+                     const cspace::navigation::Route& route, double seconds, PyObject* evidence);
 
-// A whole route from what a planner returned.
-PyObject* make_route(PyObject* world, PyObject* planner, PyObject* options, cspace::Point start,
-                     cspace::Point goal, const cspace::navigation::Route& route, double seconds);
+// Plain finite numbers: one, or so many in a tuple or an array; false (without error) for others, which the
+// caller hands to the checks in Python.
+bool read_number(PyObject* item, double& number);
+bool read_numbers(PyObject* value, double* row, int count);
+inline bool read_point(PyObject* value, cspace::Point& point) { return read_numbers(value, &point.x, 2); }
 
-// The route with its evidence, both taken over; null with an error set if either is null.
-PyObject* add_evidence(PyObject* route, PyObject* evidence);
-
-// Two numbers read from a tuple, a list or an array of two finite numbers; false (without error) for others,
-// which the caller hands to the checks in Python.
-bool read_point(PyObject* value, cspace::Point& point);
+// An array (count,) of numbers.
+PyObject* number_row(const double* numbers, npy_intp count);
 
 // The arrays of a Trace: kinds (k,), from (k, 2), to (k, 2), values (k,).
 PyObject* trace_arrays(const cspace::navigation::Trace& trace);
-
-// An array (k, width), or (k,) for a width of one; and (k, 2 · each) of so many points a row.
-template <class T>
-PyObject* rows_of(const std::vector<T>& values, int width, int type) {
-    npy_intp shape[2] = {npy_intp(values.size()) / width, width};
-    PyObject* array = PyArray_SimpleNew(width == 1 ? 1 : 2, shape, type);
-    if (array)
-        std::copy(values.begin(), values.end(),
-                  static_cast<T*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array))));
-    return array;
-}
-PyObject* rows_of(const std::vector<cspace::Point>& points, int each = 1);
 
 // The time since it was made.
 class Watch {

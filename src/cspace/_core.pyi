@@ -230,13 +230,11 @@ class RouteBase:
     @property
     def world(self) -> Any: ...
     @property
-    def planner(self) -> str: ...
+    def _asked(self) -> Any: ...
     @property
     def _verdict(self) -> int: ...
     @property
     def _numbers(self) -> tuple[int, int, float]: ...
-    @property
-    def _options(self) -> dict[str, Any] | None: ...
     @property
     def _evidence(self) -> Any: ...
     def __bool__(self) -> bool: ...
@@ -283,6 +281,59 @@ class GridBase:
     def _locate(self, x: float, y: float) -> tuple[int, int, int]: ...
     def _path_clearance(self, path: NDArray[numpy.float64]) -> float: ...
 
+class GridReplanner:
+    """The compiled half of cspace.navigation.DStarLite."""
+
+    def __init__(self, world: GridBase, corners: int, x0: float, y0: float, x1: float, y1: float) -> None: ...
+
+    def set(self, cells: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], blocked: bool) -> None:
+        """Cells (k, 2) become blocked or free."""
+
+    def move(self, x: float, y: float) -> None:
+        """The robot has moved."""
+
+    def replan(self) -> tuple[int, NDArray[numpy.float64], float, int, int, NDArray[numpy.int32]]:
+        """
+        Status, path, length, nodes, edges, and the cells settled, in their order.
+        """
+
+    def unpack(self, into: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu')]) -> None:
+        """Writes a byte per cell."""
+
+class ClearanceField:
+    """The distance of every cell of a grid to the nearest wall."""
+
+    def __init__(self, grid: GridBase) -> None: ...
+
+    def march_times(self, grid: GridBase, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], slow_within: float) -> NDArray[numpy.float64]:
+        """
+        When a front from the goal arrives (rows, columns) [m, over the speed].
+        """
+
+class HarmonicField:
+    """A harmonic potential over the cells of a grid."""
+
+    def __init__(self, grid: GridBase, clearance: ClearanceField, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], residual: float, most_cycles: int) -> None: ...
+
+    @property
+    def residual(self) -> float:
+        """By what share a cell is off its mean, at most."""
+
+    @property
+    def cycles(self) -> int:
+        """Of the solver."""
+
+    @property
+    def cells(self) -> int:
+        """From which a way leads to the goal."""
+
+    @property
+    def rests(self) -> int:
+        """Cells but the goal from which no step leads down."""
+
+    def heights(self, grid: GridBase) -> NDArray[numpy.float64]:
+        """Minus the logarithm of the chance (rows, columns)."""
+
 class BrushfireCore:
     """The compiled half of cspace.navigation.BrushfireDiagram."""
 
@@ -304,32 +355,6 @@ class BrushfireCore:
     def pieces(self) -> int:
         """How many pieces the boundary has."""
 
-    def route(self, world: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, widest: bool) -> Any:
-        """A way along the diagram."""
-
-    def trace(self) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-        """The waves and the diagram as arrays of a trace."""
-
-class ClearanceField:
-    """The distance of every cell of a grid to the nearest wall."""
-
-    def __init__(self, grid: GridBase) -> None: ...
-
-    def potential_route(self, grid: GridBase, owner: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, settings: ArrayLike, corners: int) -> Any:
-        """A search that counts on a potential."""
-
-    def potential_trace(self, grid: GridBase, start: ArrayLike, goal: ArrayLike, settings: ArrayLike, corners: int) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-        """The cells in the order in which they are settled."""
-
-    def march_route(self, grid: GridBase, owner: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, slow_within: float) -> Any:
-        """The way down the times of a front."""
-
-    def march_times(self, grid: GridBase, goal: ArrayLike, slow_within: float) -> NDArray[numpy.float64]:
-        """When a front from the goal arrives (rows, columns)."""
-
-    def march_trace(self, grid: GridBase, start: ArrayLike, goal: ArrayLike, slow_within: float) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-        """The cells in the order in which the front arrives."""
-
 class NearWalls:
     """The walls of a PolygonWorld, sorted by where they repel."""
 
@@ -339,58 +364,22 @@ class NearWalls:
     def reach(self) -> float:
         """How far walls repel [m]."""
 
-    def route(self, core: PolygonCore, world: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, settings: ArrayLike, evidence: Any) -> Any:
-        """A descent; its evidence is made by evidence(rest, force, saddles)."""
-
-    def trace(self, core: PolygonCore, start: ArrayLike, goal: ArrayLike, settings: ArrayLike) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-        """The steps of a descent."""
-
-    def values(self, core: PolygonCore, goal: ArrayLike, points: ArrayLike, settings: ArrayLike) -> NDArray[numpy.float64]:
+    def values(self, core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], settings: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
         """The potential at points (n, 2)."""
-
-class HarmonicField:
-    """A harmonic potential over the cells of a grid."""
-
-    def __init__(self, grid: GridBase, clearance: ClearanceField, goal: ArrayLike, residual: float, most_cycles: int) -> None: ...
-
-    @property
-    def residual(self) -> float:
-        """By what share a cell is off its mean, at most."""
-
-    @property
-    def cycles(self) -> int:
-        """Of the solver."""
-
-    @property
-    def cells(self) -> int:
-        """From which a way leads to the goal."""
-
-    @property
-    def rests(self) -> int:
-        """Cells but the goal from which no step leads down."""
-
-    def heights(self, grid: GridBase) -> NDArray[numpy.float64]:
-        """Minus the logarithm of the chance (rows, columns)."""
-
-    def route(self, grid: GridBase, owner: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, seconds: float, evidence: Any) -> Any:
-        """The way down the field."""
-
-    def trace(self, grid: GridBase, start: ArrayLike) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-        """The steps of a descent."""
 
 class NavigationCore:
     """A navigation function of a star or sphere world."""
 
     @staticmethod
-    def fault(core: PolygonCore, goal: ArrayLike) -> tuple[int, float, float] | None:
+    def fault(core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)]) -> tuple[int, float, float] | None:
         """What is no star, or touches: (1 or 2, x, y) of a corner of it."""
 
     @staticmethod
-    def of_polygons(core: PolygonCore, goal: ArrayLike, kappa: float, squares: int, steps: int) -> NavigationCore:
+    def of_polygons(core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], kappa: float, squares: int, steps: int) -> NavigationCore:
         """Of a world without fault."""
 
     @staticmethod
-    def of_discs(discs: ArrayLike, goal: ArrayLike, kappa: float, squares: int, steps: int) -> NavigationCore:
+    def of_discs(discs: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], kappa: float, squares: int, steps: int) -> NavigationCore:
         """Of discs (n, 3): x, y, radius; the first is the room."""
 
     @property
@@ -408,20 +397,14 @@ class NavigationCore:
     def saddles(self) -> NDArray[numpy.float64]:
         """Where they are (k, 2)."""
 
-    def log_odds(self, core: PolygonCore | None, points: ArrayLike) -> NDArray[numpy.float64]:
+    def log_odds(self, core: PolygonCore | None, points: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
         """V at points (n, 2)."""
 
-    def phi(self, logs: ArrayLike) -> NDArray[numpy.float64]:
+    def phi(self, logs: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
         """φ of V (n,)."""
 
-    def path(self, start: ArrayLike) -> NDArray[numpy.float64] | None:
+    def path(self, start: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64] | None:
         """The way down from a free point."""
-
-    def route(self, core: PolygonCore, world: Any, planner: str, options: dict[str, Any], start: ArrayLike, goal: ArrayLike, seconds: float, evidence: Any) -> Any:
-        """A descent; its evidence is made by evidence(saddles)."""
-
-    def trace(self, core: PolygonCore, start: ArrayLike) -> tuple[NDArray[numpy.int8], NDArray[numpy.float64], NDArray[numpy.float64], NDArray[numpy.float64]]:
-        """The steps of a descent."""
 
 class PolygonCore:
     """The compiled half of cspace.maps.PolygonWorld."""
@@ -470,25 +453,6 @@ class PolygonCore:
     def path_clearance(self, path: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> float:
         """The least distance from a path to a wall."""
 
-class GridReplanner:
-    """The compiled half of cspace.navigation.DStarLite."""
-
-    def __init__(self, world: GridBase, corners: int, x0: float, y0: float, x1: float, y1: float) -> None: ...
-
-    def set(self, cells: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], blocked: bool) -> None:
-        """Cells (k, 2) become blocked or free."""
-
-    def move(self, x: float, y: float) -> None:
-        """The robot has moved."""
-
-    def replan(self) -> tuple[int, NDArray[numpy.float64], float, int, int, NDArray[numpy.int32]]:
-        """
-        Status, path, length, nodes, edges, and the cells settled, in their order.
-        """
-
-    def unpack(self, into: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu')]) -> None:
-        """Writes a byte per cell."""
-
 def _car_clear(*arguments: Any) -> None: ...
 def _car_distance(*arguments: Any) -> float | None: ...
 def _car_shortest(*arguments: Any) -> Any: ...
@@ -496,33 +460,29 @@ def _car_distances(*arguments: Any) -> None: ...
 def _car_poses(*arguments: Any) -> None: ...
 def _cast_rays(*arguments: Any) -> None: ...
 def _cover(*arguments: Any) -> Any: ...
+def _potential_a_star(*arguments: Any) -> Any: ...
+def _fast_marching(*arguments: Any) -> Any: ...
+def _harmonic(*arguments: Any) -> Any: ...
+def _brushfire(*arguments: Any) -> Any: ...
+def _potential_field(*arguments: Any) -> Any: ...
+def _navigation_function(*arguments: Any) -> Any: ...
 def _follow(*arguments: Any) -> tuple[int, NDArray[numpy.float64]]: ...
 def _hybrid_a_star(*arguments: Any) -> Any: ...
 def _grid_route(*arguments: Any) -> Any: ...
-def _grid_order(*arguments: Any) -> Any: ...
 def _any_angle(*arguments: Any) -> Any: ...
 def _grid_any_angle(*arguments: Any) -> Any: ...
-def _grid_any_angle_trace(*arguments: Any) -> Any: ...
 def _walls_divide(grid: Any, start: Any, goal: Any) -> bool: ...
 def _approximate_cells(*arguments: Any) -> Any: ...
-def _approximate_cells_trace(*arguments: Any) -> Any: ...
-def _approximate_cells_all(*arguments: Any) -> Any: ...
+def _approximate_cells_all(core: Any, settings: Any) -> Any: ...
 def _exact_cells(*arguments: Any) -> Any: ...
-def _exact_cells_trace(*arguments: Any) -> Any: ...
 def _exact_cells_all(core: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32]]: ...
 def _visibility(*arguments: Any) -> Any: ...
-def _visibility_trace(*arguments: Any) -> Any: ...
 def _visibility_graph(core: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32]]: ...
 def _sampling(*arguments: Any) -> Any: ...
-def _sampling_trace(*arguments: Any) -> Any: ...
 def _voronoi(*arguments: Any) -> Any: ...
-def _voronoi_trace(*arguments: Any) -> Any: ...
 def _voronoi_diagram(core: Any, tolerance: float) -> Any: ...
-def _any_angle_trace(*arguments: Any) -> Any: ...
 def _bug(*arguments: Any) -> Any: ...
-def _bug_trace(*arguments: Any) -> Any: ...
 def _voronoi_bug(*arguments: Any) -> Any: ...
-def _voronoi_bug_trace(*arguments: Any) -> Any: ...
 def _route_class(cls: type) -> None: ...
 def _route_make(*arguments: Any) -> Any: ...
 def _chain_rows(*arguments: Any) -> bool: ...

@@ -9,21 +9,22 @@
 
 namespace cspace::maps {
 
-// Throws std::invalid_argument unless the point lies in a free cell.
-inline Cell free_cell(const GridFrame& frame, const BitGrid& grid, Point p) {
-    Cell cell{};
-    if (frame.locate(grid, p, cell) != CellState::free)
-        throw std::invalid_argument("start and goal must lie in free cells");
-    return cell;
-}
-
 struct GridWorld::State {
     BitGrid bits;
     GridFrame frame;
     LazyParts parts{};
 
     bool find_cell(Point p, Cell& cell) const { return frame.locate(bits, p, cell) == CellState::free; }
-    Cell free_cell(Point p) const { return maps::free_cell(frame, bits, p); }
+    // The cells of start and goal; false where one is not free.
+    bool find_cells(Point start, Point goal, Cell& from, Cell& to) const {
+        return find_cell(start, from) && find_cell(goal, to);
+    }
+    // Throws std::invalid_argument unless the point lies in a free cell.
+    Cell free_cell(Point p) const {
+        Cell cell{};
+        if (!find_cell(p, cell)) throw std::invalid_argument("start and goal must lie in free cells");
+        return cell;
+    }
 };
 
 }  // namespace cspace::maps

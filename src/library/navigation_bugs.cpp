@@ -4,13 +4,33 @@
 
 #include "cspace/navigation/bugs/bug_1.hpp"
 #include "cspace/navigation/bugs/bug_2.hpp"
+#include "cspace/navigation/bugs/contact_robot.hpp"
 #include "cspace/navigation/bugs/range_robot.hpp"
+#include "cspace/navigation/bugs/surroundings.hpp"
 #include "cspace/navigation/bugs/tangent_bug.hpp"
-#include "navigation_bugs_state.hpp"
+#include "cspace/navigation/bugs/voronoi_bug.hpp"
+#include "cspace/navigation/bugs/walls.hpp"
+#include "maps_polygon_state.hpp"
 
 namespace cspace::navigation {
 
 namespace {
+
+// Calls move(walls, start, goal) with the ends taken off walls, for a trip with a route and a witness; false
+// where an end lies in an obstacle.
+template <class Trip, class Move>
+bool send_robot(const PolygonCore& core, Point start, Point goal, Trip& trip, Walk& walk, const Move& move) {
+    PolygonCore::State& state = core.state();
+    const maps::Settled from = state.settle(start), to = state.settle(goal);
+    if (!from.is_free() || !to.is_free()) return false;
+    const Walls& walls = state.walls.get<Walls>(state.world.walls);
+    trip = move(walls, from.at, to.at);
+    trip.route.path.front() = start;
+    if (trip.route.status == Status::found) trip.route.path.back() = goal;
+    if (trip.route.status == Status::unreachable)
+        walk.shut_ring = walls.ring(trip.witness.in.name), walk.shut_at = trip.witness.at;
+    return true;
+}
 
 enum Word : std::int8_t { go_word, hit_word, follow_word, leave_word };
 
@@ -44,7 +64,7 @@ bool follow_walls(const PolygonCore& core, const WallFollower& robot, Point star
     Trip trip;
     const Walls* all = nullptr;
     const bool is_free =
-        send_robot(core, start, goal, trip, walk.shut, [&](const Walls& walls, Point from, Point to) {
+        send_robot(core, start, goal, trip, walk, [&](const Walls& walls, Point from, Point to) {
             all = &walls;
             const Hand hand = robot.side == robot.left ? Hand::left : Hand::right;
             if (robot.kind == robot.tangent_bug) {
@@ -62,6 +82,34 @@ bool follow_walls(const PolygonCore& core, const WallFollower& robot, Point star
         walk.walked.push_back(f.walked);
         walk.rings.push_back(all->ring(f.hit.in.name));
     }
+    walk.route = std::move(trip.route);
+    return true;
+}
+
+bool trace_diagram(const PolygonCore& core, const DiagramTracer& robot, Point start, Point goal,
+                   DiagramWalk& walk, Trace* trace) {
+    PolygonCore::State& state = core.state();
+    Exploration trip;
+    const bool is_free =
+        send_robot(core, start, goal, trip, walk, [&](const Walls& walls, Point from, Point to) {
+            Exploration made =
+                robot.deviation > 0
+                    ? voronoi_bug(walls, from, to, robot.range, {robot.deviation, robot.seed})
+                    : voronoi_bug(walls, state.surroundings.get<Surroundings>(state.world.walls), from, to,
+                                  robot.range);
+            // Else it went through a gap as narrow as a rounding.
+            if (made.route.status == Status::found && !can_walk(walls, made.route.path))
+                made.route.status = Status::undetermined;
+            return made;
+        });
+    if (!is_free) return false;
+    const std::vector<Point>& path = trip.route.path;
+    for (const Leg& leg : trip.legs)
+        for (std::size_t i = leg.first; trace && i < leg.last; ++i)
+            trace->push_back({std::int8_t(leg.move), path[i], path[i + 1], leg.clearance});
+    walk.meets = std::move(trip.meets);
+    walk.branches = trip.branches, walk.dead_ends = trip.dead_ends, walk.scans = trip.scans;
+    walk.clearance = trip.clearance;
     walk.route = std::move(trip.route);
     return true;
 }

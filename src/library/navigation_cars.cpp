@@ -1,8 +1,28 @@
+#include "navigation_cars.hpp"
+
 #include "cspace/navigation/cars/hybrid_a_star.hpp"
+#include "cspace/navigation/curves/dubins.hpp"
+#include "cspace/navigation/curves/reeds_shepp.hpp"
+#include "cspace/navigation/curves/sample.hpp"
 #include "maps_grid_state.hpp"
-#include "navigation_curves.hpp"
 
 namespace cspace::navigation {
+
+Curve find_shortest_curve(bool reverses, const CarPose& start, const CarPose& goal, double radius) {
+    return reverses ? reeds_shepp_curve(start, goal, radius) : dubins_curve(start, goal, radius);
+}
+double curve_length(bool reverses, const CarPose& start, const CarPose& goal, double radius) {
+    return reverses ? reeds_shepp_distance(start, goal, radius) : dubins_distance(start, goal, radius);
+}
+
+void list_poses(const CarPose& start, std::span<const double> pieces, double radius,
+                std::span<const double> s, CarPose* out) {
+    std::vector<Piece> parts(pieces.size() / 2);
+    for (std::size_t i = 0; i < parts.size(); ++i)
+        parts[i] = {int(pieces[2 * i]), pieces[2 * i + 1] / radius};
+    const LaidCurve curve(start, std::move(parts), radius);
+    for (const double at : s) *out++ = curve.at(at / radius);
+}
 
 void check_poses(const maps::GridWorld& world, const double* f, std::span<const CarPose> poses,
                  bool* is_clear) {
@@ -10,13 +30,13 @@ void check_poses(const maps::GridWorld& world, const double* f, std::span<const 
     for (const CarPose& pose : poses) *is_clear++ = cars.is_clear({f[0], f[1], f[2], f[3]}, pose);
 }
 
-CarFinding find_car_route(const maps::GridWorld& world, const double* f, const CarPose& start,
-                          const CarPose& goal, bool reverses, const double* s) {
+CarRoute find_car_route(const maps::GridWorld& world, const double* f, const CarPose& start,
+                        const CarPose& goal, bool reverses, const double* s) {
     const HybridSettings how{s[0], reverses, s[1], int(s[2]), s[3], s[4], std::int64_t(s[5]), s[6]};
     const CarWorld cars(world.state().bits, world.state().frame);
     CarRoute route = HybridAStar(cars, {f[0], f[1], f[2], f[3]}, start, goal, how).find();
     for (Piece& piece : route.pieces) piece.length *= how.radius;
-    return {route.status, int(route.reason), std::move(route.pieces), route.stats};
+    return route;
 }
 
 }  // namespace cspace::navigation

@@ -1,5 +1,5 @@
-// Fields over grids and the planners that use them: what the bindings call. Functions that take points throw
-// std::invalid_argument unless they lie in free cells.
+// Fields over grids and the planners that use them: what the bindings call. A search returns false where an
+// end lies in no free cell, and writes its events into a trace that is not null.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@ namespace cspace::navigation {
 using maps::GridWorld;
 using Look = void (*)();  // called now and then; it may throw
 
-// Whether start and goal certainly lie in different parts of the free cells; not told of small parts.
+// Whether start and goal certainly lie in different parts of the free cells; not told of small parts. Throws
+// std::invalid_argument, as all here do that take a point but no trace, unless they lie in free cells.
 bool walls_divide(const GridWorld& world, Point start, Point goal);
 
 // The distance of every cell to the nearest wall. Its functions take the world that it was made for.
@@ -23,18 +24,16 @@ class ClearanceField {
     struct State;
     explicit ClearanceField(const GridWorld& world);
 
-    // By a potential. settings: gain, rho_0, cap, all in cells; scale, weight, whether greedy. corners: the
-    // number of Corners.
-    Route find_potential_route(const GridWorld& world, Point start, Point goal, const double* settings,
-                               int corners, Trace* trace) const;
+    // By a potential. settings: gain, rho_0, cap, all in cells; scale, weight, whether greedy, the number of
+    // Corners.
+    bool find_potential_route(const GridWorld& world, Point start, Point goal, const double* settings,
+                              Route& route, Trace* trace) const;
     // By fast marching, slower within a distance of walls; and the time that the way takes [m, over the
     // speed].
-    Route find_march_route(const GridWorld& world, Point start, Point goal, double slow_within,
-                           double& time) const;
+    bool find_march_route(const GridWorld& world, Point start, Point goal, double slow_within, Route& route,
+                          double& time, Trace* trace) const;
     // The times at which a front from the goal arrives, by rows.
     std::vector<double> march_times(const GridWorld& world, Point goal, double slow_within) const;
-    // The cells in the order in which the front arrives, up to the start's.
-    void trace_march(const GridWorld& world, Point start, Point goal, double slow_within, Trace& trace) const;
 
     const State& state() const { return *state_; }
 
@@ -54,8 +53,7 @@ class HarmonicPotential {
     std::int64_t rests() const;  // cells but the goal from which no step leads down
     // Minus the logarithm of the chance, by rows.
     std::vector<double> heights(const GridWorld& world) const;
-    Route descend(const GridWorld& world, Point start, Point goal) const;
-    void trace_descent(const GridWorld& world, Point start, Trace& trace) const;
+    bool descend(const GridWorld& world, Point start, Point goal, Route& route, Trace* trace) const;
 
   private:
     struct State;
@@ -79,10 +77,10 @@ class BrushfireDiagram {
         std::vector<double> lengths, least;
     };
     Branches branches() const;
-    // The least clearance [m] is written where a way is found.
-    Route find_route(Point start, Point goal, bool widest, double& least_clearance) const;
-    // The waves as they burn, outwards from walls, and the diagram that they leave.
-    void trace_waves(Trace& trace) const;
+    // The least clearance [m] is written where a way is found. The events are the waves as they burn,
+    // outwards from walls, and the diagram that they leave.
+    bool find_route(const GridWorld& world, Point start, Point goal, bool widest, Route& route,
+                    double& least_clearance, Trace* trace) const;
 
   private:
     struct State;

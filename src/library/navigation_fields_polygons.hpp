@@ -1,4 +1,5 @@
-// Potentials in polygon worlds and descents in them: what the bindings call.
+// Potentials in polygon worlds and descents in them: what the bindings call. A search returns false where an
+// end lies in an obstacle, and writes its events into a trace that is not null.
 #pragma once
 
 #include <cstdint>
@@ -16,21 +17,14 @@ using maps::PolygonCore;
 // k, k_r, rho_0, cone, the longest step, the most evaluations of the potential.
 using PotentialSettings = const double*;
 
-struct DescentFinding {
-    Route route;
-    int rest;              // the number of Rest: where it ended
-    double force;          // there
-    std::int64_t saddles;  // left on the way
-};
-
 // The walls of a world, sorted by where they repel, that is within a reach [m].
 class RepellingWalls {
   public:
     RepellingWalls(const PolygonCore& core, double reach);
 
     double reach() const;
-    DescentFinding descend(const PolygonCore& core, Point start, Point goal, PotentialSettings settings,
-                           Trace* trace) const;
+    bool descend(const PolygonCore& core, Point start, Point goal, PotentialSettings settings,
+                 DescentRoute& found, Trace* trace) const;
     // At points of free space; infinite elsewhere.
     std::vector<double> values(const PolygonCore& core, Point goal, std::span<const Point> points,
                                PotentialSettings settings) const;
@@ -68,8 +62,8 @@ class StarFunction {
     std::vector<double> log_odds(const PolygonCore* core, std::span<const Point> points) const;
     double phi(double log_odds) const;
 
-    Route find_route(const PolygonCore& core, Point start, Point goal, std::int64_t& saddles) const;
-    void trace_descent(const PolygonCore& core, Point start, Trace& trace) const;
+    bool find_route(const PolygonCore& core, Point start, Point goal, DescentRoute& found,
+                    Trace* trace) const;
     // The way down from a free point; empty where it does not come to the goal.
     std::vector<Point> find_path(Point start) const;
 

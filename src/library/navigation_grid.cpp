@@ -1,7 +1,10 @@
 #include "navigation_grid.hpp"
 
 #include <memory>
+#include <stdexcept>
 
+#include "cspace/navigation/any_angle/grid_any_angle.hpp"
+#include "cspace/navigation/grid/d_star_lite.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/search.hpp"
 #include "maps_grid_state.hpp"
@@ -43,29 +46,15 @@ class Borrowed {
     std::unique_ptr<Scratch> own_;
 };
 
-// Writes what a search finds, and the cells that it settles if they are asked for; false where an end lies in
-// no free cell.
-bool search_cells(maps::GridWorld::State& world, const GridQuestion& question, Look look,
-                  std::vector<Settled>* settled, GridFinding& finding) {
-    maps::Cell from, to;
-    if (!world.find_cell(question.start, from) || !world.find_cell(question.goal, to)) return false;
-    const GridQuery query{static_cast<GridPlanner>(question.planner),
-                          static_cast<Corners>(question.corners),
-                          static_cast<Metric>(question.metric),
-                          question.g_weight,
-                          question.h_weight,
-                          question.bound,
-                          question.costs,
-                          question.least_cost};
-    Borrowed borrowed;
-    auto& [nodes, answer] = borrowed.get();
-    answer.settled = settled;
-    find_way(world.bits, from, to, query, nodes, answer, &world.parts, look);
-    draw_route(world.frame, question.start, question.goal, answer, finding.route);
-    finding.found = answer.found;
-    finding.cost = answer.cost, finding.least = answer.least;
-    finding.parts = answer.parts;
-    return true;
+maps::Cell cell_at(const maps::GridFrame& frame, const maps::BitGrid& grid, Point p) {
+    maps::Cell cell = {0, 0};
+    if (frame.locate(grid, p, cell) == maps::CellState::outside)
+        throw std::invalid_argument("the point must lie within the grid");
+    return cell;
+}
+Corners known_rule(int corners) {
+    if (corners < 0 || corners >= corner_rules) throw std::invalid_argument("unknown corner rule");
+    return static_cast<Corners>(corners);
 }
 
 }  // namespace
@@ -77,21 +66,94 @@ bool GridQuestion::is_known() const {
 
 bool GridQuestion::has_bounds() const { return costs || planner == int(GridPlanner::focal); }
 
-bool find_grid_route(const maps::GridWorld& world, const GridQuestion& question, Look look,
-                     GridFinding& finding) {
-    return search_cells(world.state(), question, look, nullptr, finding);
+bool find_grid_route(const maps::GridWorld& grid, const GridQuestion& question, Point start, Point goal,
+                     Look look, GridFinding& finding, Trace* trace) {
+    maps::GridWorld::State& world = grid.state();
+    maps::Cell from, to;
+    if (!world.find_cells(start, goal, from, to)) return false;
+    const GridQuery query{static_cast<GridPlanner>(question.planner),
+                          static_cast<Corners>(question.corners),
+                          static_cast<Metric>(question.metric),
+                          question.g_weight,
+                          question.h_weight,
+                          question.bound,
+                          question.costs,
+                          question.least_cost};
+    Borrowed borrowed;
+    auto& [nodes, answer] = borrowed.get();
+    std::vector<Settled> settled;
+    answer.settled = trace ? &settled : nullptr;
+    find_way(world.bits, from, to, query, nodes, answer, &world.parts, look);
+    if (trace) list_settled(world.frame, settled, *trace);
+    draw_route(world.frame, start, goal, answer, finding.route);
+    finding.found = answer.found;
+    finding.cost = answer.cost, finding.least = answer.least;
+    finding.parts = answer.parts;
+    return true;
 }
 
-bool list_settled_cells(const maps::GridWorld& world, const GridQuestion& question, Look look,
-                        std::vector<std::int32_t>& cells, std::vector<double>& g) {
-    std::vector<Settled> settled;
-    GridFinding finding;
-    if (!search_cells(world.state(), question, look, &settled, finding)) return false;
-    for (const auto& [cell, parent, way] : settled) {
-        cells.insert(cells.end(), {cell.row, cell.column, parent.row, parent.column});
-        g.push_back(world.resolution() * way);
-    }
+bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal, Look look, Route& route,
+                          Trace* trace) {
+    auto& [bits, frame, parts] = world.state();
+    if (!maps::RunMesh::fits(bits))
+        throw std::invalid_argument(
+            "the grid has too many cells for a search over runs of cells; use larger cells");
+    GridAnyAngle search(bits, frame);
+    const SettledInRuns from = search.settle(start), to = search.settle(goal);
+    if (from.runs.empty() || to.runs.empty()) return false;
+    route = search.solve(start, from, goal, to, &parts, trace, look);
     return true;
+}
+
+struct GridReplanner::State {
+    DStarLite search;
+    maps::GridFrame frame;
+    Point start, goal;
+
+    State(const maps::GridWorld::State& world, Corners corners, Point from, Point to)
+        : search(world.bits, corners, cell_at(world.frame, world.bits, from),
+                 cell_at(world.frame, world.bits, to)),
+          frame(world.frame),
+          start(from),
+          goal(to) {}
+};
+
+GridReplanner::GridReplanner(const maps::GridWorld& world, int corners, Point start, Point goal)
+    : state_(new State(world.state(), known_rule(corners), start, goal)) {}
+GridReplanner::GridReplanner(GridReplanner&&) noexcept = default;
+GridReplanner::~GridReplanner() = default;
+
+int GridReplanner::rows() const { return state_->search.grid().rows(); }
+int GridReplanner::columns() const { return state_->search.grid().columns(); }
+void GridReplanner::unpack(std::uint8_t* into) const { state_->search.grid().unpack(into); }
+
+void GridReplanner::set_cells(std::span<const std::int32_t> cells, bool blocked) {
+    for (std::size_t k = 0; k < cells.size(); k += 2)
+        if (!state_->search.grid().contains({cells[k], cells[k + 1]}))
+            throw std::invalid_argument("the cells must lie within the grid");
+    for (std::size_t k = 0; k < cells.size(); k += 2) state_->search.set({cells[k], cells[k + 1]}, blocked);
+}
+
+void GridReplanner::move_to(Point start) {
+    const maps::Cell cell = cell_at(state_->frame, state_->search.grid(), start);
+    state_->start = start;
+    state_->search.move(cell);
+}
+
+Route GridReplanner::replan(std::vector<std::int32_t>& settled) {
+    auto& [search, frame, start, goal] = *state_;
+    GridAnswer answer;
+    std::vector<std::uint32_t> order;
+    answer.effort.order = &order;
+    answer.found = search.replan(answer.effort);
+    if (answer.found) search.way(answer.cells);
+    Route route;
+    draw_route(frame, start, goal, answer, route);
+    for (const std::uint32_t number : order) {
+        const maps::Cell cell = search.grid().cell(number);
+        settled.insert(settled.end(), {cell.row, cell.column});
+    }
+    return route;
 }
 
 }  // namespace cspace::navigation

@@ -1,6 +1,7 @@
 // The planners that are shown a polygon world: what the bindings call. A world keeps what its planners have
 // made. Questions to any angle, visibility and exact cells of one world may not be asked by two threads at a
-// time.
+// time. A search returns false where an end lies in an obstacle, and writes its events into a trace that is
+// not null.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +15,6 @@ namespace cspace::navigation {
 using maps::PolygonCore;
 
 enum class PolygonPlanner { any_angle, visibility, exact_cells };
-
-// False where an end lies in an obstacle, here and below.
 bool find_polygon_route(const PolygonCore& core, PolygonPlanner planner, Point start, Point goal,
                         Route& route, Trace* trace);
 
@@ -27,13 +26,8 @@ void list_visibility_graph(const PolygonCore& core, std::vector<Point>& nodes,
 void list_exact_cells(const PolygonCore& core, std::vector<Point>& corners, std::vector<std::int32_t>& doors);
 
 // Approximate cells. settings: depth, most_depth, refine, uniform, manhattan, most_cells.
-struct CellFinding {
-    Route route;
-    std::int64_t free, mixed, full;  // leaves
-    int depth;                       // of the deepest leaf
-};
-CellFinding find_cell_route(const PolygonCore& core, Point start, Point goal, const std::int64_t* settings,
-                            Trace* trace);
+bool find_cell_route(const PolygonCore& core, Point start, Point goal, const std::int64_t* settings,
+                     CellRoute& found, Trace* trace);
 // The leaves as squares (least x and y, largest x and y), and their kinds.
 void list_cell_leaves(const PolygonCore& core, const std::int64_t* settings, std::vector<double>& squares,
                       std::vector<std::int8_t>& kinds);
@@ -47,11 +41,23 @@ struct SamplingSettings {
     long long neighbours = 0;        // of a node of a roadmap
     double step = 1, goal_bias = 0;  // of a tree
 };
-struct SamplingFinding {
-    Route route;
-    std::int64_t samples = 0;  // points drawn
-};
 bool find_sampled_route(const PolygonCore& core, const SamplingSettings& settings, Point start, Point goal,
-                        SamplingFinding& finding, Trace* trace);
+                        SampledRoute& found, Trace* trace);
+
+// Along the Voronoi diagram. tolerance: how far a chord may lie from its arc [m].
+bool find_voronoi_route(const PolygonCore& core, Point start, Point goal, bool widest, double tolerance,
+                        DiagramRoute& found, Trace* trace);
+struct VoronoiArc {
+    std::int32_t from, to;  // vertices
+    std::vector<Point> line;
+    std::vector<double> clearance;  // of its points [m]
+};
+struct VoronoiArcs {
+    std::vector<Point> vertices;
+    std::vector<double> clearance;  // of the vertices [m]
+    std::vector<VoronoiArc> arcs;
+    bool is_whole = true;  // in every component of free space
+};
+VoronoiArcs list_voronoi_arcs(const PolygonCore& core, double tolerance);
 
 }  // namespace cspace::navigation

@@ -61,7 +61,7 @@ TEST(an_empty_world_is_one_leaf) {
     Outlines outlines;
     outlines.high = {3, 3};
     const PolygonWorld world(outlines);
-    const CellAnswer answer = ApproximateCells(world, {}).solve({0, 0}, {3, 3});
+    const CellRoute answer = ApproximateCells(world, {}).solve({0, 0}, {3, 3});
     CHECK(answer.leaves[0] == 1 && answer.leaves[1] == 0 && answer.leaves[2] == 0);
     CHECK_NEAR(answer.route.length, std::sqrt(18.0), 1e-12);
 }

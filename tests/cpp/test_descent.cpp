@@ -48,7 +48,7 @@ TEST(descents_go_down_and_never_through_walls) {
         const Gains gains{1, 0.25 * reach * reach * reach * reach, reach, reach};
         const Point start = pick(), goal = pick();
         const Potential potential(walls, gains, goal);
-        const Descent descent = DescentRun(walls, potential, 0.25 * reach, 10000).run(start, {});
+        const DescentRoute descent = DescentRun(walls, potential, 0.25 * reach, 10000).run(start, {});
         const auto& path = descent.route.path;
         CHECK(path.size() == descent.values.size());
         CHECK((descent.route.status == Status::found) == (descent.rest == Rest::goal));

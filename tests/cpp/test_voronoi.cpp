@@ -10,6 +10,7 @@
 using namespace cspace;
 using namespace cspace::maps;
 using namespace cspace::navigation::voronoi;
+using cspace::navigation::DiagramRoute;
 using cspace::navigation::Status;
 
 namespace {
@@ -72,7 +73,7 @@ std::vector<int> degrees(const Diagram& d) {
     return count;
 }
 
-Way ask(const Roadmap& map, const PolygonWorld& world, Point a, Point b, bool widest) {
+DiagramRoute ask(const Roadmap& map, const PolygonWorld& world, Point a, Point b, bool widest) {
     const Settled from = world.settle(a, 0), to = world.settle(b, 0);
     return map.solve(from, to, world.shared_component(from, to), widest, 1e-3, nullptr);
 }
@@ -137,7 +138,7 @@ TEST(walls_without_thickness_and_points_where_obstacles_touch) {
     const PolygonWorld polygons(world);
     const Roadmap map(polygons);
     CHECK(is_whole(map.diagram()) && error_of(map.diagram()) < 1e-12);
-    const Way way = ask(map, polygons, {4, 4}, {6, 6}, true);
+    const DiagramRoute way = ask(map, polygons, {4, 4}, {6, 6}, true);
     CHECK(way.route.status == Status::found);
     CHECK(way.clearance == 1 && way.on_diagram >= 1);
 }
@@ -147,8 +148,8 @@ TEST(the_wider_of_two_ways_and_the_shorter) {
     world.block(2, 1, 6, 5);  // a gap of 1 below, of 4 above, of 2 at the sides
     const PolygonWorld polygons(world);
     const Roadmap map(polygons);
-    const Way wide = ask(map, polygons, {1, 1}, {9, 1}, true),
-              quick = ask(map, polygons, {1, 1}, {9, 1}, false);
+    const DiagramRoute wide = ask(map, polygons, {1, 1}, {9, 1}, true),
+                       quick = ask(map, polygons, {1, 1}, {9, 1}, false);
     CHECK_NEAR(wide.on_diagram, 1, 1e-12);
     CHECK_NEAR(quick.on_diagram, 0.5, 1e-12);
     CHECK(quick.route.length < wide.route.length);

@@ -1,6 +1,8 @@
-// The result of every planner: a path or the reason why there is none, and statistics of the search.
+// The result of every planner: a path or the reason why there is none, statistics of the search, and what
+// some planners add to it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -26,6 +28,44 @@ struct Route {
     std::vector<Point> path;  // from start to goal; empty unless found, or as far as the robot came
     double length = std::numeric_limits<double>::infinity();
     Stats stats;
+};
+
+// Of approximate cells.
+struct CellRoute {
+    Route route;
+    std::array<std::int64_t, 3> leaves{};  // free, mixed, full
+    int depth = 0;                         // of the deepest leaf
+};
+
+// Of planners that draw samples.
+struct SampledRoute {
+    Route route;
+    std::int64_t samples = 0;  // points drawn
+};
+
+// Of ways along the Voronoi diagram: least distances from walls [m].
+struct DiagramRoute {
+    Route route;
+    double clearance = 0;  // on the whole way
+    double on_diagram = 0;
+    double at_start = 0, at_goal = 0;
+};
+
+// Of a descent in a potential, and where it ended.
+enum class Rest : std::int8_t {
+    goal,
+    minimum,  // no force, and the potential rises in every direction
+    saddle,   // no force, and it is too flat to tell which way is down
+    crease,   // forces from several places of one boundary loop balance each other
+    wall,     // on a wall from which no descent was found
+    budget,   // no rest in so many steps
+};
+struct DescentRoute {
+    Route route;
+    Rest rest = Rest::budget;
+    double force = 0;            // that is left
+    int saddles = 0;             // places without force that were left again
+    std::vector<double> values;  // of the potential along the path
 };
 
 inline double length_of(const std::vector<Point>& path) {

@@ -33,11 +33,7 @@ class PlanePlanner(Planner):
 
     def plan(self, world: Any, start: ArrayLike, goal: ArrayLike) -> Route:
         """The route from start to goal (2,) [m] in a world of the planner's kind."""
-        planner = self._fill_in(world)
-        route: Route | None = planner._search(world, start, goal)
-        if route is None:  # the core reads plain numbers of free points; the checks convert others, or raise
-            route = planner._search(world, *check_ends(world, start, goal))
-            assert route is not None
+        route: Route = self._fill_in(world)._search(False, world, start, goal)
         return route
 
     def explain_route(self, route: Route) -> str:
@@ -75,10 +71,13 @@ class PlanePlanner(Planner):
         """The planner with the defaults that depend on the world, and a seed."""
         return self
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        """Calls the compiled search; None where it cannot read start or goal (2,) [m], or one is not free."""
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        """Calls the compiled search, which has start and goal (2,) [m] checked by `world.check_free`: the
+        Route, or if traced the arrays of the trace: kinds (k,), start, end (k, 2) [m], values (k,)."""
+        if traced:
+            return NO_EVENTS
         raise NotImplementedError(f"{type(self).__name__} defines no plan(world, start, goal)")
 
     def _record(self, route: Route) -> Any:
-        """The arrays of the trace: kinds (k,), start, end (k, 2) [m], values (k,)."""
-        return NO_EVENTS
+        """The arrays of the trace of a route."""
+        return self._search(True, route.world, route.start, route.goal)

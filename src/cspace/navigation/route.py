@@ -54,9 +54,10 @@ class Route(_core.RouteBase):
         return said
 
     @property
-    def _asked(self) -> Any:
-        """The planner with the options in force, which the compiled core keeps."""
-        return self._options
+    def planner(self) -> str:
+        """The name of the planner."""
+        name: str = self._asked.name
+        return name
 
     @property
     def stats(self) -> Stats:
@@ -133,7 +134,5 @@ def new_route(
     """A route from what a planner with the options in force found. path: (m, 2) [m]; ends: start and goal,
     (2,) each."""
     verdict = STATUSES.index(status)
-    made: Route = _core._route_make(
-        world, planner.name, planner, *ends, verdict, path, length, *stats, evidence
-    )
+    made: Route = _core._route_make(world, planner, *ends, verdict, path, length, *stats, evidence)
     return made

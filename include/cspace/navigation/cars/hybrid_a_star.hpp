@@ -24,15 +24,6 @@ struct HybridSettings {
     double weight;        // of what is left beside what is driven
 };
 
-enum class HybridReason : std::int8_t { found, no_gap, exhausted, budget };
-
-struct CarRoute {
-    Status status = Status::undetermined;
-    HybridReason reason = HybridReason::exhausted;
-    std::vector<Piece> pieces;  // in turning radii
-    Stats stats;
-};
-
 class HybridAStar {
   public:
     HybridAStar(const CarWorld& world, const Footprint& body, const CarPose& start, const CarPose& goal,

@@ -17,12 +17,6 @@ struct CellOptions {
     std::size_t most_cells = std::size_t(1) << 22;
 };
 
-struct CellAnswer {
-    Route route;
-    std::array<std::int64_t, 3> leaves{};  // free, mixed, full
-    int depth = 0;                         // of the deepest leaf
-};
-
 class ApproximateCells {
   public:
     // kept: what other questions have split already; a record of the search is of one that splits anew.
@@ -39,8 +33,8 @@ class ApproximateCells {
 
     const Quadtree& tree() const { return stage_->tree; }
 
-    CellAnswer solve(Point start, Point goal) {
-        CellAnswer answer;
+    CellRoute solve(Point start, Point goal) {
+        CellRoute answer;
         if (start == goal) {
             answer.route.status = Status::found;
             answer.route.path = {start, goal};

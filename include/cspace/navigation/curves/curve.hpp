@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "cspace/math/wrapping.hpp"
+#include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {
 
@@ -39,6 +41,15 @@ struct Curve {
         for (int i = 0; i < count; ++i) sum += std::fabs(piece[i].length);
         return sum;
     }
+};
+
+// What hybrid A* answers, and why.
+enum class HybridReason : std::int8_t { found, no_gap, exhausted, budget };
+struct CarRoute {
+    Status status = Status::undetermined;
+    HybridReason reason = HybridReason::exhausted;
+    std::vector<Piece> pieces;
+    Stats stats;
 };
 
 // The pose after a piece driven with a turning radius: a chord at half the turn.

@@ -14,23 +14,6 @@
 
 namespace cspace::navigation {
 
-enum class Rest : std::int8_t {
-    goal,
-    minimum,  // no force, and the potential rises in every direction
-    saddle,   // no force, and it is too flat to tell which way is down
-    crease,   // forces from several places of one boundary loop balance each other
-    wall,     // on a wall from which no descent was found
-    budget,   // no rest in so many steps
-};
-
-struct Descent {
-    Route route;
-    Rest rest = Rest::budget;
-    double force = 0;            // that is left
-    int saddles = 0;             // places without force that were left again
-    std::vector<double> values;  // of the potential along the path
-};
-
 class DescentRun {
   public:
     DescentRun(const NearWalls& walls, const Potential& potential, double longest, std::int64_t budget)
@@ -38,7 +21,7 @@ class DescentRun {
 
     // From a point of free space, or on its boundary: there the first step takes one of the directions that
     // lead into free space.
-    Descent run(Point start, const std::vector<Point>& inward) {
+    DescentRoute run(Point start, const std::vector<Point>& inward) {
         at_ = start;
         descent_.route.path = {start};
         if (start == potential_.goal()) return finish(Rest::goal);
@@ -57,7 +40,7 @@ class DescentRun {
     const Potential& potential_;
     double longest_, step_;
     std::int64_t budget_;
-    Descent descent_;
+    DescentRoute descent_;
     Point at_;
     Potential::Look here_;
 
@@ -156,7 +139,7 @@ class DescentRun {
         const double mixed = 0.5 * (by_x.y + by_y.x);
         return by_x.x > 0 && by_x.x * by_y.y > mixed * mixed ? Rest::minimum : Rest::saddle;
     }
-    Descent finish(Rest rest) {
+    DescentRoute finish(Rest rest) {
         descent_.rest = rest;
         descent_.force = norm(here_.slope);
         const bool holds = rest == Rest::minimum || rest == Rest::crease;

@@ -198,15 +198,20 @@ struct MarchAnswer {
 
 inline MarchAnswer march(const maps::BitGrid& grid, const maps::GridFrame& frame, const Clearance* clearance,
                          double slow_within, Point start, maps::Cell from, Point goal, maps::Cell to,
-                         std::vector<std::uint32_t>* order) {
+                         Trace* trace) {
     MarchAnswer answer;
+    std::vector<std::uint32_t> order;
     Front front(grid, clearance, slow_within, grid.number(from));
     search::PriorityQueue queue;
-    search::Effort effort{0, 0, order};
+    search::Effort effort{0, 0, trace ? &order : nullptr};
     front.start(to, queue);
     const bool found = search::best_first(front, queue, effort) != search::no_node;
     answer.route.stats = {std::int64_t(effort.settled), std::int64_t(front.edges())};
     answer.route.status = found ? Status::found : Status::unreachable;
+    for (const std::uint32_t n : order) {
+        const Point at = frame.center(grid.cell(n));
+        trace->push_back({0, at, at, frame.resolution * front.time(n)});
+    }
     if (!found) return answer;
     answer.time = front.time(grid.number(from));
     auto& path = answer.route.path;

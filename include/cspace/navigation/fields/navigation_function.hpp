@@ -49,13 +49,8 @@ class NavigationFunction {
     }
     double phi(double v) const { return potential_->phi(v); }
 
-    struct Descent {
-        Route route;
-        int saddles = 0;             // that were left by a push
-        std::vector<double> values;  // V along the path
-    };
-    Descent descend(Point start) const {
-        Descent made;
+    DescentRoute descend(Point start) const {
+        DescentRoute made;
         const Point from = to_model(start);
         Point at = off_walls(from);
         made.route.path = {start};
@@ -84,7 +79,7 @@ class NavigationFunction {
     Tuned tuned_;
     std::unique_ptr<SpherePotential> potential_;
 
-    static void note(Descent& made, Point p, double value) {
+    static void note(DescentRoute& made, Point p, double value) {
         made.route.path.push_back(p);
         made.values.push_back(value);
     }
@@ -108,7 +103,7 @@ class NavigationFunction {
             if (distance(p, disc.center) - disc.radius < least) return at_radius(disc, disc.radius + least);
         return p;
     }
-    bool step(Point& at, Descent& made) const {
+    bool step(Point& at, DescentRoute& made) const {
         const Point slope = potential_->slope(at);
         const double steep = norm(slope),
                      near = std::min(discs_.clearance(at), distance(at, potential_->goal()));
@@ -137,7 +132,7 @@ class NavigationFunction {
         return along * u + across * v;
     }
     // Where V is flat: to the side on which it falls, that of the goal where it falls on both.
-    bool leave_saddle(Point& at, Descent& made) const {
+    bool leave_saddle(Point& at, DescentRoute& made) const {
         Point down = potential_->curvature(at).down();
         if (dot(down, potential_->goal() - at) < 0) down = -1.0 * down;
         const double length = 1e-3 * discs_.clearance(at);
@@ -145,7 +140,7 @@ class NavigationFunction {
         return go(at, down, length, made) || go(at, -1.0 * down, length, made);
     }
     // As far along a direction, or half of that, …, as V falls and no wall is touched.
-    bool go(Point& at, Point direction, double length, Descent& made) const {
+    bool go(Point& at, Point direction, double length, DescentRoute& made) const {
         const double here = potential_->value(at);
         for (int halvings = 0; halvings < 40; ++halvings, length *= 0.5) {
             ++made.route.stats.edges;

@@ -63,4 +63,10 @@ inline void draw_route(const maps::GridFrame& frame, Point start, Point goal, co
                              distance(frame.center(cells.back()), goal);
 }
 
+// The cells that a search has settled as events.
+inline void list_settled(const maps::GridFrame& frame, const std::vector<Settled>& settled, Trace& trace) {
+    for (const auto& [cell, parent, g] : settled)
+        trace.push_back({0, frame.center(parent), frame.center(cell), frame.resolution * g});
+}
+
 }  // namespace cspace::navigation

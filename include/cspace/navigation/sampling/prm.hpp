@@ -110,7 +110,7 @@ class RoadmapSearch {
     RoadmapSearch(const Problem& problem, const Roadmap& roadmap)
         : problem_(problem), roadmap_(roadmap), start_(roadmap.size()), goal_(start_ + 1) {}
 
-    Answer solve(Trace* trace) {
+    SampledRoute solve(Trace* trace) {
         join();
         if (trace) record(*trace);
         search();
@@ -140,7 +140,7 @@ class RoadmapSearch {
     const Problem& problem_;
     const Roadmap& roadmap_;
     std::uint32_t start_, goal_;
-    Answer answer_;
+    SampledRoute answer_;
     std::int64_t looks_ = 0;                // segments tested from the ends
     std::vector<std::int32_t> from_start_;  // also the goal, where they see each other
     std::vector<std::uint8_t> sees_goal_;   // each sample

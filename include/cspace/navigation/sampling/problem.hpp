@@ -1,5 +1,4 @@
-// From start to goal in one component of free space: the query of every sampling planner, and its results
-// in addition to the route.
+// From start to goal in one component of free space: the query of every sampling planner.
 #pragma once
 
 #include "cspace/maps/polygon_world.hpp"
@@ -38,11 +37,6 @@ inline Problem problem_of(const maps::PolygonWorld& world, Index component, cons
     keep(from, problem.start), keep(to, problem.goal);
     return problem;
 }
-
-struct Answer {
-    Route route;
-    std::int64_t samples = 0;  // points drawn
-};
 
 enum Kind : std::int8_t { connect, rewire };  // of events
 

@@ -27,10 +27,10 @@ class Tree {
           draws_(problem.world, problem.component, growth.seed),
           near_(draws_.low(), draws_.high()) {}
 
-    Answer solve() {
+    SampledRoute solve() {
         add({problem_.start.at, none}, -1);
         try_goal(0);
-        Answer answer;
+        SampledRoute answer;
         while (answer.samples < growth_.samples && !is_done()) {
             ++answer.samples;
             Located drawn;

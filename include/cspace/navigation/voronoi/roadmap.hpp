@@ -32,13 +32,6 @@ struct Stretch {
     double t0, t1;
 };
 
-struct Way {
-    Route route;
-    double clearance = 0;   // least distance from walls on the whole way [m]
-    double on_diagram = 0;  // and on the diagram
-    double at_start = 0, at_goal = 0;
-};
-
 // What a search is for: the widest way, or the shortest among the arcs that are wide enough.
 struct Wish {
     bool widest;
@@ -71,9 +64,9 @@ class Roadmap {
     // The way between two settled points of one component; tolerance: how far a chord may lie from its arc
     // [m]. Undetermined where the component's part of the diagram is not whole, and where rounding has put
     // the way into a wall.
-    Way solve(const maps::Settled& start, const maps::Settled& goal, Index component, bool widest,
-              double tolerance, Trace* trace) const {
-        Way way;
+    DiagramRoute solve(const maps::Settled& start, const maps::Settled& goal, Index component, bool widest,
+                       double tolerance, Trace* trace) const {
+        DiagramRoute way;
         if (!diagram_.is_whole[std::size_t(component)]) return way;
         const Landing from = land(start, component), to = land(goal, component);
         if (from.arc == none || to.arc == none) return way;
@@ -115,8 +108,8 @@ class Roadmap {
         });
     }
 
-    static Way stay(Point at, double clearance) {
-        Way way;
+    static DiagramRoute stay(Point at, double clearance) {
+        DiagramRoute way;
         way.route.status = Status::found;
         way.route.path = {at};
         way.route.length = 0;
@@ -178,10 +171,10 @@ class Roadmap {
 
     struct Search;
     double search(const Landing& from, const Landing& to, Wish wish, std::vector<Stretch>* stretches,
-                  Way& way, Trace* trace) const;
+                  DiagramRoute& way, Trace* trace) const;
 
     void draw(const Landing& from, const Landing& to, const std::vector<Stretch>& stretches, double tolerance,
-              Way& way) const {
+              DiagramRoute& way) const {
         std::vector<Point>& path = way.route.path;
         path = from.lead;
         way.on_diagram = arc(from.arc).curve.radius(from.t);
@@ -286,7 +279,7 @@ struct Roadmap::Search {
 
 // The value of the goal as a width; the stretches of the way to it.
 inline double Roadmap::search(const Landing& from, const Landing& to, Wish wish,
-                              std::vector<Stretch>* stretches, Way& way, Trace* trace) const {
+                              std::vector<Stretch>* stretches, DiagramRoute& way, Trace* trace) const {
     Search space(*this, to, wish, way.route.stats, trace);
     search::PriorityQueue queue;
     search::Effort effort;

@@ -32,10 +32,10 @@ class AnyAngle(PlanePlanner):
     takes_cells = True
     events = ("see",)
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         if world.kind == "grid":
-            return _core._grid_any_angle(world, self.name, self, start, goal)
-        return _core._any_angle(world, world._core, self.name, self, start, goal)
+            return _core._grid_any_angle(traced, world, world, self, start, goal)
+        return _core._any_angle(traced, world, world._core, self, start, goal)
 
     def takes_grid(self, grid: OccupancyGrid) -> bool:
         """Whether runs of cells are faster than polygons for this grid: it has many corners."""
@@ -51,9 +51,3 @@ class AnyAngle(PlanePlanner):
                 "walls separate start from goal: no path connects the parts of free space in which they lie"
             )
         return explain_division(route.world)
-
-    def _record(self, route: Route) -> Any:
-        world, ends = route.world, (route.start, route.goal)
-        if world.kind == "grid":
-            return _core._grid_any_angle_trace(world, *ends)
-        return _core._any_angle_trace(world._core, *ends)

@@ -98,13 +98,9 @@ class VoronoiBug(PlanePlanner):
             raise InputError(f"noise is {self.noise:g}; {rule}")
         return self._in_force(rng=draw_seed(self.rng) if self.noise else 0)
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        given = world, self.name, self, VoronoiBugEvidence, world._core
-        return _core._voronoi_bug(*given, *self.values.values(), start, goal)
-
-    def _record(self, route: Route) -> Any:
-        ends = route.start, route.goal
-        return _core._voronoi_bug_trace(route.world._core, *self.values.values(), *ends)
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        settings = *self.values.values(), VoronoiBugEvidence
+        return _core._voronoi_bug(traced, world, world._core, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
         found: VoronoiBugEvidence = route.evidence

@@ -60,12 +60,8 @@ class WallFollower(PlanePlanner):
         """The algorithm, the hand, the range of the sensor [m]."""
         return self.kind, HANDS[self.values["hand"]], self.values.get("range", 0.0)
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        given = world, self.name, self, BugEvidence, world._core
-        return _core._bug(*given, *self._settings, start, goal)
-
-    def _record(self, route: Route) -> Any:
-        return _core._bug_trace(route.world._core, *self._settings, route.start, route.goal)
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        return _core._bug(traced, world, world._core, self, start, goal, *self._settings, BugEvidence)
 
     def explain_route(self, route: Route) -> str:
         found: BugEvidence = route.evidence

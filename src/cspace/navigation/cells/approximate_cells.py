@@ -21,7 +21,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.maps import PolygonWorld
-from cspace.navigation.checks import check_ends, need_polygons
+from cspace.navigation.checks import need_polygons
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
@@ -102,18 +102,17 @@ class ApproximateCellsSearch(PlanePlanner):
             last = min(last, max(0, math.frexp(_side_of(world) / self.min_size)[1] - 1))
         return self._in_force(max_depth=last, metric=self.metric or METRICS[self.uniform])
 
-    def _settings(self) -> npt.NDArray[np.int64]:
-        """depth, the deepest level, refine, uniform, manhattan, the largest number of cells: (6,)."""
+    def _settings(self) -> tuple[Any, ...]:
+        """depth, the deepest level, refine, uniform, manhattan, the largest number of cells."""
         manhattan = self.metric == "manhattan"
-        row = self.depth, self.max_depth, self.refine, self.uniform, manhattan, QUADTREE_CELLS
-        return np.array(row, dtype=np.int64)
+        return self.depth, self.max_depth, self.refine, self.uniform, manhattan, QUADTREE_CELLS
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         def count_squares(free: int, mixed: int, full: int, deepest: int) -> CellEvidence:
             return CellEvidence(free, mixed, full, deepest, _side_of(world) / 2**deepest)
 
-        given = world._core, world, self.name, self, *check_ends(world, start, goal)
-        return _core._approximate_cells(*given, self._settings(), count_squares)
+        settings = *self._settings(), count_squares
+        return _core._approximate_cells(traced, world, world._core, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
         found: CellEvidence = route.evidence
@@ -124,10 +123,6 @@ class ApproximateCellsSearch(PlanePlanner):
         if route.status == "unreachable":
             return f"not even the mixed squares connect start with goal, among {squares}"
         return f"only mixed squares would connect start with goal, among {squares}"
-
-    def _record(self, route: Route) -> Any:
-        given = route.world._core, route.start, route.goal
-        return _core._approximate_cells_trace(*given, self._settings())
 
 
 def approximate_cells(world: PolygonWorld, depth: int = 6, *, uniform: bool = False) -> ApproximateCells:

@@ -34,8 +34,8 @@ class ExactCells(PlanePlanner):
     summary = "path through trapezoidal cells, shortened by the funnel algorithm"
     events = ("enter",)
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        return _core._exact_cells(world, world._core, self.name, self, start, goal)
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        return _core._exact_cells(traced, world, world._core, self, start, goal)
 
     def explain_route(self, route: Route) -> str:
         cells = count_things(len(exact_cells(route.world)[0]), "cell")
@@ -44,9 +44,6 @@ class ExactCells(PlanePlanner):
                 f"a chain of cells leads from start to goal; the shortest path inside it, of {cells} in all"
             )
         return f"no chain of the {cells} leads from start to goal, and they fill free space"
-
-    def _record(self, route: Route) -> Any:
-        return _core._exact_cells_trace(route.world._core, route.start, route.goal)
 
 
 def exact_cells(world: PolygonWorld) -> tuple[Array, npt.NDArray[np.int32]]:

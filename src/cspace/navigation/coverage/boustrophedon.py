@@ -103,7 +103,7 @@ def coverage(grid: Any, start: Any, width: float | None = None, *, along: str | 
     side = float(grid.resolution)
     points = find_corners(cells)[:, ::-1] * side + 0.5 * side + [grid._x, grid._y]
     bar = (2 * half + 1) * side
-    return Coverage(grid, points, regions, order[0], passes, axis, bar, reached, free, lanes, leftover)
+    return Coverage(grid, points, regions, order, passes, axis, bar, reached, free, lanes, leftover)
 
 
 def count_half_width(grid: Any, width: float | None) -> int:

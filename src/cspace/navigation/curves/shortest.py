@@ -58,9 +58,8 @@ def reeds_shepp_distance(start: Any, goal: Any, radius: float) -> Any:
 def find_curve(reverses: bool, start: Any, goal: Any, radius: Any) -> Curve:
     """The curve of one start and one goal."""
     told = _core._car_shortest(reverses, start, goal, radius)
-    if told is None:  # not plain numbers: raises an error or converts them
-        r = check_radius(radius)
-        ends = check_poses(start, "start", r), check_poses(goal, "goal", r)
+    if told is None:  # no plain numbers
+        *ends, r = check_task(start, goal, radius)
         for pose, name in zip(ends, ("start", "goal"), strict=True):
             if pose.ndim != 1:
                 raise InputError(f"{name} has shape {pose.shape}, expected (3,): x, y, theta")
@@ -72,8 +71,7 @@ def measure_curves(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
     """The lengths of the curves of broadcast starts and goals."""
     if (length := _core._car_distance(reverses, start, goal, radius)) is not None:
         return length
-    r = check_radius(radius)
-    a, b = check_poses(start, "start", r), check_poses(goal, "goal", r)
+    a, b, r = check_task(start, goal, radius)
     batch = leading_axes(start=a.shape[:-1], goal=b.shape[:-1])
     rows = [np.ascontiguousarray(np.broadcast_to(p, (*batch, 3)).reshape(-1, 3)) for p in (a, b)]
     out = np.empty(len(rows[0]))
@@ -81,10 +79,11 @@ def measure_curves(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
     return out.reshape(batch) if batch else float(out[0])
 
 
-def check_radius(radius: Any) -> float:
-    """A turning radius [m]; InputError unless it is one positive number."""
+def check_task(start: Any, goal: Any, radius: Any) -> tuple[Array, Array, float]:
+    """Start and goal (..., 3) and a turning radius [m]; InputError for anything else."""
     rule = "a turning radius is one length above zero, in metres (a robot that turns on the spot "
-    return positive_number(radius, "radius", rule + "needs no such curve)", largest=LARGEST_NUMBER)
+    r = positive_number(radius, "radius", rule + "needs no such curve)", largest=LARGEST_NUMBER)
+    return check_poses(start, "start", r), check_poses(goal, "goal", r), r
 
 
 def check_poses(poses: Any, name: str, radius: float) -> Array:

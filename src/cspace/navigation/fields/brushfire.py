@@ -20,7 +20,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.navigation.checks import check_ends, need_grid
+from cspace.navigation.checks import need_grid
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.search import option
@@ -79,9 +79,9 @@ class Brushfire(PlanePlanner):
         subject="choice of prefer=",
     )
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        given = world, self.name, self, *check_ends(world, start, goal)
-        return _core_of(world).route(*given, self.prefer == "clearance")
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        settings = _core_of(world), self.prefer == "clearance"
+        return _core._brushfire(traced, world, world, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
         if not route:
@@ -89,9 +89,6 @@ class Brushfire(PlanePlanner):
         least: float = route.evidence["least_clearance"]
         wide = "; no path over cells keeps farther" if self.prefer == "clearance" else ""
         return f"the centres of its cells keep {least:.6g} m from walls{wide}"
-
-    def _record(self, route: Route) -> Any:
-        return _core_of(route.world).trace()
 
 
 def _core_of(grid: Any) -> Any:

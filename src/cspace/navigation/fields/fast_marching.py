@@ -13,8 +13,9 @@ from typing import Any
 
 from numpy.typing import ArrayLike
 
+from cspace import _core
 from cspace.arrays import Array
-from cspace.navigation.checks import check_ends, need_grid
+from cspace.navigation.checks import need_grid
 from cspace.navigation.fields.clearance import clearance_field
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
@@ -44,10 +45,9 @@ class FastMarching(PlanePlanner):
         minimum=0,
     )
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        ends = check_ends(world, start, goal)
-        given = world, world, self.name, self, *ends
-        return clearance_field(world).march_route(*given, self.slow_within / world.resolution)
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        settings = clearance_field(world), self.slow_within / world.resolution
+        return _core._fast_marching(traced, world, world, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
         if not route:
@@ -56,10 +56,6 @@ class FastMarching(PlanePlanner):
         return (
             f"descended the arrival times of a front that takes {route.evidence['time']:.6g} m to the start"
         )
-
-    def _record(self, route: Route) -> Any:
-        given = route.world, route.start, route.goal
-        return clearance_field(route.world).march_trace(*given, self.slow_within / route.world.resolution)
 
 
 def arrival_times(grid: Any, goal: ArrayLike, *, slow_within: float = 0.0) -> Array:

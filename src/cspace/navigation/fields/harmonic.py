@@ -56,17 +56,18 @@ class Harmonic(PlanePlanner):
     world = "grid"
     events = ("descend",)
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         ends = check_ends(world, start, goal)
         began = time.perf_counter()
         if _core._walls_divide(world, *ends):
+            if traced:
+                return NO_EVENTS
             stats = Stats(0, 0, time.perf_counter() - began)
             return new_route(world, self, ends, "unreachable", np.empty((0, 2)), np.inf, stats, UNSOLVED)
         field = _field_of(world, ends[1])
         seconds = time.perf_counter() - began
         evidence = HarmonicEvidence(field.residual, field.cycles, field.rests)
-        planner: Any = self
-        return field.route(world, world, self.name, planner, *ends, seconds, evidence)
+        return _core._harmonic(traced, world, world, self, *ends, field, evidence, seconds)
 
     def explain_route(self, route: Route) -> str:
         evidence: HarmonicEvidence = route.evidence
@@ -84,11 +85,6 @@ class Harmonic(PlanePlanner):
             f"descended a harmonic potential whose only minimum is the goal, {solved}, for "
             f"{route.length:.6g} m"
         )
-
-    def _record(self, route: Route) -> Any:
-        if route.evidence == UNSOLVED:
-            return NO_EVENTS
-        return _field_of(route.world, route.goal).trace(route.world, route.start)
 
 
 def harmonic(grid: Any, goal: ArrayLike) -> Array:

@@ -20,11 +20,9 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array
-from cspace.navigation.checks import check_ends
+from cspace import _core
 from cspace.navigation.fields.clearance import clearance_field
 from cspace.navigation.grid.search import CORNERS, SearchPlanner, corners_option
-from cspace.navigation.route import Route
 from cspace.search import option
 from cspace.tolerances import LEAST_INFLUENCE
 
@@ -67,19 +65,14 @@ class PotentialAStar(SearchPlanner):
         gain = reach / (0.5 * (2 - 1 / reach) ** 2) if reach > 0.5 else 0.0
         return self._in_force(k_r=gain * side**3, rho_0=far)
 
-    def _settings_of(self, world: Any) -> tuple[Array, int]:
-        """Gain, rho_0 and cap in cells, scale, weight, whether greedy: (6,); and the corner rule's number."""
+    def _settings_of(self, world: Any) -> tuple[float, ...]:
+        """Gain, rho_0 and cap in cells, scale, weight, whether greedy, the number of the corner rule."""
         side, given = float(world.resolution), self.values
         cap = float(np.hypot(*world.shape))
         bound = self.weight if self.mode == "bounded" else 1.0
         gain, reach = given["k_r"] / side**3, max(given["rho_0"] / side, LEAST_INFLUENCE)
-        row = gain, reach, cap, self.scale, bound, self.mode == "greedy"
-        return np.array(row, dtype=np.float64), CORNERS[self.corners]
+        return gain, reach, cap, self.scale, bound, self.mode == "greedy", CORNERS[self.corners]
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        given = world, world, self.name, self, *check_ends(world, start, goal)
-        return clearance_field(world).potential_route(*given, *self._settings_of(world))
-
-    def _record(self, route: Route) -> Any:
-        given = route.world, route.start, route.goal
-        return clearance_field(route.world).potential_trace(*given, *self._settings_of(route.world))
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        settings = clearance_field(world), *self._settings_of(world)
+        return _core._potential_a_star(traced, world, world, self, start, goal, *settings)

@@ -20,7 +20,6 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import PolygonWorld
-from cspace.navigation.checks import check_ends
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
@@ -99,9 +98,9 @@ class PotentialField(PlanePlanner):
             step=min(0.25 * reach if self.step is None else self.step, reach),
         )
 
-    def _settings(self) -> Array:
-        """k, k_r, rho_0, cone, step, evaluations: (6,)."""
-        return np.array([*self.values.values(), float(DESCENT_LOOKS)])
+    def _settings(self) -> tuple[float, ...]:
+        """k, k_r, rho_0, cone, step, evaluations."""
+        return *self.values.values(), float(DESCENT_LOOKS)
 
     def _walls_of(self, world: Any) -> Any:
         """The NearWalls within rho_0, cached with the world."""
@@ -111,14 +110,12 @@ class PotentialField(PlanePlanner):
             walls = vars(world)["_near_walls"] = _core.NearWalls(world._core, reach)
         return walls
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        ends = check_ends(world, start, goal)
-
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         def describe_rest(rest: int, force: float, saddles: int) -> PotentialRest:
             return PotentialRest(RESTS[rest], force, saddles, dict(self.values))
 
-        given = world._core, world, self.name, self, *ends, self._settings()
-        return self._walls_of(world).route(*given, describe_rest)
+        settings = self._walls_of(world), *self._settings(), describe_rest
+        return _core._potential_field(traced, world, world._core, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
         rest: PotentialRest = route.evidence
@@ -142,10 +139,6 @@ class PotentialField(PlanePlanner):
             return f"a longer step= than {step:g} m gets farther"
         return f"a larger k_r= than {k_r:g} keeps it farther from walls, where steps are longer"
 
-    def _record(self, route: Route) -> Any:
-        given = route.world._core, route.start, route.goal
-        return self._walls_of(route.world).trace(*given, self._settings())
-
 
 def potential(
     world: PolygonWorld,
@@ -166,6 +159,10 @@ def potential(
         raise InputTypeError(f"world is a {type(world).__name__}; give a PolygonWorld")
     planner = PotentialField(k, k_r, rho_0, cone)._fill_in(world)
     at = as_floats(points, "points", last=(2,))
-    given = world.check_free(goal, "goal"), np.ascontiguousarray(at.reshape(-1, 2)), planner._settings()
+    given = (
+        world.check_free(goal, "goal"),
+        np.ascontiguousarray(at.reshape(-1, 2)),
+        np.array(planner._settings()),
+    )
     found: Array = planner._walls_of(world).values(world._core, *given)
     return found.reshape(at.shape[:-1])

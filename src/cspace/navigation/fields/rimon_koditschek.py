@@ -150,7 +150,7 @@ class RimonKoditschek(PlanePlanner):
         above=0,
     )
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         ends = check_ends(world, start, goal)
         began = time.perf_counter()
         function, fault = _find_function(world, ends[1], self.kappa or 0.0)
@@ -162,9 +162,10 @@ class RimonKoditschek(PlanePlanner):
             apart = not set(world._core.components_at(*ends[0])) & set(world._core.components_at(*ends[1]))
             status = "unreachable" if apart else "undetermined"
             return new_route(world, self, ends, status, np.empty((0, 2)), np.inf, stats, evidence)
-        core: Any = function._core
-        given = world._core, world, self.name, self._in_force(kappa=function.kappa), *ends, seconds
-        return core.route(*given, lambda pushes: NavigationEvidence(function, pushes, fault))
+        given = world, world._core, self._in_force(kappa=function.kappa), *ends, function._core, seconds
+        return _core._navigation_function(
+            traced, *given, lambda pushes: NavigationEvidence(function, pushes, fault)
+        )
 
     def explain_route(self, route: Route) -> str:
         evidence: NavigationEvidence = route.evidence
@@ -187,7 +188,8 @@ class RimonKoditschek(PlanePlanner):
         function = route.evidence.function
         if function is None or route.status == "unreachable":
             return NO_EVENTS
-        return function._core.trace(route.world._core, route.start)
+        given = route.world, route.world._core, self, route.start, route.goal, function._core
+        return _core._navigation_function(True, *given, 0.0, None)
 
 
 def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = None) -> NavigationFunction:

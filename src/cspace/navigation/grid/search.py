@@ -22,7 +22,7 @@ from cspace.navigation.text import count_things
 from cspace.search import option
 
 if TYPE_CHECKING:
-    import numpy.typing as npt
+    pass
 
 
 CORNERS: Final = {"never": 0, "one": 1, "always": 2}
@@ -83,9 +83,8 @@ class SearchPlanner(PlanePlanner):
         """The settings for a world."""
         return self._settings
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        settings = self._settings_in(world)
-        return _core._grid_route(world, start, goal, self.name, self, *settings)
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        return _core._grid_route(traced, world, world, self, start, goal, *self._settings_in(world))
 
     def explain_route(self, route: Route) -> str:
         cells = route.stats.nodes
@@ -95,13 +94,6 @@ class SearchPlanner(PlanePlanner):
             parts = f"the {route.evidence['parts']} connected parts of the free cells"
             return f"no path to the goal: it lies in another of {parts}"
         return f"no path to the goal: no open node is left after {count_things(cells, 'expansion')}"
-
-    def _record(self, route: Route) -> Any:
-        world, settings = route.world, self._settings_in(route.world)
-        found = _core._grid_order(world, route.start, route.goal, self.name, None, *settings)
-        cells: npt.NDArray[np.int32] = found[0]
-        at, parent = world.center_of(cells[:, :2]), world.center_of(cells[:, 2:])
-        return np.zeros(len(cells), np.int8), parent, at, found[1]
 
 
 @dataclass(frozen=True, eq=False)

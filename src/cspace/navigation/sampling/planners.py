@@ -49,12 +49,8 @@ class SamplePlanner(PlanePlanner):
         """The planner, samples, seed, neighbours (0: by radius), step [m], goal bias."""
         return self.kind, self.samples, self.rng, 0, 1.0, 0.0
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        given = world, self.name, self, Sampled, world._core
-        return _core._sampling(*given, start, goal, self._settings())
-
-    def _record(self, route: Route) -> Any:
-        return _core._sampling_trace(route.world._core, route.start, route.goal, self._settings())
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        return _core._sampling(traced, world, world._core, self, start, goal, self._settings(), Sampled)
 
     def explain_route(self, route: Route) -> str:
         done: Sampled = route.evidence

@@ -44,17 +44,14 @@ class VisibilityGraphSearch(PlanePlanner):
     summary = "shortest path over mutually visible corners"
     events = ("expand",)
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        return _core._visibility(world, world._core, self.name, self, start, goal)
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        return _core._visibility(traced, world, world._core, self, start, goal)
 
     def explain_route(self, route: Route) -> str:
         if not route:
             return explain_division(route.world)
         corners = count_things(len(visibility_graph(route.world).corners), "corner")
         return f"the shortest path, over {max(len(route.path) - 2, 0)} of the graph's {corners}"
-
-    def _record(self, route: Route) -> Any:
-        return _core._visibility_trace(route.world._core, route.start, route.goal)
 
 
 def visibility_graph(world: PolygonWorld) -> VisibilityGraph:

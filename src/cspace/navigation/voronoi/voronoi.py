@@ -91,9 +91,9 @@ class Voronoi(PlanePlanner):
         left, low, right, high = world.bounds
         return self._in_force(tolerance=float(DIAGRAM_CHORD * max(right - left, high - low)))
 
-    def _search(self, world: Any, start: Any, goal: Any) -> Any:
-        given = world, self.name, self, VoronoiEvidence, world._core, start, goal
-        return _core._voronoi(*given, self.prefer == "clearance", self.tolerance)
+    def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
+        settings = self.prefer == "clearance", self.tolerance, VoronoiEvidence
+        return _core._voronoi(traced, world, world._core, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
         if route:
@@ -104,10 +104,6 @@ class Voronoi(PlanePlanner):
         if route.status == "undetermined":
             return "rounding has lost part of the diagram: the distance between walls is below rounding"
         return explain_division(route.world)
-
-    def _record(self, route: Route) -> Any:
-        given = route.world._core, route.start, route.goal
-        return _core._voronoi_trace(*given, self.prefer == "clearance", self.tolerance)
 
 
 def voronoi_diagram(world: PolygonWorld, tolerance: float | None = None) -> VoronoiDiagram:

@@ -23,13 +23,7 @@ void check_poses(const maps::GridWorld& world, const double* footprint, std::spa
                  bool* is_clear);
 
 // Hybrid A*. settings: turning radius, box, headings, reverse cost, gear cost, most nodes, weight.
-struct CarFinding {
-    Status status;
-    int reason;                 // the number of HybridReason
-    std::vector<Piece> pieces;  // lengths [m]
-    Stats stats;
-};
-CarFinding find_car_route(const maps::GridWorld& world, const double* footprint, const CarPose& start,
-                          const CarPose& goal, bool reverses, const double* settings);
+CarRoute find_car_route(const maps::GridWorld& world, const double* footprint, const CarPose& start,
+                        const CarPose& goal, bool reverses, const double* settings);
 
 }  // namespace cspace::navigation
