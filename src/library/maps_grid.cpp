@@ -1,7 +1,7 @@
 #include "maps_grid.hpp"
 
-#include "cspace/maps/grid_corners.hpp"
 #include "cspace/maps/grid_inflation.hpp"
+#include "cspace/maps/grid_outlines.hpp"
 #include "cspace/maps/path_clearance.hpp"
 #include "maps_grid_state.hpp"
 

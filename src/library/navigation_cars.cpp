@@ -1,9 +1,9 @@
 #include "navigation_cars.hpp"
 
 #include "cspace/navigation/cars/hybrid_a_star.hpp"
+#include "cspace/navigation/curves/curve.hpp"
 #include "cspace/navigation/curves/dubins.hpp"
 #include "cspace/navigation/curves/reeds_shepp.hpp"
-#include "cspace/navigation/curves/sample.hpp"
 #include "maps_grid_state.hpp"
 
 namespace cspace::navigation {

@@ -5,7 +5,6 @@
 
 #include "cspace/navigation/fields/descent.hpp"
 #include "cspace/navigation/fields/navigation_function.hpp"
-#include "cspace/navigation/fields/start_directions.hpp"
 #include "maps_polygon_state.hpp"
 
 namespace cspace::navigation {

@@ -2,7 +2,7 @@
 #include "check.hpp"
 #include "cspace/navigation/cars/hybrid_a_star.hpp"
 #include "cspace/navigation/coverage/cover.hpp"
-#include "cspace/navigation/curves/sample.hpp"
+#include "cspace/navigation/curves/curve.hpp"
 #include "cspace/navigation/following/dynamic_window.hpp"
 #include "cspace/navigation/following/follow.hpp"
 #include "random.hpp"

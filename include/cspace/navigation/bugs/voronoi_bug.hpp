@@ -16,7 +16,6 @@
 
 #include "cspace/navigation/bugs/clearance_robot.hpp"
 #include "cspace/navigation/bugs/meet_graph.hpp"
-#include "cspace/navigation/bugs/ring_book.hpp"
 #include "cspace/navigation/bugs/scan_robot.hpp"
 #include "cspace/navigation/bugs/walk_log.hpp"
 

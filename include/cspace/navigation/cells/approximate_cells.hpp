@@ -2,7 +2,7 @@
 // (Latombe 1991, section 5.3).
 #pragma once
 
-#include "cspace/navigation/cells/cell_stage.hpp"
+#include "cspace/navigation/cells/quadtree.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
 #include "cspace/search/best_first.hpp"
 

@@ -8,11 +8,71 @@
 #include <numbers>
 #include <vector>
 
-#include "cspace/navigation/fields/damped_step.hpp"
+#include "cspace/maps/polygon_world.hpp"
+#include "cspace/navigation/fields/near_walls.hpp"
 #include "cspace/navigation/fields/potential.hpp"
 #include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {
+
+// Directions in which free space begins at a point of its boundary.
+//
+// Where obstacles touch, free space has several sectors at one point, and the sum of their walls' normals may
+// lead into an obstacle; so each triangle of free space at the point gives one direction that lies inside it.
+
+// Between the directions to b and c.
+inline Point bisector(Point a, Point b, Point c) {
+    return distance(a, c) * (b - a) + distance(a, b) * (c - a);
+}
+
+// None where walls are farther away than the tolerance.
+inline std::vector<Point> find_start_directions(const maps::FreeSpace& space, const maps::Settled& from,
+                                                const NearWalls& walls, double tolerance) {
+    std::vector<Point> found;
+    const auto add = [&](Point direction) {
+        if (squared_norm(direction) > 0) found.push_back(direction);
+    };
+    for (const maps::Index t : from.triangles) {
+        const auto corner = [&](int i) { return space.mesh.point(space.mesh[t].corner[std::size_t(i)]); };
+        const maps::Place place = space.mesh.place_in(t, from.at);
+        const Point b = corner(maps::after(place.index)), c = corner(maps::before(place.index));
+        if (place.kind == maps::Place::at_corner)
+            add(bisector(from.at, b, c));
+        else if (place.kind == maps::Place::on_edge && space.is_wall(t, place.index))
+            add({b.y - c.y, c.x - b.x});
+        else
+            add(walls.inward(from.at, tolerance));
+    }
+    return found;
+}
+
+// The step down a slope that gives way least where the ground is stiff: −(λ I + H)⁻¹ g, of a given length.
+
+// Gradient flow by the linearly implicit Euler rule with the time step 1 / λ: across a valley it goes to the
+// bottom and no farther, along it as far as it may. λ is found by Newton's rule for 1 / |step| (Moré &
+// Sorensen 1983, "Computing a trust region step"). Shorter than `longest` where the bottom is nearer.
+inline Point damped_step(const Stiffness& h, Point slope, double longest) {
+    const double mean = 0.5 * (h.xx + h.yy), half = 0.5 * (h.xx - h.yy);
+    const double spread = std::hypot(half, h.xy);
+    const double h1 = mean + spread, h2 = std::max(0.0, mean - spread);
+    // The direction in which it is stiffest.
+    Point n{1, 0};
+    if (spread > 0) n = half > 0 ? Point{spread + half, h.xy} : Point{h.xy, spread - half};
+    if (const double size = norm(n); size > 0) n = (1 / size) * n;
+    const double g1 = dot(n, slope), g2 = cross(n, slope);
+    double damping = std::max({0.0, std::abs(g1) / longest - h1, std::abs(g2) / longest - h2});
+    Point step;
+    for (int round = 0; round < 8; ++round) {
+        const double a = damping + h1, b = damping + h2;
+        step = {a > 0 ? g1 / a : 0, b > 0 ? g2 / b : 0};
+        const double size = norm(step);
+        if (!(size > longest * (1 + 1e-3))) break;
+        const double bent = (a > 0 ? step.x * step.x / a : 0) + (b > 0 ? step.y * step.y / b : 0);
+        damping += (size / longest - 1) * size * size / bent;
+    }
+    if (const double size = norm(step); size > longest) step = (longest / size) * step;
+    return Point{} - (step.x * n + step.y * Point{-n.y, n.x});
+}
 
 class DescentRun {
   public:

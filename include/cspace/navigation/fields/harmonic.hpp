@@ -3,11 +3,209 @@
 // what is kept.
 #pragma once
 
-#include "cspace/navigation/fields/hitting.hpp"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <queue>
+#include <utility>
+#include <vector>
+
+#include "cspace/maps/bit_grid.hpp"
+#include "cspace/navigation/fields/clearance.hpp"
+#include "cspace/navigation/fields/factor_level.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 
 namespace cspace::navigation {
+
+// The probability that a random walk over the cells of a grid reaches the goal before a wall: it
+// solves Laplace's equation with 1 at the goal and 0 on walls, so every other cell is the mean of the four
+// beside it.
+//
+// Along a corridor it falls by a factor with every cell, soon below the range of a double: each number has
+// a separate exponent, and the unknowns are factors near one. The solver is an aggregation of
+// several levels (Horton & Leutenegger 1994) on the system scaled by its own iterate: squares of two by two
+// cells share a factor, then four by four, and so on; relaxations go from the goal outwards and back.
+
+class HittingSolver {
+  public:
+    HittingSolver(const maps::BitGrid& grid, const Clearance& clearance, maps::Cell goal) : grid_(grid) {
+        number_cells(clearance, goal);
+        join_cells();
+        make_levels();
+    }
+
+    // Until every cell is the mean of its neighbours up to a relative error, or so many cycles. look() is
+    // called now and then, and may throw.
+    template <class Look>
+    void solve(double residual, int most_cycles, const Look& look) {
+        for (int k = 0; k < 10; ++k) relax(), look();
+        for (cycles_ = 0; cycles_ < most_cycles; ++cycles_) {
+            look();
+            relax();
+            residual_ = gather();
+            if (residual_ <= residual || levels_.empty()) break;
+            cycle(0);
+            spread();
+            relax();
+            normalize();
+        }
+        if (levels_.empty()) normalize();
+    }
+
+    std::size_t size() const { return cells_.size(); }
+    double residual() const { return residual_; }
+    int cycles() const { return cycles_; }
+    maps::Cell cell(std::size_t i) const { return grid_.cell(cells_[i]); }
+    // The number of a cell here, or size() if no path leads to the goal.
+    std::size_t index(maps::Cell c) const { return std::size_t(index_[grid_.number(c)]); }
+    bool is_less(std::size_t i, std::size_t j) const {
+        return e_[i] != e_[j] ? e_[i] < e_[j] : m_[i] < m_[j];
+    }
+    // The logarithm of the chance of the i-th cell; the goal is the first.
+    double log_chance(std::size_t i) const { return std::log(m_[i]) + std::numbers::ln2 * double(e_[i]); }
+
+  private:
+    const maps::BitGrid& grid_;
+    std::vector<std::uint32_t> cells_;  // from the goal outwards
+    std::vector<std::int32_t> index_;
+    std::vector<std::array<std::int32_t, 4>> beside_;
+    std::vector<double> m_;  // the chance is m · 2^e; the last is that of walls, nothing
+    std::vector<std::int32_t> e_;
+    std::vector<std::int32_t> aggregate_, slot_;
+    std::vector<FactorLevel> levels_;
+    double residual_ = 0;
+    int cycles_ = 0;
+    std::array<std::uint32_t, 4> around(std::uint32_t n) const {
+        return {n - 1, n + 1, n - grid_.stride(), n + grid_.stride()};
+    }
+    bool is_blocked(std::uint32_t n) const { return grid_.blocked(grid_.cell(n)); }
+
+    // Cells in the order of a first guess: half the decay along a corridor as wide as the clearance allows.
+    void number_cells(const Clearance& clearance, maps::Cell goal) {
+        std::vector<double> far(grid_.numbers(), std::numeric_limits<double>::infinity());
+        using Entry = std::pair<double, std::uint32_t>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+        queue.push({far[grid_.number(goal)] = 0, grid_.number(goal)});
+        while (!queue.empty()) {
+            const auto [d, n] = queue.top();
+            queue.pop();
+            if (d > far[n]) continue;
+            cells_.push_back(n);
+            m_.push_back(std::exp2(-std::fmod(d, 1.0)));
+            e_.push_back(-std::int32_t(d));
+            for (const std::uint32_t to : around(n)) {
+                if (is_blocked(to)) continue;
+                const double rho = std::max(clearance.of(to), 0.5);
+                const double way = d + 0.5 * std::min(2.0, std::numbers::pi / (2 * rho) / std::numbers::ln2);
+                if (way < far[to]) queue.push({far[to] = way, to});
+            }
+        }
+        m_.push_back(0), e_.push_back(0);
+    }
+    void join_cells() {
+        index_.assign(grid_.numbers(), std::int32_t(cells_.size()));
+        for (std::size_t i = 0; i < cells_.size(); ++i) index_[cells_[i]] = std::int32_t(i);
+        beside_.resize(cells_.size());
+        for (std::size_t i = 0; i < cells_.size(); ++i)
+            for (std::size_t k = 0; k < 4; ++k) beside_[i][k] = index_[around(cells_[i])[k]];
+    }
+
+    // ---- levels
+
+    void make_levels() {
+        const std::int32_t size = std::int32_t(cells_.size());
+        if (size < 2) return;
+        std::vector<std::int32_t> row, column;
+        for (const std::uint32_t n : cells_)
+            row.push_back(grid_.cell(n).row), column.push_back(grid_.cell(n).column);
+        slot_.resize(4 * cells_.size());
+        levels_.push_back(factors::joined(
+            size, row, column,
+            [&](std::int32_t i, const auto& give) {
+                for (std::size_t k = 0; k < 4; ++k)
+                    if (const std::int32_t j = beside_[std::size_t(i)][k]; j < size)
+                        give(j, 4 * std::size_t(i) + k);
+            },
+            aggregate_, slot_));
+        while (levels_.back().size() > 40) {
+            FactorLevel& last = levels_.back();
+            FactorLevel next = factors::joined(
+                last.size(), last.block_row, last.block_column,
+                [&](std::int32_t i, const auto& give) {
+                    for (std::int32_t p = last.begin[std::size_t(i)]; p < last.begin[std::size_t(i) + 1]; ++p)
+                        give(last.column[std::size_t(p)], std::size_t(p));
+                },
+                last.aggregate, last.slot);
+            levels_.push_back(std::move(next));
+        }
+    }
+
+    // ---- cells
+
+    double beside_over(std::size_t i, std::size_t k) const {
+        const std::size_t j = std::size_t(beside_[i][k]);
+        return m_[j] * factors::power_of_two(e_[j] - e_[i]);
+    }
+    void relax_cell(std::size_t i) {
+        m_[i] = 0.25 * (beside_over(i, 0) + beside_over(i, 1) + beside_over(i, 2) + beside_over(i, 3));
+    }
+    void relax() {
+        for (std::size_t i = 1; i < cells_.size(); ++i) relax_cell(i);
+        for (std::size_t i = cells_.size(); --i > 0;) relax_cell(i);
+    }
+    void normalize() {
+        for (std::size_t i = 1; i < cells_.size(); ++i) {
+            int k;
+            m_[i] = std::frexp(m_[i], &k);
+            e_[i] += k;
+        }
+    }
+    // The first level's weights from the cells; returns the greatest share that a cell is off its mean by.
+    double gather() {
+        double worst = 0;
+        if (levels_.empty()) return worst;
+        FactorLevel& to = levels_[0];
+        factors::clear(to);
+        factors::raise(to.exponent, e_, aggregate_);
+        for (std::size_t i = 1; i < cells_.size(); ++i) {
+            const std::size_t one = std::size_t(aggregate_[i]);
+            const double share = m_[i] * m_[i] * factors::power_of_two(2 * (e_[i] - to.exponent[one]));
+            const double inverse = 1 / m_[i];
+            double excess = 4;
+            for (std::size_t k = 0; k < 4; ++k) {
+                const double weight = beside_over(i, k) * inverse;
+                excess -= weight;
+                if (slot_[4 * i + k] >= 0) to.weight[std::size_t(slot_[4 * i + k])] += share * weight;
+            }
+            to.excess[one] += share * excess;
+            worst = std::max(worst, 0.25 * std::abs(excess));
+        }
+        return worst;
+    }
+    void spread() {
+        for (std::size_t i = 1; i < cells_.size(); ++i)
+            factors::correct(m_[i], levels_[0].factor[std::size_t(aggregate_[i])]);
+    }
+
+    // ---- one cycle
+
+    void cycle(std::size_t k) {
+        FactorLevel& level = levels_[k];
+        if (k + 1 == levels_.size()) return factors::relax(level, 40);
+        factors::relax(level, 1);
+        for (int turn = 0; turn < 2; ++turn) {
+            factors::gather(level, levels_[k + 1]);
+            cycle(k + 1);
+            for (std::size_t i = 1; i < level.begin.size() - 1; ++i)
+                factors::correct(level.factor[i], levels_[k + 1].factor[std::size_t(level.aggregate[i])]);
+            factors::relax(level, 1);
+        }
+    }
+};
 
 struct Undisturbed {
     void operator()() const {}

@@ -1,10 +1,145 @@
 // What steers a vehicle along a run: pure pursuit and Stanley.
 #pragma once
 
-#include "cspace/navigation/following/track.hpp"
-#include "cspace/navigation/following/vehicle.hpp"
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "cspace/math/plane.hpp"
+#include "cspace/navigation/curves/curve.hpp"
 
 namespace cspace::navigation {
+
+// A vehicle of the simulator: a unicycle that is told how fast to turn, or a car that is told how far to
+// steer.
+//
+// Unicycle: theta' = w. Car, at the middle of its rear axle: theta' = v tan(delta) / wheelbase (the bicycle
+// model). Speed and turn change by no more than their rates allow, then stay for a step, so that a step is an
+// arc and its end exact.
+
+struct Vehicle {
+    double wheelbase;     // [m]; 0 for a unicycle
+    double max_speed;     // [m/s] forwards
+    double max_reverse;   // [m/s] backwards, not below zero
+    double acceleration;  // [m/s²], in both directions
+    double max_turn;      // of a unicycle the turn rate [rad/s], of a car the steering angle [rad]
+    double turn_change;   // how fast that changes [rad/s²] or [rad/s]
+    bool steers() const { return wheelbase > 0; }
+};
+
+struct Motion {
+    CarPose pose;
+    double speed, turn;  // turn as in Vehicle
+};
+
+struct Command {
+    double speed, turn;
+};
+
+inline double toward(double from, double to, double step) {
+    return from + std::clamp(to - from, -step, step);
+}
+
+// The curvature that a turn means at a speed.
+inline double turn_rate(const Vehicle& vehicle, double speed, double turn) {
+    return vehicle.steers() ? speed * std::tan(turn) / vehicle.wheelbase : turn;
+}
+
+// A step along the arc of constant speed and turn rate.
+inline CarPose advance(const CarPose& from, double speed, double rate, double time) {
+    const double half = 0.5 * rate * time;
+    const double chord = speed * time * (std::fabs(half) < 1e-8 ? 1.0 : std::sin(half) / half);
+    return {from.x + chord * std::cos(from.theta + half), from.y + chord * std::sin(from.theta + half),
+            from.theta + 2 * half};
+}
+
+// What a vehicle makes of a command within a step.
+inline Command within_limits(const Vehicle& vehicle, const Motion& now, const Command& wanted, double time) {
+    const double speed = std::clamp(wanted.speed, -vehicle.max_reverse, vehicle.max_speed);
+    const double turn = std::clamp(wanted.turn, -vehicle.max_turn, vehicle.max_turn);
+    return {toward(now.speed, speed, vehicle.acceleration * time),
+            toward(now.turn, turn, vehicle.turn_change * time)};
+}
+
+inline Motion after(const Vehicle& vehicle, const Motion& now, const Command& wanted, double time) {
+    const Command made = within_limits(vehicle, now, wanted, time);
+    const double rate = turn_rate(vehicle, made.speed, made.turn);
+    return {advance(now.pose, made.speed, rate, time), made.speed, made.turn};
+}
+
+// A path to be followed: a chain of points, cut into runs where the direction of driving changes.
+
+// One run: points without repetition, driven forwards (+1) or backwards (−1).
+class Run {
+  public:
+    Run(const Point* points, std::size_t count, int direction)
+        : points_(points, points + count), s_(count), direction_(direction) {
+        for (std::size_t i = 1; i < count; ++i) s_[i] = s_[i - 1] + distance(points_[i - 1], points_[i]);
+    }
+
+    struct Place {
+        double s;       // along the run [m]
+        double offset;  // of the given point, positive to the left of the run [m]
+        Point heading;  // of the run there, a unit vector
+    };
+
+    int direction() const { return direction_; }
+    double length() const { return s_.back(); }
+    Point end() const { return points_.back(); }
+    Point begin() const { return points_.front(); }
+
+    // The place nearest to a point, among those from one length along the run to another; beyond its end the
+    // last segment goes on straight.
+    Place nearest(Point p, double from, double to) const {
+        double least = std::numeric_limits<double>::infinity();
+        Place best{};
+        for (std::size_t i = segment_at(from); i + 1 < points_.size() && s_[i] <= to; ++i) {
+            const double length = s_[i + 1] - s_[i];
+            const Point along = (1 / length) * (points_[i + 1] - points_[i]), way = p - points_[i];
+            const double last = i + 2 == points_.size() ? to - s_[i] : std::min(length, to - s_[i]);
+            const double first = std::max(0.0, from - s_[i]);
+            const double t = std::clamp(dot(way, along), std::min(first, last), last);
+            const double far = norm(way - t * along);
+            if (far < least) least = far, best = {s_[i] + t, std::copysign(far, cross(along, way)), along};
+        }
+        return best;
+    }
+
+    // The point at a length; beyond the end the last segment goes on straight.
+    Point at(double s) const {
+        const std::size_t i = segment_at(s);
+        return points_[i] + ((s - s_[i]) / (s_[i + 1] - s_[i])) * (points_[i + 1] - points_[i]);
+    }
+
+    // The first point after a length that is `far` from p; the last segment goes on beyond the end. Where
+    // the run is farther than that all along, the point at that length.
+    Point ahead(Point p, double s, double far) const {
+        if (distance(p, at(s)) >= far) return at(s);
+        for (std::size_t i = segment_at(s); i + 1 < points_.size(); ++i) {
+            const bool last = i + 2 == points_.size();
+            if (!last && distance(p, points_[i + 1]) < far) continue;
+            const Point a = points_[i], along = (1 / (s_[i + 1] - s_[i])) * (points_[i + 1] - a);
+            const double middle = dot(p - a, along), off = cross(along, p - a);
+            const double t = middle + std::sqrt(std::max(0.0, far * far - off * off));
+            return a + t * along;
+        }
+        return end();
+    }
+
+  private:
+    std::size_t segment_at(double s) const {
+        const auto after = std::upper_bound(s_.begin() + 1, s_.end() - 1, s);
+        return std::size_t(after - s_.begin()) - 1;
+    }
+
+    std::vector<Point> points_;
+    std::vector<double> s_;
+    int direction_;
+};
+
+using Track = std::vector<Run>;
 
 inline Point place(const CarPose& pose) { return {pose.x, pose.y}; }
 inline Point heading(const CarPose& pose) { return {std::cos(pose.theta), std::sin(pose.theta)}; }
