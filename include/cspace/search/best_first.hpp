@@ -98,6 +98,32 @@ struct Effort {
     std::uint64_t pause = std::numeric_limits<std::uint64_t>::max();  // after so many the search waits
 };
 
+// The best ways to the nodes of a graph that a search knows so far.
+class Ways {
+  public:
+    explicit Ways(std::size_t nodes)
+        : cost_(nodes, std::numeric_limits<double>::infinity()),
+          before_(nodes, no_node),
+          settled_(nodes, 0) {}
+
+    double cost(std::uint32_t node) const { return cost_[node]; }
+    // The node or edge before it; no_node at the start.
+    std::uint32_t before(std::uint32_t node) const { return before_[node]; }
+    bool is_settled(std::uint32_t node) const { return settled_[node]; }
+    bool settle(std::uint32_t node) { return !std::exchange(settled_[node], std::uint8_t(1)); }
+    // Keeps a way to a node if none of less cost is known; whether it does.
+    bool improve(std::uint32_t node, double cost, std::uint32_t before) {
+        if (!(cost < cost_[node]) || settled_[node]) return false;
+        cost_[node] = cost, before_[node] = before;
+        return true;
+    }
+
+  private:
+    std::vector<double> cost_;
+    std::vector<std::uint32_t> before_;
+    std::vector<std::uint8_t> settled_;
+};
+
 // The goal that was reached; no_node if no open node remains, or the search is to pause: it continues
 // on the next call.
 template <class Space, class Queue>

@@ -131,45 +131,38 @@ class ApproximateCells {
 
     // A* over the doors of free leaves.
     struct Space {
-        struct State {
-            double g = std::numeric_limits<double>::infinity();
-            std::uint32_t before = search::no_node;
-            bool settled = false;
-        };
         const ApproximateCells& cells;
         Point start, goal;
         Trace* trace;
-        std::vector<State> state;              // of each door, and of the goal
+        search::Ways ways;                     // to each door, and to the goal
         std::vector<std::uint8_t> holds_goal;  // each leaf
 
         std::uint32_t last() const { return std::uint32_t(cells.doors().size()); }
         Point at(std::uint32_t node) const { return node == last() ? goal : cells.doors()[node].at; }
         bool is_goal(std::uint32_t node) const { return node == last(); }
         bool settle(std::uint32_t node) {
-            State& s = state[node];
-            if (s.settled) return false;
+            if (!ways.settle(node)) return false;
+            const std::uint32_t before = ways.before(node);
             if (trace)
                 trace->push_back(
-                    {expand_word, s.before == search::no_node ? start : at(s.before), at(node), s.g});
-            return s.settled = true;
+                    {expand_word, before == search::no_node ? start : at(before), at(node), ways.cost(node)});
+            return true;
         }
         void reach(std::uint32_t node, double g, std::uint32_t before, search::PriorityQueue& queue) {
-            State& s = state[node];
-            if (s.settled || g >= s.g) return;
-            s.g = g, s.before = before;
-            queue.push({g + cells.metric(at(node), goal), float(-g), node});
+            if (ways.improve(node, g, before))
+                queue.push({g + cells.metric(at(node), goal), float(-g), node});
         }
         // What can be reached from a point of a leaf.
         void leave(maps::Index c, Point from, double g, std::uint32_t before, search::PriorityQueue& queue) {
             const std::size_t leaf = std::size_t(c);
             if (holds_goal[leaf]) reach(last(), g + cells.metric(from, goal), before, queue);
             const CellStage& stage = *cells.stage_;
-            for (std::uint32_t k = stage.first[leaf]; k < stage.first[leaf + 1]; ++k)
-                reach(stage.open[k], g + cells.metric(from, at(stage.open[k])), before, queue);
+            for (const std::uint32_t door : stage.open.of(leaf))
+                reach(door, g + cells.metric(from, at(door)), before, queue);
         }
         void expand(std::uint32_t node, search::PriorityQueue& queue) {
             const CellDoor& d = cells.doors()[node];
-            for (const maps::Index c : {d.one, d.other}) leave(c, d.at, state[node].g, node, queue);
+            for (const maps::Index c : {d.one, d.other}) leave(c, d.at, ways.cost(node), node, queue);
         }
     };
 
@@ -199,8 +192,7 @@ class ApproximateCells {
     Point middle_of(maps::Index c) const { return 0.5 * (tree().low(tree()[c]) + tree().high(tree()[c])); }
 
     Space space(Point start, const Entry& goal) const {
-        Space made{*this, start, goal.at, trace_, {}, {}};
-        made.state.resize(doors().size() + 1);
+        Space made{*this, start, goal.at, trace_, search::Ways(doors().size() + 1), {}};
         made.holds_goal.assign(tree().cells().size(), 0);
         for (const maps::Index c : goal.leaves) made.holds_goal[std::size_t(c)] = 1;
         return made;
@@ -220,7 +212,7 @@ class ApproximateCells {
         const auto add = [&](Point p) {
             if (route.path.back() != p) route.path.push_back(p);
         };
-        for (std::uint32_t node = reached; node != search::no_node; node = space.state[node].before)
+        for (std::uint32_t node = reached; node != search::no_node; node = space.ways.before(node))
             add(space.at(node));
         add(from.at);
         add(start);

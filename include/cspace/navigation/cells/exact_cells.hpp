@@ -8,6 +8,7 @@
 #include "cspace/math/predicates.hpp"
 #include "cspace/navigation/cells/trapezoids.hpp"
 #include "cspace/navigation/route.hpp"
+#include "cspace/search/adjacency.hpp"
 #include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
@@ -91,80 +92,76 @@ inline std::vector<Point> taut_string(Point start, Point goal, const std::vector
 class ExactCells {
   public:
     explicit ExactCells(const maps::PolygonWorld& world)
-        : cells_(world.walls), first_(cells_.cells.size() + 1, 0), door_(2 * cells_.doors.size()) {
+        : cells_(world.walls), doors_(cells_.cells.size(), [&](const auto& add) {
+              for (Index d = 0; d < Index(cells_.doors.size()); ++d)
+                  for (const Index cell :
+                       {cells_.doors[std::size_t(d)].left, cells_.doors[std::size_t(d)].right})
+                      add(std::size_t(cell), d);
+          }) {
         const Point low = world.outlines.low, high = world.outlines.high;
         far_ = 4 * (std::abs(low.y) + std::abs(high.y) + (high.x - low.x) + (high.y - low.y));
-        for (const Door& d : cells_.doors)
-            ++first_[std::size_t(d.left) + 1], ++first_[std::size_t(d.right) + 1];
-        for (std::size_t i = 1; i < first_.size(); ++i) first_[i] += first_[i - 1];
-        std::vector<Index> filled(first_.begin(), first_.end() - 1);
-        for (Index d = 0; d < Index(cells_.doors.size()); ++d)
-            for (const Index cell : {cells_.doors[std::size_t(d)].left, cells_.doors[std::size_t(d)].right})
-                door_[std::size_t(filled[std::size_t(cell)]++)] = d;
     }
 
     const Trapezoids& cells() const { return cells_; }
 
     Route solve(Point start, Point goal, Trace* trace = nullptr) const {
         const std::size_t count = cells_.cells.size();
-        Open open{*this, start, trace, std::vector<State>(count), std::vector<std::uint8_t>(count, 0)};
+        Open open{*this,
+                  start,
+                  trace,
+                  search::Ways(count),
+                  std::vector<Point>(count),
+                  std::vector<std::uint8_t>(count, 0)};
         search::PriorityQueue queue;
         for (Index c = 0; c < Index(count); ++c) {
             open.holds_goal[std::size_t(c)] = cells_.contains(c, goal);
-            if (cells_.contains(c, start)) open.reach(c, 0, start, -1, queue);
+            if (cells_.contains(c, start)) open.reach(c, 0, start, search::no_node, queue);
         }
         search::Effort effort;
         const std::uint32_t last = search::best_first(open, queue, effort);
         Route route;
         route.status = Status::unreachable;
         route.stats = {std::int64_t(effort.settled), open.edges};
-        return last == search::no_node ? route : finish(route, open.state, Index(last), start, goal);
+        return last == search::no_node ? route : finish(route, open.ways, last, start, goal);
     }
 
   private:
-    struct State {
-        double g = std::numeric_limits<double>::infinity();
-        Point at{};
-        Index door = -1;
-        bool closed = false;
-    };
-    // The cells as nodes of best_first: each stores the point at which the path enters it.
+    // The cells as nodes of best_first, each with the door and the point at which the path enters it.
     struct Open {
         const ExactCells& of;
         Point start;
         Trace* trace;
-        std::vector<State> state;
+        search::Ways ways;
+        std::vector<Point> entry;
         std::vector<std::uint8_t> holds_goal;
         std::int64_t edges = 0;
 
         bool settle(std::uint32_t cell) {
-            State& s = state[cell];
-            if (s.closed) return false;
-            s.closed = true;
-            if (trace) trace->push_back({0, s.door < 0 ? start : s.at, s.at, s.g});
+            if (!ways.settle(cell)) return false;
+            const bool is_first = ways.before(cell) == search::no_node;
+            if (trace) trace->push_back({0, is_first ? start : entry[cell], entry[cell], ways.cost(cell)});
             return true;
         }
         bool is_goal(std::uint32_t cell) const { return holds_goal[cell]; }
         void expand(std::uint32_t cell, search::PriorityQueue& queue) {
-            const State s = state[cell];
-            for (Index k = of.first_[cell]; k < of.first_[cell + 1]; ++k) {
-                const Index d = of.door_[std::size_t(k)];
+            const Point from = entry[cell];
+            for (const Index d : of.doors_.of(cell)) {
                 const Door& door = of.cells_.doors[std::size_t(d)];
-                const Point at = of.nearest(door, s.at);
+                const Point at = of.nearest(door, from);
                 const Index other = door.left == Index(cell) ? door.right : door.left;
-                reach(other, s.g + distance(s.at, at), at, d, queue);
+                reach(other, ways.cost(cell) + distance(from, at), at, std::uint32_t(d), queue);
             }
         }
-        void reach(Index cell, double g, Point at, Index door, search::PriorityQueue& queue) {
-            State& s = state[std::size_t(cell)];
+        void reach(Index to, double cost, Point at, std::uint32_t door, search::PriorityQueue& queue) {
+            const auto cell = std::uint32_t(to);
             ++edges;
-            if (s.closed || g >= s.g) return;
-            s = {g, at, door, false};
-            queue.push({g, 0, std::uint32_t(cell)});
+            if (!ways.improve(cell, cost, door)) return;
+            entry[cell] = at;
+            queue.push({cost, 0, cell});
         }
     };
     Trapezoids cells_;
-    std::vector<Index> first_, door_;  // the doors of each cell
+    search::Adjacency<Index> doors_;  // of each cell
     double far_;
 
     // The point of a door that is nearest to p: a straight line leads there, for cells are convex.
@@ -180,12 +177,13 @@ class ExactCells {
         return to_the_right == door.is_above ? Gap{open, door.corner, true, false}
                                              : Gap{door.corner, open, false, true};
     }
-    Route& finish(Route& route, const std::vector<State>& state, Index cell, Point start, Point goal) const {
+    Route& finish(Route& route, const search::Ways& ways, std::uint32_t cell, Point start, Point goal) const {
         std::vector<Gap> gaps;
-        while (state[std::size_t(cell)].door >= 0) {
-            const Door& door = cells_.doors[std::size_t(state[std::size_t(cell)].door)];
-            gaps.push_back(gap(door, door.right == cell));
-            cell = door.right == cell ? door.left : door.right;
+        while (ways.before(cell) != search::no_node) {
+            const Door& door = cells_.doors[ways.before(cell)];
+            const bool to_the_right = door.right == Index(cell);
+            gaps.push_back(gap(door, to_the_right));
+            cell = std::uint32_t(to_the_right ? door.left : door.right);
         }
         std::reverse(gaps.begin(), gaps.end());
         route.status = Status::found;

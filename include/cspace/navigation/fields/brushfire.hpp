@@ -174,49 +174,34 @@ namespace brushfire {
 class Walk {
   public:
     Walk(const Diagram& diagram, std::uint32_t goal, bool widest, std::uint32_t least)
-        : diagram_(diagram),
-          goal_(goal),
-          least_(least),
-          widest_(widest),
-          parent_(diagram.cells().size(), search::no_node),
-          value_(diagram.cells().size(), std::numeric_limits<double>::infinity()),
-          settled_(diagram.cells().size()) {}
+        : diagram_(diagram), goal_(goal), least_(least), widest_(widest), ways_(diagram.cells().size()) {}
     template <class Queue>
     void start(std::uint32_t at, Queue& queue) {
-        parent_[at] = at;
-        value_[at] = widest_ ? -height(at) : 0;
-        queue.push({value_[at], 0, at});
+        ways_.improve(at, widest_ ? -height(at) : 0, at);
+        queue.push({ways_.cost(at), 0, at});
     }
-    bool settle(std::uint32_t at) {
-        if (settled_[at]) return false;
-        settled_[at] = true;
-        return true;
-    }
+    bool settle(std::uint32_t at) { return ways_.settle(at); }
     bool is_goal(std::uint32_t at) const { return at == goal_; }
     template <class Queue>
     void expand(std::uint32_t at, Queue& queue) {
         for (const std::uint32_t to : diagram_.beside(at)) {
-            if (to == Diagram::none || settled_[to] || diagram_.clearance().squared[cell(to)] < least_)
+            if (to == Diagram::none || ways_.is_settled(to) ||
+                diagram_.clearance().squared[cell(to)] < least_)
                 continue;
-            const double value = widest_ ? std::max(value_[at], -height(to)) : value_[at] + 1;
+            const double value = widest_ ? std::max(ways_.cost(at), -height(to)) : ways_.cost(at) + 1;
             ++edges_;
-            if (!(value < value_[to])) continue;
-            value_[to] = value;
-            parent_[to] = at;
-            queue.push({value, 0, to});
+            if (ways_.improve(to, value, at)) queue.push({value, 0, to});
         }
     }
-    std::uint32_t parent(std::uint32_t at) const { return parent_[at]; }
-    double value(std::uint32_t at) const { return value_[at]; }
+    std::uint32_t parent(std::uint32_t at) const { return ways_.before(at); }
+    double value(std::uint32_t at) const { return ways_.cost(at); }
     std::uint64_t edges() const { return edges_; }
 
   private:
     const Diagram& diagram_;
     std::uint32_t goal_, least_;
     bool widest_;
-    std::vector<std::uint32_t> parent_;
-    std::vector<double> value_;
-    std::vector<bool> settled_;
+    search::Ways ways_;
     std::uint64_t edges_ = 0;
 
     std::uint32_t cell(std::uint32_t at) const { return diagram_.cells()[at]; }

@@ -9,6 +9,7 @@
 
 #include "cspace/maps/boundary.hpp"
 #include "cspace/math/predicates.hpp"
+#include "cspace/search/adjacency.hpp"
 
 namespace cspace::navigation {
 
@@ -24,7 +25,7 @@ class NearWalls {
             prepared_.push_back({a, b, b - a, a - walls_.begin(previous(k)), walls_.ring[e]});
         }
         choose_cells();
-        fill_cells();
+        members_ = {std::size_t(columns_) * std::size_t(rows_), [&](const auto& add) { each_member(add); }};
     }
 
     struct Wall {
@@ -41,7 +42,7 @@ class NearWalls {
     template <class Visit>
     void visit(Point p, const Visit& visit) const {
         const std::size_t cell = cell_of(p);
-        for (std::int32_t k = begin_[cell]; k < begin_[cell + 1]; ++k) visit(members_[std::size_t(k)]);
+        for (const std::int32_t wall : members_.of(cell)) visit(wall);
     }
     // Whether the segment from p to q, no longer than the reach, meets a wall between its ends that has them
     // on different sides; exact. A corner on the segment counts: it may lead into an obstacle.
@@ -76,7 +77,7 @@ class NearWalls {
     double reach_, side_ = 1;
     Point low_;
     int columns_ = 1, rows_ = 1;
-    std::vector<std::int32_t> begin_, members_;
+    search::Adjacency<std::int32_t> members_;
 
     static int clamped(double at, int count) { return at <= 0 ? 0 : at >= count ? count - 1 : int(at); }
     std::size_t cell_of(Point p) const {
@@ -115,14 +116,6 @@ class NearWalls {
                         put(std::size_t(row) * std::size_t(columns_) + std::size_t(column), e);
                 }
         }
-    }
-    void fill_cells() {
-        begin_.assign(std::size_t(columns_) * std::size_t(rows_) + 1, 0);
-        each_member([&](std::size_t cell, std::int32_t) { ++begin_[cell + 1]; });
-        for (std::size_t k = 1; k < begin_.size(); ++k) begin_[k] += begin_[k - 1];
-        members_.resize(std::size_t(begin_.back()));
-        std::vector<std::int32_t> filled(begin_.begin(), begin_.end() - 1);
-        each_member([&](std::size_t cell, std::int32_t e) { members_[std::size_t(filled[cell]++)] = e; });
     }
 };
 

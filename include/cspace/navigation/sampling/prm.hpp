@@ -8,6 +8,7 @@
 
 #include "cspace/navigation/sampling/problem.hpp"
 #include "cspace/navigation/sampling/samples.hpp"
+#include "cspace/search/adjacency.hpp"
 #include "cspace/search/best_first.hpp"
 #include "cspace/search/cache.hpp"
 #include "cspace/search/nearest_neighbours.hpp"
@@ -31,13 +32,9 @@ class Roadmap {
     const Located& operator[](std::uint32_t node) const { return nodes_[node]; }
     const RoadmapKey& key() const { return key_; }
     std::int64_t tested() const { return std::int64_t(pairs_.size()); }  // segments
-    std::size_t bytes() const {
-        return 64 * nodes_.size() + 8 * pairs_.size() + 4 * (first_.size() + to_.size());
-    }
+    std::size_t bytes() const { return 64 * nodes_.size() + 8 * pairs_.size() + edges_.bytes(); }
     // The samples that are joined with a node.
-    std::span<const std::int32_t> joined_with(std::uint32_t node) const {
-        return {to_.data() + first_[node], to_.data() + first_[node + 1]};
-    }
+    std::span<const std::int32_t> joined_with(std::uint32_t node) const { return edges_.of(node); }
     // The samples that an end is joined with if it sees them; returns how far away they may be.
     double near(Point end, std::vector<std::int32_t>& found) const {
         if (key_.neighbours <= 0) return near_.within(end, radius_, found), radius_;
@@ -51,7 +48,7 @@ class Roadmap {
     double radius_ = 0;
     std::vector<Located> nodes_;
     std::vector<std::pair<std::int32_t, std::int32_t>> pairs_;  // tested, the larger first
-    std::vector<std::int32_t> first_, to_;                      // the edges of each node
+    search::Adjacency<std::int32_t> edges_;                     // the nodes at the other ends
 
     Roadmap(const maps::PolygonWorld& world, const RoadmapKey& key, Samples draws)
         : key_(key), near_(draws.low(), draws.high()) {
@@ -87,20 +84,12 @@ class Roadmap {
     // Keeps the pairs that see each other.
     void join(const maps::PolygonWorld& world) {
         std::vector<std::pair<std::int32_t, std::int32_t>> kept;
-        first_.assign(nodes_.size() + 1, 0);
-        for (const auto& [i, j] : pairs_) {
-            if (end_of_sight(world.space, nodes_[std::size_t(i)], nodes_[std::size_t(j)].at) == none)
-                continue;
-            kept.push_back({i, j});
-            ++first_[std::size_t(i) + 1], ++first_[std::size_t(j) + 1];
-        }
-        for (std::size_t n = 1; n < first_.size(); ++n) first_[n] += first_[n - 1];
-        std::vector<std::int32_t> place(first_.begin(), first_.end() - 1);
-        to_.resize(2 * kept.size());
-        for (const auto& [i, j] : kept) {
-            to_[std::size_t(place[std::size_t(i)]++)] = j;
-            to_[std::size_t(place[std::size_t(j)]++)] = i;
-        }
+        for (const auto& [i, j] : pairs_)
+            if (end_of_sight(world.space, nodes_[std::size_t(i)], nodes_[std::size_t(j)].at) != none)
+                kept.push_back({i, j});
+        edges_ = {nodes_.size(), [&](const auto& add) {
+                      for (const auto& [i, j] : kept) add(std::size_t(i), j), add(std::size_t(j), i);
+                  }};
     }
 };
 
@@ -108,7 +97,7 @@ class Roadmap {
 class RoadmapSearch {
   public:
     RoadmapSearch(const Problem& problem, const Roadmap& roadmap)
-        : problem_(problem), roadmap_(roadmap), start_(roadmap.size()), goal_(start_ + 1) {}
+        : problem_(problem), roadmap_(roadmap), start_(roadmap.size()), goal_(start_ + 1), ways_(goal_ + 1) {}
 
     SampledRoute solve(Trace* trace) {
         join();
@@ -121,11 +110,7 @@ class RoadmapSearch {
     }
 
     // The interface of a space for best_first.
-    bool settle(std::uint32_t node) {
-        const bool is_new = !settled_[node];
-        settled_[node] = 1;
-        return is_new;
-    }
+    bool settle(std::uint32_t node) { return ways_.settle(node); }
     bool is_goal(std::uint32_t node) const { return node == goal_; }
     void expand(std::uint32_t node, search::PriorityQueue& queue) {
         if (node == start_) {
@@ -144,9 +129,7 @@ class RoadmapSearch {
     std::int64_t looks_ = 0;                // segments tested from the ends
     std::vector<std::int32_t> from_start_;  // also the goal, where they see each other
     std::vector<std::uint8_t> sees_goal_;   // each sample
-    std::vector<double> cost_;
-    std::vector<std::uint32_t> parent_;
-    std::vector<std::uint8_t> settled_;
+    search::Ways ways_;
 
     Point at(std::uint32_t node) const {
         return node == start_ ? problem_.start.at : node == goal_ ? problem_.goal.at : roadmap_[node].at;
@@ -183,23 +166,18 @@ class RoadmapSearch {
     }
 
     void reach(std::uint32_t to, std::uint32_t from, search::PriorityQueue& queue) {
-        const double cost = cost_[from] + distance(at(from), at(to));
-        if (!(cost < cost_[to])) return;
-        cost_[to] = cost, parent_[to] = from;
-        queue.push({cost + distance(at(to), problem_.goal.at), -float(cost), to});
+        const double cost = ways_.cost(from) + distance(at(from), at(to));
+        if (ways_.improve(to, cost, from))
+            queue.push({cost + distance(at(to), problem_.goal.at), -float(cost), to});
     }
     void search() {
-        const std::size_t count = std::size_t(roadmap_.size()) + 2;
-        cost_.assign(count, std::numeric_limits<double>::infinity());
-        parent_.assign(count, search::no_node);
-        settled_.assign(count, 0);
         search::PriorityQueue queue;
-        cost_[start_] = 0;
+        ways_.improve(start_, 0, search::no_node);
         queue.push({distance(problem_.start.at, problem_.goal.at), 0, start_});
         search::Effort effort;
         if (search::best_first(*this, queue, effort) == search::no_node) return;
         Route& route = answer_.route;
-        for (std::uint32_t n = goal_; n != search::no_node; n = parent_[n]) route.path.push_back(at(n));
+        for (std::uint32_t n = goal_; n != search::no_node; n = ways_.before(n)) route.path.push_back(at(n));
         std::reverse(route.path.begin(), route.path.end());
         route.status = Status::found;
         route.length = length_of(route.path);

@@ -14,6 +14,7 @@
 #include "cspace/navigation/route.hpp"
 #include "cspace/navigation/sampling/sight.hpp"
 #include "cspace/navigation/voronoi/tracer.hpp"
+#include "cspace/search/adjacency.hpp"
 #include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation::voronoi {
@@ -44,19 +45,12 @@ class Roadmap {
         : world_(world),
           diagram_(make_diagram(world.walls, seeds_of(world.space),
                                 0.5 * (world.outlines.low + world.outlines.high))) {
-        const Index n = Index(diagram_.vertices.size());
-        first_.assign(std::size_t(n) + 1, 0);
-        for (const Arc& arc : diagram_.arcs)
-            ++first_[std::size_t(arc.from) + 1], ++first_[std::size_t(arc.to) + 1];
-        for (std::size_t v = 0; v < std::size_t(n); ++v) first_[v + 1] += first_[v];
-        std::vector<Index> fill(first_.begin(), first_.end() - 1);
-        around_.resize(2 * diagram_.arcs.size());
-        for (Index k = 0; k < Index(diagram_.arcs.size()); ++k) {
-            const Arc& arc = diagram_.arcs[std::size_t(k)];
-            around_[std::size_t(fill[std::size_t(arc.from)]++)] = k;
-            around_[std::size_t(fill[std::size_t(arc.to)]++)] = k;
-            between_.emplace(pair_key(arc.a, arc.b), k);
-        }
+        around_ = {diagram_.vertices.size(), [&](const auto& add) {
+                       for (Index k = 0; k < Index(diagram_.arcs.size()); ++k)
+                           add(std::size_t(arc(k).from), k), add(std::size_t(arc(k).to), k);
+                   }};
+        for (Index k = 0; k < Index(diagram_.arcs.size()); ++k)
+            between_.emplace(pair_key(arc(k).a, arc(k).b), k);
     }
 
     const Diagram& diagram() const { return diagram_; }
@@ -91,7 +85,7 @@ class Roadmap {
   private:
     const maps::PolygonWorld& world_;
     Diagram diagram_;
-    std::vector<Index> first_, around_;  // the arcs around each vertex
+    search::Adjacency<Index> around_;  // the arcs around each vertex
     std::unordered_multimap<std::uint64_t, Index> between_;
 
     static std::uint64_t pair_key(Index a, Index b) {
@@ -215,64 +209,59 @@ struct Roadmap::Search {
     Wish wish;
     Stats& stats;
     Trace* trace;
-    std::vector<double> value;  // the length up to a vertex, or minus the least width
+    search::Ways ways;          // to each vertex: the length, or minus the least width
     std::vector<Stretch> came;  // by which stretch
-    std::vector<Index> parent;
-    std::vector<std::uint8_t> settled;
 
     Search(const Roadmap& roadmap, const Landing& goal, Wish wanted, Stats& cost, Trace* record)
-        : map(roadmap), to(goal), wish(wanted), stats(cost), trace(record) {
-        const std::size_t n = map.diagram_.vertices.size() + 1;
-        value.assign(n, std::numeric_limits<double>::infinity());
-        came.resize(n);
-        parent.assign(n, none);
-        settled.assign(n, 0);
-    }
-    Index goal() const { return Index(value.size()) - 1; }
-    Point at(Index node) const { return node == goal() ? to.lead.back() : map.vertex(node); }
+        : map(roadmap),
+          to(goal),
+          wish(wanted),
+          stats(cost),
+          trace(record),
+          ways(map.diagram_.vertices.size() + 1),
+          came(map.diagram_.vertices.size() + 1) {}
+    std::uint32_t goal() const { return std::uint32_t(came.size()) - 1; }
+    Point at(std::uint32_t node) const { return node == goal() ? to.lead.back() : map.vertex(Index(node)); }
 
     bool settle(std::uint32_t node) {
-        if (settled[node]) return false;
-        settled[node] = 1;
+        if (!ways.settle(node)) return false;
         ++stats.nodes;
-        if (trace) record(Index(node));
+        if (trace) record(node);
         return true;
     }
-    bool is_goal(std::uint32_t node) const { return Index(node) == goal(); }
-    void record(Index node) const {
-        const Stretch& s = came[std::size_t(node)];
+    bool is_goal(std::uint32_t node) const { return node == goal(); }
+    void record(std::uint32_t node) const {
+        const Stretch& s = came[node];
         const Bisector& curve = map.arc(s.arc).curve;
         trace->push_back({std::int8_t(wish.widest ? 1 : 2), map.diagram_.place(curve.at(s.t0)),
-                          map.diagram_.place(curve.at(s.t1)), std::abs(value[std::size_t(node)])});
+                          map.diagram_.place(curve.at(s.t1)), std::abs(ways.cost(node))});
     }
 
-    void push(Index node, Index from, double before, const Stretch& s, search::PriorityQueue& queue) {
+    void push(std::uint32_t node, std::uint32_t from, double before, const Stretch& s,
+              search::PriorityQueue& queue) {
         ++stats.edges;
         const Bisector& curve = map.arc(s.arc).curve;
         const double low = std::min(s.t0, s.t1), high = std::max(s.t0, s.t1);
         const double width = curve.least_radius(low, high);
         if (width < wish.floor) return;
         const double after = wish.widest ? std::max(before, -width) : before + curve.length(low, high);
-        if (!(after < value[std::size_t(node)])) return;
-        value[std::size_t(node)] = after;
-        came[std::size_t(node)] = s;
-        parent[std::size_t(node)] = from;
+        if (!ways.improve(node, after, from)) return;
+        came[node] = s;
         const double left = wish.widest ? 0 : distance(at(node), to.lead.back());
-        queue.push({after + left, 0, std::uint32_t(node)});
+        queue.push({after + left, 0, node});
     }
-    void leave(Index from, double before, Index k, double t, search::PriorityQueue& queue) {
+    void leave(std::uint32_t from, double before, Index k, double t, search::PriorityQueue& queue) {
         const Arc& arc = map.arc(k);
-        if (t != arc.begin || from == none) push(arc.from, from, before, {k, t, arc.begin}, queue);
-        if (t != arc.end || from == none) push(arc.to, from, before, {k, t, arc.end}, queue);
+        const bool is_first = from == search::no_node;
+        if (t != arc.begin || is_first) push(std::uint32_t(arc.from), from, before, {k, t, arc.begin}, queue);
+        if (t != arc.end || is_first) push(std::uint32_t(arc.to), from, before, {k, t, arc.end}, queue);
         if (k == to.arc) push(goal(), from, before, {k, t, to.t}, queue);
     }
     void expand(std::uint32_t node, search::PriorityQueue& queue) {
-        const Index v = Index(node);
-        for (Index i = map.first_[node]; i < map.first_[node + 1]; ++i) {
-            const Index k = map.around_[std::size_t(i)];
+        for (const Index k : map.around_.of(node)) {
             const Arc& arc = map.arc(k);
-            if (arc.from == v) leave(v, value[node], k, arc.begin, queue);
-            if (arc.to == v) leave(v, value[node], k, arc.end, queue);
+            if (arc.from == Index(node)) leave(node, ways.cost(node), k, arc.begin, queue);
+            if (arc.to == Index(node)) leave(node, ways.cost(node), k, arc.end, queue);
         }
     }
 };
@@ -283,14 +272,15 @@ inline double Roadmap::search(const Landing& from, const Landing& to, Wish wish,
     Search space(*this, to, wish, way.route.stats, trace);
     search::PriorityQueue queue;
     search::Effort effort;
-    space.leave(none, wish.widest ? -std::numeric_limits<double>::infinity() : 0, from.arc, from.t, queue);
+    space.leave(search::no_node, wish.widest ? -std::numeric_limits<double>::infinity() : 0, from.arc, from.t,
+                queue);
     search::best_first(space, queue, effort);
     if (stretches) {
-        for (Index v = space.goal(); v != none; v = space.parent[std::size_t(v)])
-            stretches->push_back(space.came[std::size_t(v)]);
+        for (std::uint32_t v = space.goal(); v != search::no_node; v = space.ways.before(v))
+            stretches->push_back(space.came[v]);
         std::reverse(stretches->begin(), stretches->end());
     }
-    return -space.value.back();
+    return -space.ways.cost(space.goal());
 }
 
 }  // namespace cspace::navigation::voronoi

@@ -31,7 +31,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things
+from cspace.navigation.text import count_things, explain_entry
 from cspace.search import draw_seed, option
 from cspace.tolerances import SCAN_NOISE
 
@@ -116,8 +116,6 @@ class VoronoiBug(PlanePlanner):
             )
         if found.shut is None:
             return f"stopped after {route.length:.6g} m, {took}: rounding hides how branches are connected"
-        ring, (x, y) = found.shut
-        return (
-            f"{took} are exhausted without sight of the goal, and boundary loop {ring} separates "
-            f"it from the robot: at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
-        )
+        ring, at = found.shut
+        loop = f"boundary loop {ring} separates it from the robot: {explain_entry(at)}"
+        return f"{took} are exhausted without sight of the goal, and {loop}"

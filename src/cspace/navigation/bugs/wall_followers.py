@@ -18,7 +18,7 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
-from cspace.navigation.text import count_things
+from cspace.navigation.text import count_things, explain_entry
 from cspace.search import option
 
 HANDS: Final = {"left": 0, "right": 1, None: 2}
@@ -72,11 +72,9 @@ class WallFollower(PlanePlanner):
             )
         if found.shut is None:
             return f"stopped after {route.length:.6g} m: rounding hides which walls are nearer to the goal"
-        ring, (x, y) = found.shut
-        return (
-            f"the robot followed the whole boundary loop {ring}, which separates it from the goal: "
-            f"at ({x:.6g}, {y:.6g}) the line to the goal enters the wall"
-        )
+        ring, at = found.shut
+        loop = f"the robot followed the whole boundary loop {ring}, which separates it from the goal"
+        return f"{loop}: {explain_entry(at)}"
 
 
 @dataclass(frozen=True, eq=False)
