@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "cspace/navigation/bugs/contact_sensor.hpp"
+#include "cspace/navigation/bugs/sensors.hpp"
 
 namespace cspace::navigation {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <optional>
 
-#include "cspace/navigation/bugs/range_sensor.hpp"
+#include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/voronoi/contacts.hpp"
 
 namespace cspace::navigation {

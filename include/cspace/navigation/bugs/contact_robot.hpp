@@ -6,7 +6,7 @@
 
 #include <compare>
 
-#include "cspace/navigation/bugs/contact_sensor.hpp"
+#include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
 
 namespace cspace::navigation {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "cspace/navigation/bugs/contact_robot.hpp"
-#include "cspace/navigation/bugs/range_sensor.hpp"
+#include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
 
 namespace cspace::navigation {

@@ -10,7 +10,7 @@
 #include <optional>
 
 #include "cspace/navigation/bugs/boundary_tour.hpp"
-#include "cspace/navigation/bugs/range_sensor.hpp"
+#include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/bugs/walk_log.hpp"
 
 namespace cspace::navigation {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "cspace/navigation/bugs/contact_sensor.hpp"
+#include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/route.hpp"
 
 namespace cspace::navigation {

@@ -14,7 +14,7 @@
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/fields/pieces.hpp"
 #include "cspace/navigation/fields/thinning.hpp"
-#include "cspace/navigation/grid/answer.hpp"
+#include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "cspace/navigation/fields/clearance.hpp"
-#include "cspace/navigation/grid/answer.hpp"
+#include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
 #include "cspace/navigation/grid/order.hpp"

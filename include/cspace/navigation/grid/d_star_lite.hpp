@@ -15,7 +15,6 @@
 #include "cspace/navigation/grid/moves.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
 #include "cspace/navigation/grid/order.hpp"
-#include "cspace/navigation/grid/steps.hpp"
 #include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cspace/math/isa.hpp"
-#include "cspace/navigation/grid/steps.hpp"
+#include "cspace/navigation/grid/order.hpp"
 
 namespace cspace::navigation {
 

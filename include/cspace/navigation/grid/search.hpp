@@ -9,7 +9,7 @@
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/maps/grid_parts.hpp"
-#include "cspace/navigation/grid/answer.hpp"
+#include "cspace/navigation/grid/grid_route.hpp"
 #include "cspace/navigation/grid/grid_search.hpp"
 #include "cspace/navigation/grid/jump_points.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
