@@ -10,7 +10,7 @@ namespace cspace::maps {
 GridWorld::GridWorld(const std::uint8_t* blocked, int rows, int columns, double resolution, Point origin)
     : state_(new State{{blocked, rows, columns}, {resolution, origin}}) {}
 GridWorld::GridWorld(const GridWorld& other, double radius, bool from_centers)
-    : state_(new State{inflated(other.state_->bits, radius / other.resolution(), from_centers),
+    : state_(new State{inflate_grid(other.state_->bits, radius / other.resolution(), from_centers),
                        other.state_->frame}) {}
 GridWorld::GridWorld(GridWorld&&) noexcept = default;
 GridWorld::~GridWorld() = default;

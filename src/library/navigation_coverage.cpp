@@ -9,7 +9,7 @@ CoverageFinding cover_grid(const maps::GridWorld& world, int row, int column, in
     const maps::BitGrid& grid = world.state().bits;
     if (grid.blocked(row, column) || !grid.contains({row, column}) || half < 0)
         throw std::invalid_argument("the start must be a free cell, and half must not be negative");
-    Coverage made = cover(grid, {row, column}, half, along_rows);
+    Coverage made = cover_cells(grid, {row, column}, half, along_rows);
     std::vector<std::int32_t> path;
     path.reserve(2 * made.path.size());
     for (const maps::Cell cell : made.path) path.push_back(cell.row), path.push_back(cell.column);

@@ -76,7 +76,8 @@ bool ClearanceField::find_march_route(const GridWorld& world, Point start, Point
     const auto& [bits, frame, parts] = world.state();
     maps::Cell from, to;
     if (!world.state().find_cells(start, goal, from, to)) return false;
-    MarchAnswer answer = march(bits, frame, &state_->clearance, slow_within, start, from, goal, to, trace);
+    MarchAnswer answer =
+        march_front(bits, frame, &state_->clearance, slow_within, start, from, goal, to, trace);
     route = std::move(answer.route), time = frame.resolution * answer.time;
     return true;
 }

@@ -41,14 +41,14 @@ struct Course {
     template <class Controller>
     FollowRecord run(Controller controller) const {
         if (world == nullptr)
-            return follow(vehicle, start, track, controller, settings,
-                          [](const CarPose&, double, double, double) { return false; });
+            return follow_track(vehicle, start, track, controller, settings,
+                                [](const CarPose&, double, double, double) { return false; });
         const CarWorld cars(world->state().bits, world->state().frame);
-        return follow(vehicle, start, track, controller, settings,
-                      [&](const CarPose& from, double speed, double rate, double time) {
-                          const auto [piece, radius] = arc_of(speed, rate, time);
-                          return !cars.is_way_clear(footprint, from, piece, radius);
-                      });
+        return follow_track(vehicle, start, track, controller, settings,
+                            [&](const CarPose& from, double speed, double rate, double time) {
+                                const auto [piece, radius] = arc_of(speed, rate, time);
+                                return !cars.is_way_clear(footprint, from, piece, radius);
+                            });
     }
 };
 

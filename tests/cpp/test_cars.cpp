@@ -119,7 +119,7 @@ TEST(coverage_leaves_no_cell_in_reach) {
         maps::BitGrid grid = random_grid(random, 1 + random.below(40), 1 + random.below(40), 0.2);
         const maps::Cell start{random.below(grid.rows()), random.below(grid.columns())};
         grid.set(start.row, start.column, false);
-        const Coverage made = cover(grid, start, random.below(4), random.below(2) == 0);
+        const Coverage made = cover_cells(grid, start, random.below(4), random.below(2) == 0);
         std::int64_t swept = 0;
         for (const std::uint32_t passes : made.passes) swept += passes > 0;
         CHECK(swept == made.reached);
@@ -146,7 +146,7 @@ TEST(a_dynamic_window_never_touches) {
         DynamicWindow window(&grid, frame, {0.3, 1.5, 3, 180, 0.3, 0.7, 0.1});
         const Footprint body{0, 0, 0, 0.25};
         const auto contact = [](const CarPose&, double, double, double) { return false; };
-        const FollowRecord run = follow(vehicle, {{0.8, 3, 0}, 0, 0}, track, window, settings, contact);
+        const FollowRecord run = follow_track(vehicle, {{0.8, 3, 0}, 0, 0}, track, window, settings, contact);
         for (const Motion& motion : run.motion) CHECK(world.is_clear(body, motion.pose));
     }
 }

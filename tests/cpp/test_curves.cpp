@@ -26,7 +26,7 @@ CarPose random_pose(Random& random) {
 
 double miss(const CarPose& start, const Curve& curve, const CarPose& goal, double radius) {
     CarPose at = start;
-    for (int i = 0; i < curve.count; ++i) at = drive(at, curve.piece[i], radius);
+    for (int i = 0; i < curve.count; ++i) at = drive_piece(at, curve.piece[i], radius);
     return std::max({std::fabs(at.x - goal.x), std::fabs(at.y - goal.y),
                      std::fabs(cspace::wrap_angle(at.theta - goal.theta))});
 }
@@ -56,11 +56,11 @@ TEST(no_steering_comes_nearer_faster_than_it_drives) {
         const CarPose start = random_pose(random), goal = random_pose(random);
         const double step = std::exp(random.uniform(-9, 1));
         const Piece piece{random.below(3) - 1, random.below(2) ? step : -step};
-        const CarPose next = drive(start, piece, 1);
+        const CarPose next = drive_piece(start, piece, 1);
         const double here = reeds_shepp_distance(start, goal, 1), there = reeds_shepp_distance(next, goal, 1);
         // Where the distance has a square root, rounding of a pose by 1e-15 is worth 1e-7.
         CHECK_NEAR(here, there, step + 3e-7);
-        const CarPose ahead = drive(start, {piece.turn, step}, 1);
+        const CarPose ahead = drive_piece(start, {piece.turn, step}, 1);
         CHECK(dubins_distance(start, goal, 1) <= step + dubins_distance(ahead, goal, 1) + 3e-7);
     }
 }

@@ -54,7 +54,7 @@ TEST(exact_and_bounded_searches_keep_to_the_shortest_way) {
                 find_by_potential(grid, clearance, order, corners, start, goal, answer);
                 CHECK(answer.found == shortest.found);
                 if (!answer.found || is_greedy) continue;
-                const double length = grid_search::summed(answer.cells, StepLength{});
+                const double length = grid_search::sum_costs(answer.cells, StepLength{});
                 CHECK(length <= most * shortest.cost + 1e-9 && length >= shortest.cost - 1e-9);
             }
     }
@@ -73,8 +73,8 @@ TEST(a_front_comes_where_cells_join_and_its_way_leads_down) {
         query.metric = Metric::manhattan;
         find_way(grid, start, goal, query, scratch, shortest);
         const GridFrame frame;
-        const MarchAnswer answer = march(grid, frame, &clearance, k % 2 ? 2.0 : 0.0, frame.center(start),
-                                         start, frame.center(goal), goal, nullptr);
+        const MarchAnswer answer = march_front(grid, frame, &clearance, k % 2 ? 2.0 : 0.0,
+                                               frame.center(start), start, frame.center(goal), goal, nullptr);
         CHECK((answer.route.status == Status::found) == shortest.found);
         if (!shortest.found) continue;
         CHECK(answer.route.path.front() == frame.center(start) &&

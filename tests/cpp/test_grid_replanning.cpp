@@ -41,7 +41,7 @@ TEST(mended_ways_are_as_long_as_fresh_ones) {
             if (!found) continue;
             std::vector<Cell> cells;
             planner.way(cells);
-            CHECK_NEAR(grid_search::summed(cells, StepLength{}), answer.cost, 1e-9);
+            CHECK_NEAR(grid_search::sum_costs(cells, StepLength{}), answer.cost, 1e-9);
         }
     }
 }

@@ -14,7 +14,7 @@ namespace cspace::maps {
 // Words of 64 cells: packing bytes into them and turning a block of 64 × 64 bits.
 
 // The bits of up to 64 bytes, bit k set where byte k is not zero.
-inline std::uint64_t packed(const std::uint8_t* bytes, std::size_t count) {
+inline std::uint64_t pack_bytes(const std::uint8_t* bytes, std::size_t count) {
     std::uint64_t word = 0;
     std::size_t k = 0;
     for (; k + 8 <= count; k += 8) {
@@ -29,7 +29,7 @@ inline std::uint64_t packed(const std::uint8_t* bytes, std::size_t count) {
 }
 
 // Turns a block about its diagonal: bit j of word i becomes bit i of word j (Warren, Hacker's Delight, 7–3).
-inline void transpose(std::uint64_t (&block)[64]) {
+inline void transpose_block(std::uint64_t (&block)[64]) {
     std::uint64_t mask = 0x00000000ffffffffull;
     for (unsigned width = 32; width; width >>= 1, mask ^= mask << width)
         for (unsigned k = 0; k < 64; k = ((k | width) + 1) & ~width) {
@@ -77,7 +77,8 @@ class BitGrid {
             const std::uint8_t* from = blocked + std::size_t(row) * std::size_t(columns);
             std::uint64_t* line = by_row_.line(row + 1);
             for (int column = 0; column < columns; column += 64) {
-                const std::uint64_t word = packed(from + column, std::size_t(std::min(64, columns - column)));
+                const std::uint64_t word =
+                    pack_bytes(from + column, std::size_t(std::min(64, columns - column)));
                 line[column / 64] |= word << 1;
                 if (word >> 63) line[column / 64 + 1] |= 1;
             }
@@ -143,7 +144,7 @@ class BitGrid {
                 const int down = std::min(64, rows_ + 2 - row);
                 const int across = std::min(64, columns_ + 2 - int(64 * word));
                 for (int k = 0; k < 64; ++k) block[k] = k < down ? by_row_.line(row + k)[word] : 0;
-                transpose(block);
+                transpose_block(block);
                 for (int k = 0; k < across; ++k) by_column_.line(int(64 * word) + k)[row / 64] = block[k];
             }
     }

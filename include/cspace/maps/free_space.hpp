@@ -196,7 +196,7 @@ inline void find_components(FreeSpace& space) {
 }
 
 // The triangulation of outlines, or false as `complete` where bending them to their crossings would not end.
-inline FreeSpace triangulated(const Outlines& world) {
+inline FreeSpace triangulate_outlines(const Outlines& world) {
     FreeSpace space;
     Point low = world.low, high = world.high;
     for (const Point p : world.points) {
@@ -235,11 +235,11 @@ inline FreeSpace triangulated(const Outlines& world) {
 }  // namespace detail
 
 inline FreeSpace make_free_space(const Outlines& world) {
-    FreeSpace space = detail::triangulated(world);
+    FreeSpace space = detail::triangulate_outlines(world);
     Outlines snapped;
     for (int tries = 0; !space.complete && tries < 4; ++tries) {
         snapped = snap_rounded(tries == 0 ? world : snapped);
-        space = detail::triangulated(snapped);
+        space = detail::triangulate_outlines(snapped);
         space.is_snapped = true;
     }
     space.component.assign(space.mesh.triangles.size(), none);

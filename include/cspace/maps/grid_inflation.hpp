@@ -14,7 +14,8 @@ namespace cspace::maps {
 namespace inflation {
 
 // Sets every bit within `more` places of a set one, in a line whose bits have grown by `grown` already.
-inline void widen(std::vector<std::uint64_t>& line, std::vector<std::uint64_t>& spare, int grown, int more) {
+inline void widen_line(std::vector<std::uint64_t>& line, std::vector<std::uint64_t>& spare, int grown,
+                       int more) {
     const std::size_t n = line.size();
     while (more > 0) {
         const int shift = std::min({more, grown + 1, 63});  // a longer one would leave gaps
@@ -36,7 +37,7 @@ inline std::int64_t gap(int d, bool from_centers) {
 
 // Half widths by row: how many columns apart two cells may be that lie `row` rows apart and nearer than
 // sqrt(limit) half cells; -1 where none is.
-inline std::vector<int> widths(double limit, bool from_centers, int rows, int columns) {
+inline std::vector<int> list_widths(double limit, bool from_centers, int rows, int columns) {
     std::vector<int> found;
     int width = columns + 1;
     for (int row = 0; row <= rows + 1; ++row) {
@@ -56,11 +57,11 @@ inline std::vector<int> widths(double limit, bool from_centers, int rows, int co
 
 // Blocked are the cells of which some point, or, from_centers, the centre, lies nearer than the radius to a
 // blocked cell or to the outside; and those that were blocked before. radius: in cells.
-inline BitGrid inflated(const BitGrid& grid, double radius, bool from_centers) {
+inline BitGrid inflate_grid(const BitGrid& grid, double radius, bool from_centers) {
     BitGrid grown = grid;
     const double square = 4 * radius * radius, whole = std::round(square);
     const double limit = std::abs(square - whole) <= tolerance::cell_border * whole ? whole : square;
-    const std::vector<int> widths = inflation::widths(limit, from_centers, grid.rows(), grid.columns());
+    const std::vector<int> widths = inflation::list_widths(limit, from_centers, grid.rows(), grid.columns());
     if (widths.empty()) return grown;
     const std::size_t words = grid.row_words();
     std::vector<std::uint64_t> line(words), spare(words);
@@ -70,7 +71,7 @@ inline BitGrid inflated(const BitGrid& grid, double radius, bool from_centers) {
         std::copy_n(grid.row(row), words, line.begin());
         int width = 0;
         for (int apart = int(widths.size()) - 1; apart >= 0; --apart) {
-            inflation::widen(line, spare, width, widths[std::size_t(apart)] - width);
+            inflation::widen_line(line, spare, width, widths[std::size_t(apart)] - width);
             width = widths[std::size_t(apart)];
             for (const int target : {row - apart, row + apart}) {
                 if (target < 0 || target >= grid.rows()) continue;

@@ -56,7 +56,7 @@ class CarWorld {
     bool is_way_clear(const Footprint& body, const CarPose& from, const Piece& piece, double radius) const {
         const double length = std::fabs(piece.length) * radius;
         const double motion = length + body.reach() * std::fabs(piece.turn * piece.length);
-        if (!is_clear(body, from) || !is_clear(body, drive(from, piece, radius))) return false;
+        if (!is_clear(body, from) || !is_clear(body, drive_piece(from, piece, radius))) return false;
         return halves_clear(body, from, piece, radius, 0, 1, motion);
     }
 
@@ -132,7 +132,7 @@ class CarWorld {
     bool halves_clear(const Footprint& body, const CarPose& from, const Piece& piece, double radius, double a,
                       double b, double motion) const {
         const double middle = 0.5 * (a + b), moved = 0.5 * (b - a) * motion;
-        const CarPose pose = drive(from, {piece.turn, middle * piece.length}, radius);
+        const CarPose pose = drive_piece(from, {piece.turn, middle * piece.length}, radius);
         if (is_clear(body, pose, moved)) return true;
         if (!is_clear(body, pose)) return false;
         if (moved < closest * frame_.resolution) return true;

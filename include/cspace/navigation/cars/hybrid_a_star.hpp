@@ -67,7 +67,7 @@ class HolonomicDistance {
         const int k = cells * 16 <= most_parts ? 4 : cells * 4 <= most_parts ? 2 : 1;
         const double radius = k * body.inner_radius() / world.frame().resolution - 0.5 * std::numbers::sqrt2;
         if (radius <= 0) return grid;
-        const maps::BitGrid parts = maps::inflated(cut(grid, k), radius, true);
+        const maps::BitGrid parts = maps::inflate_grid(cut(grid, k), radius, true);
         maps::BitGrid open(grid.rows(), grid.columns());
         for (int row = 0; row < grid.rows(); ++row)
             for (int column = 0; column < grid.columns(); ++column)
@@ -199,7 +199,7 @@ class HybridAStar {
     void try_piece(std::uint32_t at, const Piece& piece, search::Heap<search::Waiting>& queue) {
         ++edges_;
         const Node from = nodes_[at];
-        const CarPose pose = drive(from.pose, piece, set_.radius);
+        const CarPose pose = drive_piece(from.pose, piece, set_.radius);
         double cost = from.cost + cost_of(piece);
         if (from.parent >= 0 && (from.piece.length < 0) != (piece.length < 0)) cost += set_.gear_cost;
         const std::uint64_t box = key(pose);
@@ -233,7 +233,7 @@ class HybridAStar {
     bool is_clear(CarPose from, const Curve& way) const {
         for (int i = 0; i < way.count; ++i) {
             if (!world_.is_way_clear(body_, from, way.piece[i], set_.radius)) return false;
-            from = drive(from, way.piece[i], set_.radius);
+            from = drive_piece(from, way.piece[i], set_.radius);
         }
         return true;
     }
@@ -260,7 +260,7 @@ class HybridAStar {
         std::vector<CarPose> pose{nodes_[0].pose};
         std::vector<double> cost{0};  // up to each pose, with a change of gear there
         for (std::size_t k = 0; k < pieces.size(); ++k) {
-            pose.push_back(drive(pose.back(), pieces[k], set_.radius));
+            pose.push_back(drive_piece(pose.back(), pieces[k], set_.radius));
             const bool changes =
                 k + 1 < pieces.size() && (pieces[k].length < 0) != (pieces[k + 1].length < 0);
             cost.push_back(cost.back() + cost_of(pieces[k]) + (changes ? set_.gear_cost : 0));
@@ -279,7 +279,7 @@ class HybridAStar {
                 way.piece[way.count++] = pieces[at];
             }
             for (int i = 0; i < way.count; ++i)
-                join(made, way.piece[i]), here = drive(here, way.piece[i], set_.radius);
+                join(made, way.piece[i]), here = drive_piece(here, way.piece[i], set_.radius);
             at = to;
         }
         pieces = std::move(made);

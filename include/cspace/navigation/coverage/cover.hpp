@@ -72,7 +72,7 @@ inline std::vector<FreeRun> free_runs(const SweepFrame& frame, const std::vector
     return runs;
 }
 
-inline Decomposition decompose(const SweepFrame& frame, const std::vector<char>& reach) {
+inline Decomposition decompose_frame(const SweepFrame& frame, const std::vector<char>& reach) {
     Decomposition made;
     made.region_of.assign(std::size_t(frame.size()), -1);
     std::vector<FreeRun> before;
@@ -124,7 +124,7 @@ class Coverer {
         search([](std::int32_t) { return false; });
         for (const std::int32_t place : queue_) reach_[std::size_t(place)] = 1;
         out_.reached = std::int64_t(queue_.size());
-        const Decomposition cut = decompose(frame_, reach_);
+        const Decomposition cut = decompose_frame(frame_, reach_);
         step_to(here_, true);
         sweep_regions(cut);
         sweep_leftovers();
@@ -259,7 +259,7 @@ class Coverer {
 };
 
 // along: the lines are the grid's rows (true) or its columns.
-inline Coverage cover(const maps::BitGrid& grid, maps::Cell start, int half, bool along_rows) {
+inline Coverage cover_cells(const maps::BitGrid& grid, maps::Cell start, int half, bool along_rows) {
     return Coverer(SweepFrame(grid, along_rows), half).cover(start);
 }
 

@@ -54,7 +54,7 @@ struct CarRoute {
 };
 
 // The pose after a piece driven with a turning radius: a chord at half the turn.
-inline CarPose drive(const CarPose& from, const Piece& piece, double radius) {
+inline CarPose drive_piece(const CarPose& from, const Piece& piece, double radius) {
     const double half = 0.5 * piece.turn * piece.length;
     const double chord = piece.turn == 0 ? piece.length : 2 * piece.turn * std::sin(half);
     const double along = from.theta + half;
@@ -103,7 +103,7 @@ class LaidCurve {
     LaidCurve(const CarPose& start, std::vector<Piece> pieces, double radius)
         : pieces_(std::move(pieces)), radius_(radius), pose_{start}, s_{0} {
         for (const Piece& piece : pieces_) {
-            pose_.push_back(drive(pose_.back(), piece, radius));
+            pose_.push_back(drive_piece(pose_.back(), piece, radius));
             s_.push_back(s_.back() + std::fabs(piece.length));
         }
     }
@@ -113,7 +113,8 @@ class LaidCurve {
         const auto after = std::upper_bound(s_.begin() + 1, s_.end(), s);
         const std::size_t k = std::size_t(after - s_.begin()) - 1;
         const Piece& piece = pieces_[k];
-        return drive(pose_[k], {piece.turn, std::copysign(std::max(s - s_[k], 0.0), piece.length)}, radius_);
+        return drive_piece(pose_[k], {piece.turn, std::copysign(std::max(s - s_[k], 0.0), piece.length)},
+                           radius_);
     }
 
   private:

@@ -29,7 +29,7 @@ inline double forward_arc(double angle, double slack) {
     return whole - angle <= slack ? 0 : angle;
 }
 
-inline void keep(Word& best, const Word& word) {
+inline void keep_shorter_word(Word& best, const Word& word) {
     if (word.length < best.length) best = word;
 }
 
@@ -43,7 +43,7 @@ inline void words_from_left(const Task& task, bool mirrored, Word& best) {
     const auto consider = [&](int middle, bool crosses, double t, double u, double v, double slack) {
         t = forward_arc(t, slack);
         v = forward_arc(v, slack);
-        keep(best, {t + u + v, middle, crosses, mirrored, t, u, v});
+        keep_shorter_word(best, {t + u + v, middle, crosses, mirrored, t, u, v});
     };
     // A straight piece of length u turns by slack / u where its ends are moved by slack.
     const auto loose = [&](double u) { return rounding + task.slack / std::max(u, 1.0); };
@@ -64,7 +64,7 @@ inline void words_from_left(const Task& task, bool mirrored, Word& best) {
     }
 }
 
-inline Word shortest(const Task& task) {
+inline Word find_shortest_word(const Task& task) {
     Word best;
     words_from_left(task, false, best);
     words_from_left(task, true, best);
@@ -75,13 +75,13 @@ inline Word shortest(const Task& task) {
 
 // The length of the shortest curve that drives forwards alone [m].
 inline double dubins_distance(const CarPose& start, const CarPose& goal, double radius) {
-    return radius * dubins::shortest(task_between(start, goal, radius)).length;
+    return radius * dubins::find_shortest_word(task_between(start, goal, radius)).length;
 }
 
 // The shortest curve that drives forwards alone; among equals the first of LSL, LSR, LRL, RSR, RSL, RLR.
 inline Curve dubins_curve(const CarPose& start, const CarPose& goal, double radius) {
     const Task task = task_between(start, goal, radius);
-    const dubins::Word word = dubins::shortest(task);
+    const dubins::Word word = dubins::find_shortest_word(task);
     const int left = word.mirrored ? -1 : 1;
     Curve curve;
     curve.add(left, word.t, task.slack);

@@ -146,7 +146,7 @@ class Words {
     Task::Way same_, cross_, back_same_, back_cross_;
 };
 
-inline Word shortest(const Task& task) {
+inline Word find_shortest_word(const Task& task) {
     Word best;
     Words left(task, false, best), right(task, true, best);
     left.between_like_circles();
@@ -199,13 +199,13 @@ inline Curve curve_of(const Word& word, double nothing) {
 
 // The length of the shortest curve that drives forwards and backwards [m].
 inline double reeds_shepp_distance(const CarPose& start, const CarPose& goal, double radius) {
-    return radius * reeds_shepp::shortest(task_between(start, goal, radius)).length;
+    return radius * reeds_shepp::find_shortest_word(task_between(start, goal, radius)).length;
 }
 
 // The shortest curve that drives forwards and backwards.
 inline Curve reeds_shepp_curve(const CarPose& start, const CarPose& goal, double radius) {
     const Task task = task_between(start, goal, radius);
-    return reeds_shepp::curve_of(reeds_shepp::shortest(task), task.slack);
+    return reeds_shepp::curve_of(reeds_shepp::find_shortest_word(task), task.slack);
 }
 
 }  // namespace cspace::navigation

@@ -209,14 +209,14 @@ class Walk {
 };
 
 // The cells from one up to the diagram.
-inline std::vector<std::uint32_t> retract(const Diagram& diagram, std::uint32_t cell) {
+inline std::vector<std::uint32_t> climb_to_diagram(const Diagram& diagram, std::uint32_t cell) {
     std::vector<std::uint32_t> way = {cell};
     while (diagram.place(way.back()) == Diagram::none) way.push_back(diagram.above(way.back()));
     return way;
 }
 
 // A path along sides without its loops, and with diagonal steps where both adjacent cells are free.
-inline void straighten(const maps::BitGrid& grid, std::vector<std::uint32_t>& way) {
+inline void straighten_way(const maps::BitGrid& grid, std::vector<std::uint32_t>& way) {
     std::vector<std::uint32_t> cells;
     std::vector<std::uint32_t> sorted = way;
     std::sort(sorted.begin(), sorted.end());
@@ -249,8 +249,8 @@ struct BrushfireAnswer {
 inline BrushfireAnswer find_along(const Diagram& diagram, maps::Cell start, maps::Cell goal, Prefer prefer) {
     const maps::BitGrid& grid = diagram.grid();
     BrushfireAnswer answer;
-    std::vector<std::uint32_t> way = brushfire::retract(diagram, grid.number(start));
-    std::vector<std::uint32_t> back = brushfire::retract(diagram, grid.number(goal));
+    std::vector<std::uint32_t> way = brushfire::climb_to_diagram(diagram, grid.number(start));
+    std::vector<std::uint32_t> back = brushfire::climb_to_diagram(diagram, grid.number(goal));
     const std::uint32_t from = diagram.place(way.back()), to = diagram.place(back.back());
     const auto search = [&](bool widest, std::uint32_t least, const auto& then) {
         brushfire::Walk walk(diagram, to, widest, least);
@@ -273,7 +273,7 @@ inline BrushfireAnswer find_along(const Diagram& diagram, maps::Cell start, maps
         return answer;
     way.insert(way.end(), along.rbegin(), along.rend());
     way.insert(way.end(), back.rbegin() + 1, back.rend());
-    brushfire::straighten(grid, way);
+    brushfire::straighten_way(grid, way);
     answer.way.found = true;
     answer.squared = diagram.clearance().squared[way.front()];
     for (const std::uint32_t n : way) {

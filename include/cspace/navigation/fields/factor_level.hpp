@@ -67,9 +67,9 @@ void place_entries(FactorLevel& made, std::int32_t size, const EachBeside& each_
 }
 
 template <class EachBeside>
-FactorLevel joined(std::int32_t size, const std::vector<std::int32_t>& row,
-                   const std::vector<std::int32_t>& column, const EachBeside& each_beside,
-                   std::vector<std::int32_t>& aggregate, std::vector<std::int32_t>& slot) {
+FactorLevel join_level(std::int32_t size, const std::vector<std::int32_t>& row,
+                       const std::vector<std::int32_t>& column, const EachBeside& each_beside,
+                       std::vector<std::int32_t>& aggregate, std::vector<std::int32_t>& slot) {
     FactorLevel made;
     std::vector<std::int32_t> root(std::size_t(size), 0);
     std::iota(root.begin(), root.end(), 0);
@@ -102,18 +102,18 @@ FactorLevel joined(std::int32_t size, const std::vector<std::int32_t>& row,
 
 // A factor that is the same for all of an aggregate corrects too little (Braess 1995); measured in rooms,
 // corridors and scattered cells, twice as much needs the fewest cycles.
-inline void correct(double& value, double factor) {
+inline void correct_factor(double& value, double factor) {
     if (std::abs(factor - 1) < 0.3) factor = 1 + 1.9 * (factor - 1);
     value = std::max(value * factor, least_factor);
 }
-inline void clear(FactorLevel& level) {
+inline void clear_level(FactorLevel& level) {
     std::fill(level.weight.begin(), level.weight.end(), 0);
     std::fill(level.excess.begin(), level.excess.end(), 0);
     std::fill(level.factor.begin(), level.factor.end(), 1);
 }
 // The greatest exponent of each aggregate.
-inline void raise(std::vector<std::int32_t>& to, const std::vector<std::int32_t>& from,
-                  const std::vector<std::int32_t>& aggregate) {
+inline void raise_exponents(std::vector<std::int32_t>& to, const std::vector<std::int32_t>& from,
+                            const std::vector<std::int32_t>& aggregate) {
     std::fill(to.begin(), to.end(), std::numeric_limits<std::int32_t>::min());
     for (std::size_t i = 0; i < aggregate.size(); ++i)
         to[std::size_t(aggregate[i])] = std::max(to[std::size_t(aggregate[i])], from[i]);
@@ -128,17 +128,17 @@ inline void relax_row(FactorLevel& level, std::size_t i) {
         level.factor[i] =
             std::clamp(sum / std::max(weights + level.excess[i], 0.1 * weights), least_factor, most_factor);
 }
-inline void relax(FactorLevel& level, int times) {
+inline void relax_level(FactorLevel& level, int times) {
     for (int k = 0; k < times; ++k) {
         for (std::size_t i = 1; i < level.begin.size() - 1; ++i) relax_row(level, i);
         for (std::size_t i = level.begin.size() - 1; --i > 0;) relax_row(level, i);
     }
 }
-inline void gather(const FactorLevel& from, FactorLevel& to) {
-    clear(to);
+inline void gather_level(const FactorLevel& from, FactorLevel& to) {
+    clear_level(to);
     std::vector<std::int32_t> scale(from.exponent);
     for (std::size_t i = 1; i < scale.size(); ++i) scale[i] += std::ilogb(from.factor[i]);
-    raise(to.exponent, scale, from.aggregate);
+    raise_exponents(to.exponent, scale, from.aggregate);
     for (std::size_t i = 1; i < from.begin.size() - 1; ++i) {
         const std::size_t one = std::size_t(from.aggregate[i]);
         const double near = from.factor[i] * power_of_two(from.exponent[i] - scale[i]);

@@ -196,9 +196,9 @@ struct MarchAnswer {
     double time = never;  // of the start's cell [cells, over the speed]
 };
 
-inline MarchAnswer march(const maps::BitGrid& grid, const maps::GridFrame& frame, const Clearance* clearance,
-                         double slow_within, Point start, maps::Cell from, Point goal, maps::Cell to,
-                         Trace* trace) {
+inline MarchAnswer march_front(const maps::BitGrid& grid, const maps::GridFrame& frame,
+                               const Clearance* clearance, double slow_within, Point start, maps::Cell from,
+                               Point goal, maps::Cell to, Trace* trace) {
     MarchAnswer answer;
     std::vector<std::uint32_t> order;
     Front front(grid, clearance, slow_within, grid.number(from));

@@ -42,15 +42,15 @@ class HittingSolver {
     // called now and then, and may throw.
     template <class Look>
     void solve(double residual, int most_cycles, const Look& look) {
-        for (int k = 0; k < 10; ++k) relax(), look();
+        for (int k = 0; k < 10; ++k) relax_level(), look();
         for (cycles_ = 0; cycles_ < most_cycles; ++cycles_) {
             look();
-            relax();
-            residual_ = gather();
+            relax_level();
+            residual_ = gather_level();
             if (residual_ <= residual || levels_.empty()) break;
             cycle(0);
             spread();
-            relax();
+            relax_level();
             normalize();
         }
         if (levels_.empty()) normalize();
@@ -123,7 +123,7 @@ class HittingSolver {
         for (const std::uint32_t n : cells_)
             row.push_back(grid_.cell(n).row), column.push_back(grid_.cell(n).column);
         slot_.resize(4 * cells_.size());
-        levels_.push_back(factors::joined(
+        levels_.push_back(factors::join_level(
             size, row, column,
             [&](std::int32_t i, const auto& give) {
                 for (std::size_t k = 0; k < 4; ++k)
@@ -133,7 +133,7 @@ class HittingSolver {
             aggregate_, slot_));
         while (levels_.back().size() > 40) {
             FactorLevel& last = levels_.back();
-            FactorLevel next = factors::joined(
+            FactorLevel next = factors::join_level(
                 last.size(), last.block_row, last.block_column,
                 [&](std::int32_t i, const auto& give) {
                     for (std::int32_t p = last.begin[std::size_t(i)]; p < last.begin[std::size_t(i) + 1]; ++p)
@@ -153,7 +153,7 @@ class HittingSolver {
     void relax_cell(std::size_t i) {
         m_[i] = 0.25 * (beside_over(i, 0) + beside_over(i, 1) + beside_over(i, 2) + beside_over(i, 3));
     }
-    void relax() {
+    void relax_level() {
         for (std::size_t i = 1; i < cells_.size(); ++i) relax_cell(i);
         for (std::size_t i = cells_.size(); --i > 0;) relax_cell(i);
     }
@@ -165,12 +165,12 @@ class HittingSolver {
         }
     }
     // The first level's weights from the cells; returns the greatest share that a cell is off its mean by.
-    double gather() {
+    double gather_level() {
         double worst = 0;
         if (levels_.empty()) return worst;
         FactorLevel& to = levels_[0];
-        factors::clear(to);
-        factors::raise(to.exponent, e_, aggregate_);
+        factors::clear_level(to);
+        factors::raise_exponents(to.exponent, e_, aggregate_);
         for (std::size_t i = 1; i < cells_.size(); ++i) {
             const std::size_t one = std::size_t(aggregate_[i]);
             const double share = m_[i] * m_[i] * factors::power_of_two(2 * (e_[i] - to.exponent[one]));
@@ -188,21 +188,22 @@ class HittingSolver {
     }
     void spread() {
         for (std::size_t i = 1; i < cells_.size(); ++i)
-            factors::correct(m_[i], levels_[0].factor[std::size_t(aggregate_[i])]);
+            factors::correct_factor(m_[i], levels_[0].factor[std::size_t(aggregate_[i])]);
     }
 
     // ---- one cycle
 
     void cycle(std::size_t k) {
         FactorLevel& level = levels_[k];
-        if (k + 1 == levels_.size()) return factors::relax(level, 40);
-        factors::relax(level, 1);
+        if (k + 1 == levels_.size()) return factors::relax_level(level, 40);
+        factors::relax_level(level, 1);
         for (int turn = 0; turn < 2; ++turn) {
-            factors::gather(level, levels_[k + 1]);
+            factors::gather_level(level, levels_[k + 1]);
             cycle(k + 1);
             for (std::size_t i = 1; i < level.begin.size() - 1; ++i)
-                factors::correct(level.factor[i], levels_[k + 1].factor[std::size_t(level.aggregate[i])]);
-            factors::relax(level, 1);
+                factors::correct_factor(level.factor[i],
+                                        levels_[k + 1].factor[std::size_t(level.aggregate[i])]);
+            factors::relax_level(level, 1);
         }
     }
 };

@@ -26,7 +26,7 @@ class NavigationFunction {
             if (kappa > 0)
                 tuned_ = {kappa, MinimumProof(SpherePotential(discs_, to, kappa)).run(limits.squares)};
             else
-                tuned_ = tuned(discs_, to, limits.most_kappa, limits.squares);
+                tuned_ = tune_kappa(discs_, to, limits.most_kappa, limits.squares);
         }
         potential_ = std::make_unique<SpherePotential>(discs_, to, std::max(tuned_.kappa, 1.0));
     }

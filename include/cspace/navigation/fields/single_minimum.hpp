@@ -147,7 +147,7 @@ struct Tuned {
     double kappa = 0;  // zero: none was
     SingleMinimum proof;
 };
-inline Tuned tuned(const SphereWorld& world, Point goal, double most_kappa, std::int64_t most_squares) {
+inline Tuned tune_kappa(const SphereWorld& world, Point goal, double most_kappa, std::int64_t most_squares) {
     Point refuted = world.room.center;  // where the last power had another minimum: the next may, too
     for (double kappa = 2; kappa <= most_kappa; kappa *= 2) {
         const SpherePotential potential(world, goal, kappa);

@@ -88,7 +88,7 @@ class Star {
 namespace detail {
 
 // What a convex polygon keeps on the left of a line.
-inline std::vector<Point> clipped(const std::vector<Point>& shape, Point a, Point b) {
+inline std::vector<Point> clip_polygon(const std::vector<Point>& shape, Point a, Point b) {
     std::vector<Point> kept;
     const auto side = [&](Point p) { return cross(b - a, p - a); };
     for (std::size_t k = 0; k < shape.size(); ++k) {
@@ -123,7 +123,7 @@ inline bool kernel_point(const std::vector<Point>& corners, Point& found) {
     std::vector<Point> kernel{low, {high.x, low.y}, high, {low.x, high.y}};
     const std::size_t n = corners.size();
     for (std::size_t k = 0; k < n && kernel.size() >= 3; ++k)
-        kernel = detail::clipped(kernel, corners[k], corners[(k + 1) % n]);
+        kernel = detail::clip_polygon(kernel, corners[k], corners[(k + 1) % n]);
     if (kernel.size() < 3) return false;
     found = detail::centroid(kernel);
     for (std::size_t k = 0; k < n; ++k)

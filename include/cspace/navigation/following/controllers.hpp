@@ -38,7 +38,7 @@ struct Command {
     double speed, turn;
 };
 
-inline double toward(double from, double to, double step) {
+inline double step_toward(double from, double to, double step) {
     return from + std::clamp(to - from, -step, step);
 }
 
@@ -48,7 +48,7 @@ inline double turn_rate(const Vehicle& vehicle, double speed, double turn) {
 }
 
 // A step along the arc of constant speed and turn rate.
-inline CarPose advance(const CarPose& from, double speed, double rate, double time) {
+inline CarPose advance_pose(const CarPose& from, double speed, double rate, double time) {
     const double half = 0.5 * rate * time;
     const double chord = speed * time * (std::fabs(half) < 1e-8 ? 1.0 : std::sin(half) / half);
     return {from.x + chord * std::cos(from.theta + half), from.y + chord * std::sin(from.theta + half),
@@ -59,14 +59,14 @@ inline CarPose advance(const CarPose& from, double speed, double rate, double ti
 inline Command within_limits(const Vehicle& vehicle, const Motion& now, const Command& wanted, double time) {
     const double speed = std::clamp(wanted.speed, -vehicle.max_reverse, vehicle.max_speed);
     const double turn = std::clamp(wanted.turn, -vehicle.max_turn, vehicle.max_turn);
-    return {toward(now.speed, speed, vehicle.acceleration * time),
-            toward(now.turn, turn, vehicle.turn_change * time)};
+    return {step_toward(now.speed, speed, vehicle.acceleration * time),
+            step_toward(now.turn, turn, vehicle.turn_change * time)};
 }
 
-inline Motion after(const Vehicle& vehicle, const Motion& now, const Command& wanted, double time) {
+inline Motion step_vehicle(const Vehicle& vehicle, const Motion& now, const Command& wanted, double time) {
     const Command made = within_limits(vehicle, now, wanted, time);
     const double rate = turn_rate(vehicle, made.speed, made.turn);
-    return {advance(now.pose, made.speed, rate, time), made.speed, made.turn};
+    return {advance_pose(now.pose, made.speed, rate, time), made.speed, made.turn};
 }
 
 // A path to be followed: a chain of points, cut into runs where the direction of driving changes.

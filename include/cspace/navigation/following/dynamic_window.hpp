@@ -155,7 +155,7 @@ class DynamicWindow {
         const double stop = c.speed * time + 0.5 * c.speed * c.speed / braking(vehicle, c);
         if (!safe && c.speed > standing && free < stop) return -std::numeric_limits<double>::infinity();
         const CarPose then =
-            advance(now.pose, c.speed, c.turn, std::min(horizon, free / std::max(c.speed, standing)));
+            advance_pose(now.pose, c.speed, c.turn, std::min(horizon, free / std::max(c.speed, standing)));
         const Point way = target - place(then), along = heading(then);
         const double off = std::fabs(std::atan2(cross(along, way), dot(along, way))) / std::numbers::pi;
         const double far =

@@ -52,8 +52,8 @@ struct Follower {
 // contact(from, speed, turn rate, time) returns whether the vehicle touches something on that arc; controller
 // as in controllers.hpp.
 template <class Controller, class Contact>
-FollowRecord follow(const Vehicle& vehicle, const Motion& start, const Track& track, Controller& controller,
-                    const FollowSettings& settings, const Contact& contact) {
+FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Track& track,
+                          Controller& controller, const FollowSettings& settings, const Contact& contact) {
     constexpr double rest = 1e-3;  // [m/s], as good as standing
     const double dt = settings.time_step;
     FollowRecord record;
@@ -86,7 +86,7 @@ FollowRecord follow(const Vehicle& vehicle, const Motion& start, const Track& tr
         if (time >= settings.time_limit) return finish(Outcome::timeout);
         const double fast = std::min(settings.speed, speed_to_stop(left, vehicle.acceleration, dt));
         const Command command = controller(vehicle, at.now, track[at.run], at.guided, fast, dt);
-        const Motion next = after(vehicle, at.now, command, dt);
+        const Motion next = step_vehicle(vehicle, at.now, command, dt);
         touched = contact(at.now.pose, next.speed, turn_rate(vehicle, next.speed, next.turn), dt);
         at.now = next;
         at.look(vehicle, controller, at.own.s, at.own.s + settings.window);

@@ -63,7 +63,7 @@ inline constexpr std::uint64_t between_looks = 1 << 17;  // cells settled: less 
 
 // The cost of a path from cell to adjacent cell.
 template <class Length>
-double summed(const std::vector<maps::Cell>& cells, const Length& length) {
+double sum_costs(const std::vector<maps::Cell>& cells, const Length& length) {
     typename Length::G sum{};
     for (std::size_t k = 1; k < cells.size(); ++k) {
         const int down = cells[k].row - cells[k - 1].row, along = cells[k].column - cells[k - 1].column;
@@ -129,7 +129,7 @@ void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& or
         [&](std::uint32_t k) { return grid.cell(k); }, answer.cells);
     // Cells that were reached again on a shorter way have children that do not know it.
     if constexpr (requires { parents.length; })
-        if (reopen) answer.cost = summed(answer.cells, parents.length);
+        if (reopen) answer.cost = sum_costs(answer.cells, parents.length);
 }
 
 template <Corners rule>
