@@ -1,5 +1,5 @@
 #include "cspace/ik/arm.hpp"
-#include "cspace/ik/closed_form.hpp"
+#include "cspace/ik/fast_path.hpp"
 #include "cspace/math/stream.hpp"
 #include "ik.hpp"
 #include "once.hpp"

@@ -135,7 +135,7 @@ def solver_source(arm: ExportedArm) -> tuple[list[str], str]:
         headers += ["cspace/ik/general/singular.hpp", "cspace/ik/self_motion/bifurcations.hpp"]
     elif arm.kind == "closed":
         quick = arm.plan["on_lanes"] and not arm.plan["virtual_joints"]
-        headers += ["cspace/ik/self_motion/bifurcations.hpp", *["cspace/ik/closed_form.hpp"] * quick]
+        headers += ["cspace/ik/self_motion/bifurcations.hpp", *["cspace/ik/fast_path.hpp"] * quick]
         parts.append("solve_closed_fast" if quick else "solve_closed_slow")
     elif arm.kind == "locked":
         headers += ["cspace/ik/redundancy/locked_joints.hpp"]

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "cspace/ik/arm.hpp"
-#include "cspace/ik/closed_form.hpp"
+#include "cspace/ik/fast_path.hpp"
 
 namespace cspace::ik {
 

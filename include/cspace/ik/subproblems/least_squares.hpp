@@ -75,17 +75,18 @@ struct CurvedAngleProblem : AngleProblem<System> {
     template <class Unknown>
     bool model(const Unknown* t, const Linearised<System>& at, double (*H)[n], double* down) const {
         constexpr double h = 1e-5;
-        double normal[n][n];
-        for (int j = 0; j < n; ++j) {
+        double normal[n][n], behind[n] = {}, ahead[n] = {};
+        const auto gradient_aside = [&](int j, double step, double* out) {
             Unknown aside[n];
-            double sides[2][n] = {};
-            for (int side = 0; side < 2; ++side) {
-                Linearised<System> there;
-                for (int i = 0; i < n; ++i) aside[i] = i == j ? step_angles(t[i], side ? h : -h) : t[i];
-                linearise(this->system, aside, there);
-                normal_equations(there, normal, sides[side]);
-            }
-            for (int i = j; i < n; ++i) H[j][i] = (sides[0][i] - sides[1][i]) / (2 * h);
+            for (int i = 0; i < n; ++i) aside[i] = i == j ? step_angles(t[i], step) : t[i];
+            Linearised<System> there;
+            linearise(this->system, aside, there);
+            normal_equations(there, normal, out);
+        };
+        for (int j = 0; j < n; ++j) {
+            gradient_aside(j, -h, behind);
+            gradient_aside(j, h, ahead);
+            for (int i = j; i < n; ++i) H[j][i] = (behind[i] - ahead[i]) / (2 * h);
         }
         return normal_equations(at, normal, down) > 0;
     }
