@@ -108,7 +108,7 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
 
 def goal_of(args: argparse.Namespace) -> Goal:
     """The goal that the options describe. Raises UsageError for options that do not describe one."""
-    from cspace.spatial import as_pose
+    from cspace.spatial import as_pose, pose
 
     given = [name for name in GOAL_WORDS if getattr(args, name) is not None]
     if not given:
@@ -124,7 +124,7 @@ def goal_of(args: argparse.Namespace) -> Goal:
     if set(parts) == {"angle_to"}:
         raise UsageError("--angle-to needs a position: give --xyz too")
     if set(parts) == {"position", "rotation"} and None not in parts["position"]:
-        return Goal(as_pose(pose_at(place, R), "goal"), tool_axis=axis_of(args))
+        return Goal(pose(np.array(place), matrix=R), tool_axis=axis_of(args))
     if args.angle is not None:
         parts["angle"] = read_radians(args.angle, degrees=args.deg)
     return Goal(None, parts, axis_of(args))
@@ -189,10 +189,3 @@ def axis_of(args: argparse.Namespace) -> Any:
     if len(axis) != 3:
         raise UsageError(f"--tool-axis takes a name or three numbers, got {len(axis)}")
     return axis
-
-
-def pose_at(place: Any, R: Any) -> Array:
-    """The pose (4, 4) of a place (3,) and an orientation (3, 3)."""
-    T = np.eye(4)
-    T[:3, :3], T[:3, 3] = R, place
-    return T

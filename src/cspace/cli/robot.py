@@ -67,11 +67,6 @@ def gripper_note(args: argparse.Namespace, robot: Robot) -> str:
     return f"{joint.name} seems to belong to a gripper; --tip {joint.parent} ends the arm before it"
 
 
-def angle_unit(degrees: bool) -> str:
-    """How angles are printed."""
-    return "deg" if degrees else "rad"
-
-
 def joint_headings(robot: Robot) -> list[str]:
     """Column headings of the joints: their names where they are short, else q1, q2, …"""
     names = list(robot.joint_names)

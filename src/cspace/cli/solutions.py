@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.cli.goals import Goal
 from cspace.cli.output import Cell, Output, Table
-from cspace.cli.robot import angle_unit, joint_headings, joint_texts
+from cspace.cli.robot import joint_headings, joint_texts
 from cspace.cli.tasks import singularity_of_rows
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def print_solutions(out: Output, robot: Robot, answer: Any, rows: Rows, *, degre
     names = ", ".join(
         f"{short} {name}" for short, name in zip(joint_headings(robot), robot.joint_names, strict=True)
     )
-    units = f"angles in {angle_unit(degrees)}" + (", slides in m" if "P" in robot.joint_types else "")
+    units = f"angles in {'deg' if degrees else 'rad'}" + (", slides in m" if "P" in robot.joint_types else "")
     if rows.singularity is not None:
         units += "; singularity: distance to the nearest singular configuration"
     out.hint(f"{units}; residual: of the true pose")

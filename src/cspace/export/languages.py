@@ -154,11 +154,14 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     words["module"] = PurePath(main).stem
     example = fill_template(f"example{ending}.in", words)
     chosen = tuple(arm.joint_names[k] for k in arm.locked)
-    return Export(language, arm.identifier, describe_method(arm, language), files, example, chosen)
-
-
-def describe_method(arm: ExportedArm, language: str) -> str:
-    return python_method(arm) if language == "python" else arm.method
+    return Export(
+        language,
+        arm.identifier,
+        python_method(arm) if language == "python" else arm.method,
+        files,
+        example,
+        chosen,
+    )
 
 
 def sample_configuration(arm: ExportedArm) -> str:

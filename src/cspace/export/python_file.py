@@ -32,7 +32,10 @@ METHODS = {
 def python_file(arm: ExportedArm) -> str:
     """The text of the file; NoClosedFormError for an arm without a closed form."""
     method = method_of(arm)
-    modules = [module_source(name) for name in (*METHODS[method], *["locked_joints"] * bool(arm.locked))]
+    names = (*METHODS[method], *["locked_joints"] * bool(arm.locked))
+    modules = [
+        (Path(__file__).parent / "python" / f"{name}.py").read_text(encoding="utf-8") for name in names
+    ]
     body = "\n\n".join(without_imports(source) for source in modules)
     words: dict[str, Any] = {
         "name": arm.identifier,
@@ -157,10 +160,6 @@ def listed(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return literal(value, 0)
     return re.sub(r"\binf\b", "np.inf", repr(value))
-
-
-def module_source(name: str) -> str:
-    return (Path(__file__).parent / "python" / f"{name}.py").read_text(encoding="utf-8")
 
 
 def without_imports(source: str) -> str:

@@ -112,7 +112,9 @@ def words_of_few(chain: Any) -> Words | None:
     if kinds == "RPR" and across and level:
         return lambda at, _: name_slide(at, 0, 1, at.points[2])
     if kinds == "RPR" and across and are_square(h[2], h[0]) and are_square(h[2], h[1]):
-        return lambda at, _: f"{name_slide(at, 0, 1, at.tip)}, {name_link(at, 2, 1)}"
+        return lambda at, _: (
+            f"{name_slide(at, 0, 1, at.tip)}, link {side_of(at, 2, 1, at.tip, ('ahead', 'behind'))}"
+        )
     if kinds == "RRR" and are_square(h[0], h[1]) and are_parallel(h[1], h[2]):
         return lambda at, _: f"{name_shoulder(at, at.tip)}, {name_elbow(at, at.tip)}"
     if kinds == "RRP" and are_square(h[0], h[1]) and are_square(h[1], h[2]):
@@ -172,13 +174,7 @@ def elbow_side(line: Array, upper: Array, up: Array) -> str:
 
 
 def name_slide(at: Placed, turn: int, sliding: int, end: Array) -> str:
-    word = side_of(at, turn, sliding, end, ("forward", "back"))
-    return f"slide {word}"
-
-
-def name_link(at: Placed, turn: int, sliding: int) -> str:
-    word = side_of(at, turn, sliding, at.tip, ("ahead", "behind"))
-    return f"link {word}"
+    return f"slide {side_of(at, turn, sliding, end, ('forward', 'back'))}"
 
 
 def side_of(at: Placed, turn: int, sliding: int, end: Array, words: tuple[str, str]) -> str:

@@ -93,16 +93,11 @@ def best_conditioning(robot: KinematicModel) -> float:
     return float(np.linalg.svd(J, compute_uv=False)[:, -1].max())
 
 
-def how_many_joints(n: int) -> str:
-    return "1 joint" if n == 1 else f"{n} joints"
-
-
 def explain_missing_form(robot: KinematicModel) -> str:
     """The first reason why `robot` has no closed form, as a sentence."""
     kinds = robot.chain.joint_types
-    subject = (
-        f"no closed form for {robot.name} ({f'{kinds}, ' if kinds else ''}{how_many_joints(len(kinds))})"
-    )
+    count = "1 joint" if len(kinds) == 1 else f"{len(kinds)} joints"
+    subject = f"no closed form for {robot.name} ({f'{kinds}, ' if kinds else ''}{count})"
     if robot.chain.dof != len(kinds):
         return f"{subject}: mimic joints are not supported; robot.ik_numeric(T) finds one configuration"
     if not kinds:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.ik.wrapping import Flags, into_limits, measure_violations
+from cspace.ik.wrapping import into_limits, measure_violations
 from cspace.model import Limits
 from cspace.tolerances import DOUBLE_DIRECTION, DOUBLE_SOLUTION, SAME_TIP
 
@@ -53,7 +53,8 @@ def settle_row(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:
     bounds = solver.joint_types, limits.lower, limits.upper
     T, x, locked = solver.fk(q), q, np.zeros(len(q), dtype=bool)
     for _ in range(STEPS):
-        x, locked = onto_limits(x, locked, *bounds)
+        x, _ = into_limits(x, *bounds, DOUBLE_SOLUTION)  # joints slightly beyond a limit are set to it
+        locked = locked | (x == limits.lower) | (x == limits.upper)
         J = solver.jacobian(x)[rows]
         miss = measure_displacement(solver.fk(x), T)[rows]
         size = max(1.0, float(np.abs(J).max()))
@@ -62,12 +63,6 @@ def settle_row(solver: Solver, q: Array, limits: Limits, rows: slice) -> Array:
         x = x.copy()
         x[~locked] += np.linalg.lstsq(J[:, ~locked], miss, rcond=DOUBLE_DIRECTION)[0]
     return q
-
-
-def onto_limits(q: Array, locked: Flags, kinds: str, lower: Array, upper: Array) -> tuple[Array, Flags]:
-    """q (dof,) with joints slightly beyond a limit set to it, and which joints are locked there so far."""
-    moved, _ = into_limits(q, kinds, lower, upper, DOUBLE_SOLUTION)
-    return moved, locked | (moved == lower) | (moved == upper)
 
 
 def measure_displacement(T_from: Array, T_to: Array) -> Array:

@@ -19,7 +19,7 @@ from cspace.ik.on_limits import settle_on_limits
 from cspace.ik.self_motion.self_motion import SelfMotion, self_motion_at
 from cspace.ik.wrapping import all_windings, into_limits, measure_violations, nearest_winding, wrap_joints
 from cspace.kinematics.batch import check_choice
-from cspace.tolerances import ORIENTATION_KEPT, SAME_MEMBER, SLIGHT_MISS
+from cspace.tolerances import ORIENTATION_KEPT, SLIGHT_MISS
 
 if TYPE_CHECKING:
     from cspace.ik.goals.partial import PartialGoal
@@ -46,10 +46,6 @@ UNCERTIFIED: Final = (
     "completeness could not be certified, because some solutions nearly coincide, or share the angles that "
     "distinguish them"
 )
-
-
-def verdict_name(verdict: int) -> str:
-    return VERDICTS[verdict]
 
 
 class Solutions(_core.SolutionsBase):
@@ -90,7 +86,7 @@ class Solutions(_core.SolutionsBase):
     @property
     def status(self) -> str:
         """ "exact", "singular" (some rows represent a self-motion), "unreachable" or "least_squares"."""
-        return verdict_name(self._status)
+        return VERDICTS[self._status]
 
     @property
     def _status(self) -> int:
@@ -171,7 +167,8 @@ class Solutions(_core.SolutionsBase):
         if self._about is not None and self._about.values:
             return f"{text}, {spread_in_words(self._about)}" + ("" if self.complete else f"; {UNCERTIFIED}")
         if self.freedom:
-            free = name_freedom(self.freedom)
+            k = len(self.freedom)
+            free = f"{k} dimension{'s' if k > 1 else ''} free: {', '.join(self.freedom)}"
             text = f"{len(self)} of the configurations that reach the goal, which leaves {free}"
         if self._status == SINGULAR:
             moving = sorted({name for self_motion in self.self_motions for name in self_motion.joints})
@@ -244,19 +241,12 @@ class Solutions(_core.SolutionsBase):
         row = int(np.argmin(distance))
         return self._take(np.array([row]), moved[[row]], None)
 
-    def _along_self_motions(self, seed: Array) -> Solutions:
-        """The same solutions, families by their members nearest to a seed (dof,)."""
-        q = self.q.copy()
-        for self_motion in self.self_motions:
-            q[self_motion.row] = self_motion.nearest(seed)
-        return self._take(np.arange(len(self)), q, self._note)
-
-    def _with_member(self, seed: Array) -> Solutions:
-        """The same solutions, the family that a seed (dof,) is a member of by that member."""
+    def _with_members(self, seed: Array, within: float = np.inf) -> Solutions:
+        """The same solutions, self-motions by their members nearest to a seed (dof,) if near enough."""
         q = self.q.copy()
         for self_motion in self.self_motions:
             member = self_motion.nearest(seed)
-            if np.abs(member - seed).max() < SAME_MEMBER:
+            if np.abs(member - seed).max() < within:
                 q[self_motion.row] = member
         return self._take(np.arange(len(self)), q, self._note)
 
@@ -335,12 +325,6 @@ def pose_errors(solver: KinematicModel, q: Array, goal: Array) -> Array:
 
 def how_many(k: int) -> str:
     return "1 configuration reaches" if k == 1 else f"{k} configurations reach"
-
-
-def name_freedom(freedom: tuple[str, ...]) -> str:
-    """The dimensions that a goal leaves free, as text."""
-    k = len(freedom)
-    return f"{k} dimension{'s' if k > 1 else ''} free: {', '.join(freedom)}"
 
 
 def position_goal(p: Array) -> Array:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
-import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
@@ -32,6 +32,7 @@ from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.wrapping import wrap_joints
 from cspace.kinematics.batch import thread_count
 from cspace.spatial import as_pose
+from cspace.tolerances import SAME_MEMBER
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -39,8 +40,6 @@ if TYPE_CHECKING:
 
 MAX_POSITION_JOINTS = 3
 """A point determines up to so many joints."""
-Counts = npt.NDArray[np.int64]
-Verdicts = npt.NDArray[np.uint8]
 Answer = Solutions | SolutionsBatch
 
 
@@ -106,7 +105,7 @@ def solve(
     if swivel is not None:
         raise InputTypeError("swivel= needs a full pose; lock joints with locked= instead")
     parts = partial_goal(given, tool_axis)
-    return choose_solutions(solver, solve_freedom(solver, parts, parts.T, options), options)
+    return choose_solutions(solve_freedom(solver, parts, parts.T, options), options)
 
 
 def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
@@ -114,21 +113,22 @@ def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
     if options.swivel is not None:
         return answer_swivel(solver, T, options)
     if options.sets_freedom or solver.is_redundant:
-        return choose_solutions(solver, solve_freedom(solver, None, checked_poses(T), options), options)
-    found = solve_many(solver, T, options.threads) if T.ndim > 2 else solve_one(solver, T, options.near)
-    return choose_solutions(solver, found, options)
+        return choose_solutions(solve_freedom(solver, None, checked_poses(T), options), options)
+    if T.ndim > 2:
+        return choose_solutions(solve_many(solver, T, _core._ik_many, options.threads), options)
+    return choose_solutions(solve_one(solver, T, options.near), options)
 
 
 def answer_points(solver: Solver, p: Array, options: Options) -> Answer:
     if p.ndim > 1:
-        return choose_solutions(solver, solve_positions(solver, p, options.threads), options)
+        return choose_solutions(solve_many(solver, p, _core._ik_positions, options.threads), options)
     found = cast(Solutions, _core._ik_position(solver, p))
     if options.near is not None and found.self_motions:
-        found = found._along_self_motions(one_configuration(solver, options.near, "near"))
-    return choose_solutions(solver, found, options)
+        found = found._with_members(one_configuration(solver, options.near, "near"))
+    return choose_solutions(found, options)
 
 
-def choose_solutions(solver: Solver, found: Answer, options: Options) -> Answer:
+def choose_solutions(found: Answer, options: Options) -> Answer:
     """Of all solutions those that the options name."""
     if options.least_squares and options.locked:
         raise InputTypeError("least_squares= cannot be combined with locked=, because it moves every joint")
@@ -148,7 +148,7 @@ def answer_swivel(solver: Solver, T: Array, options: Options) -> Answer:
         raise InputTypeError(
             "swivel= can only be combined with near=, because it fixes the redundant degree of freedom"
         )
-    return choose_solutions(solver, solve_swivel(solver, checked_poses(T), options.swivel), options)
+    return choose_solutions(solve_swivel(solver, checked_poses(T), options.swivel), options)
 
 
 def is_plain_position(solver: Solver, given: dict[str, Any]) -> bool:
@@ -167,43 +167,25 @@ def solve_one(solver: Solver, T: Array, near: Any) -> Solutions:
     if is_far(T[:3, 3]):
         raise too_far("goal", T[:3, 3])
     found = cast(Solutions, _core._ik_near_singular(solver, T, seed))
-    return found._with_member(seed) if found.self_motions else found
+    return found._with_members(seed, SAME_MEMBER) if found.self_motions else found
 
 
-def solve_many(solver: Solver, T: Array, workers: int) -> SolutionsBatch:
-    leading = T.shape[:-2]
-    answers = new_rows(solver, leading)
-    bad = _core._ik_many(solver, T.reshape(-1, 4, 4), *answers, workers)
-    if bad < len(answers[0]):
-        as_pose(T, "goal")  # raises where the goal is not a pose
-        index = tuple(map(int, np.unravel_index(bad, leading)))
-        raise too_far(f"goal {index}", T[index][:3, 3])
-    return to_batch(solver, T, leading, answers)
-
-
-def solve_positions(solver: Solver, p: Array, workers: int) -> SolutionsBatch:
-    leading = p.shape[:-1]
-    answers = new_rows(solver, leading)
-    bad = _core._ik_positions(solver, p.reshape(-1, 3), *answers, workers)
-    if bad < len(answers[0]):
-        index = tuple(map(int, np.unravel_index(bad, leading)))
-        raise too_far(f"position {index}", p[index])
-    return to_batch(solver, p, leading, answers)
-
-
-def new_rows(solver: Solver, leading: tuple[int, ...]) -> tuple[Array, Counts, Verdicts]:
-    """Arrays for the answers to n goals: q (n, k_max, dof), count (n,), verdict (n,)."""
+def solve_many(solver: Solver, goals: Array, fill: Callable[..., int], workers: int) -> SolutionsBatch:
+    """The solutions of poses (..., 4, 4) or of points (..., 3). fill: the core's function for one of them."""
+    own = (4, 4) if goals.shape[-1] == 4 else (3,)
+    leading = goals.shape[: goals.ndim - len(own)]
     n = int(np.prod(leading))
     q = pooled_array((n, solver.max_solutions, solver.dof))
-    return q, np.empty(n, dtype=np.int64), np.empty(n, dtype=np.uint8)
-
-
-def to_batch(
-    solver: Solver, goal: Array, leading: tuple[int, ...], answers: tuple[Array, Counts, Verdicts]
-) -> SolutionsBatch:
-    q, count, verdict = answers
-    q = q.reshape(*leading, solver.max_solutions, solver.dof)
-    return SolutionsBatch(solver, goal, q, count.reshape(leading), verdict.reshape(leading))
+    count, verdict = np.empty(n, dtype=np.int64), np.empty(n, dtype=np.uint8)
+    bad = fill(solver, goals.reshape(-1, *own), q, count, verdict, workers)
+    if bad < n:
+        index = tuple(map(int, np.unravel_index(bad, leading)))
+        if own == (3,):
+            raise too_far(f"position {index}", goals[index])
+        as_pose(goals, "goal")  # raises where the goal is not a pose
+        raise too_far(f"goal {index}", goals[index][:3, 3])
+    q = q.reshape(*leading, *q.shape[1:])
+    return SolutionsBatch(solver, goals, q, count.reshape(leading), verdict.reshape(leading))
 
 
 def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:

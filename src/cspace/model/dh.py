@@ -208,12 +208,9 @@ def _rows(table: Any) -> Array:
 
 def _describe(dh: DHTable, limits: list[dict[str, Any]], name: str, base: str, tip: str) -> Description:
     """The description of a table: the frame of each joint is at the start of its row, z along its axis."""
-    if dh.convention == "modified":
-        before = dh_matrix(dh.alpha, dh.a, dh.d, dh.theta_offset, convention="modified")
-        after = np.broadcast_to(IDENTITY, before.shape)
-    else:
-        after = dh_matrix(dh.alpha, dh.a, dh.d, dh.theta_offset, convention="standard")
-        before = np.broadcast_to(IDENTITY, after.shape)
+    rows = dh_matrix(dh.alpha, dh.a, dh.d, dh.theta_offset, convention=dh.convention)
+    still = np.broadcast_to(IDENTITY, rows.shape)
+    before, after = (rows, still) if dh.convention == "modified" else (still, rows)
     links = link_names(dh.joint_names, base, tip)
     carried = dh.T_base
     joints = []

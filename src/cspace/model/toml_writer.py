@@ -60,17 +60,11 @@ def toml_value(value: Any) -> str:
     if isinstance(value, (int, np.integer)):
         return str(int(value))
     if isinstance(value, (float, np.floating)):
-        return _number(float(value))
+        return repr(float(value))  # an infinity is inf in both languages
     if isinstance(value, Mapping):
         return "{ " + ", ".join(_pairs(value)) + " }"
     items = [toml_value(item) for item in value]
     return "[" + ", ".join(items) + "]"
-
-
-def _number(value: float) -> str:
-    if math.isinf(value):
-        return "inf" if value > 0 else "-inf"
-    return repr(value)
 
 
 def _text(value: str) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -38,20 +38,10 @@ def pose(
     Returns (..., 4, 4). Raises InputError if a matrix is not a rotation, InputTypeError if nothing is given
     or the rotation is given twice.
     """
-    forms = dict(
-        wxyz=wxyz,
-        xyzw=xyzw,
-        rpy=rpy,
-        rotvec=rotvec,
-        axis_angle=axis_angle,
-        euler=euler,
-        fixed=fixed,
-        matrix=matrix,
-    )
-    given = [name for name, value in forms.items() if value is not None]
+    given = _given(wxyz, xyzw, rpy, rotvec, axis_angle, euler, fixed, matrix)
     if not given and xyz is None:
-        raise InputTypeError(f"pose() needs xyz= or one of {_names(forms)}; the identity is numpy.eye(4)")
-    R = _rotation_of(forms, given, "pose()") if given else np.eye(3)
+        raise InputTypeError(f"pose() needs xyz= or one of {_names(_FORMS)}; the identity is numpy.eye(4)")
+    R = _rotation_of(given, "pose()") if given else np.eye(3)
     p = np.zeros(3) if xyz is None else as_floats(xyz, "xyz", last=(3,))
     return assemble(R, p)
 
@@ -75,20 +65,10 @@ def rotation(
     matrix: (..., 3, 3), checked. Returns (..., 3, 3).
     Raises InputError if a matrix is not a rotation, InputTypeError if no form or more than one is given.
     """
-    forms = dict(
-        wxyz=wxyz,
-        xyzw=xyzw,
-        rpy=rpy,
-        rotvec=rotvec,
-        axis_angle=axis_angle,
-        euler=euler,
-        fixed=fixed,
-        matrix=matrix,
-    )
-    given = [name for name, value in forms.items() if value is not None]
+    given = _given(wxyz, xyzw, rpy, rotvec, axis_angle, euler, fixed, matrix)
     if not given:
-        raise InputTypeError(f"rotation() needs one of {_names(forms)}; the identity is numpy.eye(3)")
-    return _rotation_of(forms, given, "rotation()")
+        raise InputTypeError(f"rotation() needs one of {_names(_FORMS)}; the identity is numpy.eye(3)")
+    return _rotation_of(given, "rotation()")
 
 
 def inverse_pose(T: PoseLike) -> Array:
@@ -159,16 +139,20 @@ def broadcast_batches(a: tuple[int, ...], b: tuple[int, ...], of_a: str, of_b: s
         ) from None
 
 
-def _names(forms: dict[str, Any]) -> str:
+def _given(*values: Any) -> dict[str, Any]:
+    """Those of the forms of a rotation, in the order of _FORMS, that are not None."""
+    return {name: value for name, value in zip(_FORMS, values, strict=True) if value is not None}
+
+
+def _names(forms: Iterable[str]) -> str:
     return ", ".join(f"{name}=" for name in forms)
 
 
-def _rotation_of(forms: dict[str, Any], given: list[str], caller: str) -> Array:
+def _rotation_of(given: dict[str, Any], caller: str) -> Array:
     if len(given) > 1:
-        raise InputTypeError(
-            f"{caller} got the rotation {len(given)} times: {_names(dict.fromkeys(given))}; give one"
-        )
-    return _FORMS[given[0]](forms[given[0]])
+        raise InputTypeError(f"{caller} got the rotation {len(given)} times: {_names(given)}; give one")
+    ((name, value),) = given.items()
+    return _FORMS[name](value)
 
 
 def _from_axis_angle(value: Any) -> Array:

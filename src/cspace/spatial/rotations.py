@@ -112,14 +112,9 @@ def matrix_of_rotvec(w: Array, subject: str) -> Array:
     rows = np.ascontiguousarray(w).reshape(-1, 3)
     if not _core.rotvec_matrices(rows, R.reshape(-1, 3, 3)):
         long = np.abs(rows).max(axis=-1) > SHORT
-        R.reshape(-1, 3, 3)[long] = _matrix_of_long_rotvec(rows[long], subject)
+        angle, axis = checked_angle_and_axis(rows[long], subject)  # to the last digit: it shows in the matrix
+        R.reshape(-1, 3, 3)[long] = matrix_of_axis_angle(axis, angle)
     return R
-
-
-def _matrix_of_long_rotvec(w: Array, subject: str) -> Array:
-    """The same for vectors of any length, whose length is found to the last digit: it shows in the matrix."""
-    angle, axis = checked_angle_and_axis(w, subject)
-    return matrix_of_axis_angle(axis, angle)
 
 
 def matrix_of_axis_angle(axis: Array, angle: Array) -> Array:

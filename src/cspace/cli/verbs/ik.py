@@ -70,12 +70,9 @@ def run(args: argparse.Namespace, out: Output) -> int:
             print_explanation(args, robot, out) if wants_explanation(args) else answer_goal(args, robot, out)
         )
     except (InputError, InputTypeError) as error:
-        raise UsageError(in_options(str(error))) from error
-
-
-def in_options(message: str) -> str:
-    """The words of a library for the command line: near= is --near."""
-    return KEYWORDS.sub(lambda match: "--" + match[1].replace("_", "-"), message)
+        # the words of the library for the command line: near= is --near
+        message = KEYWORDS.sub(lambda match: "--" + match[1].replace("_", "-"), str(error))
+        raise UsageError(message) from error
 
 
 def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:

@@ -10,7 +10,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array
 from cspace.ik.conditions import arm_length, common_point, explain_missing_form
-from cspace.ik.explain.few_joints import few_joint_steps, few_joint_values
+from cspace.ik.explain.few_joints import few_joint_steps
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form
 from cspace.ik.explain.general import Loop
@@ -300,7 +300,7 @@ def few_joint_plan(chain: Any, survey: IkPlan) -> IkPlan:
         )
 
     def values(q: Array, T: Array) -> dict[str, Any]:
-        return few_joint_values(chain, q, T)
+        return joint_values(chain.joint_types, q) | goal_values(T)
 
     return replace(
         survey,

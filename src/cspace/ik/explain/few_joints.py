@@ -6,13 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.screws import (
     Vector,
     dot_product,
-    goal_values,
-    joint_values,
     move_point,
     number_vector,
     symbol_vector,
@@ -22,11 +19,6 @@ from cspace.spatial.vectors import perpendicular
 
 WAYS = {1: 1, 2: 2, 3: 4}
 """How many configurations bring the tip of an arm of so many joints to a point."""
-
-
-def few_joint_values(chain: Any, q: Array, T: Array) -> dict[str, Any]:
-    """The numeric values of the joints and of the goal."""
-    return joint_values(chain.joint_types, q) | goal_values(T)
 
 
 def invariants_of(chain: Any, i: int, x: Vector) -> list[tuple[TrigPolynomial, str]]:

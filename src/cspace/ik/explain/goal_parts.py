@@ -83,13 +83,15 @@ def plan_of_parts(solver: Solver, goal: PartialGoal, plan_of: Callable[[Solver],
     behind = np.linalg.inv(solver.chain.T_zero) @ whole.chain.T_zero
 
     def values(q: Array, T: Array) -> dict[str, Any]:
-        return dict(plan._values(pad_configurations(q, own, whole.dof), T @ behind)) if plan._values else {}
+        padded = np.zeros((*q.shape[:-1], whole.dof))  # the joints of the goal at zero
+        padded[..., own] = q
+        return dict(plan._values(padded, T @ behind)) if plan._values else {}
 
     return replace(
         plan,
         summary=f"asked for {goal.text}. {plan.summary[0].upper()}{plan.summary[1:]}",
         notes=(*notes, *plan.notes),
-        tables={"Joints of the goal": goal_joints(goal, whole), **plan.tables},
+        tables={"Joints of the goal": goal_joints(goal), **plan.tables},
         counted=f"{plan.counted}; with the joints of the goal left out there may be fewer",
         calls=calls_of(goal, plan),
         other_ways={},
@@ -112,14 +114,7 @@ def calls_of(goal: PartialGoal, plan: IkPlan) -> tuple[str, ...]:
     return (f"`robot.ik({words})` answers with {rule}.", near)
 
 
-def pad_configurations(q: Array, own: slice, dof: int) -> Array:
-    """Configurations of the arm with the joints of the goal at zero."""
-    out = np.zeros((*q.shape[:-1], dof))
-    out[..., own] = q
-    return out
-
-
-def goal_joints(goal: PartialGoal, whole: Solver) -> Block:
+def goal_joints(goal: PartialGoal) -> Block:
     """Which motions stand for what the goal leaves open."""
     rows = []
     for i, (kind, axis) in enumerate((*goal.before, *goal.behind)):

@@ -108,7 +108,7 @@ def locked_plan(solver: Solver, locked: Mapping[int, float], survey: IkPlan) -> 
         survey,
         length=inner.length,
         family="redundant" if redundancy_degree else "locked",
-        summary=summarise_split(split, default, redundancy_degree, inner),
+        summary=summarise_split(split, redundancy_degree, inner),
         branches=inner.branches if inner else solver.max_solutions,
         notes=tuple(notes),
         tables=tables,
@@ -138,7 +138,7 @@ def typical_value(solver: Solver, k: int) -> float:
     return lower + (0.2 + 0.6 * (GOLDEN * (k + 1) % 1.0)) * (upper - lower)
 
 
-def summarise_split(split: Split, default: tuple[int, ...], redundancy_degree: int, inner: IkPlan) -> str:
+def summarise_split(split: Split, redundancy_degree: int, inner: IkPlan) -> str:
     """The method as one sentence."""
     n, solver = len(split.solver.joint_names), split.solver
     moving = len(split.moving)
@@ -149,14 +149,9 @@ def summarise_split(split: Split, default: tuple[int, ...], redundancy_degree: i
     else:
         more = f"{n} joints, some of them held"
     how = inner.summary if inner else "nothing solves exactly: members are found by descents from 48 starts"
-    locked = f"{names_of(split, split.locked)} {role_of(split)}"
+    role = "is a parameter" if len(split.locked) == 1 else "are parameters"
+    locked = f"{names_of(split, split.locked)} {role} of each call"
     return f"{more}. {locked}; the other {moving} of {solver.name}: {how}"
-
-
-def role_of(split: Split) -> str:
-    """What locked joints do."""
-    one = len(split.locked) == 1
-    return ("is a parameter" if one else "are parameters") + " of each call"
 
 
 def describe_reasons(split: Split, default: tuple[int, ...]) -> list[str]:
@@ -218,7 +213,6 @@ def describe_answers(split: Split, default: tuple[int, ...], others: Solver) -> 
     """How a goal is answered that leaves freedom."""
     locked = names_of(split, default)
     one = len(default) == 1
-    name = str(split.solver.joint_names[default[0]])
     usual = (
         f"all branches at 16 values of {locked}, spread over its feasible intervals"
         if one
@@ -235,9 +229,7 @@ def describe_answers(split: Split, default: tuple[int, ...], others: Solver) -> 
         + ", each sample solved by the steps above, and the lowest settled by the same method."
     )
     if one:
-        out.append(
-            f"`robot.redundancy(T)`, the feasible intervals of {locked}: {describe_intervals(others, name)}"
-        )
+        out.append(f"`robot.redundancy(T)`, the feasible intervals of {locked}: {describe_intervals(others)}")
     out.append(
         "`robot.track(poses)` follows the least motion of the joints, $q' = J^+ t$ for the twist $t$ of the "
         "path, from `start=` or from the configuration nearest to the middle of the limits; no joint is held."
@@ -245,13 +237,13 @@ def describe_answers(split: Split, default: tuple[int, ...], others: Solver) -> 
     return tuple(out)
 
 
-def describe_intervals(others: Solver, name: str) -> str:
+def describe_intervals(others: Solver) -> str:
     """How the feasible intervals are found."""
     limits = (
         "every other joint is locked at each of its limits, and what is left is solved: all points where a "
         "limit is reached. "
     )
-    if folds_known(others, name):
+    if folds_known(others):
         return (
             limits + "Branches also end at folds, where two of them meet. The first angle solves "
             "$a \\cos t_3 + b \\sin t_3 = r$ with $r$ linear in cosine and sine of the parameter, so it "
@@ -266,7 +258,7 @@ def describe_intervals(others: Solver, name: str) -> str:
     )
 
 
-def folds_known(others: Solver, name: str) -> bool:
+def folds_known(others: Solver) -> bool:
     """Whether the folds of the locked joint are roots of polynomials."""
     kind, plan = _core._ik_numbers(others)
     if kind != "closed" or not plan["on_lanes"] or plan["virtual_joints"] or not plan["wrist"]:

@@ -115,18 +115,3 @@ def lay_out_formulas(lines: Sequence[tuple[str, str]]) -> Block:
         f"$$\n\\begin{{aligned}}\n{body}\n\\end{{aligned}}\n$$",
         f"\\begin{{align*}}\n{body}\n\\end{{align*}}",
     )
-
-
-def join_plain(blocks: Sequence[Block]) -> str:
-    """A page as plain text."""
-    return "\n\n".join(block.plain for block in blocks) + "\n"
-
-
-def join_markdown(blocks: Sequence[Block]) -> str:
-    """A page as Markdown."""
-    return "\n\n".join(block.markdown for block in blocks) + "\n"
-
-
-def join_latex(blocks: Sequence[Block]) -> str:
-    """A page as LaTeX, to be input between begin and end of a document with amsmath."""
-    return "\n\n".join(block.latex for block in blocks) + "\n"

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
-from cspace.ik.explain import page
 from cspace.ik.explain.document import lay_out_plan, plan_document
 from cspace.ik.explain.findings import Findings
 
@@ -22,15 +22,15 @@ class IkPlan(Findings):
 
     def to_text(self) -> str:
         """As plain text."""
-        return page.join_plain(lay_out_plan(self))
+        return join_blocks(block.plain for block in lay_out_plan(self))
 
     def to_markdown(self) -> str:
         """As Markdown with formulas between dollar signs."""
-        return page.join_markdown(lay_out_plan(self))
+        return join_blocks(block.markdown for block in lay_out_plan(self))
 
     def to_latex(self) -> str:
         """As LaTeX for the body of a document that loads amsmath."""
-        return page.join_latex(lay_out_plan(self))
+        return join_blocks(block.latex for block in lay_out_plan(self))
 
     __str__ = to_text
 
@@ -40,3 +40,7 @@ class IkPlan(Findings):
     def to_dict(self) -> dict[str, Any]:
         """As plain data, angles in radians and lengths in metres."""
         return plan_document(self)
+
+
+def join_blocks(texts: Iterable[str]) -> str:
+    return "\n\n".join(texts) + "\n"

@@ -75,7 +75,7 @@ class PartialGoal:
         last = len(self.behind) - 1
         for i, (name, (kind, axis)) in enumerate(zip(names[len(self.before) :], self.behind, strict=True)):
             if self.tilt and i == last:
-                chain = chain.turn_tip(tilt_across(axis, self.tilt))
+                chain = chain.turn_tip(exp_so3(self.tilt * perpendicular(axis)))
             lower = 0.0 if kind == "P" and "look_at" in self.kind else -np.inf  # the point lies ahead
             chain = chain.append(name, kind, axis, lower)
         return chain
@@ -168,8 +168,3 @@ def from_line(away: Array, d: Array) -> Array:
     """The distances of points (..., 3) from lines through the origin along unit vectors."""
     along = np.sum(away * d, axis=-1, keepdims=True)
     return np.asarray(np.linalg.norm(away - along * d, axis=-1))
-
-
-def tilt_across(axis: Array, angle: float) -> Array:
-    """A rotation (3, 3) by `angle` about a direction perpendicular to `axis`."""
-    return exp_so3(angle * perpendicular(axis))

@@ -11,6 +11,7 @@ from cspace.arrays import Array, as_arrays, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
+from cspace.spatial.poses import assemble
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
@@ -76,9 +77,11 @@ def read_values(given: dict[str, Any], tool_axis: Any) -> dict[str, Any]:
     for name, expected in ONE_FOR_ALL.items():
         if name in values and np.ndim(values[name]) != (name != "angle_to[1]"):
             raise InputError(f"{name} has shape {np.shape(values[name])}, expected {expected}")
-    directions = [name for name in DIRECTIONS if name in read]
-    if directions:
-        values |= unit_vectors({name: values[name] for name in directions})
+    for name in DIRECTIONS:
+        if name in read:
+            size, values[name] = length_and_direction(values[name])
+            if (size == 0).any():
+                raise InputError(f"{name} is zero and has no direction")
     return values
 
 
@@ -86,15 +89,6 @@ def pair_of(value: Any, name: str, words: str) -> Any:
     if isinstance(value, (tuple, list)) and len(value) == 2:
         return value
     raise InputTypeError(f"{name} must be a pair: {words}")
-
-
-def unit_vectors(vectors: dict[str, Array]) -> dict[str, Array]:
-    out = {}
-    for name, d in vectors.items():
-        size, out[name] = length_and_direction(d)
-        if (size == 0).any():
-            raise InputError(f"{name} is zero and has no direction")
-    return out
 
 
 def axis_named(name: str) -> Array:
@@ -113,10 +107,10 @@ def is_open(value: Any) -> bool:
 def goal_of_position(values: dict[str, Any], axis: Array) -> PartialGoal:
     value = values["position"]
     if not is_open(value):
-        return PartialGoal("position", pose(value, ANY), BALL, {"position": value}, axis)
+        return PartialGoal("position", assemble(ANY, value), BALL, {"position": value}, axis)
     p, free = open_point(value)
     before = tuple(("P", np.eye(3)[i]) for i in free)
-    return PartialGoal("position", pose(p, ANY), BALL, {"position": value}, axis, before)
+    return PartialGoal("position", assemble(ANY, p), BALL, {"position": value}, axis, before)
 
 
 def open_point(value: Any) -> tuple[Array, list[int]]:
@@ -132,38 +126,38 @@ def open_point(value: Any) -> tuple[Array, list[int]]:
 
 def rotation(values: dict[str, Any], axis: Array) -> PartialGoal:
     R = values["rotation"]
-    return PartialGoal("rotation", pose(np.zeros(3), R), CROSS, {"rotation": R}, axis)
+    return PartialGoal("rotation", assemble(R, np.zeros(3)), CROSS, {"rotation": R}, axis)
 
 
 def position_and_rotation(values: dict[str, Any], axis: Array) -> PartialGoal:
     p, R = values["position"], values["rotation"]
     if p.ndim > 1 or R.ndim > 2:
         leading_axes(position=p.shape[:-1], rotation=R.shape[:-2])
-    return PartialGoal("position+rotation", pose(p, R), (), {"position": p, "rotation": R}, axis)
+    return PartialGoal("position+rotation", assemble(R, p), (), {"position": p, "rotation": R}, axis)
 
 
 def goal_of_direction(values: dict[str, Any], axis: Array) -> PartialGoal:
     d = values["direction"]
     behind = (("R", axis), *CROSS)
-    return PartialGoal("direction", pose(np.zeros(3), turn_to(axis, d)), behind, {"direction": d}, axis)
+    return PartialGoal("direction", assemble(turn_to(axis, d), np.zeros(3)), behind, {"direction": d}, axis)
 
 
 def position_and_direction(values: dict[str, Any], axis: Array) -> PartialGoal:
     p, d = values["position"], values["direction"]
     value = {"position": p, "direction": d}
-    return PartialGoal("position+direction", pose(p, turn_to(axis, d)), (("R", axis),), value, axis)
+    return PartialGoal("position+direction", assemble(turn_to(axis, d), p), (("R", axis),), value, axis)
 
 
 def look_at(values: dict[str, Any], axis: Array) -> PartialGoal:
     p = values["look_at"]
-    return PartialGoal("look_at", pose(p, ANY), (("P", axis), *BALL), {"look_at": p}, axis)
+    return PartialGoal("look_at", assemble(ANY, p), (("P", axis), *BALL), {"look_at": p}, axis)
 
 
 def goal_of_ray(values: dict[str, Any], axis: Array) -> PartialGoal:
     p, d = values["ray[0]"], values["ray[1]"]
     behind = (("P", axis), ("R", axis))
     foot = p - np.sum(p * d, axis=-1, keepdims=True) * d  # the same line, by its point nearest to the base
-    return PartialGoal("ray", pose(foot, turn_to(axis, d)), behind, {"ray": (p, d)}, axis)
+    return PartialGoal("ray", assemble(turn_to(axis, d), foot), behind, {"ray": (p, d)}, axis)
 
 
 def position_and_angle(values: dict[str, Any], axis: Array) -> PartialGoal:
@@ -172,7 +166,7 @@ def position_and_angle(values: dict[str, Any], axis: Array) -> PartialGoal:
         raise InputError(f"angle_to[1] is {tilt:g}, expected 0 to π rad, the angle between two directions")
     behind = (("R", axis), ("R", axis))
     value = {"position": p, "angle_to": (h, tilt)}
-    return PartialGoal("position+angle_to", pose(p, turn_to(axis, h)), behind, value, axis, (), tilt, h)
+    return PartialGoal("position+angle_to", assemble(turn_to(axis, h), p), behind, value, axis, (), tilt, h)
 
 
 MAKERS = {
@@ -185,16 +179,6 @@ MAKERS = {
     "ray": goal_of_ray,
     "position+angle_to": position_and_angle,
 }
-
-
-# --- poses ------------------------------------------------------------------------------------------------
-def pose(p: Array, R: Array | None = None) -> Array:
-    """Poses (..., 4, 4) from points (..., 3) and rotations (..., 3, 3), one of them perhaps for all."""
-    rotation = np.eye(3) if R is None else R
-    many = np.broadcast_shapes(p.shape[:-1], rotation.shape[:-2])
-    T = np.zeros((*many, 4, 4))
-    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = rotation, p, 1.0
-    return T
 
 
 def turn_to(a: Array, d: Array) -> Array:

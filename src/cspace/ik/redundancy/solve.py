@@ -69,7 +69,10 @@ def solve_freedom(
     if goal is None and not values and degree > 0:
         _core._ik_serve_near(solver, About(freedom=freedom))
     columns, row = columns_of(whole, values)
-    request = (columns, row, first, goal is not None, seeds, sample_count(options.samples), None, None)
+    samples = SAMPLES
+    if options.samples is not None:
+        samples = whole_number(options.samples, "samples", 1, MOST_SAMPLES)
+    request = (columns, row, first, goal is not None, seeds, samples, None, None)
     return ask_core(solver, asked, T, request, about, options.threads)
 
 
@@ -132,12 +135,6 @@ def check_samples(solver: Solver, options: Any, degree: int) -> None:
             f"samples= needs one free dimension, but {solver.name} has {max(degree, 0)} here: "
             + ("leave samples= out" if degree < 1 else "lock joints with locked=")
         )
-
-
-def sample_count(samples: Any) -> int:
-    if samples is None:
-        return SAMPLES
-    return whole_number(samples, "samples", 1, MOST_SAMPLES)
 
 
 # --- all redundant joints are locked ----------------------------------------------------------------------

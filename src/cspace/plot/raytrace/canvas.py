@@ -82,10 +82,6 @@ class Canvas:
             lit = alpha.astype(np.float32)
             self.over(lit[:, None] * np.array(color, np.float32), lit, pixels)
 
-    def lay(self, layer: Layer) -> None:
-        """Lay an opaque layer."""
-        self.over(layer.color, layer.coverage, layer.pixels)
-
     def lay_ghost(self, layer: Layer, opacity: float, before: Layer | None) -> None:
         """Lay a ghost: even inside, stronger along its outline; only where it is clearly before a layer."""
         alpha = np.where(layer.rim, np.float32(min(1.0, 1.8 * opacity)), np.float32(opacity))

@@ -12,7 +12,7 @@ from functools import cache
 from typing import Any
 
 from cspace.plot.raytrace.canvas import Canvas, Floor
-from cspace.plot.raytrace.layer import Layer, see_solids
+from cspace.plot.raytrace.layer import see_solids
 from cspace.plot.raytrace.shadow import shadow_of
 from cspace.plot.raytrace.solids import Solid
 from cspace.plot.raytrace.view import View
@@ -48,19 +48,14 @@ class Scene:
             (see_solids(view, group.solids), group.opacity) for group in self.groups if group.opacity < 1.0
         )
         ghosts = [(layer, opacity) for layer, opacity in seen if layer is not None]
-        ghosts.sort(key=lambda ghost: -mean_depth(ghost[0]))
+        ghosts.sort(key=lambda ghost: -float(ghost[0].depth.mean()))
         for layer, opacity in ghosts:
             canvas.lay_ghost(layer, opacity, before=None)
         if front is not None:
-            canvas.lay(front)
+            canvas.over(front.color, front.coverage, front.pixels)
             for layer, opacity in ghosts:
                 canvas.lay_ghost(layer, 0.55 * opacity, before=front)
         return canvas.finished()
-
-
-def mean_depth(layer: Layer) -> float:
-    """The mean depth of what a layer shows."""
-    return float(layer.depth.mean())
 
 
 @cache
