@@ -14,7 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
-__all__ += ["one_array", "whole_number"]
+__all__ += ["bounded_number", "one_array", "whole_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -107,6 +107,14 @@ def positive_number(
     if number.ndim or not number > 0:
         given = f"has shape {number.shape}" if number.ndim else f"is {value!r}"
         raise InputError(f"{subject} {given}; {rule}")
+    return float(number)
+
+
+def bounded_number(value: Any, subject: str, least: float, rule: str, largest: float | None = None) -> float:
+    """A number not below `least`, alone; rule and errors as of positive_number."""
+    number = as_floats(value, subject, largest=largest)
+    if number.ndim or number < least:
+        raise InputError(f"{subject} is {value!r}; {rule}")
     return float(number)
 
 

@@ -1,20 +1,27 @@
-"""One arm as one self-contained C++17 header."""
+"""One arm as one self-contained C++17 header, and as a C99 header with one C++17 file."""
 
 from __future__ import annotations
 
+import math
 import re
+import textwrap
+from collections.abc import Iterable, Mapping
+from pathlib import PurePath
 from string import Template
 from typing import Any
 
+from cspace.errors import InputError
 from cspace.export.amalgam import amalgamate_headers
 from cspace.export.arm import ExportedArm, vector_field
-from cspace.export.numbers import quote_text, write_bounds, write_initialiser, write_literal
 from cspace.export.plain import in_ascii
 from cspace.export.words import fill_template, read_template
 from cspace.tolerances import ON_LIMIT
 
 TABLES_AT_START = "#define CSPACE_TABLES_AT_START\n\n"
 """Tables are computed when the program starts; on first use they would need the C++ run-time library."""
+
+ENUMS = {"family": "ik::Family", "kind": "ik::FirstThree"}
+INFINITY = "std::numeric_limits<double>::infinity()"
 
 
 def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
@@ -39,6 +46,16 @@ def cpp_header(arm: ExportedArm, *, one_file: bool = False) -> str:
     text = rename_core("\n".join(parts), words)
     undefined = "".join(f"#undef {macro}\n" for macro in left_macros(text, words["MACRO"]))
     return f"{fill_template('head.hpp.in', words)}\n{text}\n{undefined}\n#endif\n"
+
+
+def c_files(arm: ExportedArm, header: str) -> dict[str, str]:
+    """File names and texts: the header and the source."""
+    source = PurePath(header).with_suffix(".cpp").name
+    words = {**words_of(arm), "source": source, "object": PurePath(header).with_suffix(".o").name}
+    body = (
+        f'#include "{header}"\n\n{cpp_header(arm, one_file=True)}\n{fill_template("interface.c.in", words)}'
+    )
+    return {header: fill_template("interface.h.in", words), source: body}
 
 
 def words_of(arm: ExportedArm) -> dict[str, Any]:
@@ -159,3 +176,42 @@ def left_macros(text: str, prefix: str) -> list[str]:
     """The macros that the text defines and does not undefine."""
     defined = set(re.findall(rf"^#define ({prefix}\w+)", text, re.M))
     return sorted(defined - set(re.findall(rf"^#undef ({prefix}\w+)", text, re.M)))
+
+
+# --- literals of C++ --------------------------------------------------------------------------------------
+def write_initialiser(value: Mapping[str, Any]) -> str:
+    """An aggregate, one field per paragraph, each with its name as comment."""
+    lines = ["{"]
+    for name, entry in value.items():
+        text = textwrap.wrap(write_literal(entry, name) + ",", 96, break_on_hyphens=False)
+        lines += [f"    {text[0]}  // {name}"] if len(text) == 1 else [f"    // {name}"]
+        lines += [f"    {line}" for line in text] if len(text) > 1 else []
+    return "\n".join([*lines, "}"])
+
+
+def write_literal(value: Any, name: str = "") -> str:
+    """A number, a list or a nested aggregate; text is unchanged."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(write_literal(entry, key) for key, entry in value.items()) + "}"
+    if isinstance(value, list):
+        return "{" + ", ".join(write_literal(entry, name) for entry in value) + "}"
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return f"{ENUMS[name]}({value})" if name in ENUMS else str(value)
+    if not math.isfinite(value):
+        raise InputError(f"{name} of the arm's plan is {value}; an export can contain only finite numbers")
+    return repr(float(value))
+
+
+def write_bounds(values: Iterable[float]) -> str:
+    """Limits one after another; infinities where there are none."""
+    return ", ".join(repr(v) if math.isfinite(v) else "-" * (v < 0) + INFINITY for v in values)
+
+
+def quote_text(text: str) -> str:
+    """A string literal in plain ASCII: everything else as the octal numbers of its UTF-8."""
+    plain = {c: c for c in map(chr, range(32, 127)) if c not in '"\\?'}
+    return '"' + "".join(plain.get(c) or "".join(f"\\{b:03o}" for b in c.encode()) for c in text) + '"'

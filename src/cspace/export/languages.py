@@ -12,8 +12,7 @@ from typing import Any
 
 from cspace.errors import InputError, InputTypeError, name_new_keywords, suggest
 from cspace.export.arm import ExportedArm, exported_arm
-from cspace.export.c import c_files
-from cspace.export.cpp import cpp_header, words_of
+from cspace.export.cpp import c_files, cpp_header, words_of
 from cspace.export.python_file import python_file, python_method
 from cspace.export.words import fill_template
 from cspace.files import path_of, write_text

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from types import MappingProxyType
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -65,6 +64,7 @@ class PartialRows:
         return Solutions.of(solver, goal.T, verdict, self.q[index][:k], (-1,) * k, flags, None, about)
 
 
+@dataclass(eq=False, repr=False)
 class SolutionsBatch:
     """Every configuration that reaches each of n goals.
 
@@ -74,25 +74,14 @@ class SolutionsBatch:
     `Solutions`: batch[i].branch, batch[i].self_motions.
     """
 
-    def __init__(
-        self,
-        solver: Solver,
-        goal: Array,
-        q: Array,
-        count: npt.NDArray[np.int64],
-        verdict: npt.NDArray[np.uint8],
-        partial: PartialRows | None = None,
-        freedom: tuple[str, ...] = (),
-        locked: Mapping[int, Any] = MappingProxyType({}),
-    ) -> None:
-        self.solver = solver
-        self.goal = goal
-        self.q = q
-        self.count = count
-        self._verdict = verdict
-        self._partial = partial  # where the goals are partial
-        self.freedom = freedom
-        self._locked = dict(locked)
+    solver: Solver
+    goal: Array
+    q: Array
+    count: npt.NDArray[np.int64]
+    _verdict: npt.NDArray[np.uint8]
+    _partial: PartialRows | None = None  # where the goals are partial
+    freedom: tuple[str, ...] = ()
+    _locked: Mapping[int, Any] = field(default_factory=dict)
 
     if not TYPE_CHECKING:  # type checkers report such names themselves
 

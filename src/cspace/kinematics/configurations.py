@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, as_generator, whole_number
+from cspace.arrays import Array, as_generator, bounded_number, whole_number
 from cspace.errors import InputError
 from cspace.model import Limits
 
@@ -31,7 +31,7 @@ def random_configurations(
     if n is not None:
         n = whole_number(n, "n", 0, sys.maxsize)
     if reach is not None:
-        reach = _length(reach)
+        reach = bounded_number(reach, "reach", 0.0, "it must be one length [m], 0 or more")
     lower, upper = np.array(limits.lower), np.array(limits.upper)
     for i, kind in enumerate(joint_types):
         span = np.pi if kind == "R" else reach
@@ -51,10 +51,3 @@ def random_configurations(
     shape = (lower.size,) if n is None else (n, lower.size)
     # From the upper end downward: (−π, π] excludes −π and includes π.
     return np.asarray(upper - (upper - lower) * as_generator(rng).random(shape))
-
-
-def _length(reach: object) -> float:
-    value = as_floats(reach, "reach")
-    if value.shape != () or value < 0:
-        raise InputError(f"reach is {reach!r}; it must be one length [m], 0 or more")
-    return float(value)

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, one_array
+from cspace.arrays import Array, as_floats, one_array, one_number
 from cspace.errors import InputError, InputTypeError
-from cspace.tolerances import FARTHEST_POINT
+from cspace.tolerances import FARTHEST_POINT, MOST_SIDES
 
 Outline = list[Array]
 """One obstacle: its outline (n, 2) [m], then holes."""
@@ -47,6 +47,22 @@ def _read_ring(points: Any, subject: str) -> Array:
         count = "no corners" if not len(ring) else "one corner only"
         raise InputError(f"{subject} has {count}; a polygon needs at least three")
     return np.ascontiguousarray(kept, dtype=np.float64)
+
+
+def circumscribe_discs(centers: Any, radii: Any, sides: int) -> list[Array]:
+    """A regular circumscribed polygon (sides, 2) [m] of each disc; its first side faces the x direction."""
+    at = one_array(centers, "centers", (None, 2), largest=FARTHEST_POINT)
+    reach = as_floats(radii, "radii", largest=FARTHEST_POINT)
+    if reach.shape not in {(), (len(at),)}:
+        raise InputError(f"radii has shape {reach.shape}, expected () or ({len(at)},): one per disc")
+    if not np.all(reach > 0):
+        raise InputError(f"radii contains {np.min(reach):g}; the radius of a disc must be above zero [m]")
+    if int(number := one_number(sides, "sides")) != number or not 4 <= sides <= MOST_SIDES:
+        raise InputError(f"sides is {sides}; it must be 4 to {MOST_SIDES}")
+    angles = 2 * np.pi * (np.arange(int(sides)) + 0.5) / sides
+    around = np.stack([np.cos(angles), np.sin(angles)], axis=1) / np.cos(np.pi / sides)
+    sizes = np.broadcast_to(reach, len(at))
+    return [center + radius * around for center, radius in zip(at, sizes, strict=True)]
 
 
 def check_bounds(bounds: Any) -> Array:

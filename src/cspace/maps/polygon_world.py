@@ -13,12 +13,11 @@ from numpy.typing import ArrayLike
 from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
-from cspace.maps.discs import circumscribe_discs
 from cspace.maps.geojson import read_geojson, write_geojson
 from cspace.maps.grow import grow_outlines
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, find_offset
-from cspace.maps.outlines import Outline, check_bounds, find_bounds, read_outlines
+from cspace.maps.outlines import Outline, check_bounds, circumscribe_discs, find_bounds, read_outlines
 from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.maps.rasterize import rasterize_world
 from cspace.maps.repair import GeometryError, check_area, describe_crossings

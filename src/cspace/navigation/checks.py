@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, bounded_number
+from cspace.errors import InputTypeError
 from cspace.maps import PolygonWorld
 from cspace.tolerances import LARGEST_NUMBER
 
@@ -31,7 +31,4 @@ def check_ends(world: Any, start: Any, goal: Any) -> tuple[Array, Array]:
 
 def need_number(value: Any, name: str, least: float) -> float:
     """A number not below its smallest useful value, or InputError."""
-    number = as_floats(value, name, largest=LARGEST_NUMBER)
-    if number.ndim or number < least:
-        raise InputError(f"{name} is {value!r}; give one number, at least {least:g}")
-    return float(number)
+    return bounded_number(value, name, least, f"give one number, at least {least:g}", LARGEST_NUMBER)

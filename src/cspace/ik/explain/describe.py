@@ -237,17 +237,12 @@ def slides_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     )
 
 
-def append_virtual_names(names: tuple[str, ...], *, reverse: bool) -> tuple[str, ...]:
-    """The joints' names with the virtual ones behind them, from the tip if so asked."""
-    whole = (*names, *("",) * (6 - len(names)))
-    return whole[::-1] if reverse else whole
-
-
 def wrist_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     """A wrist behind three joints of any kind."""
     notes = list(survey.notes)
-    arm = loop.six.reversed() if loop.wrist else loop.six
+    arm, names = loop.six, (*survey.joints, *("",) * (6 - len(survey.joints)))  # virtual joints have none
     if loop.wrist:
+        arm, names = arm.reversed(), names[::-1]
         notes.append(
             "The arm is read from the tip to the base: joint 1 below is the last joint, and the goal is "
             "the inverse of the pose."
@@ -268,7 +263,7 @@ def wrist_plan(loop: Loop, survey: IkPlan) -> IkPlan:
     return replace(
         survey,
         family="wrist behind three joints",
-        tables={"Joints at zero": arm.table(append_virtual_names(survey.joints, reverse=bool(loop.wrist)))},
+        tables={"Joints at zero": arm.table(names)},
         summary="three axes meet in a point, the wrist: the three joints before it, some of which slide, "
         "place it, and the wrist makes the orientation.",
         branches=count_ways(steps),

@@ -10,6 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.ik.explain.page import Block, lay_out_table
+from cspace.ik.explain.screws import goal_values
 from cspace.math import Angle, Product, TrigMatrix, TrigPolynomial
 from cspace.model.text import shown
 
@@ -119,24 +120,12 @@ class Form:
             return q
         return f"{q} − {offset[1:]}" if offset.startswith("-") else f"{q} + {offset}"
 
-    @property
-    def left(self) -> Array:
-        """B⁻¹ (4, 4)."""
-        return np.asarray(np.linalg.inv(self.base), dtype=np.float64)
-
-    @property
-    def right(self) -> Array:
-        """C⁻¹ (4, 4)."""
-        return np.asarray(np.linalg.inv(self.tool), dtype=np.float64)
-
     def values(self, q: Array, T: Array) -> dict[str, Any]:
         """The numeric values of angles and goal at configurations q (..., n) that reach T (..., 4, 4)."""
-        goal = self.left @ (np.linalg.inv(T) if self.reversed else T) @ self.right
         out: dict[str, Any] = {}
         for i, joint in enumerate(self.joint):
             out[f"t_{i + 1}"] = (self.sign[i] * q[..., joint] if joint >= 0 else 0.0) + self.offset[i]
-        for i, axis in enumerate("xyz"):
-            out[f"p_{axis}"] = goal[..., i, 3]
-            for j in range(3):
-                out[f"r_{i + 1}{j + 1}"] = goal[..., i, j]
-        return out
+        goal = (
+            np.linalg.inv(self.base) @ (np.linalg.inv(T) if self.reversed else T) @ np.linalg.inv(self.tool)
+        )
+        return out | goal_values(np.asarray(goal, dtype=np.float64))

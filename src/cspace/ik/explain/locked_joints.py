@@ -20,6 +20,7 @@ from cspace.ik.explain.plan import IkPlan
 from cspace.ik.locked_joints import between_others, value_in_words
 from cspace.ik.solver import MAX_SETTLED, Solver
 from cspace.math import Angle, Equation, MatrixEquation, Product, TrigMatrix, TrigPolynomial
+from cspace.model.screws import twists
 from cspace.spatial import exp_se3
 from cspace.spatial.vectors import frame_along
 from cspace.tolerances import SQUARE_WRIST
@@ -74,9 +75,7 @@ class Split:
         for k in self.locked:
             if k in self.between:
                 continue
-            h, p = chain.axes[k], chain.points[k]
-            turns = chain.joint_types[k] == "R"
-            twist = np.concatenate([np.cross(p, h), h]) if turns else np.concatenate([h, np.zeros(3)])
+            twist = twists(chain.axes[k : k + 1], chain.points[k : k + 1], chain.joint_types[k])[0]
             motion = exp_se3(twist * q[..., k, None])
             if k < self.moving[0]:
                 before = before @ motion

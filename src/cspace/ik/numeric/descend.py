@@ -134,26 +134,12 @@ def ik_many_starts(
     goal_pose = np.ascontiguousarray(question.goals)
     q, residual = np.empty((len(begin), n)), np.empty(len(begin))
     hits = np.empty(len(begin), dtype=np.int64)
-    workers = thread_count(threads, ())
+    settings = (question.weights, question.limits, question.tolerance, steps, thread_count(threads, ()))
     count = _core._ik_sample(
-        robot,
-        question.frame,
-        goal_pose,
-        begin,
-        np.zeros((1, n)),
-        question.weights,
-        question.limits,
-        question.tolerance,
-        steps,
-        workers,
-        q,
-        residual,
-        hits,
+        robot, question.frame, goal_pose, begin, np.zeros((1, n)), *settings, q, residual, hits
     )
-    kept = slice(0, count)
-    return SampledSolutions(
-        robot, question.goals, q[kept].copy(), hits[kept].copy(), residual[kept].copy(), len(begin)
-    )
+    found = q[:count].copy(), hits[:count].copy(), residual[:count].copy()
+    return SampledSolutions(robot, question.goals, *found, len(begin))
 
 
 def _starts(robot: KinematicModel, start: Any, lead: tuple[int, ...]) -> Array:

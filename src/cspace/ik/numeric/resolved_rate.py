@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, bounded_number
 from cspace.errors import InputError
 from cspace.ik.numeric.problem import largest_speeds
 from cspace.kinematics.batch import thread_count
@@ -79,22 +79,9 @@ def resolved_rate(
     if speeds.size:  # those of a floating base are unlimited
         speeds = np.concatenate([np.full(dof - speeds.size, np.inf), speeds])
     qd = np.empty((number, dof))
-    _core._resolved_rate(
-        rows(J, 2),
-        rows(wanted, 1),
-        np.empty((0, dof)) if wish is None else rows(wish, 1),
-        speeds,
-        -1.0 if damping is None else _damping(damping),
-        WEAK_DIRECTION,
-        workers,
-        qd,
-    )
+    weight = -1.0
+    if damping is not None:
+        weight = bounded_number(damping, "damping", 0.0, "it must be one number, 0 or more", FARTHEST)
+    wishes = np.empty((0, dof)) if wish is None else rows(wish, 1)
+    _core._resolved_rate(rows(J, 2), rows(wanted, 1), wishes, speeds, weight, WEAK_DIRECTION, workers, qd)
     return qd.reshape(*lead, dof)
-
-
-def _damping(value: Any) -> float:
-    """One number, 0 or more."""
-    number = as_floats(value, "damping", largest=FARTHEST)
-    if number.ndim or number < 0:
-        raise InputError(f"damping is {value!r}; it must be one number, 0 or more")
-    return float(number)

@@ -26,29 +26,23 @@ def read_loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skel
             continue
         wish = element.attributes.get("name", "") or f"{element.tag}_{len(found) + 1}"
         name = free_name(wish, {*skeleton.joint_names, *(loop.name for loop in found)})
-        make = read_connect if element.tag == "connect" else read_weld
-        found.append(complain_at(element, partial(make, name, element, skeleton)))
+        found.append(complain_at(element, partial(read_loop, name, element, skeleton)))
     return tuple(found)
 
 
-def read_connect(name: str, element: Element, skeleton: Skeleton) -> Loop:
-    """Two bodies that share a point: two sites, or where the anchor in the first is when all is at rest."""
+def read_loop(name: str, element: Element, skeleton: Skeleton) -> Loop:
+    """Two bodies that share a point, or are one: at two sites; else where the anchor in the first is when all
+    is at rest, or as `relpose` says or the rest has it."""
+    kind = "spherical" if element.tag == "connect" else "fixed"
     ends = two_sites(element, skeleton)
     if ends is not None:
-        return Loop(name, "spherical", *ends)
+        return Loop(name, kind, *ends)
     first, second = two_bodies(element, skeleton)
+    if kind == "fixed":
+        return Loop(name, kind, first, second, relative_pose(element, first, second, skeleton))
     origin = translation_by(np.array(Given(element).floats("anchor", None, 3)))
     far = invert_transform(skeleton.rest[second]) @ skeleton.rest[first] @ origin
-    return Loop(name, "spherical", first, second, origin, far)
-
-
-def read_weld(name: str, element: Element, skeleton: Skeleton) -> Loop:
-    """Two bodies that are one: two sites, or as `relpose` says or the rest has it."""
-    ends = two_sites(element, skeleton)
-    if ends is not None:
-        return Loop(name, "fixed", *ends)
-    first, second = two_bodies(element, skeleton)
-    return Loop(name, "fixed", first, second, relative_pose(element, first, second, skeleton))
+    return Loop(name, kind, first, second, origin, far)
 
 
 def relative_pose(element: Element, first: str, second: str, skeleton: Skeleton) -> Array:
