@@ -118,23 +118,21 @@ def in_degrees(sentence: str) -> str:
 
 def table_of(robot: Robot, rows: Rows, *, degrees: bool) -> Table:
     """One row per solution, without empty columns."""
-    limits = ["limits"] if rows.checked else []
-    branch = ["branch"] if any(rows.branch) else []
-    singularity = [] if rows.singularity is None else ["singularity"]
-    near = [] if rows.distance is None else ["distance"]
-    columns = ["", *joint_headings(robot), *limits, *singularity, *branch, "residual", *near]
-    table = Table(columns, left=frozenset(columns.index(name) for name in (*limits, *branch)))
-    for k in range(len(rows)):
-        cells: list[Cell | str] = [f"{k + 1}", *joint_texts(rows.q[k], robot, degrees=degrees)]
-        if limits:
-            cells.append(limits_cell(rows.out[k], robot, degrees=degrees))
-        if rows.singularity is not None:
-            cells.append(f"{rows.singularity[k]:.4f}")
-        if branch:
-            cells.append(rows.branch[k])
-        cells.append(f"{rows.residual[k]:.1e}")
-        if rows.distance is not None:
-            cells.append(f"{rows.distance[k]:.4f}")
+    texts = [joint_texts(q, robot, degrees=degrees) for q in rows.q]
+    columns: list[tuple[str, Iterable[Cell | str]]] = [("", [f"{k + 1}" for k in range(len(rows))])]
+    columns += zip(joint_headings(robot), zip(*texts, strict=True), strict=True)
+    if rows.checked:
+        columns.append(("limits", [limits_cell(out, robot, degrees=degrees) for out in rows.out]))
+    if rows.singularity is not None:
+        columns.append(("singularity", [f"{value:.4f}" for value in rows.singularity]))
+    if any(rows.branch):
+        columns.append(("branch", rows.branch))
+    columns.append(("residual", [f"{value:.1e}" for value in rows.residual]))
+    if rows.distance is not None:
+        columns.append(("distance", [f"{value:.4f}" for value in rows.distance]))
+    left = frozenset(j for j, (name, _) in enumerate(columns) if name in ("limits", "branch"))
+    table = Table([name for name, _ in columns], left=left)
+    for cells in zip(*(column for _, column in columns), strict=True):
         table.add(*cells)
     return table
 

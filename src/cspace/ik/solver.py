@@ -135,10 +135,8 @@ class Solver(_core.SolverBase, KinematicModel):
 
         def build() -> Solver:
             moving = [k for k in range(self.dof) if k not in values]
-            made = Solver.__new__(Solver)
             goal_joints = [i for i, k in enumerate(moving) if k in self._goal_joints]
-            made._read(self.chain.lock(values), self.name, goal_joints, self._reach)
-            return made
+            return make_solver(self.chain.lock(values), self.name, goal_joints, self._reach)
 
         return keep_solver(self._locked, tuple(sorted(values.items())), build)
 
@@ -148,18 +146,16 @@ class Solver(_core.SolverBase, KinematicModel):
             return self
 
         def build() -> Solver:
-            made = Solver.__new__(Solver)
             longer = goal.extend_chain(self.chain)
             first, n = len(goal.before), len(longer.joint_names)
             added = [*range(first), *range(first + self.dof, n)]
             reach = largest_reach(self.chain) if "ray" in goal.kind else np.inf
-            made._read(longer, self.name, added, reach)
-            return made
+            return make_solver(longer, self.name, added, reach)
 
         return keep_solver(self._extended, goal.key, build)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return solver_again, (self.chain, self.name, self._goal_joints, self._reach)
+        return make_solver, (self.chain, self.name, self._goal_joints, self._reach)
 
     def __repr__(self) -> str:
         return f"<Solver {self.name}: {self.joint_types}, {self.base} → {self.tip}>"
@@ -215,8 +211,8 @@ def as_solver(arm: HasSolver | KinematicModel) -> Solver:
     return cast("HasSolver", arm).solver
 
 
-def solver_again(source: Chain, name: str, goal_joints: tuple[int, ...], reach: float) -> Solver:
-    """A solver out of its pickle."""
+def make_solver(source: Chain, name: str, goal_joints: Sequence[int], reach: float) -> Solver:
+    """A solver of a chain whose goal joints stand for what a goal leaves open; also that of a pickle."""
     made = Solver.__new__(Solver)
     made._read(source, name, goal_joints, reach)
     return made

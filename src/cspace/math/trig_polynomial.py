@@ -152,7 +152,7 @@ class TrigPolynomial:
                 " ".join(
                     [
                         *(power_of(name, power, latex=latex) for name, power in lengths),
-                        *((typeset.turn_latex if latex else typeset.turn_text)(k, a) for _, k, a in turns),
+                        *(typeset.write_turn(kind, angle, latex=latex) for _, kind, angle in turns),
                         *(power_of(name, power, latex=latex) for name, power in goal),
                     ]
                 ),
@@ -161,9 +161,8 @@ class TrigPolynomial:
 
 def power_of(name: str, power: int, *, latex: bool) -> str:
     """A symbol to a power."""
-    if latex:
-        return typeset.symbol_latex(name) + (f"^{power}" if power > 1 else "")
-    return typeset.symbol_text(name) + ("²" if power == 2 else f"^{power}" if power > 2 else "")
+    exponent = "" if power == 1 else "²" if power == 2 and not latex else f"^{power}"
+    return typeset.write_symbol(name, latex=latex) + exponent
 
 
 def as_polynomial(value: Any) -> TrigPolynomial:

@@ -19,32 +19,21 @@ def number_text(value: float) -> str:
     return f"{value:.{DIGITS}g}"
 
 
-def symbol_text(name: str) -> str:
-    """p_x as px, ca_2 as cα2."""
-    base, _, index = name.partition("_")
-    return GREEK[base][0] + index if base in GREEK else base + index
-
-
-def symbol_latex(name: str) -> str:
-    r"""p_x as p_x, r_13 as r_{13}, ca_2 as c_{\alpha_2}."""
+def write_symbol(name: str, *, latex: bool) -> str:
+    r"""p_x as px, ca_2 as cα2; in LaTeX p_{x}, c_{\alpha_{2}}."""
     base, _, index = name.partition("_")
     if base in GREEK:
-        return GREEK[base][1] % index
-    return f"{base}_{{{index}}}" if index else base
+        return GREEK[base][1] % index if latex else GREEK[base][0] + index
+    return f"{base}_{{{index}}}" if latex and index else base + index
 
 
-def turn_text(kind: str, angle: Combination) -> str:
+def write_turn(kind: str, angle: Combination, *, latex: bool) -> str:
     """c1, s23, and cos(2 t3 − t2) for other sums of angles."""
+    before, behind = ("_{", "}") if latex else ("", "")
     if all(times == 1 and index < 10 for index, times in angle):
-        return kind + "".join(str(index) for index, _ in angle)
-    return f"{'cos' if kind == 'c' else 'sin'}({sum_of_angles(angle, 't', '')})"
-
-
-def turn_latex(kind: str, angle: Combination) -> str:
-    """The same in LaTeX."""
-    if all(times == 1 and index < 10 for index, times in angle):
-        return kind + "_{" + "".join(str(index) for index, _ in angle) + "}"
-    return rf"\{'cos' if kind == 'c' else 'sin'}({sum_of_angles(angle, 't_{', '}')})"
+        return kind + before + "".join(str(index) for index, _ in angle) + behind
+    function = "\\" * latex + ("cos" if kind == "c" else "sin")
+    return f"{function}({sum_of_angles(angle, 't' + before, behind)})"
 
 
 def sum_of_angles(angle: Combination, before: str, behind: str) -> str:

@@ -11,8 +11,8 @@ import numpy as np
 
 from cspace.errors import InputError, InputTypeError
 from cspace.plot import colors
-from cspace.plot.animation import Steps
 from cspace.plot.axes import draw_image, draw_polygons, flat_axes, need_matplotlib
+from cspace.plot.files import Steps
 from cspace.plot.planner_overlays import draw_idea, replaced_at, shown_events
 
 SHUT: Final = (0.72, 0.74, 0.77)

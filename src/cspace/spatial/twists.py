@@ -85,11 +85,8 @@ def coadjoint(T: PoseLike) -> Array:
 
     T: T_a_b (..., 4, 4) → (..., 6, 6).
     """
-    T = as_pose(T)
-    R = T[..., :3, :3]
-    Ad = np.zeros((*T.shape[:-2], 6, 6))
-    Ad[..., :3, :3] = Ad[..., 3:, 3:] = R
-    Ad[..., 3:, :3] = skew(T[..., :3, 3]) @ R
+    Ad = adjoint(T)
+    Ad[..., 3:, :3], Ad[..., :3, 3:] = Ad[..., :3, 3:], 0.0
     return Ad
 
 

@@ -27,7 +27,6 @@ cspace dh scara --latex --products
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     add_robot(parser)
     parser.add_argument(
         "--convention",
@@ -199,7 +198,8 @@ def print_latex(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
         rf"i & \alpha_{{{index}}} & a_{{{index}}} & d_i & \theta_i \\ \hline",
     ]
     for i in range(len(table)):
-        cells = [with_index(cell).replace("pi", r"\pi") for cell in row_texts(table, i, degrees=degrees)[:5]]
+        texts = (text.replace("pi", r"\pi") for text in row_texts(table, i, degrees=degrees)[:5])
+        cells = [re.sub(r"\bq(\d+)", r"q_{\1}", text) for text in texts]  # the variable q3 as q_{3}
         if degrees:
             cells[1] += r"^\circ"
             cells[4] += "" if cells[4].startswith("q_") and " " not in cells[4] else r"^\circ"
@@ -215,11 +215,6 @@ def matrix_formulas(links: LinkMatrices) -> list[str]:
         rf"{{}}^{{{i}}}A_{{{i + 1}}} = {A.latex(least=PRINTED_ZERO, least_shift=PRINTED_ZERO)}"
         for i, A in enumerate(links.matrices)
     ]
-
-
-def with_index(text: str) -> str:
-    """The variable of a row in LaTeX: q3 as q_{3}."""
-    return re.sub(r"\bq(\d+)", r"q_{\1}", text)
 
 
 def print_markdown(out: Output, links: LinkMatrices, *, degrees: bool) -> None:

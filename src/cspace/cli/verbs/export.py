@@ -25,7 +25,6 @@ cspace export arm.urdf --lang python --name my_arm > my_arm.py
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     add_robot(parser)
     parser.add_argument(
         "--lang", metavar="LANGUAGE", help="cpp, c or python (default: by the ending of FILE, else cpp)"

@@ -21,7 +21,6 @@ cspace fk arm.urdf 0.1 0.2 --frame elbow_link --json
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     add_robot(parser)
     add_joints(parser)
     parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")

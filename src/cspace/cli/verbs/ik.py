@@ -10,10 +10,9 @@ from typing import TYPE_CHECKING, Any, Final
 from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_robot
 from cspace.cli.exits import Exit, UsageError
-from cspace.cli.explain import add_explanation, print_explanation, wants_explanation
 from cspace.cli.files import check_format, check_writable
-from cspace.cli.freedom import add_freedom, options_of
-from cspace.cli.goals import Goal, add_goal, goal_of
+from cspace.cli.freedom import FREEDOM_WORDS, add_freedom, locked_joints, options_of
+from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, axis_of, goal_of
 from cspace.cli.output import Output
 from cspace.cli.robot import gripper_note, load_chosen, need_chain, read_configuration
 from cspace.cli.solutions import Rows, print_solutions, solutions_document
@@ -39,10 +38,11 @@ KEYWORDS: Final = re.compile(
     r"|least_squares|goal_parts)=(?=[^=]|$)"
 )
 """The keywords of robot.ik that are options here."""
+NOT_EXPLAINED = (*GOAL_WORDS, *FREEDOM_WORDS, "plot")
+"""Options of a goal and its solutions, which an explanation does not accept."""
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     add_robot(parser)
     add_goal(parser)
     add_freedom(parser)
@@ -117,3 +117,46 @@ def draw_solutions(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, 
     labels = [f"{k + 1}  {rows.branch[k]}" + (" (out of limits)" if rows.out[k] else "") for k in order]
     within = [not rows.out[k] for k in order]
     plot.save(plot.solutions(robot, rows.q[order], goal, labels=labels, within=within, title=title), path)
+
+
+# --- --explain: how the solver works, instead of solutions ------------------------------------------------
+def add_explanation(parser: argparse.ArgumentParser) -> None:
+    """The words of an explanation."""
+    group = parser.add_argument_group("explanation", "how the arm is solved, instead of an answer to a goal")
+    group.add_argument("--explain", action="store_true", help="the geometry found, the steps, the equations")
+    group.add_argument(
+        "--goal-parts",
+        nargs="+",
+        metavar="PART",
+        help="for partial goals: position, rotation, direction, look-at, ray, angle-to (alone or together)",
+    )
+    form = group.add_mutually_exclusive_group()
+    form.add_argument("--markdown", action="store_true", help="as Markdown with formulas")
+    form.add_argument("--latex", action="store_true", help="as LaTeX, for a document with amsmath")
+
+
+def wants_explanation(args: argparse.Namespace) -> bool:
+    """Whether an explanation is requested. Raises UsageError for options that do not fit."""
+    if not args.explain:
+        for name in ("markdown", "latex", "goal_parts"):
+            if getattr(args, name):
+                raise UsageError(f"--{name} can only be used with --explain")
+        return False
+    for name in NOT_EXPLAINED:
+        if getattr(args, name) is not None:
+            option = "--" + name.replace("_", "-")
+            raise UsageError(f"--explain explains the arm and takes no goal: leave {option} out")
+    return True
+
+
+def print_explanation(args: argparse.Namespace, robot: Robot, out: Output) -> int:
+    """Print the explanation; an arm without a solver is a negative answer, with the relations of its axes."""
+    locked = None if args.locked is None else locked_joints(args, robot)
+    goal_parts = None if args.goal_parts is None else [part.replace("-", "_") for part in args.goal_parts]
+    plan = robot.ik_plan(goal_parts=goal_parts, locked=locked, tool_axis=axis_of(args))
+    if out.as_json:
+        out.document({"schema": "cspace.ik_plan/1", **plan.to_dict()})
+    else:
+        form = "to_markdown" if args.markdown else "to_latex" if args.latex else "to_text"
+        out.line(getattr(plan, form)().rstrip())
+    return Exit.DONE if plan else Exit.NEGATIVE

@@ -25,7 +25,6 @@ cspace info arm.urdf --tip tool0 --json
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     add_robot(parser)
     parser.add_argument(
         "--task",

@@ -26,7 +26,6 @@ ROWS: Final = ("vx", "vy", "vz", "wx", "wy", "wz")
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     add_robot(parser)
     add_joints(parser)
     parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")

@@ -13,8 +13,7 @@ from cspace.cli.arguments import named_value, read_number
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.files import check_format, check_writable
 from cspace.cli.output import Cell, Output, Table
-from cspace.cli.planner_options import options_given
-from cspace.cli.verbs.planners import typed_value
+from cspace.cli.verbs.planners import options_given, typed_value
 from cspace.errors import InputError
 
 if TYPE_CHECKING:
@@ -32,7 +31,6 @@ PATIENCE: Final = 5.0
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     parser.add_argument(
         "map", type=Path, help="ROS map (.yaml), MovingAI .map, image, GeoJSON or text of polygons"
     )

@@ -17,7 +17,6 @@ cspace robots --dof 7 --json
 
 
 def arguments(parser: argparse.ArgumentParser) -> None:
-    """Declare the arguments."""
     parser.add_argument("words", nargs="*", metavar="WORD", help="words as for --search")
     parser.add_argument("--search", nargs="+", metavar="WORD", default=[], help="all words must occur")
     parser.add_argument("--dof", type=int, metavar="N", help="only arms with N joints")

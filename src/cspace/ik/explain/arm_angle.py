@@ -11,12 +11,13 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.conditions import common_point
 from cspace.ik.explain.findings import Step
-from cspace.ik.explain.placed_wrist import rotation_steps
+from cspace.ik.explain.placed_wrist import goal_turns, rotation_steps
 from cspace.ik.explain.screws import (
     dot_product,
     goal_values,
     joint_values,
     number_vector,
+    symbol_vector,
     turn_direction,
     vector_text,
 )
@@ -43,15 +44,11 @@ def points_of(chain: Any) -> tuple[Array, Array, Array]:
 def swivel_steps(chain: Any) -> tuple[Step, ...]:
     """Wrist, elbow, the plane of the arm, then both spherical joints."""
     S, E, W = points_of(chain)
-    in_tip = np.linalg.inv(chain.T_zero) @ np.append(W, 1.0)
-    entries = [[TrigPolynomial.symbol(f"r_{i}{j}") for j in (1, 2, 3)] for i in (1, 2, 3)]
-    to_wrist = []
-    for k, axis in enumerate("xyz"):
-        offset = sum((float(in_tip[j]) * entries[k][j] for j in range(3)), TrigPolynomial())
-        to_wrist.append(
-            Equation.definition(f"l_{axis}", TrigPolynomial.symbol(f"p_{axis}") + offset - float(S[k]), "m")
-        )
-    l = [TrigPolynomial.symbol(f"l_{axis}") for axis in "xyz"]
+    p, l = symbol_vector("p"), symbol_vector("l")
+    offset = goal_turns((np.linalg.inv(chain.T_zero) @ np.append(W, 1.0))[:3])
+    to_wrist = tuple(
+        Equation.definition(f"l_{axis}", p[k] + offset[k] - float(S[k]), "m") for k, axis in enumerate("xyz")
+    )
     bent = turn_direction(chain, ELBOW, number_vector(W - E))
     square = sum((each * each for each in l), TrigPolynomial())
     reach = 2.0 * dot_product(E - S, bent) + float((E - S) @ (E - S) + (W - E) @ (W - E))
@@ -63,7 +60,7 @@ def swivel_steps(chain: Any) -> tuple[Step, ...]:
             f"The shoulder S = ({vector_text(S)}) m, where axes 1, 2 and 3 meet, stays where it is; the "
             "wrist W, where axes 5, 6 and 7 meet, stands still in the tip, so the goal fixes it. $l$ leads "
             "from S to W.",
-            tuple(to_wrist),
+            to_wrist,
         ),
         Step(
             "$t_4$",

@@ -38,7 +38,11 @@ def redundancy_of_pose(solver: Solver, T: Array, parameter: Any, locked: Any) ->
     if parameter is None:
         joint = usual
     else:
-        joint = others.joint_names.index(solver.joint_names[free_joint(solver, parameter, values)])
+        number = joint_number(solver, parameter, "parameter")
+        if number in values:
+            name = solver.joint_names[number]
+            raise InputError(f"parameter {name!r} is locked by locked=; choose another joint")
+        joint = others.joint_names.index(solver.joint_names[number])
     found = intervals_of(others, T, joint)
     if not found and joint != usual:
         check_moves(others, T, joint)
@@ -78,15 +82,6 @@ def check_moves(solver: Solver, T: Array, joint: int) -> None:
         f"parameter {solver.joint_names[joint]!r} is determined by the goal, at {at}, and is not free; "
         f"take another joint, such as {solver.joint_names[usual]!r}"
     )
-
-
-def free_joint(solver: Solver, parameter: Any, locked: Mapping[int, Any]) -> int:
-    joint = joint_number(solver, parameter, "parameter")
-    if joint in locked:
-        raise InputError(
-            f"parameter {solver.joint_names[joint]!r} is locked by locked=; choose another joint"
-        )
-    return joint
 
 
 def intervals_of(solver: Solver, T: Array, joint: int) -> Redundancy:

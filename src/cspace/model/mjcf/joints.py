@@ -1,10 +1,10 @@
-"""The joints of MJCF, each with its own link behind it, and the couplings between them."""
+"""The joints of MJCF, each with its own link behind it, the couplings between them, and their actuators."""
 
 from __future__ import annotations
 
 import logging
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Final
 
@@ -14,7 +14,6 @@ from cspace.arrays import Array
 from cspace.errors import suggest
 from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Joint, Mimic
-from cspace.model.mjcf.actuators import largest_magnitude
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.settings import Settings
 from cspace.model.transforms import rotation_about, translation_by
@@ -177,3 +176,33 @@ def joint_named(element: Element, attribute: str, drafts: Mapping[str, Draft]) -
     if drafts[name].kind == "free":
         raise fault_at(element, f"joint {name!r} is free and can be in no equality")
     return drafts[name]
+
+
+def read_efforts(actuators: Iterable[Element], defaults: Defaults) -> dict[str, float]:
+    """The largest force or torque of all actuators on each joint, by its name [N or N·m]; inf where unknown.
+
+    Force is gear · forcerange; of a <motor>, whose force is its control, gear · ctrlrange serves as well.
+    """
+    found: dict[str, float] = {}
+    for element in actuators:
+        given = defaults.given(element)
+        joint = given.text("joint") or given.text("jointinparent")
+        if joint:
+            found[joint] = found.get(joint, 0.0) + read_effort(given)
+    return found
+
+
+def read_effort(given: Given) -> float:
+    """The largest force of one actuator on its joint."""
+    gear = abs(given.floats("gear", (1.0,), 1, 6)[0])
+    force = largest_magnitude(given, "force")
+    if given.element.tag == "motor":
+        force = min(force, largest_magnitude(given, "ctrl"))
+    return gear * force if math.isfinite(force) else math.inf
+
+
+def largest_magnitude(given: Given, what: str) -> float:
+    """The largest magnitude within a range; inf where it does not count."""
+    low, high = given.span(f"{what}range")
+    limited = given.word(f"{what}limited", "auto", ("true", "false", "auto"))
+    return max(abs(low), abs(high)) if limited != "false" and low < high else math.inf

@@ -11,10 +11,9 @@ from cspace.arrays import Array
 from cspace.model.attributes import complain_at, fault_at, some_floats
 from cspace.model.description import Description
 from cspace.model.link import Geometry, Inertial, Link
-from cspace.model.mjcf.actuators import read_efforts
 from cspace.model.mjcf.geoms import Geom, Geoms
 from cspace.model.mjcf.given import Defaults, Given
-from cspace.model.mjcf.joints import Coupling, Draft, read_couplings, read_joint
+from cspace.model.mjcf.joints import Coupling, Draft, read_couplings, read_efforts, read_joint
 from cspace.model.mjcf.loops import read_loops
 from cspace.model.mjcf.masses import (
     correct_inertial,

@@ -96,7 +96,10 @@ class DStarLite:
         """
         with self._busy:
             if self._route is None:
-                self._route = self._replan()
+                began = time.perf_counter()
+                status, path, length, nodes, edges, self._settled = self._core.replan()
+                stats, found = Stats(nodes, edges, time.perf_counter() - began), STATUSES[status]
+                self._route = new_route(self._grid, self._planner, self._ends, found, path, length, stats)
             return self._route
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -106,12 +109,6 @@ class DStarLite:
             self._core.unpack(cells)
             changed = np.argwhere(cells.view(np.bool_) != self._grid.blocked)
             return _make_again, (self._grid, self._ends, self._planner, changed.astype(np.int32))
-
-    def _replan(self) -> Route:
-        began = time.perf_counter()
-        status, path, length, nodes, edges, self._settled = self._core.replan()
-        stats = Stats(nodes, edges, time.perf_counter() - began)
-        return new_route(self._grid, self._planner, self._ends, STATUSES[status], path, length, stats)
 
     def __repr__(self) -> str:
         (x0, y0), (x1, y1) = self._ends

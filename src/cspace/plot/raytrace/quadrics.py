@@ -76,17 +76,14 @@ class Sphere:
     radius: float
 
     def meet(self, rays: Rays, x: Array, y: Array) -> Array:
-        """See Piece."""
         quadric = Quadric(rays, self.center, np.eye(3), np.zeros(3), -(self.radius**2))
         t = quadric.roots(x, y)[0]
         return np.asarray(np.fmin(t, np.inf))
 
     def normals(self, points: Array) -> Array:
-        """See Piece."""
         return (points - self.center) / self.radius
 
     def balls(self) -> list[tuple[Array, float]]:
-        """See Piece."""
         return [(self.center, self.radius)] * 2
 
 
@@ -104,7 +101,6 @@ class Side:
     ends: tuple[float, float]
 
     def meet(self, rays: Rays, x: Array, y: Array) -> Array:
-        """See Piece."""
         G = np.eye(3) - (1.0 + self.slope**2) * np.outer(self.axis, self.axis)
         quadric = Quadric(rays, self.start, G, self.radius * self.slope * self.axis, -(self.radius**2))
         base = affine_at((rays.origin - np.outer(LAST, self.start)) @ self.axis, x, y)
@@ -119,7 +115,6 @@ class Side:
         return best
 
     def normals(self, points: Array) -> Array:
-        """See Piece."""
         d = points - self.start
         out = d - np.outer(d @ self.axis, self.axis)
         out /= np.maximum(np.sqrt(np.einsum("ij,ij->i", out, out)), LEAST_DIVISOR)[:, None]
@@ -127,7 +122,6 @@ class Side:
         return np.asarray(cosine * (out + self.slope * self.axis))
 
     def balls(self) -> list[tuple[Array, float]]:
-        """See Piece."""
         return [(self.start + h * self.axis, self.radius - self.slope * h) for h in self.ends]
 
 
@@ -140,7 +134,6 @@ class Disc:
     radius: float
 
     def meet(self, rays: Rays, x: Array, y: Array) -> Array:
-        """See Piece."""
         offset = rays.origin - np.outer(LAST, self.center)
         falling = affine_at(rays.way @ self.normal, x, y)
         above = affine_at(offset @ self.normal, x, y)
@@ -151,9 +144,7 @@ class Disc:
         return np.asarray(np.where(away <= self.radius**2, t, np.inf))
 
     def normals(self, points: Array) -> Array:
-        """See Piece."""
         return np.broadcast_to(self.normal, points.shape)
 
     def balls(self) -> list[tuple[Array, float]]:
-        """See Piece."""
         return [(self.center, self.radius)] * 2
