@@ -173,10 +173,6 @@ def without_imports(source: str) -> str:
 
 def standard_imports(modules: list[str]) -> list[str]:
     """The imports of all modules but those of each other, each once."""
-    lines: set[str] = set()
-    for source in modules:
-        for node in ast.parse(source).body:
-            if isinstance(node, IMPORTS):
-                lines.add(ast.unparse(node))
-    own = {line for line in lines if PACKAGE in line or "__future__" in line}
-    return sorted(lines - own, key=lambda line: ("numpy" in line, line))
+    nodes = (node for source in modules for node in ast.parse(source).body if isinstance(node, IMPORTS))
+    lines = {line for line in map(ast.unparse, nodes) if PACKAGE not in line and "__future__" not in line}
+    return sorted(lines, key=lambda line: ("numpy" in line, line))

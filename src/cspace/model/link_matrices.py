@@ -62,7 +62,9 @@ class LinkMatrices:
 
     def text(self) -> str:
         """The table, every matrix and every product as plain text."""
-        parts = [repr(self.table), f"ci and si are the cosine and sine of t_i = θ_i; {self._left_out()}"]
+        least, shift = self._least.values()
+        left_out = f"factors below {least:g} ({shift:.2g} m) are left out"
+        parts = [repr(self.table), f"ci and si are the cosine and sine of t_i = θ_i; {left_out}"]
         parts += [f"A{i + 1}\n{A.text(**self._least)}" for i, A in enumerate(self.matrices)]
         return "\n\n".join([*parts, *self.product_texts()])
 
@@ -103,10 +105,6 @@ class LinkMatrices:
         lengths = np.abs(self.table.rows[:, 1:3])
         usual = float(np.median(lengths[lengths > 0.0])) if lengths.any() else 1.0
         return {"least": PRINTED_FACTOR, "least_shift": PRINTED_FACTOR * usual}
-
-    def _left_out(self) -> str:
-        least, shift = self._least.values()
-        return f"factors below {least:g} ({shift:.2g} m) are left out"
 
     def _shown(self, T: TrigMatrix, row: int, column: int, *, latex: bool = False) -> str:
         """An entry as text, or how many terms it has."""

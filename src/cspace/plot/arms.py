@@ -13,7 +13,7 @@ from cspace.plot import colors, planar
 from cspace.plot.axes import space_axes
 from cspace.plot.raytrace import stage
 from cspace.plot.raytrace.scene import Group, artist_type, scene_of
-from cspace.plot.raytrace.solids import Solid, make_capsule, make_cylinder
+from cspace.plot.raytrace.solids import Solid, make_cylinder
 from cspace.plot.skeleton import WIDTH, Skeleton, make_skeleton, planar_basis, size_of
 from cspace.tolerances import DRAWN_LENGTH
 
@@ -179,12 +179,12 @@ def solids_of(drawn: Skeleton, link: Array, joint: Array) -> list[Solid]:
                 continue
             if i == 0 and k == 0 and path[1][2] > path[0][2]:  # the pillar stands on the floor, flat
                 solids.append(Solid(path[0], path[1], ends[0], ends[1], link, round=False))
-                solids.append(make_capsule(path[1], path[1], ends[1], ends[1], link))
+                solids.append(Solid(path[1], path[1], ends[1], ends[1], link))
             else:
-                solids.append(make_capsule(path[k], path[k + 1], ends[k], ends[k + 1], link))
+                solids.append(Solid(path[k], path[k + 1], ends[k], ends[k + 1], link))
     for rail in drawn.rails:
         if np.linalg.norm(rail[1] - rail[0]) > DRAWN_LENGTH:
-            solids.append(make_capsule(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
+            solids.append(Solid(rail[0], rail[1], 0.6 * radii[-1], 0.6 * radii[-1], joint))
     for i, (place, axis) in enumerate(zip(drawn.joints, drawn.axes, strict=True)):
         solids.append(make_cylinder(place, axis, WIDTH * radii[i + 1], drawn.body_half(i), joint))
     return solids

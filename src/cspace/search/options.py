@@ -63,7 +63,8 @@ class Option:
         number = self._whole(value) if kinds[0] == "int" else self._real(value)
         if not (self.minimum <= number <= self.maximum and number > self.above):
             shown = number if isinstance(number, int) else f"{number:g}"
-            raise InputError(f"{self.name} is {shown}; it must be {self._range()}")
+            or_none = ", or None for the default" if self.default is None else ""
+            raise InputError(f"{self.name} is {shown}; it must be {self._numbers()}{or_none}")
         return number
 
     def _whole(self, value: Any) -> int:
@@ -77,11 +78,8 @@ class Option:
     def _real(self, value: Any) -> float:
         return inf if self.may_be_infinite and value == inf else float(as_floats(value, self.name))
 
-    def _range(self) -> str:
-        """The accepted numbers in words, and None where it stands for the default."""
-        return self._numbers() + (", or None for the default" if self.default is None else "")
-
     def _numbers(self) -> str:
+        """The accepted numbers in words."""
         if self.maximum < inf:
             return f"{self.minimum} to {self.maximum}"
         unit = f" [{self.unit}]" if self.unit else ""

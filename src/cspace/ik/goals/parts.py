@@ -11,7 +11,6 @@ from cspace.arrays import Array, as_arrays, leading_axes
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
-from cspace.spatial.poses import assemble
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
@@ -179,6 +178,13 @@ MAKERS = {
     "ray": goal_of_ray,
     "position+angle_to": position_and_angle,
 }
+
+
+def assemble(R: Array, p: Array) -> Array:
+    """Poses (..., 4, 4) from rotations (..., 3, 3) and points (..., 3), one of them perhaps for all."""
+    T = np.zeros((*np.broadcast_shapes(p.shape[:-1], R.shape[:-2]), 4, 4))
+    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = R, p, 1.0
+    return T
 
 
 def turn_to(a: Array, d: Array) -> Array:

@@ -14,6 +14,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.kinematics.batch import check_robot, frame_number
 from cspace.model import Limits
 from cspace.spatial import as_pose
+from cspace.spatial.poses import assemble
 from cspace.tolerances import FARTHEST, LEAST_SLIDE
 
 if TYPE_CHECKING:
@@ -86,19 +87,12 @@ def pose_problem(
     else:
         if weights is not None:
             raise InputTypeError("weights= can only be used with a pose; leave them out for position=")
-        goals, counted = _at(as_floats(position, "position", last=(3,))), POSITION_ALONE
+        goals = assemble(np.eye(3), as_floats(position, "position", last=(3,)))  # the rotation does not count
+        counted = POSITION_ALONE
     far = np.abs(goals[..., :3, 3]).max(initial=0.0)
     if far > FARTHEST / 3:
         raise InputError(f"a goal is {far:g} m away; the maximum is {FARTHEST:g} m")
     return Question(number, goals, counted, bounds_of(robot, limits), positive_number(tolerance, "tolerance"))
-
-
-def _at(points: Array) -> Array:
-    """Points (..., 3) as poses whose rotation does not count."""
-    T = np.zeros((*points.shape[:-1], 4, 4))
-    T[..., range(4), range(4)] = 1.0
-    T[..., :3, 3] = points
-    return T
 
 
 def _weights(value: Any) -> Array:

@@ -10,6 +10,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats, one_array, positive_number
 from cspace.errors import InputError
 from cspace.spatial.checks import PoseLike, one_pose
+from cspace.spatial.poses import assemble
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
@@ -169,6 +170,4 @@ def _unit(value: Any, subject: str) -> Array:
 
 
 def _at(value: Any, subject: str) -> Array:
-    T = np.eye(4)
-    T[:3, 3] = _vector(value, subject)
-    return T
+    return assemble(np.eye(3), _vector(value, subject))

@@ -37,11 +37,6 @@ class Solid:
         return float(min(self.a[2] - down * self.radius_a, self.b[2] - down * self.radius_b))
 
 
-def make_capsule(a: Array, b: Array, radius_a: float, radius_b: float, color: Array) -> Solid:
-    """The hull of two spheres."""
-    return Solid(a, b, radius_a, radius_b, color)
-
-
 def make_cylinder(center: Array, axis: Array, radius: float, half: float, color: Array) -> Solid:
     """A cylinder about a unit axis."""
     return Solid(center - half * axis, center + half * axis, radius, radius, color, round=False)
