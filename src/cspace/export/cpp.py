@@ -77,27 +77,12 @@ def words_of(arm: ExportedArm) -> dict[str, Any]:
     }
 
 
-LOCKED_WORDS = (
-    *(
-        "locked_types",
-        "locked_types_c",
-        "locked_extern",
-        "locked_extern_c",
-        "locked_parameter",
-        "locked_argument",
-    ),
-    *("locked_sample", "locked_of_sample", "locked_of_q", "locked_words", "locked_words_c"),
-)
-
-
 def words_of_locked(arm: ExportedArm) -> dict[str, Any]:
     """The values of the $words about locked joints; empty texts without locked joints."""
-    if not arm.locked:
-        return dict.fromkeys(LOCKED_WORDS, "")
     count, numbers = len(arm.locked), ", ".join(map(str, arm.locked))
     names = arm.locked_names
     moving = [k for k in range(arm.dof) if k not in arm.locked]
-    return {
+    words = {
         "locked_count": count,
         "locked_joints": numbers,
         "moving_count": len(moving),
@@ -122,6 +107,7 @@ def words_of_locked(arm: ExportedArm) -> dict[str, Any]:
         "locked_words_c": f"\n * locked_values: the values of the locked joints ({names}), "
         f"{count} in this order.",
     }
+    return words if arm.locked else dict.fromkeys(words, "")
 
 
 def chain_of(arm: ExportedArm) -> dict[str, Any]:

@@ -153,14 +153,8 @@ def write_out(arm: ExportedArm, language: str, main: str) -> Export:
     words["module"] = PurePath(main).stem
     example = fill_template(f"example{ending}.in", words)
     chosen = tuple(arm.joint_names[k] for k in arm.locked)
-    return Export(
-        language,
-        arm.identifier,
-        python_method(arm) if language == "python" else arm.method,
-        files,
-        example,
-        chosen,
-    )
+    method = python_method(arm) if language == "python" else arm.method
+    return Export(language, arm.identifier, method, files, example, chosen)
 
 
 def sample_configuration(arm: ExportedArm) -> str:

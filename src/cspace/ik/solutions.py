@@ -71,17 +71,9 @@ class Solutions(_core.SolutionsBase):
         about: About | None = None,
     ) -> Solutions:
         """A result from its parts: rows q (k, dof), and the branch number and kind of each."""
-        made = _core._ik_make(
-            solver,
-            np.ascontiguousarray(goal),
-            verdict,
-            np.ascontiguousarray(q, dtype=np.float64),
-            tuple(int(b) for b in branches),
-            tuple(bool(f) for f in self_motion),
-            note,
-            about,
-        )
-        return cast(Solutions, made)
+        goal, q = np.ascontiguousarray(goal), np.ascontiguousarray(q, dtype=np.float64)
+        numbers, flags = tuple(map(int, branches)), tuple(map(bool, self_motion))
+        return cast(Solutions, _core._ik_make(solver, goal, verdict, q, numbers, flags, note, about))
 
     @property
     def status(self) -> str:
@@ -271,16 +263,10 @@ class Solutions(_core.SolutionsBase):
         return self.goal if self.goal.shape == (4, 4) else position_goal(self.goal)
 
     def _take(self, rows: Any, q: Array, note: str | None) -> Solutions:
-        return Solutions.of(
-            self.solver,
-            self._goal_pose,
-            self._verdict,
-            q,
-            (self._branch_numbers[row] for row in rows),
-            (self._is_self_motion[row] for row in rows),
-            note,
-            None if self._about is None else self._about.take(rows, len(rows) == len(self)),
-        )
+        numbers = (self._branch_numbers[row] for row in rows)
+        flags = (self._is_self_motion[row] for row in rows)
+        about = None if self._about is None else self._about.take(rows, len(rows) == len(self))
+        return Solutions.of(self.solver, self._goal_pose, self._verdict, q, numbers, flags, note, about)
 
     def __reduce__(self) -> tuple[Any, ...]:
         numbers = (self._branch_numbers, self._is_self_motion, self._note, self._about)

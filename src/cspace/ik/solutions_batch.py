@@ -179,15 +179,9 @@ class SolutionsBatch:
             int(full._branch_numbers[int(np.argmin(np.abs(np.sin((full.q - row) / 2)).max(axis=1)))])
             for row in rows
         )
-        return Solutions.of(
-            self.solver,
-            goal if is_pose else position_goal(goal),
-            int(verdict),
-            rows,
-            branches,
-            (False,) * len(rows),
-            None if len(rows) or not len(full) else "solutions exist, the filters left none",
-        )
+        note = None if len(rows) or not len(full) else "solutions exist, the filters left none"
+        pose, flags = goal if is_pose else position_goal(goal), (False,) * len(rows)
+        return Solutions.of(self.solver, pose, int(verdict), rows, branches, flags, note)
 
     def _row_of_redundant(self, index: Any, goal: Array, verdict: int, rows: Array) -> Solutions:
         """One goal's rows as a result, without the names of their branches."""

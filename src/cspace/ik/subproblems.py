@@ -112,13 +112,8 @@ def call_kernel(
     exact, free = np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.bool_)
     kernel(*rows, theta, residual, count, exact, free)
     shape = (*batch, most) if angles == 1 else (*batch, most, angles)
-    return SubproblemSolution(
-        theta.reshape(shape),
-        count.reshape(batch)[()],
-        exact.reshape(batch)[()],
-        free.reshape(batch)[()],
-        residual.reshape(batch)[()],
-    )
+    facts: Any = (fact.reshape(batch)[()] for fact in (count, exact, free, residual))
+    return SubproblemSolution(theta.reshape(shape), *facts)
 
 
 def subproblem_1(k: Any, p1: Any, p2: Any) -> SubproblemSolution:

@@ -13,7 +13,6 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 
 from cspace.arrays import Array, positive_number
 from cspace.tolerances import OFFSET_PIECE, OFFSET_SLACK
@@ -202,11 +201,7 @@ def _link_pieces(
                 break
             chain.append(int(np.argmin(apart)))
             left[chain[-1]] = False
-        curves.append(_make_curve(tracks, [pieces[i] for i in chain], ends[chain]))
+        track = np.array([pieces[i][0] for i in chain], np.int64)
+        angles: Array = tracks.angle[track, None] - np.array([pieces[i][1:] for i in chain])
+        curves.append(OffsetCurve(ends[chain, 0], ends[chain, 1], tracks.center[track], angles))
     return curves
-
-
-def _make_curve(tracks: _Tracks, pieces: list[tuple[int, float, float]], ends: Array) -> OffsetCurve:
-    track = np.array([k for k, _, _ in pieces], np.int64)
-    part: npt.NDArray[np.float64] = np.array([(begin, end) for _, begin, end in pieces])
-    return OffsetCurve(ends[:, 0], ends[:, 1], tracks.center[track], tracks.angle[track, None] - part)

@@ -147,16 +147,10 @@ class TrigPolynomial:
         for (plain, turns), factor in [*kept[ahead : ahead + 1], *kept[:ahead], *kept[ahead + 1 :]]:
             lengths = [each for each in plain if not each[0].startswith(("p_", "r_"))]
             goal = [each for each in plain if each[0].startswith(("p_", "r_"))]
-            yield (
-                factor,
-                " ".join(
-                    [
-                        *(power_of(name, power, latex=latex) for name, power in lengths),
-                        *(typeset.write_turn(kind, angle, latex=latex) for _, kind, angle in turns),
-                        *(power_of(name, power, latex=latex) for name, power in goal),
-                    ]
-                ),
-            )
+            words = [power_of(name, power, latex=latex) for name, power in lengths]
+            words += [typeset.write_turn(kind, angle, latex=latex) for _, kind, angle in turns]
+            words += [power_of(name, power, latex=latex) for name, power in goal]
+            yield factor, " ".join(words)
 
 
 def power_of(name: str, power: int, *, latex: bool) -> str:

@@ -68,19 +68,9 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
         last_link = dh_matrix(table[-1, 0], table[-1, 1], 0.0, 0.0, convention="standard")
         T_tool = last_link @ T_tool
         table[:, :2] = np.vstack([[0.0, 0.0], table[:-1, :2]])
-    alpha, a, d, theta = table.T
-    return DHTable(
-        convention,
-        alpha,
-        a,
-        d,
-        theta,
-        chain.joint_types,
-        T_base,
-        T_tool,
-        chain.joint_names,
-        _deviation(chain, frames) + ROUNDING * n * float(np.abs(table[:, 1:3]).max(initial=0.0)),
-    )
+    bound = _deviation(chain, frames) + ROUNDING * n * float(np.abs(table[:, 1:3]).max(initial=0.0))
+    (alpha, a, d, theta), types, names = table.T, chain.joint_types, chain.joint_names
+    return DHTable(convention, alpha, a, d, theta, types, T_base, T_tool, names, bound)
 
 
 def _first_frame(chain: Chain) -> Array:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 from collections.abc import Iterator
+from dataclasses import dataclass, field
 from xml.parsers import expat
 
 from cspace.errors import DescriptionError
@@ -14,17 +15,15 @@ from cspace.tolerances import DESCRIPTION_BYTES, DESCRIPTION_DEPTH
 BLANKS = "\ufeff \t\r\n"
 
 
+@dataclass(slots=True, eq=False)
 class Element:
     """One XML element: tag, attributes, children, and the file (None: a text) and line where it starts."""
 
-    __slots__ = ("attributes", "children", "line", "path", "tag")
-
-    def __init__(self, tag: str, attributes: dict[str, str], line: int, path: str | None = None) -> None:
-        self.tag = tag
-        self.attributes = attributes
-        self.children: list[Element] = []
-        self.line = line
-        self.path = path
+    tag: str
+    attributes: dict[str, str]
+    line: int
+    path: str | None = None
+    children: list[Element] = field(default_factory=list)
 
     def all(self, tag: str) -> Iterator[Element]:
         """The children of that tag."""

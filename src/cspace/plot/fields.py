@@ -40,18 +40,8 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
     low = float(np.nanmin(level))
     shown = np.where(solid, top, level)
     paint = tint_places(shown, solid, low, top)
-    artists = [
-        axes.plot_surface(
-            *np.meshgrid(*where),
-            shown,
-            facecolors=paint,
-            rstride=1,
-            cstride=1,
-            linewidth=0,
-            antialiased=False,
-            shade=True,
-        )
-    ]
+    style = dict(rstride=1, cstride=1, linewidth=0, antialiased=False, shade=True)
+    artists = [axes.plot_surface(*np.meshgrid(*where), shown, facecolors=paint, **style)]
     axes.computed_zorder = False
     lift = 0.01 * (top - low)
     path = interpolate_path(route.path)

@@ -89,16 +89,9 @@ def table_document(name: str, links: LinkMatrices, *, products: bool) -> dict[st
     columns = zip(
         table.joint_names, table.joint_types, table.alpha, table.a, table.d, table.theta_offset, strict=True
     )
+    keys = ("joint", "type", "alpha", "a", "d", "theta")
     rows = [
-        {
-            "joint": joint,
-            "type": kind,
-            "alpha": float(alpha),
-            "a": float(a),
-            "d": float(d),
-            "theta": float(theta),
-        }
-        for joint, kind, alpha, a, d, theta in columns
+        dict(zip(keys, (joint, kind, *map(float, numbers)), strict=True)) for joint, kind, *numbers in columns
     ]
     return {
         "schema": "cspace.dh/1",

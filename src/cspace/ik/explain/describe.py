@@ -166,14 +166,13 @@ def general_plan(loop: Loop, survey: IkPlan) -> IkPlan:
         survey = replace(survey, counted=COMPLETED)
     if loop.wrist is not None:
         return wrist_plan(loop, replace(survey, notes=notes))
-    survey = replace(
-        survey,
-        length=1.0,
-        family="general",
-        notes=(*notes, loop_note(loop)),
-        matrices=loop.matrices(),
-        _values=loop.values,
+    notes += (
+        f"Lengths are over the arm's ({loop.length:.4g} m). $L_1, \\ldots, L_5$ lead from the frame on "
+        "one axis to that on the next, $F$ from the base to the first, $H$ from the last to the tip; "
+        "$L_6 = H T^{-1} F$ closes the loop.",
     )
+    matrices, values = loop.matrices(), loop.values
+    survey = replace(survey, length=1.0, family="general", notes=notes, matrices=matrices, _values=values)
     if loop.slides == 3:
         return slides_plan(loop, survey)
     if loop.perturbed_arms or not loop.order:
@@ -191,15 +190,6 @@ def general_plan(loop: Loop, survey: IkPlan) -> IkPlan:
         notes=(*survey.notes, asked),
         tables={"Formulations": loop.formulations(survey.joints)},
         steps=tuple(steps),
-    )
-
-
-def loop_note(loop: Loop) -> str:
-    """What the matrices of the loop are."""
-    return (
-        f"Lengths are over the arm's ({loop.length:.4g} m). $L_1, \\ldots, L_5$ lead from the frame on "
-        "one axis to that on the next, $F$ from the base to the first, $H$ from the last to the tip; "
-        "$L_6 = H T^{-1} F$ closes the loop."
     )
 
 

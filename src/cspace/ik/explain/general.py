@@ -69,19 +69,10 @@ class Loop:
         rows = []
         for k, (_, joints, backwards) in enumerate(self.order, 1):
             said = [f"`{names[j]}`" if j < len(names) else f"virtual joint {j + 1}" for j in joints]
-            rows.append(
-                (
-                    str(k),
-                    said[0],
-                    f"{said[1]}, {said[2]}",
-                    f"{said[4]}, {said[5]}",
-                    said[3],
-                    "tip to base" if backwards else "base to tip",
-                )
-            )
-        return lay_out_table(
-            ("order", "hidden", "in the null vector", "eliminated", "left alone", "read"), rows
-        )
+            read = "tip to base" if backwards else "base to tip"
+            rows.append((str(k), said[0], f"{said[1]}, {said[2]}", f"{said[4]}, {said[5]}", said[3], read))
+        head = ("order", "hidden", "in the null vector", "eliminated", "left alone", "read")
+        return lay_out_table(head, rows)
 
     def steps(self) -> list[Step]:
         """The steps of the formulation that is asked first."""

@@ -71,16 +71,9 @@ def measure_relations(chain: Any, length: float) -> tuple[Relation, ...]:
         across = np.cross(h, r - p) if parallel else [np.cross(h, k) @ (r - p) / np.sin(angle)]
         slides = "P" in chain.joint_types[i : i + 2]
         distance = float("nan") if slides else float(np.linalg.norm(across))
-        out.append(
-            Relation(
-                (i + 1, i + 2),
-                angle,
-                distance,
-                parallel,
-                distance < _core.AXIS_RELATION * length,
-                abs(np.pi / 2 - angle) < _core.AXIS_RELATION,
-            )
-        )
+        meet = distance < _core.AXIS_RELATION * length
+        square = abs(np.pi / 2 - angle) < _core.AXIS_RELATION
+        out.append(Relation((i + 1, i + 2), angle, distance, parallel, meet, square))
     return tuple(out)
 
 

@@ -185,19 +185,15 @@ def is_out_of_reach(robot: KinematicModel, question: Question, T: Array, end: fl
     return not found
 
 
-def answer_of(cost: Callable[[Array], Any], q: Array) -> Any:
-    """What a caller's function of the configurations answers; InputError where it fails."""
+def call_cost(cost: Callable[[Array], Any], q: Array) -> float:
+    """What a caller's function of the configurations answers, as one number; inf rules a branch out."""
     try:
-        return cost(q)
+        value = cost(q)
     except Exception as error:
         raise InputError(
             f"cost= raised {type(error).__name__} for q of shape {q.shape}: {error}; it takes q (n, dof)"
             " and must return one number"
         ) from error
-
-
-def number_of_cost(value: Any) -> float:
-    """What a caller's function of the configurations answers, as one number; inf rules a branch out."""
     number = as_floats(value, "the result of cost=", finite=False)
     if number.ndim or np.isnan(number):
         said = f"has shape {number.shape}" if number.ndim else f"is {value!r}"
@@ -208,7 +204,7 @@ def number_of_cost(value: Any) -> float:
 def cost_of(robot: KinematicModel, cost: Cost) -> Callable[[Array], float]:
     """The price of a branch q (m, dof)."""
     if callable(cost):
-        return lambda q: number_of_cost(answer_of(cost, q))
+        return lambda q: call_cost(cost, q)
     word = check_choice(cost, "cost", COSTS)
     if word == "length":
         return lambda q: float(np.linalg.norm(np.diff(q, axis=0), axis=1).sum())

@@ -90,11 +90,7 @@ def unit_inertia(kind: str, half: Sequence[float]) -> tuple[float, Array]:
 
 def correct_inertial(inertial: Inertial | None, settings: Settings) -> Inertial | None:
     """The masses of one body after boundmass, boundinertia and balanceinertia."""
-    if inertial is None or (settings.least_mass, settings.least_inertia, settings.balance) == (
-        0.0,
-        0.0,
-        False,
-    ):
+    if inertial is None or not (settings.least_mass or settings.least_inertia or settings.balance):
         return inertial
     moments, axes = np.linalg.eigh(inertial.inertia)
     moments = np.maximum(moments, settings.least_inertia)

@@ -66,14 +66,9 @@ def hybrid_a_star(
     turning = car.turning_radius if radius is None else need_number(radius, "radius", car.turning_radius)
     side = max(turning / 8, grid.resolution) if box is None else need_number(box, "box", grid.resolution / 16)
     gear = turning / 2 if gear_cost is None else need_number(gear_cost, "gear_cost", 0.0)
-    lattice = [
-        side,
-        need_number(headings, "headings", 4.0),
-        need_number(reverse_cost, "reverse_cost", 1.0),
-        gear,
-    ]
+    turns, backwards = need_number(headings, "headings", 4.0), need_number(reverse_cost, "reverse_cost", 1.0)
     ends = [need_number(max_nodes, "max_nodes", 1.0), need_number(weight, "weight", 0.0)]
-    settings = np.array([turning, *lattice, *ends])
+    settings = np.array([turning, side, turns, backwards, gear, *ends])
     body = np.array(car._footprint)
     a, b = (check_pose(grid, body, pose, name) for pose, name in ((start, "start"), (goal, "goal")))
     status, cause, pieces, *stats = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)

@@ -87,17 +87,11 @@ def follow(
         rule = f"give numbers for at most {SIMULATION_STEPS:g} steps"
         raise InputError(f"time_step is {step:g} s, time_limit {limit:g} s; {rule}")
     window = 2 * far + 4 * fast * step
-    settings = [
-        step,
-        limit,
-        fast,
-        window,
-        positive_number(tolerance, "tolerance"),
-        positive_number(patience, "patience"),
-    ]
+    ends = positive_number(tolerance, "tolerance"), positive_number(patience, "patience")
+    settings = np.array([step, limit, fast, window, *ends])
     points = np.ascontiguousarray(rows[:, :2])
     outcome, table = _core._follow(
-        *(points, runs, np.array(body._limits), read_start(start, rows, runs), np.array(settings)),
+        *(points, runs, np.array(body._limits), read_start(start, rows, runs), settings),
         *(CONTROLLERS.index(controller), steering, world, np.array(body._footprint)),
     )
     times: Array = step * np.arange(len(table), dtype=np.float64)
