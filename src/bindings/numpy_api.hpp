@@ -18,10 +18,26 @@ T* data_of(PyObject* array) {
     return static_cast<T*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)));
 }
 
-// The numbers of a float64 array (rows, columns), or (columns,) if rows is 0: in `copy` if they are not
-// contiguous. Null for everything else, and no error is set.
+// The numbers of a list or tuple of `count` floats and integers, in `copy`; null for everything else.
+inline const double* read_sequence(PyObject* value, npy_intp count, double* copy) {
+    if (!PyList_CheckExact(value) && !PyTuple_CheckExact(value)) return nullptr;
+    if (PySequence_Fast_GET_SIZE(value) != count) return nullptr;
+    PyObject** const items = PySequence_Fast_ITEMS(value);
+    for (npy_intp j = 0; j < count; ++j) {
+        if (!PyFloat_Check(items[j]) && !PyLong_CheckExact(items[j])) return nullptr;
+        copy[j] = PyFloat_AsDouble(items[j]);
+        if (copy[j] == -1 && PyErr_Occurred()) {  // an integer beyond all doubles
+            PyErr_Clear();
+            return nullptr;
+        }
+    }
+    return copy;
+}
+
+// The numbers of a float64 array (rows, columns), or of an array, list or tuple (columns,) if rows is 0: in
+// `copy` if they are not contiguous. Null for everything else, and no error is set.
 inline const double* read_in_place(PyObject* value, npy_intp rows, npy_intp columns, double* copy) {
-    if (!PyArray_CheckExact(value)) return nullptr;
+    if (!PyArray_CheckExact(value)) return rows ? nullptr : read_sequence(value, columns, copy);
     auto* array = reinterpret_cast<PyArrayObject*>(value);
     const int last = rows ? 1 : 0;
     if (PyArray_TYPE(array) != NPY_DOUBLE || PyArray_NDIM(array) != last + 1 ||

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from cspace.errors import CspaceError
 from cspace.model import Description, Joint, Link, Mimic, chain, from_screws
 from cspace.robot import Robot
 from kinematics import robots
@@ -103,6 +104,24 @@ def test_what_is_read_may_be_a_list_a_view_or_another_type():
     whole = np.array([0, 1, -1, 2, 0, 1])
     np.testing.assert_allclose(robot.fk(whole), robot.fk(whole.astype(float)), atol=1e-14)
     np.testing.assert_allclose(robot.fk(q.astype(np.float32))[2], T, atol=1e-5)
+
+
+@pytest.mark.parametrize("sequence", [list, tuple])
+@pytest.mark.parametrize("entry", [10**400, "1", None, True, 1j, np.nan, np.inf, [0.0]])
+@pytest.mark.parametrize("place", [0, 3, 5])
+def test_a_sequence_is_refused_as_an_array_of_it_is(sequence, entry, place):
+    robot = robots.arm(4)
+    values = [0.1 * k for k in range(6)]
+    whole = [1, *values[1:]]
+    np.testing.assert_array_equal(robot.fk(sequence(whole)), robot.fk(np.array(whole)))
+    np.testing.assert_array_equal(robot.fk(sequence(map(np.float64, values))), robot.fk(np.array(values)))
+    values[place] = entry
+    for function in (robot.fk, robot.jacobian, robot.fk_all):
+        with pytest.raises(CspaceError):
+            function(sequence(values))
+    for count in (5, 7):
+        with pytest.raises(CspaceError, match="shape"):
+            robot.fk(sequence([0.0] * count))
 
 
 def test_out_is_written_and_returned():
