@@ -84,10 +84,6 @@ inline Invariants pulled_back(const Posed& T, const Invariants& g) {
             g.pl - 2 * qt,
             g.one + dot(g.p, t) + g.pp * tt};
 }
-inline double apply(const Invariants& g, const Invariants& v) {
-    return dot(g.l, v.l) + dot(g.p, v.p) + dot(g.m, v.m) + dot(g.q, v.q) + g.pp * v.pp + g.pl * v.pl +
-           g.one * v.one;
-}
 
 // Rz(a) v = level + cos a · across + sin a · quarter.
 inline Vec3d level(const Vec3d& a) { return {0, 0, a.z}; }
