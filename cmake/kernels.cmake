@@ -67,6 +67,10 @@ target_link_libraries(cspace_library PUBLIC cspace_kernels PRIVATE cspace_flags)
 if(NOT MSVC)
   target_compile_options(cspace_library PRIVATE -ffunction-sections -fdata-sections)  # so that the linker drops what nobody calls
 endif()
+# GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  target_compile_options(cspace_library PRIVATE --param=inline-unit-growth=300)
+endif()
 # Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
 # decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
 if(NOT MSVC)
