@@ -124,6 +124,15 @@ def test_a_sequence_is_refused_as_an_array_of_it_is(sequence, entry, place):
             robot.fk(sequence([0.0] * count))
 
 
+def test_a_base_pose_may_be_unaligned():
+    robot = robots.arm(4)
+    q, T = np.full(6, 0.2), random_pose(np.random.default_rng(1))
+    unaligned = np.frombuffer(bytearray(129), np.uint8)[1:].view(float).reshape(4, 4)
+    unaligned[...] = T
+    for function in (robot.fk, robot.jacobian, robot.fk_all, robot.center_of_mass):
+        np.testing.assert_array_equal(function(q, T_world_base=unaligned), function(q, T_world_base=T))
+
+
 def test_out_is_written_and_returned():
     robot = robots.arm(4)
     q = robots.random_q(robot, np.random.default_rng(0), 8)

@@ -117,7 +117,7 @@ def checked_locked_joints(solver: Solver, locked: Any) -> tuple[int, ...]:
         return solver.redundant_joints if solver.is_redundant else ()
     if isinstance(locked, (str, int)):
         locked = [locked]
-    if isinstance(locked, Mapping) or not isinstance(locked, Iterable):
+    if isinstance(locked, Mapping) or not isinstance(locked, Iterable) or getattr(locked, "ndim", 1) == 0:
         raise InputTypeError(
             f"locked is a {type(locked).__name__}, expected joint names; "
             "their values are arguments of each call"

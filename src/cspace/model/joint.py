@@ -180,7 +180,7 @@ class Limits:
     effort: Array = None  # type: ignore[assignment]
 
     def __post_init__(self) -> None:
-        n = np.asarray(self.lower).size
+        n = as_floats(self.lower, "lower limits", finite=False).size
         for name in LIMIT_FIELDS:
             object.__setattr__(self, name, _limit_row(getattr(self, name), name, n))
         upside_down = np.flatnonzero(self.lower > self.upper)

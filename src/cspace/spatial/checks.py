@@ -25,7 +25,13 @@ def as_pose(value: PoseLike, subject: str = "pose") -> Array:
     Raises InputError on a wrong shape, NaN, inf, a last row other than [0, 0, 0, 1], or a rotation part whose
     RᵀR differs from the identity by more than tolerances.ROTATION_ERROR or which reflects.
     """
-    if type(value) is np.ndarray and value.shape == (4, 4) and value.dtype == np.float64 and _is_pose(value):
+    if (
+        type(value) is np.ndarray
+        and value.shape == (4, 4)
+        and value.dtype == np.float64
+        and value.flags.aligned
+        and _is_pose(value)
+    ):
         return value
     T, from_method = _held_matrix(value, subject)
     if from_method and T.shape[-2:] == (3, 3):

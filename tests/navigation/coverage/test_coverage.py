@@ -152,6 +152,15 @@ def test_the_frame_of_the_world_is_kept():
     assert "swept" in route.reason
 
 
+@pytest.mark.parametrize("resolution", [0.5, 1.0, 1e-3])
+@pytest.mark.parametrize("width", [1e6, 1e300, 1e308])
+def test_a_bar_wider_than_the_map_sweeps_it(resolution, width):
+    grid = cs.OccupancyGrid(np.zeros((20, 30), bool), resolution)
+    route = nav.coverage(grid, (3.5 * resolution, 4.5 * resolution), width)
+    assert route
+    assert route.length == nav.coverage(grid, route.path[0], 100 * resolution).length
+
+
 def test_what_is_no_question_is_refused():
     grid = grid_of([[0, 1], [0, 0]])
     with pytest.raises(InputError, match="blocked"):

@@ -114,7 +114,8 @@ def count_half_width(grid: Any, width: float | None) -> int:
     cells = float(bar) / grid.resolution if bar.ndim == 0 else 0.0
     if cells < 1 - CELL_ROUNDING:
         raise InputError(f"width is {width!r}; a bar is at least a cell wide, {grid.resolution:g} m")
-    return int(min(floor((cells - 1) / 2 + CELL_ROUNDING), max(grid.rows, grid.columns)))
+    half = (cells - 1) / 2 + CELL_ROUNDING
+    return floor(min(half, float(max(grid.rows, grid.columns))))
 
 
 def find_corners(cells: npt.NDArray[np.int32]) -> Array:
