@@ -35,7 +35,7 @@ nb::object to_python(const ik::Value& value) {
     }
 }
 
-// None for what is no solver.
+// None for an object that is not a solver.
 nb::object describe_geometry(nb::handle object) {
     SolverArgument solver;
     return solver.read(object.ptr()) ? to_python(ik::arm_geometry(solver.arm())) : nb::none();

@@ -40,8 +40,8 @@ PyCFunction as_method(F* f) {
 PyObject* call_python(const char* module, const char* function, const char* method, PyObject* self,
                       PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames);
 
-// A robot as an argument, and the chain to one of its frames. Throws for what is no robot or has no such
-// frame.
+// A robot as an argument, and the chain to one of its frames. Throws for an object that is not a robot, and
+// for a frame that it does not have.
 inline const KinematicsObject& robot_from(nanobind::handle robot) {
     if (!PyObject_TypeCheck(robot.ptr(), kinematics_type) || !kinematics_of(robot.ptr())->model)
         throw nanobind::type_error("the first argument must be a robot");

@@ -116,8 +116,9 @@ void bind_navigation_fields_polygons(nb::module_& m) {
         .def("values", potential_values, "core"_a, "goal"_a, "points"_a, "settings"_a,
              "The potential at points (n, 2).");
     nb::class_<StarFunction>(m, "NavigationCore", "A navigation function of a star or sphere world.")
-        .def_static("fault", fault_of, "core"_a, "goal"_a,
-                    "What is no star, or touches: (1 or 2, x, y) of a corner of it.")
+        .def_static(
+            "fault", fault_of, "core"_a, "goal"_a,
+            "An obstacle that is not star-shaped (1) or touches another (2): (1 or 2, x, y), a corner of it.")
         .def_static("of_polygons", of_polygons, nb::rv_policy::take_ownership, "core"_a, "goal"_a, "kappa"_a,
                     "squares"_a, "steps"_a, "Of a world without fault.")
         .def_static("of_discs", of_discs, nb::rv_policy::take_ownership, "discs"_a, "goal"_a, "kappa"_a,

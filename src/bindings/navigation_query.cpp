@@ -3,6 +3,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "bindings.hpp"
+
 using cspace::Point;
 
 namespace {
@@ -38,16 +40,16 @@ PyObject* translate_exception(PyObject* world) {
     try {
         throw;
     } catch (const std::bad_alloc&) {
-        if (!nanobind::isinstance<GridWorld>(world)) return PyErr_NoMemory();
+        if (!nanobind::isinstance<GridWorld>(world) || !nanobind::inst_ready(world)) return PyErr_NoMemory();
         const GridWorld& grid = *nanobind::inst_ptr<GridWorld>(world);
         return PyErr_Format(PyExc_MemoryError,
                             "out of memory in a search over %d x %d cells, which needs up to 100 bytes per "
                             "expanded cell; use larger cells",
                             grid.rows(), grid.columns());
-    } catch (nanobind::python_error& raised) {
-        raised.restore();
     } catch (const std::invalid_argument& refused) {
         PyErr_SetString(PyExc_ValueError, refused.what());
+        return nullptr;
+    } catch (...) {
+        return or_error([]() -> PyObject* { throw; });
     }
-    return nullptr;
 }

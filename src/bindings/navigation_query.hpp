@@ -43,7 +43,7 @@ bool read_settings(PyObject* const* args, std::array<std::int64_t, count>& numbe
     return !PyErr_Occurred();
 }
 
-// The ends of a question. What is no plain point is handed to world.check_free, which converts it or raises.
+// Start and goal. Objects other than a plain point go to world.check_free, which converts them or raises.
 bool read_ends(PyObject* world, PyObject* const* given, cspace::Point (&ends)[2]);
 // Null, with the error of world.check_free for the end that is not free.
 PyObject* refuse_ends(PyObject* world, const cspace::Point (&ends)[2]);

@@ -372,7 +372,9 @@ class NavigationCore:
 
     @staticmethod
     def fault(core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)]) -> tuple[int, float, float] | None:
-        """What is no star, or touches: (1 or 2, x, y) of a corner of it."""
+        """
+        An obstacle that is not star-shaped (1) or touches another (2): (1 or 2, x, y), a corner of it.
+        """
 
     @staticmethod
     def of_polygons(core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], kappa: float, squares: int, steps: int) -> NavigationCore:
