@@ -7,6 +7,17 @@ namespace cspace::tolerance {
 // operations on unit vectors leave some ten units in the last place (2.2e-16).
 inline constexpr double rounding = 1.5e-14;
 
+// A few units in the last place, relative: what a sum of a dozen products loses.
+inline constexpr double last_digits = 1e-15;
+
+// Keeps a quotient finite: smaller than every square of a length that counts, and its inverse does not
+// overflow.
+inline constexpr double nonzero = 1e-300;
+
+// Share by which search radii and bounds of the plane are widened: far above what rounding changes in sums
+// and products of coordinates, far below every width that counts.
+inline constexpr double widening = 1e-9;
+
 // Error of an answer relative to the lengths in the problem, up to which it counts as an exact solution: a
 // thousand times what the formulas lose, a thousand times less than anybody can build or measure.
 inline constexpr double exact = 1e-12;
@@ -43,6 +54,9 @@ inline constexpr double fold_band = 1e-10;
 // A quantity that fixes a joint (a lever arm over the arm's length, a sine) below this is rounding noise: the
 // joint is free and the pose singular.
 inline constexpr double free_joint = 1e-12;
+
+// Component of a unit vector of joint rates below which a joint rests: rounding decides its sign.
+inline constexpr double resting = 1e-9;
 
 // Smallest singular value of the Jacobian (lengths over the arm's length) below which in every configuration
 // an arm is redundant: rounding leaves 1e-16, and the worst of real arms reaches 1e-3 somewhere.

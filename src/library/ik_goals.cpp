@@ -18,7 +18,6 @@ namespace {
 constexpr int pose_dimensions = 6;
 constexpr double turn = 6.283185307179586;
 constexpr double same = 1e-8;     // [rad, m] configurations closer than this are one
-constexpr double still = 1e-9;    // part of a self-motion's direction below which a joint rests
 constexpr double behind = -1e-6;  // [m] a point to look at that lies this far behind the tip is refused
 
 // A search among infinitely many configurations, from a seed or else from the middle of the limits, does not
@@ -132,7 +131,7 @@ bool moves_own_joints(Solver& solver, const GoalRequest& request, const double* 
     double direction[max_joints];
     if (!self_motion_direction(solver.arm(), q, true, direction)) return true;
     const double* own = direction + request.first;
-    return std::any_of(own, own + request.own, [](double d) { return std::fabs(d) > still; });
+    return std::any_of(own, own + request.own, [](double d) { return std::fabs(d) > tolerance::resting; });
 }
 
 // Of a partial goal: rows that differ in the virtual joints alone are one, and a tool that looks at a point

@@ -58,7 +58,7 @@ bool RepellingWalls::descend(const PolygonCore& core, Point start, Point goal, P
     const maps::Settled from = state.settle(start);
     if (!from.is_free() || !state.settle(goal).is_free()) return false;
     const Potential potential(walls, gains, start == goal ? from.at : goal);
-    const double near = std::max(2 * state.tolerance, 1e-7 * gains.rho_0);
+    const double near = std::max(2 * state.tolerance, DescentRun::least_step * gains.rho_0);
     const std::vector<Point> inward = find_start_directions(state.world.space, from, walls, near);
     found = DescentRun(walls, potential, s[4], std::int64_t(s[5])).run(from.at, inward);
     std::vector<Point>& path = found.route.path;

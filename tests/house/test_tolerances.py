@@ -1,4 +1,4 @@
-"""Every threshold of the Python package is in `tolerances`: with a name, a unit and a reason."""
+"""Thresholds have names: in Python all are in `tolerances`, in C++ each is a `constexpr`."""
 
 from __future__ import annotations
 
@@ -22,6 +22,17 @@ FILES = [
     if path != tree.PACKAGE / "tolerances.py" and path.parent != STANDALONE
 ]
 
+CORE = tree.ROOT / "include/cspace"
+CPP_FILES = sorted(
+    path
+    for folder in (CORE, tree.ROOT / "src")
+    for path in folder.rglob("*")
+    if path.suffix in {".hpp", ".cpp"}
+)
+CPP_COMMENTS_AND_STRINGS = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"', re.S)
+CPP_CONSTANTS = re.compile(r"constexpr[^;(){}=]*[={][^;]*;")
+CPP_NUMBERS = re.compile(r"(?<![\w.])(?:0x[\da-f.']+p[-+]?\d+|(?:\d[\d']*\.?\d*|\.\d+)(?:e[-+]?\d+)?)", re.I)
+
 
 def defaults(node: ast.AST) -> set[ast.AST]:
     """The default values of parameters and fields, which their docstrings give the reason for."""
@@ -41,6 +52,17 @@ def small_numbers(text: str) -> Iterator[ast.Constant]:
             yield node
 
 
+def small_cpp_numbers(text: str) -> Iterator[tuple[int, str]]:
+    """Line and text of small numbers, and of those with a negative exponent, outside of constants."""
+    for hidden in (CPP_COMMENTS_AND_STRINGS, CPP_CONSTANTS):
+        text = hidden.sub(lambda match: re.sub(r"[^\n]", " ", match[0]), text)
+    for match in CPP_NUMBERS.finditer(text):
+        digits = match[0].lower().replace("'", "")
+        value = float.fromhex(digits) if digits.startswith("0x") else float(digits)
+        if 0 < value <= SMALL or re.search("[ep]-", digits):
+            yield text.count("\n", 0, match.start()) + 1, match[0]
+
+
 @pytest.mark.parametrize("path", FILES, ids=tree.module_name)
 def test_no_threshold_stands_outside_tolerances(path: Path) -> None:
     for node in small_numbers(path.read_text(encoding="utf-8")):
@@ -57,3 +79,35 @@ def test_every_tolerance_has_a_reason_and_a_use() -> None:
     assert reasons == tolerances.__all__
     others = "".join(path.read_text(encoding="utf-8") for path in FILES)
     assert not [name for name in reasons if not re.search(rf"\b{name}\b", others)], "used nowhere"
+
+
+@pytest.mark.parametrize("path", CPP_FILES, ids=lambda path: str(path.relative_to(tree.ROOT)))
+def test_no_threshold_of_the_core_is_without_a_name(path: Path) -> None:
+    for line, number in small_cpp_numbers(path.read_text(encoding="utf-8")):
+        raise AssertionError(
+            f"{path.relative_to(tree.ROOT)}:{line}: give {number} a constexpr name and a reason"
+        )
+
+
+@pytest.mark.parametrize(
+    ("text", "numbers"),
+    [
+        ("if (x < 1e-9) y = 0.5 * x;  // 1e-12", ["1e-9"]),
+        ("constexpr double a = 1e-9, b[] = {1e-3, 2e-2};\nreturn x < a ? 0x1p-53 : 1e300;", ["0x1p-53"]),
+        ("if constexpr (n > 2) return x + 0.0005;", ["0.0005"]),
+        ('throw Error("below 1e-9");', []),
+        ("int x1e = 3; return v.e - 2 + 0x1f;", []),
+    ],
+)
+def test_a_threshold_of_the_core_is_found(text: str, numbers: list[str]) -> None:
+    assert [number for _, number in small_cpp_numbers(text)] == numbers
+
+
+def test_every_tolerance_of_the_core_has_a_reason_and_a_use() -> None:
+    home = CORE / "tolerances.hpp"
+    blocks = home.read_text(encoding="utf-8").split("\n\n")
+    blocks = [block for block in blocks if "constexpr" in block]
+    assert not [block for block in blocks if not re.match("// .{20}", block)], "without a reason"
+    names = re.findall(r"(\w+) = ", "".join(re.sub("//.*", "", block) for block in blocks))
+    others = "".join(path.read_text(encoding="utf-8") for path in CPP_FILES if path != home)
+    assert not [name for name in names if not re.search(rf"tolerance::{name}\b", others)], "used nowhere"

@@ -33,6 +33,7 @@ CSPACE_INLINE Mat3<V> straighten_rotation(const Mat3<V>& R) {
 // Checks a pose and orthonormalises its rotation within rounding. m: its 16 entries, row-major.
 template <class V>
 CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
+    constexpr double exact_rotation = 1e-14;  // what products of rotations lose
     ReadGoal<V> out;
     Mat3<V>& R = out.T.R;
     for (int i = 0; i < 3; ++i)
@@ -47,7 +48,7 @@ CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     out.is_pose = (abs(dot(x, x) + dot(y, y) + dot(z, z) + dot(x, y) + dot(y, z) + dot(x, z)) <= 100.0) &&
                   (error <= tolerance::rotation_error) && (last_row <= tolerance::last_row) &&
                   (size <= tolerance::farthest) && (dot(cross(x, y), z) > 0.0);
-    if (any(error > 1e-14)) R = straighten_rotation(R);
+    if (any(error > exact_rotation)) R = straighten_rotation(R);
     return out;
 }
 

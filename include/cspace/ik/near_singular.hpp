@@ -58,9 +58,10 @@ inline double miss_between(const Chain& chain, const Posed& goal, double length,
 // two. Those within `near`, the uncertainty from rounding, count as distinct only with evidence.
 inline bool are_one(const Chain& chain, const Posed& goal, double length, const double* a, const double* b,
                     double gap, double near, double left) {
-    constexpr double wide = 1e-2, rounding = 1e-15;
+    constexpr double wide = 1e-2;
     if (!(gap < max(near, wide))) return false;
-    return miss_between(chain, goal, length, a, b) <= max(left, gap < near ? tolerance::halfway : rounding);
+    return miss_between(chain, goal, length, a, b) <=
+           max(left, gap < near ? tolerance::halfway : tolerance::last_digits);
 }
 
 // Adds q to the solutions unless it is not a solution or is already listed.
@@ -70,8 +71,8 @@ CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed
     const double size = refine_solution(chain, goal, length, q, error, most_steps);
     if (!(size <= tolerance::reached) || out.count == max_solutions) return;
     const int weak = weakest_direction(error.jacobian);
-    const double conditioning = max(error.jacobian.sigma[weak], 1e-9);
-    const double near = 10 * max(size, 1e-15) / conditioning;
+    const double conditioning = max(error.jacobian.sigma[weak], tolerance::always_singular);
+    const double near = 10 * max(size, tolerance::last_digits) / conditioning;
     for (int k = 0; k < out.count; ++k) {
         const double gap = joint_distance(chain, out.q[k], q);
         if (gap < tolerance::same_solution) return;
@@ -83,11 +84,14 @@ CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed
     out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
 }
 
+// Value of a virtual joint [rad] up to which it counts as zero near a singularity, on an exact form.
+inline constexpr double rounded_stray = 1e-3;
+
 // The branches of the plan to try, the tolerated values of virtual joints [rad], and the number of steps per
 // candidate.
 struct CandidateSearch {
     int first = 0, last = max_branches;
-    double stray = 1e-3;
+    double stray = rounded_stray;
     int most_steps = 60;  // of the refinement
 };
 
@@ -124,6 +128,7 @@ inline void set_unconstrained(const Plan& plan, const double* unconstrained, Car
 
 // Whether the branches depend on the angle of joint i when it is free.
 inline bool is_free(const Plan& plan, const Posed& goal_form, const Care& care, double t, int i) {
+    constexpr double changed = 1e-3;  // [rad] rounding next to a singularity stays below
     const Branches<double> b = solve_closed_form(plan, goal_form, care);
     Care other = care;
     other.unconstrained[i] = {std::cos(t + 2.4), std::sin(t + 2.4)};
@@ -131,7 +136,7 @@ inline bool is_free(const Plan& plan, const Posed& goal_form, const Care& care, 
     for (int k = 0; k < max_branches; ++k) {
         if (b.ok[k] != moved.ok[k]) return true;
         for (int j = 0; j < 6 && b.ok[k]; ++j)
-            if (std::fabs(short_way(b.t[k][j] - moved.t[k][j])) > 1e-3) return true;
+            if (std::fabs(short_way(b.t[k][j] - moved.t[k][j])) > changed) return true;
     }
     return false;
 }
@@ -166,8 +171,8 @@ inline void try_perturbed_goals(const Plan& plan, const Posed& goal_form, Care c
 // planar arm: the nearest angle that does not.
 inline void turn_free_wrist(const Plan& plan, const Posed& goal_form, Care care, double unconstrained,
                             Solutions& out, const Posed& goal) {
-    care.free =
-        max(care.free, 1e-6);  // behind two shoulders that merge, the wrist is seen through their error
+    constexpr double merging = 1e-6;  // sine: two shoulders that merge pass their error on to the wrist
+    care.free = max(care.free, merging);
     constexpr int half = max_branches / 2;
     for (int i = 0; i < 2; ++i) {
         bool found = false;
@@ -223,7 +228,7 @@ inline void solve_carefully(const Plan& plan, const Posed& goal, const double* u
     set_unconstrained(plan, unconstrained, care, t);
     const Posed goal_form = goal_in_form(plan, goal);
     // Near singularities of the completed arm an idealised form leaves virtual joints far from zero.
-    const CandidateSearch search = {0, max_branches, plan.idealised ? 0.1 : 1e-3};
+    const CandidateSearch search = {0, max_branches, plan.idealised ? 0.1 : rounded_stray};
     closed_form_candidates(plan, goal_form, care, out, goal, search);
     if (plan.idealised) {
         care.spread = slack;
@@ -254,9 +259,10 @@ inline constexpr int perturbed_goals = 12;
 
 // The k-th perturbed goal: generic directions, both senses, decreasing distances.
 inline Posed perturbed_goal(const Posed& goal, double length, int k) {
+    constexpr double far = 1e-2, near = 1e-3;  // [rad, arm's lengths] regular, and within Newton's reach
     double d[max_joints];
     spread_configuration(k / 4, 6, d);
-    const double size = (k % 2 ? -1 : 1) * (k % 4 < 2 ? 1e-2 : 1e-3) / pi;
+    const double size = (k % 2 ? -1 : 1) * (k % 4 < 2 ? far : near) / pi;
     const Vec3d away = size * length * Vec3d{d[0], d[1], d[2]}, turn = size * Vec3d{d[3], d[4], d[5]};
     return {spatial::rotation_of_rotvec(turn) * goal.R, goal.t + away};
 }

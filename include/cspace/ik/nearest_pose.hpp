@@ -58,7 +58,8 @@ struct NearestPoseProblem {
 inline double minimise_pose_error(const Chain& chain, const Posed& goal, double length, double weight,
                                   double* q, PoseError& error) {
     constexpr double stride = 0.5, settled = 1e-10, definite = 1e-13;
-    const double first_damping = 1e-6 * (1 + weight * weight);
+    constexpr double gentle = 1e-6;  // share of the largest curvature: damps no step that descends
+    const double first_damping = gentle * (1 + weight * weight);
     return descend_damped(NearestPoseProblem{chain, goal, length, weight}, q, error,
                           NewtonDamping{0, settled, stride, first_damping, definite}, 100);
 }

@@ -74,7 +74,7 @@ inline double take_step(const Chain& chain, const Posed& goal, double length, co
 inline bool solve_by_newton(const Chain& chain, const Posed& goal, double length, double* q,
                             PoseError& error) {
     constexpr int most_steps = 16;
-    constexpr double settled = 1e-15, arrived = 1e-12;
+    constexpr double settled = tolerance::last_digits, arrived = 1e-12;
     double best[max_joints], at[max_joints];
     for (int i = 0; i < chain.n; ++i) best[i] = at[i] = q[i];
     measure_error(chain, goal, length, at, error);
@@ -101,7 +101,7 @@ inline bool solve_by_newton(const Chain& chain, const Posed& goal, double length
 // is then a solution, else unchanged.
 inline bool follow_valley(const Chain& chain, const Posed& goal, double length, double* q, PoseError& error) {
     constexpr int most_steps = 96;
-    constexpr double narrow = 1e-2, settled = 1e-15, arrived = 1e-12;
+    constexpr double narrow = 1e-2, settled = tolerance::last_digits, arrived = 1e-12;
     double at[max_joints], size = 1;
     for (int i = 0; i < chain.n; ++i) at[i] = q[i];
     measure_error(chain, goal, length, at, error);
@@ -131,7 +131,8 @@ inline bool follow_valley(const Chain& chain, const Posed& goal, double length, 
 // direction.
 inline double descend_to_goal(const Chain& chain, const Posed& goal, double length, double* q,
                               PoseError& error, int most_steps) {
-    constexpr double settled = 1e-15, noise = 1e-13;
+    constexpr double settled = tolerance::last_digits, noise = 1e-13;
+    constexpr double least_damping = 1e-20;  // rises to one within thirty steps
     constexpr double growth = 4;
     double damping = 0, grow = growth;
     int stalls = 0;
@@ -158,7 +159,7 @@ inline double descend_to_goal(const Chain& chain, const Posed& goal, double leng
             grow = growth;
         } else if (size > noise) {
             // It may have to rise by many powers of ten (Nielsen 1999).
-            damping = max(grow * damping, max(0.1 * sigma * sigma, 1e-20));
+            damping = max(grow * damping, max(0.1 * sigma * sigma, least_damping));
             grow *= growth;
         }
     }
@@ -222,7 +223,7 @@ inline WeakDirection weak_direction(const double (*columns)[6]) {
         for (int j = 0; j < 6; ++j) A[i][j] = columns[j][i];
     linear::factor_qr(A, diagonal, factor);
     double floor = 0;
-    for (const double d : diagonal) floor = max(floor, 1e-15 * std::fabs(d));
+    for (const double d : diagonal) floor = max(floor, tolerance::last_digits * std::fabs(d));
     for (double& d : diagonal)
         if (std::fabs(d) < floor) d = std::copysign(floor, d);
     WeakDirection out{1, {0.41, -0.37, 0.43, 0.31, -0.47, 0.45}, {}};

@@ -159,13 +159,14 @@ inline void add_ends(FreeSums& out, const ThreeParallel& arm, double x, double y
 // the same.
 inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, double unconstrained,
                           const Care& care) {
+    constexpr double merged = 1e-4;  // [rad] both solutions of a double root give the same sums
     FreeSums out;
     const Vec3d& p = goal.t;
     const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
     const TwoAngles<double> shoulder =
         linear_equation<double>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
     const Turn<double>& t1 = shoulder.root[i];
-    const bool is_same = i == 1 && std::fabs(angle_of(t1 - shoulder.root[0])) < 1e-4;
+    const bool is_same = i == 1 && std::fabs(angle_of(t1 - shoulder.root[0])) < merged;
     const Vec3d z = undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2));
     if (!shoulder.ok || is_same || z.x * z.x + z.y * z.y > care.free * care.free) return out;
     const double x = t1.c * p.x + t1.s * p.y - arm.a1;

@@ -58,7 +58,7 @@ CSPACE_INLINE Aligned<V> align(V x, V y, V u, V v, double unit, const Care& care
 template <class V>
 CSPACE_INLINE Turn<V> turn_onto(const Vec3<V>& h, const Vec3<V>& v, const Vec3<V>& u, double free) {
     const Vec3<V> a = v - dot(v, h) * h, b = u - dot(u, h) * h;
-    const V size2 = max(dot(a, a), fill<V>(1e-300));
+    const V size2 = max(dot(a, a), fill<V>(tolerance::nonzero));
     const V inverse = 1.0 / size2;
     return choose(size2 <= free * free, {1, 0}, Turn<V>{dot(a, b) * inverse, dot(h, cross(a, b)) * inverse});
 }
@@ -138,7 +138,7 @@ struct Wrist {
     bool right_angled;                    // both twists ±90°: the second solution is (t4 + π, −t5, t6 + π)
 };
 inline Wrist make_wrist(double ca4, double sa4, double ca5, double sa5) {
-    const bool square = std::fabs(ca4) < 1e-15 && std::fabs(ca5) < 1e-15;
+    const bool square = std::fabs(ca4) < tolerance::last_digits && std::fabs(ca5) < tolerance::last_digits;
     return {ca4,
             sa4,
             ca5,

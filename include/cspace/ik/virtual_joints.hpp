@@ -88,7 +88,9 @@ inline double completed_conditioning(const Chain& chain, const int* source, doub
 inline bool is_regular(const Chain& six, const int* source, double length) {
     int regular = 0;
     constexpr int trials = 5;
-    for (int k = 0; k < trials; ++k) regular += completed_conditioning(six, source, length, k) > 1e-3;
+    constexpr double regular_singular_value = 1e-3;  // (lengths over the arm's length), as of real arms
+    for (int k = 0; k < trials; ++k)
+        regular += completed_conditioning(six, source, length, k) > regular_singular_value;
     return 2 * regular > trials;
 }
 

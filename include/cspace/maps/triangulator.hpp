@@ -14,6 +14,7 @@
 
 #include "cspace/maps/triangulation.hpp"
 #include "cspace/math/crossing.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::maps {
 
@@ -37,11 +38,12 @@ class Triangulator {
     Triangulator(Point low, Point high, std::size_t segments)
         : most_bends_(std::min<std::size_t>(200'000 + 50 * segments, 64 + 4 * segments * segments)),
           most_of_one_(64 + 4 * segments) {
-        const double reach = std::max({high.x - low.x, high.y - low.y, 1e-300});
+        const double reach = std::max({high.x - low.x, high.y - low.y, tolerance::nonzero});
         low = low - Point{reach, reach};
         high = high + Point{reach, reach};
+        constexpr double roundings = 0x1p-50;  // eight of them, relative
         rounding_ =
-            0x1p-50 * std::max({std::abs(low.x), std::abs(low.y), std::abs(high.x), std::abs(high.y)});
+            roundings * std::max({std::abs(low.x), std::abs(low.y), std::abs(high.x), std::abs(high.y)});
         mesh.points = {low, {high.x, low.y}, high, {low.x, high.y}};
         mesh.triangles = {{{0, 1, 2}, {none, 1, none}, {none, none, none}},
                           {{0, 2, 3}, {none, none, 0}, {none, none, none}}};

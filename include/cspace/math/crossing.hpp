@@ -26,6 +26,8 @@ inline Point crossing(const Line& a, const Line& b) {
     const double whole = cross(other, along), size = std::max(norm(along), norm(other));
     const double part = whole == 0 ? 0.5 : cross(other, b.from - a.from) / whole;
     Point at = a.from + std::clamp(part, 0.0, 1.0) * along;
+    constexpr double converged = 0x1p-30;  // the next correction is below half of the last place
+    constexpr double vanished = 0x1p-80;   // of the longer segment: no crossing is that near to an axis
     for (int round = 0; round < 3 && whole != 0; ++round) {
         const double off_a = exact::determinant(a.from, a.to, at) / whole;
         const double off_b = exact::determinant(b.from, b.to, at) / whole;
@@ -33,10 +35,10 @@ inline Point crossing(const Line& a, const Line& b) {
         if (!std::isfinite(correction.x) || !std::isfinite(correction.y)) break;
         at = at + correction;
         // The relative error of the correction is that of `whole`: 2⁻⁵² size² / whole.
-        if (norm(correction) * size < 0x1p-30 * std::abs(whole)) break;
+        if (norm(correction) * size < converged * std::abs(whole)) break;
     }
     const auto inside = [&](double value, double from, double to) {
-        if (std::abs(value) < 0x1p-80 * size)
+        if (std::abs(value) < vanished * size)
             value = 0;  // what refinement leaves of a coordinate that is zero
         return std::clamp(value, std::min(from, to), std::max(from, to));
     };

@@ -94,7 +94,8 @@ inline FarAngle reduce_far(double x) {
         f = far::negated(f);
         ++quadrant;
     }
-    double unit = beyond_half ? -0x1p-53 : 0x1p-53;
+    constexpr double half_place = 0x1p-53;  // of a number between one half and one
+    double unit = beyond_half ? -half_place : half_place;
     while (!(f.word[5] >> 31)) {
         f = far::doubled(f);
         unit *= 0.5;
@@ -103,7 +104,7 @@ inline FarAngle reduce_far(double x) {
     const std::uint64_t high = std::uint64_t(f.word[5]) << 32 | f.word[4],
                         low = std::uint64_t(f.word[3]) << 32 | f.word[2];
     const double a = double(high >> 11) * unit;
-    const double b = double((high << 42 | low >> 22) & 0x1fffffffffffffu) * (unit * 0x1p-53);
+    const double b = double((high << 42 | low >> 22) & 0x1fffffffffffffu) * (unit * half_place);
     constexpr double half_pi = 0x1.921fb54442d18p+0, half_pi_rest = 0x1.1a62633145c07p-54;
     const double u = a * half_pi;
     return {u, std::fma(a, half_pi, -u) + (a * half_pi_rest + b * half_pi), quadrant & 3};

@@ -117,9 +117,11 @@ struct NewtonDamping {
 struct GaussNewtonDamping {
     double enough, shortest, least;
     double damping = 1e300, stride = 1e300, slack = 0, floor = 0;
+    static constexpr double of_square = 1e-3;  // restrains no step towards a regular solution
+    static constexpr double risen = 1e-12;     // from nothing, to where rounding is damped
 
-    void accept(double error) { damping = max(min(0.125 * damping, 1e-3 * error * error), least); }
-    void reject() { damping = 8 * damping + 1e-12; }
+    void accept(double error) { damping = max(min(0.125 * damping, of_square * error * error), least); }
+    void reject() { damping = 8 * damping + risen; }
 };
 
 }  // namespace cspace::inline CSPACE_ISA

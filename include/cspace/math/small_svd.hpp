@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "cspace/math/isa.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace {
 
@@ -56,10 +57,11 @@ template <int R, int C>
 void decompose(SmallSvd<R, C>& m) {
     for (int j = 0; j < m.columns; ++j)
         for (int k = 0; k < m.columns; ++k) m.v[j][k] = j == k;
+    constexpr double noise2 = 1e-36;  // the square of rounding on a column that is itself rounding
     // A column this small against the largest is rounding noise, whose direction never settles.
     double largest2 = 0;
     for (int j = 0; j < m.columns; ++j) largest2 = std::fmax(largest2, dot_n(m.us[j], m.us[j], m.rows));
-    const double nothing = 1e-36 * largest2;
+    const double nothing = noise2 * largest2;
     bool moved = true;
     for (int sweep = 0; moved && sweep < 40; ++sweep) {
         moved = false;
@@ -67,7 +69,9 @@ void decompose(SmallSvd<R, C>& m) {
             for (int j = i + 1; j < m.columns; ++j) {
                 const double aa = dot_n(m.us[i], m.us[i], m.rows), bb = dot_n(m.us[j], m.us[j], m.rows);
                 const double ab = dot_n(m.us[i], m.us[j], m.rows);
-                if (!(std::fabs(ab) > 1e-15 * std::sqrt(aa * bb)) || std::fmin(aa, bb) <= nothing) continue;
+                if (!(std::fabs(ab) > tolerance::last_digits * std::sqrt(aa * bb)) ||
+                    std::fmin(aa, bb) <= nothing)
+                    continue;
                 const double zeta = (bb - aa) / (2 * ab);
                 const double t = std::copysign(1.0, zeta) / (std::fabs(zeta) + std::sqrt(1 + zeta * zeta));
                 const double c = 1 / std::sqrt(1 + t * t), s = c * t;

@@ -19,7 +19,10 @@ class Draws {
         }
     }
     // In [0, 1), a multiple of 2⁻⁵³.
-    double uniform() { return double(next() >> 11) * 0x1p-53; }
+    double uniform() {
+        constexpr double last_place = 0x1p-53;
+        return double(next() >> 11) * last_place;
+    }
 
   private:
     std::uint64_t state_[4];

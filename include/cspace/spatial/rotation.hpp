@@ -84,12 +84,14 @@ CSPACE_INLINE V angle_between(const Mat3<V>& A, const Mat3<V>& B) {
 // The rotation vector of R, rotations by π included.
 template <class V>
 CSPACE_INLINE Vec3<V> rotvec_of_rotation(const Mat3<V>& R) {
+    constexpr double small = 1e-12;     // sine up to which it equals its angle
+    constexpr double half_turn = 1e-6;  // sine that has lost the axis, next to a half turn
     Vec3<V> w = sine_of(R);
     const V s = norm(w), c = 0.5 * (R.m[0][0] + R.m[1][1] + R.m[2][2] - 1.0);
     const V angle = atan2(s, c);
-    const V scale = select(s > 1e-12, angle / select(s > 1e-12, s, fill<V>(1.0)), fill<V>(1.0));
+    const V scale = select(s > small, angle / select(s > small, s, fill<V>(1.0)), fill<V>(1.0));
     w = scale * w;
-    const mask_of<V> half = (s <= 1e-6) && (c < 0.0);
+    const mask_of<V> half = (s <= half_turn) && (c < 0.0);
     if (!any(half)) return w;
     // Near a half turn the axis is the largest column of R + I.
     Vec3<V> axis = column(R, 0);

@@ -41,15 +41,18 @@ inline void put_lane(Candidates& out, const V* q, int k, bool close) {
 
 // Newton's method on four candidates abreast, from number `first` on.
 inline void polish_candidates(const GeneralPlan& plan, const Posed& goal, int first, Candidates& all) {
+    constexpr double last_step = 1e-9;  // [rad] the step after it squares the error
+    constexpr double converged = 1e-7;  // [rad] a larger step was the first of many, or cut short
     for_each_pack(all.count - first, [&](auto pack, int i) {
         using V = decltype(pack);
         const int row = first + i, lanes = std::min(all.count - row, Lanes<V>::count);
         const Pose<V> goals = fill_pose<V>(goal);
         V q[6], step = fill<V>(1.0);
         load_rows(&all.q[row][0], 6, lanes, 6, q);
-        for (int k = 0; k < 8 && any(step > 1e-9); ++k) step = newton_step(plan.chain, goals, 1.0, q, 0.3);
+        for (int k = 0; k < 8 && any(step > last_step); ++k)
+            step = newton_step(plan.chain, goals, 1.0, q, 0.3);
         for (int k = 0; k < lanes; ++k) {
-            all.settled[row + k] = lane(step, k) < 1e-7;
+            all.settled[row + k] = lane(step, k) < converged;
             if (!all.settled[row + k]) continue;
             for (int j = 0; j < 6; ++j) all.q[row + k][j] = lane(q[j], k);
         }
@@ -101,11 +104,14 @@ inline void admit_polished(Solutions& out, const GeneralPlan& plan, const Posed&
     out.self_motion[n] = false;
 }
 
+// Second derivative of the error below which a valley is straight: differences of errors leave some 1e-9.
+inline constexpr double least_bend = 1e-4;
+
 // Beside a fold a solution has a twin: along the weakest direction v the error is σ t u + ½ κ t² u + …, which
 // vanishes again at t = −2 σ/κ. False where there is no fold (σ is more than `most`, κ less than `least`): a
 // family does not bend.
 inline bool find_near_double(const GeneralPlan& plan, const Posed& goal, const double* q, double* near_double,
-                             double most = 0.1, double least = 1e-4) {
+                             double most = 0.1, double least = least_bend) {
     PoseError error;
     const double length = 1.0;
     measure_error(plan.chain, goal, length, q, error);
@@ -126,9 +132,10 @@ inline bool find_near_double(const GeneralPlan& plan, const Posed& goal, const d
 }
 // Whether a solution is its own twin, as far as rounding can tell: two in one.
 inline bool is_double(const GeneralPlan& plan, const Posed& goal, const double* q) {
+    constexpr double close = 1e-3;  // [rad] farther apart, rounding does not merge two solutions
     double near_double[6];
     if (!find_near_double(plan, goal, q, near_double)) return false;
-    return joint_distance(plan.chain, q, near_double) < 1e-3 &&
+    return joint_distance(plan.chain, q, near_double) < close &&
            miss_between(plan.chain, goal, 1.0, q, near_double) <= tolerance::halfway;
 }
 

@@ -66,7 +66,10 @@ inline ThreeTurns three_turns(const Vec3d& h1, const Vec3d& h2, const Vec3d& h3)
 }
 
 // Whether they make more than a two-parameter set of rotations.
-inline bool is_regular(const ThreeTurns& turns) { return turns.a * turns.a + turns.b * turns.b > 1e-12; }
+inline bool is_regular(const ThreeTurns& turns) {
+    constexpr double least = 1e-12;  // square of a sine: rounded axes bend by less
+    return turns.a * turns.a + turns.b * turns.b > least;
+}
 
 inline TurnedTwice solve(const ThreeTurns& turns, const Mat3d& G) {
     constexpr double slack = 1e-9;  // a double solution may be lost by its square root

@@ -114,6 +114,15 @@ inline constexpr double a1_origin = 0.7, a2_origin = 2.1;
 // An equation of this size is nothing but rounding: at some goals of special arms one vanishes.
 inline constexpr double vanished_equation = 1e-11;
 
+// The second of two columns, relative to the first, below which rounding decides its direction.
+inline constexpr double vanished_column = 1e-9;
+
+// Below this the second of the two equations for a4 fixes it less well than the first with both its signs.
+inline constexpr double firm_rank = 1e-6;
+
+// A row of four equations, relative to the first, that rounding alone leaves.
+inline constexpr double vanished_row = 1e-14;
+
 struct Complex {
     double re, im;
 };
@@ -133,7 +142,7 @@ inline void eliminate_a4(Elimination& e, double (&N)[4][6]) {
     for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 6; ++j) N[i][j] = A[2 + i][2 + j];
     e.a4_rank = diagonal[0] != 0 ? std::fabs(diagonal[1] / diagonal[0]) : 0;
-    const bool full = e.a4_rank > 1e-9;
+    const bool full = e.a4_rank > vanished_column;
     for (int j = 0; j < 6; ++j) {
         const double y = full ? A[1][2 + j] / diagonal[1] : 0;
         const double x = diagonal[0] != 0 ? (A[0][2 + j] - A[0][1] * y) / diagonal[0] : 0;
@@ -171,7 +180,7 @@ inline double find_annihilator(Complex (&A)[4][3], Complex (&n)[4]) {
         const double length = std::sqrt(most);
         last = length;
         if (k == 0) first = length;
-        if (!(length > 1e-14 * first)) break;
+        if (!(length > vanished_row * first)) break;
         const double corner = std::sqrt(square_of(A[k][k]));
         const Complex phase = corner > 0 ? Complex{A[k][k].re / corner, A[k][k].im / corner} : Complex{1, 0};
         Complex v[4] = {};

@@ -53,6 +53,8 @@ inline constexpr double cluster_width = 2e-5;  // [rad], a piece this small is n
 inline constexpr double near_miss = 0.02;      // [rad], a pair announced on such a piece is followed up
 inline constexpr double order_seen = 4e-4;     // [rad], roots this close show together in how f grows
 inline constexpr int most_samplings = 48, most_divisions = 400;  // of pieces, per goal
+inline constexpr double same_vertex = 1e-2;  // of a step of differences: what their parabola is good for
+inline constexpr double beside_dip = 1e-3;   // [rad] by which the root of a dip may lie outside of its piece
 inline constexpr double regular_alias = 1e-6;  // above, a formulation vanishes identically or drowns in noise
 
 inline double angle_at(const Arc& arc, double u) {
@@ -109,11 +111,11 @@ inline void close_roots(const Function& f, const Arc& arc, const Variations& sig
     const double depth = 2 * (at - 0.5 * slope * slope / bend) / bend;  // −(half distance of the roots)²
     if (signs.count == 0 && depth > 400 * h * h) return;
     for (int k = 0; k < out.count; ++k)
-        if (out.root[k].width > 0 && std::fabs(out.root[k].angle - vertex) < 1e-2 * h) return;
+        if (out.root[k].width > 0 && std::fabs(out.root[k].angle - vertex) < same_vertex * h) return;
     const double apart = depth < 0 ? std::sqrt(-depth) : 0;
     const int order = signs.most > 2 ? order_of_zero(f, vertex) : 0;
     out.evaluations += signs.most > 2;
-    if (apart > 1e-2 * h && apart < 3 * h) {
+    if (apart > same_vertex * h && apart < 3 * h) {
         append_hidden_angle(out, {vertex - apart, h, 1, 0, order});
         append_hidden_angle(out, {vertex + apart, h, 1, 0, order});
     } else {
@@ -148,7 +150,7 @@ inline void note_near_misses(const Pieces& dips, HiddenAngles& out) {
         const double from = angle_at(dip, 0), to = angle_at(dip, 1);
         bool has_root = false;
         for (int k = 0; k < found; ++k)
-            has_root |= out.root[k].angle > from - 1e-3 && out.root[k].angle < to + 1e-3;
+            has_root |= out.root[k].angle > from - beside_dip && out.root[k].angle < to + beside_dip;
         if (has_root) continue;
         // The parabola through both ends and the middle.
         const double left = dip.b[0], right = dip.b[degree], middle = value_halfway(dip);
@@ -211,7 +213,7 @@ inline void isolate_roots(const Function& f, double last_step, HiddenAngles& out
     }
     if (out.alias > regular_alias) return;
     Pieces stack, simple, dips;
-    const double noise = max(30 * out.alias, 1e-15) * tables.arc_gain;
+    const double noise = max(30 * out.alias, tolerance::last_digits) * tables.arc_gain;
     for (int k = 0; k < arcs; ++k) {
         Arc& arc = stack.piece[stack.count].arc;
         read_arc(tables, sampled, k, arc);

@@ -22,9 +22,10 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 // Whether the link that the goal makes of tip and base is longer than all the others together.
 inline bool is_beyond_reach(const LoopFrames& frames, const Posed& goal) {
+    constexpr double rounding = 1e-9;  // of a stretched arm, which still reaches
     double others = 0;
     for (const Posed& link : frames.between) others += norm(link.t);
-    return norm(closing_link(frames, goal).t) > (1 + 1e-9) * others;
+    return norm(closing_link(frames, goal).t) > (1 + rounding) * others;
 }
 
 // Solutions come in pairs, those on folds counted twice: where one is left over its partner is missing.

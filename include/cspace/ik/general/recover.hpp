@@ -86,7 +86,7 @@ CSPACE_INLINE TwoHalfAngles<V> half_angles(const Monomials<V>& m) {
 
 template <class V>
 CSPACE_INLINE Turn<V> unit_turn(V c, V s) {
-    const V scale = 1.0 / sqrt(max(c * c + s * s, fill<V>(1e-300)));
+    const V scale = 1.0 / sqrt(max(c * c + s * s, fill<V>(tolerance::nonzero)));
     return {scale * c, scale * s};
 }
 template <class V>
@@ -153,8 +153,8 @@ CSPACE_INLINE void joints_from(const Loop& loop, const Elimination& e, const Tur
     const auto step = [](bool slides, V c, V s, const Turn<V>& origin) {
         if (!slides) return turn_step(unit_turn(c, s) + origin);
         const V size = sqrt(c * c + s * s), upper = size - c, lower = size + c;
-        return slide_step(select(lower > upper, s / max(lower, fill<V>(1e-300)),
-                                 upper / select(s == 0.0, fill<V>(1e-300), s)));
+        return slide_step(select(lower > upper, s / max(lower, fill<V>(tolerance::nonzero)),
+                                 upper / select(s == 0.0, fill<V>(tolerance::nonzero), s)));
     };
     const Step<V> a1 = step(loop.slides[1], half.c1, half.s1, o1);
     const Step<V> a2 = step(loop.slides[2], half.c2, half.s2, o2);
@@ -163,7 +163,7 @@ CSPACE_INLINE void joints_from(const Loop& loop, const Elimination& e, const Tur
     X = stepped_angle(X, loop.slides[2], a2) * fill_pose<V>(loop.M[2]);
     V part[6];
     parts_without_a5(e, X, part);
-    if (e.a4_rank > 1e-6) {
+    if (e.a4_rank > firm_rank) {
         V c = fill<V>(0.0), s = c;
         for (int i = 0; i < 6; ++i) {
             c = mul_add(fill<V>(e.inverse_w[0][i]), part[i], c);
@@ -186,7 +186,7 @@ CSPACE_INLINE void joints_from(const Loop& loop, const Elimination& e, const Tur
         close_loop(loop, X, a0, a1, a2, slide_step(scale * (-root - 0.5 * w1)), second);
         return;
     }
-    const double length = std::sqrt(max(most, 1e-300));
+    const double length = std::sqrt(max(most, tolerance::nonzero));
     const Turn<V> mean = {fill<V>(e.W[best][0] / length), fill<V>(e.W[best][1] / length)};
     const V c = max(min(part[best] * (1 / length), fill<V>(1.0)), fill<V>(-1.0));
     const Turn<V> off = {c, sqrt(max(1.0 - c * c, fill<V>(0.0)))};
@@ -205,7 +205,7 @@ CSPACE_INLINE V dot12(const V* a, const V* b) {
 }
 template <class V>
 CSPACE_INLINE void make_unit(V* y) {
-    const V scale = 1.0 / sqrt(max(dot12(y, y), fill<V>(1e-300)));
+    const V scale = 1.0 / sqrt(max(dot12(y, y), fill<V>(tolerance::nonzero)));
     for (int i = 0; i < 12; ++i) y[i] = scale * y[i];
 }
 
@@ -216,7 +216,7 @@ CSPACE_NOINLINE void weak_plane(const ReducedEquations<V>& r, WeakPlane<V>& out)
     constexpr int steps = 2;
     V floor = fill<V>(0.0), inverse[12], y[2][12];
     for (const V& d : r.diagonal) floor = max(floor, abs(d));
-    floor = 1e-15 * floor;
+    floor = tolerance::last_digits * floor;
     for (int k = 0; k < 12; ++k) {
         inverse[k] = 1.0 / copysign(max(abs(r.diagonal[k]), floor), r.diagonal[k]);
         y[0][k] = fill<V>(k == 11 ? 1.0 : 0.0);
@@ -260,13 +260,14 @@ CSPACE_NOINLINE mask_of<V> split_plane(const WeakPlane<V>& plane, Monomials<V> (
                 lu[a][b] = mul_add(plane.z[a][i + 3], plane.z[b][i], lu[a][b]);
             }
         }
+    constexpr double rounding = 1e-12;  // of entries that cancel
     const V det_l = ll[0][0] * ll[1][1] - ll[0][1] * ll[1][0];
     const V det_u = uu[0][0] * uu[1][1] - uu[0][1] * uu[1][0];
     const mask_of<V> by_lower = det_l >= det_u;
     const V det = max(det_l, det_u), g01 = select(by_lower, ll[0][1], uu[0][1]);
     const V g00 = select(by_lower, ll[0][0], uu[0][0]), g11 = select(by_lower, ll[1][1], uu[1][1]);
     const V h01 = select(by_lower, lu[0][1], lu[1][0]), h10 = select(by_lower, lu[1][0], lu[0][1]);
-    const V inverse = 1.0 / max(det, fill<V>(1e-300));
+    const V inverse = 1.0 / max(det, fill<V>(tolerance::nonzero));
     const V m00 = (g11 * lu[0][0] - g01 * h10) * inverse, m01 = (g11 * h01 - g01 * lu[1][1]) * inverse;
     const V m10 = (g00 * h10 - g01 * lu[0][0]) * inverse, m11 = (g00 * lu[1][1] - g01 * h01) * inverse;
     const V mean = 0.5 * (m00 + m11), half = 0.5 * (m00 - m11);
@@ -277,7 +278,7 @@ CSPACE_NOINLINE mask_of<V> split_plane(const WeakPlane<V>& plane, Monomials<V> (
         const mask_of<V> first = a * a + m01 * m01 > d * d + m10 * m10;
         V u0 = select(first, -m01, -d), u1 = select(first, a, m10);
         const V size = sqrt(u0 * u0 + u1 * u1);
-        const mask_of<V> any_vector = !(size > 1e-12);  // a multiple of the unit matrix
+        const mask_of<V> any_vector = !(size > rounding);  // a multiple of the unit matrix
         u0 = select(any_vector, fill<V>(k == 0 ? 1.0 : 0.0), u0);
         u1 = select(any_vector, fill<V>(k == 0 ? 0.0 : 1.0), u1);
         for (int i = 0; i < 12; ++i) out[k].x[i] = u0 * plane.z[0][i] + u1 * plane.z[1][i];

@@ -57,7 +57,7 @@ inline void offer_between(const Chain& chain, const TipConstraint& constraint, R
         if (!onto_curve(chain, constraint, q, at)) return;
         const double here = from_value(chain, r, q);
         offer_member(chain, r, q, t);
-        if (std::fabs(here) < 1e-15) return;
+        if (std::fabs(here) < tolerance::last_digits) return;
         const bool below = (here < 0) == (low < 0);
         (below ? low : high) = here;
         for (int i = 0; i < chain.n; ++i) (below ? left : right)[i] = q[i];
@@ -77,11 +77,12 @@ inline void offer_next(const Chain& chain, const TipConstraint& constraint, Repr
 inline bool lies_near(const Chain& chain, double length, const double* q, const double* t,
                       const double* other) {
     constexpr double reach = 0.06, narrow = 0.05;
+    constexpr double rounding2 = 1e-12;  // square of what a solution itself may be off [rad]
     double gap[max_joints];
     for (int i = 0; i < chain.n; ++i)
         gap[i] = chain.prismatic[i] ? (other[i] - q[i]) / length : short_way(other[i] - q[i]);
     const double along = dot_n(gap, t, chain.n), size2 = dot_n(gap, gap, chain.n);
-    return size2 < reach * reach && size2 - along * along < narrow * narrow * size2 + 1e-12;
+    return size2 < reach * reach && size2 - along * along < narrow * narrow * size2 + rounding2;
 }
 
 // Whether families cross at q: there it has more directions than one.

@@ -208,7 +208,7 @@ inline void resample_arc(const SamplerTables& t, const Function& f, double unit,
     // On a piece of an arc the last coefficients are nothing but noise, and measure it.
     double tail = 0;
     for (int n = degree - 2; n <= degree; ++n) tail = max(tail, std::fabs(c[n]));
-    const double noise = max(1e-15 * largest, 8 * tail);
+    const double noise = max(tolerance::last_digits * largest, 8 * tail);
     int top = 0;
     for (int n = 0; n <= degree; ++n)
         if (std::fabs(c[n]) > noise) top = n;

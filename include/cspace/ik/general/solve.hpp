@@ -35,12 +35,13 @@ inline constexpr double clear_sheets = 1e-9;  // square of the sine that parts t
 inline constexpr double rough_root = 1e-5;    // solutions are polished on the arm
 inline constexpr double as_isolated = 2 * rough_root;
 inline constexpr double equation_error = 3e-14;  // of their entries, with a margin
+inline constexpr double trusted_alias = 1e-9;    // harmonics that must vanish: above, some noise moves roots
 inline constexpr double near_roots = 3e-3;       // [rad] hidden angles this close share a null plane
 
 // The null vectors of hidden angles, four at a time.
 inline void follow_roots(const Loop& loop, const Elimination& e, const double* angle, int count, bool close,
                          Candidates& out) {
-    const bool doubled = !(e.a4_rank > 1e-6);
+    const bool doubled = !(e.a4_rank > firm_rank);
     for_each_pack(count, [&](auto pack, int first) {
         using V = decltype(pack);
         const int lanes = std::min(count - first, Lanes<V>::count);
@@ -60,7 +61,7 @@ inline void follow_roots(const Loop& loop, const Elimination& e, const double* a
 inline void split_planes(const Loop& loop, const Elimination& e, const double* angle, int count,
                          Candidates& out) {
     using V = Pack<4>;
-    const bool doubled = !(e.a4_rank > 1e-6);
+    const bool doubled = !(e.a4_rank > firm_rank);
     for (int first = 0; first < count; first += 4) {
         const int lanes = count - first < 4 ? count - first : 4;
         V at;
@@ -225,7 +226,7 @@ inline bool follow_angles(const Loop& loop, const Elimination& e, const HiddenAn
         follow_roots(loop, e, alone, n_alone, false, out);
         split_planes(loop, e, plane, n_planes, out);
     }
-    return !(e.a4_rank > 1e-6);
+    return !(e.a4_rank > firm_rank);
 }
 
 // Of roots that are there for every goal no solutions are expected.
@@ -276,7 +277,7 @@ inline Certificate solve_by_hidden_angle(const GeneralPlan& plan, const Posed& g
         mark_doubles(plan, goal, out, twice);
         all = all_matched(seen, out, twice);
     }
-    seen.trusted = hidden.alias < 1e-9 && !hidden.overflow;
+    seen.trusted = hidden.alias < trusted_alias && !hidden.overflow;
     seen.shared = seen.clusters > 0 && share_angles(seen, plan.chain, out, twice, plan.paired[number]);
     seen.complete = all && seen.trusted && !seen.shared;
     return seen;
@@ -323,9 +324,10 @@ inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal,
 // Of three joints that turn and three that slide.
 inline bool solve_orientation_first(const GeneralPlan& plan, const Posed& goal, Solutions& out) {
     constexpr double clear = 1e-9, flat = 1e-9;
+    constexpr double close = 1e-6;  // square of a sine: the two solutions for it nearly meet
     const TwoOrientations both = two_orientations(plan.chain, orientation_first(plan.chain), goal);
     Candidates found;
-    for (int k = 0; k < both.count; ++k) append_candidate(found, both.q[k], both.inside < 1e-6);
+    for (int k = 0; k < both.count; ++k) append_candidate(found, both.q[k], both.inside < close);
     admit_candidates(plan, goal, 0, found, out);
     add_near_double_roots(plan, goal, found, out);
     refine_unsettled(plan, goal, found, out);

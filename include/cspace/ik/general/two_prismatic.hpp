@@ -172,7 +172,7 @@ inline void joints_on_sheet(const TwoSheets& s, const AtHiddenAngle<double>& at,
     const Turn<double> all[4] = {at.a0, a1, a2, a3};
     for (int i = 0; i < 4; ++i) q[s.turn[i]] = angle_of(all[i]);
     const Vec3d p = vector(at.p), D = vector(at.D[0]), E = vector(at.D[1]), normal = cross(D, E);
-    const double scale = 1 / max(dot(normal, normal), 1e-300);
+    const double scale = 1 / max(dot(normal, normal), tolerance::nonzero);
     q[s.slide[0]] = -scale * dot(cross(p, E), normal);
     q[s.slide[1]] = -scale * dot(cross(D, p), normal);
 }

@@ -53,7 +53,8 @@ inline bool with_virtual_wrist(const Chain& chain, Chain& best) {
     six.n = 6;
     Vec3d centre = chain.point[chain.n - 1] + dot(chain.tip.t - chain.point[chain.n - 1], last) * last;
     if (chain.n == 5) {
-        if (!(norm(cross(chain.axis[3], last)) > 1e-3)) return false;
+        constexpr double crossing = 1e-3;  // sine: a wrist of axes more parallel is singular everywhere
+        if (!(norm(cross(chain.axis[3], last)) > crossing)) return false;
         centre = common_normal(chain.axis[3], chain.point[3], last, chain.point[4], false, centre).from;
     }
     const Vec3d x = any_perpendicular(last);

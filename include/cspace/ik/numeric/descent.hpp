@@ -65,6 +65,7 @@ inline constexpr double rounding = 1e-14;
 // Relative regularisation of Newton's normal equations, as a fraction of their trace. It bounds the step at a
 // singular Jacobian.
 inline constexpr double newton_floor = 1e-15;
+inline constexpr double never_zero = 1e-30;  // damping that bounds the step where all rows vanish
 }  // namespace descent
 
 // Evaluates the trial. It becomes the current iterate if it is better, or if it must be accepted.
@@ -118,9 +119,9 @@ CSPACE_INLINE void next_trial(const Path& path, const Task& task, const Rows& ro
             ((d.q[j] <= task.lower[j]) && (pull < 0.0)) || ((d.q[j] >= task.upper[j]) && (pull > 0.0));
         loose[j] = select(active, zero, one);
     }
-    V damping = 2.0 * d.mu * d.cost + 1e-30;
+    V damping = 2.0 * d.mu * d.cost + descent::never_zero;
     if (task.method == Method::newton) {
-        damping = fill<V>(1e-30);
+        damping = fill<V>(descent::never_zero);
         for (int r = 0; r < rows.m; ++r)
             for (int j = 0; j < path.n; ++j)
                 damping = mul_add(descent::newton_floor * d.at.J[r][j], d.at.J[r][j], damping);

@@ -27,7 +27,7 @@ enum class Ending : unsigned char {
 // The pose error in the axes of the goal is [Δp; rotation vector]. Row k counts where weight[k] > 0.
 struct Task {
     double weight[6] = {1, 1, 1, 1, 1, 1};
-    double tolerance = 1e-9;  // of the length of Δp [m] and of the angle [rad], their counted parts
+    double tolerance = tolerance::reached;  // of |Δp| [m] and of the angle [rad], their counted parts
     int most_steps = 60;
     Method method = Method::levenberg_marquardt;
     bool limited = false;
@@ -77,8 +77,9 @@ CSPACE_INLINE LogRate<V> log_rate(const Vec3<V>& w) {
     const V square = dot(w, w), angle = sqrt(square);
     V s, c;
     sincos(0.5 * angle, s, c);
+    constexpr double series2 = 1e-4;  // square of the angle up to which two terms of the series are exact
     // 1/θ² − cot(θ/2) / 2θ; its series where the difference cancels.
-    const mask_of<V> small = square < 1e-4;
+    const mask_of<V> small = square < series2;
     const V safe = select(small, fill<V>(1.0), square);
     const V exact = (1.0 - 0.5 * angle * c / select(small, fill<V>(1.0), s)) / safe;
     return {w, select(small, 1.0 / 12.0 + square * (1.0 / 720.0), exact)};

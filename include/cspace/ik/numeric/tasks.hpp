@@ -151,9 +151,10 @@ inline double add_rows(const Mat3d& Q, const Vec3d& error, const double* weight,
 
 // The rotation vector that takes the unit vector a to d by the shortest rotation.
 inline Vec3d turn_between(const Vec3d& a, const Vec3d& d) {
+    constexpr double aligned = 1e-12;  // sine below which rounding decides the axis
     const Vec3d across = cross(a, d);
     const double s = norm(across), c = dot(a, d);
-    if (s > 1e-12) return (std::atan2(s, c) / s) * across;
+    if (s > aligned) return (std::atan2(s, c) / s) * across;
     return c > 0 ? across : pi * any_perpendicular(a);
 }
 

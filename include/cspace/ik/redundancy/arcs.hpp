@@ -35,6 +35,10 @@ inline bool add_turn(const Tracer& tracer, Turns& turns, double value, int end, 
     return true;
 }
 
+// [rad, m] Points of a curve closer than this are one: a corner of the limits is known to the square root of
+// rounding.
+inline constexpr double same_point = 1e-6;
+
 // Marks the known points at limits where the curve enters the limits along the tangent of `at` (sense 1) or
 // leaves them (sense −1). At a corner of the limits these are several points. Returns true if one of them was
 // not marked before.
@@ -43,7 +47,7 @@ inline bool use_points(Tracer& tracer, const CurvePoint& at, double sense) {
     for (int k = 0; k < tracer.points->count; ++k) {
         const LimitPoint& point = tracer.points->point[k];
         const double inwards = point.side ? -at.tangent[point.joint] : at.tangent[point.joint];
-        if (!(sense * inwards > 0 && joint_gap(tracer.arm->chain, point.q, at.q) < 1e-6)) continue;
+        if (!(sense * inwards > 0 && joint_gap(tracer.arm->chain, point.q, at.q) < same_point)) continue;
         fresh = fresh || !tracer.trail->used[k];
         tracer.trail->used[k] = true;
     }
@@ -68,7 +72,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
         int side = 0, stop = stop_at_limit(tracer, at, next, side);
         if (stop_between_turns(tracer, at, next)) stop = -1;
         if (at.tangent[p] * next.tangent[p] < 0 &&
-            max(std::fabs(at.tangent[p]), std::fabs(next.tangent[p])) > 1e-9) {
+            max(std::fabs(at.tangent[p]), std::fabs(next.tangent[p])) > tolerance::resting) {
             const CurvePoint fold = turn_between(tracer, at, next);
             if (!add(fold.q[p], end_fold, 0)) return ArcEnd::lost;
             for (int i = 0; i < n; ++i) inside[i] = fold.q[i];
@@ -116,7 +120,7 @@ inline void add_piece(Tracer& tracer, const Critical& from, const Critical& to, 
     const double length = high.value - low.value;
     if (length <= limit_slack) return;
     const bool turns = !tracer.arm->chain.prismatic[tracer.parameter];
-    const int parts = turns ? int(std::ceil(length / (2 * pi) - 1e-9)) : 1;
+    const int parts = turns ? int(std::ceil(length / (2 * pi) - limit_slack)) : 1;
     for (int k = 0; k < parts; ++k) {
         const Critical cut[2] = {{low.value + k * length / parts, end_none, 0},
                                  {low.value + (k + 1) * length / parts, end_none, 0}};
@@ -155,14 +159,15 @@ inline void trace_from_limits(Tracer& tracer) {
         put_on_curve(tracer, at);
         tracer.trail->used[k] = true;
         const double inwards = point.side ? -at.tangent[point.joint] : at.tangent[point.joint];
-        if (std::fabs(inwards) < 1e-9) continue;  // the joint touches its limit and does not cross it
+        // The joint touches its limit and does not cross it.
+        if (std::fabs(inwards) < tolerance::resting) continue;
         for (int i = 0; inwards < 0 && i < n; ++i) at.tangent[i] = -at.tangent[i];
         use_points(tracer, at, 1);
         Turns turns;
         add_turn(tracer, turns, at.q[tracer.parameter], point.joint, point.side, at.q);
         const ArcEnd end = follow_arc(tracer, at, turns);
         // An arc has two ends of its own, or none where two limits meet in a corner that it only touches.
-        const bool touches = joint_gap(tracer.arm->chain, at.q, last_of_trail(tracer)) < 1e-6;
+        const bool touches = joint_gap(tracer.arm->chain, at.q, last_of_trail(tracer)) < same_point;
         if (end != ArcEnd::limit && !touches) tracer.out->complete = false;
         add_pieces(tracer, turns);
     }
@@ -235,9 +240,9 @@ inline bool agrees_with_solutions(const Tracer& tracer, const SweptRows& rows, d
     int within = 0;
     for (int j = 0; j < rows.count; ++j) {
         if (is_far(tracer, rows.q[j])) return true;  // where no arc is followed
-        if (is_within(*tracer.arm, rows.q[j], -1e-6))
+        if (is_within(*tracer.arm, rows.q[j], -same_point))
             ++within;
-        else if (is_within(*tracer.arm, rows.q[j], 1e-6))
+        else if (is_within(*tracer.arm, rows.q[j], same_point))
             return true;
     }
     const int count = count_intervals(tracer, value);
@@ -266,9 +271,9 @@ inline void trace_loops_by_descent(Tracer& tracer) {
         CurvePoint at;
         spread_evenly(k, arm.chain.n, at.q);
         at.error = 1;
-        for (int step = 0; step < most_steps && at.error > 1e-9; ++step)
+        for (int step = 0; step < most_steps && at.error > tolerance::reached; ++step)
             onto_curve(arm.chain, arm.rank, tracer.goal, arm.length, at);
-        if (at.error <= 1e-9) trace_loop(tracer, at.q);
+        if (at.error <= tolerance::reached) trace_loop(tracer, at.q);
     }
 }
 

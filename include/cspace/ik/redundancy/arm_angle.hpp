@@ -116,7 +116,7 @@ template <class V>
 CSPACE_INLINE Mat3<V> frame_towards(const Vec3<V>& w, const Vec3<V>& e) {
     const Vec3<V> n = (1.0 / norm(w)) * w;
     const Vec3<V> off = e - dot(e, n) * n;
-    const Vec3<V> u = (1.0 / max(norm(off), fill<V>(1e-300))) * off;
+    const Vec3<V> u = (1.0 / max(norm(off), fill<V>(tolerance::nonzero))) * off;
     return from_columns(n, u, cross(n, u));
 }
 
@@ -142,7 +142,7 @@ CSPACE_NOINLINE void solve_swivel(const SwivelArm& arm, const Posed& goal, V swi
     const double r = 0.5 * (dot(w, w) - dot(upper, upper) - dot(fore, fore)) - dot(upper, along);
     const TwoAngles<double> bend = linear_equation<double>(dot(upper, lean), dot(upper, cross(h4, fore)), r,
                                                            arm.length * arm.length, Care{}, {1, 0});
-    const bool reaches = bend.ok && norm(w) > 1e-12 * arm.length;
+    const bool reaches = bend.ok && norm(w) > tolerance::free_joint * arm.length;
     const Vec3d zero = reaches ? swivel_zero(arm, w) : Vec3d{1, 0, 0};
     const Vec3d n = reaches ? (1 / norm(w)) * w : Vec3d{0, 0, 1};
     const Turn<V> psi = turn_by(swivel);

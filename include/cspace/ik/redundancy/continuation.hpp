@@ -47,6 +47,7 @@ inline void put_on_curve(const Tracer& tracer, CurvePoint& at) {
 // from the curve by less than the width of the tube, and no other arc enters the tube: see step_along.
 inline double part_of_chord(const Chain& chain, const double* from, const double* to, const double* q) {
     constexpr double tube = 0.06;
+    constexpr double rounding = 1e-9;  // of a share of the chord
     double way[max_joints], gap[max_joints], length2 = 0, along = 0;
     for (int i = 0; i < chain.n; ++i) {
         way[i] = to[i] - from[i];
@@ -59,7 +60,7 @@ inline double part_of_chord(const Chain& chain, const double* from, const double
         along += gap[i] * way[i];
     }
     const double part = along / length2;
-    if (!(part >= -1e-9 && part <= 1 + 1e-9)) return -1;
+    if (!(part >= -rounding && part <= 1 + rounding)) return -1;
     for (int i = 0; i < chain.n; ++i)
         if (std::fabs(gap[i] - part * way[i]) > off) return -1;
     return max(0.0, part);
@@ -87,7 +88,8 @@ inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride
     put_on_curve(tracer, to);
     orient_tangent(to.tangent, from.tangent, n);
     for (int i = 0; i < n; ++i) off = max(off, std::fabs(to.q[i] - guess[i]));
-    return to.error < 1e-9 && off < most_off * stride && dot_n(to.tangent, from.tangent, n) > 0.95;
+    return to.error < tolerance::reached && off < most_off * stride &&
+           dot_n(to.tangent, from.tangent, n) > 0.95;
 }
 
 // One step. It is shortened until it stays close to the curve and the Jacobian changes little, so that two
@@ -95,9 +97,10 @@ inline bool try_step(const Tracer& tracer, const CurvePoint& from, double stride
 // Returns false where the curve cannot be followed.
 inline bool step_along(const Tracer& tracer, const CurvePoint& from, double& stride, CurvePoint& to) {
     constexpr double shortest = 1e-7, crossing = 1e-5, most_change = 0.5;
+    constexpr double straight = 1e-3;  // a bend this small restrains no step
     const int n = tracer.arm->chain.n;
     const double bend = std::sqrt(dot_n(from.bend, from.bend, n));
-    stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + 1e-3));
+    stride = min(min(2 * stride, longest_step(tracer, from)), 0.25 / (bend + straight));
     bool crosses = false;
     while (stride > shortest) {
         if (!try_step(tracer, from, stride, most_correction, to)) {
@@ -139,17 +142,19 @@ inline int stopped_joint(const Tracer& tracer, const CurvePoint& to, double slac
 // Moves `at` along the curve to the point where joint i is at its limit.
 inline void settle_limit(const Tracer& tracer, int i, int side, CurvePoint& at) {
     const Redundant& arm = *tracer.arm;
+    constexpr double settled_gap = 1e-13;  // [rad, m] what rounding leaves
     const double limit = limit_of(arm, i, side);
     double along[max_joints];
     for (int j = 0; j < arm.chain.n; ++j) along[j] = at.tangent[j];
     for (int k = 0; k < 12; ++k) {
         const double gap = joint_difference(arm.chain, i, limit - at.q[i]);
-        double step = gap / (std::fabs(at.tangent[i]) > 1e-9 ? at.tangent[i] : 1e-9);
+        double step =
+            gap / (std::fabs(at.tangent[i]) > tolerance::resting ? at.tangent[i] : tolerance::resting);
         step = max(-0.1, min(0.1, step));
         predict_along(at.q, at.tangent, at.bend, step, arm.chain.n, at.q);
         put_on_curve(tracer, at);
         orient_tangent(at.tangent, along, arm.chain.n);
-        if (std::fabs(gap) < 1e-13) return;
+        if (std::fabs(gap) < settled_gap) return;
     }
 }
 
@@ -164,11 +169,12 @@ inline bool is_far(const Tracer& tracer, const double* q) {
 // The first of the known points at limits that a step passed. Within one step a joint may leave its limits
 // and return, or make a full revolution.
 inline int point_passed(const Tracer& tracer, const CurvePoint& from, const CurvePoint& to) {
+    constexpr double still_there = 1e-6;  // of a step: the point where it starts is not passed again
     double first = 2;
     int found = -1;
     for (int k = 0; k < tracer.points->count; ++k) {
         const double part = part_of_chord(tracer.arm->chain, from.q, to.q, tracer.points->point[k].q);
-        if (!(part > 1e-6 && part < first)) continue;
+        if (!(part > still_there && part < first)) continue;
         first = part;
         found = k;
     }
@@ -178,7 +184,8 @@ inline int point_passed(const Tracer& tracer, const CurvePoint& from, const Curv
 // Where a step has left the limits, goes back to the first limit that it crossed. Returns the joint that
 // stops there.
 inline int go_back_to_limit(const Tracer& tracer, CurvePoint& at, int& side) {
-    int stop = stopped_joint(tracer, at, 1e-12, side);
+    constexpr double outside = 1e-12;  // [rad, m] beyond a limit by more than rounding
+    int stop = stopped_joint(tracer, at, outside, side);
     for (int k = 0, next = stop; next >= 0 && k < 4; ++k) {
         stop = next;
         settle_limit(tracer, stop, side, at);

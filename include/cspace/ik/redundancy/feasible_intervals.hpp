@@ -213,12 +213,15 @@ inline void close_circle(Walk& walk, double boundary) {
     out.count = kept;
 }
 
+// [rad, m] Distance from a branch up to which a point at a limit belongs to it.
+inline constexpr double on_branch = 1e-4;
+
 // Assigns each point at a limit to its branch.
 inline void name_branches(const Sweep& sweep, const LimitPoints& points, int* branch) {
     double values[LimitPoints::room];
     for (int k = 0; k < points.count; ++k) values[k] = points.point[k].q[sweep.parameter];
     sweep_values(sweep, values, points.count, [&](int k, const SweptRows& rows) {
-        double least = 1e-4;
+        double least = on_branch;
         branch[k] = -1;
         for (int j = 0; j < rows.count; ++j) {
             const double gap = joint_gap(sweep.locked->whole, rows.q[j], points.point[k].q);
@@ -253,8 +256,10 @@ inline void collect_critical(const Redundant& arm, const Sweep& sweep, const Dom
 // For one locked joint at an end of the chain and a closed form with known folds.
 inline void walk_cells(const Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
                        const Domain& domain, Intervals& out) {
+    // [rad, m] The square root of the form's error.
+    constexpr double merging = 1e-6, merging_idealised = 1e-4;
     // Where two branches all but meet, nothing can be told from a value in between.
-    const double fuzz = sweep.locked->arm.plan.idealised ? 1e-4 : 1e-6;
+    const double fuzz = sweep.locked->arm.plan.idealised ? merging_idealised : merging;
     double boundary[CriticalValues::room + 1], middle[CriticalValues::room + 1];
     int n = 0;
     for (int k = 0; k < critical.count; ++k)

@@ -81,8 +81,6 @@ inline bool others_within(const Redundant& arm, const double* q, int joint, doub
     return true;
 }
 
-inline constexpr double limit_slack = 1e-9;  // [rad or m] what rounding may put outside
-
 // Joint `except` is left out (−1: none).
 inline void find_limit_points(const Redundant& arm, const LimitArms& arms, const Posed& goal, int except,
                               LimitPoints& out) {

@@ -113,6 +113,7 @@ inline void divide_samples(const Redundant& arm, const Sweep& sweep, double best
 // Whether q lies between samples a and b of a branch.
 inline bool lies_between(const Chain& chain, const CurveSample& a, const CurveSample& b, int branch,
                          const double* q) {
+    constexpr double aside2 = 1e-3;  // square of the share by which a branch bends between samples
     double along = 0, length2 = 0, off2 = 0, gap[max_joints], way[max_joints];
     for (int i = 0; i < chain.n; ++i) {
         const double from = a.q[i][branch];
@@ -124,7 +125,7 @@ inline bool lies_between(const Chain& chain, const CurveSample& a, const CurveSa
     const double part = length2 > 0 ? along / length2 : 0;
     if (part < -0.1 || part > 1.1) return false;
     for (int i = 0; i < chain.n; ++i) off2 += (gap[i] - part * way[i]) * (gap[i] - part * way[i]);
-    return off2 < 1e-3 * length2;
+    return off2 < aside2 * length2;
 }
 
 // Calls visit(q, distance) for the local minima: samples below the adjacent samples of their branch, unless
@@ -170,7 +171,7 @@ inline int values_between_folds(const FoldValues& folds, double middle, double h
     int count = 0;
     for (int k = 0; k < n && count + each <= room; ++k) {
         const double from = fold[k], to = fold[k + 1];
-        if (to - from < 1e-9 || to < middle - half || from > middle + half) continue;
+        if (to - from < limit_slack || to < middle - half || from > middle + half) continue;
         for (int j = 0; j < each; ++j)
             values[count++] = from + 0.5 * (to - from) * (1 - std::cos(pi * (j + 0.5) / each));
     }

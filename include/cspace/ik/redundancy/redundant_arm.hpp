@@ -106,6 +106,9 @@ inline double excess(const Redundant& arm, int i, double q) {
     const double middle = 0.5 * (arm.lower[i] + arm.upper[i]);
     return std::fabs(short_way(q - middle)) - 0.5 * (arm.upper[i] - arm.lower[i]);
 }
+
+inline constexpr double limit_slack = 1e-9;  // [rad or m] what rounding may put outside
+
 inline bool is_within(const Redundant& arm, const double* q, double slack) {
     for (int i = 0; i < arm.chain.n; ++i)
         if (excess(arm, i, q[i]) > slack) return false;
@@ -116,7 +119,7 @@ inline bool is_within(const Redundant& arm, const double* q, double slack) {
 // range: a tool has to point forwards.
 inline bool is_allowed(const Redundant& arm, const double* q) {
     for (int i = 0; i < arm.chain.n; ++i)
-        if (arm.weight[i] == 0 && excess(arm, i, q[i]) > 1e-9 * arm.length) return false;
+        if (arm.weight[i] == 0 && excess(arm, i, q[i]) > limit_slack * arm.length) return false;
     return true;
 }
 

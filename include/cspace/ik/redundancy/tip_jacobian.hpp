@@ -104,9 +104,12 @@ CSPACE_INLINE void turn_out(const SplitJacobian<V>& split, int size, V* b) {
     for (int k = rank_in<N>(split) - 1; k >= 0; --k) linear::reflect(split.A, n, k, split.factor[k], b);
 }
 
+// A pivot of a Jacobian (lengths over the arm's length) that rounding alone leaves.
+inline constexpr double least_pivot = 1e-14;
+
 template <class V>
 CSPACE_INLINE V away_from_zero(V x) {
-    return select(abs(x) < 1e-14, copysign(fill<V>(1e-14), x), x);
+    return select(abs(x) < least_pivot, copysign(fill<V>(least_pivot), x), x);
 }
 
 // The shortest joint step that moves the tip by e: Rᵀ y = e, Q y.
@@ -193,13 +196,15 @@ inline double jacobian_change(const CurvePoint& at, const CurvePoint& other, int
 // false if it leads farther than `reach` away or does not converge.
 inline bool settle_fold(const Chain& chain, int rank, const Posed& goal, double length, int p, double reach,
                         CurvePoint& at) {
+    constexpr double straight = 1e-9;    // second derivative that is only rounding
+    constexpr double converged = 1e-10;  // [rad, arm's lengths] the next step leaves rounding alone
     double start[max_joints];
     for (int i = 0; i < chain.n; ++i) start[i] = at.q[i];
     for (int k = 0; k < 20; ++k) {
         onto_curve(chain, rank, goal, length, at);
         const double slope = at.bend[p];
-        double step = std::fabs(slope) > 1e-9 ? -at.tangent[p] / slope : 1;
-        const bool settled = std::fabs(step) < 1e-10 && at.error < 1e-10;
+        double step = std::fabs(slope) > straight ? -at.tangent[p] / slope : 1;
+        const bool settled = std::fabs(step) < converged && at.error < converged;
         step = max(-0.1, min(0.1, step));
         predict_along(at.q, at.tangent, at.bend, step, chain.n, at.q);
         double away = 0;

@@ -220,7 +220,10 @@ CSPACE_INLINE Rooms<V> rooms_of(const ThreeJoints& g, const Vec3<V>& p) {
 
 // Whether the two solutions of the wrist coincide at isolated configurations only: both its twist angles are
 // 90°.
-inline bool has_square_wrist(const Wrist& w) { return std::fabs(w.ca4) < 1e-4 && std::fabs(w.ca5) < 1e-4; }
+inline bool has_square_wrist(const Wrist& w) {
+    constexpr double square = 1e-4;  // as far as calibration moves an axis
+    return std::fabs(w.ca4) < square && std::fabs(w.ca5) < square;
+}
 
 inline void add_fold(FoldValues& out, double value, int branch) {
     if (out.count == FoldValues::room) {
@@ -233,10 +236,11 @@ inline void add_fold(FoldValues& out, double value, int branch) {
 // The folds of an idealised form are close to those of the arm, at a slightly different value for each pair
 // of branches.
 inline void add_true_folds(const Redundant& arm, const Sweep& sweep, double value, FoldValues& out) {
+    constexpr double around_fold = 1e-3;  // of a square root's argument: as far as an idealised form is off
     const Plan& plan = sweep.locked->arm.plan;
     const Posed goal = goal_at(sweep.in_form, std::cos(value), std::sin(value));
     Care care = care_of(plan);
-    care.band = 1e-3;
+    care.band = around_fold;
     const Branches<double> b = solve_closed_form(plan, goal, care);
     for (int k = 0; k < max_branches; ++k) {
         if (!b.ok[k]) continue;
@@ -267,8 +271,9 @@ inline double settled_root(const Function& f, double value) {
 }
 template <class Function>
 inline void add_roots(const Redundant& arm, const Sweep& sweep, const Function& f, FoldValues& out) {
+    constexpr double slip = 1e-8;  // of a function whose values keep half of their digits
     HiddenAngles hidden;
-    isolate_roots(f, 1e-8, hidden);
+    isolate_roots(f, slip, hidden);
     out.exact = out.exact && !hidden.overflow;
     for (int k = 0; k < hidden.count; ++k) {
         hidden.root[k].angle = settled_root(f, hidden.root[k].angle);

@@ -42,12 +42,13 @@ inline double margin_at(const Chain& chain, const TipConstraint& constraint, con
 // joints. Then no other curve crosses it.
 inline bool only_rolls(const Chain& chain, const TipConstraint& constraint, const double* q,
                        const double* direction) {
-    constexpr double moving = 1e-9, firm = 1e-3, together = 1e-9;
+    constexpr double firm = 1e-3, together = 1e-9;
     if (chain.n != 6) return false;
     int first = 6, last = -1;
     for (int i = 0; i < 6; ++i)
-        if (std::fabs(direction[i]) > moving) first = last < 0 ? i : first, last = i;
-    if (last - first != 2 || std::fabs(direction[first + 1]) > moving || (first != 0 && first != 3))
+        if (std::fabs(direction[i]) > tolerance::resting) first = last < 0 ? i : first, last = i;
+    if (last - first != 2 || std::fabs(direction[first + 1]) > tolerance::resting ||
+        (first != 0 && first != 3))
         return false;
     Vec3d axis[6], point[6];
     for (int i = 0; i < 6; ++i)

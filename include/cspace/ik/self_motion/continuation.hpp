@@ -52,12 +52,13 @@ inline constexpr double still = 1e-7;
 // The tangent of the curve at a point: the projection of `along` onto the null space, unit. False if it
 // vanishes.
 inline bool tangent_at(const Chain& chain, const PoseSvd& J, const double* along, double* tangent) {
+    constexpr double leading = 1e-2;  // what is left of a unit vector that points along the curve at all
     const double* basis[max_joints];
     int k = 0;
     for (int j = 0; j < J.columns; ++j)
         if (J.sigma[j] <= still) basis[k++] = J.v[j];
     for (int i = 0; i < chain.n; ++i) tangent[i] = along[i];
-    return project(basis, k, chain.n, tangent) > 1e-2;
+    return project(basis, k, chain.n, tangent) > leading;
 }
 
 // The smallest of the other singular values. It vanishes where two curves cross.
@@ -88,7 +89,7 @@ struct Room {
 // Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
 inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q, PoseError& at) {
     constexpr int most_steps = 12;
-    constexpr double settled = 1e-15;
+    constexpr double settled = tolerance::last_digits;
     double size = measure_constrained(chain, constraint, q, at);
     for (int step = 0; step < most_steps && size > settled; ++step) {
         double dq[max_joints], next[max_joints];
@@ -139,7 +140,10 @@ inline bool start_is_next(const Chain& chain, const TipConstraint& constraint, c
            dot_n(tangent, start_tangent, chain.n) > 0.9;
 }
 
-inline double first_step(const PoseSvd& J) { return min(1e-3, 0.2 * Room{}.here(margin_on_curve(J))); }
+inline double first_step(const PoseSvd& J) {
+    constexpr double longest = 1e-3;  // [rad] nothing is known yet about how the curve bends
+    return min(longest, 0.2 * Room{}.here(margin_on_curve(J)));
+}
 
 // The tangent at a configuration, from a guess. Where curves cross, the null space has more dimensions than
 // the tangents. A short step along each of many directions is therefore corrected back, and the resulting
@@ -218,7 +222,8 @@ CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const
         visit(q, t);
         if (away > endless_slide) return CurveEnd::far;
         const double longest_here = min(room.after(margin, last_margin, h), longest);
-        h = turning > 1e-9 ? min(1.5 * h, longest_here) : 2 * h;  // slides alone run along a line
+        // Slides alone run along a line.
+        h = turning > tolerance::resting ? min(1.5 * h, longest_here) : 2 * h;
     }
     return CurveEnd::lost;
 }

@@ -92,7 +92,7 @@ inline bool led_away(const Chain& chain, const Posed& goal, double length, const
     double moved[max_joints];
     for (int i = 0; i < chain.n; ++i) moved[i] = q[i] + stride * trial[i];
     PoseError error;
-    if (refine_solution(chain, goal, length, moved, error, steps_back) > 1e-12) return false;
+    if (refine_solution(chain, goal, length, moved, error, steps_back) > tolerance::exact) return false;
     double away = 0;
     for (int i = 0; i < chain.n; ++i) {
         trial[i] = moved[i] - q[i];
@@ -112,6 +112,7 @@ inline SparseDirections sparse_directions(const double* const* basis, int k, int
     SparseDirections out;
     for (int i = 0; i < n; ++i)
         for (int j = k == 2 ? n - 1 : i + 1; j < n; ++j) {
+            constexpr double parallel2 = 1e-8;  // square below which they cancel all joints
             // The weights that cancel joint i (and j).
             const double a = basis[0][i], b = basis[1][i], c = k == 2 ? 0 : basis[2][i];
             const double e = k == 2 ? 0 : basis[0][j], f = k == 2 ? 0 : basis[1][j],
@@ -123,7 +124,7 @@ inline SparseDirections sparse_directions(const double* const* basis, int k, int
                 d[m] = w[0] * basis[0][m] + w[1] * basis[1][m] + (k == 2 ? 0 : w[2] * basis[2][m]);
                 size2 += d[m] * d[m];
             }
-            if (size2 < 1e-8) continue;
+            if (size2 < parallel2) continue;
             for (int m = 0; m < n; ++m) d[m] /= std::sqrt(size2);
             ++out.count;
         }

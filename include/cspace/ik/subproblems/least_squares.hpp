@@ -95,20 +95,23 @@ struct CurvedAngleProblem : AngleProblem<System> {
 // Moves the unknowns to a local minimum of the residual; returns its length there.
 template <class System, class Unknown>
 double refine_angles(const System& system, Unknown* t, int most_steps = 30) {
+    constexpr double shortest_step = 1e-10;  // [rad] the step after it squares the error
     // A slope that is only rounding must not throw an unknown about.
     constexpr double least = tolerance::exact * tolerance::exact;
     Linearised<System> at;
-    return descend_damped(AngleProblem<System>{system}, t, at,
-                          GaussNewtonDamping{2 * std::numeric_limits<double>::epsilon(), 1e-10, least},
-                          most_steps);
+    return descend_damped(
+        AngleProblem<System>{system}, t, at,
+        GaussNewtonDamping{2 * std::numeric_limits<double>::epsilon(), shortest_step, least}, most_steps);
 }
 // The same where the residual there may be large.
 template <class System, class Unknown>
 double descend_angles(const System& system, Unknown* t) {
+    constexpr double last_step = 1e-12;     // [rad] where the residual stays large, convergence is slower
+    constexpr double first_damping = 1e-3;  // of the curvature of unit vectors: little where none is needed
     Linearised<System> at;
     refine_angles(system, t);
     return descend_damped(CurvedAngleProblem<System>{{system}}, t, at,
-                          NewtonDamping{tolerance::exact, 1e-12, 1e300, 1e-3, 0}, 60);
+                          NewtonDamping{tolerance::exact, last_step, 1e300, first_damping, 0}, 60);
 }
 
 // Whether the zero t lies on a curve of zeros with the unit tangent `along`. After a step along a curve,

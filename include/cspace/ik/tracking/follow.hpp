@@ -51,7 +51,7 @@ inline Outside meet_limit(const Track& t, Walker& w) {
     Outside at_low = measure_violation(t, w, w.q), at_high = measure_violation(t, w, q_high), met = at_high;
     double f_low = at_low.by, f_high = at_high.by;
     int kept = 0;
-    for (int step = 0; step < 100 && high - low > 1e-15 && f_low < 0; ++step) {
+    for (int step = 0; step < 100 && high - low > tolerance::last_digits && f_low < 0; ++step) {
         const double share = step % 8 == 7 ? 0.5 : f_low / (f_low - f_high), u = low + share * (high - low);
         // Where the trial brings it or q brings it: both ends are solutions, what lies between is close.
         const double along = (u - low) / (high - low);

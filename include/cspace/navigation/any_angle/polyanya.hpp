@@ -110,6 +110,7 @@ class IntervalSearch {
     Trace* trace_ = nullptr;
 
     static constexpr Index at_start = -2;
+    static constexpr double same_length = 1e-13;  // lengths of sums of some hundred chords differ by less
 
     Point at(Index v) const { return v == at_start ? start_ : mesh_.point(v); }
     bool turns(Index v) const { return v != at_start && mesh_.may_turn(v); }
@@ -156,7 +157,7 @@ class IntervalSearch {
         }
     };
     // Whether a shorter way to the root of a node is known by now.
-    bool is_stale(const Node& n) { return n.root != at_start && n.g > best_[n.root].g * (1 + 1e-13); }
+    bool is_stale(const Node& n) { return n.root != at_start && n.g > best_[n.root].g * (1 + same_length); }
     // Notes a way of length g to a corner, coming from another one to turn by `hand` there; false if a
     // shorter way is known, or one as long that has to turn less for all that this one reaches, or the same
     // through the same passage. (Grids have many ways of one length, and the intervals that they lead to
@@ -164,8 +165,8 @@ class IntervalSearch {
     bool reach(Index v, double g, Index from, Hand hand, Index through) {
         Arrival& best = best_[v];
         const bool is_first = best.query != query_;
-        if (!is_first && g > best.g * (1 + 1e-13)) return false;
-        if (is_first || g < best.g * (1 - 1e-13)) best.from[0] = best.from[1] = none;
+        if (!is_first && g > best.g * (1 + same_length)) return false;
+        if (is_first || g < best.g * (1 - same_length)) best.from[0] = best.from[1] = none;
         if (is_first || g < best.g) best.g = g, best.before = from;
         best.query = query_;
         const Index known = best.from[hand];

@@ -20,6 +20,12 @@ class ClearanceRobot : public RangeRobot {
     static constexpr double kept_share = 0.99658;
     static constexpr double beside =
         1e-11;  // so near to a wall, in sizes of the world, rounding hides the side
+    // How it tells places apart, the length in sizes of the world: ten times and more what the curves lose.
+    static constexpr Likeness like{1e-6, 1e-9, 1e-5, 1e-9, 2};
+    static constexpr double folded = 1e-6;     // sum of two normals that point against each other
+    static constexpr double at_range = 1e-12;  // of how far it keeps: what rounding makes of reaching it
+    static constexpr double touches2 = 1e-9;   // of a square: a curve that touches the goal's circle meets it
+    static constexpr double on_mark = 1e-7;    // of how far it keeps: it has come by its mark
 
     ClearanceRobot(const Walls& walls, const Surroundings& around, Point start, double range,
                    voronoi::Grain grain)
@@ -30,7 +36,7 @@ class ClearanceRobot : public RangeRobot {
           contacts_(around.sites, around.tree, grain_),
           keeps_(kept_share * range) {}
 
-    Likeness likeness() const { return {1e-6, 1e-9 * s_.extent, 1e-5, 1e-9, 2}; }
+    Likeness likeness() const { return {like.share, like.fine * s_.extent, like.turn, like.far, like.loop}; }
     bool again() { return false; }
     double keeps() const { return keeps_; }
     double clearance() const { return radius_; }
@@ -54,7 +60,7 @@ class ClearanceRobot : public RangeRobot {
             const Index wall = near.distance <= beside * s_.extent ? wall_behind() : voronoi::none;
             up = wall == voronoi::none ? voronoi::retract(s_, tree_, from) : away_from(wall, from);
         }
-        const bool is_far = up.b == voronoi::none || up.radius >= keeps_ * (1 - 1e-9);
+        const bool is_far = up.b == voronoi::none || up.radius >= keeps_ * (1 - tolerance::widening);
         if (is_far && !std::isfinite(keeps_)) return Halt::lost;
         const Point away = (1 / distance(up.foot, up.at)) * (up.at - up.foot);
         const Point to = is_far ? up.foot + keeps_ * away : up.at;
@@ -216,15 +222,15 @@ class ClearanceRobot : public RangeRobot {
         return nearest;
     }
     voronoi::Retraction away_from(Index wall, Point from) const {
-        return voronoi::retract_along(s_, tree_, wall, from, s_.normal(wall), 1e-12 * s_.extent);
+        return voronoi::retract_along(s_, tree_, wall, from, s_.normal(wall), s_.rounding());
     }
     // From a place on a wall straight into free space.
     voronoi::Retraction away_from_wall(Point from) const {
         const Index e = place_.out;
         if (!place_.is_corner() || s_.turn_at(e) != voronoi::Turn::around) return away_from(e, from);
         const Point both = s_.normal(e) + s_.normal(place_.in);
-        const Point away = norm(both) > 1e-6 ? (1 / norm(both)) * both : s_.direction(place_.in);
-        return voronoi::retract_along(s_, tree_, s_.size() + e, from, away, 1e-12 * s_.extent);
+        const Point away = norm(both) > folded ? (1 / norm(both)) * both : s_.direction(place_.in);
+        return voronoi::retract_along(s_, tree_, s_.size() + e, from, away, s_.rounding());
     }
 
     // The arc of two sites from here on, and what ends it.
@@ -279,7 +285,7 @@ class ClearanceRobot : public RangeRobot {
         if (!std::isfinite(keeps_)) return far;
         voronoi::Quadratic over = arc.curve.radius_form;
         over.c0 -= arc.curve.is_squared ? keeps_ * keeps_ : keeps_;
-        const double tiny = 1e-12 * (arc.curve.is_squared ? keeps_ * keeps_ : keeps_);
+        const double tiny = at_range * (arc.curve.is_squared ? keeps_ * keeps_ : keeps_);
         if (over.at(arc.begin) >= -tiny && over.slope(arc.begin) * keeps_ >= -tiny) return arc.begin;
         double first = far;
         for (const double t : over.zeros())
@@ -291,7 +297,8 @@ class ClearanceRobot : public RangeRobot {
         const voronoi::Quadratic gap = arc.curve.against_point(goal);
         double first = std::numeric_limits<double>::infinity();
         const double touching = -gap.c1 / (2 * gap.c2);  // of a goal on a wall, rounding hides the zeros
-        if (touching >= arc.begin && gap.at(touching) <= 1e-9 * squared_norm(arc.curve.at(touching) - goal))
+        if (touching >= arc.begin &&
+            gap.at(touching) <= touches2 * squared_norm(arc.curve.at(touching) - goal))
             first = touching;
         for (const double t : gap.zeros())
             if (t >= arc.begin && t < first && distance(arc.curve.at(t), goal) <= 2 * arc.curve.radius(t))
@@ -320,7 +327,7 @@ class ClearanceRobot : public RangeRobot {
         const double least = curve.least_radius(t0, t1);
         log.least = std::min(log.least, least);
         for (double t = t0; t < t1;) {
-            const double r = std::max(curve.radius(t), 1e-9 * s_.extent);
+            const double r = std::max(curve.radius(t), like.fine * s_.extent);
             double step = 0.25 * r / norm(curve.velocity(t));
             if (!bends) step = std::max(step, (t1 - t0) / 32);
             t = t + step < t1 ? t + step : t1;
@@ -350,7 +357,7 @@ class ClearanceRobot : public RangeRobot {
         if (const double t = way.meets_point(0.5 * (keeps_ + range()), goal); aim.stops && std::isfinite(t))
             offer(t, Halt::goal);
         if (aim.mark) {
-            const double t = way.nearest(local(*aim.mark)), off = 1e-7 * keeps_ + 1e-9 * s_.extent;
+            const double t = way.nearest(local(*aim.mark)), off = on_mark * keeps_ + like.fine * s_.extent;
             const bool is_before = met.site == voronoi::none || way.length(met.at - t) > 2 * off;
             if (is_before && rolled + way.length(t) > 2 * off && way.length(t) > -off &&
                 distance(way.at(t), local(*aim.mark)) < off)

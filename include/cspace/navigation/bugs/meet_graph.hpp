@@ -159,7 +159,7 @@ class MeetGraph {
         const Point to = goal - meet.at;
         for (std::size_t k = 0; k < meet.gaps.size(); ++k) {
             if (meet.gaps[k].taken) continue;
-            const double along = dot(direction(meet, k), to) / std::max(norm(to), 1e-300);
+            const double along = dot(direction(meet, k), to) / std::max(norm(to), tolerance::nonzero);
             if (along > ahead) ahead = along, best.gap = int(k);
         }
         return best;
@@ -210,7 +210,7 @@ class MeetGraph {
         return voronoi::turn_from(feet[k].towards, feet[(k + 1) % feet.size()].towards);
     }
     static bool is_wide(const std::vector<Foot>& feet, std::size_t k) {
-        return angle_of(feet, k) > std::numbers::pi * (1 + 1e-9);
+        return angle_of(feet, k) > std::numbers::pi * (1 + tolerance::widening);
     }
     static Point direction(const MeetPoint& meet, std::size_t k) {
         const Point a = meet.feet[k].towards;

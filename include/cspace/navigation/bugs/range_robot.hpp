@@ -105,7 +105,8 @@ class RangeRobot : public ContactRobot {
 
     bool approach(Point target, std::vector<Point>& touched) {
         const Cast ray = cast(target);
-        const double ahead = distance(at_, ray.at), free = ahead - (1 - 1e-6) * range_;
+        constexpr double within = 1e-6;  // of the range: from here it sees the wall that it approaches
+        const double ahead = distance(at_, ray.at), free = ahead - (1 - within) * range_;
         if (ray.arrived) return advance({at_, target}, touched);
         return free > 0 && advance({at_, at_ + (free / ahead) * (ray.at - at_)}, touched) && at_ == target;
     }
@@ -170,7 +171,7 @@ class RangeRobot : public ContactRobot {
             if (!(t > 0 && t < 1)) continue;
             const Point p = wall.begin + t * d;
             if (knows && skyline_.hides(p)) continue;
-            if (distance(cast(p).at, p) <= 1e-9 * range_) seen.push_back({p, wall, true});
+            if (distance(cast(p).at, p) <= tolerance::widening * range_) seen.push_back({p, wall, true});
         }
     }
 };

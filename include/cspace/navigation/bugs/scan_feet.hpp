@@ -36,6 +36,8 @@ class Scanner {
     static constexpr int beams = 720, first_scans = 16, most_scans = 400;
     // Scans are repeated until their mean deviates by this share of the least reading.
     static constexpr double wanted = 0.01;
+    static constexpr double touching = 1e-3;  // of the noise: walls read as nearer are as good as touched
+    static constexpr double at_wall = 1e-12;  // of its reach: a wall so little behind is the one it stands on
 
     Scanner(const Walls& walls, double range, Noise noise)
         : walls_(walls), range_(range), noise_(noise.deviation), draws_(noise.seed), far_(beams) {
@@ -54,7 +56,7 @@ class Scanner {
     void look(Point from, Scan& scan) {
         sweep(from);
         read(first_scans, scan);
-        const double more = noise_ / (wanted * std::max(scan.least, 1e-3 * noise_));
+        const double more = noise_ / (wanted * std::max(scan.least, touching * noise_));
         if (more * more > first_scans) read(int(std::min<double>(most_scans, std::ceil(more * more))), scan);
     }
     // A single direction, read as often as the last scan was.
@@ -135,7 +137,7 @@ class Scanner {
                 const double right = cross(along, a - from), left = cross(along, walls_.end(wall) - from);
                 if (right > 0 || left < 0 || right == left) return;  // aside, or its back
                 const double t = cross(a - from, d) / cross(along, d);
-                if (t > -1e-12 * reach && t < nearest) nearest = std::max(t, 0.0);
+                if (t > -at_wall * reach && t < nearest) nearest = std::max(t, 0.0);
             },
             [&](auto covered) { return nearest < none && covered(from + nearest * along); });
         return nearest <= most ? nearest : none;
@@ -152,7 +154,8 @@ struct Near {
 class ScanFeet {
   public:
     static constexpr double slack = 0.03, trust = 3.5;  // of the distance, and of a reading's deviation
-    static constexpr double grazing = 8;  // a wall is seen at up to this secant of the angle of incidence
+    static constexpr double grazing = 8;   // a wall is seen at up to this secant of the angle of incidence
+    static constexpr double level = 1e-3;  // of the distance: gives beams that read just that a weight
     static constexpr int apart = Scanner::beams / 12;  // runs of one wall lie no farther from each other
 
     ScanFeet(const Scanner& scanner, const Scan& scan) : scanner_(scanner), scan_(scan) {}
@@ -230,7 +233,7 @@ class ScanFeet {
     Point direction_of(int first, int last, double distance) const {
         Point sum;
         for (int k = first; k <= last; ++k)
-            if (at(k) <= distance) sum = sum + (distance - at(k) + 1e-3 * distance) * scanner_.direction(k);
+            if (at(k) <= distance) sum = sum + (distance - at(k) + level * distance) * scanner_.direction(k);
         const double size = norm(sum);
         return size > 0 ? (1 / size) * sum : scanner_.direction((first + last) / 2);
     }

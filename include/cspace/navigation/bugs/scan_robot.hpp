@@ -45,7 +45,7 @@ class ScanRobot : public ContactRobot {
         if (!(far > 0)) return seen_ = far;
         if (far > range_ || is_tried()) return seen_;
         const double reading = scanner_.read(at_, (1 / far) * (target - at_));
-        if (reading < far - ScanFeet::trust * scan_.deviation - 1e-9 * far) return seen_;
+        if (reading < far - ScanFeet::trust * scan_.deviation - tolerance::widening * far) return seen_;
         std::vector<Point> way;
         const Position end = moved({at_, target}, at_, place_, way);
         if (end.at == target) return seen_ = far;

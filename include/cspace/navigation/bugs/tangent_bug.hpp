@@ -16,7 +16,7 @@
 namespace cspace::navigation {
 
 namespace tangent_bug_limits {
-constexpr double nearer = 1 - 1e-9;  // a distance counts as less by more than rounding
+constexpr double nearer = 1 - tolerance::widening;  // a distance counts as less by more than rounding
 constexpr int most_stops = 100'000;  // a robot that sees a hand's breadth in a hall comes by with fewer
 }  // namespace tangent_bug_limits
 

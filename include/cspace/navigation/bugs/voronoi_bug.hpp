@@ -44,9 +44,9 @@ struct Exploration {
 
 namespace voronoi_bug_limits {
 constexpr std::int64_t most_branches = 20'000;
-constexpr std::size_t most_feet = 1'000;  // of a meet point: with more, something is taken twice
-constexpr double nearer = 1 - 1e-9;       // a distance counts as less by more than rounding
-constexpr double thin = 1e-6;             // a curve around less per length and range has nothing inside
+constexpr std::size_t most_feet = 1'000;            // of a meet point: with more, something is taken twice
+constexpr double nearer = 1 - tolerance::widening;  // a distance counts as less by more than rounding
+constexpr double thin = 1e-6;  // a curve around less per length and range has nothing inside
 }  // namespace voronoi_bug_limits
 
 template <ClearanceSensor Robot>
@@ -292,9 +292,8 @@ Exploration voronoi_bug(Robot& robot, Point goal) {
 // tries.
 inline Exploration voronoi_bug(const Walls& walls, const Surroundings& around, Point start, Point goal,
                                double range) {
-    constexpr voronoi::Grain grains[] = {{1e-13, 1e-9}, {1e-15, 1e-12}, {1e-11, 1e-7}};
     Exploration trip;
-    for (const voronoi::Grain& grain : grains) {
+    for (const voronoi::Grain& grain : voronoi::grains) {
         ClearanceRobot robot(walls, around, start, range, grain);
         trip = voronoi_bug(robot, goal);
         if (trip.route.status != Status::undetermined) break;

@@ -10,6 +10,7 @@
 
 #include "cspace/maps/boundary.hpp"
 #include "cspace/navigation/bugs/line.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::navigation {
 
@@ -76,7 +77,7 @@ class Walls {
         const Point extent = high - low_;
         largest_ = std::max({std::abs(low_.x), std::abs(low_.y), std::abs(high.x), std::abs(high.y)});
         const double longest = extent_ = std::max(extent.x, extent.y);
-        margin_ = 1e-9 * longest + 64 * std::numeric_limits<double>::epsilon() * largest_;
+        margin_ = tolerance::widening * longest + 64 * std::numeric_limits<double>::epsilon() * largest_;
         if (size() <= few || !(longest > 1e6 * std::numeric_limits<double>::epsilon() * largest_)) return;
         const double area = std::max(extent.x * extent.y, longest * longest / size());
         size_ = std::sqrt(area / size());

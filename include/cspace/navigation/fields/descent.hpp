@@ -60,13 +60,14 @@ inline Point damped_step(const Stiffness& h, Point slope, double longest) {
     if (spread > 0) n = half > 0 ? Point{spread + half, h.xy} : Point{h.xy, spread - half};
     if (const double size = norm(n); size > 0) n = (1 / size) * n;
     const double g1 = dot(n, slope), g2 = cross(n, slope);
+    constexpr double loose = 1e-3;  // of the length: the step is cut to it in the end
     double damping = std::max({0.0, std::abs(g1) / longest - h1, std::abs(g2) / longest - h2});
     Point step;
     for (int round = 0; round < 8; ++round) {
         const double a = damping + h1, b = damping + h2;
         step = {a > 0 ? g1 / a : 0, b > 0 ? g2 / b : 0};
         const double size = norm(step);
-        if (!(size > longest * (1 + 1e-3))) break;
+        if (!(size > longest * (1 + loose))) break;
         const double bent = (a > 0 ? step.x * step.x / a : 0) + (b > 0 ? step.y * step.y / b : 0);
         damping += (size / longest - 1) * size * size / bent;
     }
@@ -95,7 +96,17 @@ class DescentRun {
         return finish(Rest::budget);
     }
 
+    // In distances of influence: shorter steps go nowhere, and closer to a wall is on it.
+    static constexpr double least_step = 1e-7;
+
   private:
+    static constexpr double rounding = 1e-13;    // of the potential: a gain that rounding may have made
+    static constexpr double clear_gain = 1e-12;  // of the potential: a gain that leaves a saddle
+    static constexpr double first_off = 1e-2;    // in distances of influence: the first try off a wall
+    static constexpr double at_goal = 1e-3;      // in distances of influence: from here it goes straight
+    static constexpr double rings[] = {1e-4, 1e-3, 1e-2, 5e-2};  // radii that look for a way off a saddle
+    static constexpr double crease = 1e-3;      // of the clearance: walls as near as each other
+    static constexpr double difference = 1e-4;  // of the clearance: half of the digits of a second derivative
     const NearWalls& walls_;
     const Potential& potential_;
     double longest_, step_;
@@ -105,9 +116,8 @@ class DescentRun {
     Potential::Look here_;
 
     double scale() const { return potential_.gains().rho_0; }
-    double shortest() const { return 1e-7 * scale(); }
-    // A gain that rounding may have made.
-    double noise() const { return 1e-13 * std::abs(here_.value); }
+    double shortest() const { return least_step * scale(); }
+    double noise() const { return rounding * std::abs(here_.value); }
 
     Potential::Look look(Point p) {
         ++descent_.route.stats.edges;
@@ -124,7 +134,7 @@ class DescentRun {
     bool leave_wall(const std::vector<Point>& inward) {
         here_ = look(at_);
         if (here_.clearance > shortest()) return true;
-        for (double away = 1e-2 * scale(); away > shortest(); away *= 0.5) {
+        for (double away = first_off * scale(); away > shortest(); away *= 0.5) {
             Point best = at_;
             Potential::Look least;
             for (const Point direction : inward) {
@@ -142,16 +152,17 @@ class DescentRun {
     bool arrives() {
         const double left = distance(at_, potential_.goal());
         if (left == 0) return true;
-        if (left > std::max(step_, 1e-3 * scale()) || walls_.is_crossed(at_, potential_.goal())) return false;
+        if (left > std::max(step_, at_goal * scale()) || walls_.is_crossed(at_, potential_.goal()))
+            return false;
         const Potential::Look seen = look(potential_.goal());
-        if (left > 1e-3 * scale() && !(seen.value < here_.value)) return false;
+        if (left > at_goal * scale() && !(seen.value < here_.value)) return false;
         go(potential_.goal(), seen);
         return true;
     }
     // A step that is clearly shorter than the clearance needs no exact test.
     bool is_crossed(Point to, double length) const {
-        const double rounding = 1e-9 * (std::abs(at_.x) + std::abs(at_.y) + length);
-        return length + rounding >= here_.clearance && walls_.is_crossed(at_, to);
+        const double margin = tolerance::widening * (std::abs(at_.x) + std::abs(at_.y) + length);
+        return length + margin >= here_.clearance && walls_.is_crossed(at_, to);
     }
     // A step down that lowers the potential by a tenth of what the slope promises.
     bool descend() {
@@ -171,10 +182,10 @@ class DescentRun {
     }
     // Down in any direction, where the force vanishes.
     bool fall_off() {
-        for (const double share : {1e-4, 1e-3, 1e-2, 5e-2}) {
+        for (const double share : rings) {
             const double radius = share * std::min(here_.clearance, scale());
             Point best = at_;
-            double least = here_.value - 1e-12 * std::abs(here_.value);
+            double least = here_.value - clear_gain * std::abs(here_.value);
             for (int k = 0; k < 32; ++k) {
                 const double angle = std::numbers::pi * k / 16;
                 const Point to = at_ + radius * Point{std::cos(angle), std::sin(angle)};
@@ -191,8 +202,8 @@ class DescentRun {
     }
     Rest name_of_rest() {
         if (here_.clearance <= 2 * shortest()) return Rest::wall;
-        if (potential_.look(at_, 1e-3 * here_.clearance).is_crease) return Rest::crease;
-        const double h = 1e-4 * here_.clearance;
+        if (potential_.look(at_, crease * here_.clearance).is_crease) return Rest::crease;
+        const double h = difference * here_.clearance;
         const auto slope = [&](double x, double y) { return potential_.look(at_ + Point{x, y}, 0).slope; };
         const Point by_x = (0.5 / h) * (slope(h, 0) - slope(-h, 0));
         const Point by_y = (0.5 / h) * (slope(0, h) - slope(0, -h));

@@ -12,6 +12,7 @@
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/search/best_first.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::navigation {
 
@@ -146,7 +147,7 @@ class FrontDescent {
     bool slide_within(bool along_side) {
         const int column = int(std::floor(at_.x)), row = int(std::floor(at_.y));
         Point best = at_;
-        double least = time_ * (1 - 1e-12);
+        double least = time_ * (1 - tolerance::exact);
         for (int r = at_.y == row ? row - 1 : row; r <= row; ++r)
             for (int c = at_.x == column ? column - 1 : column; c <= column; ++c) {
                 const Square in = square(c, r);
@@ -168,7 +169,9 @@ class FrontDescent {
         go(best, least);
         return true;
     }
-    static double snapped(double x) { return std::abs(x - std::round(x)) < 1e-9 ? std::round(x) : x; }
+    static double snapped(double x) {
+        return std::abs(x - std::round(x)) < tolerance::cell_border ? std::round(x) : x;
+    }
     // To the earliest of the centres around; from a centre, to the earliest neighbour along a side.
     void hop() {
         const int column = int(std::floor(at_.x)), row = int(std::floor(at_.y));

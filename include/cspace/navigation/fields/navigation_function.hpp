@@ -22,7 +22,7 @@ class NavigationFunction {
                        Limits limits)
         : discs_(std::move(discs)), stars_(std::move(stars)), limits_(limits), goal_(goal) {
         const Point to = to_model(goal);
-        if (discs_.clearance(to) > 1e-9 * discs_.room.radius) {
+        if (discs_.clearance(to) > tolerance::widening * discs_.room.radius) {
             if (kappa > 0)
                 tuned_ = {kappa, MinimumProof(SpherePotential(discs_, to, kappa)).run(limits.squares)};
             else
@@ -58,7 +58,7 @@ class NavigationFunction {
         if (!(at == from)) note(made, from_model(at), potential_->value(at));
         for (; made.route.stats.nodes < limits_.steps; ++made.route.stats.nodes) {
             const double left = distance(at, potential_->goal());
-            if (left <= 1e-4 * discs_.clearance(potential_->goal()) &&
+            if (left <= at_goal * discs_.clearance(potential_->goal()) &&
                 is_open(made.route.path.back(), goal_)) {
                 note(made, goal_, -std::numeric_limits<double>::infinity());
                 made.route.status = Status::found;
@@ -72,6 +72,12 @@ class NavigationFunction {
     }
 
   private:
+    static constexpr double at_goal = 1e-4;     // of the goal's clearance: from here it goes straight
+    static constexpr double off_wall = 1e-7;    // of the room: on a wall the slope is not defined
+    static constexpr double valley = 2e-3;      // of the room: shorter steps along the slope take too many
+    static constexpr double resting = 1e-6;     // of what is near: Newton's step has come to a saddle
+    static constexpr double flat = 1e-12;       // of the stiffness: a curvature that is only rounding
+    static constexpr double off_saddle = 1e-3;  // of the clearance: where the slope is felt again
     SphereWorld discs_;
     std::optional<StarWorld> stars_;
     Limits limits_;
@@ -94,7 +100,7 @@ class NavigationFunction {
     }
     // A point on a wall, moved a little along the ray from the centre of its disc.
     Point off_walls(Point p) const {
-        const double room = discs_.room.radius, least = 1e-7 * room;
+        const double room = discs_.room.radius, least = off_wall * room;
         const auto at_radius = [&](const Disc& disc, double radius) {
             return disc.center + (radius / distance(p, disc.center)) * (p - disc.center);
         };
@@ -108,10 +114,10 @@ class NavigationFunction {
         const double steep = norm(slope),
                      near = std::min(discs_.clearance(at), distance(at, potential_->goal()));
         const double length = std::min(0.25 * steep / potential_->stiffness(at), 0.05 * discs_.room.radius);
-        if (length < 2e-3 * discs_.room.radius) {
+        if (length < valley * discs_.room.radius) {
             const Point down = across_valley(at, slope);
             const double far = norm(down);
-            if (far < 1e-6 * near) return leave_saddle(at, made);
+            if (far < resting * near) return leave_saddle(at, made);
             const double most = std::min(0.3 * near, 0.02 * discs_.room.radius);
             if (go(at, (1 / far) * down, std::min(far, most), made)) return true;
         }
@@ -126,7 +132,7 @@ class NavigationFunction {
     Point across_valley(Point at, Point slope) const {
         const Curvature bend = potential_->curvature(at);
         const Point u = bend.down(), v{-u.y, u.x};
-        const double least = 1e-12 * potential_->stiffness(at);
+        const double least = flat * potential_->stiffness(at);
         const double along = -dot(slope, u) / std::max(std::abs(bend.along(u)), least);
         const double across = -dot(slope, v) / std::max(std::abs(bend.along(v)), least);
         return along * u + across * v;
@@ -135,7 +141,7 @@ class NavigationFunction {
     bool leave_saddle(Point& at, DescentRoute& made) const {
         Point down = potential_->curvature(at).down();
         if (dot(down, potential_->goal() - at) < 0) down = -1.0 * down;
-        const double length = 1e-3 * discs_.clearance(at);
+        const double length = off_saddle * discs_.clearance(at);
         ++made.saddles;
         return go(at, down, length, made) || go(at, -1.0 * down, length, made);
     }

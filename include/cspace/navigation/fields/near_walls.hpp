@@ -10,6 +10,7 @@
 #include "cspace/maps/boundary.hpp"
 #include "cspace/math/predicates.hpp"
 #include "cspace/search/adjacency.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::navigation {
 
@@ -57,6 +58,7 @@ class NearWalls {
     }
     // Away from the walls within a tolerance of a point of free space; zero where there are none.
     Point inward(Point p, double tolerance) const {
+        constexpr double folded2 = 1e-6;  // square of a sum of normals that point against each other
         Point sum, first;
         visit(p, [&](std::int32_t e) {
             const Point a = walls_.begin(e), along = walls_.end(e) - a;
@@ -66,7 +68,7 @@ class NearWalls {
             if (squared_norm(first) == 0) first = left;
             sum = sum + left;
         });
-        return squared_norm(sum) > 1e-6 ? sum : first;
+        return squared_norm(sum) > folded2 ? sum : first;
     }
 
   private:
@@ -99,11 +101,16 @@ class NearWalls {
     }
     template <class Put>
     void each_member(const Put& put) const {
-        const double around = 0.7072 * side_ + reach_ * (1 + 1e-9);  // from the centre of a cell
+        const double around =
+            0.7072 * side_ + reach_ * (1 + tolerance::widening);  // from the centre of a cell
         for (std::int32_t e = 0; e < std::int32_t(walls_.size()); ++e) {
             const Point a = walls_.begin(e), b = walls_.end(e), along = b - a;
-            const auto from = [&](double x, double low) { return (x - reach_ - low) / side_ - 1e-9; };
-            const auto to = [&](double x, double low) { return (x + reach_ - low) / side_ + 1e-9; };
+            const auto from = [&](double x, double low) {
+                return (x - reach_ - low) / side_ - tolerance::cell_border;
+            };
+            const auto to = [&](double x, double low) {
+                return (x + reach_ - low) / side_ + tolerance::cell_border;
+            };
             const int left = clamped(from(std::min(a.x, b.x), low_.x), columns_);
             const int right = clamped(to(std::max(a.x, b.x), low_.x), columns_);
             const int bottom = clamped(from(std::min(a.y, b.y), low_.y), rows_);

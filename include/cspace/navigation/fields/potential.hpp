@@ -158,7 +158,7 @@ class Potential {
     }
     void gather(Point p) const {
         places_.clear();
-        const double reach = gains_.rho_0 * gains_.rho_0 * (1 + 1e-12);
+        const double reach = gains_.rho_0 * gains_.rho_0 * (1 + tolerance::exact);
         walls_.visit(p, [&](std::int32_t e) {
             const NearWalls::Wall& wall = walls_.wall(e);
             const Point d = p - wall.begin;

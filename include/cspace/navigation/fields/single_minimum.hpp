@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "cspace/navigation/fields/sphere_world.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::navigation {
 
@@ -51,7 +52,9 @@ class MinimumProof {
         Point middle;
         double half;
     };
-    static constexpr double slack = 1 + 1e-9;  // of bounds, against rounding
+    static constexpr double slack = 1 + tolerance::widening;  // of bounds, against rounding
+    static constexpr double settled = 1e-13;                  // step of Newton's, of the room: rounding alone
+    static constexpr double same_saddle = 1e-7;  // of the room: where the slope is rounding, not its zero
     const SpherePotential& potential_;
     const std::vector<LogTerm>& terms_;
     SingleMinimum proof_;
@@ -78,7 +81,7 @@ class MinimumProof {
     double noise(Point m) const {
         double sum = 0;
         for (const LogTerm& term : terms_) sum += norm(term.slope(m));
-        return 1e-12 * sum;
+        return tolerance::exact * sum;
     }
     // Whether one summand pushes harder than all others together.
     bool is_dominated(Point m, double h, std::size_t strongest) const {
@@ -90,7 +93,7 @@ class MinimumProof {
             if (!terms_[k].is_regular(rho, h)) return false;
             const Point slope = terms_[k].slope(m);
             others = others + slope;
-            noise += 1e-12 * norm(slope);
+            noise += tolerance::exact * norm(slope);
             change += terms_[k].most_curvature(rho, h);
         }
         const LogTerm& one = terms_[strongest];
@@ -104,7 +107,7 @@ class MinimumProof {
         for (const LogTerm& term : terms_) {
             const double rho = distance(m, term.center);
             change += term.most_third(rho, h);
-            noise += 1e-12 * term.most_curvature(rho, 0);
+            noise += tolerance::exact * term.most_curvature(rho, 0);
         }
         if (!(least + h * change * slack + noise < 0)) return false;
         note_saddle(m, h);
@@ -117,7 +120,7 @@ class MinimumProof {
             const Point step = potential_.curvature(at).solve(potential_.slope(at));
             at = at - step;
             if (!(distance(at, m) <= far)) return false;
-            if (norm(step) <= 1e-13 * terms_[1].s) return norm(potential_.slope(at)) <= 1e6 * noise(at);
+            if (norm(step) <= settled * terms_[1].s) return norm(potential_.slope(at)) <= 1e6 * noise(at);
         }
         return false;
     }
@@ -129,14 +132,14 @@ class MinimumProof {
         Point at;
         if (!is_flat_near(m, 2 * h, at)) return;
         for (const Point other : proof_.saddles)
-            if (distance(other, at) <= 1e-7 * terms_[1].s) return;
+            if (distance(other, at) <= same_saddle * terms_[1].s) return;
         if (is_free(at) && potential_.curvature(at).least() < 0) proof_.saddles.push_back(at);
     }
     bool is_minimum_near(Point m, double half) {
         Point at;
         if (potential_.curvature(m).least() > 0 && is_flat_near(m, 4 * half, at) &&
             potential_.curvature(at).least() > 0 && is_free(at) &&
-            distance(at, terms_[0].center) > 1e-9 * terms_[1].s)
+            distance(at, terms_[0].center) > tolerance::widening * terms_[1].s)
             proof_.verdict = SingleMinimum::refuted, proof_.minimum = at;
         return false;
     }

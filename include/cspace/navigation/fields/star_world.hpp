@@ -17,6 +17,7 @@
 #include "cspace/maps/boundary.hpp"
 #include "cspace/math/predicates.hpp"
 #include "cspace/navigation/fields/sphere_world.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::navigation {
 
@@ -171,8 +172,8 @@ class StarWorld {
         const double half = 0.5 * distance(p, q);
         for (std::size_t k = 0; k < stars_.size(); ++k) {
             const double away = distance(middle, stars_[k].center());
-            const bool is_far = k ? away > (stars_[k].most() + half) * (1 + 1e-9)
-                                  : away + half < stars_[k].least() * (1 - 1e-9);
+            const bool is_far = k ? away > (stars_[k].most() + half) * (1 + tolerance::widening)
+                                  : away + half < stars_[k].least() * (1 - tolerance::widening);
             if (!is_far && stars_[k].meets(p, q)) return false;
         }
         return true;
@@ -219,7 +220,8 @@ class StarWorld {
                     distance(stars_[i].center(), stars_[j].center()) - stars_[i].most() - stars_[j].most();
                 if (j && least >= std::max(gap[i], gap[j])) continue;
                 const double away = stars_[i].distance_to(stars_[j]);
-                if (away <= 1e-12 * stars_[0].most()) fault = contact, where = stars_[i].corners()[0];
+                if (away <= tolerance::exact * stars_[0].most())
+                    fault = contact, where = stars_[i].corners()[0];
                 gap[i] = std::min(gap[i], away), gap[j] = std::min(gap[j], away);
             }
         for (std::size_t i = 0; i < stars_.size(); ++i) {

@@ -49,8 +49,9 @@ inline double turn_rate(const Vehicle& vehicle, double speed, double turn) {
 
 // A step along the arc of constant speed and turn rate.
 inline CarPose advance_pose(const CarPose& from, double speed, double rate, double time) {
+    constexpr double straight = 1e-8;  // [rad] whose square is below rounding
     const double half = 0.5 * rate * time;
-    const double chord = speed * time * (std::fabs(half) < 1e-8 ? 1.0 : std::sin(half) / half);
+    const double chord = speed * time * (std::fabs(half) < straight ? 1.0 : std::sin(half) / half);
     return {from.x + chord * std::cos(from.theta + half), from.y + chord * std::sin(from.theta + half),
             from.theta + 2 * half};
 }

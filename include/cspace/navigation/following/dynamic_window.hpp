@@ -123,6 +123,7 @@ class DynamicWindow {
   private:
     static constexpr int speeds = 8, turns = 20;
     static constexpr double standing = 1e-9;  // [m/s]
+    static constexpr double straight = 1e-6;  // [1/m] an arc that leaves its tangent by a hair within a hall
     static constexpr double horizon = 0.5;    // how far ahead the heading is judged [s]
 
     void look_around(const CarPose& pose) {
@@ -170,7 +171,7 @@ class DynamicWindow {
         if (c.speed <= standing) return least;
         const double curvature = c.turn / c.speed;
         for (const Point p : seen_) {
-            const double hit = std::fabs(curvature) < 1e-6 ? ahead(p) : along_arc(p, 1 / curvature);
+            const double hit = std::fabs(curvature) < straight ? ahead(p) : along_arc(p, 1 / curvature);
             least = std::min(least, hit);
         }
         return least;

@@ -54,7 +54,8 @@ struct Follower {
 template <class Controller, class Contact>
 FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Track& track,
                           Controller& controller, const FollowSettings& settings, const Contact& contact) {
-    constexpr double rest = 1e-3;  // [m/s], as good as standing
+    constexpr double rest = 1e-3;     // [m/s], as good as standing
+    constexpr double advance = 1e-4;  // [m] less than this is creeping on the spot
     const double dt = settings.time_step;
     FollowRecord record;
     Follower at{track, start};
@@ -81,7 +82,7 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
             at.look(vehicle, controller, 0, settings.window);
             left = at.left(Controller::leaves_path);
         }
-        if (at.progress() > farthest + 1e-4) farthest = at.progress(), farthest_time = time;
+        if (at.progress() > farthest + advance) farthest = at.progress(), farthest_time = time;
         if (time - farthest_time >= settings.patience) return finish(Outcome::stuck);
         if (time >= settings.time_limit) return finish(Outcome::timeout);
         const double fast = std::min(settings.speed, speed_to_stop(left, vehicle.acceleration, dt));

@@ -107,8 +107,9 @@ class Contacts {
     }
     // Whether two touches are one: of the same site, or near each other on sites without a corner between.
     bool is_same(const Contact& x, const Contact& y, double radius) const {
+        constexpr double same_direction2 = 1e-12;  // square of an angle known to the square root of rounding
         if (x.site == y.site) return true;
-        if (!(squared_norm(x.towards - y.towards) < 1e-12) && radius > 0) return false;
+        if (!(squared_norm(x.towards - y.towards) < same_direction2) && radius > 0) return false;
         return follows(x.site, y.site) || follows(y.site, x.site);
     }
     bool follows(Index x, Index y) const {
@@ -119,13 +120,15 @@ class Contacts {
 
     // Newton's method for the point as far from three sites.
     void polish(Point& p, Index a, Index b, Index c) const {
+        constexpr double firm = 1e-6;        // sine of directions that fix a point at all
+        constexpr double correction = 1e-6;  // of the extent: more leads to another point
         for (int i = 0; i < 2; ++i) {
             const Point da = s_.towards(a, p), ab = s_.towards(b, p) - da, ac = s_.towards(c, p) - da;
             const double det = cross(ab, ac), ra = s_.distance_to(a, p);
-            if (!(std::abs(det) > 1e-6)) return;
+            if (!(std::abs(det) > firm)) return;
             const double fb = s_.distance_to(b, p) - ra, fc = s_.distance_to(c, p) - ra;
             const Point step{(fb * ac.y - fc * ab.y) / det, (fc * ab.x - fb * ac.x) / det};
-            if (!(norm(step) <= 1e-6 * s_.extent)) return;
+            if (!(norm(step) <= correction * s_.extent)) return;
             p = p + step;
         }
     }

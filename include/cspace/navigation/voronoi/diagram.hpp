@@ -147,7 +147,7 @@ struct Nearest {
 inline Nearest nearest_site(const Sites& sites, const EdgeTree& tree, Point p) {
     Nearest best;
     best.distance = 4 * sites.extent;
-    const double slack = 1e-12 * sites.extent;
+    const double slack = sites.rounding();
     tree.visit_shrinking(
         p, EitherSide{}, [&] { return std::pair{p, best.distance + slack}; },
         [&](Index e) {
@@ -174,7 +174,7 @@ inline Retraction retract_along(const Sites& sites, const EdgeTree& tree, Index 
     Retraction up;
     up.a = site;
     up.foot = foot;
-    const double slack = 1e-12 * sites.extent;
+    const double slack = sites.rounding();
     double radius = 4 * sites.extent;
     const auto at = [&] { return up.foot + radius * away; };
     const Index own = sites.edge_of(site), own_before = sites.previous(own), own_after = sites.after(own);
@@ -209,7 +209,8 @@ inline Retraction retract_along(const Sites& sites, const EdgeTree& tree, Index 
 inline Retraction retract(const Sites& sites, const EdgeTree& tree, Point p) {
     const Nearest near = nearest_site(sites, tree, p);
     if (near.site == none) return {};
-    const double least = near.distance * (1 - 1e-9) - 1e-13 * sites.extent;
+    constexpr double finest = 1e-13;  // of the extent: the rounding of a single coordinate
+    const double least = near.distance * (1 - tolerance::widening) - finest * sites.extent;
     Retraction up =
         retract_along(sites, tree, near.site, near.foot, -1.0 * sites.towards(near.site, p), least);
     up.clearance = near.distance;

@@ -21,7 +21,8 @@ inline Gate backward_gate(const Sites& sites, Index b) {
 // The first parameter from begin on at which a foot leaves its site.
 inline double leaves(const Bisector& curve, double begin, Gate gate, Grain grain) {
     const Quadratic g = curve.along(gate.s, gate.q);
-    const double slack = grain.at(curve.radius(begin)) * 1e-3;
+    constexpr double begins = 1e-3;  // of the grain: a foot that a step put on the end is on it
+    const double slack = grain.at(curve.radius(begin)) * begins;
     if (std::abs(g.at(begin)) <= slack && g.slope(begin) > 0) return begin;
     double first = std::numeric_limits<double>::infinity();
     for (const double t : g.zeros())

@@ -11,6 +11,10 @@ struct Grain {
     double at(double radius) const { return fine + share * radius; }
 };
 
+// Tried in this order, the lengths as shares of the extent: worlds of tiny and of nearly equal lengths need
+// the finer or the coarser one.
+inline constexpr Grain grains[] = {{1e-13, 1e-9}, {1e-15, 1e-12}, {1e-11, 1e-7}};
+
 class FirstTouch {
   public:
     FirstTouch(const Sites& sites, const EdgeTree& tree, Grain grain, const Bisector& curve, Index a, Index b,
@@ -51,7 +55,7 @@ class FirstTouch {
     void shorten() {
         for (int tries = 0; tries < 64; ++tries) {
             const Point p = curve_.at(end_);
-            double radius = curve_.radius(end_) * (1 - 1e-9);
+            double radius = curve_.radius(end_) * (1 - tolerance::widening);
             Index nearest = none;
             const EitherSide ahead{gained(begin_, end_), gained(begin_, end_)};
             tree_.visit_shrinking(
@@ -75,7 +79,8 @@ class FirstTouch {
     Side gained(double t0, double t1) const {
         const Point p = curve_.at(t0), q = curve_.at(t1);
         const double r = curve_.radius(t0), s = curve_.radius(t1), apart = distance(p, q);
-        if (!(apart > 1e-7 * r)) return {};
+        constexpr double parted = 1e-7;  // of the radius: closer, rounding turns the line of both
+        if (!(apart > parted * r)) return {};
         const Point way = (1 / apart) * (q - p);
         return {way, dot(way, 0.5 * (p + q)) + (r - s) * (r + s) / (2 * apart) - 1e2 * grain_.at(r)};
     }
@@ -95,7 +100,7 @@ class FirstTouch {
         const Point center = curve_.at(0.5 * (t0 + t1));
         const double speed = std::max(norm(curve_.velocity(t0)), norm(curve_.velocity(t1)));
         const double half = 0.5 * (t1 - t0) * speed, largest = std::max(curve_.radius(t0), curve_.radius(t1));
-        const double reach = (largest + half) * (1 + 1e-9) + grain_.fine;
+        const double reach = (largest + half) * (1 + tolerance::widening) + grain_.fine;
         const EitherSide ahead = gained_between(t0, t1);
         Index found[24];
         int count = 0;

@@ -114,7 +114,7 @@ class Roadmap {
     // What no way from start to goal exceeds, which no arc may fall short of, less what rounding may have
     // added to it: `width` is that of the widest way on the diagram, but an end may lie nearer to a wall.
     double floor_of(const Landing& from, const Landing& to, double width) const {
-        return std::min({width, from.clearance, to.clearance}) - 1e-12 * diagram_.sites.extent;
+        return std::min({width, from.clearance, to.clearance}) - diagram_.sites.rounding();
     }
 
     Landing land(const maps::Settled& end, Index component) const {
@@ -122,7 +122,7 @@ class Roadmap {
         Point p = end.at - diagram_.sites.origin;
         landing.lead = {p};
         Retraction up = retract(diagram_.sites, diagram_.tree, p);
-        const double on_wall = 1e-9 * diagram_.sites.extent;
+        const double on_wall = tolerance::widening * diagram_.sites.extent;
         landing.clearance = up.clearance;
         for (const double share : {1.0 / 64, 1.0 / 4, 1.0}) {
             if (up.clearance > on_wall && up.b != none) break;
@@ -148,7 +148,8 @@ class Roadmap {
     }
 
     void locate(const Retraction& up, Index component, Landing& landing) const {
-        double best = 1e-7 * diagram_.sites.extent;
+        constexpr double on_arc = 1e-7;  // of the extent: an arc that is known to the square root of rounding
+        double best = on_arc * diagram_.sites.extent;
         const auto consider = [&](Index k) {
             const Arc& a = arc(k);
             const double t = std::clamp(a.curve.parameter(up.at), a.begin, a.end);

@@ -16,8 +16,9 @@ struct StraightWay {
     double length(double t) const { return t; }
     // When it comes to touch the line through q with the normal n, or the point q, not just grazing; or NaN.
     double meets_line(double radius, Point n, Point q) const {
+        constexpr double closing = 1e-9;  // sine: along a wall it never touches it
         const double speed = dot(n, d);
-        return speed < -1e-9 ? (radius - dot(n, p - q)) / speed : std::nan("");
+        return speed < -closing ? (radius - dot(n, p - q)) / speed : std::nan("");
     }
     double meets_point(double radius, Point q) const {
         const double ahead = dot(q - p, d), off = cross(d, q - p), half = radius * radius - off * off;
@@ -63,7 +64,8 @@ template <class Way>
 FirstMeeting first_meeting(const Sites& sites, const EdgeTree& tree, Grain grain, const Way& way,
                            double radius, Index along, double end) {
     FirstMeeting first{end};
-    const double slack = grain.at(radius) / std::max(way.length(1), 1e-300), margin = 1e3 * grain.at(radius);
+    const double slack = grain.at(radius) / std::max(way.length(1), tolerance::nonzero),
+                 margin = 1e3 * grain.at(radius);
     const Index own = along == none ? none : sites.edge_of(along);
     const auto belongs = [&](Index e) {
         if (own == none) return false;
@@ -92,7 +94,7 @@ FirstMeeting first_meeting(const Sites& sites, const EdgeTree& tree, Grain grain
         if (std::isfinite(t) && sites.is_in_cone(e, way.at(t), margin)) offer(t, sites.size() + e);
     };
     const Point center = way.at(0.5 * end);
-    const double reach = (radius + 0.5 * way.length(end)) * (1 + 1e-9) + margin;
+    const double reach = (radius + 0.5 * way.length(end)) * (1 + tolerance::widening) + margin;
     tree.visit_disc(center, reach, EitherSide{}, [&](Index e) { return consider(e), true; });
     return first;
 }

@@ -9,6 +9,7 @@
 
 #include "cspace/maps/boundary.hpp"
 #include "cspace/math/predicates.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::navigation::voronoi {
 
@@ -28,6 +29,8 @@ struct Sites {
     std::vector<Index> component;
 
     Index size() const { return Index(points.size()); }
+    // What a distance may be off: coordinates lose some 1e-16 of the extent, a foot ten times that.
+    double rounding() const { return tolerance::exact * extent; }
 
     // Site i < size() is an edge, site size() + i the point where edge i begins.
     bool is_edge(Index site) const { return site < size(); }

@@ -22,7 +22,7 @@ class Tracer {
           s_(diagram.sites),
           grain_(grain),
           contacts_(diagram.sites, diagram.tree, grain),
-          cell_(1e-4 * diagram.sites.extent) {}
+          cell_(cell_share * diagram.sites.extent) {}
 
     // Adds the part of the component that a point lies in.
     void trace(Point seed) {
@@ -45,6 +45,8 @@ class Tracer {
     }
 
   private:
+    static constexpr double cell_share = 1e-4;      // of the extent: few vertices share a cell
+    static constexpr double same_direction = 1e-5;  // [rad] sum of two, between arcs of one gap
     struct Fan {
         Index first, count;  // of touches_; gap k lies between touch k and the one after it
     };
@@ -121,7 +123,7 @@ class Tracer {
         const Contact &first = touches.front(), &last = touches.back();
         const double radius = s_.distance_to(a, p);
         Index vertex = none, gap = none;
-        double best = 1e-5;
+        double best = same_direction;
         const double near = 1e2 * grain_.at(radius);
         for (int i = 0; i < 4; ++i) {
             const auto [begin, end] = vertex_in_.equal_range(key(p, i % 2 ? 1 : -1, i / 2 ? 1 : -1));
@@ -192,7 +194,6 @@ class Tracer {
 // Traces the part of one component; whether it is whole: connected, as traced from one point, with one cycle
 // less than the number of boundary loops of the component.
 inline bool trace_component(Diagram& d, Point seed, std::int64_t rings) {
-    constexpr Grain grains[] = {{1e-13, 1e-9}, {1e-15, 1e-12}, {1e-11, 1e-7}};
     const std::size_t vertices = d.vertices.size(), arcs = d.arcs.size();
     for (const Grain& grain : grains) {
         d.vertices.resize(vertices);
