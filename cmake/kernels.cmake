@@ -67,16 +67,18 @@ target_link_libraries(cspace_library PUBLIC cspace_kernels PRIVATE cspace_flags)
 if(NOT MSVC)
   target_compile_options(cspace_library PRIVATE -ffunction-sections -fdata-sections)  # so that the linker drops what nobody calls
 endif()
-# GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has.
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  target_compile_options(cspace_library PRIVATE --param=inline-unit-growth=300)
-endif()
 # Trees of samples are the same on every machine: none may round a product and a sum at once where others do not. Nor may
 # decisions about points, whose signs rest on every rounding as written; x86-64 has no such instruction in its baseline.
 if(NOT MSVC)
   set(exact_files ${library_files})
   list(FILTER exact_files INCLUDE REGEX "library/(maps|navigation)_")
-  set_source_files_properties(${exact_files} PROPERTIES COMPILE_OPTIONS "-ffp-contract=off")
+  set_property(SOURCE ${exact_files} APPEND PROPERTY COMPILE_OPTIONS -ffp-contract=off)
+endif()
+# GCC stops inlining in a file that has grown by two fifths, and a file of several searches soon has.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  set(search_files ${library_files})
+  list(FILTER search_files INCLUDE REGEX "library/navigation_(grid|polygons)")
+  set_property(SOURCE ${search_files} APPEND PROPERTY COMPILE_OPTIONS --param=inline-unit-growth=300)
 endif()
 if(NOT CMAKE_CXX_COMPILER_LAUNCHER)  # as in src/bindings
   target_precompile_headers(cspace_library PRIVATE <algorithm> <array> <atomic> <cmath> <functional> <map> <memory> <mutex>

@@ -82,7 +82,8 @@ BuiltArm build_arm(const Chain& chain) {
     auto arm = std::make_shared<Arm>();
     kernels::ik_make_arm(chain, *arm);
     const bool solvable = arm->has_plan || arm->has_few_joints || arm->is_general;
-    return {arm, chain.n, solvable ? room_for(*arm) : 0, arm->has_few_joints};
+    return {arm, chain.n, solvable ? room_for(*arm) : 0, arm->has_few_joints,
+            std::make_shared<ReachBounds>(measure_reach(chain, arm->plan.form.length))};
 }
 
 bool list_solutions(const BuiltArm& built, const double* goal, const double* unconstrained,
@@ -147,7 +148,7 @@ NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal) {
 }
 
 bool is_ruled_out(const BuiltArm& built, const double* goal) {
-    return exceeds_reach(built.arm->plan.chain, read_goal(goal).T, built.arm->plan.form.length);
+    return exceeds_reach(built.arm->plan.chain, *built.reach, read_goal(goal).T);
 }
 
 void turn_to_seed(const bool* prismatic, int n, const double* lower, const double* upper, const double* seed,

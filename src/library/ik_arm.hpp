@@ -11,12 +11,14 @@
 namespace cspace::ik {
 
 struct Arm;
+struct ReachBounds;
 
 struct BuiltArm {
     std::shared_ptr<const Arm> arm;
     int dof;
     int room;             // rows that the solutions of a goal may need; 0 where nothing solves the arm
     bool has_few_joints;  // up to three joints: it answers points too
+    std::shared_ptr<const ReachBounds> reach;
 };
 BuiltArm build_arm(const Chain& chain);
 

@@ -99,6 +99,7 @@ void seed_solver(const Solver& solver, const GoalRequest& request, const double*
 // From rows of the solver to rows of the whole arm and of the user's arm.
 void map_rows(const GoalRequest& request, int n, GoalAnswer& out) {
     const RowMap& whole = request.whole;
+    if (whole.n == n && !request.is_partial) return;  // they are the same
     const std::vector<double> rows = std::move(out.q);
     out.q.clear();
     for (int k = 0; k < out.count; ++k) {

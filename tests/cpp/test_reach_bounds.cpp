@@ -31,10 +31,11 @@ TEST(what_an_arm_reaches_is_not_beyond_it) {
     for (int repeat = 0; repeat < 20000; ++repeat) {
         const double scale = std::pow(10.0, random.below(7) - 3);
         const ik::Chain chain = random_chain(random, 1 + random.below(7), scale);
+        const ik::ReachBounds reach = measure_reach(chain, characteristic_length(chain));
         double q[ik::max_joints];
         const double way = random.below(10) ? scale : 1e6 * scale;
         for (int i = 0; i < chain.n; ++i) q[i] = (chain.prismatic[i] ? way : pi) * random.uniform(-1, 1);
-        CHECK(!exceeds_reach(chain, forward(chain, q), characteristic_length(chain)));
+        CHECK(!exceeds_reach(chain, reach, forward(chain, q)));
     }
 }
 
@@ -60,7 +61,8 @@ TEST(the_last_of_three_axes_leans_as_far_as_the_middle_one_turns_it) {
             const Vec3d about = (1 / norm(square)) * square;
             Posed goal = identity_pose();
             goal.R = spatial::rotation_about(about, std::cos(lean - own), std::sin(lean - own));
-            CHECK(exceeds_reach(chain, goal, 1) == (lean < low - 0.01 || lean > high + 0.01));
+            CHECK(exceeds_reach(chain, measure_reach(chain, 1), goal) ==
+                  (lean < low - 0.01 || lean > high + 0.01));
         }
     }
 }
@@ -75,7 +77,8 @@ TEST(a_scara_keeps_its_tool_upright_and_reaches_as_far_as_its_links) {
     chain.tip = {identity_pose().R, {0.7, 0, 0}};
     const auto at = [&](double x, double z, double lean) {
         return exceeds_reach(
-            chain, {spatial::rotation_about(Vec3d{1, 0, 0}, std::cos(lean), std::sin(lean)), {x, 0, z}}, 1);
+            chain, measure_reach(chain, 1),
+            {spatial::rotation_about(Vec3d{1, 0, 0}, std::cos(lean), std::sin(lean)), {x, 0, z}});
     };
     CHECK(!at(0.699, 25, 0) && !at(-0.699, -25, 0));
     CHECK(at(0.701, 0, 0) && at(0.5, 0, 1e-6) && at(0.5, 0, pi));

@@ -122,7 +122,7 @@ inline Solutions solutions_and_self_motions(const Arm& arm, const Posed& goal, c
     constexpr int starts = 12;
     const Chain& chain = arm.plan.chain;
     const double length = arm.plan.form.length;
-    if (is_limited(arm) && exceeds_reach(chain, goal, length)) return {};
+    if (is_limited(arm) && exceeds_reach(chain, measure_reach(chain, length), goal)) return {};
     if (arm.is_general)
         return arm.has_plan ? solve_both_ways(arm, goal, unconstrained)
                             : solve_general_carefully(arm.general, goal, unconstrained);

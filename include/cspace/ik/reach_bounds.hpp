@@ -5,40 +5,35 @@
 #include "cspace/ik/chain.hpp"
 #include "cspace/tolerances.hpp"
 
-namespace cspace::ik::inline CSPACE_ISA {
-
-inline double angle_between(const Vec3d& a, const Vec3d& b) {
-    return 2 * std::atan2(norm(a - b), norm(a + b));
-}
+namespace cspace::ik {
 
 // The range of angles between two directions, from the first axis to one moved by a chain of rotations.
 struct AngleRange {
     double low = 0, high = 0;
 };
 
+// What the chain between its first and its last revolute axis allows, whatever the goal is.
+struct ReachBounds {
+    int first = -1, last = -1;  // the two axes; none: −1
+    AngleRange range;           // of the angles between them
+    bool has_direction;         // along which all prismatic joints move
+    Vec3d along;
+    double links = 0;  // the total length of the links between them, seen along that direction [m]
+    double rounding;   // of a distance in an arm of this length [m]
+};
+
+}  // namespace cspace::ik
+
+namespace cspace::ik::inline CSPACE_ISA {
+
+inline double angle_between(const Vec3d& a, const Vec3d& b) {
+    return 2 * std::atan2(norm(a - b), norm(a + b));
+}
+
 // The same for the next axis, which rotates about the present one at an angle `arc` from it.
 inline AngleRange behind_turn(const AngleRange& range, double arc) {
     const auto gap = [&](double angle) { return max(max(range.low - angle, angle - range.high), 0.0); };
     return {gap(arc), pi - gap(pi - arc)};
-}
-
-// Whether the rotations cannot give the last revolute axis its direction. `motion`: of the tip from its pose
-// at zero.
-inline bool is_turned_too_far(const Chain& chain, const Posed& motion) {
-    int first = -1, last = -1;
-    AngleRange range;
-    for (int i = 0; i < chain.n; ++i) {
-        if (chain.prismatic[i]) continue;
-        if (first < 0)
-            first = i;
-        else
-            range = behind_turn(range, angle_between(chain.axis[last], chain.axis[i]));
-        last = i;
-    }
-    if (first < 0) return false;
-    const Vec3d turned = motion.R * chain.axis[last];
-    const double angle = angle_between(chain.axis[first], (1 / norm(turned)) * turned);
-    return angle < range.low - tolerance::beyond || angle > range.high + tolerance::beyond;
 }
 
 // A direction along which all prismatic joints of a chain move, whatever its rotations are; false if there is
@@ -54,35 +49,40 @@ inline bool slides_keep_direction(const Chain& chain, Vec3d& along) {
     return true;
 }
 
-// Whether the required distance of the last revolute axis from the first exceeds the total length of the
-// links between them, seen along the prismatic joints.
-inline bool is_out_of_reach(const Chain& chain, const Posed& motion, double length) {
-    Vec3d along;
-    if (!slides_keep_direction(chain, along)) return false;
-    const auto across = [&](const Vec3d& v) { return norm(v - dot(along, v) * along); };
-    int first = -1, last = -1;
+inline ReachBounds measure_reach(const Chain& chain, double length) {
+    ReachBounds out;
+    out.rounding = tolerance::beyond * length;
+    out.has_direction = slides_keep_direction(chain, out.along);
     bool is_flat = true;  // so far all turns are about the slides' direction
-    double links = 0;
     for (int i = 0; i < chain.n; ++i) {
         if (chain.prismatic[i]) continue;
-        if (first < 0) {
-            first = i;
+        if (out.first < 0) {
+            out.first = i;
         } else {
-            const Vec3d link = chain.point[i] - chain.point[last];
-            links += is_flat ? across(link) : norm(link);
+            const Vec3d link = chain.point[i] - chain.point[out.last];
+            out.links += norm(is_flat ? link - dot(out.along, link) * out.along : link);
+            out.range = behind_turn(out.range, angle_between(chain.axis[out.last], chain.axis[i]));
         }
-        is_flat = is_flat && norm(cross(along, chain.axis[i])) < tolerance::rounding;
-        last = i;
+        is_flat = is_flat && norm(cross(out.along, chain.axis[i])) < tolerance::rounding;
+        out.last = i;
     }
-    if (first < 0) return false;
-    const Vec3d asked = motion * chain.point[last] - chain.point[first];
-    return across(asked) > links + tolerance::beyond * (length + norm(asked));
+    return out;
 }
 
-// Whether no configuration reaches the goal, regardless of limits. False is no statement.
-inline bool exceeds_reach(const Chain& chain, const Posed& goal, double length) {
+// Whether no configuration reaches the goal, regardless of limits: the rotations cannot give the last
+// revolute axis its direction, or it is asked to be farther from the first than the links are long. False is
+// no statement.
+inline bool exceeds_reach(const Chain& chain, const ReachBounds& reach, const Posed& goal) {
+    if (reach.first < 0) return false;
     const Posed motion = goal * inverse(chain.tip);
-    return is_turned_too_far(chain, motion) || is_out_of_reach(chain, motion, length);
+    const Vec3d turned = motion.R * chain.axis[reach.last];
+    const double angle = angle_between(chain.axis[reach.first], (1 / norm(turned)) * turned);
+    if (angle < reach.range.low - tolerance::beyond || angle > reach.range.high + tolerance::beyond)
+        return true;
+    if (!reach.has_direction) return false;
+    const Vec3d asked = motion * chain.point[reach.last] - chain.point[reach.first];
+    const Vec3d across = asked - dot(reach.along, asked) * reach.along;
+    return norm(across) > reach.links + reach.rounding + tolerance::beyond * norm(asked);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -26,7 +26,7 @@ from cspace.ik.goals.given import (
 from cspace.ik.goals.partial import KEYWORDS
 from cspace.ik.goals.parts import check_tool_axis, is_open, partial_goal
 from cspace.ik.least_squares import least_squares_answer
-from cspace.ik.redundancy.solve import solve_freedom
+from cspace.ik.redundancy.solve import choose_nearest, solve_freedom
 from cspace.ik.solutions import NEAREST, UNREACHABLE, Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.wrapping import wrap_joints
@@ -105,7 +105,7 @@ def solve(
     if swivel is not None:
         raise InputTypeError("swivel= needs a full pose; lock joints with locked= instead")
     parts = partial_goal(given, tool_axis)
-    return choose_solutions(solve_freedom(solver, parts, parts.T, options), options)
+    return approach_unreached(solve_freedom(solver, parts, parts.T, options), options)
 
 
 def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
@@ -113,7 +113,7 @@ def answer_poses(solver: Solver, goal: Any, options: Options) -> Answer:
     if options.swivel is not None:
         return answer_swivel(solver, T, options)
     if options.sets_freedom or solver.is_redundant:
-        return choose_solutions(solve_freedom(solver, None, checked_poses(T), options), options)
+        return approach_unreached(solve_freedom(solver, None, checked_poses(T), options), options)
     if T.ndim > 2:
         return choose_solutions(solve_many(solver, T, _core._ik_many, options.threads), options)
     return choose_solutions(solve_one(solver, T, options.near), options)
@@ -130,15 +130,18 @@ def answer_points(solver: Solver, p: Array, options: Options) -> Answer:
 
 def choose_solutions(found: Answer, options: Options) -> Answer:
     """Of all solutions those that the options name."""
-    if options.least_squares and options.locked:
+    return approach_unreached(choose_nearest(found, options.near), options)
+
+
+def approach_unreached(found: Answer, options: Options) -> Answer:
+    """With least_squares=, the configurations of least error for goals that nothing reaches."""
+    if not options.least_squares:
+        return found
+    if options.locked:
         raise InputTypeError("least_squares= cannot be combined with locked=, because it moves every joint")
     if isinstance(found, SolutionsBatch):
-        if options.near is not None:
-            found = found._nearest_alone(options.near)
-        return least_squares_batch(found, options.threads) if options.least_squares else found
-    if options.near is not None:
-        found = found.nearest(options.near)
-    return least_squares_answer(found) if options.least_squares and not found else found
+        return least_squares_batch(found, options.threads)
+    return found or least_squares_answer(found)
 
 
 def answer_swivel(solver: Solver, T: Array, options: Options) -> Answer:

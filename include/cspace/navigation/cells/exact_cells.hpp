@@ -100,6 +100,7 @@ class ExactCells {
           }) {
         const Point low = world.outlines.low, high = world.outlines.high;
         far_ = 4 * (std::abs(low.y) + std::abs(high.y) + (high.x - low.x) + (high.y - low.y));
+        for (const Door& door : cells_.doors) spans_.push_back(span(door));
     }
 
     const Trapezoids& cells() const { return cells_; }
@@ -126,6 +127,12 @@ class ExactCells {
     }
 
   private:
+    // The points of a door, all at one x.
+    struct Span {
+        double x, low, high;
+        // The point nearest to p: a straight line leads there, for cells are convex.
+        Point nearest(Point p) const { return {x, std::clamp(p.y, low, high)}; }
+    };
     // The cells as nodes of best_first, each with the door and the point at which the path enters it.
     struct Open {
         const ExactCells& of;
@@ -147,7 +154,7 @@ class ExactCells {
             const Point from = entry[cell];
             for (const Index d : of.doors_.of(cell)) {
                 const Door& door = of.cells_.doors[std::size_t(d)];
-                const Point at = of.nearest(door, from);
+                const Point at = of.spans_[std::size_t(d)].nearest(from);
                 const Index other = door.left == Index(cell) ? door.right : door.left;
                 reach(other, ways.cost(cell) + distance(from, at), at, std::uint32_t(d), queue);
             }
@@ -162,13 +169,13 @@ class ExactCells {
     };
     Trapezoids cells_;
     search::Adjacency<Index> doors_;  // of each cell
+    std::vector<Span> spans_;         // of each door
     double far_;
 
-    // The point of a door that is nearest to p: a straight line leads there, for cells are convex.
-    Point nearest(const Door& door, Point p) const {
+    Span span(const Door& door) const {
         const Trapezoid& cell = cells_.cells[std::size_t(door.left)];
         const double y = cells_.wall(door.is_above ? cell.top : cell.bottom).y_at(door.corner.x);
-        return {door.corner.x, std::clamp(p.y, std::min(y, door.corner.y), std::max(y, door.corner.y))};
+        return {door.corner.x, std::min(y, door.corner.y), std::max(y, door.corner.y)};
     }
     // The door as a gap. Its other end lies on a wall that bounds both cells; the string cannot reach that
     // wall but at its corners, which are ends of gaps themselves, so the gap may as well be open there.

@@ -94,9 +94,10 @@ def intervals_of(solver: Solver, T: Array, joint: int) -> Redundancy:
             return "fold"
         return "nothing" if what == END_NOTHING else f"{names[what]} at {'upper' if side else 'lower'} limit"
 
-    made = []
-    for low, high, branch, a, sa, b, sb, q in rows:
-        inside, _ = into_limits(np.array(q), *bounds)
-        made.append(Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), inside, slides))
+    inside, _ = into_limits(np.array([row[-1] for row in rows]).reshape(-1, len(names)), *bounds)
+    made = [
+        Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), q, slides)
+        for (low, high, branch, a, sa, b, sb, _), q in zip(rows, inside, strict=True)
+    ]
     made.sort(key=lambda interval: (interval.branch, interval.lower))
     return Redundancy(solver, T, names[joint], tuple(made), complete, slides)

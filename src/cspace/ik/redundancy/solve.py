@@ -55,8 +55,8 @@ def solve_freedom(
         check_samples(solver, options, degree)
         if degree <= 0:
             if goal is None:
-                return solve_locked(solver, T, values, options)
-            return answer_locked(solver, whole, goal, first, T, values, options)
+                return choose_nearest(solve_locked(solver, T, values, options), options.near)
+            return choose_nearest(answer_locked(solver, whole, goal, first, T, values, options), options.near)
         if any(np.ndim(value) for value in values.values()):
             raise InputTypeError(
                 "locked= takes one value per joint while dimensions stay free; lock all redundant joints,"
@@ -73,7 +73,15 @@ def solve_freedom(
     if options.samples is not None:
         samples = whole_number(options.samples, "samples", 1, MOST_SAMPLES)
     request = (columns, row, first, goal is not None, seeds, samples, None, None)
-    return ask_core(solver, asked, T, request, about, options.threads)
+    found = ask_core(solver, asked, T, request, about, options.threads)
+    return found if seeds is not None else choose_nearest(found, options.near)
+
+
+def choose_nearest(found: Solutions | SolutionsBatch, near: Any) -> Solutions | SolutionsBatch:
+    """Of all solutions the nearest to a seed, or all without one."""
+    if near is None:
+        return found
+    return found._nearest_alone(near) if isinstance(found, SolutionsBatch) else found.nearest(near)
 
 
 def ask_core(
