@@ -236,3 +236,16 @@ def test_robots_are_freed():
     gc.collect()
     assert last() is None
     assert (sys.getrefcount(Robot), sys.getrefcount(_core.KinematicsBase)) == before
+
+
+@pytest.mark.parametrize(
+    "name", ["name", "limits", "base", "tip", "joint_names", "joint_types", "frames", "mass"]
+)
+@pytest.mark.parametrize("kind", ["robot", "solver"])
+def test_what_describes_a_model_is_not_replaced(name, kind):
+    robot = cs.load_robot("ur5e")
+    model = robot if kind == "robot" else robot.solver
+    before = getattr(model, name)
+    with pytest.raises(AttributeError, match=f"{name} of .* cannot be replaced; build another one"):
+        setattr(model, name, before)
+    assert getattr(model, name) is before

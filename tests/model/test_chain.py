@@ -1,8 +1,11 @@
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
 from cspace.errors import DescriptionError, InputError, UnknownNameError
-from cspace.model import Description, Joint, Link, Mimic, chain, default_tip, from_screws, twists
+from cspace.model import Chain, Description, Joint, Link, Mimic, chain, default_tip, from_screws, twists
 from model.random_robots import random_pose, random_tree, random_values
 from oracles.forward import link_poses, product_of_exponentials
 
@@ -29,6 +32,24 @@ def test_a_chain_between_any_two_links_moves_as_the_tree_does(seed):
         for frame, (k, T_zero) in c.frames.items():
             T = product_of_exponentials(c.axes[:k], c.points[:k], c.joint_types[:k], T_zero, q[:k])
             np.testing.assert_allclose(T, np.linalg.inv(poses[base]) @ poses[frame], atol=1e-13)
+
+
+@pytest.mark.parametrize("again", [copy.copy, copy.deepcopy, lambda c: pickle.loads(pickle.dumps(c))])
+@pytest.mark.parametrize("changed", [lambda c: c, Chain.reversed, lambda c: c.lock({1: 0.4})])
+def test_every_copy_of_a_chain_is_read_only_and_equal(again, changed):
+    rng = np.random.default_rng(1)
+    points = rng.normal(size=(4, 3))
+    whole = chain(from_screws(np.eye(3)[[2, 1, 1, 0]], points, random_pose(rng), joint_types="RRPR"))
+    original = changed(whole)
+    copied = again(original)
+    assert list(copied.frames) == list(original.frames)
+    arrays = [(c.axes, c.points, c.T_zero, *(T for _, T in c.frames.values())) for c in (copied, original)]
+    for ours, theirs in zip(*arrays, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+        assert not ours.flags.writeable
+        assert not theirs.flags.writeable
+    with pytest.raises(TypeError):
+        copied.frames["new"] = (0, np.eye(4))
 
 
 def test_a_chain_knows_its_limits_and_its_mimics():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from cspace._core import KinematicsBase
 from cspace.kinematics.assembly import Assembly, screws
 from cspace.model import Chain
@@ -27,6 +29,15 @@ class KinematicModel(KinematicsBase):
         self.joint_names, self.joint_types = assembly.coordinates, assembly.coordinate_types
         self.limits = assembly.limits
         self.mass = float(assembly.mass.sum())
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        """Refuses to replace what describes the model: its compiled kinematics would not change with it."""
+        if name in self.__dict__ and not name.startswith("_"):
+            text = (
+                f"{name} of {type(self).__name__} {self.name} cannot be replaced; build another one instead"
+            )
+            raise AttributeError(text, name=name, obj=self)
+        super().__setattr__(name, value)
 
     @property
     def chain(self) -> Chain:

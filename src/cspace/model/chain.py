@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
+from typing import Any
 
 import numpy as np
 
@@ -118,7 +119,7 @@ class Chain:
         """The chain with its tip turned by R (3, 3), seen in the tip."""
         T = self.T_zero.copy()
         T[:3, :3] = T[:3, :3] @ R
-        return replace(self, T_zero=freeze_array(T), frames={**self.frames, self.tip: (len(self.axes), T)})
+        return replace(self, T_zero=T, frames={**self.frames, self.tip: (len(self.axes), T)})
 
     def reversed(self) -> Chain:
         """The chain from tip to base: its joints in the opposite order, its pose the inverse.
@@ -137,8 +138,16 @@ class Chain:
         frames = {self.tip: (0, np.eye(4)), self.base: (len(self.axes), T)}
         return replace(turned, base=self.tip, tip=self.base, frames=frames)
 
-    def __getstate__(self) -> dict[str, object]:
-        return {**self.__dict__, "frames": dict(self.frames)}
+    def __post_init__(self) -> None:
+        """Make the arrays and the mapping read-only."""
+        for array in (self.axes, self.points, self.T_zero, *(pose for _, pose in self.frames.values())):
+            freeze_array(array)
+        object.__setattr__(self, "frames", MappingProxyType(dict(self.frames)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Read-only mappings cannot be pickled; what they were made from can."""
+        values = {field.name: getattr(self, field.name) for field in fields(self)}
+        return type(self), tuple((values | {"frames": dict(self.frames)}).values())
 
     @property
     def _limit_rows(self) -> list[Array]:
@@ -164,11 +173,11 @@ class Chain:
             tip=self.tip,
             joint_names=names,
             joint_types=kinds,
-            axes=freeze_array(np.ascontiguousarray(axes)),
-            points=freeze_array(np.ascontiguousarray(points)),
-            T_zero=freeze_array(np.ascontiguousarray(T_zero)),
+            axes=np.ascontiguousarray(axes),
+            points=np.ascontiguousarray(points),
+            T_zero=np.ascontiguousarray(T_zero),
             coordinates=Coordinates(names, *rows, Limits(*limits)),
-            frames=MappingProxyType({self.base: (0, np.eye(4)), self.tip: (n, T_zero)}),
+            frames={self.base: (0, np.eye(4)), self.tip: (n, T_zero)},
         )
 
 
@@ -288,17 +297,15 @@ def chain(description: Description, base: str | None = None, tip: str | None = N
         for link in rigid_group(description, joint.parent if backward else joint.child) if steps else ():
             frames[link] = (len(parts), poses[link])
     n = len(parts)
-    for _, pose in frames.values():
-        freeze_array(pose)
     return Chain(
         name=description.name,
         base=base,
         tip=tip,
         joint_names=tuple(part.name for part in parts),
         joint_types="".join(part.kind for part in parts),
-        axes=freeze_array(np.array(axes).reshape(n, 3)),
-        points=freeze_array(np.array(points).reshape(n, 3)),
+        axes=np.array(axes).reshape(n, 3),
+        points=np.array(points).reshape(n, 3),
         T_zero=frames[tip][1],
         coordinates=coordinates_of(tuple(parts), description.joint_by_name),
-        frames=MappingProxyType(frames),
+        frames=frames,
     )
