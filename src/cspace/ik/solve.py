@@ -17,6 +17,7 @@ from cspace.ik.goals.given import (
     checked_poses,
     goal_array,
     is_far,
+    is_open,
     one_configuration,
     open_in_space,
     planar_poses,
@@ -24,7 +25,7 @@ from cspace.ik.goals.given import (
     too_far,
 )
 from cspace.ik.goals.partial import KEYWORDS
-from cspace.ik.goals.parts import check_tool_axis, is_open, partial_goal
+from cspace.ik.goals.parts import check_tool_axis, partial_goal
 from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.redundancy.solve import choose_nearest, solve_freedom
 from cspace.ik.solutions import NEAREST, UNREACHABLE, Solutions
@@ -86,8 +87,7 @@ def solve(
     options = Options(near, locked, swivel, samples, bool(least_squares), workers)
     if angle is not None:
         goal, position = planar_poses(solver, goal, position, angle), None
-    if is_open(position):
-        position = open_in_space(solver, position)
+    position = open_in_space(solver, position)
     named = (position, rotation, direction, look_at, ray, angle_to)
     given = {name: value for name, value in zip(KEYWORDS, named, strict=True) if value is not None}
     check_tool_axis(tool_axis, given)

@@ -14,8 +14,9 @@ from cspace.errors import InputTypeError, suggest
 from cspace.ik.explain.page import Block, lay_out_table
 from cspace.ik.explain.plan import IkPlan
 from cspace.ik.explain.screws import vector_text
+from cspace.ik.goals.given import is_open
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
-from cspace.ik.goals.parts import is_open, partial_goal
+from cspace.ik.goals.parts import partial_goal
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver

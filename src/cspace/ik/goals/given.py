@@ -8,7 +8,6 @@ import numpy as np
 
 from cspace.arrays import Array, as_floats, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.goals.parts import is_open
 from cspace.ik.wrapping import turning_joints
 from cspace.spatial import as_pose
 from cspace.tolerances import FARTHEST, LEVEL_SLIDE, UPRIGHT_TURN
@@ -49,6 +48,11 @@ def points_in_base(solver: Solver, position: Any) -> Array:
     if p.ndim == 1 and is_far(p):
         raise too_far("position", p)
     return np.ascontiguousarray(p)
+
+
+def is_open(value: Any) -> bool:
+    """Whether some coordinates of a point are None."""
+    return isinstance(value, (tuple, list)) and any(v is None for v in value)
 
 
 def open_in_space(solver: Solver, position: Any) -> Any:

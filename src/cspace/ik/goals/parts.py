@@ -9,6 +9,7 @@ import numpy as np
 
 from cspace.arrays import Array, as_arrays, leading_axes
 from cspace.errors import InputError, InputTypeError
+from cspace.ik.goals.given import is_open
 from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
 from cspace.spatial.vectors import length_and_direction
@@ -95,11 +96,6 @@ def axis_named(name: str) -> Array:
     if name.removeprefix("-") not in AXES:
         raise InputError(f"axis {name!r} is unknown, expected x, y, z, -x, -y, -z or a direction (3,)")
     return np.asarray(sign * AXES[name.removeprefix("-")])
-
-
-def is_open(value: Any) -> bool:
-    """Whether some coordinates of a point are None."""
-    return isinstance(value, (tuple, list)) and any(v is None for v in value)
 
 
 # --- one kind of goal each --------------------------------------------------------------------------------
