@@ -19,11 +19,6 @@ using namespace cspace;
 
 namespace {
 
-bool was_interrupted() {
-    const nb::gil_scoped_acquire acquire;
-    return PyErr_CheckSignals() != 0;
-}
-
 ik::RowMap row_map(const ik::Solver& core, const std::vector<int>& columns, const Row& values) {
     ik::RowMap whole = {int(columns.size()), {}, {}};
     bool fits = columns.size() <= std::size_t(ik::max_joints) && values.shape(0) == columns.size();
@@ -113,14 +108,12 @@ nb::object answer_rows(SolverArgument solver, SolverArgument asked, Goals goals,
                                      locked ? &core.redundant().lock(*locked) : nullptr,
                                      at ? at->data() : nullptr,
                                      at && at->shape(0) != 1,
-                                     threads,
-                                     was_interrupted};
+                                     threads};
     std::vector<ik::GoalAnswer> answers;
     {
         const nb::gil_scoped_release release;
         answers = ik::answer_goals(core, request);
     }
-    if (answers.size() != N) throw nb::python_error();
     return is_single ? to_result(solver, request, answers[0], about) : to_arrays(request, answers);
 }
 

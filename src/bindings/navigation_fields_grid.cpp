@@ -103,7 +103,7 @@ bool divide(const GridWorld& world, PointRow start, PointRow goal) {
 void new_harmonic(HarmonicPotential* at, const GridWorld& world, const ClearanceField& clearance,
                   PointRow goal, double residual, int most_cycles) {
     const nb::gil_scoped_release free;
-    new (at) HarmonicPotential(world, clearance, point_of(goal), residual, most_cycles, heed_interrupts);
+    new (at) HarmonicPotential(world, clearance, point_of(goal), residual, most_cycles);
 }
 Numbers<double> heights(const HarmonicPotential& field, const GridWorld& world) {
     return table(field.heights(world), std::size_t(world.columns()));

@@ -79,7 +79,7 @@ struct CellsSearch : SearchOf<GridWorld, GridFinding> {
     // A search of few cells takes no longer than to free the interpreter.
     bool is_concurrent(const Core& world) const { return world.cells() > 1 << 14; }
     bool find(const Core& world, Point start, Point goal, Trace* trace) {
-        return find_grid_route(world, q, start, goal, heed_interrupts, found, trace);
+        return find_grid_route(world, q, start, goal, found, trace);
     }
     // Where path and length do not say it: what the way costs, and a bound below the best.
     PyObject* evidence() const {
@@ -92,7 +92,7 @@ thread_local GridFinding CellsSearch::kept;
 
 struct AnyAngleSearch : SearchOf<GridWorld> {
     bool find(const Core& world, Point start, Point goal, Trace* trace) {
-        return find_any_angle_route(world, start, goal, heed_interrupts, found, trace);
+        return find_any_angle_route(world, start, goal, found, trace);
     }
 };
 

@@ -24,13 +24,6 @@ T* core_of(PyObject* value) {
     return nullptr;
 }
 
-// For searches that run long: raises what Python's signal handlers raise, Ctrl-C among it. Any code may run
-// in them.
-inline void heed_interrupts() {
-    const nanobind::gil_scoped_acquire held;
-    if (PyErr_CheckSignals()) throw nanobind::python_error();
-}
-
 // Settings as numbers; false with an error set for others.
 template <std::size_t count>
 bool read_settings(PyObject* const* args, std::array<double, count>& numbers) {

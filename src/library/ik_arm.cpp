@@ -42,6 +42,7 @@ std::size_t solve_slice(const BuiltArm& built, const GoalRows& rows, std::size_t
             rows.status[i] = static_cast<unsigned char>(rows.count[i] ? Status::exact : Status::unreachable);
             continue;
         }
+        poll_interrupts();
         const ReadGoal<double> goal = read_goal(rows.goals + 16 * i);
         if (!goal.is_pose) return i;
         kernels::ik_pose(arm, goal.T, nullptr, found);
@@ -131,6 +132,7 @@ void nearest_to_goals(const BuiltArm& built, const double* goals, std::size_t n,
                       int threads) {
     over_rows(n, threads, 1, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
+            poll_interrupts();
             const NearestMiss best = nearest_to_goal(built, goals + 16 * i, stiffness);
             std::copy(best.q, best.q + built.dof, q + std::size_t(built.dof) * i);
         }

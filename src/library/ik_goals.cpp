@@ -1,7 +1,6 @@
 #include "ik_goals.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 
 #include "cspace/ik/goal.hpp"
@@ -203,18 +202,13 @@ GoalAnswer answer_goal(Solver& solver, const GoalRequest& request, std::size_t i
 
 std::vector<GoalAnswer> answer_goals(Solver& solver, const GoalRequest& request) {
     std::vector<GoalAnswer> out(request.n);
-    std::atomic<std::size_t> next = 0;
-    std::atomic<bool> stopped = false;
-    const std::size_t workers = std::clamp<std::size_t>(std::size_t(std::max(request.threads, 1)), 1,
-                                                        std::max<std::size_t>(request.n, 1));
-    over_rows(workers, int(workers), 1, 1, [&](std::size_t worker, std::size_t) {
-        for (std::size_t i = next++; i < request.n && !stopped; i = next++) {
+    over_rows(request.n, std::max(request.threads, 1), 1, 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
             out[i] = answer_goal(solver, request, i);
-            if (worker == 0 && request.n > 1 && request.is_stopped()) stopped = true;
+            poll_interrupts();
         }
         return true;
     });
-    if (stopped) out.clear();
     return out;
 }
 

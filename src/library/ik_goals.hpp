@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <vector>
 
 #include "ik_solver.hpp"
@@ -34,10 +33,9 @@ struct GoalRequest {
     const double* at;
     bool at_each;
     int threads;
-    std::function<bool()> is_stopped;  // asked between goals, by the calling thread
 };
 
-// One answer per goal; none where the call was stopped.
+// One answer per goal.
 std::vector<GoalAnswer> answer_goals(Solver& solver, const GoalRequest& request);
 
 }  // namespace cspace::ik

@@ -168,6 +168,7 @@ void RedundantSolver::solve(const LockedArm& locked, const Rows& rows) const {
                 rows.status[i] = std::uint8_t(lanes->count[in] ? Status::exact : Status::unreachable);
                 continue;
             }
+            poll_interrupts();
             kernels::ik_locked(locked, pose_of(rows.goals + 16 * i), values, rows.unconstrained, found);
             std::fill(q, q + rows.room * n, none);
             const int count = std::min(found.count, int(rows.room));

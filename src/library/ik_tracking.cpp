@@ -4,6 +4,7 @@
 
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/tracking/follow.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "kernels/ik.hpp"
 #include "robot_path.hpp"
 
@@ -35,9 +36,10 @@ struct Tracking {
           reached(given.branches),
           joint(given.branches),
           fate(given.branches) {
-        for (std::size_t k = 0; k < given.count; ++k) poses[k] = read_goal(given.poses + 16 * k).T;
-        for (std::size_t k = 0; k < given.count; ++k)
+        visit_range(0, given.count, [&](std::size_t k) { poses[k] = read_goal(given.poses + 16 * k).T; });
+        visit_range(0, given.count, [&](std::size_t k) {
             ways[k] = way_between(poses[k], poses[k + (k + 1 < given.count)], on.path.length);
+        });
         bool same = on.path.n == on.coordinates;
         for (int j = 0; same && j < on.path.n; ++j) same = on.number[j] == j;
         if (!same) q.resize(given.branches * given.count * std::size_t(on.path.n));
@@ -47,9 +49,9 @@ struct Tracking {
         on.gather(given.bounds + 2 * on.coordinates, stride);
     }
     ik::Track track(bool whole_turns) {
-        return {&on.path,       poses.data(), ways.data(),    poses.size(), lower,      upper,
-                stride,         whole_turns,  starts.data(),  ends.size(),  rows,       last.data(),
-                reached.data(), ends.data(),  weakest.data(), joint.data(), fate.data()};
+        return {&on.path,       poses.data(), ways.data(),    poses.size(), lower,       upper,
+                stride,         whole_turns,  starts.data(),  ends.size(),  rows,        last.data(),
+                reached.data(), ends.data(),  weakest.data(), joint.data(), fate.data(), poll_interrupts};
     }
 };
 

@@ -5,28 +5,29 @@
 #include <memory>
 
 #include "cspace/maps/polygon_world.hpp"
+#include "cspace/math/made_once.hpp"
 #include "maps_polygon_world.hpp"
 
 namespace cspace::maps {
 
-// A value of one type, made when first asked for. Of two threads that make it at once, the first keeps its
-// own.
-class MadeOnce {
+// A value of one type, which is named where it is asked for.
+class Memory {
   public:
-    MadeOnce() = default;
-    MadeOnce(const MadeOnce&) = delete;
-    MadeOnce& operator=(const MadeOnce&) = delete;
-    ~MadeOnce() {
-        if (Holder* made = made_.load()) delete made;
-    }
     template <class T, class... Arguments>
     T& get(const Arguments&... arguments) {
-        Holder* made = made_.load(std::memory_order_acquire);
-        if (!made) {
-            auto fresh = std::make_unique<Held<T>>(arguments...);
-            if (made_.compare_exchange_strong(made, fresh.get())) made = fresh.release();
+        Holder& made = made_.get([&] { return std::make_unique<Held<T>>(arguments...); });
+        return static_cast<Held<T>&>(made).value;
+    }
+    // Returns use(value), which changes it; amid another such call, from which a signal handler can come, it
+    // gets a value of its own.
+    template <class T, class Use, class... Arguments>
+    auto lend(const Use& use, const Arguments&... arguments) {
+        if (lent_.test_and_set()) {
+            T own(arguments...);
+            return use(own);
         }
-        return static_cast<Held<T>*>(made)->value;
+        const Return at_end{lent_};
+        return use(get<T>(arguments...));
     }
 
   private:
@@ -39,7 +40,12 @@ class MadeOnce {
         explicit Held(const Arguments&... arguments) : value(arguments...) {}
         T value;
     };
-    std::atomic<Holder*> made_ = nullptr;
+    struct Return {
+        std::atomic_flag& lent;
+        ~Return() { lent.clear(); }
+    };
+    MadeOnce<Holder> made_;
+    std::atomic_flag lent_;
 };
 
 struct PolygonCore::State {
@@ -48,7 +54,8 @@ struct PolygonCore::State {
     const PolygonWorld world;
     const double tolerance;
     // What planners keep with a world. Each is used by one file of the library, which knows its type.
-    MadeOnce walls, surroundings, polyanya, visibility, exact_cells, quadtree, voronoi, samples;
+    Memory walls, surroundings, polyanya, visibility_graph, visibility, exact_cells, quadtree, voronoi,
+        samples;
 
     Settled settle(Point p) const;
 };

@@ -17,8 +17,11 @@ template <class T, class Of>
 std::vector<T> map_cells(const maps::BitGrid& grid, const Of& of) {
     std::vector<T> values;
     values.reserve(std::size_t(grid.rows()) * std::size_t(grid.columns()));
-    for (int row = 0; row < grid.rows(); ++row)
+    InterruptPoll poll(4);
+    for (int row = 0; row < grid.rows(); ++row) {
+        poll.step();
         for (int column = 0; column < grid.columns(); ++column) values.push_back(of(maps::Cell{row, column}));
+    }
     return values;
 }
 
@@ -99,9 +102,9 @@ struct HarmonicPotential::State {
 };
 
 HarmonicPotential::HarmonicPotential(const GridWorld& world, const ClearanceField& clearance, Point goal,
-                                     double residual, int most_cycles, Look look)
+                                     double residual, int most_cycles)
     : state_(new State{{world.state().bits, clearance.state().clearance, world.state().free_cell(goal),
-                        residual, most_cycles, look}}) {}
+                        residual, most_cycles}}) {}
 
 double HarmonicPotential::residual() const { return state_->field.residual(); }
 int HarmonicPotential::cycles() const { return state_->field.cycles(); }

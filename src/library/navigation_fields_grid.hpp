@@ -12,7 +12,6 @@
 namespace cspace::navigation {
 
 using maps::GridWorld;
-using Look = void (*)();  // called now and then; it may throw
 
 // Whether start and goal certainly lie in different parts of the free cells; not told of small parts. Throws
 // std::invalid_argument, as all here do that take a point but no trace, unless they lie in free cells.
@@ -45,7 +44,7 @@ class ClearanceField {
 class HarmonicPotential {
   public:
     HarmonicPotential(const GridWorld& world, const ClearanceField& clearance, Point goal, double residual,
-                      int most_cycles, Look look);
+                      int most_cycles);
 
     double residual() const;
     int cycles() const;

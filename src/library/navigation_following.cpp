@@ -1,5 +1,6 @@
 #include "navigation_following.hpp"
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/cars/car_world.hpp"
 #include "cspace/navigation/following/dynamic_window.hpp"
 #include "cspace/navigation/following/follow.hpp"
@@ -83,7 +84,9 @@ int follow_path(std::span<const Point> points, std::span<const FollowRun> runs, 
 void cast_rays(const maps::GridWorld& world, std::span<const Point> from, const double* angles, double most,
                double* ranges) {
     const auto& [bits, frame, parts] = world.state();
+    InterruptPoll poll(64);
     for (const Point point : from) {
+        poll.step();
         const double angle = *angles++;
         *ranges++ = cast_ray(bits, frame, point, {std::cos(angle), std::sin(angle)}, most);
     }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/any_angle/grid_any_angle.hpp"
 #include "cspace/navigation/grid/d_star_lite.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
@@ -67,7 +68,7 @@ bool GridQuestion::is_known() const {
 bool GridQuestion::has_bounds() const { return costs || planner == int(GridPlanner::focal); }
 
 bool find_grid_route(const maps::GridWorld& grid, const GridQuestion& question, Point start, Point goal,
-                     Look look, GridFinding& finding, Trace* trace) {
+                     GridFinding& finding, Trace* trace) {
     maps::GridWorld::State& world = grid.state();
     maps::Cell from, to;
     if (!world.find_cells(start, goal, from, to)) return false;
@@ -83,7 +84,7 @@ bool find_grid_route(const maps::GridWorld& grid, const GridQuestion& question, 
     auto& [nodes, answer] = borrowed.get();
     std::vector<Settled> settled;
     answer.settled = trace ? &settled : nullptr;
-    find_way(world.bits, from, to, query, nodes, answer, &world.parts, look);
+    find_way(world.bits, from, to, query, nodes, answer, &world.parts);
     if (trace) list_settled(world.frame, settled, *trace);
     draw_route(world.frame, start, goal, answer, finding.route);
     finding.found = answer.found;
@@ -92,8 +93,7 @@ bool find_grid_route(const maps::GridWorld& grid, const GridQuestion& question, 
     return true;
 }
 
-bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal, Look look, Route& route,
-                          Trace* trace) {
+bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal, Route& route, Trace* trace) {
     auto& [bits, frame, parts] = world.state();
     if (!maps::RunMesh::fits(bits))
         throw std::invalid_argument(
@@ -101,7 +101,7 @@ bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal,
     GridAnyAngle search(bits, frame);
     const SettledInRuns from = search.settle(start), to = search.settle(goal);
     if (from.runs.empty() || to.runs.empty()) return false;
-    route = search.solve(start, from, goal, to, &parts, trace, look);
+    route = search.solve(start, from, goal, to, &parts, trace);
     return true;
 }
 
@@ -131,7 +131,8 @@ void GridReplanner::set_cells(std::span<const std::int32_t> cells, bool blocked)
     for (std::size_t k = 0; k < cells.size(); k += 2)
         if (!state_->search.grid().contains({cells[k], cells[k + 1]}))
             throw std::invalid_argument("the cells must lie within the grid");
-    for (std::size_t k = 0; k < cells.size(); k += 2) state_->search.set({cells[k], cells[k + 1]}, blocked);
+    visit_range(0, cells.size() / 2,
+                [&](std::size_t k) { state_->search.set({cells[2 * k], cells[2 * k + 1]}, blocked); });
 }
 
 void GridReplanner::move_to(Point start) {

@@ -30,18 +30,14 @@ struct GridFinding {
     std::int64_t parts = 0;      // how many there are, where the ends lie in two of them; or 0
 };
 
-// A function that a search calls now and then; it may throw, and may run another search.
-using Look = void (*)();
-
 // False where an end lies in no free cell. The events are the cells in the order in which the search settles
 // them.
 bool find_grid_route(const maps::GridWorld& world, const GridQuestion& question, Point start, Point goal,
-                     Look look, GridFinding& finding, Trace* trace);
+                     GridFinding& finding, Trace* trace);
 
 // The shortest path between points, at any angle. False where an end lies in no free cell. Throws
 // std::invalid_argument for a grid of too many cells.
-bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal, Look look, Route& route,
-                          Trace* trace);
+bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal, Route& route, Trace* trace);
 
 // D* Lite over a grid of its own.
 class GridReplanner {

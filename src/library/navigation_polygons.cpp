@@ -36,10 +36,17 @@ Route find_any_angle(State& state, Settled& from, Settled& to, Trace* trace) {
     const maps::ConvexMesh& mesh = state.world.mesh();
     for (Settled* end : {&from, &to})
         for (Index& t : end->triangles) t = mesh.of_triangle[std::size_t(t)];
-    return state.polyanya.get<Polyanya>(mesh).solve(from.at, from.triangles, to.at, to.triangles, trace);
+    return state.polyanya.lend<Polyanya>(
+        [&](Polyanya& search) { return search.solve(from.at, from.triangles, to.at, to.triangles, trace); },
+        mesh);
+}
+const VisibilityGraph& graph_of(State& state) {
+    return state.visibility_graph.get<VisibilityGraph>(state.world.space);
 }
 Route find_by_visibility(State& state, Settled& from, Settled& to, Trace* trace) {
-    return state.visibility.get<VisibilitySearch>(state.world).solve(from, to, trace);
+    return state.visibility.lend<VisibilitySearch>(
+        [&](VisibilitySearch& search) { return search.solve(from, to, trace); }, graph_of(state),
+        state.world.space);
 }
 Route find_by_cells(State& state, Settled& from, Settled& to, Trace* trace) {
     return state.exact_cells.get<ExactCells>(state.world).solve(from.at, to.at, trace);
@@ -105,7 +112,7 @@ bool find_voronoi_route(const PolygonCore& core, Point start, Point goal, bool w
 void list_visibility_graph(const PolygonCore& core, std::vector<Point>& nodes,
                            std::vector<std::int32_t>& edges) {
     State& state = core.state();
-    const VisibilityGraph& graph = state.visibility.get<VisibilitySearch>(state.world).graph();
+    const VisibilityGraph& graph = graph_of(state);
     for (Index n = 0; n < graph.size(); ++n) {
         nodes.push_back(graph.point(n));
         for (const auto& edge : graph.edges_of(n))

@@ -26,7 +26,8 @@ double area_of(const Trapezoids& all) {
 void check_world(const Outlines& outlines, std::mt19937& random, int queries) {
     const PolygonWorld world(outlines);
     const ExactCells exact(world);
-    VisibilitySearch shortest(world);
+    const VisibilityGraph graph(world.space);
+    VisibilitySearch shortest(graph, world.space);
     std::set<std::pair<double, double>> corners;
     double area = 0;
     for (Index e = 0; e < Index(world.walls.size()); ++e) {

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "check.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/harmonic.hpp"
 #include "random.hpp"
 
@@ -76,17 +77,19 @@ TEST(what_is_not_connected_is_infinitely_high) {
     CHECK(single.descend({0, 0}).found);
 }
 
-TEST(a_look_that_throws_ends_the_solution) {
-    const BitGrid grid(30, 30);
-    int looks = 0;
-    const auto look = [&] {
-        if (++looks == 3) throw looks;
-    };
+TEST(a_check_that_throws_ends_the_solution) {
+    const BitGrid grid(300, 300);
+    const Clearance clearance = make_clearance(grid);
+    static int checks = 0;
+    set_interrupt_check([] {
+        if (++checks == 3) throw checks;
+    });
     bool ended = false;
     try {
-        const HarmonicField field(grid, make_clearance(grid), {0, 0}, 1e-11, 400, look);
+        const HarmonicField field(grid, clearance, {0, 0}, 1e-11, 400);
     } catch (int) {
         ended = true;
     }
-    CHECK(ended && looks == 3);
+    set_interrupt_check(nullptr);
+    CHECK(ended && checks == 3);
 }

@@ -16,16 +16,21 @@ namespace {
 
 struct Shortest {
     PolygonWorld world;
-    VisibilitySearch graph;
+    VisibilityGraph graph;
+    VisibilitySearch search;
     Polyanya polyanya;
 
-    explicit Shortest(Outlines outlines) : world(std::move(outlines)), graph(world), polyanya(world.mesh()) {}
+    explicit Shortest(Outlines outlines)
+        : world(std::move(outlines)),
+          graph(world.space),
+          search(graph, world.space),
+          polyanya(world.mesh()) {}
 
     // Both answers, or the one verdict that no path exists.
     std::pair<Route, Route> solve(Point a, Point b) {
         Settled start = world.settle(a, 0), goal = world.settle(b, 0);
         if (world.shared_component(start, goal) == none) return {};
-        const Route by_graph = graph.solve(start, goal);
+        const Route by_graph = search.solve(start, goal);
         for (Settled* end : {&start, &goal})
             for (Index& t : end->triangles) t = world.mesh().of_triangle[std::size_t(t)];
         return {polyanya.solve(a, start.triangles, b, goal.triangles), by_graph};

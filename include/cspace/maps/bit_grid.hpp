@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
+
 namespace cspace::maps {
 
 // Words of 64 cells: packing bytes into them and turning a block of 64 × 64 bits.
@@ -73,7 +75,9 @@ class BitGrid {
     }
     // From a byte per cell, row by row; not zero: blocked.
     BitGrid(const std::uint8_t* blocked, int rows, int columns) : BitGrid(rows, columns) {
+        InterruptPoll poll(64);
         for (int row = 0; row < rows; ++row) {
+            poll.step();
             const std::uint8_t* from = blocked + std::size_t(row) * std::size_t(columns);
             std::uint64_t* line = by_row_.line(row + 1);
             for (int column = 0; column < columns; column += 64) {
@@ -129,8 +133,11 @@ class BitGrid {
     }
     // A byte per cell, row by row: 1 where blocked.
     void unpack(std::uint8_t* into) const {
-        for (int row = 0; row < rows_; ++row)
+        InterruptPoll poll(16);
+        for (int row = 0; row < rows_; ++row) {
+            poll.step();
             for (int column = 0; column < columns_; ++column) *into++ = blocked(row, column);
+        }
     }
     std::size_t bytes() const { return by_row_.bytes() + by_column_.bytes(); }
 
@@ -139,8 +146,10 @@ class BitGrid {
     // Makes the columns from the rows.
     void turn() {
         std::uint64_t block[64];
+        InterruptPoll poll(64);
         for (int row = 0; row < rows_ + 2; row += 64)
             for (std::size_t word = 0; word < by_row_.words(); ++word) {
+                poll.step();
                 const int down = std::min(64, rows_ + 2 - row);
                 const int across = std::min(64, columns_ + 2 - int(64 * word));
                 for (int k = 0; k < 64; ++k) block[k] = k < down ? by_row_.line(row + k)[word] : 0;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "cspace/maps/sectors.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::maps {
 
@@ -86,13 +87,16 @@ class Merger {
 
     void merge() {
         std::vector<std::pair<double, Index>> order;
-        for (Index h = 0; h < Index(next.size()); ++h) {
-            if (!space_.is_free(h / 3)) continue;
+        visit_range(0, next.size(), [&](std::size_t i) {
+            const Index h = Index(i);
+            if (!space_.is_free(h / 3)) return;
             const Index other = twin(h);
-            if (other > h) order.push_back({-squared_norm(point(next[std::size_t(h)]) - point(h)), h});
-        }
-        std::sort(order.begin(), order.end());
+            if (other > h) order.push_back({-squared_norm(point(next[i]) - point(h)), h});
+        });
+        sort_polled(order);
+        InterruptPoll poll(256);
         for (const auto& [length, h] : order) {
+            poll.step();
             const Index other = twin(h);
             if (!stays_convex(h, other) || !stays_convex(other, h)) continue;
             gone[std::size_t(h)] = gone[std::size_t(other)] = 1;
@@ -125,7 +129,9 @@ inline ConvexMesh make_convex_mesh(const FreeSpace& space) {
     mesh.of_triangle.assign(space.mesh.triangles.size(), none);
     mesh.first.push_back(0);
     std::vector<Index> number(merged.next.size(), none), half;
+    InterruptPoll poll(1024);
     for (Index seed = 0; seed < Index(merged.next.size()); ++seed) {
+        poll.step();
         if (!space.is_free(seed / 3) || merged.gone[std::size_t(seed)] || number[std::size_t(seed)] != none)
             continue;
         const Index p = mesh.size();
@@ -140,16 +146,17 @@ inline ConvexMesh make_convex_mesh(const FreeSpace& space) {
     }
     mesh.twin.resize(half.size());
     mesh.doors.assign(mesh.first.size() - 1, 0);
-    for (std::size_t i = 0; i < half.size(); ++i) {
+    visit_range(0, half.size(), [&](std::size_t i) {
         const Index other = merged.twin(half[i]);
         mesh.twin[i] = other == none ? none : number[std::size_t(other)];
         std::uint8_t& doors = mesh.doors[std::size_t(mesh.polygon[i])];
         if (other != none && doors < 255) ++doors;
-    }
+    });
     // Triangles without an edge of their polygon's outline lie inside it: they take the number from a
     // neighbour.
     for (bool again = true; again;) {
         again = false;
+        poll_interrupts();
         for (Index t = 0; t < Index(mesh.of_triangle.size()); ++t)
             for (int e = 0; e < 3 && space.is_free(t) && mesh.of_triangle[std::size_t(t)] == none; ++e) {
                 if (!merged.gone[std::size_t(3 * t + e)]) continue;

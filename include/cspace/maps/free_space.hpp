@@ -12,6 +12,7 @@
 #include "cspace/maps/boundary.hpp"
 #include "cspace/maps/outlines.hpp"
 #include "cspace/maps/triangulator.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/predicates.hpp"
 
 namespace cspace::maps {
@@ -73,8 +74,10 @@ inline Outlines snap_rounded(const Outlines& world) {
     const auto ends_of = [&](const Outlines::Edge& e) {
         return std::pair{points[std::size_t(e.from)], points[std::size_t(e.to)]};
     };
+    InterruptPoll poll(512);
     for (std::size_t i = 0; i < world.edges.size(); ++i)
         for (std::size_t k = 0; k < i; ++k) {
+            poll.step();
             const auto [a, b] = ends_of(world.edges[i]);
             const auto [c, d] = ends_of(world.edges[k]);
             Point at;
@@ -84,6 +87,7 @@ inline Outlines snap_rounded(const Outlines& world) {
         const auto [a, b] = ends_of(edge);
         std::vector<std::pair<double, Index>> met;
         for (Index i = 0; i < Index(made.points.size()); ++i) {
+            poll.step();
             const Point p = made.points[std::size_t(i)];
             if (detail::meets_cell(a, b, p)) met.push_back({dot(p - a, b - a), i});
         }
@@ -152,7 +156,9 @@ inline void find_obstacles(FreeSpace& space, Index obstacles) {
     const Index outside = mesh.triangle_at[0];
     std::vector<Step> stack{{outside, none, 0}};
     seen[std::size_t(outside)] = 1;
+    InterruptPoll poll(1024);
     while (!stack.empty()) {
+        poll.step();
         Step& step = stack.back();
         if (step.edge == 3) {
             toggle(step.crossed);
@@ -176,11 +182,13 @@ inline void find_obstacles(FreeSpace& space, Index obstacles) {
 inline void find_components(FreeSpace& space) {
     std::vector<Index> stack;
     std::vector<std::uint8_t> seen(space.mesh.triangles.size(), 0);
+    InterruptPoll poll(1024);
     for (Index seed = 0; seed < Index(seen.size()); ++seed) {
         if (!space.is_free(seed) || seen[std::size_t(seed)]) continue;
         stack.push_back(seed);
         seen[std::size_t(seed)] = 1;
         while (!stack.empty()) {
+            poll.step();
             const Index t = stack.back();
             stack.pop_back();
             space.component[std::size_t(t)] = space.components;
@@ -207,7 +215,7 @@ inline FreeSpace triangulate_outlines(const Outlines& world) {
     std::vector<std::pair<std::uint32_t, Index>> order(n);
     const double side = std::max(high.x - low.x, high.y - low.y);
     for (std::size_t i = 0; i < n; ++i) order[i] = {along_hilbert(world.points[i], low, side), Index(i)};
-    std::sort(order.begin(), order.end());
+    sort_polled(order);
 
     Triangulator make(low, high, world.edges.size());
     make.mesh.points.reserve(n + 16);
@@ -254,14 +262,15 @@ inline FreeSpace make_free_space(const Outlines& world) {
 inline Boundary boundary_of(const FreeSpace& space) {
     const Triangulation& mesh = space.mesh;
     const std::size_t count = mesh.triangles.size();
-    std::vector<Index> number(3 * count, none);
+    auto number = filled_vector<Index>(3 * count, none);
     Boundary boundary;
-    for (std::size_t t = 0; t < count; ++t)
+    visit_range(0, count, [&](std::size_t t) {
         for (int e = 0; e < 3; ++e)
             if (space.is_free(Index(t)) && space.is_wall(Index(t), e)) {
                 number[3 * t + std::size_t(e)] = Index(boundary.points.size());
                 boundary.points.push_back(mesh.point(mesh.triangles[t].begin(e)));
             }
+    });
     boundary.next.assign(boundary.points.size(), none);
     boundary.ring.assign(boundary.points.size(), none);
     const auto next_wall = [&](Index t, int e) {
@@ -272,8 +281,8 @@ inline Boundary boundary_of(const FreeSpace& space) {
         }
         return 3 * t + e;
     };
-    for (std::size_t half = 0; half < number.size(); ++half) {
-        if (number[half] == none || boundary.ring[std::size_t(number[half])] != none) continue;
+    visit_range(0, number.size(), [&](std::size_t half) {
+        if (number[half] == none || boundary.ring[std::size_t(number[half])] != none) return;
         const Index ring = Index(boundary.component.size());
         boundary.component.push_back(space.component[half / 3]);
         for (Index h = Index(half);;) {
@@ -283,7 +292,7 @@ inline Boundary boundary_of(const FreeSpace& space) {
             h = next_wall(h / 3, h % 3);
             boundary.next[std::size_t(edge)] = number[std::size_t(h)];
         }
-    }
+    });
     return boundary;
 }
 

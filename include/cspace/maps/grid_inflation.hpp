@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::maps {
@@ -67,7 +68,9 @@ inline BitGrid inflate_grid(const BitGrid& grid, double radius, bool from_center
     std::vector<std::uint64_t> line(words), spare(words);
     const std::uint64_t within =
         ~std::uint64_t(0) >> (63 - unsigned(grid.columns() + 1) % 64);  // of the last word
+    InterruptPoll poll(1);
     for (int row = -1; row <= grid.rows(); ++row) {
+        poll.step();
         std::copy_n(grid.row(row), words, line.begin());
         int width = 0;
         for (int apart = int(widths.size()) - 1; apart >= 0; --apart) {

@@ -8,16 +8,16 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <utility>
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/maps/bit_scan.hpp"
+#include "cspace/math/interrupts.hpp"
+#include "cspace/math/made_once.hpp"
 
 namespace cspace::maps {
 
@@ -72,7 +72,9 @@ class GridParts {
         std::vector<Run> before, here;
         Label next = 0;
         const int reach = diagonal;
+        InterruptPoll poll(16);
         for (int row = 0; row < grid.rows(); ++row) {
+            poll.step();
             const std::uint64_t* line = grid.row(row);
             std::size_t k = 0;
             here.clear();
@@ -152,25 +154,19 @@ class LazyParts {
         constexpr std::uint32_t small = 1 << 16;
         return grid.numbers() < small ? std::numeric_limits<std::uint64_t>::max() : grid.numbers() / 64;
     }
-    bool is_made(bool diagonal) const { return made_[diagonal].load(std::memory_order_acquire); }
+    bool is_made(bool diagonal) const { return parts_[diagonal].find(); }
     const GridParts& of(const BitGrid& grid, bool diagonal) {
-        std::call_once(once_[diagonal], [&] {
-            parts_[diagonal] = std::make_unique<GridParts>(grid, diagonal);
-            made_[diagonal].store(true, std::memory_order_release);
-        });
-        return *parts_[diagonal];
+        return parts_[diagonal].get([&] { return std::make_unique<GridParts>(grid, diagonal); });
     }
     std::size_t bytes() const {
         std::size_t sum = 0;
-        for (const bool diagonal : {false, true})
-            if (is_made(diagonal)) sum += parts_[diagonal]->bytes();
+        for (const auto& parts : parts_)
+            if (const GridParts* made = parts.find()) sum += made->bytes();
         return sum;
     }
 
   private:
-    std::once_flag once_[2];
-    std::atomic<bool> made_[2] = {false, false};
-    std::unique_ptr<GridParts> parts_[2];
+    MadeOnce<GridParts> parts_[2];
 };
 
 }  // namespace cspace::maps

@@ -11,6 +11,7 @@
 
 #include "cspace/maps/boundary.hpp"
 #include "cspace/maps/grid_frame.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/predicates.hpp"
 
 namespace cspace::maps {
@@ -91,6 +92,7 @@ inline double path_clearance(std::span<const Point> path, const Boundary& walls)
     double best = std::numeric_limits<double>::infinity();
     for (const Piece s : pieces_of(path)) {
         const Box around = box_of(s);
+        poll_interrupts();
         for (const Group& group : groups) {
             if (!(group.box.distance_to(around) < best)) continue;
             for (const Piece wall : group.walls)
@@ -148,6 +150,7 @@ inline double path_clearance(std::span<const Point> path, const BitGrid& grid, c
     const Piece first{pieces[0].a, pieces[0].a};
     for (double far = 1; far < nearest.best; far *= 2) nearest.look(first, far);
     for (const Piece s : pieces) {
+        poll_interrupts();
         const double length = distance(s.a, s.b);
         const int count = int(std::ceil(length / std::max(nearest.best, 4.0)));
         for (int k = 0; k < std::max(count, 1); ++k) {

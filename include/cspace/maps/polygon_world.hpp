@@ -3,10 +3,10 @@
 #pragma once
 
 #include <memory>
-#include <mutex>
 
 #include "cspace/maps/convex_mesh.hpp"
 #include "cspace/maps/free_space.hpp"
+#include "cspace/math/made_once.hpp"
 
 namespace cspace::maps {
 
@@ -74,8 +74,7 @@ class PolygonWorld {
     const Boundary walls;
 
     const ConvexMesh& mesh() const {
-        std::call_once(meshed_, [&] { mesh_ = std::make_unique<ConvexMesh>(make_convex_mesh(space)); });
-        return *mesh_;
+        return mesh_.get([&] { return std::make_unique<ConvexMesh>(make_convex_mesh(space)); });
     }
     bool is_inside_bounds(Point p) const {
         return p.x >= outlines.low.x && p.x <= outlines.high.x && p.y >= outlines.low.y &&
@@ -114,8 +113,7 @@ class PolygonWorld {
     }
 
   private:
-    mutable std::once_flag meshed_;
-    mutable std::unique_ptr<ConvexMesh> mesh_;
+    MadeOnce<ConvexMesh> mesh_;
 };
 
 }  // namespace cspace::maps

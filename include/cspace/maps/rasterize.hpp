@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cspace/maps/free_space.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::maps {
 
@@ -36,6 +37,7 @@ inline bool reaches_into(const Point* corner, int count, Point low, double side)
 inline void rasterize(const FreeSpace& space, Point origin, double side, int rows, int columns, double slack,
                       std::uint8_t* blocked) {
     const Triangulation& mesh = space.mesh;
+    InterruptPoll poll(256);
     const auto mark = [&](const Point* corner, int count) {
         const double inset = count == 2 ? -slack : slack;
         double low[2] = {corner[0].x, corner[0].y}, high[2] = {corner[0].x, corner[0].y};
@@ -51,6 +53,7 @@ inline void rasterize(const FreeSpace& space, Point origin, double side, int row
         for (int row = std::max(0, cell(low[1] - origin.y, rows) - 1); row <= row_end; ++row)
             for (int column = std::max(0, cell(low[0] - origin.x, columns) - 1); column <= column_end;
                  ++column) {
+                poll.step();
                 std::uint8_t& cell_of =
                     blocked[std::size_t(row) * std::size_t(columns) + std::size_t(column)];
                 if (cell_of) continue;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "cspace/maps/free_space.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::maps {
 
@@ -24,7 +25,9 @@ inline Sectors find_sectors(const FreeSpace& space) {
     const Triangulation& mesh = space.mesh;
     Sectors found;
     found.of.assign(3 * mesh.triangles.size(), none);
+    InterruptPoll poll(1024);
     for (Index seed = 0; seed < Index(found.of.size()); ++seed) {
+        poll.step();
         if (!space.is_free(seed / 3) || found.of[std::size_t(seed)] != none) continue;
         Index t = seed / 3;
         int i = int(seed % 3);

@@ -14,6 +14,7 @@
 
 #include "cspace/maps/triangulation.hpp"
 #include "cspace/math/crossing.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::maps {
@@ -52,6 +53,7 @@ class Triangulator {
 
     // The vertex at p, made if there is none.
     Index insert(Point p) {
+        poll_.step();
         const Place place = mesh.locate(p, last_);
         const Index v = place.kind == Place::at_corner ? mesh[place.triangle].corner[std::size_t(place.index)]
                                                        : add_point(p, place.triangle);
@@ -68,6 +70,7 @@ class Triangulator {
         owners.push_back({owner, none, a, b});
         pending_.push_back({a, b, Index(owners.size() - 1), true});
         while (!pending_.empty()) {
+            poll_.step();
             const Segment s = pending_.back();
             pending_.pop_back();
             if (s.a != s.b) advance(s);
@@ -83,6 +86,7 @@ class Triangulator {
     };
     using Edge = std::pair<Index, Index>;
 
+    InterruptPoll poll_{64};
     Index last_ = 0;
     std::size_t bends_ = 0, most_bends_, most_of_one_;  // in all, and while one segment is inserted
     double rounding_;                                   // how far a crossing may be moved by rounding

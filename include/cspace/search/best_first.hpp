@@ -12,6 +12,8 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
+
 namespace cspace::search {
 
 inline constexpr std::uint32_t no_node = 0xffffffff;
@@ -128,7 +130,9 @@ class Ways {
 // on the next call.
 template <class Space, class Queue>
 std::uint32_t best_first(Space& space, Queue& queue, Effort& effort) {
+    InterruptPoll poll(256);
     while (!queue.empty() && effort.settled < effort.pause) {
+        poll.step();
         const std::uint32_t node = queue.pop().node;
         if (!space.settle(node)) continue;
         ++effort.settled;

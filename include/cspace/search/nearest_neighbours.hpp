@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/plane.hpp"
 
 namespace cspace::search {
@@ -91,8 +92,8 @@ class Buckets {
         const double cells = 2 * double(points_.size()) + 16;
         side_ = std::max(std::sqrt(width * height / cells), std::max(width, height) / cells);
         columns_ = 1 + int(width / side_), rows_ = 1 + int(height / side_);
-        heads_.assign(std::size_t(columns_) * std::size_t(rows_), -1);
-        for (std::size_t i = 0; i < points_.size(); ++i) put(std::int32_t(i));
+        heads_ = filled_vector<std::int32_t>(std::size_t(columns_) * std::size_t(rows_), -1);
+        visit_range(0, points_.size(), [&](std::size_t i) { put(std::int32_t(i)); });
     }
     void put(std::int32_t i) {
         std::int32_t& first = head(row_of(point(i).y), column_of(point(i).x));

@@ -20,7 +20,7 @@ CARRIER: Final = signal.SIGINT
 def limit_time(seconds: float | None) -> Iterator[None]:
     """Raise TimeLimitReached in the block when it takes longer; None means no limit.
 
-    Compiled code is not interrupted: the error is raised when it returns. Ctrl-C works as before.
+    Compiled code heeds it like Ctrl-C, which works as before.
     """
     if seconds is None:
         yield

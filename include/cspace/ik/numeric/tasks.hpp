@@ -11,6 +11,7 @@
 #include "cspace/kinematics/center_of_mass.hpp"
 #include "cspace/kinematics/jacobian.hpp"
 #include "cspace/math/box_qp.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/model/robot_model.hpp"
 
 namespace cspace::ik {
@@ -284,7 +285,9 @@ inline Served serve_tasks(const TaskProblem& problem, const ServeSettings& setti
     std::vector<double> step(std::size_t(qp.n));
     double mu = serving::first_mu;
     measure_tasks(problem, work, at);
+    InterruptPoll poll(8);
     for (int k = 0; k < settings.most_steps; ++k) {
+        poll.step();
         bound_step(problem, at, qp);
         if (!best_step(at, 2 * mu * at.cost + serving::floor, true, qp, step.data())) return {k, false};
         double reach = 0;

@@ -232,7 +232,10 @@ void follow_branches(const Track& t) {
         begin_branch(t, live[l] ? next++ : 0, walker[l]);
         load_trial(t, walker[l], l, at);
     }
+    constexpr unsigned between_polls = 32;
+    unsigned rounds = 0;
     for (bool alive = true; alive;) {
+        if (t.poll && ++rounds % between_polls == 0) t.poll();
         measure_motion(*t.path, at.goal, at.twist, at.q, at.motion);
         alive = false;
         for (int l = 0; l < lanes; ++l) {

@@ -44,6 +44,7 @@ struct Track {
     double* weakest;        // the least singular value at its end
     std::int32_t* joint;    // the coordinate that ended it, or −1
     Fate* fate;
+    void (*poll)() = nullptr;  // called now and then; throws to stop
 };
 
 struct Walker {

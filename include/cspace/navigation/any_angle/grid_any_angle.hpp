@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -42,26 +41,16 @@ class GridAnyAngle {
     }
 
     // start, goal [m] as they were given, and as they were settled. parts: of this grid, or null for none.
-    // look() is called regularly, and may throw.
     Route solve(Point start, const SettledInRuns& from, Point goal, const SettledInRuns& to,
-                maps::LazyParts* parts = nullptr, Trace* trace = nullptr,
-                const std::function<void()>& look = {}) {
+                maps::LazyParts* parts = nullptr, Trace* trace = nullptr) {
         const auto is_divided = [&] { return divided(parts->of(grid_, false), from, to); };
         const std::uint64_t patience = parts ? maps::LazyParts::patience(grid_) : never;
         Route route;
         route.status = Status::unreachable;
         if (patience < grid_.numbers() && parts->is_made(false) && is_divided()) return route;
         // Nodes after which parts are looked at: each takes longer than to settle a cell.
-        std::uint64_t asked = parts ? patience >> 1 : never;
-        const auto on_pause = [&](std::uint64_t nodes) {
-            if (look) look();
-            if (nodes >= asked) {
-                if (is_divided()) return std::uint64_t(0);
-                asked = never;
-            }
-            return std::min(asked, look ? nodes + between_looks : never);
-        };
-        const std::uint64_t pause = std::min(asked, look ? between_looks : never);
+        const std::uint64_t pause = parts ? patience >> 1 : never;
+        const auto on_pause = [&] { return is_divided() ? 0 : never; };
         route = search_.solve(from.at, from.runs, to.at, to.runs, trace, pause, on_pause);
         for (Point& p : route.path) p = in_metres(p);
         if (!route.path.empty()) {
@@ -79,7 +68,6 @@ class GridAnyAngle {
 
   private:
     static constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
-    static constexpr std::uint64_t between_looks = 1 << 16;  // nodes: a twentieth of a second
     const maps::BitGrid& grid_;
     maps::GridFrame frame_;
     maps::RunMesh mesh_;

@@ -40,11 +40,11 @@ class IntervalSearch {
     // starts, goals: the polygons whose closures contain the start and the goal.
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
                 const std::vector<Polygon>& goals, Trace* trace = nullptr) {
-        constexpr auto never = [](std::uint64_t) { return std::numeric_limits<std::uint64_t>::max(); };
-        return solve(start, starts, goal, goals, trace, never(0), never);
+        constexpr auto never = [] { return std::numeric_limits<std::uint64_t>::max(); };
+        return solve(start, starts, goal, goals, trace, never(), never);
     }
-    // After `pause` nodes look(nodes) is asked, which says after how many it is to be asked again; 0: there
-    // is no path.
+    // After `pause` nodes look() is asked, which says after how many it is to be asked again; 0: there is no
+    // path.
     template <class Look>
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
                 const std::vector<Polygon>& goals, Trace* trace, std::uint64_t pause, Look look) {
@@ -55,7 +55,7 @@ class IntervalSearch {
         for (const Polygon& p : starts) expand_start(p);
         Open open{*this};
         search::Effort effort;
-        for (effort.pause = pause; effort.pause > 0; effort.pause = look(effort.settled)) {
+        for (effort.pause = pause; effort.pause > 0; effort.pause = look()) {
             const std::uint32_t last = search::best_first(open, queue_, effort);
             if (last != search::no_node) return finish(nodes_[last]);
             if (queue_.empty()) break;

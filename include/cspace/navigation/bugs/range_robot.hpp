@@ -1,6 +1,7 @@
 // A point robot among walls that sees them up to a distance: the range sensor of a polygon world.
 #pragma once
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/bugs/contact_robot.hpp"
 #include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
@@ -115,7 +116,9 @@ class RangeRobot : public ContactRobot {
         seen.clear();
         const bool knows = Skyline::pays(*walls_);
         if (knows) skyline_.look(*walls_, at_);
+        InterruptPoll poll(256);
         for (int wall = 0; wall < walls_->size(); ++wall) {
+            poll.step();
             if (!knows || !skyline_.hides_corner(wall)) look_at_corner(wall, seen);
             if (range_ < std::numeric_limits<double>::infinity())
                 look_at_horizon(walls_->wall(wall), seen, knows);

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/bugs/clearance_sensor.hpp"
 #include "cspace/navigation/bugs/walls.hpp"
 #include "cspace/search/draws.hpp"
@@ -74,7 +75,9 @@ class Scanner {
     // How far the nearest wall in each beam is.
     void sweep(Point from) {
         double before = cast(from, sides_.back(), range_);
+        InterruptPoll poll(64);
         for (int k = 0; k < beams; ++k) {
+            poll.step();
             const double after = cast(from, sides_[std::size_t(k)], range_);
             far_[std::size_t(k)] = std::min(before, after);
             before = after;
@@ -94,7 +97,11 @@ class Scanner {
         scan.reading.resize(beams);
         last_ = noise_ > 0 ? count : 1;
         scans_ += last_;
-        for (int k = 0; k < beams; ++k) scan.reading[std::size_t(k)] = mean_of(far_[std::size_t(k)], last_);
+        InterruptPoll poll(64);
+        for (int k = 0; k < beams; ++k) {
+            poll.step();
+            scan.reading[std::size_t(k)] = mean_of(far_[std::size_t(k)], last_);
+        }
         scan.deviation = noise_ / std::sqrt(double(last_));
         scan.least = *std::min_element(scan.reading.begin(), scan.reading.end());
     }

@@ -14,6 +14,7 @@
 // walls. Else it is unreachable, and a boundary loop around it, or around the robot, is the proof.
 #pragma once
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/bugs/clearance_robot.hpp"
 #include "cspace/navigation/bugs/meet_graph.hpp"
 #include "cspace/navigation/bugs/scan_robot.hpp"
@@ -140,6 +141,7 @@ class VoronoiBug {
         int here = add_meet(end, false);
         if (robot_.clearance() == 0) graph_.meets[0].gaps[1].taken = true;  // the corner behind
         for (;;) {
+            poll_interrupts();
             const Branch branch = graph_.next(here, goal_);
             if (branch.meet < 0) return here_ = here, Halt::meet;
             walk_back(here, branch.meet);

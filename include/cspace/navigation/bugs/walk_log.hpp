@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/route.hpp"
 
@@ -75,6 +76,8 @@ class Walker {
     }
 
   private:
+    InterruptPoll poll_{64};
+
     template <class Move>
     void follow(Move move) {
         const Point before = robot.position();
@@ -84,6 +87,7 @@ class Walker {
         note();
     }
     void note() {
+        poll_.step();
         if (trip.route.path.back() != robot.position()) trip.route.path.push_back(robot.position());
     }
 };

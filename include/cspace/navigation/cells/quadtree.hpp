@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cspace/maps/polygon_world.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/search/adjacency.hpp"
 #include "cspace/search/cache.hpp"
@@ -69,6 +70,7 @@ class Quadtree {
     Point high(const QuadCell& cell) const { return {x(cell.i + width(cell)), y(cell.j + width(cell))}; }
 
     void split(maps::Index c) {
+        poll_.step();
         const QuadCell parent = (*this)[c];
         if (trace_) trace_->push_back({split_cell, low(parent), high(parent), double(parent.level)});
         cells_[std::size_t(c)].children = maps::Index(cells_.size());
@@ -109,7 +111,9 @@ class Quadtree {
     // The doors between leaves that are not full.
     std::vector<CellDoor> doors() const {
         std::vector<CellDoor> found;
+        InterruptPoll poll(256);
         for (maps::Index c = 0; c < maps::Index(cells_.size()); ++c) {
+            poll.step();
             if (!is_leaf(c) || (*this)[c].kind == QuadCell::full) continue;
             for (int beyond = 0; beyond < 4; ++beyond) {
                 const maps::Index n = neighbour((*this)[c], beyond);
@@ -128,6 +132,7 @@ class Quadtree {
     Point low_, high_;
     double side_;
     int deepest_ = finest;
+    InterruptPoll poll_{64};
     std::vector<QuadCell> cells_;
     std::vector<maps::Index> touching_;
 
@@ -227,9 +232,11 @@ struct CellStage {
 
     explicit CellStage(Quadtree split) : tree(std::move(split)), doors(tree.doors()) {
         open = {tree.cells().size(), [&](const auto& add) {
-                    for (std::uint32_t d = 0; d < std::uint32_t(doors.size()); ++d)
+                    visit_range(0, doors.size(), [&](std::size_t d) {
                         if (is_passage(doors[d]))
-                            for (const maps::Index c : {doors[d].one, doors[d].other}) add(std::size_t(c), d);
+                            for (const maps::Index c : {doors[d].one, doors[d].other})
+                                add(std::size_t(c), std::uint32_t(d));
+                    });
                 }};
         for (maps::Index c = 0; c < maps::Index(tree.cells().size()); ++c) {
             if (!tree.is_leaf(c)) continue;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cspace/maps/boundary.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/predicates.hpp"
 
 namespace cspace::navigation {
@@ -118,7 +119,9 @@ class Trapezoids {
         Crossed crossed(Below{this});
         above_.assign(walls.size(), -1);
         std::vector<Index> ending, starting;
+        InterruptPoll poll(64);
         for (std::size_t i = 0; i < ends.size();) {
+            poll.step();
             const Point at = ends[i].first;
             ending.clear();
             starting.clear();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::navigation {
 
@@ -74,9 +75,11 @@ inline std::vector<FreeRun> free_runs(const SweepFrame& frame, const std::vector
 
 inline Decomposition decompose_frame(const SweepFrame& frame, const std::vector<char>& reach) {
     Decomposition made;
-    made.region_of.assign(std::size_t(frame.size()), -1);
+    made.region_of = filled_vector<std::int32_t>(std::size_t(frame.size()), -1);
     std::vector<FreeRun> before;
+    InterruptPoll poll(4);
     for (int line = 0; line < frame.lines(); ++line) {
+        poll.step();
         std::vector<FreeRun> runs = free_runs(frame, reach, line);
         std::vector<int> onward(before.size()), back(runs.size()), behind(runs.size(), -1);
         std::size_t from = 0;
@@ -115,12 +118,13 @@ class Coverer {
 
     Coverage cover(maps::Cell start) {
         here_ = frame_.number(start);
-        reach_.assign(size_, 0);
-        passes_.assign(size_, 0);
-        stamp_.assign(size_, 0);
-        from_.assign(size_, -1);
-        for (int line = 0; line < frame_.lines(); ++line)
-            for (int at = 0; at < frame_.length(); ++at) out_.free += frame_.free(line, at);
+        reach_ = filled_vector<char>(size_);
+        passes_ = filled_vector<std::uint32_t>(size_);
+        stamp_ = filled_vector<std::uint32_t>(size_);
+        from_ = filled_vector<std::int32_t>(size_, -1);
+        visit_range(0, size_, [&](std::size_t k) {
+            out_.free += frame_.free(frame_.line_of(std::int32_t(k)), frame_.place_of(std::int32_t(k)));
+        });
         search([](std::int32_t) { return false; });
         for (const std::int32_t place : queue_) reach_[std::size_t(place)] = 1;
         out_.reached = std::int64_t(queue_.size());
@@ -148,7 +152,7 @@ class Coverer {
         std::vector<std::vector<FreeRun>> lanes;
         for (const SweepRegion& region : cut.regions) lanes.push_back(lanes_of(region));
         // The places at which a region can be begun: both ends of its first lane and of its last.
-        std::vector<std::int32_t> door(size_, -1);
+        auto door = filled_vector<std::int32_t>(size_, -1);
         const auto doors = [&](std::size_t k, auto&& use) {
             for (const FreeRun& lane : {lanes[k].front(), lanes[k].back()})
                 for (const int at : {lane.first, lane.last}) use(frame_.number(lane.line, at));
@@ -178,7 +182,7 @@ class Coverer {
 
     void sweep_leftovers() {
         std::int64_t left = 0;
-        for (std::size_t k = 0; k < size_; ++k) left += reach_[k] && passes_[k] == 0;
+        visit_range(0, size_, [&](std::size_t k) { left += reach_[k] && passes_[k] == 0; });
         out_.leftover = left;
         const auto unswept = [&](std::int32_t place) {
             return reach_[std::size_t(place)] && passes_[std::size_t(place)] == 0;
@@ -198,6 +202,7 @@ class Coverer {
         stamp_[std::size_t(here_)] = now_;
         if (wanted(here_)) return here_;
         for (std::size_t k = 0; k < queue_.size(); ++k) {
+            poll_.step();
             const int line = frame_.line_of(queue_[k]), at = frame_.place_of(queue_[k]);
             for (const auto& [dl, da] :
                  {std::pair{0, 1}, std::pair{0, -1}, std::pair{1, 0}, std::pair{-1, 0}}) {
@@ -222,6 +227,7 @@ class Coverer {
 
     // One step; the bar comes over what it did not lie on before.
     void step_to(std::int32_t next, bool first = false) {
+        poll_.step();
         const int at = frame_.place_of(next), line = frame_.line_of(next);
         int low = line, high = line;
         while (low > line - half_ && frame_.free(low - 1, at)) --low;
@@ -235,15 +241,15 @@ class Coverer {
     }
 
     void tell(const Decomposition& cut) {
-        out_.region.assign(size_, -1);
-        out_.passes.assign(size_, 0);
+        out_.region = filled_vector<std::int32_t>(size_, -1);
+        out_.passes = filled_vector<std::uint32_t>(size_);
         const int columns = frame_.cell(frame_.size() - 1).column + 1;
-        for (std::int32_t k = 0; k < frame_.size(); ++k) {
-            const maps::Cell cell = frame_.cell(k);
+        visit_range(0, size_, [&](std::size_t k) {
+            const maps::Cell cell = frame_.cell(std::int32_t(k));
             const std::size_t to = std::size_t(cell.row) * std::size_t(columns) + std::size_t(cell.column);
-            out_.region[to] = cut.region_of[std::size_t(k)];
-            out_.passes[to] = passes_[std::size_t(k)];
-        }
+            out_.region[to] = cut.region_of[k];
+            out_.passes[to] = passes_[k];
+        });
     }
 
     SweepFrame frame_;
@@ -254,6 +260,7 @@ class Coverer {
     std::vector<char> reach_;
     std::vector<std::uint32_t> passes_, stamp_;
     std::uint32_t now_ = 0;
+    InterruptPoll poll_{1024};
     std::vector<std::int32_t> queue_, from_;
     Coverage out_;
 };

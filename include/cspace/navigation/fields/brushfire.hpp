@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/fields/pieces.hpp"
 #include "cspace/navigation/fields/thinning.hpp"
@@ -35,7 +36,7 @@ class Diagram {
         : grid_(std::move(grid)),
           clearance_(make_clearance(grid_)),
           pieces_(grid_),
-          fate_(grid_.numbers(), Fate::blocked) {
+          fate_(filled_vector(grid_.numbers(), Fate::blocked)) {
         name_marks();
         keep_meets();
         Thinning thin(grid_, clearance_.squared, fate_);
@@ -81,7 +82,9 @@ class Diagram {
 
     template <class Visit>
     void each_free(const Visit& visit) const {
-        for (int row = 0; row < grid_.rows(); ++row)
+        InterruptPoll poll(4);
+        for (int row = 0; row < grid_.rows(); ++row) {
+            poll.step();
             for (std::size_t k = 0; k < grid_.row_words(); ++k) {
                 const std::size_t left = grid_.stride() - 64 * k;
                 const std::uint64_t within = left >= 64 ? ~std::uint64_t(0) : (std::uint64_t(1) << left) - 1;
@@ -90,6 +93,7 @@ class Diagram {
                     visit(cell, grid_.number(cell));
                 }
             }
+        }
     }
 
     void name_marks() {
@@ -125,9 +129,12 @@ class Diagram {
             cells_.push_back(n);
         });
         beside_.reserve(cells_.size());
-        for (const std::uint32_t n : cells_)
+        InterruptPoll poll(1024);
+        for (const std::uint32_t n : cells_) {
+            poll.step();
             beside_.push_back(
                 {place(n + 1), place(n + grid_.stride()), place(n - 1), place(n - grid_.stride())});
+        }
     }
 
     int degree(std::uint32_t k) const {

@@ -11,6 +11,7 @@
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/maps/bit_scan.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::navigation {
 
@@ -111,10 +112,13 @@ class Envelope {
 }  // namespace clearance
 
 inline Clearance make_clearance(const maps::BitGrid& grid) {
-    Clearance made{std::vector<std::uint32_t>(grid.numbers()), std::vector<std::uint32_t>(grid.numbers())};
+    Clearance made{filled_vector<std::uint32_t>(grid.numbers()),
+                   filled_vector<std::uint32_t>(grid.numbers())};
     clearance::NearestRows rows(grid);
     clearance::Envelope envelope;
+    InterruptPoll poll(4);
     for (int row = 0; row < grid.rows(); ++row) {
+        poll.step();
         rows.next_row(row);
         const std::uint64_t* line = grid.row(row);
         const auto free = [&](std::size_t k) { return ~line[k]; };

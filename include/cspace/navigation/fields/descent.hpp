@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cspace/maps/polygon_world.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/near_walls.hpp"
 #include "cspace/navigation/fields/potential.hpp"
 #include "cspace/navigation/route.hpp"
@@ -89,7 +90,9 @@ class DescentRun {
         if (!leave_wall(inward)) return finish(Rest::wall);
         descent_.values = {here_.value, here_.value};
         if (descent_.route.path.size() == 1) descent_.values.pop_back();
+        InterruptPoll poll(8);
         while (descent_.route.stats.edges < budget_) {
+            poll.step();
             if (arrives()) return finish(Rest::goal);
             if (!descend() && !fall_off()) return finish(name_of_rest());
         }

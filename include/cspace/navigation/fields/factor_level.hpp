@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
+
 namespace cspace::navigation {
 
 // Rows D_i f_i = Σ N_ij f_j in factors f, with D_i = Σ N_ij + excess_i; row 0 is the goal, whose factor is
@@ -42,22 +44,22 @@ template <class EachBeside>
 void place_entries(FactorLevel& made, std::int32_t size, const EachBeside& each_beside,
                    const std::vector<std::int32_t>& aggregate, std::vector<std::int32_t>& slot) {
     std::vector<std::pair<std::uint64_t, std::size_t>> entries;
-    for (std::int32_t i = 1; i < size; ++i)
-        each_beside(i, [&](std::int32_t j, std::size_t p) {
-            const std::uint64_t a = std::uint32_t(aggregate[std::size_t(i)]),
-                                b = std::uint32_t(aggregate[std::size_t(j)]);
+    visit_range(1, std::size_t(size), [&](std::size_t i) {
+        each_beside(std::int32_t(i), [&](std::int32_t j, std::size_t p) {
+            const std::uint64_t a = std::uint32_t(aggregate[i]), b = std::uint32_t(aggregate[std::size_t(j)]);
             if (a != b) entries.push_back({a << 32 | b, p});
         });
-    std::sort(entries.begin(), entries.end());
+    });
+    sort_polled(entries);
     std::fill(slot.begin(), slot.end(), -1);
     made.begin.assign(std::size_t(made.size()) + 1, 0);
-    for (std::size_t k = 0; k < entries.size(); ++k) {
+    visit_range(0, entries.size(), [&](std::size_t k) {
         if (k == 0 || entries[k].first != entries[k - 1].first) {
             made.column.push_back(std::int32_t(entries[k].first & 0xffffffff));
             ++made.begin[std::size_t(entries[k].first >> 32) + 1];
         }
         slot[entries[k].second] = std::int32_t(made.column.size()) - 1;
-    }
+    });
     for (std::size_t k = 1; k < made.begin.size(); ++k) made.begin[k] += made.begin[k - 1];
     made.weight.resize(made.column.size());
     made.excess.resize(std::size_t(made.size()));
@@ -71,31 +73,32 @@ FactorLevel join_level(std::int32_t size, const std::vector<std::int32_t>& row,
                        const std::vector<std::int32_t>& column, const EachBeside& each_beside,
                        std::vector<std::int32_t>& aggregate, std::vector<std::int32_t>& slot) {
     FactorLevel made;
-    std::vector<std::int32_t> root(std::size_t(size), 0);
+    auto root = filled_vector<std::int32_t>(std::size_t(size));
     std::iota(root.begin(), root.end(), 0);
     const auto find = [&](std::int32_t i) {
         while (root[std::size_t(i)] != i) i = root[std::size_t(i)] = root[std::size_t(root[std::size_t(i)])];
         return i;
     };
-    for (std::int32_t i = 1; i < size; ++i)
-        each_beside(i, [&](std::int32_t j, std::size_t) {
-            const std::size_t a = std::size_t(i), b = std::size_t(j);
+    visit_range(1, std::size_t(size), [&](std::size_t a) {
+        each_beside(std::int32_t(a), [&](std::int32_t j, std::size_t) {
+            const std::size_t b = std::size_t(j);
             if (j > 0 && row[a] >> 1 == row[b] >> 1 && column[a] >> 1 == column[b] >> 1) {
-                const std::int32_t p = find(i), q = find(j);
+                const std::int32_t p = find(std::int32_t(a)), q = find(j);
                 root[std::size_t(std::max(p, q))] = std::min(p, q);
             }
         });
-    aggregate.assign(std::size_t(size), 0);
-    for (std::int32_t i = 0; i < size; ++i) {
-        const std::int32_t first = find(i);
+    });
+    aggregate = filled_vector<std::int32_t>(std::size_t(size));
+    visit_range(0, std::size_t(size), [&](std::size_t i) {
+        const std::size_t first = std::size_t(find(std::int32_t(i)));
         if (first == i) {
-            aggregate[std::size_t(i)] = made.size();
-            made.block_row.push_back(row[std::size_t(i)] >> 1);
-            made.block_column.push_back(column[std::size_t(i)] >> 1);
+            aggregate[i] = made.size();
+            made.block_row.push_back(row[i] >> 1);
+            made.block_column.push_back(column[i] >> 1);
         } else {
-            aggregate[std::size_t(i)] = aggregate[std::size_t(first)];
+            aggregate[i] = aggregate[first];
         }
-    }
+    });
     place_entries(made, size, each_beside, aggregate, slot);
     return made;
 }
@@ -130,16 +133,17 @@ inline void relax_row(FactorLevel& level, std::size_t i) {
 }
 inline void relax_level(FactorLevel& level, int times) {
     for (int k = 0; k < times; ++k) {
-        for (std::size_t i = 1; i < level.begin.size() - 1; ++i) relax_row(level, i);
-        for (std::size_t i = level.begin.size() - 1; --i > 0;) relax_row(level, i);
+        const std::size_t last = level.begin.size() - 1;
+        visit_range(1, last, [&](std::size_t i) { relax_row(level, i); });
+        visit_range(1, last, [&](std::size_t i) { relax_row(level, last - i); });
     }
 }
 inline void gather_level(const FactorLevel& from, FactorLevel& to) {
     clear_level(to);
     std::vector<std::int32_t> scale(from.exponent);
-    for (std::size_t i = 1; i < scale.size(); ++i) scale[i] += std::ilogb(from.factor[i]);
+    visit_range(1, scale.size(), [&](std::size_t i) { scale[i] += std::ilogb(from.factor[i]); });
     raise_exponents(to.exponent, scale, from.aggregate);
-    for (std::size_t i = 1; i < from.begin.size() - 1; ++i) {
+    visit_range(1, from.begin.size() - 1, [&](std::size_t i) {
         const std::size_t one = std::size_t(from.aggregate[i]);
         const double near = from.factor[i] * power_of_two(from.exponent[i] - scale[i]);
         const double share = near * near * power_of_two(2 * (scale[i] - to.exponent[one]));
@@ -153,7 +157,7 @@ inline void gather_level(const FactorLevel& from, FactorLevel& to) {
                 to.weight[std::size_t(from.slot[std::size_t(p)])] += share * weight;
         }
         to.excess[one] += share * excess;
-    }
+    });
 }
 
 }  // namespace factors

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cspace/maps/grid_frame.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/search/best_first.hpp"
@@ -27,8 +28,8 @@ class Front {
           clearance_(clearance),
           slow_within_(slow_within),
           until_(until),
-          time_(grid.numbers(), never),
-          settled_(grid.numbers()) {}
+          time_(filled_vector(grid.numbers(), never)),
+          settled_(filled_vector<std::uint8_t>(grid.numbers())) {}
     template <class Queue>
     void start(maps::Cell at, Queue& queue) {
         time_[grid_.number(at)] = 0;

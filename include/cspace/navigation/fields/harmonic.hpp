@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/fields/factor_level.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
@@ -38,13 +39,10 @@ class HittingSolver {
         make_levels();
     }
 
-    // Until every cell is the mean of its neighbours up to a relative error, or so many cycles. look() is
-    // called now and then, and may throw.
-    template <class Look>
-    void solve(double residual, int most_cycles, const Look& look) {
-        for (int k = 0; k < 10; ++k) relax_level(), look();
+    // Until every cell is the mean of its neighbours up to a relative error, or so many cycles.
+    void solve(double residual, int most_cycles) {
+        for (int k = 0; k < 10; ++k) relax_level();
         for (cycles_ = 0; cycles_ < most_cycles; ++cycles_) {
-            look();
             relax_level();
             residual_ = gather_level();
             if (residual_ <= residual || levels_.empty()) break;
@@ -86,11 +84,13 @@ class HittingSolver {
 
     // Cells in the order of a first guess: half the decay along a corridor as wide as the clearance allows.
     void number_cells(const Clearance& clearance, maps::Cell goal) {
-        std::vector<double> far(grid_.numbers(), std::numeric_limits<double>::infinity());
+        auto far = filled_vector(grid_.numbers(), std::numeric_limits<double>::infinity());
+        InterruptPoll poll(512);
         using Entry = std::pair<double, std::uint32_t>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
         queue.push({far[grid_.number(goal)] = 0, grid_.number(goal)});
         while (!queue.empty()) {
+            poll.step();
             const auto [d, n] = queue.top();
             queue.pop();
             if (d > far[n]) continue;
@@ -107,11 +107,12 @@ class HittingSolver {
         m_.push_back(0), e_.push_back(0);
     }
     void join_cells() {
-        index_.assign(grid_.numbers(), std::int32_t(cells_.size()));
-        for (std::size_t i = 0; i < cells_.size(); ++i) index_[cells_[i]] = std::int32_t(i);
-        beside_.resize(cells_.size());
-        for (std::size_t i = 0; i < cells_.size(); ++i)
+        index_ = filled_vector(grid_.numbers(), std::int32_t(cells_.size()));
+        visit_range(0, cells_.size(), [&](std::size_t i) { index_[cells_[i]] = std::int32_t(i); });
+        beside_ = filled_vector<std::array<std::int32_t, 4>>(cells_.size());
+        visit_range(0, cells_.size(), [&](std::size_t i) {
             for (std::size_t k = 0; k < 4; ++k) beside_[i][k] = index_[around(cells_[i])[k]];
+        });
     }
 
     // ---- levels
@@ -120,9 +121,9 @@ class HittingSolver {
         const std::int32_t size = std::int32_t(cells_.size());
         if (size < 2) return;
         std::vector<std::int32_t> row, column;
-        for (const std::uint32_t n : cells_)
-            row.push_back(grid_.cell(n).row), column.push_back(grid_.cell(n).column);
-        slot_.resize(4 * cells_.size());
+        visit_range(0, cells_.size(),
+                    [&](std::size_t i) { row.push_back(cell(i).row), column.push_back(cell(i).column); });
+        slot_ = filled_vector<std::int32_t>(4 * cells_.size());
         levels_.push_back(factors::join_level(
             size, row, column,
             [&](std::int32_t i, const auto& give) {
@@ -154,15 +155,15 @@ class HittingSolver {
         m_[i] = 0.25 * (beside_over(i, 0) + beside_over(i, 1) + beside_over(i, 2) + beside_over(i, 3));
     }
     void relax_level() {
-        for (std::size_t i = 1; i < cells_.size(); ++i) relax_cell(i);
-        for (std::size_t i = cells_.size(); --i > 0;) relax_cell(i);
+        visit_range(1, cells_.size(), [&](std::size_t i) { relax_cell(i); });
+        visit_range(1, cells_.size(), [&](std::size_t i) { relax_cell(cells_.size() - i); });
     }
     void normalize() {
-        for (std::size_t i = 1; i < cells_.size(); ++i) {
+        visit_range(1, cells_.size(), [&](std::size_t i) {
             int k;
             m_[i] = std::frexp(m_[i], &k);
             e_[i] += k;
-        }
+        });
     }
     // The first level's weights from the cells; returns the greatest share that a cell is off its mean by.
     double gather_level() {
@@ -171,7 +172,7 @@ class HittingSolver {
         FactorLevel& to = levels_[0];
         factors::clear_level(to);
         factors::raise_exponents(to.exponent, e_, aggregate_);
-        for (std::size_t i = 1; i < cells_.size(); ++i) {
+        visit_range(1, cells_.size(), [&](std::size_t i) {
             const std::size_t one = std::size_t(aggregate_[i]);
             const double share = m_[i] * m_[i] * factors::power_of_two(2 * (e_[i] - to.exponent[one]));
             const double inverse = 1 / m_[i];
@@ -183,12 +184,13 @@ class HittingSolver {
             }
             to.excess[one] += share * excess;
             worst = std::max(worst, 0.25 * std::abs(excess));
-        }
+        });
         return worst;
     }
     void spread() {
-        for (std::size_t i = 1; i < cells_.size(); ++i)
+        visit_range(1, cells_.size(), [&](std::size_t i) {
             factors::correct_factor(m_[i], levels_[0].factor[std::size_t(aggregate_[i])]);
+        });
     }
 
     // ---- one cycle
@@ -200,27 +202,23 @@ class HittingSolver {
         for (int turn = 0; turn < 2; ++turn) {
             factors::gather_level(level, levels_[k + 1]);
             cycle(k + 1);
-            for (std::size_t i = 1; i < level.begin.size() - 1; ++i)
+            visit_range(1, level.begin.size() - 1, [&](std::size_t i) {
                 factors::correct_factor(level.factor[i],
                                         levels_[k + 1].factor[std::size_t(level.aggregate[i])]);
+            });
             factors::relax_level(level, 1);
         }
     }
 };
 
-struct Undisturbed {
-    void operator()() const {}
-};
-
 class HarmonicField {
   public:
-    // look() is called regularly while the equation is solved; it may throw to stop.
-    template <class Look = Undisturbed>
     HarmonicField(const maps::BitGrid& grid, const Clearance& clearance, maps::Cell goal, double residual,
-                  int most_cycles, const Look& look = {})
+                  int most_cycles)
         : grid_(grid), chance_(grid_, clearance, goal) {
-        chance_.solve(residual, most_cycles, look);
-        for (std::size_t i = 1; i < chance_.size(); ++i) rests_ += uphill(chance_.cell(i)) == chance_.cell(i);
+        chance_.solve(residual, most_cycles);
+        visit_range(1, chance_.size(),
+                    [&](std::size_t i) { rests_ += uphill(chance_.cell(i)) == chance_.cell(i); });
     }
     HarmonicField(const HarmonicField&) = delete;
     HarmonicField& operator=(const HarmonicField&) = delete;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/single_minimum.hpp"
 #include "cspace/navigation/fields/star_world.hpp"
 #include "cspace/navigation/route.hpp"
@@ -56,7 +57,9 @@ class NavigationFunction {
         made.route.path = {start};
         made.values = {log_odds(start)};
         if (!(at == from)) note(made, from_model(at), potential_->value(at));
+        InterruptPoll poll(16);
         for (; made.route.stats.nodes < limits_.steps; ++made.route.stats.nodes) {
+            poll.step();
             const double left = distance(at, potential_->goal());
             if (left <= at_goal * discs_.clearance(potential_->goal()) &&
                 is_open(made.route.path.back(), goal_)) {

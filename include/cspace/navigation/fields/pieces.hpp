@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::navigation {
 
@@ -28,14 +29,19 @@ class Pieces {
     };
 
     explicit Pieces(const maps::BitGrid& grid)
-        : grid_(grid), below_(grid.numbers(), -1), before_(grid.numbers(), -1) {
-        for (int row = 0; row < grid.rows(); ++row)
+        : grid_(grid),
+          below_(filled_vector<std::int32_t>(grid.numbers(), -1)),
+          before_(filled_vector<std::int32_t>(grid.numbers(), -1)) {
+        InterruptPoll poll(16);
+        for (int row = 0; row < grid.rows(); ++row) {
+            poll.step();
             for (std::size_t k = 0; k < grid.row_words(); ++k)
                 for (std::uint64_t begin = ~grid.row(row)[k] & grid.row(row - 1)[k]; begin;
                      begin &= begin - 1) {
                     const int column = int(64 * k) + std::countr_zero(begin) - 1;
                     if (below_[grid.number({row, column})] < 0) follow(row, column);
                 }
+        }
         ring_begin_.push_back(std::int32_t(sides_.size()));
     }
 
@@ -114,8 +120,10 @@ class Pieces {
         ring_begin_.push_back(first);
         const std::int32_t first_piece = pieces_;
         int heading = 0;
+        InterruptPoll poll(1024);
         while (slot(row, column, heading) < 0) {
             slot(row, column, heading) = std::int32_t(sides_.size());
+            poll.step();
             sides_.push_back({row, column, ring, pieces_, std::int8_t(heading)});
             row += up[heading];
             column += along[heading];

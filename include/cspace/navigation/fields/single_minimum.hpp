@@ -8,6 +8,7 @@
 
 #include <numbers>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/sphere_world.hpp"
 #include "cspace/tolerances.hpp"
 
@@ -33,7 +34,9 @@ class MinimumProof {
     SingleMinimum run(std::int64_t most_squares) {
         const LogTerm& room = terms_[1];
         std::vector<Square> waiting{{room.center, room.s}};
+        InterruptPoll poll(16);
         while (!waiting.empty()) {
+            poll.step();
             if (++proof_.squares > most_squares) return std::move(proof_);
             const Square square = waiting.back();
             waiting.pop_back();

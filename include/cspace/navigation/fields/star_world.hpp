@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "cspace/maps/boundary.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/math/predicates.hpp"
 #include "cspace/navigation/fields/sphere_world.hpp"
 #include "cspace/tolerances.hpp"
@@ -214,8 +215,10 @@ class StarWorld {
     }
     void lay_collars() {
         std::vector<double> gap(stars_.size(), std::numeric_limits<double>::infinity());
+        InterruptPoll poll(16);
         for (std::size_t i = 1; i < stars_.size(); ++i)
             for (std::size_t j = 0; j < i; ++j) {
+                poll.step();
                 const double least =
                     distance(stars_[i].center(), stars_[j].center()) - stars_[i].most() - stars_[j].most();
                 if (j && least >= std::max(gap[i], gap[j])) continue;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 
 namespace cspace::navigation {
@@ -35,15 +36,16 @@ inline constexpr std::array<std::uint8_t, 256> parts = count_parts();
 // The numbers in the order of their keys; equal ones stay as they are.
 inline void sort_by_key(std::vector<std::uint32_t>& numbers, const std::vector<std::uint32_t>& keys) {
     constexpr int bits = 11;
+    InterruptPoll poll(1 << 13);
     std::uint32_t largest = 0;
     for (const std::uint32_t n : numbers) largest = std::max(largest, keys[n]);
-    std::vector<std::uint32_t> sorted(numbers.size());
+    auto sorted = filled_vector<std::uint32_t>(numbers.size());
     for (int shift = 0; shift == 0 || (shift < 32 && largest >> shift != 0); shift += bits) {
         std::array<std::uint32_t, (1u << bits) + 1> begin{};
         const auto digit = [&](std::uint32_t n) { return keys[n] >> shift & ((1u << bits) - 1); };
-        for (const std::uint32_t n : numbers) ++begin[digit(n) + 1];
+        for (const std::uint32_t n : numbers) poll.step(), ++begin[digit(n) + 1];
         for (std::size_t k = 1; k < begin.size(); ++k) begin[k] += begin[k - 1];
-        for (const std::uint32_t n : numbers) sorted[begin[digit(n)]++] = n;
+        for (const std::uint32_t n : numbers) poll.step(), sorted[begin[digit(n)]++] = n;
         numbers.swap(sorted);
     }
 }
@@ -57,7 +59,7 @@ class Thinning {
   public:
     // fate: blocked, left or kept, by number of cell; height: the clearance in any unit.
     Thinning(const maps::BitGrid& grid, const std::vector<std::uint32_t>& height, std::vector<Fate>& fate)
-        : height_(height), fate_(fate), up_(grid.numbers()) {
+        : height_(height), fate_(fate), up_(filled_vector<std::int8_t>(grid.numbers())) {
         for (int d = 0; d < 8; ++d)
             offset_[d] = std::uint32_t(row_step[d]) * grid.stride() + std::uint32_t(column_step[d]);
     }
@@ -67,14 +69,19 @@ class Thinning {
 
     void run() {
         std::vector<std::uint32_t> waiting;
-        for (std::uint32_t n = 0; n < fate_.size(); ++n)
+        InterruptPoll poll(1 << 12);
+        for (std::uint32_t n = 0; n < fate_.size(); ++n) {
+            poll.step();
             if (fate_[n] == Fate::left) waiting.push_back(n);
+        }
         thinning::sort_by_key(waiting, height_);
         for (std::size_t before = waiting.size() + 1; waiting.size() < before;) {
             before = waiting.size();
             std::size_t stay = 0;
-            for (const std::uint32_t n : waiting)
+            for (const std::uint32_t n : waiting) {
+                poll.step();
                 if (!take(n)) waiting[stay++] = n;
+            }
             waiting.resize(stay);
         }
     }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/following/controllers.hpp"
 
 namespace cspace::navigation {
@@ -66,7 +67,9 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
         record.outcome = outcome;
         return record;
     };
+    InterruptPoll poll(16);
     for (std::int64_t step = 0;; ++step) {
+        poll.step();
         const double time = double(step) * dt;
         record.motion.push_back(at.now);
         record.offset.push_back(at.guided.offset);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cspace/maps/bit_grid.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/grid/moves.hpp"
 #include "cspace/navigation/grid/nodes.hpp"
 #include "cspace/navigation/grid/order.hpp"
@@ -46,11 +47,14 @@ class DStarLite {
                 if (grid_.contains(beside)) look_again(beside);
             }
     }
-    // Repairs the search after changes. False if no path leads to the goal.
+    // Repairs the search after changes. False if no path leads to the goal. Stopped by an interrupt, it goes
+    // on in the next call.
     bool replan(search::Effort& effort) {
         if (grid_.blocked(start_) || grid_.blocked(goal_)) return false;
         const std::uint32_t start = grid_.number(start_);
+        InterruptPoll poll(128);
         while (!queue_.empty()) {
+            poll.step();
             const Entry top = queue_.top();
             Node& node = at(top.cell);
             if (is_outdated(top, node)) {

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <vector>
 
@@ -59,7 +58,6 @@ struct GridScratch {
 namespace grid_search {
 
 inline constexpr double bucket_width = 0.05;  // cells, or the least cost of one: few f differ by less
-inline constexpr std::uint64_t between_looks = 1 << 17;  // cells settled: less than a twentieth of a second
 
 // The cost of a path from cell to adjacent cell.
 template <class Length>
@@ -78,7 +76,6 @@ struct Division {
     maps::LazyParts* parts;  // or null
     maps::Cell a, b;
     bool diagonal;
-    const std::function<void()>& look;  // called now and then, or empty
 
     // Parts are looked at before a search if they are known, else where it has taken long.
     std::uint64_t patience() const {
@@ -98,15 +95,9 @@ template <class Space, class Queue>
 std::uint32_t search_or_divide(Space& space, Queue& queue, const Division& division, GridAnswer& answer) {
     constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
     search::Effort& effort = answer.effort;
-    std::uint64_t asked = division.is_known() ? never : division.patience();
-    for (;;) {
-        effort.pause = std::min(asked, division.look ? effort.settled + between_looks : never);
+    for (effort.pause = division.is_known() ? never : division.patience();; effort.pause = never) {
         const std::uint32_t reached = search::best_first(space, queue, effort);
-        if (reached != search::no_node || queue.empty()) return reached;
-        if (division.look) division.look();
-        if (effort.settled < asked) continue;
-        if (division.proves(answer)) return search::no_node;
-        asked = never;
+        if (reached != search::no_node || queue.empty() || division.proves(answer)) return reached;
     }
 }
 
@@ -166,11 +157,9 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
 
 }  // namespace grid_search
 
-// The path from start to goal, both free cells of the grid. parts: of this grid, or null for none. look() is
-// called now and then, and may throw.
+// The path from start to goal, both free cells of the grid. parts: of this grid, or null for none.
 inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goal, const GridQuery& query,
-                     GridScratch& scratch, GridAnswer& answer, maps::LazyParts* parts = nullptr,
-                     const std::function<void()>& look = {}) {
+                     GridScratch& scratch, GridAnswer& answer, maps::LazyParts* parts = nullptr) {
     const bool backward = query.planner == GridPlanner::waves;
     const Order order = {backward ? start : goal, query.metric, query.g_weight, query.h_weight,
                          query.least_cost};
@@ -180,7 +169,7 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
     answer.parts = 0;
     answer.effort = {};
     answer.effort.order = answer.settled ? &answer.order : nullptr;
-    const grid_search::Division division{grid, parts, start, goal, query.corners == Corners::always, look};
+    const grid_search::Division division{grid, parts, start, goal, query.corners == Corners::always};
     if (division.is_known() && division.proves(answer)) return;
     const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
         grid_search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen,

@@ -6,6 +6,7 @@
 
 #include <span>
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/sampling/problem.hpp"
 #include "cspace/navigation/sampling/samples.hpp"
 #include "cspace/search/adjacency.hpp"
@@ -52,7 +53,9 @@ class Roadmap {
 
     Roadmap(const maps::PolygonWorld& world, const RoadmapKey& key, Samples draws)
         : key_(key), near_(draws.low(), draws.high()) {
+        InterruptPoll poll(64);
         for (std::int64_t i = 0; i < key.samples; ++i) {
+            poll.step();
             const Located drawn = draws.draw();
             if (drawn.triangle == none) continue;
             nodes_.push_back(drawn);
@@ -66,7 +69,9 @@ class Roadmap {
 
     void choose_pairs() {
         std::vector<std::int32_t> found;
+        InterruptPoll poll(16);
         for (std::int32_t i = 0; i < std::int32_t(nodes_.size()); ++i) {
+            poll.step();
             const Point at = nodes_[std::size_t(i)].at;
             if (key_.neighbours > 0)
                 near_.nearest(at, std::size_t(key_.neighbours) + 1, found);
@@ -77,18 +82,24 @@ class Roadmap {
                     pairs_.push_back({std::max(i, j), std::min(i, j)});
         }
         if (key_.neighbours <= 0) return;
-        std::sort(pairs_.begin(), pairs_.end());
+        sort_polled(pairs_);
         pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     }
 
     // Keeps the pairs that see each other.
     void join(const maps::PolygonWorld& world) {
         std::vector<std::pair<std::int32_t, std::int32_t>> kept;
-        for (const auto& [i, j] : pairs_)
+        InterruptPoll poll(64);
+        for (const auto& [i, j] : pairs_) {
+            poll.step();
             if (end_of_sight(world.space, nodes_[std::size_t(i)], nodes_[std::size_t(j)].at) != none)
                 kept.push_back({i, j});
+        }
         edges_ = {nodes_.size(), [&](const auto& add) {
-                      for (const auto& [i, j] : kept) add(std::size_t(i), j), add(std::size_t(j), i);
+                      visit_range(0, kept.size(), [&](std::size_t k) {
+                          const auto& [i, j] = kept[k];
+                          add(std::size_t(i), j), add(std::size_t(j), i);
+                      });
                   }};
     }
 };

@@ -4,6 +4,7 @@
 // one (Gammell, Srinivasa & Barfoot 2014).
 #pragma once
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/sampling/problem.hpp"
 #include "cspace/navigation/sampling/samples.hpp"
 #include "cspace/search/nearest_neighbours.hpp"
@@ -31,7 +32,9 @@ class Tree {
         add({problem_.start.at, none}, -1);
         try_goal(0);
         SampledRoute answer;
+        InterruptPoll poll(16);
         while (answer.samples < growth_.samples && !is_done()) {
+            poll.step();
             ++answer.samples;
             Located drawn;
             if (draw(drawn)) grow_towards(drawn.at);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cspace/maps/sectors.hpp"
+#include "cspace/math/interrupts.hpp"
 
 namespace cspace::navigation {
 
@@ -97,6 +98,7 @@ class VisibilityGraph {
         first_.push_back(0);
         View view(space_);
         for (Index n = 0; n < size(); ++n) {
+            poll_interrupts();
             connect(view, n);
             first_.push_back(Index(edges_.size()));
         }

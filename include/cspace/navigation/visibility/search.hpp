@@ -13,10 +13,9 @@ namespace cspace::navigation {
 
 class VisibilitySearch {
   public:
-    explicit VisibilitySearch(const maps::PolygonWorld& world)
-        : graph_(world.space), view_(world.space), state_(std::size_t(graph_.size()) + 1) {}
-
-    const VisibilityGraph& graph() const { return graph_; }
+    // The graph of a space, which several searches may share.
+    VisibilitySearch(const VisibilityGraph& graph, const maps::FreeSpace& space)
+        : graph_(graph), view_(space), state_(std::size_t(graph.size()) + 1) {}
 
     // Start and goal lie in one component of free space.
     Route solve(const maps::Settled& start, const maps::Settled& goal, Trace* trace = nullptr) {
@@ -72,7 +71,7 @@ class VisibilitySearch {
         }
     };
     static constexpr double far = std::numeric_limits<double>::infinity();
-    VisibilityGraph graph_;
+    const VisibilityGraph& graph_;
     View view_;
     std::vector<State> state_;
     std::uint32_t query_ = 0;

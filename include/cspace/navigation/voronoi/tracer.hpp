@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "cspace/maps/free_space.hpp"
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/voronoi/contacts.hpp"
 #include "cspace/navigation/voronoi/feet.hpp"
 
@@ -61,6 +62,7 @@ class Tracer {
     std::vector<std::pair<Index, Index>> open_;  // a vertex and a gap
     std::unordered_map<Index, Fan> fans_;
     std::unordered_multimap<std::uint64_t, Index> vertex_in_;
+    InterruptPoll poll_{16};
 
     // The first vertex: where an arc from the retracted point ends that does not end in a corner.
     bool start(const Retraction& up) {
@@ -152,6 +154,7 @@ class Tracer {
     // Along the arcs of a, whose foot moves forward, and b, whose foot moves backward, to the next vertex.
     void follow(Index vertex, Index a, Index b) {
         for (Index joints = 0; joints <= 2 * s_.size(); ++joints) {
+            poll_.step();
             const Point from = d_.vertices[std::size_t(vertex)].at;
             const Bisector curve = bisector_of(s_, a, b, from);
             const double begin = curve.parameter(from);

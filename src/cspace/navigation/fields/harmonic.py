@@ -45,7 +45,7 @@ class Harmonic(PlanePlanner):
     """Descent along the harmonic potential from start to goal, from cell to cell, past no blocked corner.
 
     The first query for a goal solves the whole field, further queries only descend it; where walls separate
-    start from goal, no solution is needed. An interrupt stops the solver. route.evidence is a
+    start from goal, no solution is needed. route.evidence is a
     HarmonicEvidence. "undetermined" where the equation was not solved accurately enough for the descent to
     arrive. The trace contains the steps "descend" between centres of cells; its value is −log of the
     probability at the end.

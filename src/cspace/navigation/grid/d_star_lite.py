@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import threading
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import CspaceError, InputError, InputTypeError
 from cspace.maps import OccupancyGrid
 from cspace.maps.points import as_point
 from cspace.navigation.checks import check_ends, need_grid
@@ -29,7 +31,7 @@ class DStarLite:
     grid: what is known at first; it stays as it is. start, goal: (2,) [m] in free cells. metric: "octile"
     (eight moves) or "manhattan" (four). corners: as for A*. Tell what changes by `set_blocked` and where
     the robot is by `move`; `route` is the shortest path from there, of the same length as that of a fresh
-    search. Threads that share one are served one by one.
+    search. Threads that share one are served one by one. After Ctrl-C the search goes on where it stopped.
     """
 
     def __init__(
@@ -51,12 +53,25 @@ class DStarLite:
         self._route: Route | None = None
         self._settled = np.empty((0, 2), np.int32)
         self._busy = threading.Lock()
+        self._user = 0
+
+    @contextmanager
+    def _turn(self) -> Iterator[None]:
+        """The only use of the search; CspaceError in a signal handler amid another one of its thread."""
+        if self._user == threading.get_ident():
+            raise CspaceError("this DStarLite is being searched; a signal handler must use another one")
+        with self._busy:
+            self._user = threading.get_ident()
+            try:
+                yield
+            finally:
+                self._user = 0
 
     @property
     def grid(self) -> OccupancyGrid:
         """The grid as it is known now."""
         cells = np.empty(self._grid.shape, np.uint8)
-        with self._busy:
+        with self._turn():
             self._core.unpack(cells)
         return OccupancyGrid(cells.view(np.bool_), self._grid.resolution, self._grid.origin)
 
@@ -73,15 +88,15 @@ class DStarLite:
             rows, columns = self._grid.shape
             message = f"cells holds ({row:g}, {column:g}); the grid has rows 0 … {rows - 1}, "
             raise InputError(message + f"columns 0 … {columns - 1}")
-        with self._busy:
-            self._core.set(index.astype(np.int32), bool(blocked))
+        with self._turn():
             self._route = None
+            self._core.set(index.astype(np.int32), bool(blocked))
 
     def move(self, point: ArrayLike) -> None:
         """The robot is at a point (2,) [m] now; InputError outside the grid."""
         x, y = as_point(point, "point")
         self._grid.cell_of((x, y))
-        with self._busy:
+        with self._turn():
             self._core.move(x, y)
             self._ends = (np.array([x, y]), self._ends[1])
             self._route = None
@@ -94,7 +109,7 @@ class DStarLite:
         route.stats says what mending took, not what the whole search has. route.world is the grid given
         first.
         """
-        with self._busy:
+        with self._turn():
             if self._route is None:
                 began = time.perf_counter()
                 status, path, length, nodes, edges, self._settled = self._core.replan()
@@ -104,7 +119,7 @@ class DStarLite:
 
     def __reduce__(self) -> tuple[Any, ...]:
         """The grid, what is known of it now and the ends: copies and pickles search from there anew."""
-        with self._busy:
+        with self._turn():
             cells = np.empty(self._grid.shape, np.uint8)
             self._core.unpack(cells)
             changed = np.argwhere(cells.view(np.bool_) != self._grid.blocked)

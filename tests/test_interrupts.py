@@ -1,0 +1,216 @@
+"""Long calls heed Ctrl-C: each is stopped long before it would be done, and what it used still works."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import pytest
+
+import cspace as cs
+
+pytestmark = pytest.mark.skipif(sys.platform == "win32", reason="no timer signals there")
+
+AFTER = 0.05
+"""When the signal comes [s]."""
+SOON = 1.0
+"""How soon after it a call must have ended [s]: each takes several times as long when nothing stops it."""
+
+Call = Callable[[], Any]
+CALLS: dict[str, Callable[[], Call]] = {}
+
+
+def call(make: Callable[[], Call]) -> Callable[[], Call]:
+    """Registers what prepares a call and returns it."""
+    CALLS[make.__name__] = make
+    return make
+
+
+@pytest.fixture
+def timer() -> Iterator[Callable[..., None]]:
+    """Sets a handler that is called after so many seconds, once or, with every=, again and again."""
+    before = signal.getsignal(signal.SIGALRM)
+
+    def start(handler: Any, after: float, every: float = 0) -> None:
+        signal.signal(signal.SIGALRM, handler)
+        signal.setitimer(signal.ITIMER_REAL, after, every)
+
+    yield start
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    signal.signal(signal.SIGALRM, before)
+
+
+def blocks(side: int, share: float = 0.2) -> tuple[Any, Any, Any]:
+    """A grid with scattered blocked cells, and two free points far from each other."""
+    blocked = np.random.default_rng(1).random((side, side)) < share
+    blocked[:3] = blocked[-3:] = False
+    return cs.OccupancyGrid(blocked), (0.5, 0.5), (side - 0.5, side - 0.5)
+
+
+def squares(side: int) -> tuple[Any, Any, Any]:
+    """A world of many squares, and two free points far from each other."""
+    corners = np.array([[0.3, 0.3], [0.7, 0.35], [0.7, 0.7], [0.3, 0.7]])
+    rings = [corners + np.array([i, j]) for i in range(side) for j in range(side)]
+    bounds = (-1, -1, side + 1, side + 1)
+    return cs.PolygonWorld(rings, bounds=bounds), (-0.5, -0.5), (side + 0.5, side + 0.5)
+
+
+def on_grid(planner: str, side: int) -> Callable[[], Call]:
+    def make() -> Call:
+        world, start, goal = blocks(side)
+        return lambda: cs.navigate(world, start, goal, planner)
+
+    return make
+
+
+def among_squares(planner: str, side: int, **options: Any) -> Callable[[], Call]:
+    def make() -> Call:
+        world, start, goal = squares(side)
+        return lambda: cs.navigate(world, start, goal, planner, **options)
+
+    return make
+
+
+for name, side in {"d_star_lite": 4000, "brushfire": 4000, "harmonic": 1500, "fast_marching": 4000}.items():
+    CALLS[name] = on_grid(name, side)
+for name, options in {
+    "prm": {"samples": 1_000_000, "rng": 1},
+    "rrt": {"samples": 1_000_000, "rng": 1, "step": 1e-3, "goal_bias": 0.0},
+    "rrt_star": {"samples": 1_000_000, "rng": 1},
+    "approximate_cells": {"depth": 12, "uniform": True},
+}.items():
+    CALLS[name] = among_squares(name, 8, **options)
+
+
+@call
+def to_grid() -> Call:
+    world = squares(10)[0]
+    return lambda: world.to_grid(0.0005)
+
+
+@call
+def coverage() -> Call:
+    world, start, _ = blocks(3000, 0.1)
+    return lambda: cs.navigation.coverage(world, start)
+
+
+@call
+def arrival_times() -> Call:
+    world, _, goal = blocks(4000)
+    return lambda: cs.navigation.arrival_times(world, goal)
+
+
+@call
+def follow() -> Call:
+    x = np.linspace(0, 3000, 30_000)
+    path = np.stack([x, 5 * np.sin(x / 10)], axis=1)
+    return lambda: cs.navigation.follow(path, time_step=0.0005, time_limit=4000)
+
+
+@call
+def cast_rays() -> Call:
+    world = blocks(2000, 1e-5)[0]
+    angles = np.linspace(0, 6, 2_000_000)
+    return lambda: cs.navigation.cast_rays(world, np.full((len(angles), 2), 3.5), angles)
+
+
+def batch(name: str, rows: int, use: Callable[[Any, Any, Any], Any]) -> Callable[[], Call]:
+    """A call over rows of configurations and their poses, of which there are only some different ones."""
+
+    def make() -> Call:
+        robot = cs.load_robot(name)
+        some = robot.random_configuration(100, rng=1)
+        q = np.tile(some, (rows // 100, 1))
+        T = np.tile(robot.fk(some), (rows // 100, 1, 1))
+        return lambda: use(robot, q, T)
+
+    return make
+
+
+CALLS["fk_all"] = batch("ur5e", 4_000_000, lambda robot, q, T: robot.fk_all(q, threads=1))
+CALLS["manipulability"] = batch("ur5e", 4_000_000, lambda robot, q, T: robot.manipulability(q, threads=1))
+CALLS["ik_general"] = batch("jaco2", 300_000, lambda robot, q, T: robot.ik(T, threads=1))
+CALLS["ik_near"] = batch("ur5e", 2_000_000, lambda robot, q, T: robot.ik(T, near=q))
+CALLS["ik_redundant"] = batch("panda", 30_000, lambda robot, q, T: robot.ik(T, threads=1))
+CALLS["ik_locked"] = batch("panda", 3_000_000, lambda robot, q, T: robot.ik(T, locked={6: 0.5}, threads=1))
+CALLS["ik_numeric"] = batch("ur5e", 1_000_000, lambda robot, q, T: robot.ik_numeric(T, q + 0.9, threads=1))
+CALLS["resolved_rate"] = batch(
+    "ur5e", 2_000_000, lambda robot, q, T: robot.resolved_rate(q, np.ones((len(q), 6)), threads=1)
+)
+CALLS["ik_many_starts"] = batch(
+    "ur5e", 100, lambda robot, q, T: robot.ik_many_starts(T[0], starts=1_000_000, rng=1, threads=1)
+)
+CALLS["on_threads"] = batch("jaco2", 600_000, lambda robot, q, T: robot.ik(T, threads=4))
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_an_interrupt_ends_a_long_call(name: str, timer: Callable[..., None]) -> None:
+    run = CALLS[name]()
+    timer(signal.default_int_handler, AFTER)
+    began = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        run()
+    assert time.perf_counter() - began < AFTER + SOON
+
+
+def test_d_star_lite_goes_on_where_it_was_stopped(timer: Callable[..., None]) -> None:
+    world, start, goal = blocks(1500)
+    whole = cs.navigate(world, start, goal, "a_star").length
+    search = cs.navigation.DStarLite(world, start, goal)
+    stops = 0
+    while search._route is None:
+        timer(signal.default_int_handler, 0.03)
+        try:
+            assert search.route.length == whole
+        except KeyboardInterrupt:
+            stops += 1
+    assert stops > 0
+
+
+def test_a_handler_is_refused_the_search_that_it_interrupts(timer: Callable[..., None]) -> None:
+    world, start, goal = blocks(1500)
+    search = cs.navigation.DStarLite(world, start, goal)
+    told = []
+
+    def ask(*_: Any) -> None:
+        try:
+            told.append(search.route)
+        except cs.CspaceError as error:
+            told.append(error)
+
+    timer(ask, 0.03)
+    route = search.route
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    assert "being searched" in str(told[0])
+    assert route.length == cs.navigate(world, start, goal, "a_star").length
+
+
+@pytest.mark.parametrize("planner", ["any_angle", "visibility_graph"])
+def test_a_handler_may_ask_the_same_world(planner: str, timer: Callable[..., None]) -> None:
+    world, start, goal = squares(50)
+    alone = cs.navigate(world, start, goal, planner)
+    near = cs.navigate(world, start, (5.1, 2.1), planner)
+    asked: list[Any] = []
+    while len(asked) < 10:
+        timer(lambda *_: asked.append(cs.navigate(world, start, (5.1, 2.1), planner)), 0.001)
+        amid = cs.navigate(world, start, goal, planner)
+        np.testing.assert_array_equal(amid.path, alone.path)
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    assert asked
+    assert {route.length for route in asked} == {near.length}
+
+
+def test_results_do_not_depend_on_signals(timer: Callable[..., None]) -> None:
+    robot = cs.load_robot("jaco2")
+    T = robot.fk(robot.random_configuration(5_000, rng=3))
+    alone = robot.ik(T, threads=1).q
+    heard = []
+    timer(lambda *_: heard.append(1), 0.005, 0.005)
+    amid = robot.ik(T, threads=3).q
+    signal.setitimer(signal.ITIMER_REAL, 0)
+    np.testing.assert_array_equal(amid, alone)
+    assert heard
