@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 import operator
-from collections.abc import Mapping
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from typing import Any
 
 import numpy as np
@@ -14,7 +16,7 @@ from cspace.errors import InputError, InputTypeError
 from cspace.tolerances import FARTHEST
 
 __all__ = ["Array", "as_arrays", "as_floats", "as_generator", "leading_axes", "one_number", "positive_number"]
-__all__ += ["bounded_number", "one_array", "whole_number"]
+__all__ += ["bounded_number", "guard_memory", "one_array", "whole_number"]
 
 Array = npt.NDArray[np.float64]
 
@@ -133,6 +135,24 @@ def whole_number(value: Any, subject: str, least: int, most: int, note: str = ""
         also = f"; {note}" if note else ""
         raise InputError(f"{subject} is {count}; it must be {least} to {most}{also}")
     return count
+
+
+@contextmanager
+def guard_memory(subject: str, value: Any, numbers: float, remedy: str) -> Iterator[None]:
+    """InputError that names the argument where arrays of so many numbers exceed the memory.
+
+    remedy: what a message says last. Arrays are allocated in the block.
+    """
+    largest = sys.maxsize // np.dtype(np.float64).itemsize
+    if numbers < largest:
+        try:
+            yield
+            return
+        except MemoryError:
+            pass
+    raise InputError(
+        f"{subject} is {value}; arrays of {numbers:.3g} numbers exceed the memory, {remedy}"
+    ) from None
 
 
 def leading_axes(**shapes: tuple[int, ...]) -> tuple[int, ...]:

@@ -7,11 +7,13 @@ from typing import TypeAlias
 
 import numpy as np
 
-from cspace.arrays import Array, as_generator, bounded_number, whole_number
+from cspace.arrays import Array, as_generator, bounded_number, guard_memory, whole_number
 from cspace.errors import InputError
 from cspace.model import Limits
 
 Seed: TypeAlias = "int | np.random.Generator | None"
+
+ROWS_AT_ONCE = 1 << 15
 
 
 def random_configurations(
@@ -25,7 +27,8 @@ def random_configurations(
     reach, the length [m] drawn on the open side.
 
     Returns q (n, n_joints) or (n_joints,) [rad or m].
-    Raises InputError for a prismatic joint with an open side and without reach, a negative n or reach;
+    Raises InputError for a prismatic joint with an open side and without reach, a negative n or reach, an
+    n beyond the memory;
     InputTypeError for values that are not numbers.
     """
     if n is not None:
@@ -48,6 +51,11 @@ def random_configurations(
             upper[i] = lower[i] + span
         else:
             lower[i] = upper[i] - span
-    shape = (lower.size,) if n is None else (n, lower.size)
-    # From the upper end downward: (−π, π] excludes −π and includes π.
-    return np.asarray(upper - (upper - lower) * as_generator(rng).random(shape))
+    generator, count = as_generator(rng), 1 if n is None else n
+    with guard_memory("n", n, count * lower.size, "draw fewer configurations"):
+        q = np.empty((count, lower.size))
+    for begin in range(0, count, ROWS_AT_ONCE):  # an interrupt comes between two steps
+        rows = q[begin : begin + ROWS_AT_ONCE]
+        # From the upper end downward: (−π, π] excludes −π and includes π.
+        np.subtract(upper, (upper - lower) * generator.random(rows.shape), out=rows)
+    return q[0] if n is None else q

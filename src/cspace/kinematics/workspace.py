@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from cspace.arrays import Array, whole_number
+from cspace.arrays import Array, guard_memory, whole_number
 from cspace.kinematics.batch import frame_number
 from cspace.kinematics.configurations import Seed, random_configurations
 from cspace.kinematics.forward import forward_kinematics
@@ -65,8 +65,10 @@ def workspace(
     """
     frame_number(robot, frame)
     limits, kinds = robot.limits, robot.joint_types
-    q = random_configurations(limits, kinds, whole_number(n, "n", 1, 10**9), rng=rng, reach=reach)
-    points = forward_kinematics(robot, q, frame, threads=threads)[:, :3, 3].copy()
+    count = whole_number(n, "n", 1, 10**9)
+    with guard_memory("n", n, (len(kinds) + 16) * count, "draw fewer configurations"):
+        q = random_configurations(limits, kinds, count, rng=rng, reach=reach)
+        points = forward_kinematics(robot, q, frame, threads=threads)[:, :3, 3].copy()
     curves: tuple[Array, ...] = ()
     area = None
     if robot.tip is not None and frame in (None, robot.tip) and not robot.floating:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from contextlib import AbstractContextManager
+
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats, as_generator
+from cspace.arrays import Array, as_floats, as_generator, guard_memory
 from cspace.errors import InputError, InputTypeError, shown
 from cspace.spatial.planar import matrix_of_angle
 from cspace.spatial.poses import assemble
@@ -22,7 +25,9 @@ def random_rotation(size: Size = (), *, rng: int | np.random.Generator | None = 
     size: how many, an int or a shape; () for one. rng: seed, Generator or None. Returns (..., 3, 3), the size
     first. Source: Shoemake 1992.
     """
-    return _rotations(_shape(size), as_generator(rng))
+    shape = _shape(size)
+    with _guard_size(size, shape):
+        return _rotations(shape, as_generator(rng))
 
 
 def random_pose(
@@ -38,8 +43,9 @@ def random_pose(
     rng: seed, Generator or None. Returns (..., 4, 4), the size first.
     """
     shape, generator = _shape(size), as_generator(rng)
-    R = _rotations(shape, generator)
-    return assemble(R, _box(shape, 3, lower, upper, generator))
+    with _guard_size(size, shape):
+        R = _rotations(shape, generator)
+        return assemble(R, _box(shape, 3, lower, upper, generator))
 
 
 def random_rotation_2d(size: Size = (), *, rng: int | np.random.Generator | None = None) -> Array:
@@ -47,7 +53,9 @@ def random_rotation_2d(size: Size = (), *, rng: int | np.random.Generator | None
 
     size: how many, an int or a shape. rng: seed, Generator or None. Returns (..., 2, 2), the size first.
     """
-    return matrix_of_angle(np.asarray(as_generator(rng).uniform(-np.pi, np.pi, _shape(size))))
+    shape = _shape(size)
+    with _guard_size(size, shape):
+        return matrix_of_angle(np.asarray(as_generator(rng).uniform(-np.pi, np.pi, shape)))
 
 
 def random_pose_2d(
@@ -63,8 +71,9 @@ def random_pose_2d(
     rng: seed, Generator or None. Returns (..., 3, 3), the size first.
     """
     shape, generator = _shape(size), as_generator(rng)
-    R = matrix_of_angle(np.asarray(generator.uniform(-np.pi, np.pi, shape)))
-    return assemble(R, _box(shape, 2, lower, upper, generator))
+    with _guard_size(size, shape):
+        R = matrix_of_angle(np.asarray(generator.uniform(-np.pi, np.pi, shape)))
+        return assemble(R, _box(shape, 2, lower, upper, generator))
 
 
 def _rotations(shape: tuple[int, ...], generator: np.random.Generator) -> Array:
@@ -100,3 +109,8 @@ def _shape(size: Size) -> tuple[int, ...]:
         if n < 0:
             raise InputError(f"size is {size!r}; it must not be negative")
     return tuple(int(n) for n in dimensions)
+
+
+def _guard_size(size: Size, shape: tuple[int, ...]) -> AbstractContextManager[None]:
+    """InputError for a size whose matrices exceed the memory."""
+    return guard_memory("size", size, 9.0 * math.prod(shape), "draw fewer at once")

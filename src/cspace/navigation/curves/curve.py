@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, positive_number
+from cspace.arrays import Array, as_floats, guard_memory, positive_number
 from cspace.errors import InputError
 
 KINDS: Final = {1: "left", 0: "straight", -1: "right"}
@@ -91,11 +91,12 @@ class Curve:
         segment."""
         step = positive_number(spacing, "spacing", "give a length above zero, in metres")
         parts, begin = [np.zeros(1)], 0.0
-        for end in self._ends.tolist():
-            count = max(1, int(np.ceil((end - begin) / step)))
-            parts.append(np.linspace(begin, end, count + 1)[1:])
-            begin = end
-        return self.at(np.minimum(np.concatenate(parts), self.length))
+        with guard_memory("spacing", spacing, 3 * self.length / step, "give a larger one"):
+            for end in self._ends.tolist():
+                count = max(1, int(np.ceil((end - begin) / step)))
+                parts.append(np.linspace(begin, end, count + 1)[1:])
+                begin = end
+            return self.at(np.minimum(np.concatenate(parts), self.length))
 
     def __repr__(self) -> str:
         return f"<Curve {self.word or 'of no length'}: {self.length:.6g} m, radius {self.radius:g} m>"
