@@ -116,7 +116,7 @@ def test_the_boundary_separates_what_is_reached_from_what_is_not(seed):
     assert inside(space.boundary, reached).all()
     spread = clear_of_edge(rng.uniform(-reach, reach, (300, 2)))
     arm = PlanarArm(lengths, np.column_stack([lower, np.minimum(width, 2 * np.pi)]))
-    np.testing.assert_array_equal(inside(space.boundary, spread), is_reachable(arm, spread))
+    np.testing.assert_array_equal(inside(space.boundary, spread), is_reachable(arm, spread @ (1, 1j)))
 
 
 @pytest.mark.parametrize("n", [2, 3])
@@ -126,7 +126,7 @@ def test_reachable_agrees_with_a_grid_of_configurations(n):
         lengths, lower = rng.uniform(0.3, 1.0, n), rng.uniform(-np.pi, np.pi, n)
         width = rng.uniform(0.5, 2 * np.pi, n)
         robot = limited(lengths, lower, lower + width)
-        some = robot.fk(rng.uniform(lower, lower + width, (300, n)))[:, :2, 3]
+        some = robot.fk(rng.uniform(lower, lower + width, (300, n)))[:, :2, 3] @ (1, 1j)
         assert is_reachable(PlanarArm(lengths, np.column_stack([lower, width])), some).all()
 
 

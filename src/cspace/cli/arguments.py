@@ -181,10 +181,11 @@ def add_chain(parser: argparse.ArgumentParser) -> None:
 
 
 def add_joints(parser: argparse.ArgumentParser) -> None:
-    """One value per joint."""
+    """One value per joint, and a frame."""
     parser.add_argument(
         "q", metavar="Q", nargs="*", type=read_number, help="one value per joint [rad, m]; pi/2 may be typed"
     )
+    parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")
 
 
 def add_degrees(parser: argparse.ArgumentParser) -> None:

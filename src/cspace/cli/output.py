@@ -36,7 +36,6 @@ class Table:
     columns: Sequence[str]
     rows: list[list[Cell]] = field(default_factory=list)
     left: frozenset[int] = frozenset({0})
-    title: str = ""
 
     def add(self, *cells: Cell | str) -> None:
         """Add a row; plain strings are cells without a colour."""
@@ -152,7 +151,7 @@ def _rich_table(table: Table) -> Any:
     from rich.table import Table as RichTable
     from rich.text import Text
 
-    drawn = RichTable(box=box.SIMPLE_HEAD, title=table.title or None, title_justify="left", pad_edge=False)
+    drawn = RichTable(box=box.SIMPLE_HEAD, pad_edge=False)
     for j, column in enumerate(table.columns):
         drawn.add_column(column, justify="left" if j in table.left else "right", no_wrap=j not in table.left)
     for row in table.rows:

@@ -36,13 +36,22 @@ def load_chosen(args: argparse.Namespace) -> Robot:
     )
 
 
+def load_posed(args: argparse.Namespace) -> tuple[Robot, Array, str | None]:
+    """The robot, the configuration typed for it, and the name of the selected frame, by default the tip."""
+    robot = load_chosen(args)
+    if args.frame is None:
+        need_chain(robot)
+    return robot, read_configuration(args.q, robot, "q", degrees=args.deg), args.frame or robot.tip
+
+
 def need_chain(robot: Robot) -> None:
     """Refuse a tree where a verb speaks of one tip, naming the links that could be it."""
+    from cspace.kinematics.assembly import tip_choices
+
     if robot.tip is None:
         raise UsageError(
             f"{robot.name} branches, so its tip must be selected: --tip with one of "
-            f"{', '.join(robot.leaves)},"
-            " or any other link, such as the one that carries a gripper"
+            f"{tip_choices(robot.leaves)}"
         )
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,6 +12,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, tree
 from cspace.model.transforms import invert_transform
+from cspace.model.tree import lump_links
 from cspace.spatial.vectors import frame_along
 
 Numbers = npt.NDArray[np.intp]
@@ -134,7 +134,10 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
     frame_joint = np.array([before - 1 for before, _ in source.frames.values()])
     poses = np.array([pose for _, pose in source.frames.values()])
     T_joint_frame = back[frame_joint + 1] @ poses
-    mass, center = _lumps(description, source.frames, frame_joint, T_joint_frame, n)
+    mass, center = np.zeros(n + 1), np.zeros((n + 1, 3))
+    if description is not None:
+        carried = zip(source.frames, zip(frame_joint.tolist(), T_joint_frame, strict=True), strict=True)
+        mass, center, *_ = lump_links(description, dict(carried), n)
     return Assembly(
         base=source.base,
         tip=source.tip,
@@ -146,7 +149,7 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
         frame_joint=frame_joint,
         frame_index={name: i for i, name in enumerate(source.frames)},
         mass=mass,
-        center=center,
+        center=center.copy(),
         chain=source,
         **_coordinates(source, description),
     )
@@ -168,23 +171,6 @@ def _coordinates(source: Tree | Chain, description: Description | None) -> dict[
         "offset": law.offset,
         "prismatic": np.array([kind == "P" for kind in source.joint_types], dtype=np.float64),
     }
-
-
-def _lumps(
-    description: Description | None,
-    frames: Mapping[str, object],
-    frame_joint: Numbers,
-    T_joint_frame: Array,
-    n: int,
-) -> tuple[Array, Array]:
-    """Mass (n + 1,) and centre of mass (n + 1, 3) of what the base and each joint carry."""
-    mass, moment = np.zeros(n + 1), np.zeros((n + 1, 3))
-    for name, joint, T in zip(frames, frame_joint, T_joint_frame, strict=True):
-        inertial = None if description is None else description.link(name).inertial
-        if inertial is not None:
-            mass[joint + 1] += inertial.mass
-            moment[joint + 1] += inertial.mass * (T[:3, :3] @ inertial.com + T[:3, 3])
-    return mass, moment / np.where(mass > 0.0, mass, 1.0)[:, None]
 
 
 def _turned(axes: Array) -> Array:

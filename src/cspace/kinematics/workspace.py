@@ -76,8 +76,9 @@ def workspace(
         if plane is not None:
             arm, R, origin = plane
             flat = trace_boundary(arm)
-            area = float(sum(_enclosed(curve) for curve in flat))
-            curves = tuple(origin + curve @ R[:, :2].T for curve in flat)
+            # Gauss's formula, negative for curves that run clockwise.
+            area = 0.5 * sum(float(np.vdot(curve[:-1], curve[1:]).imag) for curve in flat)
+            curves = tuple(origin + np.column_stack([z.real, z.imag]) @ R[:, :2].T for z in flat)
     return Workspace(points, q, curves, area)
 
 
@@ -92,13 +93,11 @@ def _planar(chain: Chain, lower: Array, upper: Array) -> tuple[PlanarArm, Array,
     if np.abs(np.cross(chain.axes, normal)).max() > PLANAR_AXES:
         return None
     tip = chain.T_zero[:3, 3]
-    places = (np.vstack([chain.points, tip]) - chain.points[0]) @ R[:, :2]
-    links = np.diff(places, axis=0)
-    lengths = np.hypot(links[:, 0], links[:, 1])
+    links = np.diff(np.vstack([chain.points, tip]) @ R[:, :2] @ (1.0, 1j))
+    lengths = np.abs(links)
     if lengths.min() <= PLANAR_AXES * lengths.sum():
         return None
-    headings = np.arctan2(links[:, 1], links[:, 0])
-    at_zero = np.diff(headings, prepend=0.0)
+    at_zero = np.diff(np.angle(links), prepend=0.0)
     signs = np.sign(chain.axes @ normal)
     law = chain.coordinates
     ends = law.multiplier[:, None] * np.column_stack([lower, upper])[law.index] + law.offset[:, None]
@@ -107,9 +106,3 @@ def _planar(chain: Chain, lower: Array, upper: Array) -> tuple[PlanarArm, Array,
     start = np.where(width < TURN, at_zero + np.where(width < TURN, ends[:, 0], 0.0), -np.pi)
     origin = chain.points[0] + normal * ((tip - chain.points[0]) @ normal)
     return PlanarArm(lengths, np.column_stack([start, width])), R, origin
-
-
-def _enclosed(curve: Array) -> float:
-    """The area [m²] within a closed plane curve (m, 2), negative if it runs clockwise (Gauss's formula)."""
-    x, y = curve[:, 0], curve[:, 1]
-    return float(0.5 * np.sum(x[:-1] * y[1:] - x[1:] * y[:-1]))

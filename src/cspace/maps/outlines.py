@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -77,6 +77,12 @@ def check_bounds(bounds: Any) -> Array:
             "ymax with xmin < xmax and ymin < ymax"
         )
     return np.array(given)
+
+
+def longer_side(bounds: Sequence[float] | Array) -> float:
+    """The longer side [m] of a rectangle (xmin, ymin, xmax, ymax)."""
+    xmin, ymin, xmax, ymax = map(float, bounds)
+    return max(xmax - xmin, ymax - ymin)
 
 
 def find_bounds(outlines: list[Outline]) -> Array:

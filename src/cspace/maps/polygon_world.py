@@ -17,7 +17,14 @@ from cspace.maps.geojson import read_geojson, write_geojson
 from cspace.maps.grow import grow_outlines
 from cspace.maps.occupancy_grid import OccupancyGrid
 from cspace.maps.offset import Offset, find_offset
-from cspace.maps.outlines import Outline, check_bounds, circumscribe_discs, find_bounds, read_outlines
+from cspace.maps.outlines import (
+    Outline,
+    check_bounds,
+    circumscribe_discs,
+    find_bounds,
+    longer_side,
+    read_outlines,
+)
 from cspace.maps.points import as_path, as_point, check_inflation
 from cspace.maps.rasterize import rasterize_world
 from cspace.maps.repair import GeometryError, check_area, describe_crossings
@@ -106,7 +113,7 @@ class PolygonWorld:
     def _outlines(self) -> list[Outline]:
         """The complement of the free space of a grid, in a box larger than the bounds."""
         xmin, ymin, xmax, ymax = self.bounds
-        wide = max(xmax - xmin, ymax - ymin)
+        wide = longer_side(self.bounds)
         low, high = (xmin - wide, ymin - wide), (xmax + wide, ymax + wide)
         return [[np.array([low, (high[0], low[1]), high, (low[0], high[1])]), *self.walls]]
 
@@ -182,9 +189,8 @@ class PolygonWorld:
         keep: (k, 2) [m], points toward which corner polygons add nothing either, for centres that exceed
         the radius from a corner by less than that amount.
         """
-        wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
         places = as_floats(keep, "keep", last=(2,)).reshape(-1, 2) if np.size(keep) else np.empty((0, 2))
-        if (reach := check_inflation(radius)) <= ON_WALL * wide:
+        if (reach := check_inflation(radius)) <= ON_WALL * longer_side(self._bounds):
             return self  # less than the rounding of its corners
         obstacles, bounds = grow_outlines(self._outlines, self._bounds, reach, sides, places)
         return PolygonWorld(obstacles, bounds, repair=True)
@@ -195,8 +201,7 @@ class PolygonWorld:
         Exact up to rounding, where `inflate` has polygons in place of the arcs. InputError for a radius
         that is not positive.
         """
-        wide = float(np.max(self._bounds[2:] - self._bounds[:2]))
-        return find_offset(self.walls, self.clearance, wide, radius)
+        return find_offset(self.walls, self.clearance, longer_side(self._bounds), radius)
 
     def to_grid(self, resolution: float | None = None) -> OccupancyGrid:
         """Cells of a side `resolution` [m], with cell (0, 0) in the lower left corner of the bounds.
@@ -241,8 +246,7 @@ def _build_core(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore
     points = np.vstack([np.empty((0, 2)), *(ring for ring, _ in rings)])
     ends = np.cumsum([len(ring) for ring, _ in rings], dtype=np.int32)
     owners = np.array([owner for _, owner in rings], dtype=np.int32)
-    tolerance = ON_WALL * float(np.max(bounds[2:] - bounds[:2]))
-    core = _core.PolygonCore(points, ends, owners, bounds.reshape(2, 2), tolerance)
+    core = _core.PolygonCore(points, ends, owners, bounds.reshape(2, 2), ON_WALL * longer_side(bounds))
     if not core.complete:
         raise GeometryError("the obstacles cross each other too often to be separated; simplify them")
     return core

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array, positive_number
 from cspace.errors import InputError
+from cspace.maps.outlines import longer_side
 from cspace.tolerances import CELL_ROUNDING, DEFAULT_CELLS, MAP_CELLS
 
 
@@ -19,7 +20,7 @@ def rasterize_world(
     """Which cells (rows, columns) are blocked, and their side [m]; cell (0, 0) is at the lower left of the
     bounds."""
     xmin, ymin, xmax, ymax = map(float, bounds)
-    wide = max(xmax - xmin, ymax - ymin)
+    wide = longer_side(bounds)
     if resolution is None:
         side = wide / _choose_parts(min(xmax - xmin, ymax - ymin) / wide)
     else:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import MappingProxyType
 from typing import Final
 
@@ -40,6 +41,15 @@ class Calibration:
     hash: str
 
 
+@dataclass(frozen=True)
+class Entry:
+    """A key of the file: its value as text, its line, and the entries below it."""
+
+    value: str
+    line: int
+    below: dict[str, Entry]
+
+
 def read_calibration(path: str | os.PathLike[str]) -> Calibration:
     """The calibration in a YAML file: below `kinematics`, x, y, z [m] and roll, pitch, yaw [rad] per link.
 
@@ -51,98 +61,73 @@ def read_calibration(path: str | os.PathLike[str]) -> Calibration:
         raise DescriptionError(
             f"the file has {len(data)} bytes; the maximum is {CALIBRATION_BYTES}", path=name
         )
-    return _Reader(name, data).read()
+    fault = partial(DescriptionError, path=name)
+    try:
+        rows = list(yaml_lines(data.decode("utf-8-sig")))
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        raise fault("this is no calibration: not UTF-8 text", line=line) from None
+    first = rows[0] if rows else YamlLine(1, 0, "", "")
+    if (first.indent, first.key, first.value) != (0, "kinematics", ""):
+        raise fault(
+            "a calibration begins with the key kinematics: (see ur_calibration of ROS)", line=first.line
+        )
+    entries = read_entries(rows[1:], fault)
+    for part in PARTS:
+        if part not in entries:
+            raise fault(f"the calibration has no {part!r}; it holds {', '.join(PARTS)}", line=first.line)
+    origins = {part: read_origin(part, entries[part], fault) for part in PARTS}
+    checksum = entries["hash"].value if "hash" in entries else ""
+    return Calibration(name, MappingProxyType(origins), checksum)
 
 
-class _Reader:
-    """Reads one file line by line."""
-
-    def __init__(self, path: str, data: bytes) -> None:
-        self.path = path
-        self.data = data
-        self.hash = ""
-        self.values: dict[str, dict[str, float]] = {}
-        self.lines: dict[str, int] = {}
-
-    def fault(self, message: str, line: int) -> DescriptionError:
-        return DescriptionError(message, path=self.path, line=line)
-
-    def read(self) -> Calibration:
-        try:
-            text = self.data.decode("utf-8-sig")
-        except UnicodeDecodeError as error:
-            line = self.data.count(b"\n", 0, error.start) + 1
-            raise self.fault("this is no calibration: not UTF-8 text", line) from None
-        rows = list(yaml_lines(text))
-        if not rows or (rows[0].indent, rows[0].key, rows[0].value) != (0, "kinematics", ""):
-            line = rows[0].line if rows else 1
-            raise self.fault(
-                "a calibration begins with the key kinematics: (see ur_calibration of ROS)", line
-            )
-        indents: list[int] = []
-        part = ""
-        for row in rows[1:]:
-            part = self.take(row, indents, part)
-        return Calibration(self.path, MappingProxyType(self.origins(rows[0].line)), self.hash)
-
-    def take(self, row: YamlLine, indents: list[int], part: str) -> str:
-        """Read one line; `indents` holds the indents of parts and numbers once they are seen."""
-        line, indent, key, value = row.line, row.indent, row.key, unquote(row.value)
+def read_entries(rows: Sequence[YamlLine], fault: Callable[..., DescriptionError]) -> dict[str, Entry]:
+    """The entries below `kinematics`: the parts of the arm, each with its numbers, and the checksum."""
+    parts: dict[str, Entry] = {}
+    indents: list[int] = []  # of parts and of numbers, once they are seen
+    part = ""
+    for row in rows:
+        line, indent, key = row.line, row.indent, row.key
         if key in ("", "-"):
-            raise self.fault(f"{row.value[:60]!r}: expected a key and a value, like x: 0.1", line)
+            raise fault(f"{row.value[:60]!r}: expected a key and a value, like x: 0.1", line=line)
         if indent == 0:
-            raise self.fault(f"{key!r} stands beside kinematics; it belongs below it, indented", line)
+            raise fault(f"{key!r} stands beside kinematics; it belongs below it, indented", line=line)
         if not indents or (len(indents) == 1 and indent > indents[0]):
             indents.append(indent)
         if indent not in indents:
-            raise self.fault(f"{key!r} is indented by {indent}; the lines before are by {indents}", line)
-        if indent == indents[0]:
-            return self.start(key, value, line)
-        self.number(part, key, value, line)
-        return part
+            raise fault(f"{key!r} is indented by {indent}; the lines before are by {indents}", line=line)
+        outer = indent == indents[0]
+        if not outer and part == "hash":
+            raise fault(f"{key!r} stands below no link", line=line)
+        kind, known, owner = (
+            ("link", (*PARTS, "hash"), "a calibration") if outer else ("number", NUMBERS, part)
+        )
+        if key not in known:
+            raise fault(str(suggest(kind, key, known, owner=owner)), line=line)
+        entries = parts if outer else parts[part].below
+        if key in entries:
+            raise fault(f"{key!r}{'' if outer else f' of {part}'} is there twice", line=line)
+        entries[key] = Entry(unquote(row.value), line, {})
+        part = key if outer else part
+    return parts
 
-    def start(self, key: str, value: str, line: int) -> str:
-        """A key of the first level: a part of the arm, or the checksum."""
-        if key == "hash":
-            self.hash = value
-            return ""
-        if key not in PARTS:
-            raise self.fault(str(suggest("link", key, (*PARTS, "hash"), owner="a calibration")), line)
-        if key in self.values:
-            raise self.fault(f"{key!r} is there twice", line)
-        if value:
-            raise self.fault(
-                f"{key!r} has the value {value[:60]!r}; expected x, y, z, roll, pitch, yaw below", line
-            )
-        self.values[key], self.lines[key] = {}, line
-        return key
 
-    def number(self, part: str, key: str, value: str, line: int) -> None:
-        """A key of the second level: one number of a part."""
-        if not part:
-            raise self.fault(f"{key!r} stands below no link", line)
-        if key not in NUMBERS:
-            raise self.fault(str(suggest("number", key, NUMBERS, owner=part)), line)
-        if key in self.values[part]:
-            raise self.fault(f"{key!r} of {part} is there twice", line)
+def read_origin(part: str, entry: Entry, fault: Callable[..., DescriptionError]) -> Array:
+    """The frame (4, 4) of one part, none of its numbers missing."""
+    if entry.value:
+        rule = "expected x, y, z, roll, pitch, yaw below"
+        raise fault(f"{part!r} has the value {entry.value[:60]!r}; {rule}", line=entry.line)
+    if missing := [key for key in NUMBERS if key not in entry.below]:
+        raise fault(f"{part!r} has no {', '.join(missing)}", line=entry.line)
+    numbers = []
+    for key in NUMBERS:
+        value = entry.below[key].value
         try:
-            number = float(value)
-            if "_" in value or not math.isfinite(number) or abs(number) > LARGEST_NUMBER:
+            numbers.append(float(value))
+            if "_" in value or not math.isfinite(numbers[-1]) or abs(numbers[-1]) > LARGEST_NUMBER:
                 raise ValueError
         except ValueError:
-            raise self.fault(f"{key!r} of {part} is {value[:60]!r}; expected a finite number", line) from None
-        self.values[part][key] = number
-
-    def origins(self, line: int) -> dict[str, Array]:
-        """The frames of all parts, none of them missing."""
-        found: dict[str, Array] = {}
-        for part in PARTS:
-            if part not in self.values:
-                raise self.fault(f"the calibration has no {part!r}; it holds {', '.join(PARTS)}", line)
-            numbers = self.values[part]
-            missing = [key for key in NUMBERS if key not in numbers]
-            if missing:
-                raise self.fault(f"{part!r} has no {', '.join(missing)}", self.lines[part])
-            x, y, z, roll, pitch, yaw = (numbers[key] for key in NUMBERS)
-            found[part] = freeze_array(from_rpy((x, y, z), (roll, pitch, yaw)))
-        return found
+            text = f"{key!r} of {part} is {value[:60]!r}; expected a finite number"
+            raise fault(text, line=entry.below[key].line) from None
+    x, y, z, roll, pitch, yaw = numbers
+    return freeze_array(from_rpy((x, y, z), (roll, pitch, yaw)))

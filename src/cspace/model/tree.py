@@ -74,7 +74,7 @@ def tree(description: Description) -> Tree:
             carrier, pose = len(parts) - 1, np.eye(4)
         frames[link] = (carrier, pose)
     n = len(parts)
-    mass, com, inertia, massless = _bodies(description, frames, n)
+    mass, com, inertia, massless = lump_links(description, frames, n)
     for _, pose in frames.values():
         freeze_array(pose)
     return Tree(
@@ -107,10 +107,13 @@ def _floating_root(description: Description) -> tuple[str, bool]:
             return here, True
 
 
-def _bodies(
+def lump_links(
     description: Description, frames: Mapping[str, tuple[int, Array]], n: int
 ) -> tuple[Array, Array, Array, tuple[str, ...]]:
-    """Mass, centre of mass and inertia of what each joint carries rigidly."""
+    """Mass, centre of mass and inertia of what the base and each joint carry rigidly; links without a mass.
+
+    frames: link → (the joint that carries it or −1, its pose (4, 4) in the frame of that joint).
+    """
     carried: list[list[tuple[Inertial, Array]]] = [[] for _ in range(n + 1)]
     massless = []
     for name, (joint, pose) in frames.items():

@@ -17,7 +17,7 @@ from cspace.model.link import SHAPES, Geometry, Inertial, Link, Mesh
 from cspace.model.packages import check_folders
 from cspace.model.structure import ElementError
 from cspace.model.transforms import from_rpy
-from cspace.model.urdf_words import slip_in
+from cspace.model.urdf_words import ATTRIBUTES, CHILDREN, slip_in
 from cspace.model.values import IDENTITY, X_AXIS, freeze_array
 from cspace.model.xml import Element, parse_source
 from cspace.tolerances import UNLIMITED
@@ -85,7 +85,9 @@ class _Reader:
 
     def check_words(self, element: Element) -> None:
         """Complain about what looks like a slip of the pen: an element left out in silence is worse."""
-        slip = slip_in(element)
+        known = CHILDREN.get(element.tag, frozenset())
+        missing = known - {child.tag for child in element.children}
+        slip = slip_in(element, known, missing, ATTRIBUTES)
         if slip is not None:
             name = element.attributes.get("name", "")
             where = f" ({element.tag} {name!r})" if name else ""

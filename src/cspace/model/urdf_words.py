@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping, Set
 from typing import Final
 
 from cspace.model.xml import Element
@@ -29,21 +29,20 @@ LIKENESS: Final = 0.65
 """How much of two words must agree (Ratcliff and Metzener 1988) for one to be meant for the other."""
 
 
-def slip_in(element: Element) -> tuple[str, Element] | None:
+def slip_in(
+    element: Element, known: Set[str], missing: Set[str], attributes: Mapping[str, Set[str]]
+) -> tuple[str, Element] | None:
     """A message about a misspelled name in an element or its children, and its place; else None.
 
-    A name that URDF does not know is an extension, unless it is close to one that is not there.
+    known, missing: the elements that may stand in this one, and those that a name can be meant for.
+    attributes: those of the children, by tag. A name that is not known is an extension, unless it is close to
+    one that is not there.
     """
-    known = CHILDREN.get(element.tag, frozenset())
-    present = {child.tag for child in element.children}
     for child in element.children:
-        if known and child.tag not in known:
-            meant = closest_word(child.tag, known - present)
-            if meant:
-                return f"<{element.tag}> has no <{child.tag}>; did you mean <{meant}>?", child
-        names = ATTRIBUTES.get(child.tag)
-        if names is None or child.attributes.keys() <= names:
-            continue
+        meant = closest_word(child.tag, missing) if known and child.tag not in known else None
+        if meant:
+            return f"<{element.tag}> has no <{child.tag}>; did you mean <{meant}>?", child
+        names = attributes.get(child.tag, child.attributes.keys())
         for name in child.attributes.keys() - names:
             meant = closest_word(name, names - child.attributes.keys())
             if meant:

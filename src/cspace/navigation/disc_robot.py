@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 from cspace.errors import InputError
 from cspace.maps import PolygonWorld
+from cspace.maps.outlines import longer_side
 from cspace.navigation.checks import check_ends
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route, new_route
@@ -43,8 +44,7 @@ def fit_world(world: PolygonWorld, grown: PolygonWorld, radius: float, start: An
     ends = check_ends(world, start, goal)
     if all(grown.is_free(end) for end in ends):
         return grown
-    xmin, ymin, xmax, ymax = world.bounds
-    least = radius - ON_WALL * max(xmax - xmin, ymax - ymin)
+    least = radius - ON_WALL * longer_side(world.bounds)
     for name, end in zip(("start", "goal"), ends, strict=True):
         if (clearance := float(world.clearance(end))) < least:
             raise InputError(

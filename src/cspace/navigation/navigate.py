@@ -11,6 +11,7 @@ from cspace.arrays import positive_number
 from cspace.errors import InputError, InputTypeError
 from cspace.maps import OccupancyGrid, PolygonWorld
 from cspace.maps.points import check_inflation
+from cspace.navigation.cache import keep_with
 from cspace.navigation.disc_robot import plan_disc
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.planners import PLANNERS, find_planner
@@ -106,9 +107,4 @@ def _prepare_world(
 
 def _derive_world(world: World, key: Hashable, make: Callable[[], World]) -> World:
     """What `make` makes of a world, kept with it for the next query."""
-    kept: dict[Hashable, World] = vars(world).setdefault("_derived", {})
-    if key not in kept:
-        if len(kept) >= MOST_DERIVED:
-            kept.pop(next(iter(kept)))
-        kept[key] = make()
-    return kept[key]
+    return keep_with(world, "_derived", key, make, MOST_DERIVED)

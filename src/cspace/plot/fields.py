@@ -10,6 +10,7 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import InputError
+from cspace.maps.outlines import longer_side
 from cspace.plot import colors
 from cspace.plot.axes import space_axes
 from cspace.tolerances import SAME_MINIMUM
@@ -53,7 +54,7 @@ def surface(route: Any, *, ax: Any | None = None) -> list[Any]:
         z = np.clip(height(points), low, top) + lift
         artists += axes.plot(*points.T, z, marker, ms=size, mfc="white", mec=colors.INK, mew=1.4, zorder=7)
     xmin, ymin, xmax, ymax = route.world.bounds
-    wide = max(xmax - xmin, ymax - ymin)
+    wide = longer_side(route.world.bounds)
     axes.set_box_aspect(((xmax - xmin) / wide, (ymax - ymin) / wide, 0.45))
     axes.view_init(elev=58, azim=-72)
     axes.tick_params(labelsize=7, colors=colors.INK)
@@ -138,7 +139,7 @@ def find_minima(route: Any) -> Array:
     middle = level[1:-1, 1:-1]
     n = PLACES - 2
     lower = [level[i : i + n, j : j + n] for i in range(3) for j in range(3) if (i, j) != (1, 1)]
-    side = max(np.ptp(route.world.bounds[::2]), np.ptp(route.world.bounds[1::2]))
+    side = longer_side(route.world.bounds)
     kept: list[Array] = []
     for start in at[1:-1, 1:-1][np.isfinite(middle) & np.all([middle < x for x in lower], axis=0)]:
         rest = navigate(route.world, start, route.goal, "potential_field", **route.evidence.gains)

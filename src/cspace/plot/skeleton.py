@@ -8,7 +8,8 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.spatial import rotation
+from cspace.model import twists
+from cspace.spatial import exp_se3
 from cspace.tolerances import DRAWN_LENGTH, DRAWN_PLANE
 
 PARALLEL: Final = 0.08
@@ -79,16 +80,10 @@ def move_joints(
     """The joints carried along: points before and after their own motion, axes, the tip (exponentials)."""
     T = np.eye(4)
     before, after, turned = (np.empty((len(types), 3)) for _ in range(3))
-    for i, kind in enumerate(types):
+    for i, twist in enumerate(twists(axes, points, types)):
         before[i] = T[:3, :3] @ points[i] + T[:3, 3]
         turned[i] = T[:3, :3] @ axes[i]
-        step = np.eye(4)
-        if kind == "R":
-            step[:3, :3] = rotation(axis_angle=(axes[i], q[i]))
-            step[:3, 3] = points[i] - step[:3, :3] @ points[i]
-        else:
-            step[:3, 3] = axes[i] * q[i]
-        T = T @ step
+        T = T @ exp_se3(q[i] * twist)
         after[i] = T[:3, :3] @ points[i] + T[:3, 3]
     return before, after, turned, T @ T_zero
 

@@ -26,7 +26,10 @@ def left_jacobian_so3(rotvec: npt.ArrayLike) -> Array:
 
     rotvec: w (..., 3) [rad] → (..., 3, 3).
     """
-    return _left_so3(as_floats(rotvec, "rotation vector", last=(3,)))
+    w = as_floats(rotvec, "rotation vector", last=(3,))
+    angle, axis = checked_angle_and_axis(w, "rotation vector")
+    half = 0.5 * angle
+    return _polynomial(axis, np.sin(half) * sinc(half), 1.0 - sinc(angle))
 
 
 def right_jacobian_so3(rotvec: npt.ArrayLike) -> Array:
@@ -34,7 +37,7 @@ def right_jacobian_so3(rotvec: npt.ArrayLike) -> Array:
 
     rotvec: w (..., 3) [rad] → (..., 3, 3).
     """
-    return _left_so3(-as_floats(rotvec, "rotation vector", last=(3,)))
+    return left_jacobian_so3(-as_floats(rotvec, "rotation vector", last=(3,)))
 
 
 def left_jacobian_inv_so3(rotvec: npt.ArrayLike) -> Array:
@@ -42,56 +45,7 @@ def left_jacobian_inv_so3(rotvec: npt.ArrayLike) -> Array:
 
     rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError at 2π, 4π, …, where J is singular.
     """
-    return _left_inv_so3(as_floats(rotvec, "rotation vector", last=(3,)))
-
-
-def right_jacobian_inv_so3(rotvec: npt.ArrayLike) -> Array:
-    """The inverse of right_jacobian_so3; the derivative of log(R exp(δ)) with respect to δ.
-
-    rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError at 2π, 4π, …, where J is singular.
-    """
-    return _left_inv_so3(-as_floats(rotvec, "rotation vector", last=(3,)))
-
-
-def left_jacobian_se3(twist: npt.ArrayLike) -> Array:
-    """J with exp(ξ + δ) = exp(J δ) exp(ξ) to first order, [[J_so3, Q], [0, J_so3]] in the order [v; ω].
-
-    twist: ξ (..., 6) [m, rad] → (..., 6, 6).
-    """
-    return _left_se3(as_floats(twist, "twist", last=(6,)))
-
-
-def right_jacobian_se3(twist: npt.ArrayLike) -> Array:
-    """J with exp(ξ + δ) = exp(ξ) exp(J δ) to first order, in the order [v; ω].
-
-    twist: ξ (..., 6) [m, rad] → (..., 6, 6).
-    """
-    return _left_se3(-as_floats(twist, "twist", last=(6,)))
-
-
-def left_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
-    """The inverse of left_jacobian_se3, [[J⁻¹, −J⁻¹ Q J⁻¹], [0, J⁻¹]].
-
-    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at multiples of 2π other than zero.
-    """
-    return _left_inv_se3(as_floats(twist, "twist", last=(6,)))
-
-
-def right_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
-    """The inverse of right_jacobian_se3; the derivative of log(T exp(δ)) with respect to δ.
-
-    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at multiples of 2π other than zero.
-    """
-    return _left_inv_se3(-as_floats(twist, "twist", last=(6,)))
-
-
-def _left_so3(w: Array) -> Array:
-    angle, axis = checked_angle_and_axis(w, "rotation vector")
-    half = 0.5 * angle
-    return _polynomial(axis, np.sin(half) * sinc(half), 1.0 - sinc(angle))
-
-
-def _left_inv_so3(w: Array) -> Array:
+    w = as_floats(rotvec, "rotation vector", last=(3,))
     angle, axis = checked_angle_and_axis(w, "rotation vector")
     half = 0.5 * angle
     ratio = sinc(half)
@@ -100,19 +54,53 @@ def _left_inv_so3(w: Array) -> Array:
     return _polynomial(axis, -half, 1.0 - np.cos(half) / ratio)
 
 
+def right_jacobian_inv_so3(rotvec: npt.ArrayLike) -> Array:
+    """The inverse of right_jacobian_so3; the derivative of log(R exp(δ)) with respect to δ.
+
+    rotvec: w (..., 3) [rad] → (..., 3, 3). Raises InputError at 2π, 4π, …, where J is singular.
+    """
+    return left_jacobian_inv_so3(-as_floats(rotvec, "rotation vector", last=(3,)))
+
+
+def left_jacobian_se3(twist: npt.ArrayLike) -> Array:
+    """J with exp(ξ + δ) = exp(J δ) exp(ξ) to first order, [[J_so3, Q], [0, J_so3]] in the order [v; ω].
+
+    twist: ξ (..., 6) [m, rad] → (..., 6, 6).
+    """
+    xi = as_floats(twist, "twist", last=(6,))
+    return _blocks(left_jacobian_so3(xi[..., 3:]), _coupling(xi))
+
+
+def right_jacobian_se3(twist: npt.ArrayLike) -> Array:
+    """J with exp(ξ + δ) = exp(ξ) exp(J δ) to first order, in the order [v; ω].
+
+    twist: ξ (..., 6) [m, rad] → (..., 6, 6).
+    """
+    return left_jacobian_se3(-as_floats(twist, "twist", last=(6,)))
+
+
+def left_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
+    """The inverse of left_jacobian_se3, [[J⁻¹, −J⁻¹ Q J⁻¹], [0, J⁻¹]].
+
+    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at multiples of 2π other than zero.
+    """
+    xi = as_floats(twist, "twist", last=(6,))
+    J = left_jacobian_inv_so3(xi[..., 3:])
+    return _blocks(J, -J @ _coupling(xi) @ J)
+
+
+def right_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
+    """The inverse of right_jacobian_se3; the derivative of log(T exp(δ)) with respect to δ.
+
+    twist: ξ (..., 6) [m, rad] → (..., 6, 6). Raises InputError at multiples of 2π other than zero.
+    """
+    return left_jacobian_inv_se3(-as_floats(twist, "twist", last=(6,)))
+
+
 def _polynomial(axis: Array, first: Array, second: Array) -> Array:
     """I + first [u] + second [u]²; the rounding stays below that of the two coefficients."""
     U = skew(axis)
     return np.asarray(np.eye(3) + first[..., None, None] * U + second[..., None, None] * (U @ U))
-
-
-def _left_se3(xi: Array) -> Array:
-    return _blocks(_left_so3(xi[..., 3:]), _coupling(xi))
-
-
-def _left_inv_se3(xi: Array) -> Array:
-    J = _left_inv_so3(xi[..., 3:])
-    return _blocks(J, -J @ _coupling(xi) @ J)
 
 
 def _blocks(J: Array, Q: Array) -> Array:

@@ -101,7 +101,7 @@ def test_two_balls_hold_every_piece(name):
         for piece in bounding_pieces(SOLIDS[name]):
             t = piece.meet(rays, x, y)
             hit = np.isfinite(t)
-            (a, r), (b, s) = piece.balls()
+            (a, r), (b, s) = (2 * piece.balls)[:2]  # one ball is both
             hull = Solid(a, b, r + 1e-9, s + 1e-9, GREY)
             assert (signed_distance(hull, rays.points(x[hit], y[hit], t[hit])) < 1e-4).all()
 

@@ -11,7 +11,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, tidy_number
-from cspace.cli.robot import load_chosen, need_chain, read_configuration
+from cspace.cli.robot import load_posed
 
 EXAMPLES: Final = """
 cspace fk ur5e 0 -pi/2 pi/2 0 pi/2 0
@@ -23,19 +23,14 @@ cspace fk arm.urdf 0.1 0.2 --frame elbow_link --json
 def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
     add_joints(parser)
-    parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")
     add_degrees(parser)
     add_chain(parser)
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print the pose of the frame in the base."""
-    robot = load_chosen(args)
-    if args.frame is None:
-        need_chain(robot)
-    q = read_configuration(args.q, robot, "q", degrees=args.deg)
-    T = robot.fk(q) if args.frame is None else robot.fk(q, frame=args.frame)
-    frame = args.frame or robot.tip
+    robot, q, frame = load_posed(args)
+    T = robot.fk(q, args.frame)
     if out.as_json:
         ends = {"robot": robot.name, "base": robot.base, "frame": frame}
         out.document({"schema": "cspace.fk/1", **ends, "q": q.tolist(), **pose_document(T)})

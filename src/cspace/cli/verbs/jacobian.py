@@ -9,7 +9,7 @@ from cspace.arrays import Array
 from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
-from cspace.cli.robot import joint_headings, load_chosen, need_chain, read_configuration
+from cspace.cli.robot import joint_headings, load_posed
 from cspace.cli.tasks import rows_of_task
 
 if TYPE_CHECKING:
@@ -21,14 +21,10 @@ cspace jacobian ur5e 0 -90 90 0 90 0 --deg
 cspace jacobian puma560 0 0.3 0.2 0 0.5 0 --expressed-in tip --json
 """
 
-ROWS: Final = ("vx", "vy", "vz", "wx", "wy", "wz")
-"""The rows of a Jacobian: linear velocity of the frame's origin, angular velocity."""
-
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
     add_joints(parser)
-    parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")
     parser.add_argument(
         "--expressed-in", choices=("base", "tip"), default="base", help="the axes of the rows (default: base)"
     )
@@ -45,10 +41,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
     """Print the Jacobian and its distance to a singularity."""
     from cspace import kinematics
 
-    robot = load_chosen(args)
-    if args.frame is None:
-        need_chain(robot)
-    q = read_configuration(args.q, robot, "q", degrees=args.deg)
+    robot, q, frame = load_posed(args)
     rows = args.rows or rows_of_task(robot)
     more: dict[str, Any] = {"expressed_in": args.expressed_in, "rows": rows}
     J = robot.jacobian(q, args.frame, expressed_in=args.expressed_in)
@@ -63,7 +56,7 @@ def run(args: argparse.Namespace, out: Output) -> int:
         "lost_by": list(near.joints),
     }
     if out.as_json:
-        ends = {"robot": robot.name, "base": robot.base, "frame": args.frame or robot.tip}
+        ends = {"robot": robot.name, "base": robot.base, "frame": frame}
         given = {"expressed_in": args.expressed_in, "q": q.tolist(), "joints": list(robot.joint_names)}
         out.document({"schema": "cspace.jacobian/1", **ends, **given, "jacobian": J.tolist(), **facts})
     else:
@@ -73,6 +66,8 @@ def run(args: argparse.Namespace, out: Output) -> int:
 
 def print_jacobian(out: Output, robot: Robot, J: Array, facts: dict[str, Any], text: str) -> None:
     """The matrix and the facts for people."""
+    from cspace.kinematics.manipulability import ROWS
+
     table = Table(["", *joint_headings(robot)])
     for name, row in zip(ROWS, J, strict=True):
         table.add(name, *(f"{tidy_number(x):.6f}" for x in row))

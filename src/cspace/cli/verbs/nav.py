@@ -26,6 +26,16 @@ cspace nav yard.geojson --start 0 0 --goal 20 5 --radius 0.3 --planner visibilit
 cspace nav yard.geojson --start 0 0 --goal 20 5 --planner rrt,rrt_star --seed 7 --option rrt.samples=500
 """
 
+NUMBERS: Final = (
+    ("length [m]", "length", "{:.3f}".format),
+    ("/ shortest", "ratio_to_shortest", "{:.3f}".format),
+    ("clearance [m]", "clearance", "{:.3f}".format),
+    ("nodes", "nodes", str),
+    ("first [ms]", "seconds_first", lambda seconds: f"{1e3 * seconds:.3f}"),
+    ("again [ms]", "seconds_again", lambda seconds: f"{1e3 * seconds:.3f}"),
+)
+"""The numbers of a result: the heading of their column, their name in the document, and their form."""
+
 PATIENCE: Final = 5.0
 """A first call that took longer [s] is not repeated."""
 
@@ -78,13 +88,16 @@ def run(args: argparse.Namespace, out: Output) -> int:
     if args.animate and args.animate.suffix.lower() != ".gif":
         raise UsageError(f"an animation is a GIF file, but {str(args.animate)!r} does not end with .gif")
     world = load_world(args.map, args.resolution)
-    found, refused = collect_answers(world, given, args)
-    best, routes = ask_planner(world, "any_angle", args, {}), [each.route for each in found]
+    answers, refused = collect_answers(world, given, args)
+    best, routes = ask_planner(world, "any_angle", args, {}), [each.route for each in answers]
+    found = [answer_document(each, best) for each in answers]
     written = draw_pictures(args, routes)
     if out.as_json:
-        out.document(answers_document(args, found, best) | {"refused": refused, "written": written})
+        asked = {"map": str(args.map), "start": args.start, "goal": args.goal, "radius": args.radius}
+        results = {"routes": found, "refused": refused, "written": written}
+        out.document({"schema": "cspace.nav/1", **asked, **results})
     else:
-        print_answers(found, best, out)
+        print_answers(found, out)
         for name, why in refused.items():
             out.line(f"{name}: {why}")
         for path in written:
@@ -186,69 +199,39 @@ def collect_answers(
     return found, refused
 
 
-def length_ratio(route: Route, best: Route) -> float | None:
-    """How many times the shortest path a route is long."""
-    if not (route and best) or not math.isfinite(route.length):
-        return None
-    return route.length / best.length if best.length else 1.0
+def answer_document(each: Answer, best: Route) -> dict[str, Any]:
+    """One result as JSON data; numbers that do not exist are null."""
+    route, length, clearance = each.route, each.route.length, each.route.clearance
+    ratio = (length / best.length if best.length else 1.0) if route and best else None
+    return {
+        "planner": route.planner,
+        "status": route.status,
+        "reason": route.reason,
+        "length": length if math.isfinite(length) else None,
+        "ratio_to_shortest": ratio if math.isfinite(length) else None,
+        "clearance": None if math.isnan(clearance) else clearance,
+        **route.stats._asdict(),
+        "seconds_first": each.first,
+        "seconds_again": each.again,
+        "options": {name: typed_value(value) for name, value in route.options.items()},
+        "path": route.path.tolist(),
+    }
 
 
-def print_answers(found: list[Answer], best: Route, out: Output) -> None:
+def print_answers(found: list[dict[str, Any]], out: Output) -> None:
     """One line a planner, and why some found nothing; of a single one, the reason and the corners too."""
-    columns = (
-        "planner",
-        "status",
-        "length [m]",
-        "/ shortest",
-        "clearance [m]",
-        "nodes",
-        "first [ms]",
-        "again [ms]",
-    )
+    columns = ["planner", "status", *(heading for heading, _, _ in NUMBERS)]
     table = Table(columns, left=frozenset({0, 1}))
-    routes = [each.route for each in found]
-    for each, route in zip(found, routes, strict=True):
-        share = length_ratio(route, best)
-        table.add(
-            route.planner,
-            Cell(route.status, "" if route else "yellow"),
-            f"{route.length:.3f}" if math.isfinite(route.length) else "-",
-            "-" if share is None else f"{share:.3f}",
-            "-" if math.isnan(route.clearance) else f"{route.clearance:.3f}",
-            str(route.stats.nodes),
-            f"{1e3 * each.first:.3f}",
-            "-" if each.again is None else f"{1e3 * each.again:.3f}",
-        )
+    for row in found:
+        status = Cell(row["status"], "" if row["status"] == "found" else "yellow")
+        numbers = [(row[name], form) for _, name, form in NUMBERS]
+        table.add(row["planner"], status, *("-" if x is None else form(x) for x, form in numbers))
     out.table(table)
-    if len(routes) > 1:
-        for route in routes:
-            if not route:
-                out.line(f"{route.planner}: {route.reason}")
+    if len(found) > 1:
+        for row in found:
+            if row["status"] != "found":
+                out.line(f"{row['planner']}: {row['reason']}")
     else:
-        out.line(routes[0].reason)
-        for x, y in routes[0].path:
+        out.line(found[0]["reason"])
+        for x, y in found[0]["path"]:
             out.line(f"{x:12.6f} {y:12.6f}")
-
-
-def answers_document(args: argparse.Namespace, answered: list[Answer], best: Route) -> dict[str, Any]:
-    """The results as one JSON document."""
-    found = [
-        {
-            "planner": route.planner,
-            "status": route.status,
-            "reason": route.reason,
-            "length": route.length if math.isfinite(route.length) else None,
-            "ratio_to_shortest": length_ratio(route, best),
-            "clearance": None if math.isnan(route.clearance) else route.clearance,
-            "nodes": route.stats.nodes,
-            "edges": route.stats.edges,
-            "seconds": route.stats.seconds,
-            "seconds_first": each.first,
-            "seconds_again": each.again,
-            "options": {name: typed_value(value) for name, value in route.options.items()},
-            "path": route.path.tolist(),
-        }
-        for each, route in ((each, each.route) for each in answered)
-    ]
-    given = {"map": str(args.map), "start": list(args.start), "goal": list(args.goal), "radius": args.radius}
-    return {"schema": "cspace.nav/1", **given, "routes": found}

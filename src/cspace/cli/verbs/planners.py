@@ -77,23 +77,10 @@ def typed_value(value: Any) -> Any:
 
 def planner_document(row: PlanePlanner) -> dict[str, Any]:
     """A planner for machines."""
-    options = [
-        {
-            "name": each.name,
-            "type": each.type,
-            "default": typed_value(each.default),
-            "unit": each.unit,
-            "meaning": each.meaning,
-        }
-        for each in row.options.values()
-    ]
-    return {
-        "name": row.name,
-        "summary": row.summary,
-        "world": row.world,
-        "sensing": row.sensing,
-        "options": options,
-    }
+    names = ("name", "type", "default", "unit", "meaning")
+    options = [{name: typed_value(getattr(each, name)) for name in names} for each in row.options.values()]
+    facts = {name: getattr(row, name) for name in ("name", "summary", "world", "sensing")}
+    return facts | {"options": options}
 
 
 # --- options as people type them: NAME=VALUE for all that have it, PLANNER.NAME=VALUE for one -------------

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final
 
 from cspace.model.attributes import fault_at
-from cspace.model.urdf_words import closest_word
+from cspace.model.urdf_words import slip_in
 from cspace.model.xml import Element
 
 
@@ -58,6 +58,9 @@ ATTRIBUTES: Final[dict[str, frozenset[str]]] = {
 }
 """The attributes of those elements."""
 
+READ: Final = ("mujoco", "worldbody", "body", "frame")
+"""Elements in which attributes are looked at."""
+
 
 def check_words(root: Element) -> None:
     """Complain about what looks like a slip of the pen: an element left out in silence is worse.
@@ -67,24 +70,11 @@ def check_words(root: Element) -> None:
     stack = [root]
     while stack:
         element = stack.pop()
-        known = CHILDREN.get(element.tag)
+        known = CHILDREN.get(element.tag, frozenset())
         for child in element.children:
-            if known is not None and child.tag not in known:
-                message = f"<{element.tag}> has no <{child.tag}>"
-                if child.tag in ELEMENTS:
-                    raise fault_at(child, f"{message}; it stands elsewhere in MJCF")
-                check_word(child, message, child.tag, known, "<{}>")
-            if element.tag in ("mujoco", "worldbody", "body", "frame"):
-                attributes = ATTRIBUTES.get(child.tag, frozenset(child.attributes))
-                for name in child.attributes.keys() - attributes:
-                    missing = attributes - child.attributes.keys()
-                    check_word(child, f"<{child.tag}> has no attribute {name!r}", name, missing, "{!r}")
-                if child.tag in CHILDREN:
-                    stack.append(child)
-
-
-def check_word(element: Element, message: str, word: str, known: frozenset[str], form: str) -> None:
-    """Raise if the word is meant for a known one."""
-    meant = closest_word(word, known)
-    if meant:
-        raise fault_at(element, f"{message}; did you mean {form.format(meant)}?")
+            if known and child.tag in ELEMENTS - known:
+                raise fault_at(child, f"<{element.tag}> has no <{child.tag}>; it stands elsewhere in MJCF")
+        read = element.tag in READ
+        if slip := slip_in(element, known, known, ATTRIBUTES if read else {}):
+            raise fault_at(slip[1], slip[0])
+        stack += [child for child in element.children if read and child.tag in CHILDREN]

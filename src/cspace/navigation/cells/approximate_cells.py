@@ -21,6 +21,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.maps import PolygonWorld
+from cspace.maps.outlines import longer_side
 from cspace.navigation.checks import need_polygons
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
@@ -99,7 +100,7 @@ class ApproximateCellsSearch(PlanePlanner):
         usual = UNIFORM_DEPTH if self.uniform else QUADTREE_DEPTH
         last = max(self.depth, usual if self.max_depth is None else self.max_depth)
         if self.min_size > 0:
-            last = min(last, max(0, math.frexp(_side_of(world) / self.min_size)[1] - 1))
+            last = min(last, max(0, math.frexp(longer_side(world.bounds) / self.min_size)[1] - 1))
         return self._in_force(max_depth=last, metric=self.metric or METRICS[self.uniform])
 
     def _settings(self) -> tuple[Any, ...]:
@@ -109,7 +110,7 @@ class ApproximateCellsSearch(PlanePlanner):
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         def count_squares(free: int, mixed: int, full: int, deepest: int) -> CellEvidence:
-            return CellEvidence(free, mixed, full, deepest, _side_of(world) / 2**deepest)
+            return CellEvidence(free, mixed, full, deepest, longer_side(world.bounds) / 2**deepest)
 
         settings = *self._settings(), count_squares
         return _core._approximate_cells(traced, world, world._core, self, start, goal, *settings)
@@ -134,9 +135,3 @@ def approximate_cells(world: PolygonWorld, depth: int = 6, *, uniform: bool = Fa
     need_polygons(world)
     planner = ApproximateCellsSearch(depth, refine=False, uniform=uniform)._fill_in(world)
     return ApproximateCells(*_core._approximate_cells_all(world._core, planner._settings()))
-
-
-def _side_of(world: PolygonWorld) -> float:
-    """Side of the square around the bounds [m]."""
-    xmin, ymin, xmax, ymax = world.bounds
-    return max(xmax - xmin, ymax - ymin)

@@ -20,6 +20,7 @@ import numpy.typing as npt
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.navigation.cache import keep_with
 from cspace.navigation.checks import need_grid
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
@@ -93,7 +94,4 @@ class Brushfire(PlanePlanner):
 
 def _core_of(grid: Any) -> Any:
     """The BrushfireCore of a grid, cached with it."""
-    kept = vars(grid)
-    if "_brushfire" not in kept:
-        kept["_brushfire"] = _core.BrushfireCore(grid)
-    return kept["_brushfire"]
+    return keep_with(grid, "_brushfire", None, lambda: _core.BrushfireCore(grid))

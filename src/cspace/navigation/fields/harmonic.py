@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.navigation.cache import keep_with
 from cspace.navigation.checks import check_ends, need_grid
 from cspace.navigation.fields.clearance import clearance_field
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
@@ -102,10 +103,8 @@ def harmonic(grid: Any, goal: ArrayLike) -> Array:
 
 def _field_of(grid: Any, goal: Array) -> _core.HarmonicField:
     """The field of a goal, cached with the grid."""
-    kept: dict[tuple[float, ...], _core.HarmonicField] = vars(grid).setdefault("_harmonic", {})
-    key = tuple(map(float, goal))
-    if key not in kept:
-        while len(kept) >= HARMONIC_FIELDS:
-            kept.pop(next(iter(kept)))
-        kept[key] = _core.HarmonicField(grid, clearance_field(grid), goal, HARMONIC_RESIDUAL, HARMONIC_CYCLES)
-    return kept[key]
+
+    def solve() -> _core.HarmonicField:
+        return _core.HarmonicField(grid, clearance_field(grid), goal, HARMONIC_RESIDUAL, HARMONIC_CYCLES)
+
+    return keep_with(grid, "_harmonic", tuple(map(float, goal)), solve, HARMONIC_FIELDS)

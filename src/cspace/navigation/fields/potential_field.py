@@ -18,8 +18,11 @@ from numpy.typing import ArrayLike
 
 from cspace import _core
 from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputError
 from cspace.maps import PolygonWorld
+from cspace.maps.outlines import longer_side
+from cspace.navigation.cache import keep_with
+from cspace.navigation.checks import need_polygons
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
@@ -87,8 +90,7 @@ class PotentialField(PlanePlanner):
     step: float | None = option(None, "the longest step; by default a quarter of rho_0.", unit="m", above=0)
 
     def _fill_in(self, world: Any) -> PotentialField:
-        xmin, ymin, xmax, ymax = world.bounds
-        reach = max(xmax - xmin, ymax - ymin) / 20 if self.rho_0 is None else self.rho_0
+        reach = longer_side(world.bounds) / 20 if self.rho_0 is None else self.rho_0
         if not LEAST_REACH < reach < 1 / LEAST_REACH:
             raise InputError(f"rho_0 is {reach:g} m; give one from {LEAST_REACH:g} to {1 / LEAST_REACH:g} m")
         return self._in_force(
@@ -105,10 +107,7 @@ class PotentialField(PlanePlanner):
     def _walls_of(self, world: Any) -> Any:
         """The NearWalls within rho_0, cached with the world."""
         reach: float = self.values["rho_0"]
-        walls = vars(world).get("_near_walls")
-        if walls is None or walls.reach != reach:
-            walls = vars(world)["_near_walls"] = _core.NearWalls(world._core, reach)
-        return walls
+        return keep_with(world, "_near_walls", reach, lambda: _core.NearWalls(world._core, reach))
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         def describe_rest(rest: int, force: float, saddles: int) -> PotentialRest:
@@ -155,8 +154,7 @@ def potential(
     k, k_r, rho_0, cone: as for the planner "potential_field". InputTypeError for worlds other than
     polygons.
     """
-    if not isinstance(world, PolygonWorld):
-        raise InputTypeError(f"world is a {type(world).__name__}; give a PolygonWorld")
+    need_polygons(world)
     planner = PotentialField(k, k_r, rho_0, cone)._fill_in(world)
     at = as_floats(points, "points", last=(2,))
     given = (

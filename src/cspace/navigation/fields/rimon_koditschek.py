@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -23,6 +24,8 @@ from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.maps import PolygonWorld
+from cspace.maps.outlines import longer_side
+from cspace.navigation.cache import keep_with
 from cspace.navigation.checks import check_ends
 from cspace.navigation.planner import NO_EVENTS, PlanePlanner
 from cspace.navigation.route import Route, Stats, new_route
@@ -254,14 +257,8 @@ def _check_discs(discs: Array, goal: Array) -> None:
 
 def _find_function(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
     """The navigation function of a goal, or None and the obstruction; cached with the world."""
-    kept = vars(world).setdefault("_navigation_functions", {})
-    key = (*map(float, goal), power)
-    if key not in kept:
-        while len(kept) >= NAVIGATION_FUNCTIONS:
-            kept.pop(next(iter(kept)))
-        kept[key] = _make_function(world, goal, power)
-    found: tuple[NavigationFunction | None, str] = kept[key]
-    return found
+    key, make = (*map(float, goal), power), partial(_make_function, world, goal, power)
+    return keep_with(world, "_navigation_functions", key, make, NAVIGATION_FUNCTIONS)
 
 
 def _make_function(world: Any, goal: Array, power: float) -> tuple[NavigationFunction | None, str]:
@@ -271,8 +268,7 @@ def _make_function(world: Any, goal: Array, power: float) -> tuple[NavigationFun
     core = _core.NavigationCore.of_polygons(world._core, goal, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if core.kappa:
         return NavigationFunction(core, world._core, goal, (world.__reduce__()[1], power)), ""
-    xmin, ymin, xmax, ymax = world.bounds
-    if world.clearance(goal) <= ON_GOAL_WALL * max(xmax - xmin, ymax - ymin):
+    if world.clearance(goal) <= ON_GOAL_WALL * longer_side(world.bounds):
         return None, "the goal touches a wall, where a navigation function is 1; move it off the wall"
     return None, "no power kappa was proven to leave a single minimum; planner='harmonic' needs none"
 

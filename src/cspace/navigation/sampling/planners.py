@@ -8,6 +8,7 @@ from typing import Any, ClassVar, NamedTuple
 import numpy as np
 
 from cspace import _core
+from cspace.maps.outlines import longer_side
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things, explain_division
@@ -130,8 +131,7 @@ class RRT(SamplePlanner):
     )
 
     def _fill_in(self, world: Any) -> SamplePlanner:
-        left, low, right, high = world.bounds
-        step = float(SAMPLE_STEP * max(right - left, high - low)) if self.step is None else self.step
+        step = SAMPLE_STEP * longer_side(world.bounds) if self.step is None else self.step
         return self._in_force(rng=draw_seed(self.rng), step=step)
 
     def _settings(self) -> tuple[Any, ...]:

@@ -19,6 +19,7 @@ import numpy.typing as npt
 from cspace import _core
 from cspace.arrays import Array
 from cspace.maps import PolygonWorld
+from cspace.maps.outlines import longer_side
 from cspace.navigation.checks import need_polygons
 from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
@@ -88,8 +89,7 @@ class Voronoi(PlanePlanner):
     def _fill_in(self, world: Any) -> Voronoi:
         if self.tolerance is not None:
             return self
-        left, low, right, high = world.bounds
-        return self._in_force(tolerance=float(DIAGRAM_CHORD * max(right - left, high - low)))
+        return self._in_force(tolerance=DIAGRAM_CHORD * longer_side(world.bounds))
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         settings = self.prefer == "clearance", self.tolerance, VoronoiEvidence

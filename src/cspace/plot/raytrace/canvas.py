@@ -33,6 +33,11 @@ class Floor:
     radius: float
     step: float
 
+    def rim(self, count: int) -> Array:
+        """Points (count, 3) around it, the last of them the first."""
+        angle = np.linspace(0.0, 2 * np.pi, count)
+        return self.center + self.radius * np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
+
 
 class Canvas:
     """The image while it grows: colour weighted by coverage, and coverage, row by row."""
@@ -52,9 +57,7 @@ class Canvas:
 
     def lay_floor(self, view: View, floor: Floor, shadow: Shadow | None) -> None:
         """Lay the plate, its lines, which fade toward the rim, and the shadow."""
-        angle = np.linspace(0.0, 2 * np.pi, 65)
-        rim = floor.center + floor.radius * np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
-        block = view.block_of(rim)
+        block = view.block_of(floor.rim(65))
         if block is None or view.eye[2] <= 0.0:
             return
         world = on_floor(view, block, float(floor.center[2]))
@@ -68,9 +71,7 @@ class Canvas:
             LINE_WIDTH * self.scale - away / np.maximum(across, LEAST_DIVISOR) + 0.5, 0.0, 1.0
         ).max(axis=2)
         fade = np.clip(1.0 - share**2, 0.0, 1.0) ** 1.2
-        dark = np.zeros(share.shape)
-        if shadow is not None:
-            dark = shadow.at(world.reshape(-1, 2)).reshape(share.shape)
+        dark = np.zeros(share.shape) if shadow is None else shadow.at(world)
         rows, columns = np.nonzero(inside)
         pixels = (rows + block[2]) * self.shape[1] + columns + block[0]
         plate = inside[rows, columns]

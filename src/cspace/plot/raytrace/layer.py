@@ -7,7 +7,7 @@ more are cast, so that every outline is smooth and the inside of a body costs on
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Final
+from typing import Any, Final, NamedTuple
 
 import numpy as np
 
@@ -35,9 +35,8 @@ class Layer:
     rim: Any
 
 
-@dataclass
-class Hits:
-    """Rays that met something: their places x, y, the distance t and the number of the piece, (m,) each."""
+class Hits(NamedTuple):
+    """What rays met: their places x, y, the distance t and the number of the piece, arrays of one shape."""
 
     x: Any
     y: Any
@@ -47,29 +46,23 @@ class Hits:
 
 def see_solids(view: View, solids: list[Solid]) -> Layer | None:
     """Solids as seen and lit, or None if none is in the picture."""
-    surfaces: list[Piece] = []
-    tints: list[Array] = []
-    smooth: list[int] = []  # pieces of one number meet without a crease
-    for solid in solids:
-        first = len(surfaces)
-        surfaces += bounding_pieces(solid)
-        smooth += [first if solid.round else k for k in range(first, len(surfaces))]
-        tints += [solid.color] * (len(surfaces) - first)
+    owned = [(i, solid, piece) for i, solid in enumerate(solids) for piece in bounding_pieces(solid)]
+    surfaces, tints = [piece for _, _, piece in owned], [solid.color for _, solid, _ in owned]
+    # Pieces of one number meet without a crease.
+    smooth = [i if solid.round else len(solids) + k for k, (i, solid, _) in enumerate(owned)]
     spans = [span_pixels(view, piece) for piece in surfaces]
     seen = [each for each in spans if each is not None]
     if not seen:
         return None
-    x0, y0 = min(b[0] for b in seen), min(b[2] for b in seen)
-    block = x0, max(b[1] for b in seen), y0, max(b[3] for b in seen)
-    depth, keys = look_through_middles(view, surfaces, spans, block)
+    (x0, _, y0, _), (_, x1, _, y1) = np.min(seen, axis=0).tolist(), np.max(seen, axis=0).tolist()
+    depth, keys = look_through_middles(view, surfaces, spans, (x0, x1, y0, y1))
     rim, at_edge = find_outlines(np.array([*smooth, -1], np.int16)[keys])
     rows, columns = np.nonzero(at_edge)
     samples = look_around(view, surfaces, spans, columns + x0, rows + y0)
     inside = np.nonzero((keys >= 0) & ~at_edge)
     hit = samples.key >= 0
     clear = Hits(inside[1] + x0 + 0.5, inside[0] + y0 + 0.5, depth[inside], keys[inside])
-    at_edges = Hits(samples.x[hit], samples.y[hit], samples.t[hit], samples.key[hit])
-    both = Hits(*(np.concatenate([getattr(clear, f), getattr(at_edges, f)]) for f in ("x", "y", "t", "key")))
+    both = Hits(*(np.concatenate([one, many[hit]]) for one, many in zip(clear, samples, strict=True)))
     shades = shade_hits(view, surfaces, np.array(tints, np.float32), both)
     spread = np.zeros((*hit.shape, 3), np.float32)
     spread[hit] = shades[len(clear.t) :]
@@ -88,7 +81,7 @@ def span_pixels(view: View, piece: Piece) -> Block | None:
     """The block of pixels a piece may cover."""
     signs = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)], dtype=np.float64)
     cube = signs @ np.stack([view.right, view.up, view.eye])
-    return view.block_of(np.concatenate([center + radius * cube for center, radius in piece.balls()]))
+    return view.block_of(np.concatenate([center + radius * cube for center, radius in piece.balls]))
 
 
 def look_through_middles(

@@ -8,7 +8,7 @@ w, B is affine in the place (x, y) of a ray and B² − A C a polynomial of degr
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from functools import reduce
 
 import numpy as np
 
@@ -19,19 +19,6 @@ from cspace.tolerances import LEAST_DIVISOR
 LAST = np.array([0.0, 0.0, 1.0])
 
 
-class Piece(Protocol):
-    """A surface that rays can meet."""
-
-    def meet(self, rays: Rays, x: Array, y: Array) -> Array:
-        """The t where the rays of the places x, y (which broadcast) first meet it from outside, else inf."""
-
-    def normals(self, points: Array) -> Array:
-        """The outward unit normals (m, 3) at its points (m, 3)."""
-
-    def balls(self) -> list[tuple[Array, float]]:
-        """Two balls, center (3,) and radius, whose hull contains it."""
-
-
 def evaluate_quadratic(form: Array, x: Array, y: Array) -> Array:
     """(x, y, 1) form (x, y, 1)ᵀ."""
     f = form + form.T
@@ -39,90 +26,71 @@ def evaluate_quadratic(form: Array, x: Array, y: Array) -> Array:
     return np.asarray((f[0, 1] * x + (0.5 * f[1, 1] * y + f[1, 2])) * y + square)
 
 
+@dataclass(frozen=True)
 class Quadric:
-    """The polynomials of a quadric under rays: B as a row (3,), A and B² − A C as forms (3, 3)."""
+    """The surface dᵀG d + 2 line·d + k = 0, d = p − center, whose left side grows outward.
 
-    def __init__(self, rays: Rays, center: Array, G: Array, line: Array, k: float) -> None:
-        o = rays.origin - np.outer(LAST, center)
-        w = rays.way
-        self.A = w @ G @ w.T
-        mixed = o @ G @ w.T + np.outer(LAST, w @ line)
-        C = o @ G @ o.T + 2.0 * np.outer(LAST, o @ line)
-        C[2, 2] += k
-        if rays.parallel:
-            self.B = mixed[:, 2]
-            self.inside = np.outer(self.B, self.B) - self.A[2, 2] * C
-        else:
-            self.B = mixed[2]
-            self.inside = np.outer(self.B, self.B) - C[2, 2] * self.A
+    balls: centers (3,) and radii of balls whose hull contains it. axis, ends: a unit vector (3,) and the
+    heights along it between which the surface exists; None of a whole sphere.
+    """
 
-    def roots(self, x: Array, y: Array) -> list[Array]:
+    center: Array
+    G: Array
+    line: Array
+    k: float
+    balls: list[tuple[Array, float]]
+    axis: Array
+    ends: tuple[float, float] | None = None
+
+    def meet(self, rays: Rays, x: Array, y: Array) -> Array:
+        """The t where the rays of the places x, y (which broadcast) first meet it from outside, else inf."""
+        o, w = rays.origin - np.outer(LAST, self.center), rays.way
+        roots = self.roots(o, w, x, y, parallel=rays.parallel)
+        if self.ends is None:
+            return np.asarray(np.fmin(roots[0], np.inf))
+        base, rise = affine_at(o @ self.axis, x, y), affine_at(w @ self.axis, x, y)
+        low, high = self.ends
+        heights = [base + t * rise for t in roots]
+        within = [np.where((h >= low) & (h <= high), t, np.inf) for h, t in zip(heights, roots, strict=True)]
+        return np.asarray(reduce(np.minimum, within))
+
+    def roots(self, o: Array, w: Array, x: Array, y: Array, *, parallel: bool) -> list[Array]:
         """The nearer root, NaN where there is none; both where a ray looks along a cone (A ≤ 0)."""
-        inside = evaluate_quadratic(self.inside, x, y)
+        A_form = w @ self.G @ w.T
+        mixed = o @ self.G @ w.T + np.outer(LAST, w @ self.line)
+        C = o @ self.G @ o.T + 2.0 * np.outer(LAST, o @ self.line)
+        C[2, 2] += self.k
+        B_row = mixed[:, 2] if parallel else mixed[2]
+        product = A_form[2, 2] * C if parallel else C[2, 2] * A_form
+        inside = evaluate_quadratic(np.outer(B_row, B_row) - product, x, y)
         root = np.sqrt(inside, out=np.full_like(inside, np.nan), where=inside >= 0.0)
-        A = evaluate_quadratic(self.A, x, y) if self.A[:2].any() else self.A[2, 2]
-        B = affine_at(self.B, x, y)
+        A = A_form[2, 2] if parallel else evaluate_quadratic(A_form, x, y)
+        B = affine_at(B_row, x, y)
         if np.min(A) > 0.0:
             return [(-B - root) / A]
         A = np.where(np.abs(A) < LEAST_DIVISOR, LEAST_DIVISOR, A)
         return [(-B - root) / A, (root - B) / A]
 
-
-@dataclass(frozen=True)
-class Sphere:
-    """|p − center| = radius."""
-
-    center: Array
-    radius: float
-
-    def meet(self, rays: Rays, x: Array, y: Array) -> Array:
-        quadric = Quadric(rays, self.center, np.eye(3), np.zeros(3), -(self.radius**2))
-        t = quadric.roots(x, y)[0]
-        return np.asarray(np.fmin(t, np.inf))
-
     def normals(self, points: Array) -> Array:
-        return (points - self.center) / self.radius
+        """The outward unit normals (m, 3) at its points (m, 3): the gradient, scaled."""
+        out = (points - self.center) @ self.G + self.line
+        out /= np.maximum(np.sqrt(np.einsum("ij,ij->i", out, out)), LEAST_DIVISOR)[:, None]
+        return np.asarray(out)
 
-    def balls(self) -> list[tuple[Array, float]]:
-        return [(self.center, self.radius)] * 2
+
+def make_sphere(center: Array, radius: float) -> Quadric:
+    """|p − center| = radius."""
+    return Quadric(center, np.eye(3), np.zeros(3), -(radius**2), [(center, radius)], LAST)
 
 
-@dataclass(frozen=True)
-class Side:
+def make_side(start: Array, axis: Array, radius: float, slope: float, ends: tuple[float, float]) -> Quadric:
     """The side of a cone about a unit axis: at the height h above `start` its radius is radius − slope h.
 
     ends: the heights between which it exists.
     """
-
-    start: Array
-    axis: Array
-    radius: float
-    slope: float
-    ends: tuple[float, float]
-
-    def meet(self, rays: Rays, x: Array, y: Array) -> Array:
-        G = np.eye(3) - (1.0 + self.slope**2) * np.outer(self.axis, self.axis)
-        quadric = Quadric(rays, self.start, G, self.radius * self.slope * self.axis, -(self.radius**2))
-        base = affine_at((rays.origin - np.outer(LAST, self.start)) @ self.axis, x, y)
-        rise = affine_at(rays.way @ self.axis, x, y)
-        best: Array | None = None
-        low, high = self.ends
-        for t in quadric.roots(x, y):
-            height = base + t * rise
-            t = np.where((height >= low) & (height <= high), t, np.inf)
-            best = t if best is None else np.minimum(best, t)
-        assert best is not None
-        return best
-
-    def normals(self, points: Array) -> Array:
-        d = points - self.start
-        out = d - np.outer(d @ self.axis, self.axis)
-        out /= np.maximum(np.sqrt(np.einsum("ij,ij->i", out, out)), LEAST_DIVISOR)[:, None]
-        cosine = 1.0 / np.sqrt(1.0 + self.slope**2)
-        return np.asarray(cosine * (out + self.slope * self.axis))
-
-    def balls(self) -> list[tuple[Array, float]]:
-        return [(self.start + h * self.axis, self.radius - self.slope * h) for h in self.ends]
+    G = np.eye(3) - (1.0 + slope**2) * np.outer(axis, axis)
+    balls = [(start + h * axis, radius - slope * h) for h in ends]
+    return Quadric(start, G, radius * slope * axis, -(radius**2), balls, axis, ends)
 
 
 @dataclass(frozen=True)
@@ -132,6 +100,10 @@ class Disc:
     center: Array
     normal: Array
     radius: float
+
+    @property
+    def balls(self) -> list[tuple[Array, float]]:
+        return [(self.center, self.radius)]
 
     def meet(self, rays: Rays, x: Array, y: Array) -> Array:
         offset = rays.origin - np.outer(LAST, self.center)
@@ -146,5 +118,6 @@ class Disc:
     def normals(self, points: Array) -> Array:
         return np.broadcast_to(self.normal, points.shape)
 
-    def balls(self) -> list[tuple[Array, float]]:
-        return [(self.center, self.radius)] * 2
+
+Piece = Quadric | Disc
+"""A surface that rays can meet."""

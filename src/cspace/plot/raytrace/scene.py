@@ -44,9 +44,8 @@ class Scene:
         front = see_solids(
             view, [solid for group in self.groups if group.opacity >= 1.0 for solid in group.solids]
         )
-        seen = (
-            (see_solids(view, group.solids), group.opacity) for group in self.groups if group.opacity < 1.0
-        )
+        faint = [group for group in self.groups if group.opacity < 1.0]
+        seen = [(see_solids(view, group.solids), group.opacity) for group in faint]
         ghosts = [(layer, opacity) for layer, opacity in seen if layer is not None]
         ghosts.sort(key=lambda ghost: -float(ghost[0].depth.mean()))
         for layer, opacity in ghosts:

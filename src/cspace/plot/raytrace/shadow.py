@@ -28,17 +28,16 @@ class Shadow:
     dark: Array
 
     def at(self, places: Array) -> Array:
-        """The darkness (m,) at places (m, 2) [m] of the floor, linear between the cells."""
+        """The darkness (...) at places (..., 2) [m] of the floor, linear between the cells."""
         where = (places - self.corner) / self.cell
         first = np.floor(where).astype(np.int64)
-        share = where - first
+        u, v = np.moveaxis(where - first, -1, 0)
         rows, columns = self.dark.shape
-        x, y = np.clip(first[:, 0], 0, columns - 2), np.clip(first[:, 1], 0, rows - 2)
-        off = (first[:, 0] != x) | (first[:, 1] != y)
-        flat, start = self.dark.ravel(), y * columns + x
-        low = flat[start] + share[:, 0] * (flat[start + 1] - flat[start])
-        high = flat[start + columns] + share[:, 0] * (flat[start + columns + 1] - flat[start + columns])
-        return np.where(off, 0.0, low + share[:, 1] * (high - low))
+        kept = np.clip(first, 0, (columns - 2, rows - 2))
+        flat, start = self.dark.ravel(), kept[..., 1] * columns + kept[..., 0]
+        low = flat[start] + u * (flat[start + 1] - flat[start])
+        high = flat[start + columns] + u * (flat[start + columns + 1] - flat[start + columns])
+        return np.where((first != kept).any(axis=-1), 0.0, low + v * (high - low))
 
 
 def shadow_of(solids: list[Solid], floor: float, size: float) -> Shadow | None:
@@ -47,7 +46,7 @@ def shadow_of(solids: list[Solid], floor: float, size: float) -> Shadow | None:
     if not surfaces:
         return None
     cell = CELL * size
-    spans = [cast_shadow(piece.balls(), floor) for piece in surfaces]
+    spans = [cast_shadow(piece.balls, floor) for piece in surfaces]
     everything = np.concatenate(spans)
     low = everything.min(axis=0) - 3 * REACH * cell
     columns, rows = np.ceil((everything.max(axis=0) - low) / cell).astype(int) + 3 * REACH
@@ -64,12 +63,12 @@ def shadow_of(solids: list[Solid], floor: float, size: float) -> Shadow | None:
 
 
 def cast_shadow(balls: list[tuple[Array, float]], floor: float) -> Array:
-    """Corners (8, 2) on the floor of squares about the shadows of two balls."""
-    corners = []
-    for center, radius in balls:
-        foot = (center - (center[2] - floor) / LIGHT[2] * LIGHT)[:2]
-        corners += [foot + 1.1 * radius * np.array([i, j]) for i in (-1, 1) for j in (-1, 1)]
-    return np.array(corners)
+    """Corners (4 k, 2) on the floor of squares about the shadows of k balls."""
+    feet = [(center - (center[2] - floor) / LIGHT[2] * LIGHT)[:2] for center, _ in balls]
+    square = np.array([[i, j] for i in (-1, 1) for j in (-1, 1)])
+    return np.concatenate(
+        [foot + 1.1 * radius * square for foot, (_, radius) in zip(feet, balls, strict=True)]
+    )
 
 
 def soften_image(image: Array, reach: int) -> Array:

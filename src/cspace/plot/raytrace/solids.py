@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.plot.raytrace.quadrics import Disc, Piece, Side, Sphere
+from cspace.plot.raytrace.quadrics import Disc, Piece, make_side, make_sphere
 from cspace.tolerances import LEAST_DIVISOR
 
 
@@ -61,14 +61,12 @@ def bounding_pieces(solid: Solid) -> list[Piece]:
     if solid.round:
         if length < LEAST_DIVISOR or abs(slope) >= 1.0:  # one sphere holds the other
             larger = solid.a if solid.radius_a >= solid.radius_b else solid.b
-            return [Sphere(larger, max(solid.radius_a, solid.radius_b))]
+            return [make_sphere(larger, max(solid.radius_a, solid.radius_b))]
         ends = slope * solid.radius_a, length + slope * solid.radius_b
         cosine = float(np.sqrt(1.0 - slope * slope))
-        side = Side(solid.a, way / length, solid.radius_a / cosine, slope / cosine, ends)
-        return [side, Sphere(solid.a, solid.radius_a), Sphere(solid.b, solid.radius_b)]
+        side = make_side(solid.a, way / length, solid.radius_a / cosine, slope / cosine, ends)
+        return [side, make_sphere(solid.a, solid.radius_a), make_sphere(solid.b, solid.radius_b)]
     axis = way / length
     caps = (Disc(solid.a, -axis, solid.radius_a), Disc(solid.b, axis, solid.radius_b))
-    return [
-        Side(solid.a, axis, solid.radius_a, slope, (0.0, length)),
-        *(cap for cap in caps if cap.radius > 0.0),
-    ]
+    side = make_side(solid.a, axis, solid.radius_a, slope, (0.0, length))
+    return [side, *(cap for cap in caps if cap.radius > 0.0)]

@@ -11,7 +11,7 @@ from cspace.plot import colors
 from cspace.plot.raytrace.canvas import Floor
 from cspace.plot.raytrace.scene import scene_of
 from cspace.plot.raytrace.solids import Solid, make_arrow
-from cspace.plot.raytrace.view import project_points
+from cspace.plot.raytrace.view import look_along, project_points
 from cspace.tolerances import LEAST_DIVISOR
 
 ROOM: Final = 0.0925
@@ -31,14 +31,12 @@ def choose_view(points: Array, focus: Array) -> tuple[float, float]:
     best, best_score = (24.0, -60.0), -np.inf
     for elevation in (18.0, 24.0, 30.0):
         for azimuth in np.arange(-165.0, 181.0, 15.0):
-            e, a = np.radians(elevation), np.radians(azimuth)
-            right = np.array([-np.sin(a), np.cos(a), 0.0])
-            eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
-            seen = spread @ np.stack([right, np.cross(eye, right)], axis=1)
+            right, up, eye = look_along(elevation, azimuth)
+            seen = spread @ np.stack([right, up], axis=1)
             area = np.sqrt(max(np.linalg.det(seen.T @ seen / len(seen)), 0.0))
             toward = outward @ eye / (np.linalg.norm(outward) + LEAST_DIVISOR)
             score = area * (1.0 + 0.35 * toward - 0.10 * abs(elevation - 24.0) / 6.0)
-            score *= 1.0 + 0.08 * np.cos(a - np.radians(-55.0))
+            score *= 1.0 + 0.08 * np.cos(np.radians(azimuth + 55.0))
             if score > best_score:
                 best, best_score = (elevation, float(azimuth)), score
     return best
@@ -59,9 +57,7 @@ def fit_axes(ax: Any, points: Array, *, margin: float = 1.10) -> None:
         shape = min(box.width, box.height)
         room_x, room_y = ROOM * box.width / shape / margin, ROOM * box.height / shape / margin
         grow = min(room_x / max(width, LEAST_DIVISOR), room_y / max(height, LEAST_DIVISOR))
-        e, a = np.radians(ax.elev), np.radians(ax.azim)
-        right = np.array([-np.sin(a), np.cos(a), 0.0])
-        up = np.cross([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)], right)
+        right, up, _ = look_along(ax.elev, ax.azim)
         per_unit = (np.ptp(points @ right) or 1.0) / max(np.ptp(x), LEAST_DIVISOR)
         center = center + per_unit * (0.5 * (x.min() + x.max()) * right + 0.5 * (y.min() + y.max()) * up)
         zoom *= grow
@@ -79,9 +75,7 @@ def set_up(ax: Any, points: Array, floor: Floor, *, elevation: float, azimuth: f
     ax.computed_zorder = False
     ax.set_proj_type("persp", focal_length=1.6)
     ax.view_init(elev=elevation, azim=azimuth)
-    angle = np.linspace(0.0, 2 * np.pi, 33)
-    rim = floor.center + floor.radius * np.stack([np.cos(angle), np.sin(angle), 0.0 * angle], axis=1)
-    fit_axes(ax, np.concatenate([points, rim]))
+    fit_axes(ax, np.concatenate([points, floor.rim(33)]))
     return scene_of(ax, floor)
 
 

@@ -30,6 +30,14 @@ def pixel_centers(first: int, last: int) -> Array:
     return np.arange(first, last, dtype=np.float64) + 0.5
 
 
+def look_along(elevation: float, azimuth: float) -> tuple[Array, Array, Array]:
+    """The unit vectors (3,) right, up and toward the eye of a view from two angles [deg]."""
+    e, a = np.radians(elevation), np.radians(azimuth)
+    right = np.array([-np.sin(a), np.cos(a), 0.0])
+    eye = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    return right, np.cross(eye, right), eye
+
+
 @dataclass(frozen=True)
 class Rays:
     """One ray per place (x, y) of a plane: the points o + t w with o, w affine in x and y.
@@ -65,12 +73,7 @@ class View:
         self.width = int(np.ceil(box.width * magnification))
         self.height = int(np.ceil(box.height * magnification))
         self.to_display = axes.transData
-        elevation, azimuth = np.radians(axes.elev), np.radians(axes.azim)
-        self.eye = np.array(
-            [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
-        )
-        self.right = np.array([-np.sin(azimuth), np.cos(azimuth), 0.0])
-        self.up = np.cross(self.eye, self.right)
+        self.right, self.up, self.eye = look_along(axes.elev, axes.azim)
         limits = np.array([axes.get_xlim3d(), axes.get_ylim3d(), axes.get_zlim3d()])
         middle, self.size = limits.mean(axis=1), float(np.ptp(limits, axis=1).max())
         near_far = middle + np.array([[0.5], [-0.5]]) * self.size * self.eye
@@ -83,18 +86,14 @@ class View:
         corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]]) / self.scale
         flat = axes.transData.inverted().transform(corners)
         lifted = np.column_stack([flat, np.full(3, depth), np.ones(3)]) @ np.linalg.inv(self.matrix).T
-        points = (
-            lifted[:, :3] / lifted[:, 3:]
-        )  # planes of one projected depth are planes: affine in the pixel
+        # Planes of one projected depth are planes: affine in the pixel.
+        points = lifted[:, :3] / lifted[:, 3:]
         return np.array([points[1] - points[0], points[2] - points[0], points[0]])
-
-    def seen(self, points: Array) -> Array:
-        """Where points (m, 3) appear, in pixels (m, 2)."""
-        return np.asarray(self.to_display.transform(project_points(points, self.matrix)[:, :2])) * self.scale
 
     def block_of(self, points: Array) -> Block | None:
         """The block of pixels that contains the projected points (m, 3), or None off the image."""
-        return block_about(self.seen(points), self.width, self.height)
+        flat = self.to_display.transform(project_points(points, self.matrix)[:, :2])
+        return block_about(np.asarray(flat) * self.scale, self.width, self.height)
 
 
 def rays_through(near: Array, way: Array) -> Rays:

@@ -1,0 +1,19 @@
+"""What planners compute of a world once, kept with the world."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Hashable
+from typing import Any, TypeVar
+
+T = TypeVar("T")
+
+
+def keep_with(world: Any, slot: str, key: Hashable, make: Callable[[], T], most: int = 1) -> T:
+    """What `make` returns, kept in a slot of the world for the next call with this key; of more keys than
+    `most` the oldest go."""
+    kept: dict[Hashable, T] = vars(world).setdefault(slot, {})
+    if key not in kept:
+        while len(kept) >= most:
+            kept.pop(next(iter(kept)))
+        kept[key] = make()
+    return kept[key]
