@@ -36,21 +36,16 @@ def random_configurations(
     if reach is not None:
         reach = bounded_number(reach, "reach", 0.0, "it must be one length [m], 0 or more")
     lower, upper = np.array(limits.lower), np.array(limits.upper)
-    for i, kind in enumerate(joint_types):
-        span = np.pi if kind == "R" else reach
-        if np.isfinite(lower[i]) and np.isfinite(upper[i]):
-            continue
-        if span is None:
-            raise InputError(
-                f"prismatic joint {i} has the limits {lower[i]:g} and {upper[i]:g} m; without a finite "
-                "range give reach="
-            )
-        if not np.isfinite(lower[i]) and not np.isfinite(upper[i]):
-            lower[i], upper[i] = -span, span
-        elif np.isfinite(lower[i]):
-            upper[i] = lower[i] + span
-        else:
-            lower[i] = upper[i] - span
+    below, above = np.isinf(lower), np.isinf(upper)
+    span = np.array([np.pi if kind == "R" else np.nan if reach is None else reach for kind in joint_types])
+    if (open_ended := np.flatnonzero((below | above) & np.isnan(span))).size:
+        i = int(open_ended[0])
+        raise InputError(
+            f"prismatic joint {i} has the limits {lower[i]:g} and {upper[i]:g} m; without a finite range give"
+            " reach="
+        )
+    lower[below] = np.where(above, -span, upper - span)[below]
+    upper[above] = np.where(below, span, lower + span)[above]
     generator, count = as_generator(rng), 1 if n is None else n
     with guard_memory("n", n, count * lower.size, "draw fewer configurations"):
         q = np.empty((count, lower.size))

@@ -200,16 +200,13 @@ def zero_poses(description: Description, base: str | None = None) -> dict[str, A
 
 def rigid_group(description: Description, link: str) -> tuple[str, ...]:
     """The links tied to `link` by fixed joints alone, itself first."""
-    group = {link: None}
-    stack = [link]
-    while stack:
-        here = stack.pop()
+    group = [link]
+    for here in group:
         near = [joint.child for joint in description.child_joints[here] if not joint.moving]
         carrier = description.parent_joint.get(here)
         if carrier is not None and not carrier.moving:
             near.append(carrier.parent)
-        stack.extend(other for other in near if other not in group)
-        group.update(dict.fromkeys(near))
+        group += [other for other in near if other not in group]
     return tuple(group)
 
 

@@ -64,6 +64,8 @@ class Description:
     loops: tuple[Loop, ...] = ()
     poses: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     provenance: Provenance = field(default_factory=Provenance)
+    ordered_links: tuple[str, ...] = field(init=False, repr=False)
+    """Link names from the root outward, depth first, children in file order."""
 
     def __post_init__(self) -> None:
         name_of(self.name, "robot")
@@ -73,7 +75,7 @@ class Description:
         store(self, "loops", tuple(self.loops))
         unique_names(self.links, "link", self.name)
         unique_names((*self.joints, *self.loops), "joint", self.name)
-        store(self, "_order", check_tree(self.name, self.links, self.joints))
+        store(self, "ordered_links", check_tree(self.name, self.links, self.joints))
         check_mimics(self.name, self.joints)
         for loop in self.loops:
             for end in (loop.parent, loop.child):
@@ -122,12 +124,6 @@ class Description:
     def root(self) -> str:
         """The link that no joint carries."""
         return self.ordered_links[0]
-
-    @cached_property
-    def ordered_links(self) -> tuple[str, ...]:
-        """Link names from the root outward, depth first, children in file order."""
-        order: tuple[str, ...] = self._order  # type: ignore[attr-defined]
-        return order
 
     @cached_property
     def leaves(self) -> tuple[str, ...]:

@@ -75,24 +75,23 @@ def elementary_joints(joint: Joint) -> tuple[Elementary, ...]:
 def coordinates_of(joints: tuple[Elementary, ...], by_name: Mapping[str, Joint]) -> Coordinates:
     """The coordinates of `joints`: a mimic joint shares the coordinate of its leader."""
     position: dict[str, int] = {}
-    leaders: list[Elementary | Joint] = []
+    leaders: list[Joint] = []
     index, multiplier, offset = [], [], []
     for part in joints:
         leader, factor, shift = _leader(part.joint, by_name)
         name = part.name if leader is part.joint else leader.name
         if name not in position:
             position[name] = len(position)
-            leaders.append(part if leader is part.joint else leader)
+            leaders.append(leader)
         index.append(position[name])
         multiplier.append(factor)
         offset.append(shift)
-    sources = [leader.joint if isinstance(leader, Elementary) else leader for leader in leaders]
     return Coordinates(
         names=tuple(position),
         index=np.array(index, dtype=np.intp),
         multiplier=np.array(multiplier, dtype=np.float64),
         offset=np.array(offset, dtype=np.float64),
-        limits=Limits.of(sources),
+        limits=Limits.of(leaders),
     )
 
 

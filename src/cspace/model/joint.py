@@ -182,7 +182,7 @@ class Limits:
     def __post_init__(self) -> None:
         n = as_floats(self.lower, "lower limits", finite=False).size
         for name in LIMIT_FIELDS:
-            object.__setattr__(self, name, _limit_row(getattr(self, name), name, n))
+            object.__setattr__(self, name, limit_row(getattr(self, name), name, n))
         upside_down = np.flatnonzero(self.lower > self.upper)
         if upside_down.size:
             i = int(upside_down[0])
@@ -214,7 +214,8 @@ class Limits:
         return cls(*(np.array(row, dtype=np.float64) for row in rows))
 
 
-def _limit_row(value: Any, name: str, n: int) -> Array:
+def limit_row(value: Any, name: str, n: int) -> Array:
+    """The limits of n joints, read-only; infinite where the value is None."""
     if value is None:
         return freeze_array(np.full(n, np.inf))
     row = as_floats(value, f"{name} limits", finite=False)

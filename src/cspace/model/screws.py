@@ -11,7 +11,7 @@ import numpy as np
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.model.description import Description
-from cspace.model.joint import Joint
+from cspace.model.joint import Joint, limit_row
 from cspace.model.link import Link
 from cspace.model.transforms import translation_by
 from cspace.model.values import check_placement, check_size, unit_axis
@@ -95,15 +95,9 @@ def one_freedom_type(letter: str, row: dict[str, Any]) -> str:
 
 def joint_rows(n: int, **limits: Any) -> list[dict[str, Any]]:
     """One dict of limits per joint; what is None is infinite."""
-    columns = {}
-    for field, value in limits.items():
-        if value is None:
-            columns[field] = np.full(n, -np.inf if field == "lower" else np.inf)
-            continue
-        column = as_floats(value, f"{field} limits", finite=False)
-        if column.shape != (n,):
-            raise InputError(f"{field} limits have shape {column.shape}, expected ({n},)")
-        columns[field] = column
+    if limits["lower"] is None:
+        limits["lower"] = np.full(n, -np.inf)
+    columns = {field: limit_row(value, field, n) for field, value in limits.items()}
     return [{field: float(column[i]) for field, column in columns.items()} for i in range(n)]
 
 

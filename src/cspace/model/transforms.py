@@ -7,7 +7,8 @@ import math
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.spatial import single
+from cspace.spatial.quaternions import matrix_of_quaternion
+from cspace.spatial.rotations import matrix_of_axis_angle
 
 
 def from_rpy(xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -> Array:
@@ -23,33 +24,20 @@ def from_rpy(xyz: tuple[float, float, float], rpy: tuple[float, float, float]) -
     )
 
 
-def to_rpy(R: Array) -> tuple[float, float, float]:
-    """Roll, pitch and yaw [rad] with R = Rz(yaw) Ry(pitch) Rx(roll), R (3, 3).
-
-    Roll and pitch are read from Rz(−yaw) R, so that near pitch = ±90° an error of yaw is made good by roll
-    and the product keeps R to rounding.
-    """
-    yaw = math.atan2(R[1, 0], R[0, 0])
-    c, s = math.cos(yaw), math.sin(yaw)
-    pitch = math.atan2(-R[2, 0], c * R[0, 0] + s * R[1, 0])
-    roll = math.atan2(s * R[0, 2] - c * R[1, 2], c * R[1, 1] - s * R[0, 1])
-    return roll, pitch, yaw
-
-
 def from_wxyz(quaternion: Array) -> Array:
     """The rotation (4, 4) of a unit quaternion (4,), its scalar first."""
-    return embed_rotation(single.quaternion(*quaternion.tolist()))
+    return embed_rotation(matrix_of_quaternion(quaternion, "quaternion"))
 
 
 def rotation_about(axis: Array, angle: float) -> Array:
     """The rotation (4, 4) by `angle` [rad] about the unit vector `axis` (3,)."""
-    return embed_rotation(single.turn(axis.tolist(), angle))
+    return embed_rotation(matrix_of_axis_angle(axis, np.asarray(angle)))
 
 
-def embed_rotation(entries: single.Nine) -> Array:
-    """The rotation (4, 4) of the nine entries of a matrix, row by row."""
+def embed_rotation(R: Array) -> Array:
+    """The rotation (4, 4) of a matrix (3, 3)."""
     T = np.eye(4)
-    T[:3, :3] = np.reshape(entries, (3, 3))
+    T[:3, :3] = R
     return T
 
 

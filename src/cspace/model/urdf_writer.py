@@ -13,8 +13,8 @@ from cspace.files import write_text
 from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import SHAPES, Geometry, Inertial, Link
-from cspace.model.transforms import to_rpy
 from cspace.model.values import IDENTITY
+from cspace.spatial import to_rpy
 from cspace.tolerances import UNLIMITED
 
 FORBIDDEN = "[^\t\n\r -\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]"
@@ -35,9 +35,8 @@ def to_urdf(description: Description, path: str | os.PathLike[str] | None = None
     """
     if description.loops:
         raise InputError(
-            f"robot {description.name!r} has {len(description.loops)} closed loops, but URDF supports "
-            "trees only;"
-            " write it as TOML"
+            f"robot {description.name!r} has {len(description.loops)} closed loops, but URDF supports trees"
+            " only; write it as TOML"
         )
     lines = ['<?xml version="1.0" encoding="utf-8"?>', f"<robot name={_quoted(description.name)}>"]
     for link in description.links:

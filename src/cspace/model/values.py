@@ -81,9 +81,8 @@ def check_placement(value: object, subject: str) -> Array:
     error = _rotation_error(pose)
     if error > ROTATION_ERROR:
         raise InputError(
-            f"{subject} is not a rigid transform: its rotation block violates RᵀR = I, det R = +1 by "
-            f"{error:.3g}"
-            f" (allowed {ROTATION_ERROR:g})"
+            f"{subject} is not a rigid transform: its rotation block violates RᵀR = I, det R = +1 by"
+            f" {error:.3g} (allowed {ROTATION_ERROR:g})"
         )
     return freeze_array(np.array(pose))
 

@@ -187,9 +187,8 @@ def planar_or_refuse(arm: Any) -> Array:
     basis = planar_basis(arm.chain)
     if basis is None:
         raise InputError(
-            f"{arm.name} is not a planar arm (its revolute axes are not parallel, or a prismatic joint "
-            "leaves "
-            "the plane); this picture needs a planar arm"
+            f"{arm.name} is not a planar arm (its revolute axes are not parallel, or a prismatic joint leaves"
+            " the plane); this picture needs a planar arm"
         )
     return basis
 

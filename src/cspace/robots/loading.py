@@ -67,9 +67,8 @@ def load_description(
     """
     if not isinstance(name_or_path, (str, os.PathLike)):
         raise InputTypeError(
-            f"expected the name or the path of a robot, got {type(name_or_path).__name__}; "
-            "Robot(description),"
-            " Robot.from_dh and Robot.from_screws make robots without a file"
+            f"expected the name or the path of a robot, got {type(name_or_path).__name__};"
+            " Robot(description), Robot.from_dh and Robot.from_screws make robots without a file"
         )
     description = _nominal(name_or_path, package_paths, xacro_args)
     return description if calibration is None else calibrated(description, calibration)

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace import _core
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError, InputTypeError
 from cspace.spatial import single
@@ -16,7 +15,6 @@ from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
 from cspace.spatial.quaternions import matrix_of_quaternion
 from cspace.spatial.rotations import matrix_of_axis_angle, matrix_of_rotvec
 from cspace.spatial.sequences import axes_of, matrix_of_euler, matrix_of_fixed
-from cspace.spatial.vectors import length_and_direction
 
 
 def pose(
@@ -158,19 +156,8 @@ def _rotation_of(given: dict[str, Any], caller: str) -> Array:
 def _from_axis_angle(value: Any) -> Array:
     axis, angle = _pair(value, "axis_angle", "(axis, angle)")
     axis, angle = as_floats(axis, "axis", last=(3,)), as_floats(angle, "angle")
-    shape = broadcast_batches(axis.shape[:-1], angle.shape, "axis", "angle")
-    if shape:
-        R = np.empty((*shape, 3, 3))
-        axes = np.ascontiguousarray(np.broadcast_to(axis, (*shape, 3))).reshape(-1, 3)
-        angles = np.ascontiguousarray(np.broadcast_to(angle, shape)).reshape(-1)
-        if _core.axis_angle_matrices(axes, angles, R.reshape(-1, 3, 3)):
-            return R
-    length, unit = length_and_direction(axis)
-    if not (length > 0.0).all():
-        raise InputError(
-            "axis is zero; a rotation axis needs a direction (for the identity give any axis and angle 0)"
-        )
-    return matrix_of_axis_angle(unit, angle)
+    broadcast_batches(axis.shape[:-1], angle.shape, "axis", "angle")
+    return matrix_of_axis_angle(axis, angle)
 
 
 def _from_euler(value: Any) -> Array:

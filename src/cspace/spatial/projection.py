@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.spatial.checks import RotationLike, as_rotation, determinant, orthogonality_error
 from cspace.spatial.poses import assemble
-from cspace.spatial.quaternions import matrix_of_wxyz, wxyz_of_matrix
+from cspace.spatial.quaternions import matrix_of_quaternion, wxyz_of_matrix
 
 
 def project_rotation(matrix: npt.ArrayLike, *, limit: float = tolerances.ROTATION_PROJECTION) -> Array:
@@ -71,7 +71,7 @@ def mean_rotation(R: RotationLike, weights: npt.ArrayLike | None = None) -> Arra
             "the rotations have no unique mean: they are distributed evenly (for example, two that are "
             "180° apart)"
         )
-    return matrix_of_wxyz(vectors[..., -1])
+    return matrix_of_quaternion(vectors[..., -1], "mean")
 
 
 def _weights(weights: Any, shape: tuple[int, ...]) -> Array:
@@ -103,9 +103,8 @@ def _nearest(M: Array, subject: str, limit: float) -> Array:
         )
     if (determinant(M) < 0.0).any():
         raise InputError(
-            f"{subject} has a negative determinant (near −1): it is a reflection, and no rotation is near "
-            "it; "
-            "an axis is flipped, or two rows or columns are swapped"
+            f"{subject} has a negative determinant (near −1): it is a reflection, and no rotation is near it;"
+            " an axis is flipped, or two rows or columns are swapped"
         )
     U, _, Vt = np.linalg.svd(M)
     return np.asarray(U @ Vt)

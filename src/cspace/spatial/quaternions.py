@@ -28,53 +28,21 @@ def to_xyzw(R: RotationLike) -> Array:
 
     R: (..., 3, 3) or (..., 4, 4) → (..., 4), order x, y, z, w.
     """
-    return roll_numbers(wxyz_of_matrix(as_rotation(R)), -1)
-
-
-def roll_numbers(q: Array, shift: int) -> Array:
-    """Quaternions with the four numbers shifted round: 1 makes wxyz of xyzw, −1 the reverse."""
-    result = np.empty(q.shape)
-    for k in range(4):
-        result[..., k] = q[..., (k - shift) % 4]
-    return result
+    return np.take(wxyz_of_matrix(as_rotation(R)), (1, 2, 3, 0), axis=-1)
 
 
 def matrix_of_quaternion(q: object, subject: str, *, scalar_last: bool = False) -> Array:
     """The rotation matrices (..., 3, 3) of quaternions (..., 4) of any length; a zero one is refused."""
     numbers = as_floats(q, subject, last=(4,), finite=False)
-    if numbers.ndim > 1:
-        R = np.empty((*numbers.shape[:-1], 3, 3))
-        rows = np.ascontiguousarray(numbers).reshape(-1, 4)
-        if _core.quaternion_matrices(rows, scalar_last, R.reshape(-1, 3, 3)):
-            return R
-    unit = unit_wxyz(numbers, subject)
-    return matrix_of_wxyz(roll_numbers(unit, 1) if scalar_last else unit)
-
-
-def unit_wxyz(q: object, subject: str) -> Array:
-    """Quaternions (..., 4) scaled to unit length; a zero quaternion is refused."""
-    numbers = as_floats(q, subject, last=(4,))
-    if numbers.ndim == 1 and (split := single.direction(numbers.tolist())):
-        return np.array(split[1])
-    length, unit = length_and_direction(numbers)
-    if not (length > 0.0).all():
-        raise InputError(f"{subject} is zero; a rotation needs a quaternion of non-zero length")
-    return unit
-
-
-def matrix_of_wxyz(q: Array) -> Array:
-    """The rotation matrices (..., 3, 3) of unit quaternions (..., 4), scalar first."""
-    if q.ndim == 1:
-        return single.matrix(single.quaternion(*q.tolist()))
-    w, x, y, z = (q[..., k] for k in range(4))
-    x2, y2, z2 = x + x, y + y, z + z
-    xx, yy, zz = x * x2, y * y2, z * z2
-    xy, xz, yz = x * y2, x * z2, y * z2
-    wx, wy, wz = w * x2, w * y2, w * z2
-    R = np.empty((*q.shape[:-1], 3, 3))
-    R[..., 0, 0], R[..., 0, 1], R[..., 0, 2] = 1.0 - (yy + zz), xy - wz, xz + wy
-    R[..., 1, 0], R[..., 1, 1], R[..., 1, 2] = xy + wz, 1.0 - (xx + zz), yz - wx
-    R[..., 2, 0], R[..., 2, 1], R[..., 2, 2] = xz - wy, yz + wx, 1.0 - (xx + yy)
+    R = np.empty((*numbers.shape[:-1], 3, 3))
+    rows = np.ascontiguousarray(numbers).reshape(-1, 4)
+    if not _core.quaternion_matrices(
+        rows, scalar_last, R.reshape(-1, 3, 3)
+    ):  # the square of a length overflows
+        length, unit = length_and_direction(as_floats(numbers, subject))
+        if not (length > 0.0).all():
+            raise InputError(f"{subject} is zero; a rotation needs a quaternion of non-zero length")
+        _core.quaternion_matrices(unit.reshape(-1, 4), scalar_last, R.reshape(-1, 3, 3))
     return R
 
 

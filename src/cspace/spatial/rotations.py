@@ -106,33 +106,28 @@ def checked_angle_and_axis(w: Array, subject: str) -> tuple[Array, Array]:
 
 def matrix_of_rotvec(w: Array, subject: str) -> Array:
     """exp_so3 of checked numbers."""
-    if w.ndim == 1 and (split := single.direction(w.tolist())):
-        return single.matrix(single.turn(split[1], split[0]))
     R = np.empty((*w.shape[:-1], 3, 3))
-    rows = np.ascontiguousarray(w).reshape(-1, 3)
-    if not _core.rotvec_matrices(rows, R.reshape(-1, 3, 3)):
+    rows, matrices = np.ascontiguousarray(w).reshape(-1, 3), R.reshape(-1, 3, 3)
+    if not _core.rotvec_matrices(rows, matrices):
         long = np.abs(rows).max(axis=-1) > SHORT
         angle, axis = checked_angle_and_axis(rows[long], subject)  # to the last digit: it shows in the matrix
-        R.reshape(-1, 3, 3)[long] = matrix_of_axis_angle(axis, angle)
+        matrices[long] = matrix_of_axis_angle(axis, angle)
     return R
 
 
 def matrix_of_axis_angle(axis: Array, angle: Array) -> Array:
-    """Rodrigues' formula for unit axes (..., 3) and angles (...), broadcast; a zero axis needs a zero angle.
-
-    1 − cos θ is written 2 sin²(θ/2): small angles keep all their digits.
-    """
-    x, y, z = axis[..., 0], axis[..., 1], axis[..., 2]
-    s, versine = np.sin(angle), 2.0 * np.sin(0.5 * angle) ** 2
-    R = np.empty((*np.broadcast_shapes(x.shape, s.shape), 3, 3))
-    vx, vy, vz = versine * x, versine * y, versine * z
-    sx, sy, sz = s * x, s * y, s * z
-    R[..., 0, 0] = 1.0 - (vy * y + vz * z)
-    R[..., 1, 1] = 1.0 - (vx * x + vz * z)
-    R[..., 2, 2] = 1.0 - (vx * x + vy * y)
-    R[..., 0, 1], R[..., 1, 0] = vx * y - sz, vx * y + sz
-    R[..., 0, 2], R[..., 2, 0] = vx * z + sy, vx * z - sy
-    R[..., 1, 2], R[..., 2, 1] = vy * z - sx, vy * z + sx
+    """The rotations (..., 3, 3) by angles (...) about axes (..., 3) of any length but zero, broadcast."""
+    shape = np.broadcast_shapes(axis.shape[:-1], angle.shape)
+    R = np.empty((*shape, 3, 3))
+    angles = np.ascontiguousarray(np.broadcast_to(angle, shape)).reshape(-1)
+    axes = np.ascontiguousarray(np.broadcast_to(axis, (*shape, 3))).reshape(-1, 3)
+    if not _core.axis_angle_matrices(axes, angles, R.reshape(-1, 3, 3)):  # the square of a length overflows
+        length, unit = length_and_direction(axes)
+        if not (length > 0.0).all():
+            raise InputError(
+                "axis is zero; a rotation axis needs a direction (for the identity give any axis and angle 0)"
+            )
+        _core.axis_angle_matrices(unit, angles, R.reshape(-1, 3, 3))
     return R
 
 

@@ -12,7 +12,7 @@ from cspace.arrays import Array, as_floats, as_generator, guard_memory
 from cspace.errors import InputError, InputTypeError, shown
 from cspace.spatial.planar import matrix_of_angle
 from cspace.spatial.poses import assemble
-from cspace.spatial.quaternions import matrix_of_wxyz
+from cspace.spatial.quaternions import matrix_of_quaternion
 
 Size = int | tuple[int, ...]
 
@@ -80,9 +80,8 @@ def _rotations(shape: tuple[int, ...], generator: np.random.Generator) -> Array:
     u, a, b = np.moveaxis(generator.random((*shape, 3)), -1, 0)
     near, far = np.sqrt(1.0 - u), np.sqrt(u)
     a, b = 2.0 * np.pi * a, 2.0 * np.pi * b
-    return matrix_of_wxyz(
-        np.stack([near * np.sin(a), near * np.cos(a), far * np.sin(b), far * np.cos(b)], axis=-1)
-    )
+    q = np.stack([near * np.sin(a), near * np.cos(a), far * np.sin(b), far * np.cos(b)], axis=-1)
+    return matrix_of_quaternion(q, "quaternion")
 
 
 def _box(

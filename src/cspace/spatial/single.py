@@ -5,6 +5,7 @@ Rotations come and go as nine numbers, row by row. The tests hold these against 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, cos, hypot, inf, pi, sin, sqrt, tan
 
 import numpy as np
@@ -21,7 +22,7 @@ def matrix(entries: Nine) -> Array:
     return np.array(entries).reshape(3, 3)
 
 
-def pose(entries: Nine, p: list[float]) -> Array:
+def pose(entries: Sequence[float], p: list[float]) -> Array:
     """The 4×4 array of a rotation and a translation."""
     (a, b, c, d, e, f, g, h, i), (x, y, z) = entries, p
     return np.array([[a, b, c, x], [d, e, f, y], [g, h, i, z], [0.0, 0.0, 0.0, 1.0]])
@@ -46,31 +47,6 @@ def direction(v: list[float]) -> tuple[float, list[float]] | None:
     norm = sqrt(square)
     length = largest * norm
     return (length, [x / norm for x in scaled]) if length < inf else None
-
-
-def turn(axis: list[float], angle: float) -> Nine:
-    """Rodrigues' formula for a unit axis."""
-    x, y, z = axis
-    s, versine = sin(angle), 2.0 * sin(0.5 * angle) ** 2
-    vx, vy, vz = versine * x, versine * y, versine * z
-    sx, sy, sz = s * x, s * y, s * z
-    return (
-        *(1.0 - (vy * y + vz * z), vx * y - sz, vx * z + sy),
-        *(vx * y + sz, 1.0 - (vx * x + vz * z), vy * z - sx),
-        *(vx * z - sy, vy * z + sx, 1.0 - (vx * x + vy * y)),
-    )
-
-
-def quaternion(w: float, x: float, y: float, z: float) -> Nine:
-    """The rotation of a unit quaternion."""
-    x2, y2, z2 = x + x, y + y, z + z
-    xx, yy, zz, xy, xz, yz = x * x2, y * y2, z * z2, x * y2, x * z2, y * z2
-    wx, wy, wz = w * x2, w * y2, w * z2
-    return (
-        *(1.0 - (yy + zz), xy - wz, xz + wy),
-        *(xy + wz, 1.0 - (xx + zz), yz - wx),
-        *(xz - wy, yz + wx, 1.0 - (xx + yy)),
-    )
 
 
 def wxyz(R: Array) -> tuple[float, float, float, float]:

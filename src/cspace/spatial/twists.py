@@ -10,8 +10,7 @@ from cspace.spatial import single
 from cspace.spatial.checks import PoseLike, as_pose
 from cspace.spatial.poses import assemble
 from cspace.spatial.rotations import (
-    checked_angle_and_axis,
-    matrix_of_axis_angle,
+    matrix_of_rotvec,
     rotvec_of_matrix,
     skew,
     unskew,
@@ -109,16 +108,15 @@ def exponential_se3(xi: Array) -> Array:
 
     Written with the unit axis, no coefficient cancels or overflows, down to the smallest angles.
     """
+    R = matrix_of_rotvec(xi[..., 3:], "the rotation of the twist")
     if xi.ndim == 1 and (split := single.direction(xi[3:].tolist())):
-        return single.pose(single.turn(split[1], split[0]), single.helix(split[1], split[0], xi[:3].tolist()))
+        return single.pose(R.ravel().tolist(), single.helix(split[1], split[0], xi[:3].tolist()))
     v = xi[..., :3]
-    angle, axis = checked_angle_and_axis(xi[..., 3:], "the rotation of the twist")
+    angle, axis = length_and_direction(xi[..., 3:])
     half = 0.5 * angle
-    across = np.sin(half) * sinc(half)
-    twice = 1.0 - sinc(angle)
     u_v = cross(axis, v)
-    p = v + across[..., None] * u_v + twice[..., None] * cross(axis, u_v)
-    return assemble(matrix_of_axis_angle(axis, angle), p)
+    across, twice = np.sin(half) * sinc(half), 1.0 - sinc(angle)
+    return assemble(R, v + across[..., None] * u_v + twice[..., None] * cross(axis, u_v))
 
 
 def logarithm_se3(T: Array) -> Array:

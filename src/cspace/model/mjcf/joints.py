@@ -5,10 +5,8 @@ from __future__ import annotations
 import logging
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Final
-
-import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import suggest
@@ -17,7 +15,7 @@ from cspace.model.joint import Joint, Mimic
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.settings import Settings
 from cspace.model.transforms import rotation_about, translation_by
-from cspace.model.values import IDENTITY, unit_axis
+from cspace.model.values import IDENTITY, X_AXIS, unit_axis
 from cspace.model.xml import Element
 
 KINDS: Final = ("hinge", "slide", "free", "ball")
@@ -29,22 +27,22 @@ LOG: Final = logging.getLogger("cspace")
 class Draft:
     """A joint of a body, before it is known which joints follow others.
 
-    kind: "hinge", "slide" or "free". anchor (4, 4): where it acts, in the body. axis (3,): a unit vector in
-    the body. ref: its value where the body is as drawn [rad or m]. lower, upper, effort, damping,
+    kind: "hinge", "slide", "free" or "fixed". anchor (4, 4): where it acts, in the body. axis (3,): a unit
+    vector in the body. ref: its value where the body is as drawn [rad or m]. lower, upper, effort, damping,
     friction: as in Joint.
     """
 
     name: str
     kind: str
-    anchor: Array
-    axis: Array
-    ref: float
-    lower: float
-    upper: float
-    effort: float
-    damping: float | None
-    friction: float | None
     element: Element
+    anchor: Array = field(default_factory=lambda: IDENTITY)
+    axis: Array = field(default_factory=lambda: X_AXIS)
+    ref: float = 0.0
+    lower: float = -math.inf
+    upper: float = math.inf
+    effort: float = math.inf
+    damping: float | None = None
+    friction: float | None = None
 
     def motion(self, by: float) -> Array:
         """The motion (4, 4) by an angle [rad] or a distance [m]."""
@@ -52,8 +50,8 @@ class Draft:
 
     def joint(self, parent: str, child: str, place: Array, coupling: Coupling | None, effort: float) -> Joint:
         """The joint between two links, standing at `place` (4, 4) in its parent, driven by `effort`."""
-        if self.kind == "free":
-            return Joint(self.name, "floating", parent, child, place)
+        if self.kind in ("free", "fixed"):
+            return Joint(self.name, "floating" if self.kind == "free" else "fixed", parent, child, place)
         place = place @ self.motion(-self.ref)
         if coupling is not None and coupling.leader is None:
             place = place @ self.motion(self.ref + coupling.offset)
@@ -71,8 +69,7 @@ def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings)
     element = given.element
     kind = "free" if element.tag == "freejoint" else given.word("type", "hinge", KINDS)
     if kind == "free":
-        free = (IDENTITY, np.array([1.0, 0.0, 0.0]), 0.0, -math.inf, math.inf, math.inf, None, None)
-        return Draft(name, kind, *free, element)
+        return Draft(name, kind, element)
     if kind == "ball":
         raise fault_at(
             given.holder("type") or element,
@@ -92,9 +89,8 @@ def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings)
         for key in ("damping", "frictionloss")
     )
     ref, effort = given.number("ref", 0.0) * unit, largest_magnitude(given, "actuatorfrc")
-    return Draft(
-        name, kind, translation_by(anchor), axis, ref, lower, upper, effort, damping, friction, element
-    )
+    place = translation_by(anchor)
+    return Draft(name, kind, element, place, axis, ref, lower, upper, effort, damping, friction)
 
 
 def read_limits(given: Given, name: str, unit: float, settings: Settings) -> tuple[float, float]:

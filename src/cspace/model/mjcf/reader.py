@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import accumulate
 from pathlib import Path
 from typing import Any, Final
@@ -76,13 +78,17 @@ class _Reader:
         driven = read_efforts(self.sections("actuator"), self.defaults)
         weights = scale_inertials(self.weights, self.settings)
         links = tuple(self.link(name, weights.get(name)) for name in skeleton.links)
-        joints = tuple(segment.joint(followers, driven) for segment in skeleton.segments)
+        joints = []
+        for draft, parent, child, place in skeleton.segments:
+            effort = driven.get(draft.name, math.inf)
+            make = partial(draft.joint, parent, child, place, followers.get(draft.name), effort)
+            joints.append(complain_at(draft.element, make))
         ties = read_loops(equalities, self.defaults, skeleton)
         poses = read_keyframes(self.sections("keyframe"), skeleton.drafts, followers)
         unnamed = "robot" if self.root.path is None else Path(self.root.path).stem
         name = self.root.attributes.get("model", "").strip() or unnamed
         try:
-            return Description(name, links, joints, ties, poses)
+            return Description(name, links, tuple(joints), ties, poses)
         except ElementError as error:
             draft = skeleton.drafts.get(error.name)
             raise fault_at(self.root if draft is None else draft.element, str(error)) from None

@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
 from typing import Final
 
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.model.attributes import complain_at, fault_at
-from cspace.model.joint import Joint
-from cspace.model.mjcf.joints import Coupling, Draft
+from cspace.model.attributes import fault_at
+from cspace.model.mjcf.joints import Draft
 from cspace.model.mounting import free_name
 from cspace.model.transforms import invert_transform
 from cspace.model.values import IDENTITY
@@ -22,24 +19,8 @@ WORLD: Final = "world"
 """The link of <worldbody>, as MuJoCo calls it."""
 
 
-@dataclass(frozen=True, eq=False)
-class Segment:
-    """A joint of the description to be: a draft, or None where it is fixed, standing at `place` (4, 4)."""
-
-    name: str
-    draft: Draft | None
-    parent: str
-    child: str
-    place: Array
-    element: Element
-
-    def joint(self, followers: Mapping[str, Coupling], efforts: Mapping[str, float]) -> Joint:
-        """The joint, once it is known which joints follow others and how hard they are driven."""
-        ends, draft = (self.parent, self.child, self.place), self.draft
-        if draft is None:
-            return complain_at(self.element, lambda: Joint(self.name, "fixed", *ends))
-        effort = efforts.get(self.name, math.inf)
-        return complain_at(self.element, lambda: draft.joint(*ends, followers.get(self.name), effort))
+Segment = tuple[Draft, str, str, Array]
+"""A joint of the description to be, its parent and its child, and where it stands in its parent (4, 4)."""
 
 
 class Skeleton:
@@ -106,7 +87,7 @@ class Skeleton:
             self.drafts[draft.name] = draft
             whole = draft is last and np.array_equal(draft.anchor, IDENTITY)
             link = name if whole else self.new_link(f"{name}/{draft.name}")
-            self.segments.append(Segment(draft.name, draft, here, link, place @ draft.anchor, draft.element))
+            self.segments.append((draft, here, link, place @ draft.anchor))
             self.links.append(link)
             here, place = link, invert_transform(draft.anchor)
         if here != name:
@@ -125,7 +106,8 @@ class Skeleton:
     def add_fixed(self, element: Element, link: str, parent: str, place: Array) -> None:
         """A link that is fixed to its parent at `place` (4, 4)."""
         self.links.append(link)
-        self.segments.append(Segment(self.new_joint(f"{link}_fixed"), None, parent, link, place, element))
+        draft = Draft(self.new_joint(f"{link}_fixed"), "fixed", element)
+        self.segments.append((draft, parent, link, place))
 
 
 TAGS: Final = ("body", "joint", "freejoint")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import astuple, dataclass, fields
 from math import pi, tan
 
 from cspace.arrays import Array, as_floats
@@ -32,10 +32,7 @@ class Unicycle:
 
     @property
     def _limits(self) -> list[float]:
-        return [
-            *(0.0, self.max_speed, self.max_reverse),
-            *(self.acceleration, self.max_turn_rate, self.turn_acceleration),
-        ]
+        return [0.0, *astuple(self)[:5]]
 
     @property
     def _footprint(self) -> list[float]:
@@ -74,10 +71,7 @@ class Car:
 
     @property
     def _limits(self) -> list[float]:
-        return [
-            *(self.wheelbase, self.max_speed, self.max_reverse),
-            *(self.acceleration, self.max_steering, self.steering_rate),
-        ]
+        return list(astuple(self)[:6])
 
     @property
     def _footprint(self) -> list[float]:

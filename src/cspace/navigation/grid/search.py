@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, ClassVar, Final, NamedTuple
+from typing import Any, ClassVar, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -20,10 +20,6 @@ from cspace.navigation.planner import PlanePlanner
 from cspace.navigation.route import Route
 from cspace.navigation.text import count_things
 from cspace.search import option
-
-if TYPE_CHECKING:
-    pass
-
 
 CORNERS: Final = {"never": 0, "one": 1, "always": 2}
 """When a diagonal step is allowed: both cells beside it are free, one is, always."""
