@@ -90,8 +90,8 @@ class _Reader:
         try:
             return Description(name, links, tuple(joints), ties, poses)
         except ElementError as error:
-            draft = skeleton.drafts.get(error.name)
-            raise fault_at(self.root if draft is None else draft.element, str(error)) from None
+            culprit = skeleton.drafts.get(error.name)
+            raise fault_at(self.root if culprit is None else culprit.element, str(error)) from None
 
     def sections(self, tag: str) -> list[Element]:
         """What all sections of that tag hold."""
