@@ -107,8 +107,6 @@ def _from_tree(source: Tree, description: Description, floating: bool) -> Assemb
     carriers = source.parent
     # From a joint turned to z back to the joint as given; the base first.
     back = np.array([np.eye(4), *np.swapaxes(turned, -1, -2)])
-    frame_joint = np.array([joint for joint, _ in source.frames.values()])
-    poses = np.array([pose for _, pose in source.frames.values()])
     return Assembly(
         base=source.root,
         tip=None,
@@ -116,13 +114,10 @@ def _from_tree(source: Tree, description: Description, floating: bool) -> Assemb
         floating=floating,
         T_parent_joint=back[carriers + 1] @ source.placement @ turned,
         parent=carriers,
-        T_joint_frame=back[frame_joint + 1] @ poses,
-        frame_joint=frame_joint,
-        frame_index={name: i for i, name in enumerate(source.frames)},
         mass=np.array(source.mass),
         center=np.einsum("kij,kj->ki", back[:, :3, :3], source.com),
         chain=None,
-        **_coordinates(source, description),
+        **_shared(source, description, back, -1),
     )
 
 
@@ -131,13 +126,11 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
     T_base_joint = np.array([np.eye(4), *_turned(source.axes)])
     T_base_joint[1:, :3, 3] = source.points
     back = np.array([invert_transform(T) for T in T_base_joint])
-    frame_joint = np.array([before - 1 for before, _ in source.frames.values()])
-    poses = np.array([pose for _, pose in source.frames.values()])
-    T_joint_frame = back[frame_joint + 1] @ poses
+    shared = _shared(source, description, back, 0)
     mass, center = np.zeros(n + 1), np.zeros((n + 1, 3))
     if description is not None:
-        carried = zip(source.frames, zip(frame_joint.tolist(), T_joint_frame, strict=True), strict=True)
-        mass, center, *_ = lump_links(description, dict(carried), n)
+        carried = zip(shared["frame_joint"].tolist(), shared["T_joint_frame"], strict=True)
+        mass, center, *_ = lump_links(description, dict(zip(source.frames, carried, strict=True)), n)
     return Assembly(
         base=source.base,
         tip=source.tip,
@@ -145,24 +138,29 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
         floating=floating,
         T_parent_joint=back[:-1] @ T_base_joint[1:],
         parent=np.arange(-1, n - 1),
-        T_joint_frame=T_joint_frame,
-        frame_joint=frame_joint,
-        frame_index={name: i for i, name in enumerate(source.frames)},
         mass=mass,
         center=center.copy(),
         chain=source,
-        **_coordinates(source, description),
+        **shared,
     )
 
 
-def _coordinates(source: Tree | Chain, description: Description | None) -> dict[str, Any]:
-    """The properties of coordinates that trees and chains share."""
+def _shared(source: Tree | Chain, description: Description | None, back: Array, base: int) -> dict[str, Any]:
+    """What trees and chains have in common: coordinates and frames.
+
+    back (n + 1, 4, 4): where the frames of the base and of each joint, as given, stand in those turned to z.
+    base: the number of the base among what carries frames.
+    """
     law = source.coordinates
     kinds = dict(zip(source.joint_names, source.joint_types, strict=True))
     for name in law.names:  # a joint may follow one that is not in the chain
         if name not in kinds and description is not None:
             kinds[name] = "P" if description.joint(name).type == "prismatic" else "R"
+    carrier = np.array([number - base for number, _ in source.frames.values()])
     return {
+        "T_joint_frame": back[carrier] @ np.array([pose for _, pose in source.frames.values()]),
+        "frame_joint": carrier - 1,
+        "frame_index": {name: i for i, name in enumerate(source.frames)},
         "coordinates": law.names,
         "coordinate_types": "".join(kinds[name] for name in law.names),
         "limits": law.limits,

@@ -77,8 +77,7 @@ def _circumscribe_disc(radius: float, touches: Directions) -> Array:
     wide = np.diff(touches, append=touches[:1]) % TURN
     middle = (touches + wide / 2) * (2 * np.pi / TURN)
     away = radius / np.cos(wide * (np.pi / TURN))
-    corners: Array = away[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1)
-    return corners
+    return np.asarray(away[:, None] * np.stack([np.cos(middle), np.sin(middle)], axis=1))
 
 
 def _make_strip(ahead: int, one: tuple[Directions, Array], other: tuple[Directions, Array]) -> Array:

@@ -86,11 +86,9 @@ class _Tracks(NamedTuple):
 
     def at(self, k: int, t: Array, radius: float) -> Array:
         if np.isnan(self.angle[k]):
-            straight: Array = self.start[k] + t[:, None] * self.along[k]
-            return straight
+            return np.asarray(self.start[k] + t[:, None] * self.along[k])
         angle = self.angle[k] - t
-        bent: Array = self.center[k] + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1)
-        return bent
+        return np.asarray(self.center[k] + radius * np.stack([np.cos(angle), np.sin(angle)], axis=1))
 
 
 def find_offset(walls: list[Array], clearance: Clearance, wide: float, radius: float) -> Offset:
@@ -173,13 +171,11 @@ def _find_cuts(tracks: _Tracks, k: int, radius: float) -> Array:
         meets = [feet + half[:, None] * u, feet - half[:, None] * u, off / 2 + high, off / 2 - high]
         at = np.vstack(meets)
         turn = (tracks.angle[k] - np.arctan2(at[:, 1], at[:, 0])) % (2 * np.pi)
-        within: Array = turn[np.isfinite(turn) & (turn < tracks.size[k])]
-        return within
+        return np.asarray(turn[np.isfinite(turn) & (turn < tracks.size[k])])
 
 
 def _cross_product(a: Array, b: Array) -> Array:
-    crossed: Array = a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
-    return crossed
+    return np.asarray(a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0])
 
 
 def _link_pieces(

@@ -107,8 +107,7 @@ def navigation_height(route: Any) -> Height:
         raise InputError(f"there is no navigation function to draw: {route.reason}")
 
     def height(points: Array) -> Array:
-        found: Array = np.exp(np.asarray(function.log_odds(points)) / function.kappa)
-        return found
+        return np.asarray(np.exp(np.asarray(function.log_odds(points)) / function.kappa))
 
     return height
 
@@ -121,8 +120,7 @@ def harmonic_height(route: Any) -> Height:
 
     def height(points: Array) -> Array:
         column, row = np.moveaxis(np.floor((points - grid.origin) / grid.resolution).astype(int), -1, 0)
-        found: Array = field[np.clip(row, 0, grid.rows - 1), np.clip(column, 0, grid.columns - 1)]
-        return found
+        return np.asarray(field[np.clip(row, 0, grid.rows - 1), np.clip(column, 0, grid.columns - 1)])
 
     return height
 

@@ -82,7 +82,7 @@ def _nominal(
         try:
             description = catalogue_description(name_or_path)
         except UnknownNameError:
-            if not _exists(name_or_path):
+            if not os.path.exists(name_or_path):
                 raise
         else:
             _refuse_arguments(xacro_args, name_or_path)
@@ -112,13 +112,6 @@ def _refuse_arguments(xacro_args: Mapping[str, Any] | None, name: object) -> Non
 def _looks_like_a_path(text: str) -> bool:
     suffix = Path(text).suffix.lower()
     return "/" in text or os.sep in text or suffix in (*SUFFIXES, *ADVICE)
-
-
-def _exists(text: str) -> bool:
-    try:
-        return os.path.exists(text)
-    except ValueError:  # a zero byte
-        return False
 
 
 def _check_xml(path: str, data: bytes) -> None:

@@ -6,8 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
-from cspace.errors import InputError
+from cspace.arrays import Array, bounded_number
 from cspace.spatial.checks import (
     PoseLike,
     RotationLike,
@@ -79,9 +78,7 @@ def pose_distance_2d(T_a: Any, T_b: Any, *, length: float) -> Array:
 
 
 def _weighted(distance: Array, angle: Array, length: float) -> Array:
-    weight = as_floats(length, "length")
-    if weight.ndim != 0 or weight < 0.0:
-        raise InputError(f"length is {length!r}; it must be one number ≥ 0 [m]")
+    weight = bounded_number(length, "length", 0.0, "it must be one number ≥ 0 [m]")
     return np.asarray(np.hypot(distance, weight * angle))[()]
 
 

@@ -7,7 +7,8 @@ R = Rz(a) Ry(b) Rx(c), the same rotation. A fixed sequence is the Euler sequence
 
 from __future__ import annotations
 
-from typing import Final
+from math import atan2, cos, hypot, pi, sin
+from typing import Any, Final
 
 import numpy as np
 
@@ -116,27 +117,33 @@ def euler_angles(R: Array, axes: tuple[int, int, int], *, middle: float) -> Arra
     column j it alone turns: so it makes up for any noise in c, and the angles reproduce R near gimbal lock.
     """
     if R.ndim == 2:
-        return np.array(single.angles(R, axes, middle))
+        found = _angles(R.tolist(), axes, middle, hypot, atan2, cos, sin)
+        return np.array([pi if x == -pi else x + 0.0 for x in found])
+    rows = np.moveaxis(R, (-2, -1), (0, 1))
+    return _half_open(np.stack(_angles(rows, axes, middle, np.hypot, np.arctan2, np.cos, np.sin), axis=-1))
+
+
+def _angles(
+    rows: Any, axes: tuple[int, int, int], middle: float, hypot: Any, atan2: Any, cos: Any, sin: Any
+) -> tuple[Any, Any, Any]:
+    """The angles of a matrix whose entries are numbers or arrays, by functions of these."""
     i, j, k = axes
     third = 3 - i - j
     parity = 1.0 if (j - i) % 3 == 1 else -1.0
-    row = R[..., i, :]
+    row = rows[i]
     if i == k:
-        sine = np.hypot(row[..., j], row[..., third])
-        locked = sine <= tolerances.GIMBAL_LOCK
-        b = np.arctan2(middle * sine, row[..., i])
-        c = np.arctan2(middle * row[..., j], middle * parity * row[..., third])
+        far = hypot(row[j], row[third])
+        b, c = atan2(middle * far, row[i]), atan2(middle * row[j], middle * parity * row[third])
         other, turn = third, -parity
     else:
-        cosine = np.hypot(row[..., i], row[..., j])
-        locked = cosine <= tolerances.GIMBAL_LOCK
-        b = np.arctan2(parity * row[..., k], cosine)
-        c = np.arctan2(-parity * row[..., j], row[..., i])
+        far = hypot(row[i], row[j])
+        b, c = atan2(parity * row[k], far), atan2(-parity * row[j], row[i])
         other, turn = i, parity
-    c = np.where(locked, 0.0, c)
-    column = np.cos(c)[..., None] * R[..., :, j] + turn * np.sin(c)[..., None] * R[..., :, other]
-    a = np.arctan2(parity * column[..., third], column[..., j])
-    return _half_open(np.stack([a, b, c], axis=-1))
+    c = c * (far > tolerances.GIMBAL_LOCK)
+    cos_c, sin_c = cos(c), turn * sin(c)
+    across = cos_c * rows[third][j] + sin_c * rows[third][other]
+    along = cos_c * rows[j][j] + sin_c * rows[j][other]
+    return atan2(parity * across, along), b, c
 
 
 def _half_open(angles: Array) -> Array:

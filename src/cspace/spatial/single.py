@@ -6,11 +6,10 @@ Rotations come and go as nine numbers, row by row. The tests hold these against 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import atan2, cos, hypot, inf, pi, sin, sqrt, tan
+from math import atan2, cos, inf, sin, sqrt, tan
 
 import numpy as np
 
-from cspace import tolerances
 from cspace.arrays import Array
 
 Nine = tuple[float, float, float, float, float, float, float, float, float]
@@ -91,28 +90,6 @@ def euler(axes: tuple[int, int, int], angles: list[float]) -> Nine:
         columns[v] = [c * q[0] - s * p[0], c * q[1] - s * p[1], c * q[2] - s * p[2]]
     (a, d, g), (b, e, h), (c, f, i) = columns
     return a, b, c, d, e, f, g, h, i
-
-
-def angles(R: Array, axes: tuple[int, int, int], middle: float) -> list[float]:
-    """The Euler angles of a 3×3 array, as sequences.euler_angles explains."""
-    i, j, k = axes
-    third = 3 - i - j
-    parity = 1.0 if (j - i) % 3 == 1 else -1.0
-    rows = R.tolist()
-    row = rows[i]
-    if i == k:
-        sine = hypot(row[j], row[third])
-        locked, b = sine <= tolerances.GIMBAL_LOCK, atan2(middle * sine, row[i])
-        c, other, sign = atan2(middle * row[j], middle * parity * row[third]), third, -parity
-    else:
-        cosine = hypot(row[i], row[j])
-        locked, b = cosine <= tolerances.GIMBAL_LOCK, atan2(parity * row[k], cosine)
-        c, other, sign = atan2(-parity * row[j], row[i]), i, parity
-    c = 0.0 if locked else c
-    cos_c, sin_c = cos(c), sign * sin(c)
-    across = cos_c * rows[third][j] + sin_c * rows[third][other]
-    along = cos_c * rows[j][j] + sin_c * rows[j][other]
-    return [pi if x == -pi else x + 0.0 for x in (atan2(parity * across, along), b, c)]
 
 
 def helix(axis: list[float], angle: float, v: list[float]) -> list[float]:

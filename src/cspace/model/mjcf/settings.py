@@ -87,8 +87,7 @@ def unit_direction(vector: list[float], element: Element, name: str) -> Array:
     length = math.hypot(*vector)
     if length < AXIS_LENGTH:
         raise fault_at(element, f"{name} of <{element.tag}> is no direction: it has the length {length:g}")
-    direction: Array = np.array(vector) / length
-    return direction
+    return np.asarray(np.array(vector) / length)
 
 
 def shortest_rotation(z: Array) -> Array:

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from cspace import _core
@@ -64,5 +65,4 @@ def arrival_times(grid: Any, goal: ArrayLike, *, slow_within: float = 0.0) -> Ar
     for worlds other than grids."""
     need_grid(grid)
     near = FastMarching(slow_within).slow_within / grid.resolution
-    found: Array = clearance_field(grid).march_times(grid, grid.check_free(goal, "goal"), near)
-    return found
+    return np.asarray(clearance_field(grid).march_times(grid, grid.check_free(goal, "goal"), near))

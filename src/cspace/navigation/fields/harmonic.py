@@ -97,8 +97,7 @@ def harmonic(grid: Any, goal: ArrayLike) -> Array:
     InputTypeError for worlds other than grids.
     """
     need_grid(grid)
-    found: Array = _field_of(grid, grid.check_free(goal, "goal")).heights(grid)
-    return found
+    return np.asarray(_field_of(grid, grid.check_free(goal, "goal")).heights(grid))
 
 
 def _field_of(grid: Any, goal: Array) -> _core.HarmonicField:

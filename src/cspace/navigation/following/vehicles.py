@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import astuple, dataclass, fields
 from math import pi, tan
 
-from cspace.arrays import Array, as_floats
+import numpy as np
+
+from cspace.arrays import bounded_number
 from cspace.errors import InputError
 
 MAY_BE_ZERO = ("max_reverse", "rear", "radius")
@@ -82,7 +84,6 @@ def check_limits(vehicle: Unicycle | Car) -> None:
     """InputError for a limit that is no number above zero."""
     for field in fields(vehicle):
         name = field.name
-        value: Array = as_floats(getattr(vehicle, name), name)
-        if value.ndim or value < 0 or (value == 0 and name not in MAY_BE_ZERO):
-            raise InputError(f"{name} is {getattr(vehicle, name)!r}; give one number above zero")
-        object.__setattr__(vehicle, name, float(value))
+        least = 0.0 if name in MAY_BE_ZERO else np.finfo(np.float64).smallest_subnormal
+        value = bounded_number(getattr(vehicle, name), name, least, "give one number above zero")
+        object.__setattr__(vehicle, name, value)
