@@ -76,8 +76,8 @@ def _read_text_pixels(text: bytes, count: int, at: int, name: str) -> Array:
     words = re.sub(rb"#[^\n]*", b"", text).split()
     if len(words) != count:
         raise MapError(f"byte {at}: {len(words)} pixels follow, expected {count} from the size", path=name)
-    if not all(word.isdigit() and len(word) <= 5 for word in words):
-        bad = next(word for word in words if not (word.isdigit() and len(word) <= 5))
+    bad = next((word for word in words if not (word.isdigit() and len(word) <= 5)), None)
+    if bad is not None:
         raise MapError(f"a pixel is {ascii(bad[:20])[1:]}; pixels must be whole numbers", path=name)
     return np.array([int(word) for word in words], float)
 

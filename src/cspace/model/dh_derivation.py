@@ -82,14 +82,11 @@ def _first_frame(chain: Chain) -> Array:
     upright = math.hypot(axis[0], axis[1]) <= DH_PARALLEL and axis[2] > 0.0
     if upright and np.linalg.norm(foot) <= DH_COINCIDENT:
         return freeze_array(np.eye(4))
-    guide = np.array([1.0, 0.0, 0.0])
-    x = guide - axis * (axis @ guide)
-    if np.linalg.norm(x) <= DH_PARALLEL:
-        guide = np.array([0.0, 1.0, 0.0])
-        x = guide - axis * (axis @ guide)
+    x, y = (guide - axis * (axis @ guide) for guide in np.eye(3)[:2])
+    x = x if np.linalg.norm(x) > DH_PARALLEL else y
     x /= np.linalg.norm(x)
     frame = np.eye(4)
-    frame[:3, 0], frame[:3, 1], frame[:3, 2], frame[:3, 3] = x, np.cross(axis, x), axis, foot
+    frame[:3] = np.column_stack([x, np.cross(axis, x), axis, foot])
     return freeze_array(frame)
 
 

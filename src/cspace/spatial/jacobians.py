@@ -16,7 +16,7 @@ from cspace import tolerances
 from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
 from cspace.spatial.rotations import checked_angle_and_axis, skew
-from cspace.spatial.twists import sinc
+from cspace.spatial.twists import sinc, stack_blocks
 
 
 def left_jacobian_so3(rotvec: npt.ArrayLike) -> Array:
@@ -68,7 +68,7 @@ def left_jacobian_se3(twist: npt.ArrayLike) -> Array:
     twist: ξ (..., 6) [m, rad] → (..., 6, 6).
     """
     xi = as_floats(twist, "twist", last=(6,))
-    return _blocks(left_jacobian_so3(xi[..., 3:]), _coupling(xi))
+    return stack_blocks(left_jacobian_so3(xi[..., 3:]), _coupling(xi))
 
 
 def right_jacobian_se3(twist: npt.ArrayLike) -> Array:
@@ -86,7 +86,7 @@ def left_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
     """
     xi = as_floats(twist, "twist", last=(6,))
     J = left_jacobian_inv_so3(xi[..., 3:])
-    return _blocks(J, -J @ _coupling(xi) @ J)
+    return stack_blocks(J, -J @ _coupling(xi) @ J)
 
 
 def right_jacobian_inv_se3(twist: npt.ArrayLike) -> Array:
@@ -101,13 +101,6 @@ def _polynomial(axis: Array, first: Array, second: Array) -> Array:
     """I + first [u] + second [u]²; the rounding stays below that of the two coefficients."""
     U = skew(axis)
     return np.asarray(np.eye(3) + first[..., None, None] * U + second[..., None, None] * (U @ U))
-
-
-def _blocks(J: Array, Q: Array) -> Array:
-    result = np.zeros((*J.shape[:-2], 6, 6))
-    result[..., :3, :3] = result[..., 3:, 3:] = J
-    result[..., :3, 3:] = Q
-    return result
 
 
 def _coupling(xi: Array) -> Array:

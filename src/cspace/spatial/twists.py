@@ -71,10 +71,7 @@ def adjoint(T: PoseLike) -> Array:
     """
     T = as_pose(T)
     R = T[..., :3, :3]
-    Ad = np.zeros((*T.shape[:-2], 6, 6))
-    Ad[..., :3, :3] = Ad[..., 3:, 3:] = R
-    Ad[..., :3, 3:] = skew(T[..., :3, 3]) @ R
-    return Ad
+    return stack_blocks(R, skew(T[..., :3, 3]) @ R)
 
 
 def coadjoint(T: PoseLike) -> Array:
@@ -97,10 +94,15 @@ def small_adjoint(twist: npt.ArrayLike) -> Array:
     twist: [v; ω] (..., 6) → (..., 6, 6).
     """
     xi = as_floats(twist, "twist", last=(6,))
-    ad = np.zeros((*xi.shape[:-1], 6, 6))
-    ad[..., :3, :3] = ad[..., 3:, 3:] = skew(xi[..., 3:])
-    ad[..., :3, 3:] = skew(xi[..., :3])
-    return ad
+    return stack_blocks(skew(xi[..., 3:]), skew(xi[..., :3]))
+
+
+def stack_blocks(A: Array, B: Array) -> Array:
+    """[[A, B], [0, A]] (..., 6, 6) of matrices (..., 3, 3)."""
+    stacked = np.zeros((*A.shape[:-2], 6, 6))
+    stacked[..., :3, :3] = stacked[..., 3:, 3:] = A
+    stacked[..., :3, 3:] = B
+    return stacked
 
 
 def exponential_se3(xi: Array) -> Array:
