@@ -1,5 +1,6 @@
 #include "navigation_cars.hpp"
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/cars/hybrid_a_star.hpp"
 #include "cspace/navigation/curves/curve.hpp"
 #include "cspace/navigation/curves/dubins.hpp"
@@ -21,13 +22,17 @@ void list_poses(const CarPose& start, std::span<const double> pieces, double rad
     for (std::size_t i = 0; i < parts.size(); ++i)
         parts[i] = {int(pieces[2 * i]), pieces[2 * i + 1] / radius};
     const LaidCurve curve(start, std::move(parts), radius);
-    for (const double at : s) *out++ = curve.at(at / radius);
+    visit_range(0, s.size(), [&](std::size_t k) { out[k] = curve.at(s[k] / radius); });
 }
 
 void check_poses(const maps::GridWorld& world, const double* f, std::span<const CarPose> poses,
                  bool* is_clear) {
     const CarWorld cars(world.state().bits, world.state().frame);
-    for (const CarPose& pose : poses) *is_clear++ = cars.is_clear({f[0], f[1], f[2], f[3]}, pose);
+    InterruptPoll poll(64);
+    for (const CarPose& pose : poses) {
+        poll.step();
+        *is_clear++ = cars.is_clear({f[0], f[1], f[2], f[3]}, pose);
+    }
 }
 
 CarRoute find_car_route(const maps::GridWorld& world, const double* f, const CarPose& start,

@@ -1,5 +1,6 @@
 #include "navigation_fields_grid.hpp"
 
+#include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/fields/brushfire.hpp"
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/fields/fast_marching.hpp"
@@ -167,7 +168,9 @@ std::vector<std::uint8_t> BrushfireDiagram::cells() const {
 
 BrushfireDiagram::Branches BrushfireDiagram::branches() const {
     Branches all;
+    InterruptPoll poll(1024);
     for (const Diagram::Branch& branch : state_->diagram.branches()) {
+        poll.step();
         for (const std::uint32_t n : {branch.from, branch.to}) {
             const maps::Cell cell = state_->diagram.grid().cell(n);
             all.ends.insert(all.ends.end(), {cell.row, cell.column});

@@ -26,18 +26,19 @@ namespace interrupts {
 using Clock = std::chrono::steady_clock;
 inline std::atomic<InterruptCheck> check = nullptr;
 inline thread_local const std::atomic<bool>* stop_of_helper = nullptr;  // null on a caller's own thread
+inline constexpr Clock::duration least_period = std::chrono::milliseconds(2);
 inline thread_local Clock::time_point next_check;
+inline thread_local Clock::duration period = least_period;  // between two checks
 
 }  // namespace interrupts
 
 // Null: nothing is called.
 inline void set_interrupt_check(InterruptCheck check) { interrupts::check = check; }
 
-// Takes some ten nanoseconds, but every few milliseconds. A check that takes long, because others hold what
-// it needs, is made less often.
+// Takes some ten nanoseconds, but every few milliseconds. Checks that take long again and again, because
+// others hold what they need, are made less and less often.
 CSPACE_COLD inline void poll_interrupts() {
-    using std::chrono::milliseconds;
-    constexpr interrupts::Clock::duration period = milliseconds(2), longest = milliseconds(40);
+    constexpr interrupts::Clock::duration longest = std::chrono::milliseconds(32);
     constexpr int least_share = 8;  // of the time between two checks to that of one
     if (interrupts::stop_of_helper) {
         if (*interrupts::stop_of_helper) throw Stopped();
@@ -49,7 +50,10 @@ CSPACE_COLD inline void poll_interrupts() {
     if (begin < interrupts::next_check) return;
     check();
     const auto end = interrupts::Clock::now();
-    interrupts::next_check = end + std::clamp(least_share * (end - begin), period, longest);
+    auto& period = interrupts::period;
+    period = least_share * (end - begin) > period ? std::min(2 * period, longest)
+                                                  : std::max(period / 2, interrupts::least_period);
+    interrupts::next_check = end + period;
 }
 
 // Polls in a loop: every so many steps, which take some ten microseconds.

@@ -144,14 +144,18 @@ class Diagram {
     }
     void trace_branches() {
         std::vector<std::uint8_t> passed(cells_.size());
-        for (std::uint32_t k = 0; k < cells_.size(); ++k)
+        visit_range(0, cells_.size(), [&](std::size_t i) {
+            const std::uint32_t k = std::uint32_t(i);
             if (degree(k) != 2)
                 for (const std::uint32_t b : beside_[k])
                     if (b != none && (degree(b) != 2 ? k < b : !passed[b])) trace_branch(k, b, passed);
-        for (std::uint32_t k = 0; k < cells_.size(); ++k)
+        });
+        visit_range(0, cells_.size(), [&](std::size_t i) {
+            const std::uint32_t k = std::uint32_t(i);
             if (degree(k) == 2 && !passed[k])
                 for (const std::uint32_t b : beside_[k])
                     if (b != none && !passed[b]) trace_branch(k, b, passed);
+        });
     }
     void trace_branch(std::uint32_t from, std::uint32_t to, std::vector<std::uint8_t>& passed) {
         const auto height = [&](std::uint32_t k) { return clearance_.squared[cells_[k]]; };

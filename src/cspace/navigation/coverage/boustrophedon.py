@@ -121,6 +121,6 @@ def count_half_width(grid: Any, width: float | None) -> int:
 def find_corners(cells: npt.NDArray[np.int32]) -> Array:
     """The cells (n, 2) at which a path turns, including both ends."""
     moves = np.diff(cells, axis=0)
-    turns = np.flatnonzero((moves[1:] != moves[:-1]).any(axis=1)) + 1
-    kept = np.unique([0, *turns.tolist(), len(cells) - 1])
-    return np.asarray(cells[kept], dtype=np.float64)
+    turns = np.ones(len(cells), np.bool_)
+    turns[1:-1] = (moves[1:] != moves[:-1]).any(axis=1)
+    return np.asarray(cells[turns], dtype=np.float64)
