@@ -174,7 +174,7 @@ def coverage() -> Call:
 
 @call
 def hybrid_a_star() -> Call:
-    world, start, goal = grid(600, 0.01)
+    world = grid(600, 0.01)[0]
     car = cs.navigation.Car(length=0.8, width=0.4, wheelbase=0.5, rear=0.1)
     ends = [(5.5, 1.5, 0.0), (590.5, 598.5, 0.0)]
     return lambda: cs.navigation.hybrid_a_star(world, *ends, vehicle=car)
