@@ -91,7 +91,7 @@ struct Bent {
         }
         return true;
     }
-    double moved(double x, double step) const { return x + step; }
+    double add_step(double x, double step) const { return x + step; }
 };
 
 Bent random_bent(Random& random, bool deficient, double offset) {

@@ -100,7 +100,7 @@ inline Solutions solve_both_ways(const Arm& arm, const Posed& goal, const double
 
 // By the closed form at perturbed goals near this one, if they leave the virtual joints in place.
 inline bool search_perturbed_goals_in_form(const Plan& plan, const Posed& goal, Solutions& out) {
-    const auto propose = [&](const Posed& beside, const auto& add_candidate) {
+    const auto list_solutions = [&](const Posed& beside, const auto& add_candidate) {
         const Branches<double> b = solve_closed_form(plan, goal_in_form(plan, beside), care_of(plan));
         for (int k = 0; k < max_branches; ++k) {
             if (!b.ok[k]) continue;
@@ -110,7 +110,7 @@ inline bool search_perturbed_goals_in_form(const Plan& plan, const Posed& goal, 
             add_candidate(q);
         }
     };
-    return search_perturbed_goals(plan.chain, goal, plan.form.length, propose, out);
+    return search_perturbed_goals(plan.chain, goal, plan.form.length, list_solutions, out);
 }
 
 // Arms that can place their tip in every orientation need no reach test.

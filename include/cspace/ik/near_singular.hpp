@@ -19,6 +19,15 @@ inline void classify_solutions(Solutions& out) {
         if (out.self_motion[k]) out.status = Status::singular;
 }
 
+// Appends a configuration, as no member of a self-motion; returns its row.
+inline int append_solution(const Chain& chain, const double* q, int branch, Solutions& out) {
+    const int n = out.count++;
+    for (int i = 0; i < chain.n; ++i) out.q[n][i] = wrap_joint(chain, i, q[i]);
+    out.branch[n] = static_cast<signed char>(branch);
+    out.self_motion[n] = false;
+    return n;
+}
+
 // The largest joint difference between two configurations, angles by the shorter way; of those farther apart
 // than `enough` the first that is. Prismatic joints far from zero are known only to a relative accuracy.
 inline double joint_distance(const Chain& chain, const double* a, const double* b, double enough = 1e300) {
@@ -78,9 +87,7 @@ CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed
         if (gap < tolerance::same_solution) return;
         if (are_one(chain, goal, length, out.q[k], q, gap, near, size)) return;
     }
-    const int n = out.count++;
-    for (int i = 0; i < chain.n; ++i) out.q[n][i] = wrap_joint(chain, i, q[i]);
-    out.branch[n] = static_cast<signed char>(branch);
+    const int n = append_solution(chain, q, branch, out);
     out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
 }
 
@@ -278,17 +285,17 @@ inline void descend_to_solution(const Chain& chain, const Posed& goal, double le
         accept_solution(out, chain, goal, length, q, out.count, 2);
 }
 
-// propose(goal, add_candidate) calls add_candidate(q) for every solution of a goal, as a configuration of the
-// chain. Returns whether a new solution was found.
-template <class Propose>
+// list_solutions(goal, add_candidate) calls add_candidate(q) for every solution of a goal, as a configuration
+// of the chain. Returns whether a new solution was found.
+template <class ListSolutions>
 inline bool search_perturbed_goals(const Chain& chain, const Posed& goal, double length,
-                                   const Propose& propose, Solutions& out) {
+                                   const ListSolutions& list_solutions, Solutions& out) {
     constexpr int most_steps = 40;
     const int before = out.count;
     const auto add_candidate = [&](double* q) {
         descend_to_solution(chain, goal, length, q, most_steps, out);
     };
-    for (int k = 0; k < perturbed_goals; ++k) propose(perturbed_goal(goal, length, k), add_candidate);
+    for (int k = 0; k < perturbed_goals; ++k) list_solutions(perturbed_goal(goal, length, k), add_candidate);
     classify_solutions(out);
     return out.count > before;
 }

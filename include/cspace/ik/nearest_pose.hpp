@@ -51,7 +51,7 @@ struct NearestPoseProblem {
         }
         return true;
     }
-    double moved(double q, double step) const { return q + step; }
+    double add_step(double q, double step) const { return q + step; }
 };
 
 // Descends from q to a local minimum of the cost; `error` belongs to q on return.

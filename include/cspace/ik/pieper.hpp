@@ -75,13 +75,34 @@ CSPACE_INLINE Vec3<V> behind_joint_two(const ThreeJoints& g, const Turn<V>& t3) 
     return {x + g.a2, g.ca2 * y - g.sa2 * g.w.z, g.sa2 * y + (g.ca2 * g.w.z + g.d2)};
 }
 
+// Half the square of the distance of w from joint 2, as a function of t3.
+inline LinearInTurn half_square_behind(const ThreeJoints& g) {
+    return {0.5 * (g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w)) + g.d2 * g.ca2 * g.w.z,
+            g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y, g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y};
+}
+
+// The triples of one elbow and its two lifts; pan_of(t2) gives the bearing t1.
+template <class V, class PanOf>
+CSPACE_INLINE void add_lifts(const TwoAngles<V>& elbow, int i, const TwoAngles<V>& lift, Triples<V>& out,
+                             const PanOf& pan_of) {
+    out.doubt = out.doubt || (elbow.ok && lift.doubt);
+    for (int j = 0; j < 2; ++j) {
+        const Aligned<V> pan = pan_of(lift.root[j]);
+        const int n = 2 * i + j;
+        out.t1[n] = pan.t;
+        out.t2[n] = lift.root[j];
+        out.t3[n] = elbow.root[i];
+        out.ok[n] = elbow.ok && lift.ok;
+        out.doubt = out.doubt || (out.ok[n] && pan.doubt);
+    }
+}
+
 // Axes 1 and 2 intersect: the distance of p from their intersection determines t3, its height along axis 1
 // t2, its bearing t1.
 template <class V>
 CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
-    const double a = g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y, b = g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y;
-    const double fixed = 0.5 * (g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w)) + g.d2 * g.ca2 * g.w.z;
+    const auto [fixed, a, b] = half_square_behind(g);
     const TwoAngles<V> elbow = linear_equation<V>(fill<V>(a), fill<V>(b), 0.5 * dot(p, p) - fixed,
                                                   std::hypot(a, b), care, care.unconstrained[2]);
     out.doubt = elbow.doubt;
@@ -89,18 +110,10 @@ CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, cons
         const Vec3<V> v = behind_joint_two(g, elbow.root[i]);
         const TwoAngles<V> lift = linear_equation<V>(g.sa1 * v.y, g.sa1 * v.x, p.z - g.ca1 * v.z, g.length,
                                                      care, care.unconstrained[1]);
-        out.doubt = out.doubt || (elbow.ok && lift.doubt);
-        for (int j = 0; j < 2; ++j) {
-            const Turn<V>& t2 = lift.root[j];
+        add_lifts(elbow, i, lift, out, [&](const Turn<V>& t2) {
             const V x = t2.c * v.x - t2.s * v.y, y = g.ca1 * (t2.s * v.x + t2.c * v.y) - g.sa1 * v.z;
-            const Aligned<V> pan = align(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
-            const int n = 2 * i + j;
-            out.t1[n] = pan.t;
-            out.t2[n] = t2;
-            out.t3[n] = elbow.root[i];
-            out.ok[n] = elbow.ok && lift.ok;
-            out.doubt = out.doubt || (out.ok[n] && pan.doubt);
-        }
+            return align(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
+        });
     }
     return out;
 }
@@ -150,18 +163,10 @@ CSPACE_INLINE Triples<V> first_parallel(const ThreeJoints& g, const Vec3<V>& p, 
         const Vec3<V> v = behind_joint_two(g, elbow.root[i]);
         const V r = (p.x * p.x + p.y * p.y - (v.x * v.x + v.y * v.y) - g.a1 * g.a1) * (0.5 / g.a1);
         const TwoAngles<V> lift = linear_equation<V>(v.x, -v.y, r, g.length, care, care.unconstrained[1]);
-        out.doubt = out.doubt || (elbow.ok && lift.doubt);
-        for (int j = 0; j < 2; ++j) {
-            const Turn<V>& t2 = lift.root[j];
-            const Aligned<V> pan = align(t2.c * v.x - t2.s * v.y + g.a1, t2.s * v.x + t2.c * v.y, p.x, p.y,
-                                         g.length, care, care.unconstrained[0]);
-            const int n = 2 * i + j;
-            out.t1[n] = pan.t;
-            out.t2[n] = t2;
-            out.t3[n] = elbow.root[i];
-            out.ok[n] = elbow.ok && lift.ok;
-            out.doubt = out.doubt || (out.ok[n] && pan.doubt);
-        }
+        add_lifts(elbow, i, lift, out, [&](const Turn<V>& t2) {
+            return align(t2.c * v.x - t2.s * v.y + g.a1, t2.s * v.x + t2.c * v.y, p.x, p.y, g.length, care,
+                         care.unconstrained[0]);
+        });
     }
     return out;
 }

@@ -111,7 +111,8 @@ CSPACE_INLINE Branches<V> finish_with_wrist(const SphericalWrist& arm, const Tri
 
 // goal: in the base frame of the form, up to its tool frame.
 template <FirstThree kind, class V>
-CSPACE_INLINE Branches<V> solve(const SphericalWrist& arm, const Pose<V>& goal, const Care& care) {
+CSPACE_INLINE Branches<V> solve_spherical_wrist(const SphericalWrist& arm, const Pose<V>& goal,
+                                                const Care& care) {
     return finish_with_wrist(arm, place_wrist<kind>(arm.first, goal.t, care), goal.R, care);
 }
 

@@ -55,12 +55,19 @@ CSPACE_INLINE void finish_in_plane(const ThreeParallel& arm, const Turn<V>& t234
     }
 }
 
+// The height of p over the plane of the three joints determines t1: s1 px − c1 py = k.
 template <class V>
-CSPACE_INLINE Branches<V> solve(const ThreeParallel& arm, const Pose<V>& goal, const Care& care) {
+CSPACE_INLINE TwoAngles<V> shoulder_angles(const ThreeParallel& arm, const Vec3<V>& p, const Care& care) {
+    const V k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
+    return linear_equation<V>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
+}
+
+template <class V>
+CSPACE_INLINE Branches<V> solve_three_parallel(const ThreeParallel& arm, const Pose<V>& goal,
+                                               const Care& care) {
     Branches<V> out;
     const Vec3<V>& p = goal.t;
-    const V k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
-    const TwoAngles<V> shoulder = linear_equation<V>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
+    const TwoAngles<V> shoulder = shoulder_angles(arm, p, care);
     out.doubt = shoulder.doubt;
     for (int i = 0; i < 2; ++i) {
         const Turn<V>& t1 = shoulder.root[i];
@@ -92,9 +99,7 @@ CSPACE_INLINE Branches<V> solve(const ThreeParallel& arm, const Pose<V>& goal, c
 // elbow.
 CSPACE_INLINE Abreast solve_abreast(const ThreeParallel& arm, const Posed& goal, const Care& care) {
     const Vec3d& p = goal.t;
-    const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
-    const TwoAngles<double> shoulder =
-        linear_equation<double>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
+    const TwoAngles<double> shoulder = shoulder_angles(arm, p, care);
     const Turn<double> each[4] = {shoulder.root[0], shoulder.root[0], shoulder.root[1], shoulder.root[1]};
     const Turn<Four> t1 = side_by_side(each);
     const Mat3<Four> R = fill33<Four>(goal.R);
@@ -162,9 +167,7 @@ inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, do
     constexpr double merged = 1e-4;  // [rad] both solutions of a double root give the same sums
     FreeSums out;
     const Vec3d& p = goal.t;
-    const double k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
-    const TwoAngles<double> shoulder =
-        linear_equation<double>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
+    const TwoAngles<double> shoulder = shoulder_angles(arm, p, care);
     const Turn<double>& t1 = shoulder.root[i];
     const bool is_same = i == 1 && std::fabs(angle_of(t1 - shoulder.root[0])) < merged;
     const Vec3d z = undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2));

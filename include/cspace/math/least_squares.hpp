@@ -65,7 +65,7 @@ CSPACE_INLINE void damped_step(int m, int n, const V (&J)[rows][columns], const 
 //   evaluate(x, at)          the error at x, and in `at` what the model needs;
 //   model(x, at, A, down)   the upper triangle of the Hessian of the squared error, or of JᵀJ, and the
 //                           negative gradient; false at a stationary point;
-//   moved(value, step)      one unknown after a step.
+//   add_step(value, step)      one unknown after a step.
 // A Rule has the damping of the next step, accept(error) and reject(), which change it; `enough`, an error;
 // `slack`, the part by which rounding may raise an error; `shortest` and `stride`, lengths of a step; and
 // `floor`, which the pivots of a definite A exceed, over its largest entry.
@@ -89,7 +89,7 @@ double descend_damped(const Problem& problem, Unknown* x, Place& at, Rule rule, 
         const double largest = largest_of(step, n), keep = shortening(largest, rule.stride);
         Unknown to[size];
         Place there;
-        for (int i = 0; i < n; ++i) to[i] = problem.moved(x[i], keep * step[i]);
+        for (int i = 0; i < n; ++i) to[i] = problem.add_step(x[i], keep * step[i]);
         const double left = problem.evaluate(to, there);
         if (left < error * (1 + rule.slack)) {
             for (int i = 0; i < n; ++i) x[i] = to[i];

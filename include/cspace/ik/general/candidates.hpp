@@ -97,11 +97,7 @@ inline void admit_polished(Solutions& out, const GeneralPlan& plan, const Posed&
         if (there <= here) return;
         drop_row(out, k);
     }
-    if (out.count == max_solutions) return;
-    const int n = out.count++;
-    for (int i = 0; i < 6; ++i) out.q[n][i] = wrap_joint(chain, i, q[i]);
-    out.branch[n] = static_cast<signed char>(n);
-    out.self_motion[n] = false;
+    if (out.count < max_solutions) append_solution(chain, q, out.count, out);
 }
 
 // Second derivative of the error below which a valley is straight: differences of errors leave some 1e-9.

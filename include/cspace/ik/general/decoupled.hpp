@@ -71,7 +71,7 @@ inline bool is_regular(const ThreeTurns& turns) {
     return turns.a * turns.a + turns.b * turns.b > least;
 }
 
-inline TurnedTwice solve(const ThreeTurns& turns, const Mat3d& G) {
+inline TurnedTwice solve_three_turns(const ThreeTurns& turns, const Mat3d& G) {
     constexpr double slack = 1e-9;  // a double solution may be lost by its square root
     TurnedTwice out;
 
@@ -127,7 +127,7 @@ inline PositionFirst position_first(const Chain& six) {
     return out;
 }
 
-inline PlacedAndTurned solve(const PositionFirst& plan, const Posed& goal_of_six) {
+inline PlacedAndTurned solve_position_first(const PositionFirst& plan, const Posed& goal_of_six) {
     constexpr double merging = 1e-6;
     PlacedAndTurned out;
     const Posed goal = plan.backwards ? inverse(goal_of_six) : goal_of_six;
@@ -135,7 +135,7 @@ inline PlacedAndTurned solve(const PositionFirst& plan, const Posed& goal_of_six
     for (int k = 0; k < placed.count; ++k) {
         Mat3d G = goal.R * transpose(plan.arm.tip.R);
         for (int i = 0; i < 3; ++i) G = transpose(joint_motion(plan.first, i, placed.q[k][i]).R) * G;
-        const TurnedTwice turned = solve(plan.wrist, G);
+        const TurnedTwice turned = solve_three_turns(plan.wrist, G);
         const bool close = placed.close[k] || turned.inside < merging;
         out.doubt = out.doubt || close;
         for (int j = 0; j < turned.count; ++j, ++out.count) {
@@ -182,7 +182,7 @@ inline bool solve_slides(const Chain& chain, const OrientationFirst& arm, const 
 }
 
 inline TwoOrientations two_orientations(const Chain& chain, const OrientationFirst& arm, const Posed& goal) {
-    const TurnedTwice turned = solve(arm.turns, goal.R * transpose(chain.tip.R));
+    const TurnedTwice turned = solve_three_turns(arm.turns, goal.R * transpose(chain.tip.R));
     TwoOrientations out;
     out.inside = turned.inside;
     out.volume = 1;

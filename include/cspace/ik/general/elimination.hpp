@@ -61,7 +61,7 @@ inline Invariants operator*(double s, const Invariants& a) {
 }
 inline Invariants operator-(const Invariants& a, const Invariants& b) { return a + -1.0 * b; }
 
-inline Invariants moved(const Posed& T, const Invariants& v) {
+inline Invariants move_invariants(const Posed& T, const Invariants& v) {
     const Vec3d &t = T.t, l = T.R * v.l, p = T.R * v.p, m = T.R * v.m, q = T.R * v.q;
     const double tt = dot(t, t), tl = dot(t, l);
     return {l,
@@ -72,7 +72,7 @@ inline Invariants moved(const Posed& T, const Invariants& v) {
             v.pl + tl,
             v.one};
 }
-// The functional v ↦ g(moved(T, v)) for the functional g, given and returned by its coefficients.
+// The functional v ↦ g(move_invariants(T, v)) for the functional g, given and returned by its coefficients.
 inline Invariants pulled_back(const Posed& T, const Invariants& g) {
     const Vec3d& t = T.t;
     const double tt = dot(t, t), qt = dot(g.q, t);
@@ -205,13 +205,13 @@ inline double find_annihilator(Complex (&A)[4][3], Complex (&n)[4]) {
 
 // The six equations as functionals of the left side's invariants behind M5.
 inline void right_side(const Loop& loop, Elimination& e, Invariants (&g)[6]) {
-    const Invariants behind = moved(inverse(loop.M[3]), axis_invariants());
+    const Invariants behind = move_invariants(inverse(loop.M[3]), axis_invariants());
     const Posed M4 = inverse(loop.M[4]);
     // Rz(−a4): the sine counts backwards; Tz(−a4): so does the slide.
     const bool slides = loop.slides[4];
-    const Invariants part[3] = {moved(M4, slides ? twice(behind) : across(behind)),
-                                moved(M4, -1.0 * (slides ? once(behind) : quarter(behind))),
-                                moved(M4, slides ? behind : level(behind))};
+    const Invariants part[3] = {move_invariants(M4, slides ? twice(behind) : across(behind)),
+                                move_invariants(M4, -1.0 * (slides ? once(behind) : quarter(behind))),
+                                move_invariants(M4, slides ? behind : level(behind))};
     Complex W[4][3];
     for (int j = 0; j < 3; ++j) {
         const Invariants& w = part[j];
@@ -261,11 +261,11 @@ inline void left_side(const Loop& loop, Invariants (&B)[9]) {
         out[2] = up + side;
     };
     Invariants by_a2[3];
-    monomials(moved(loop.M[2], axis_invariants()), loop.slides[2], by_a2);
+    monomials(move_invariants(loop.M[2], axis_invariants()), loop.slides[2], by_a2);
     for (int k = 0; k < 3; ++k) {
         Invariants by_a1[3];
-        monomials(moved(M1, by_a2[k]), loop.slides[1], by_a1);
-        for (int i = 0; i < 3; ++i) B[3 * i + k] = moved(M0, by_a1[i]);
+        monomials(move_invariants(M1, by_a2[k]), loop.slides[1], by_a1);
+        for (int i = 0; i < 3; ++i) B[3 * i + k] = move_invariants(M0, by_a1[i]);
     }
 }
 

@@ -176,7 +176,7 @@ inline bool serves_in_some_order(GeneralPlan& plan) {
 
 // By the wrist that the arm has. Where solutions merge or joints are free its list may be short.
 inline void solve_with_wrist(const GeneralArm& arm, const Posed& goal, Solutions& out) {
-    const PlacedAndTurned found = solve(arm.position_first, goal);
+    const PlacedAndTurned found = solve_position_first(arm.position_first, goal);
     Candidates start;
     for (int k = 0; k < found.count; ++k) append_candidate(start, found.q[k], found.close[k]);
     admit_candidates(arm.plan, goal, 0, start, out);

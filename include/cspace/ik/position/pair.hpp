@@ -132,6 +132,9 @@ inline void on_every_curve(const OnCurve& f, const OnCurve& g, PairCandidates& f
 
 namespace pair {
 
+inline void add_swapped(const PairCandidates& swapped, PairCandidates& found) {
+    for (int i = 0; i < swapped.count; ++i) add(found, swapped.last[i], swapped.first[i]);
+}
 // For a given value of one joint, the other from each condition that depends on it.
 inline void follow_last(const OnCurve f[2], const OnCurve g[2], double first, PairCandidates& found) {
     for (int i = 0; i < 2; ++i) {
@@ -143,7 +146,7 @@ inline void follow_last(const OnCurve f[2], const OnCurve g[2], double first, Pa
 inline void follow_first(const OnCurve f[2], const OnCurve g[2], double last, PairCandidates& found) {
     PairCandidates swapped;
     follow_last(g, f, last, swapped);
-    for (int i = 0; i < swapped.count; ++i) add(found, swapped.last[i], swapped.first[i]);
+    add_swapped(swapped, found);
 }
 
 inline void two_circles(const OnCurve f[2], const OnCurve g[2], PairCandidates& found) {
@@ -213,7 +216,7 @@ inline PairCandidates solve_pair(const OnCurve f[2], const OnCurve g[2]) {
     } else if (!g[0].line) {
         PairCandidates swapped;
         circle_and_line(g, f, swapped);
-        for (int i = 0; i < swapped.count; ++i) add(found, swapped.last[i], swapped.first[i]);
+        add_swapped(swapped, found);
     } else {
         two_lines(f, g, found);
     }

@@ -59,16 +59,16 @@ struct Search {
     FewJointSolutions& found;
 
     // q in units of the chain; refined in units of its size.
-    void propose(const double* q) {
+    void add_candidate(const double* q) {
         double scaled[n];
         for (int i = 0; i < n; ++i) scaled[i] = chain.prismatic[i] ? q[i] / size : q[i];
         if (refine_angles(gap, scaled) > gap.reached) return;
         Linearised<PoseGap<n>> at;
-        if (linearise(gap, scaled, at) > gap.reached || opposed(scaled)) return;
+        if (linearise(gap, scaled, at) > gap.reached || is_opposed(scaled)) return;
         keep_distinct(gap, scaled, found);
     }
     // Half a turn away from the goal the sum of g × r vanishes too.
-    bool opposed(const double* scaled) const {
+    bool is_opposed(const double* scaled) const {
         double q[n];
         for (int i = 0; i < n; ++i) q[i] = chain.prismatic[i] ? scaled[i] * size : scaled[i];
         return spatial::angle_between(forward(chain, q).R, goal.R) > 1;
@@ -84,7 +84,7 @@ void by_slides(Search<n>& search, const Posed& G) {
     for (int i = 0; i < n; ++i) q[i] = search.chain.prismatic[i] ? q[i] / search.size : q[i];
     nearest::slide(search.gap.tip, q);
     for (int i = 0; i < n; ++i) q[i] = search.chain.prismatic[i] ? q[i] * search.size : q[i];
-    search.propose(q);
+    search.add_candidate(q);
 }
 
 // The last joint is revolute: the others move points of its axis to their goals.
@@ -106,13 +106,13 @@ void by_last_axis(const Chain& chain, const Posed& G, double size, bool backward
             q[n - 1] = angle_about(h, rest.R);
             double forwards[n];
             for (int i = 0; i < n; ++i) forwards[i] = q[backwards ? n - 1 - i : i];
-            search.propose(forwards);
+            search.add_candidate(forwards);
         }
     }
 }
 
 template <int n>
-void solve(const Chain& chain, const Posed& T, FewJointSolutions& found) {
+void find_solutions(const Chain& chain, const Posed& T, FewJointSolutions& found) {
     const PositionScale scale = position_scale(chain, T.t);
     PoseGap<n> gap{tip_gap<n>(chain, T.t, scale), chain.tip.R, T.R, {}, scale.reached};
     for (int i = 0; i < n; ++i) gap.prismatic[i] = chain.prismatic[i];
@@ -143,9 +143,9 @@ void solve(const Chain& chain, const Posed& T, FewJointSolutions& found) {
 // Moves the tip of the chain (n ≤ 3) to T, in base coordinates.
 inline FewJointSolutions solve_few_joint_pose(const Chain& chain, const Posed& T) {
     FewJointSolutions found;
-    if (chain.n == 1) few_joint_pose::solve<1>(chain, T, found);
-    if (chain.n == 2) few_joint_pose::solve<2>(chain, T, found);
-    if (chain.n == 3) few_joint_pose::solve<3>(chain, T, found);
+    if (chain.n == 1) few_joint_pose::find_solutions<1>(chain, T, found);
+    if (chain.n == 2) few_joint_pose::find_solutions<2>(chain, T, found);
+    if (chain.n == 3) few_joint_pose::find_solutions<3>(chain, T, found);
     return found;
 }
 

@@ -33,15 +33,15 @@ Curve tip_curve(const TipGap<n>& g, int joint, const Vec3d& x, double direction)
 
 // Refines a candidate and appends it if it reaches the goal.
 template <int n>
-void propose(const TipGap<n>& g, double* q, PositionSolutions& found) {
+void keep_refined(const TipGap<n>& g, double* q, PositionSolutions& found) {
     if (refine_angles(g, q) <= g.reached) keep_distinct(g, q, found);
 }
 
-inline void candidates(const TipGap<1>& g, PositionSolutions& found) {
+inline void add_candidates(const TipGap<1>& g, PositionSolutions& found) {
     double q[1] = {joint_between(g, 0, g.tip, g.goal)};
-    propose(g, q, found);
+    keep_refined(g, q, found);
 }
-inline void candidates(const TipGap<2>& g, PositionSolutions& found) {
+inline void add_candidates(const TipGap<2>& g, PositionSolutions& found) {
     const Curve curve = tip_curve(g, 1, g.tip, 1);
     const Curve goal = {true, g.goal, {0, 0, 0}, {0, 0, 0}};
     OnCurve f[2], target[2];
@@ -49,7 +49,7 @@ inline void candidates(const TipGap<2>& g, PositionSolutions& found) {
     invariants(g, 0, goal, target);
     const auto complete = [&](double last) {
         double q[2] = {joint_between(g, 0, at(curve, last), g.goal), last};
-        propose(g, q, found);
+        keep_refined(g, q, found);
     };
     bool unconstrained = true;
     for (int i = 0; i < 2; ++i) {
@@ -79,7 +79,7 @@ inline bool free_the_middle(const TipGap<3>& g, const Vec3d& behind, const Vec3d
     }
     return true;
 }
-inline void candidates(const TipGap<3>& g, PositionSolutions& found) {
+inline void add_candidates(const TipGap<3>& g, PositionSolutions& found) {
     const Curve behind = tip_curve(g, 2, g.tip, 1), before = tip_curve(g, 0, g.goal, -1);
     OnCurve f[2], h[2];
     invariants(g, 1, before, f);
@@ -97,17 +97,17 @@ inline void candidates(const TipGap<3>& g, PositionSolutions& found) {
             if (i == pairs.on_axis && !free_the_middle(g, from, to, q)) continue;
             Linearised<TipGap<3>> start;
             const bool sure = linearise(g, q, start) < tolerance::sure_candidate;
-            if (stage >= 2 || sure == (stage == 0)) propose(g, q, found);
+            if (stage >= 2 || sure == (stage == 0)) keep_refined(g, q, found);
         }
     }
 }
 
 template <int n>
-void solve(const Chain& chain, const Vec3d& goal, bool measure_miss, PositionSolutions& found) {
+void find_solutions(const Chain& chain, const Vec3d& goal, bool measure_miss, PositionSolutions& found) {
     const PositionScale scale = position_scale(chain, goal);
     const double size = scale.size;
     const TipGap<n> g = tip_gap<n>(chain, goal, scale);
-    candidates(g, found);
+    add_candidates(g, found);
     if (found.count == 0 && measure_miss) found.out_of_reach = size * nearest_configuration(g, found.nearest);
     for (int i = 0; i < n; ++i) {
         if (!g.prismatic[i]) continue;
@@ -123,9 +123,9 @@ void solve(const Chain& chain, const Vec3d& goal, bool measure_miss, PositionSol
 // is computed on request only, because that search costs fifty times the solution.
 inline PositionSolutions solve_position(const Chain& chain, const Vec3d& p, bool measure_miss = true) {
     PositionSolutions found;
-    if (chain.n == 1) position::solve<1>(chain, p, measure_miss, found);
-    if (chain.n == 2) position::solve<2>(chain, p, measure_miss, found);
-    if (chain.n == 3) position::solve<3>(chain, p, measure_miss, found);
+    if (chain.n == 1) position::find_solutions<1>(chain, p, measure_miss, found);
+    if (chain.n == 2) position::find_solutions<2>(chain, p, measure_miss, found);
+    if (chain.n == 3) position::find_solutions<3>(chain, p, measure_miss, found);
     return found;
 }
 

@@ -89,7 +89,7 @@ double joint_between(const TipGap<n>& g, int joint, const Vec3d& from, const Vec
 }
 // x moved by joint i, or by its inverse for −q.
 template <int n>
-Vec3d moved(const TipGap<n>& g, int i, double q, const Vec3d& x) {
+Vec3d move_point(const TipGap<n>& g, int i, double q, const Vec3d& x) {
     if (g.prismatic[i]) return x + q * g.axis[i];
     return g.point[i] + rotate(g.axis[i], turn_by(q), x - g.point[i]);
 }
@@ -124,7 +124,7 @@ double follow(const TipGap<n>& g, int dimension, double* q) {
     if (slides)
         slide(g, q);
     else if (n == 3 && dimension == 2)
-        q[1] = joint_between(g, 1, moved(g, 2, q[2], g.tip), moved(g, 0, -q[0], g.goal));
+        q[1] = joint_between(g, 1, move_point(g, 2, q[2], g.tip), move_point(g, 0, -q[0], g.goal));
     Linearised<TipGap<n>> at;
     return linearise(g, q, at);
 }

@@ -195,8 +195,7 @@ struct Rooms {
 };
 template <class V>
 CSPACE_INLINE Rooms<V> rooms_of(const ThreeJoints& g, const Vec3<V>& p) {
-    const double a = g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y, b = g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y;
-    const double fixed = 0.5 * (g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w)) + g.d2 * g.ca2 * g.w.z;
+    const auto [fixed, a, b] = half_square_behind(g);
     const double n2 = a * a + b * b;
     const V r = 0.5 * dot(p, p) - fixed;
     const V room = n2 - r * r;

@@ -128,11 +128,8 @@ inline void add_self_motion(const Chain& chain, const TipConstraint& constraint,
     out.complete = out.complete && (met || (whole && out.count < room));
     if (met || out.count >= room) return;
     const bool crosses = is_crossing(chain, constraint, r.q);
-    const double* const member = crosses ? q : r.q;
-    const int n = out.count++;
-    for (int i = 0; i < chain.n; ++i) out.q[n][i] = wrap_joint(chain, i, member[i]);
+    const int n = append_solution(chain, crosses ? q : r.q, max_branches + out.count, out);
     in_lengths(chain, 1 / constraint.length, crosses ? direction : r.direction, out.direction[n]);
-    out.branch[n] = static_cast<signed char>(max_branches + n);
     out.self_motion[n] = true;
 }
 

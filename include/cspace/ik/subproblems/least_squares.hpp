@@ -62,7 +62,7 @@ struct AngleProblem {
         return normal_equations(at, A, down) > 0;
     }
     template <class Unknown>
-    Unknown moved(const Unknown& t, double step) const {
+    Unknown add_step(const Unknown& t, double step) const {
         return step_angles(t, step);
     }
 };
