@@ -116,9 +116,7 @@ std::pair<double, Point> PolygonCore::nearest_wall(Point p) const {
     const Boundary& walls = state_->world.walls;
     std::pair<double, Point> best{std::numeric_limits<double>::infinity(), {}};
     for (Index e = 0; e < Index(walls.size()); ++e) {
-        const Point a = walls.begin(e), along = walls.end(e) - a;
-        const double t = std::clamp(dot(p - a, along) / squared_norm(along), 0.0, 1.0);
-        const Point foot = a + t * along;
+        const Point foot = nearest_on(walls.begin(e), walls.end(e), p);
         if (const double d = distance(p, foot); d < best.first) best = {d, foot};
     }
     return best;

@@ -49,7 +49,7 @@ TEST(exact_and_bounded_searches_keep_to_the_shortest_way) {
         for (const bool is_greedy : {false, true})
             for (const double most : {1.0, weight}) {
                 GridAnswer answer;
-                const PotentialOrder order{gain,     random.uniform(0.1, 4), 100, random.uniform(0, 3), most,
+                const PotentialGains order{gain,     random.uniform(0.1, 4), 100, random.uniform(0, 3), most,
                                            is_greedy};
                 find_by_potential(grid, clearance, order, corners, start, goal, answer);
                 CHECK(answer.found == shortest.found);

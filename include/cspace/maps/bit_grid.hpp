@@ -107,7 +107,6 @@ class BitGrid {
     const std::uint64_t* row(int k) const { return by_row_.line(k + 1); }
     const std::uint64_t* column(int k) const { return by_column_.line(k + 1); }
     std::size_t row_words() const { return by_row_.words(); }
-    std::size_t column_words() const { return by_column_.words(); }
 
     // The cell and the eight around it: bit 3 · (1 + rows above it) + 1 + columns right of it, set where
     // blocked.

@@ -206,11 +206,9 @@ inline void find_components(FreeSpace& space) {
 // The triangulation of outlines, or false as `complete` where bending them to their crossings would not end.
 inline FreeSpace triangulate_outlines(const Outlines& world) {
     FreeSpace space;
-    Point low = world.low, high = world.high;
-    for (const Point p : world.points) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
+    Box box{world.low, world.high};
+    for (const Point p : world.points) box.include(p);
+    const auto [low, high] = box;
     const std::size_t n = world.points.size();
     std::vector<std::pair<std::uint32_t, Index>> order(n);
     const double side = std::max(high.x - low.x, high.y - low.y);

@@ -19,6 +19,13 @@ struct GridFrame {
     Point center(Cell c) const {
         return {origin.x + resolution * (c.column + 0.5), origin.y + resolution * (c.row + 0.5)};
     }
+    // The cell in which a point lies, or which is nearest to it.
+    Cell nearest_cell(const BitGrid& grid, Point p) const {
+        const auto index = [&](double at, int count) {
+            return std::clamp(int(std::floor(at / resolution)), 0, count - 1);
+        };
+        return {index(p.y - origin.y, grid.rows()), index(p.x - origin.x, grid.columns())};
+    }
     // The cell of a point. Where it lies on the border of cells it is in each of them,
     // and a free one is preferred.
     CellState locate(const BitGrid& grid, Point p, Cell& cell) const {

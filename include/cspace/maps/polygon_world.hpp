@@ -88,9 +88,7 @@ class PolygonWorld {
         if (settled.is_free()) return settled;
         double nearest = tolerance;
         for (Index e = 0; e < Index(walls.size()); ++e) {
-            const Point a = walls.begin(e), along = walls.end(e) - a;
-            const double t = std::clamp(dot(p - a, along) / squared_norm(along), 0.0, 1.0);
-            const Point foot = a + t * along;
+            const Point a = walls.begin(e), b = walls.end(e), along = b - a, foot = nearest_on(a, b, p);
             if (!(distance(p, foot) < nearest)) continue;
             const double step = tolerance / norm(along);
             const Point inside = foot + step * Point{-along.y, along.x};

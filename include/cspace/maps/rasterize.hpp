@@ -1,6 +1,8 @@
 // Which cells of a raster obstacles reach into.
 #pragma once
 
+#include <span>
+
 #include "cspace/maps/free_space.hpp"
 #include "cspace/math/interrupts.hpp"
 
@@ -11,12 +13,9 @@ namespace detail {
 // Whether the open square of a side at `low` meets the convex polygon: no line along a side of either divides
 // them.
 inline bool reaches_into(const Point* corner, int count, Point low, double side) {
-    double x[2] = {corner[0].x, corner[0].x}, y[2] = {corner[0].y, corner[0].y};
-    for (int i = 1; i < count; ++i) {
-        x[0] = std::min(x[0], corner[i].x), x[1] = std::max(x[1], corner[i].x);
-        y[0] = std::min(y[0], corner[i].y), y[1] = std::max(y[1], corner[i].y);
-    }
-    if (x[1] <= low.x || x[0] >= low.x + side || y[1] <= low.y || y[0] >= low.y + side) return false;
+    const Box box = bounds_of(std::span(corner, std::size_t(count)));
+    if (box.high.x <= low.x || box.low.x >= low.x + side || box.high.y <= low.y || box.low.y >= low.y + side)
+        return false;
     for (int i = 0; i < count; ++i) {
         const Point a = corner[i], b = corner[(i + 1) % count];
         int right = 0, left = 0;
@@ -40,18 +39,14 @@ inline void rasterize(const FreeSpace& space, Point origin, double side, int row
     InterruptPoll poll(256);
     const auto mark = [&](const Point* corner, int count) {
         const double inset = count == 2 ? -slack : slack;
-        double low[2] = {corner[0].x, corner[0].y}, high[2] = {corner[0].x, corner[0].y};
-        for (int i = 1; i < count; ++i) {
-            low[0] = std::min(low[0], corner[i].x), high[0] = std::max(high[0], corner[i].x);
-            low[1] = std::min(low[1], corner[i].y), high[1] = std::max(high[1], corner[i].y);
-        }
+        const auto [low, high] = bounds_of(std::span(corner, std::size_t(count)));
         const auto cell = [&](double offset, int count_of) {
             return int(std::clamp(std::floor(offset / side), -1.0, double(count_of)));
         };
-        const int row_end = std::min(rows - 1, cell(high[1] - origin.y, rows) + 1);
-        const int column_end = std::min(columns - 1, cell(high[0] - origin.x, columns) + 1);
-        for (int row = std::max(0, cell(low[1] - origin.y, rows) - 1); row <= row_end; ++row)
-            for (int column = std::max(0, cell(low[0] - origin.x, columns) - 1); column <= column_end;
+        const int row_end = std::min(rows - 1, cell(high.y - origin.y, rows) + 1);
+        const int column_end = std::min(columns - 1, cell(high.x - origin.x, columns) + 1);
+        for (int row = std::max(0, cell(low.y - origin.y, rows) - 1); row <= row_end; ++row)
+            for (int column = std::max(0, cell(low.x - origin.x, columns) - 1); column <= column_end;
                  ++column) {
                 poll.step();
                 std::uint8_t& cell_of =

@@ -1,6 +1,7 @@
 // Points of the plane.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 namespace cspace {
@@ -18,5 +19,29 @@ constexpr double cross(Point a, Point b) { return a.x * b.y - a.y * b.x; }
 constexpr double squared_norm(Point a) { return dot(a, a); }
 inline double norm(Point a) { return std::sqrt(dot(a, a)); }
 inline double distance(Point a, Point b) { return norm(b - a); }
+
+// The point of the segment from a to b that is nearest to p.
+inline Point nearest_on(Point a, Point b, Point p) {
+    const Point d = b - a;
+    const double squared = squared_norm(d), t = squared > 0 ? dot(p - a, d) / squared : 0;
+    return t <= 0 ? a : t >= 1 ? b : a + t * d;
+}
+
+// A rectangle along the axes.
+struct Box {
+    Point low, high;
+
+    void include(Point p) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
+    }
+};
+// Of at least one point.
+template <class Points>
+Box bounds_of(const Points& points) {
+    Box box{*std::begin(points), *std::begin(points)};
+    for (const Point p : points) box.include(p);
+    return box;
+}
 
 }  // namespace cspace

@@ -2,6 +2,7 @@
 // some planners add to it.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -72,6 +73,13 @@ inline double length_of(const std::vector<Point>& path) {
     double sum = 0;
     for (std::size_t i = 1; i < path.size(); ++i) sum += distance(path[i - 1], path[i]);
     return sum;
+}
+
+// A path was found, and written from the goal to the start.
+inline void finish_reversed(Route& route) {
+    route.status = Status::found;
+    std::reverse(route.path.begin(), route.path.end());
+    route.length = length_of(route.path);
 }
 
 // One thing that a planner did, in the order in which it did them: enough to draw its search again.

@@ -359,7 +359,6 @@ class IntervalSearch {
 
     Route finish(const Node& end) {
         Route route;
-        route.status = Status::found;
         route.stats = stats_;
         const Point r = at(end.root);
         const auto [left, right] = interval(end);
@@ -371,8 +370,7 @@ class IntervalSearch {
         for (Index v = end.root; v != at_start; v = best_[v].before)
             if (!(route.path.back() == at(v))) route.path.push_back(at(v));
         if (!(route.path.back() == start_)) route.path.push_back(start_);
-        std::reverse(route.path.begin(), route.path.end());
-        route.length = length_of(route.path);
+        finish_reversed(route);
         return route;
     }
 };

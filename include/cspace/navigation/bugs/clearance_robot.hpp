@@ -80,19 +80,19 @@ class ClearanceRobot : public RangeRobot {
         pass(a, log);
         pass(b, log);
         for (Index joints = 0; joints <= 2 * s_.size() + 8; ++joints) {
-            const Arc arc = next_arc(a, b, aim);
-            if (arc.cause == Halt::corner) return end_in_corner(arc, a, log, look);
+            Halt cause{};
+            const voronoi::ArcPiece arc = next_arc(a, b, aim, cause);
+            if (arc.cause == voronoi::ArcEnd::corner) return end_in_corner(arc, a, log, look);
             if (slide(arc.curve, arc.begin, arc.end, log, look)) return Halt::told;
-            if (arc.cause == Halt::lost) return Halt::lost;
-            if (arc.cause == Halt::meet) {
-                Point p = arc.curve.at(arc.end);
+            if (arc.cause == voronoi::ArcEnd::lost) return Halt::lost;
+            Point p = arc.curve.at(arc.end);
+            if (arc.cause == voronoi::ArcEnd::vertex) {
                 feet_ = contacts_.around(p, a, b, arc.third);
                 return arrive(p, Halt::meet, log);
             }
-            if (arc.cause != Halt::told) {
-                const Point p = arc.curve.at(arc.end);
+            if (arc.cause == voronoi::ArcEnd::bound) {
                 feet_ = {contacts_.contact(a, p), contacts_.contact(b, p)};
-                return arrive(p, arc.cause, log);
+                return arrive(p, cause, log);
             }
             if (arc.turns_a) pass(a = site_after(s_, a), log);
             if (arc.turns_b) pass(b = site_before(s_, b), log);
@@ -153,14 +153,6 @@ class ClearanceRobot : public RangeRobot {
     voronoi::Contacts contacts_;
     double keeps_, radius_ = 0;
     std::vector<Foot> feet_;
-
-    struct Arc {
-        voronoi::Bisector curve;
-        double begin = 0, end = 0;
-        Halt cause = Halt::told;  // told: a foot goes over to its next site
-        Index third = voronoi::none;
-        bool turns_a = false, turns_b = false;
-    };
 
     Point local(Point p) const { return p - s_.origin; }
     void move_to(Point p) {
@@ -233,54 +225,19 @@ class ClearanceRobot : public RangeRobot {
         return voronoi::retract_along(s_, tree_, s_.size() + e, from, away, s_.rounding());
     }
 
-    // The arc of two sites from here on, and what ends it.
-    Arc next_arc(Index a, Index b, const Aim& aim) const {
-        const Point from = local(at_);
-        Arc arc;
-        arc.curve = voronoi::bisector_of(s_, a, b, from);
-        arc.begin = arc.curve.parameter(from);
-        arc.cause = Halt::lost;
-        arc.end = arc.begin;
-        if (!std::isfinite(arc.begin) || !std::isfinite(squared_norm(arc.curve.p2))) return arc;
-        const double end_a = leaves(arc.curve, arc.begin, forward_gate(s_, a), grain_),
-                     end_b = leaves(arc.curve, arc.begin, backward_gate(s_, b), grain_);
-        double end = std::min({end_a, end_b, arc.begin + 4 * s_.extent});
-        const auto offer = [&](double t, Halt cause) {
-            if (t < end) end = t, arc.cause = cause;
-        };
-        offer(reaches_limit(arc), Halt::limit);
-        if (aim.stops) offer(comes_to(arc, local(aim.goal)), Halt::goal);
-        voronoi::FirstTouch touch(s_, tree_, grain_, arc.curve, a, b, arc.begin, end);
-        touch.find();
-        arc.end = touch.at();
-        arc.third = touch.site();
-        if (arc.third != voronoi::none) {
-            arc.cause = Halt::meet;
-        } else if (arc.cause == Halt::lost) {
-            arc.turns_a = end_a <= arc.end;
-            arc.turns_b = end_b <= arc.end;
-            end_arc(arc, a, b);
-        }
-        return arc;
-    }
-    // Of an arc that nothing else ends than its own sites.
-    void end_arc(Arc& arc, Index a, Index b) const {
-        if (s_.is_edge(a) && s_.is_edge(b) && s_.after(a) == b && s_.turn_at(b) == voronoi::Turn::corner) {
-            arc.cause = Halt::corner;
-            arc.end = arc.curve.parameter(s_.begin(b));
-            return;
-        }
-        const Index corner = arc.turns_a ? voronoi::corner_after(s_, a) : voronoi::none,
-                    other = arc.turns_b ? voronoi::corner_before(s_, b) : voronoi::none;
-        if (corner != voronoi::none || other != voronoi::none) {
-            arc.cause = Halt::meet;
-            arc.third = corner != voronoi::none ? corner : other;
-        } else if (arc.turns_a || arc.turns_b) {
-            arc.cause = Halt::told;
-        }
+    // The arc of two sites from here on, up to where the robot ends it: at the limit or at the goal.
+    voronoi::ArcPiece next_arc(Index a, Index b, const Aim& aim, Halt& cause) const {
+        return voronoi::next_piece(s_, tree_, grain_, a, b, local(at_), [&](const voronoi::ArcPiece& arc) {
+            const double limit = reaches_limit(arc);
+            cause = Halt::limit;
+            if (!aim.stops) return limit;
+            const double goal = comes_to(arc, local(aim.goal));
+            if (goal < limit) cause = Halt::goal;
+            return std::min(limit, goal);
+        });
     }
 
-    double reaches_limit(const Arc& arc) const {
+    double reaches_limit(const voronoi::ArcPiece& arc) const {
         const double far = std::numeric_limits<double>::infinity();
         if (!std::isfinite(keeps_)) return far;
         voronoi::Quadratic over = arc.curve.radius_form;
@@ -293,7 +250,7 @@ class ClearanceRobot : public RangeRobot {
         return first;
     }
     // Where a point is no farther than the walls.
-    static double comes_to(const Arc& arc, Point goal) {
+    static double comes_to(const voronoi::ArcPiece& arc, Point goal) {
         const voronoi::Quadratic gap = arc.curve.against_point(goal);
         double first = std::numeric_limits<double>::infinity();
         const double touching = -gap.c1 / (2 * gap.c2);  // of a goal on a wall, rounding hides the zeros
@@ -308,7 +265,7 @@ class ClearanceRobot : public RangeRobot {
 
     // Up to where the corner is in view.
     template <class Look>
-    Halt end_in_corner(const Arc& arc, Index a, Log& log, Look look) {
+    Halt end_in_corner(const voronoi::ArcPiece& arc, Index a, Log& log, Look look) {
         const Index corner = s_.after(a);
         const double far = distance(local(at_), s_.begin(corner));
         log.corners.push_back(corner_at(corner));

@@ -166,7 +166,7 @@ class ContactRobot {
     }
 
     bool advance(const Line& line, std::vector<Point>& touched) {
-        const Position end = moved(line, at_, place_, touched);
+        const Position end = follow_line(line, at_, place_, touched);
         at_ = end.at;
         place_ = end.place;
         return at_ == line.to;
@@ -193,7 +193,7 @@ class ContactRobot {
     Place place_;
 
     // Where a robot comes to that follows a line from a position on it.
-    Position moved(Line line, Point at, Place place, std::vector<Point>& touched) const {
+    Position follow_line(Line line, Point at, Place place, std::vector<Point>& touched) const {
         if (line.from == at) place = exactly(at, place);
         while (at != line.to) {
             if (place.is_corner()) line.from = at;

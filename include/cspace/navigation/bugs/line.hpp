@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "cspace/math/predicates.hpp"
+#include "cspace/math/crossing.hpp"
 
 namespace cspace::navigation {
 
@@ -24,10 +24,6 @@ struct Touch {
     bool is_place_of(const Touch& other) const {
         return in.name == other.in.name && out.name == other.out.name;
     }
-};
-
-struct Line {
-    Point from, to;
 };
 
 // By how much points computed in a world of this size may be off.
@@ -77,12 +73,6 @@ inline Way way_towards(const Touch& corner, Point target) {
 inline int crossing(const Line& line, const Wall& wall) {
     const int a = side_of(line, wall.begin), b = side_of(line, wall.end);
     return a < 0 && b > 0 ? 1 : a > 0 && b < 0 ? -1 : 0;
-}
-
-inline Point nearest_on(Point a, Point b, Point p) {
-    const Point d = b - a;
-    const double squared = squared_norm(d), t = squared > 0 ? dot(p - a, d) / squared : 0;
-    return t <= 0 ? a : t >= 1 ? b : a + t * d;
 }
 
 // Where a line from → to crosses a wall. Where rounding hides that (they lie almost on each other), the point

@@ -138,7 +138,7 @@ class RangeRobot : public ContactRobot {
     // Where a ray towards a point ends.
     Cast cast(Point target) const {
         touched_.clear();
-        const auto [at, place] = moved({at_, target}, at_, place_, touched_);
+        const auto [at, place] = follow_line({at_, target}, at_, place_, touched_);
         return {at, place, at == target};
     }
 
@@ -159,7 +159,7 @@ class RangeRobot : public ContactRobot {
         seen.push_back({corner, out, passes});
         if (!passes || away >= range_) return;
         touched_.clear();
-        const auto [at, place] = moved({corner, beyond}, corner, ray.place, touched_);
+        const auto [at, place] = follow_line({corner, beyond}, corner, ray.place, touched_);
         if (at != beyond && distance(at_, at) <= range_) seen.push_back({at, walls_->wall(place.in), false});
     }
 

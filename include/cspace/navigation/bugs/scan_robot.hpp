@@ -47,7 +47,7 @@ class ScanRobot : public ContactRobot {
         const double reading = scanner_.read(at_, (1 / far) * (target - at_));
         if (reading < far - ScanFeet::trust * scan_.deviation - tolerance::widening * far) return seen_;
         std::vector<Point> way;
-        const Position end = moved({at_, target}, at_, place_, way);
+        const Position end = follow_line({at_, target}, at_, place_, way);
         if (end.at == target) return seen_ = far;
         tried_.push_back(at_);
         detour_.insert(detour_.end(), way.begin(), way.end());
@@ -66,13 +66,13 @@ class ScanRobot : public ContactRobot {
             if (scan_.least >= keeps_)
                 return moves == 0 ? Halt::open : halt({nearest_foot()}, Halt::limit, log);
             const ScanFeet feet(scanner_, scan_);
-            const std::vector<Near> all = feet.within(scan_.least + feet.tolerance(scan_.least));
+            const std::vector<Near> all = nearest_runs(1);
             if (all.size() > 1) return halt(feet_of(all, 0), Halt::meet, log);
             const int away = ScanFeet::beam_of(-1.0 * all[0].towards);
             const int other = feet.nearest(away - 2 * ScanFeet::apart, away + 2 * ScanFeet::apart);
             const double room = std::min(feet.at(other), keeps_ + scan_.least) - scan_.least;
             if (room <= feet.tolerance(scan_.least)) {
-                const std::vector<Near> both = feet.within(scan_.least + 2 * feet.tolerance(scan_.least));
+                const std::vector<Near> both = nearest_runs(2);
                 if (both.size() > 1) return halt(feet_of(both, 0), Halt::meet, log);
                 return halt(
                     {Foot{next_name_++, all[0].towards}, Foot{next_name_++, scanner_.direction(other)}},
@@ -168,8 +168,7 @@ class ScanRobot : public ContactRobot {
             if (sees(aim.goal) >= far) return Halt::goal;
             flush(log);
             const Point ahead = (1 / far) * (aim.goal - at_);
-            const ScanFeet feet(scanner_, scan_);
-            const std::vector<Near> all = feet.within(scan_.least + feet.tolerance(scan_.least));
+            const std::vector<Near> all = nearest_runs(1);
             if (scan_.least <= keeps_ && !all.empty() && dot(all[0].towards, ahead) > 0.02)
                 return halt(feet_of(all, ScanFeet::beam_of(-1.0 * ahead)),
                             all.size() > 1 ? Halt::meet : Halt::limit, log);
@@ -235,7 +234,7 @@ class ScanRobot : public ContactRobot {
         std::vector<Point> touched;
         const auto leads_away = [&](int beam) {
             const Point to = at_ + 0.01 * free(beam) * scanner_.direction(beam);
-            return to != at_ && moved({at_, to}, at_, place_, touched).at == to;
+            return to != at_ && follow_line({at_, to}, at_, place_, touched).at == to;
         };
         int first = 0, best = 0, longest = 0;
         while (first < Scanner::beams && leads_away(first)) ++first;
@@ -276,18 +275,25 @@ class ScanRobot : public ContactRobot {
         return Halt::corner;
     }
 
-    Foot nearest_foot() {
+    // All that is as near as the nearest wall, as far as readings tell, times a share.
+    std::vector<Near> nearest_runs(double share) const {
         const ScanFeet feet(scanner_, scan_);
-        const std::vector<Near> all = feet.within(scan_.least + feet.tolerance(scan_.least));
+        return feet.within(scan_.least + share * feet.tolerance(scan_.least));
+    }
+    Foot nearest_foot() {
+        const std::vector<Near> all = nearest_runs(1);
         return {next_name_++, all.empty() ? Point{1, 0} : all[0].towards};
+    }
+    // Counterclockwise from a beam on.
+    static void sort_from(int beam, std::vector<Near>& runs) {
+        std::sort(runs.begin(), runs.end(), [&](const Near& a, const Near& b) {
+            return ScanFeet::ahead(beam, ScanFeet::beam_of(a.towards)) <
+                   ScanFeet::ahead(beam, ScanFeet::beam_of(b.towards));
+        });
     }
     // In their order from a beam on, counterclockwise.
     std::vector<Foot> feet_of(std::vector<Near> runs, int from) {
-        if (from != 0)
-            std::sort(runs.begin(), runs.end(), [&](const Near& a, const Near& b) {
-                return ScanFeet::ahead(from, ScanFeet::beam_of(a.towards)) <
-                       ScanFeet::ahead(from, ScanFeet::beam_of(b.towards));
-            });
+        if (from != 0) sort_from(from, runs);
         std::vector<Foot> feet;
         for (const Near& run : runs) feet.push_back({next_name_++, run.towards});
         return feet;
@@ -374,10 +380,7 @@ class ScanRobot : public ContactRobot {
                 ring.push_back(run);
         }
         if (!first) first = Near{r, r, right};
-        std::sort(ring.begin(), ring.end(), [&](const Near& a, const Near& b) {
-            return ScanFeet::ahead(r, ScanFeet::beam_of(a.towards)) <
-                   ScanFeet::ahead(r, ScanFeet::beam_of(b.towards));
-        });
+        sort_from(r, ring);
         ring.insert(ring.begin(), *first);
         if (last && last->first != first->first) ring.push_back(*last);
         return ring;

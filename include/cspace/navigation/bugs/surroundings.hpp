@@ -16,11 +16,7 @@ struct Surroundings {
   private:
     static Point middle_of(const maps::Boundary& walls) {
         if (walls.size() == 0) return {};
-        Point low = walls.points[0], high = low;
-        for (const Point& p : walls.points) {
-            low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-        }
+        const auto [low, high] = bounds_of(walls.points);
         return 0.5 * (low + high);
     }
 };

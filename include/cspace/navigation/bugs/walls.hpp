@@ -69,11 +69,8 @@ class Walls {
 
     void choose_cells() {
         if (size() == 0) return;
-        Point high = low_ = begin(0);
-        for (const Point& p : boundary_.points) {
-            low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-        }
+        const auto [low, high] = bounds_of(boundary_.points);
+        low_ = low;
         const Point extent = high - low_;
         largest_ = std::max({std::abs(low_.x), std::abs(low_.y), std::abs(high.x), std::abs(high.y)});
         const double longest = extent_ = std::max(extent.x, extent.y);

@@ -40,14 +40,10 @@ class CarWorld {
             box.high.x > frame_.origin.x + frame_.resolution * grid_.columns() + slack ||
             box.high.y > frame_.origin.y + frame_.resolution * grid_.rows() + slack)
             return false;
-        const auto cell = [&](double at, double origin, int count) {
-            return std::clamp(int(std::floor((at - origin) / frame_.resolution)), 0, count - 1);
-        };
-        const int first = cell(box.low.x, frame_.origin.x, grid_.columns());
-        const int last = cell(box.high.x, frame_.origin.x, grid_.columns());
-        const int top = cell(box.high.y, frame_.origin.y, grid_.rows());
-        for (int row = cell(box.low.y, frame_.origin.y, grid_.rows()); row <= top; ++row)
-            if (!is_row_clear(box, body.radius + margin, row, first, last)) return false;
+        const maps::Cell first = frame_.nearest_cell(grid_, box.low),
+                         last = frame_.nearest_cell(grid_, box.high);
+        for (int row = first.row; row <= last.row; ++row)
+            if (!is_row_clear(box, body.radius + margin, row, first.column, last.column)) return false;
         return true;
     }
 

@@ -92,11 +92,8 @@ class HolonomicDistance {
         return false;
     }
     maps::Cell cell_of(const CarPose& pose) const {
-        const auto index = [&](double at, double origin, int count) {
-            return std::clamp(int(std::floor((at - origin) / frame_.resolution)), 0, count - 1);
-        };
-        const double x = pose.x + middle_ * std::cos(pose.theta), y = pose.y + middle_ * std::sin(pose.theta);
-        return {index(y, frame_.origin.y, grid_.rows()), index(x, frame_.origin.x, grid_.columns())};
+        return frame_.nearest_cell(
+            grid_, {pose.x + middle_ * std::cos(pose.theta), pose.y + middle_ * std::sin(pose.theta)});
     }
     void spread(std::uint32_t node, search::Heap<search::Waiting>& queue) {
         const maps::Cell at = grid_.cell(node);

@@ -217,9 +217,7 @@ class ApproximateCells {
         add(from.at);
         add(start);
         if (route.path.size() == 1) route.path.push_back(start);
-        std::reverse(route.path.begin(), route.path.end());
-        route.status = Status::found;
-        route.length = length_of(route.path);
+        finish_reversed(route);
         return true;
     }
 };

@@ -94,11 +94,8 @@ class NavigationFunction {
     }
     bool is_open(Point p, Point q) const {
         if (stars_) return stars_->is_open(p, q);
-        for (const Disc& disc : discs_.obstacles) {
-            const Point along = q - p;
-            const double t = std::clamp(dot(disc.center - p, along) / squared_norm(along), 0.0, 1.0);
-            if (distance(disc.center, p + t * along) <= disc.radius) return false;
-        }
+        for (const Disc& disc : discs_.obstacles)
+            if (distance(disc.center, nearest_on(p, q, disc.center)) <= disc.radius) return false;
         return true;  // the room is convex
     }
     // A point on a wall, moved a little along the ray from the centre of its disc.

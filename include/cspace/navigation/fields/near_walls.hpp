@@ -61,9 +61,8 @@ class NearWalls {
         constexpr double folded2 = 1e-6;  // square of a sum of normals that point against each other
         Point sum, first;
         visit(p, [&](std::int32_t e) {
-            const Point a = walls_.begin(e), along = walls_.end(e) - a;
-            const double t = std::clamp(dot(p - a, along) / squared_norm(along), 0.0, 1.0);
-            if (distance(p, a + t * along) > tolerance) return;
+            const Point a = walls_.begin(e), b = walls_.end(e), along = b - a;
+            if (distance(p, nearest_on(a, b, p)) > tolerance) return;
             const Point left = (1 / norm(along)) * Point{-along.y, along.x};
             if (squared_norm(first) == 0) first = left;
             sum = sum + left;
@@ -89,11 +88,8 @@ class NearWalls {
     }
     void choose_cells() {
         if (walls_.size() == 0) return;
-        Point high = low_ = walls_.points[0];
-        for (const Point p : walls_.points) {
-            low_ = {std::min(low_.x, p.x), std::min(low_.y, p.y)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-        }
+        const auto [low, high] = bounds_of(walls_.points);
+        low_ = low;
         const double longest = std::max(high.x - low_.x, high.y - low_.y);
         side_ = std::max(0.5 * reach_, longest / most);
         columns_ = std::max(1, int(std::ceil((high.x - low_.x) / side_)));
@@ -104,7 +100,7 @@ class NearWalls {
         const double around =
             0.7072 * side_ + reach_ * (1 + tolerance::widening);  // from the centre of a cell
         for (std::int32_t e = 0; e < std::int32_t(walls_.size()); ++e) {
-            const Point a = walls_.begin(e), b = walls_.end(e), along = b - a;
+            const Point a = walls_.begin(e), b = walls_.end(e);
             const auto from = [&](double x, double low) {
                 return (x - reach_ - low) / side_ - tolerance::cell_border;
             };
@@ -118,8 +114,7 @@ class NearWalls {
             for (int row = bottom; row <= top; ++row)
                 for (int column = left; column <= right; ++column) {
                     const Point middle = low_ + side_ * Point{column + 0.5, row + 0.5};
-                    const double t = std::clamp(dot(middle - a, along) / squared_norm(along), 0.0, 1.0);
-                    if (distance(middle, a + t * along) <= around)
+                    if (distance(middle, nearest_on(a, b, middle)) <= around)
                         put(std::size_t(row) * std::size_t(columns_) + std::size_t(column), e);
                 }
         }

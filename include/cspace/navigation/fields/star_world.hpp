@@ -34,10 +34,8 @@ class Star {
         std::rotate(corners_.begin(), corners_.begin() + std::ptrdiff_t(first), corners_.end());
         for (std::size_t k = 0; k < corners_.size(); ++k) {
             angles_.push_back(angle(corners_[k]));
-            const Point a = corners_[k], along = corner_after(k) - a;
-            const double t = std::clamp(dot(center - a, along) / squared_norm(along), 0.0, 1.0);
-            least_ = std::min(least_, distance(center, a + t * along));
-            most_ = std::max(most_, distance(center, a));
+            least_ = std::min(least_, distance(center, nearest_on(corners_[k], corner_after(k), center)));
+            most_ = std::max(most_, distance(center, corners_[k]));
         }
     }
 
@@ -75,14 +73,9 @@ class Star {
 
     double reach(const Star& other) const {
         double nearest = std::numeric_limits<double>::infinity();
-        for (std::size_t k = 0; k < corners_.size(); ++k) {
-            const Point a = corners_[k], along = corner_after(k) - a;
-            const double length = squared_norm(along);
-            for (const Point p : other.corners_) {
-                const double t = std::clamp(dot(p - a, along) / length, 0.0, 1.0);
-                nearest = std::min(nearest, distance(p, a + t * along));
-            }
-        }
+        for (std::size_t k = 0; k < corners_.size(); ++k)
+            for (const Point p : other.corners_)
+                nearest = std::min(nearest, distance(p, nearest_on(corners_[k], corner_after(k), p)));
         return nearest;
     }
 };
@@ -117,11 +110,7 @@ inline Point centroid(const std::vector<Point>& shape) {
 // A point that sees all of a polygon, from strictly within all its sides (decided without rounding); false
 // where the kernel is empty, or too thin to find one. corners: counter-clockwise.
 inline bool kernel_point(const std::vector<Point>& corners, Point& found) {
-    Point low = corners[0], high = corners[0];
-    for (const Point p : corners) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y)};
-    }
+    const auto [low, high] = bounds_of(corners);
     std::vector<Point> kernel{low, {high.x, low.y}, high, {low.x, high.y}};
     const std::size_t n = corners.size();
     for (std::size_t k = 0; k < n && kernel.size() >= 3; ++k)
@@ -158,12 +147,12 @@ class StarWorld {
         return made;
     }
     Point to_model(Point p) const {
-        return moved(p, [](const Collar& c, double rho) {
+        return move_along_ray(p, [](const Collar& c, double rho) {
             return c.disc + (rho - c.wall) * (c.edge - c.disc) / (c.edge - c.wall);
         });
     }
     Point from_model(Point p) const {
-        return moved(p, [](const Collar& c, double rho) {
+        return move_along_ray(p, [](const Collar& c, double rho) {
             return c.wall + (rho - c.disc) * (c.edge - c.wall) / (c.edge - c.disc);
         });
     }
@@ -233,7 +222,7 @@ class StarWorld {
         }
     }
     template <class Move>
-    Point moved(Point p, const Move& move) const {
+    Point move_along_ray(Point p, const Move& move) const {
         for (std::size_t k = 0; k < stars_.size(); ++k) {
             const Star& star = stars_[k];
             const Point d = p - star.center();

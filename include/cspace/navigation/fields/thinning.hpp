@@ -59,10 +59,10 @@ class Thinning {
   public:
     // fate: blocked, left or kept, by number of cell; height: the clearance in any unit.
     Thinning(const maps::BitGrid& grid, const std::vector<std::uint32_t>& height, std::vector<Fate>& fate)
-        : height_(height), fate_(fate), up_(filled_vector<std::int8_t>(grid.numbers())) {
-        for (int d = 0; d < 8; ++d)
-            offset_[d] = std::uint32_t(row_step[d]) * grid.stride() + std::uint32_t(column_step[d]);
-    }
+        : height_(height),
+          fate_(fate),
+          up_(filled_vector<std::int8_t>(grid.numbers())),
+          offset_(neighbour_offsets(grid.stride())) {}
     // The direction from a cell that was taken to one that is not lower.
     std::int8_t up(std::uint32_t cell) const { return up_[cell]; }
     std::uint32_t above(std::uint32_t cell) const { return cell + offset_[up_[cell]]; }
@@ -90,7 +90,7 @@ class Thinning {
     const std::vector<std::uint32_t>& height_;
     std::vector<Fate>& fate_;
     std::vector<std::int8_t> up_;
-    std::uint32_t offset_[8];
+    std::array<std::uint32_t, 8> offset_;
 
     bool take(std::uint32_t cell) {
         unsigned around = 0;

@@ -77,7 +77,6 @@ class DStarLite {
             cells.push_back(c);
         }
     }
-    std::uint64_t cells_known() const { return known_; }
 
   private:
     // A length, or none: more straight steps than any way has.
@@ -173,7 +172,6 @@ class DStarLite {
         auto& page = pages_[cell >> page_bits];
         if (page.empty()) {
             page.resize(std::size_t(1) << page_bits);
-            known_ += std::uint64_t(1) << page_bits;
         }
         return page[cell & ((1u << page_bits) - 1)];
     }
@@ -186,7 +184,6 @@ class DStarLite {
     search::Heap<Entry> queue_;
     std::vector<std::vector<Node>> pages_ =
         std::vector<std::vector<Node>>((grid_.numbers() >> page_bits) + 1);
-    std::uint64_t known_ = 0;
 };
 
 }  // namespace cspace::navigation

@@ -14,7 +14,7 @@
 
 namespace cspace::navigation {
 
-template <class Parents>
+template <class Parents, class Order = navigation::Order>
 class GridSearch {
   public:
     using G = typename Parents::G;
@@ -29,11 +29,9 @@ class GridSearch {
           parents_(parents),
           nodes_(nodes),
           goal_(grid.number(order.goal)),
+          offset_(neighbour_offsets(grid.stride())),
           reopen_(reopen) {
-        const bool exact = order.g_weight == 1 && (order.h_weight == 0 || order.h_weight == 1);
-        if (Parents::is_length && exact && !reopen) onward_ = onward_moves[std::size_t(corners)];
-        for (int d = 0; d < 8; ++d)
-            offset_[d] = std::uint32_t(row_step[d]) * grid.stride() + std::uint32_t(column_step[d]);
+        if (Parents::is_length && order.is_exact() && !reopen) onward_ = onward_moves[std::size_t(corners)];
         nodes_.begin(grid.numbers());
     }
     template <class Queue>
@@ -139,7 +137,7 @@ class GridSearch {
     Nodes& nodes_;
     search::Effort* effort_ = nullptr;
     std::uint32_t goal_;
-    std::uint32_t offset_[8];
+    std::array<std::uint32_t, 8> offset_;
     bool reopen_;
 };
 

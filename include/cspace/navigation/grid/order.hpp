@@ -49,6 +49,8 @@ struct Order {
     double g_weight = 1, h_weight = 1;
     double least_cost = 1;  // of a step of length 1
 
+    // Whether cells are settled in the order of the length of the way over them.
+    bool is_exact() const { return g_weight == 1 && (h_weight == 0 || h_weight == 1); }
     Steps steps_left(maps::Cell at) const {
         const int dr = goal.row - at.row, dc = goal.column - at.column;
         return metric == Metric::manhattan ? Steps{std::abs(dr) + std::abs(dc), 0} : octile_steps(dr, dc);

@@ -105,6 +105,12 @@ struct StepCount {
     G step(maps::Cell, maps::Cell, int) const { return {1, 0}; }
     G along(maps::Cell, int, unsigned) const { return {1, 0}; }
 };
+// No step counts: the first way to a cell stays.
+struct StepNothing {
+    using G = Steps;
+    G step(maps::Cell, maps::Cell, int) const { return {}; }
+    G along(maps::Cell, int, unsigned) const { return {}; }
+};
 // The integral of the cost of the cells along the step: half of it lies in either cell. [cells · cost]
 class StepCost {
   public:

@@ -105,7 +105,7 @@ template <class Parents, class Queue>
 void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& order, maps::Cell start,
               const Parents& parents, PagedNodes<typename Parents::G>& nodes, Queue& queue, bool reopen,
               const Division& division, GridAnswer& answer) {
-    GridSearch<Parents> space(grid, query.corners, order, parents, nodes, reopen);
+    GridSearch space(grid, query.corners, order, parents, nodes, reopen);
     space.start(start, queue, answer.effort);
     const std::uint32_t reached = search_or_divide(space, queue, division, answer);
     answer.found = reached != search::no_node;

@@ -52,7 +52,7 @@ class Roadmap {
     search::Adjacency<std::int32_t> edges_;                     // the nodes at the other ends
 
     Roadmap(const maps::PolygonWorld& world, const RoadmapKey& key, Samples draws)
-        : key_(key), near_(draws.low(), draws.high()) {
+        : key_(key), near_(draws.box().low, draws.box().high) {
         InterruptPoll poll(64);
         for (std::int64_t i = 0; i < key.samples; ++i) {
             poll.step();
@@ -189,9 +189,7 @@ class RoadmapSearch {
         if (search::best_first(*this, queue, effort) == search::no_node) return;
         Route& route = answer_.route;
         for (std::uint32_t n = goal_; n != search::no_node; n = ways_.before(n)) route.path.push_back(at(n));
-        std::reverse(route.path.begin(), route.path.end());
-        route.status = Status::found;
-        route.length = length_of(route.path);
+        finish_reversed(route);
     }
 };
 

@@ -26,7 +26,7 @@ class Tree {
           growth_(growth),
           trace_(trace),
           draws_(problem.world, problem.component, growth.seed),
-          near_(draws_.low(), draws_.high()) {}
+          near_(draws_.box().low, draws_.box().high) {}
 
     SampledRoute solve() {
         add({problem_.start.at, none}, -1);
@@ -42,11 +42,9 @@ class Tree {
         Route& route = answer.route;
         route.stats = {std::int64_t(nodes_.size()), looks_};
         if (last_ < 0) return answer;
-        route.status = Status::found;
         route.path.push_back(problem_.goal.at);
         for (std::int32_t n = last_; n >= 0; n = node(n).parent) route.path.push_back(node(n).at);
-        std::reverse(route.path.begin(), route.path.end());
-        route.length = length_of(route.path);
+        finish_reversed(route);
         return answer;
     }
 

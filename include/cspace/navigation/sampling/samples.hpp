@@ -12,23 +12,18 @@ class Samples {
     Samples(const maps::PolygonWorld& world, Index component, std::uint64_t seed)
         : world_(world), component_(component), draws_(seed) {
         const FreeSpace& space = world.space;
-        bool any = false;
         for (Index t = 0; t < Index(space.mesh.triangles.size()); ++t) {
             if (space.component[std::size_t(t)] != component) continue;
             const auto [a, b, c] = corners(t);
             triangles_.push_back(t);
             area_ += 0.5 * cross(b - a, c - a);
             up_to_.push_back(area_);
-            for (const Point p : {a, b, c}) {
-                low_ = any ? Point{std::min(low_.x, p.x), std::min(low_.y, p.y)} : p;
-                high_ = any ? Point{std::max(high_.x, p.x), std::max(high_.y, p.y)} : p;
-                any = true;
-            }
+            if (triangles_.size() == 1) box_ = {a, a};
+            for (const Point p : {a, b, c}) box_.include(p);
         }
     }
     double area() const { return area_; }
-    Point low() const { return low_; }  // of the box around the component
-    Point high() const { return high_; }
+    const Box& box() const { return box_; }  // around the component
     double uniform() { return draws_.uniform(); }
 
     // A point inside a triangle of the component; its triangle is none in the rare case that it fell on an
@@ -76,7 +71,7 @@ class Samples {
     Index component_;
     search::Draws draws_;
     double area_ = 0;
-    Point low_, high_;
+    Box box_;
     std::vector<Index> triangles_;
     std::vector<double> up_to_;  // areas of the triangles up to and with each
 

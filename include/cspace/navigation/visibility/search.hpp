@@ -111,8 +111,7 @@ class VisibilitySearch {
             n = state_of(n).parent;
             if (!(point(n) == route.path.back())) route.path.push_back(point(n));
         }
-        std::reverse(route.path.begin(), route.path.end());
-        route.length = length_of(route.path);
+        finish_reversed(route);
         return route;
     }
 };

@@ -46,4 +46,53 @@ inline Index corner_before(const Sites& sites, Index b) {
     return sites.is_edge(b) && sites.turn_at(b) == Turn::corner ? sites.previous(b) : none;
 }
 
+// What ends an arc of two sites.
+enum class ArcEnd : std::int8_t {
+    lost,    // nothing: rounding hides it
+    vertex,  // a third site
+    corner,  // the corner between the two
+    joint,   // a foot goes over to its next site
+    bound,   // what the caller has set
+};
+struct ArcPiece {
+    Bisector curve;
+    double begin = 0, end = 0;
+    ArcEnd cause = ArcEnd::lost;
+    Index third = none;  // of a vertex
+    bool turns_a = false, turns_b = false;
+};
+
+// The arc of a, whose foot moves forward, and b, whose foot moves backward, from a point on. bound(piece)
+// gives the parameter up to which it is asked for.
+template <class Bound>
+ArcPiece next_piece(const Sites& s, const EdgeTree& tree, Grain grain, Index a, Index b, Point from,
+                    const Bound& bound) {
+    ArcPiece arc;
+    arc.curve = bisector_of(s, a, b, from);
+    arc.begin = arc.end = arc.curve.parameter(from);
+    if (!std::isfinite(arc.begin) || !std::isfinite(squared_norm(arc.curve.p2))) return arc;
+    const double end_a = leaves(arc.curve, arc.begin, forward_gate(s, a), grain),
+                 end_b = leaves(arc.curve, arc.begin, backward_gate(s, b), grain);
+    const double own = std::min({end_a, end_b, arc.begin + 4 * s.extent}), end = std::min(own, bound(arc));
+    FirstTouch touch(s, tree, grain, arc.curve, a, b, arc.begin, end);
+    touch.find();
+    arc.end = touch.at();
+    arc.third = touch.site();
+    if (arc.third != none) {
+        arc.cause = ArcEnd::vertex;
+    } else if (end < own) {
+        arc.cause = ArcEnd::bound;
+    } else if (s.is_edge(a) && s.is_edge(b) && s.after(a) == b && s.turn_at(b) == Turn::corner) {
+        arc.cause = ArcEnd::corner;
+        arc.end = arc.curve.parameter(s.begin(b));
+    } else {
+        arc.turns_a = end_a <= arc.end, arc.turns_b = end_b <= arc.end;
+        const Index corner = arc.turns_a ? corner_after(s, a) : none,
+                    other = arc.turns_b ? corner_before(s, b) : none;
+        arc.third = corner != none ? corner : other;
+        if (arc.turns_a || arc.turns_b) arc.cause = arc.third != none ? ArcEnd::vertex : ArcEnd::joint;
+    }
+    return arc;
+}
+
 }  // namespace cspace::navigation::voronoi

@@ -61,7 +61,7 @@ class FirstTouch {
             tree_.visit_shrinking(
                 p, ahead, [&] { return std::pair{p, radius}; },
                 [&](Index e) {
-                    if (belongs(e, a_) || belongs(e, b_)) return;
+                    if (sites_.belongs(e, a_) || sites_.belongs(e, b_)) return;
                     const double s = std::clamp(sites_.advance(e, p), 0.0, sites_.length[std::size_t(e)]);
                     const double d = distance(p, sites_.begin(e) + s * sites_.direction(e));
                     if (d < radius) radius = d, nearest = e;
@@ -118,22 +118,10 @@ class FirstTouch {
         return true;
     }
 
-    // Whether an edge is a site, or goes on from it without a corner.
-    bool belongs(Index edge, Index site) const {
-        const Index own = sites_.edge_of(site);
-        if (edge == own) return true;
-        if (edge == sites_.previous(own)) return !sites_.is_edge(site) || sites_.turn_at(own) != Turn::corner;
-        return sites_.is_edge(site) && edge == sites_.after(own) && sites_.turn_at(edge) != Turn::corner;
-    }
-    bool ends(Point q, Index site) const {
-        const Index own = sites_.edge_of(site);
-        return q == sites_.begin(own) || (sites_.is_edge(site) && q == sites_.end(own));
-    }
-
     void consider(Index e) {
         const Point q = sites_.begin(e);
         if (into_corner_ && (q == sites_.begin(b_) || sites_.end(e) == sites_.begin(b_))) return;
-        if (!belongs(e, a_) && !belongs(e, b_))
+        if (!sites_.belongs(e, a_) && !sites_.belongs(e, b_))
             for (const double t : curve_.against_line(sites_.normal(e), q).zeros()) {
                 if (!is_ahead(t)) continue;
                 const double margin = 1e3 * grain_.at(curve_.radius(t));
@@ -142,7 +130,7 @@ class FirstTouch {
                     s <= sites_.length[std::size_t(e)] + margin)
                     touch(t, e);
             }
-        if (sites_.turn_at(e) != Turn::around || ends(q, a_) || ends(q, b_)) return;
+        if (sites_.turn_at(e) != Turn::around || sites_.ends(q, a_) || sites_.ends(q, b_)) return;
         for (const double t : curve_.against_point(q).zeros())
             if (is_ahead(t) && sites_.is_in_cone(e, curve_.at(t), 1e3 * grain_.at(curve_.radius(t))))
                 touch(t, sites_.size() + e);

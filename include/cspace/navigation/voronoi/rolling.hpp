@@ -66,30 +66,20 @@ FirstMeeting first_meeting(const Sites& sites, const EdgeTree& tree, Grain grain
     FirstMeeting first{end};
     const double slack = grain.at(radius) / std::max(way.length(1), tolerance::nonzero),
                  margin = 1e3 * grain.at(radius);
-    const Index own = along == none ? none : sites.edge_of(along);
-    const auto belongs = [&](Index e) {
-        if (own == none) return false;
-        if (e == own) return true;
-        if (e == sites.previous(own)) return !sites.is_edge(along) || sites.turn_at(own) != Turn::corner;
-        return sites.is_edge(along) && e == sites.after(own) && sites.turn_at(e) != Turn::corner;
-    };
-    const auto ends = [&](Point q) {
-        return own != none && (q == sites.begin(own) || (sites.is_edge(along) && q == sites.end(own)));
-    };
     const auto offer = [&](double t, Index site) {
         if (!(t >= -slack && t < first.at)) return;
         first = {std::max(t, 0.0), site};
     };
     const auto consider = [&](Index e) {
         const Point q = sites.begin(e);
-        if (!belongs(e)) {
+        if (along == none || !sites.belongs(e, along)) {
             const double t = way.meets_line(radius, sites.normal(e), q);
             if (std::isfinite(t) && sites.height(e, way.at(t)) > 0) {
                 const double s = sites.advance(e, way.at(t));
                 if (s >= -margin && s <= sites.length[std::size_t(e)] + margin) offer(t, e);
             }
         }
-        if (sites.turn_at(e) != Turn::around || ends(q)) return;
+        if (sites.turn_at(e) != Turn::around || (along != none && sites.ends(q, along))) return;
         const double t = way.meets_point(radius, q);
         if (std::isfinite(t) && sites.is_in_cone(e, way.at(t), margin)) offer(t, sites.size() + e);
     };

@@ -45,6 +45,18 @@ struct Sites {
     Index previous(Index edge) const { return before[std::size_t(edge)]; }
     Turn turn_at(Index edge) const { return turn[std::size_t(edge)]; }
 
+    // Whether an edge is a site, or goes on from it without a corner.
+    bool belongs(Index edge, Index site) const {
+        const Index own = edge_of(site);
+        if (edge == own) return true;
+        if (edge == previous(own)) return !is_edge(site) || turn_at(own) != Turn::corner;
+        return is_edge(site) && edge == after(own) && turn_at(edge) != Turn::corner;
+    }
+    // Whether a point is an end of a site.
+    bool ends(Point q, Index site) const {
+        const Index own = edge_of(site);
+        return q == begin(own) || (is_edge(site) && q == end(own));
+    }
     // Whether the point where an edge begins is the nearest of its ring to what lies around p.
     bool is_in_cone(Index edge, Point p, double slack) const {
         const Point from = p - begin(edge);

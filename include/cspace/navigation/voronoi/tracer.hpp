@@ -156,39 +156,20 @@ class Tracer {
         for (Index joints = 0; joints <= 2 * s_.size(); ++joints) {
             poll_.step();
             const Point from = d_.vertices[std::size_t(vertex)].at;
-            const Bisector curve = bisector_of(s_, a, b, from);
-            const double begin = curve.parameter(from);
-            double end = begin + 4 * s_.extent;
-            if (!std::isfinite(begin) || !std::isfinite(squared_norm(curve.p2))) return;
-            const double end_a = leaves(curve, begin, forward_gate(s_, a), grain_),
-                         end_b = leaves(curve, begin, backward_gate(s_, b), grain_);
-            end = std::min({end, end_a, end_b});
-            FirstTouch touch(s_, d_.tree, grain_, curve, a, b, begin, end);
-            touch.find();
-            end = touch.at();
-            if (touch.site() != none) {
-                const Index to = arrive(curve.at(end), a, b, touch.site());
-                return add_arc(vertex, to, a, b, curve, begin, end);
-            }
-            if (s_.is_edge(a) && s_.is_edge(b) && s_.after(a) == b && s_.turn_at(b) == Turn::corner) {
-                const Index to = add_plain_vertex(s_.begin(b), 0);
-                return add_arc(vertex, to, a, b, curve, begin, curve.parameter(s_.begin(b)));
-            }
-            const bool turn_a = end_a <= end, turn_b = end_b <= end;
-            if (!turn_a && !turn_b) return;  // nothing in the way: lost
-            const Index corner = turn_a ? corner_after(s_, a) : none,
-                        other = turn_b ? corner_before(s_, b) : none;
-            if (corner != none || other != none) {
-                const Index to = arrive(curve.at(end), a, b, corner != none ? corner : other);
-                return add_arc(vertex, to, a, b, curve, begin, end);
-            }
-            if (end > begin) {
-                const Index to = add_plain_vertex(curve.at(end), curve.radius(end));
-                add_arc(vertex, to, a, b, curve, begin, end);
+            const ArcPiece arc = next_piece(s_, d_.tree, grain_, a, b, from, [](const ArcPiece&) {
+                return std::numeric_limits<double>::infinity();
+            });
+            const auto add = [&](Index to) { add_arc(vertex, to, a, b, arc.curve, arc.begin, arc.end); };
+            if (arc.cause == ArcEnd::lost) return;
+            if (arc.cause == ArcEnd::vertex) return add(arrive(arc.curve.at(arc.end), a, b, arc.third));
+            if (arc.cause == ArcEnd::corner) return add(add_plain_vertex(s_.begin(b), 0));
+            if (arc.end > arc.begin) {
+                const Index to = add_plain_vertex(arc.curve.at(arc.end), arc.curve.radius(arc.end));
+                add(to);
                 vertex = to;
             }
-            if (turn_a) a = site_after(s_, a);
-            if (turn_b) b = site_before(s_, b);
+            if (arc.turns_a) a = site_after(s_, a);
+            if (arc.turns_b) b = site_before(s_, b);
             if (a == b) return;
         }
     }
