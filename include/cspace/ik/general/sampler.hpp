@@ -9,6 +9,7 @@
 #include "cspace/math/bernstein.hpp"
 #include "cspace/math/rows.hpp"
 #include "cspace/math/trig.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::ik {
 

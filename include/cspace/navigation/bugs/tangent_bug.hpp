@@ -12,6 +12,7 @@
 #include "cspace/navigation/bugs/boundary_tour.hpp"
 #include "cspace/navigation/bugs/sensors.hpp"
 #include "cspace/navigation/bugs/walk_log.hpp"
+#include "cspace/tolerances.hpp"
 
 namespace cspace::navigation {
 
