@@ -62,7 +62,7 @@ class Thinning {
         : height_(height),
           fate_(fate),
           up_(filled_vector<std::int8_t>(grid.numbers())),
-          offset_(neighbour_offsets(grid.stride())) {}
+          offset_(grid.stride()) {}
     // The direction from a cell that was taken to one that is not lower.
     std::int8_t up(std::uint32_t cell) const { return up_[cell]; }
     std::uint32_t above(std::uint32_t cell) const { return cell + offset_[up_[cell]]; }
@@ -90,7 +90,7 @@ class Thinning {
     const std::vector<std::uint32_t>& height_;
     std::vector<Fate>& fate_;
     std::vector<std::int8_t> up_;
-    std::array<std::uint32_t, 8> offset_;
+    NeighbourOffsets offset_;
 
     bool take(std::uint32_t cell) {
         unsigned around = 0;

@@ -29,7 +29,7 @@ class GridSearch {
           parents_(parents),
           nodes_(nodes),
           goal_(grid.number(order.goal)),
-          offset_(neighbour_offsets(grid.stride())),
+          offset_(grid.stride()),
           reopen_(reopen) {
         if (Parents::is_length && order.is_exact() && !reopen) onward_ = onward_moves[std::size_t(corners)];
         nodes_.begin(grid.numbers());
@@ -137,7 +137,7 @@ class GridSearch {
     Nodes& nodes_;
     search::Effort* effort_ = nullptr;
     std::uint32_t goal_;
-    std::array<std::uint32_t, 8> offset_;
+    NeighbourOffsets offset_;
     bool reopen_;
 };
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 
 namespace cspace::navigation {
@@ -17,12 +16,17 @@ inline constexpr int corner_rules = 4;
 inline constexpr int row_step[8] = {0, 1, 1, 1, 0, -1, -1, -1};
 inline constexpr int column_step[8] = {1, 1, 0, -1, -1, -1, 0, 1};
 // What to add to the number of a cell to come to that of its neighbours, where rows are `stride` apart.
-constexpr std::array<std::uint32_t, 8> neighbour_offsets(std::uint32_t stride) {
-    std::array<std::uint32_t, 8> offset{};
-    for (std::size_t d = 0; d < 8; ++d)
-        offset[d] = std::uint32_t(row_step[d]) * stride + std::uint32_t(column_step[d]);
-    return offset;
-}
+class NeighbourOffsets {
+  public:
+    explicit NeighbourOffsets(std::uint32_t stride) {
+        for (int d = 0; d < 8; ++d)
+            offset_[d] = std::uint32_t(row_step[d]) * stride + std::uint32_t(column_step[d]);
+    }
+    std::uint32_t operator[](int direction) const { return offset_[direction]; }
+
+  private:
+    std::uint32_t offset_[8];
+};
 constexpr bool is_diagonal(int direction) { return direction & 1; }
 constexpr unsigned bit_of(int direction) { return 1u << (direction & 7); }
 // The direction that leads a step of these signs.
