@@ -3,17 +3,9 @@
 
 #include <nanobind/ndarray.h>
 
-#include <algorithm>
-#include <cstdint>
-#include <initializer_list>
+#include <type_traits>
 
 #include "numpy_api.hpp"
-
-template <class T>
-inline constexpr int numpy_type = std::is_same_v<T, std::int64_t>   ? NPY_INT64
-                                  : std::is_same_v<T, std::uint8_t> ? NPY_UINT8
-                                  : std::is_same_v<T, bool>         ? NPY_BOOL
-                                                                    : NPY_DOUBLE;
 
 // A contiguous array of T: an argument, which is read in place, or a new one. Of const T it may be read-only.
 template <class T>
@@ -23,21 +15,18 @@ struct Plain {
     npy_intp size = 0;
 
     Plain() = default;
-    explicit Plain(std::initializer_list<npy_intp> shape)
-        : array(nanobind::steal(
-              PyArray_SimpleNew(int(shape.size()), const_cast<npy_intp*>(shape.begin()), numpy_type<T>))) {
+    explicit Plain(std::initializer_list<npy_intp> shape, const T* values = nullptr)
+        : array(nanobind::steal(new_array<T>(shape, values))) {
         if (!array) throw nanobind::python_error();
         data = data_of<T>(array.ptr());
         size = PyArray_SIZE(reinterpret_cast<PyArrayObject*>(array.ptr()));
-    }
-    Plain(std::initializer_list<npy_intp> shape, const T* values) : Plain(shape) {
-        std::copy_n(values, size, data);
     }
 
     // Whether value is such an array.
     bool read(PyObject* value) {
         auto* given = reinterpret_cast<PyArrayObject*>(value);
-        if (!PyArray_Check(value) || !PyArray_EquivTypenums(PyArray_TYPE(given), numpy_type<T>) ||
+        if (!PyArray_Check(value) ||
+            !PyArray_EquivTypenums(PyArray_TYPE(given), numpy_type<std::remove_const_t<T>>) ||
             !PyArray_ISCARRAY_RO(given) || (!std::is_const_v<T> && !PyArray_ISWRITEABLE(given)))
             return false;
         array = nanobind::borrow(value);

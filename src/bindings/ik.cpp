@@ -117,11 +117,6 @@ std::tuple<Doubles, double, double> find_nearest_pose(SolverArgument solver, con
     return {Doubles({solver.arm().dof}, best.q), best.position, best.rotation};
 }
 
-bool exceeds_reach(SolverArgument solver, const ConstDoubles& goal) {
-    require_sizes(goal.size == 16);
-    return solver.core().exceeds_reach(goal.data);
-}
-
 nb::object solve_position(SolverArgument solver, const ConstDoubles& p) {
     const ik::BuiltArm& arm = arm_for_points(solver, p.size == 3);
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
@@ -164,8 +159,6 @@ void bind_ik(nb::module_& m) {
           "Solves one goal by the slow path, unconstrained joints as given.");
     m.def("_ik_nearest_pose", find_nearest_pose, "solver"_a, "goal"_a, "stiffness"_a,
           "The configuration that comes nearest to a goal out of reach, and its errors [m], [rad].");
-    m.def("_ik_exceeds_reach", exceeds_reach, "solver"_a, "goal"_a,
-          "Whether the lengths and directions of the axes rule a goal out.");
     m.def("_ik_position", solve_position, "solver"_a, "p"_a,
           "Solves a position goal of an arm of up to three joints.");
     m.def("_ik_nearest_position", find_nearest_position, "solver"_a, "p"_a,

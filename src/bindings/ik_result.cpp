@@ -13,8 +13,7 @@ using namespace cspace;
 
 namespace {
 
-PyTypeObject* solutions_type = nullptr;  // the Python class that results are made of
-PyTypeObject* base_type = nullptr;       // SolutionsBase
+ResultType solutions_type("cspace.ik.solutions", "_ik_results");
 
 // Followed in memory by count rows of dof angles, count branch numbers and count flags (self-motions).
 struct SolutionsObject {
@@ -36,16 +35,8 @@ SolutionsObject* object_of(PyObject* self) { return reinterpret_cast<SolutionsOb
 }  // namespace
 
 PyObject* new_solutions(PyObject* solver, const double* goal, const ik::SolutionRows& rows, PyObject* about) {
-    if (!solutions_type) {
-        PyObject* room = PyImport_ImportModule("cspace.ik.solutions");
-        if (!room) return nullptr;
-        Py_DECREF(room);
-        if (!solutions_type)
-            return PyErr_Format(PyExc_ImportError, "cspace.ik.solutions has not named the class of results");
-    }
     const int dof = solver_object(solver)->core->chain().n;
-    PyObject* self =
-        solutions_type->tp_alloc(solutions_type, rows.count * dof + (2 * rows.count + 7) / 8);  // zeros
+    PyObject* self = solutions_type.make(rows.count * dof + (2 * rows.count + 7) / 8);
     if (!self) return nullptr;
     SolutionsObject* made = object_of(self);
     made->solver = Py_NewRef(solver);
@@ -65,43 +56,17 @@ PyObject* new_solutions(PyObject* solver, const double* goal, const ik::Solution
 namespace {
 
 // A solver may hold its own results as an attribute, so results take part in the search for cycles.
-int visit_references(PyObject* self, visitproc visit, void* arg) {
-    Py_VISIT(Py_TYPE(self));
-    Py_VISIT(object_of(self)->solver);
-    Py_VISIT(object_of(self)->note);
-    Py_VISIT(object_of(self)->about);
-    return 0;
-}
-int clear_references(PyObject* self) {
-    Py_CLEAR(object_of(self)->solver);
-    Py_CLEAR(object_of(self)->note);
-    Py_CLEAR(object_of(self)->about);
-    return 0;
-}
-void destroy_result(PyObject* self) {
-    PyTypeObject* type = Py_TYPE(self);
-    PyObject_GC_UnTrack(self);
-    clear_references(self);
-    type->tp_free(self);
-    Py_DECREF(type);
-}
+using Slots = Collected<SolutionsObject, free_object, &SolutionsObject::solver, &SolutionsObject::note,
+                        &SolutionsObject::about>;
 
-PyObject* new_array(int dimensions, npy_intp rows, npy_intp columns, const double* values) {
-    npy_intp shape[2] = {rows, columns};
-    PyObject* array = PyArray_SimpleNew(dimensions, shape, NPY_DOUBLE);
-    if (array)
-        std::memcpy(data_of(array), values,
-                    sizeof(double) * std::size_t(rows * (dimensions > 1 ? columns : 1)));
-    return array;
-}
 PyObject* get_q(PyObject* self, void*) {
-    return new_array(2, object_of(self)->count, object_of(self)->dof, object_of(self)->q);
+    return new_array({object_of(self)->count, object_of(self)->dof}, object_of(self)->q);
 }
 // A position goal is kept as a pose whose rotation is NaN.
 PyObject* get_goal(PyObject* self, void*) {
     const double* goal = object_of(self)->goal;
     const double position[3] = {goal[3], goal[7], goal[11]};
-    return goal[0] == goal[0] ? new_array(2, 4, 4, goal) : new_array(1, 3, 1, position);
+    return goal[0] == goal[0] ? new_array({4, 4}, goal) : new_array({3}, position);
 }
 PyObject* get_verdict(PyObject* self, void*) {
     const SolutionsObject* s = object_of(self);
@@ -139,9 +104,9 @@ PyGetSetDef attributes[] = {
      nullptr},
     {"_is_self_motion", get_is_self_motion, nullptr, "Which rows stand for a self-motion.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
-PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&destroy_result)},
-                       {Py_tp_traverse, reinterpret_cast<void*>(&visit_references)},
-                       {Py_tp_clear, reinterpret_cast<void*>(&clear_references)},
+PyType_Slot slots[] = {{Py_tp_dealloc, reinterpret_cast<void*>(&Slots::destroy)},
+                       {Py_tp_traverse, reinterpret_cast<void*>(&Slots::visit)},
+                       {Py_tp_clear, reinterpret_cast<void*>(&Slots::clear)},
                        {Py_tp_members, members},
                        {Py_tp_getset, attributes},
                        {Py_sq_length, reinterpret_cast<void*>(&count_rows)},
@@ -172,18 +137,10 @@ nb::object make_solutions(SolverArgument solver, const ConstDoubles& goal, int s
     return result;
 }
 
-void set_class(nb::handle cls) {
-    if (!PyType_Check(cls.ptr()) || !PyType_IsSubtype(reinterpret_cast<PyTypeObject*>(cls.ptr()), base_type))
-        throw nb::type_error("_ik_results takes a subclass of SolutionsBase");
-    Py_XDECREF(solutions_type);
-    solutions_type = reinterpret_cast<PyTypeObject*>(cls.inc_ref().ptr());
-}
-
 }  // namespace
 
 void bind_ik_result(nb::module_& m) {
-    base_type = add_type(m, spec);
+    solutions_type.add(m, spec);
     m.def("_ik_make", make_solutions, "solver"_a, "goal"_a, "status"_a, "q"_a, "branches"_a, "self_motions"_a,
           "note"_a.none(), "about"_a.none() = nb::none(), "A result from its parts.");
-    m.def("_ik_results", set_class, "cls"_a, "Sets the class that results are made of.");
 }

@@ -50,12 +50,9 @@ PyObject* create_kinematics(PyTypeObject* type, PyObject*, PyObject*) {
     return reinterpret_cast<PyObject*>(made);
 }
 void free_kinematics(PyObject* self) {
-    auto* object = kinematics_of(self);
-    PyTypeObject* type = Py_TYPE(self);
-    Py_CLEAR(object->frame_index);
-    object->model.~unique_ptr();
-    type->tp_free(self);
-    Py_DECREF(type);
+    Py_CLEAR(kinematics_of(self)->frame_index);
+    kinematics_of(self)->model.~unique_ptr();
+    free_object(self);
 }
 
 namespace {
@@ -149,11 +146,6 @@ struct alignas(64) Stack {
     double values[8 * (stack_joints + 4)];
 };
 
-PyObject* new_array(npy_intp rows, npy_intp columns) {
-    npy_intp shape[2] = {rows, columns};
-    return PyArray_SimpleNew(2, shape, NPY_DOUBLE);
-}
-
 constexpr const char* words = "cspace.kinematics";
 
 // --- methods -------------------------------------------------------------------------------------------
@@ -161,7 +153,7 @@ PyObject* compute_fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, Py
     const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (read_single(robot, args, nargs, kwnames, call)) {
-        PyObject* T = new_array(4, 4);
+        PyObject* T = new_array({4, 4});
         if (!T) return nullptr;
         Stack stack;
         if (kernels::chain_pose(*call.chain, call.q, data_of(T), &stack)) return T;
@@ -170,38 +162,28 @@ PyObject* compute_fk(PyObject* self, PyObject* const* args, Py_ssize_t nargs, Py
     return call_python(words, "forward_kinematics", "fk", self, args, nargs, kwnames);
 }
 
+// The Jacobian, and with the pose a tuple of both.
+template <bool with_pose>
 PyObject* compute_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
     const KinematicsObject* robot = kinematics_of(self);
     Single call;
     if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
-        PyObject* J = new_array(6, robot->model->n_coordinates());
-        if (!J) return nullptr;
+        PyObject* J = new_array({6, robot->model->n_coordinates()});
+        PyObject* T = with_pose && J ? new_array({4, 4}) : nullptr;
+        PyObject* answer = !with_pose ? J : T ? PyTuple_Pack(2, T, J) : nullptr;
         Stack stack;
-        if (kernels::chain_jacobian(*call.chain, call.q, nullptr, data_of(J), &stack)) return J;
-        Py_DECREF(J);
-    }
-    return call_python(words, "jacobian", "jacobian", self, args, nargs, kwnames);
-}
-
-PyObject* compute_fk_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
-    const KinematicsObject* robot = kinematics_of(self);
-    Single call;
-    if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
-        PyObject* T = new_array(4, 4);
-        PyObject* J = new_array(6, robot->model->n_coordinates());
-        PyObject* both = T && J ? PyTuple_New(2) : nullptr;
-        Stack stack;
-        if (both && kernels::chain_jacobian(*call.chain, call.q, data_of(T), data_of(J), &stack)) {
-            PyTuple_SET_ITEM(both, 0, T);
-            PyTuple_SET_ITEM(both, 1, J);
-            return both;
+        const bool is_found = answer && kernels::chain_jacobian(*call.chain, call.q, T ? data_of(T) : nullptr,
+                                                                data_of(J), &stack);
+        if (with_pose) {  // the tuple keeps them
+            Py_XDECREF(T);
+            Py_XDECREF(J);
         }
-        Py_XDECREF(T);
-        Py_XDECREF(J);
-        Py_XDECREF(both);
+        if (is_found) return answer;
+        Py_XDECREF(answer);
         if (PyErr_Occurred()) return nullptr;
     }
-    return call_python(words, "fk_jacobian", "fk_jacobian", self, args, nargs, kwnames);
+    const char* name = with_pose ? "fk_jacobian" : "jacobian";
+    return call_python(words, name, name, self, args, nargs, kwnames);
 }
 
 PyObject* get_dof(PyObject* self, void*) {
@@ -213,8 +195,8 @@ PyObject* get_dof(PyObject* self, void*) {
 // --- the type ------------------------------------------------------------------------------------------
 PyMethodDef methods[] = {
     {"fk", as_method(&compute_fk), METH_FASTCALL | METH_KEYWORDS, fk_doc},
-    {"jacobian", as_method(&compute_jacobian), METH_FASTCALL | METH_KEYWORDS, jacobian_doc},
-    {"fk_jacobian", as_method(&compute_fk_jacobian), METH_FASTCALL | METH_KEYWORDS, fk_jacobian_doc},
+    {"jacobian", as_method(&compute_jacobian<false>), METH_FASTCALL | METH_KEYWORDS, jacobian_doc},
+    {"fk_jacobian", as_method(&compute_jacobian<true>), METH_FASTCALL | METH_KEYWORDS, fk_jacobian_doc},
     {nullptr, nullptr, 0, nullptr}};
 PyGetSetDef attributes[] = {
     {"dof", &get_dof, nullptr, "Number of velocities: one per coordinate, and six more for a floating base.",

@@ -1,4 +1,5 @@
 #include <cstring>
+#include <string>
 
 #include "bindings.hpp"
 #include "cspace/math/interrupts.hpp"
@@ -10,6 +11,30 @@ PyTypeObject* add_type(nanobind::module_& m, PyType_Spec& spec, PyTypeObject* ba
     if (!type || PyModule_AddObjectRef(m.ptr(), std::strrchr(spec.name, '.') + 1, type) < 0)
         throw nanobind::python_error();
     return reinterpret_cast<PyTypeObject*>(type);
+}
+
+void ResultType::add(nanobind::module_& m, PyType_Spec& spec) {
+    base_ = add_type(m, spec);
+    const auto set_class = [this](nanobind::handle given) {
+        auto* cls = reinterpret_cast<PyTypeObject*>(given.ptr());
+        if (!PyType_Check(given.ptr()) || !PyType_IsSubtype(cls, base_))
+            throw nanobind::type_error(
+                (std::string(entry_) + " takes a subclass of " + base_->tp_name).c_str());
+        Py_XDECREF(made_of_);
+        made_of_ = reinterpret_cast<PyTypeObject*>(given.inc_ref().ptr());
+    };
+    m.def(entry_, set_class, nanobind::arg("cls"), "Sets the class that results are made of.");
+}
+
+PyObject* ResultType::make(Py_ssize_t count) const {
+    if (!made_of_) {
+        PyObject* room = PyImport_ImportModule(module_);
+        Py_XDECREF(room);
+        if (!room) return nullptr;
+        if (!made_of_)
+            return PyErr_Format(PyExc_ImportError, "%s has not named the class of results", module_);
+    }
+    return made_of_->tp_alloc(made_of_, count);
 }
 
 // Raises what Python's signal handlers raise, KeyboardInterrupt among it. Any code may run in them.

@@ -3,9 +3,8 @@
 #include <new>
 #include <stdexcept>
 
-#include "bindings.hpp"
-
 using cspace::Point;
+using cspace::maps::GridWorld;
 
 namespace {
 
@@ -14,10 +13,10 @@ constexpr const char* names[] = {"start", "goal"};
 }  // namespace
 
 bool read_ends(PyObject* world, PyObject* const* given, Point (&ends)[2]) {
-    if (read_point(given[0], ends[0]) && read_point(given[1], ends[1])) return true;
+    if (read_numbers(given[0], &ends[0].x, 2) && read_numbers(given[1], &ends[1].x, 2)) return true;
     for (int k = 0; k < 2; ++k) {
         PyObject* checked = PyObject_CallMethod(world, "check_free", "Os", given[k], names[k]);
-        const bool is_point = checked && read_point(checked, ends[k]);
+        const bool is_point = checked && read_numbers(checked, &ends[k].x, 2);
         Py_XDECREF(checked);
         if (is_point) continue;
         if (!PyErr_Occurred()) PyErr_SetString(PyExc_TypeError, "world.check_free must return a point (2,)");
@@ -45,7 +44,7 @@ PyObject* translate_exception(PyObject* world) {
         return PyErr_Format(PyExc_MemoryError,
                             "out of memory in a search over %d x %d cells, which needs up to 100 bytes per "
                             "expanded cell; use larger cells",
-                            grid.rows(), grid.columns());
+                            grid.rows, grid.columns);
     } catch (const std::invalid_argument& refused) {
         PyErr_SetString(PyExc_ValueError, refused.what());
         return nullptr;

@@ -1,19 +1,13 @@
-// The entry of a planner, called from Python as (traced, world, core, planner, start, goal, settings…) → the
-// Route, or of a traced search the arrays of its trace. A question may be worth a microsecond, so these are
-// raw entries.
+// The entry of a planner, called from Python as (traced, world, core, planner, start, goal, settings…,
+// describe) → the Route, or of a traced query the arrays of its trace. `describe`, for queries with evidence,
+// makes what the route keeps of it. A query may be worth a microsecond, so these are raw entries.
 #pragma once
 
-#include <nanobind/nanobind.h>
-
 #include <array>
-#include <optional>
 
-#include "library/maps_grid.hpp"
-#include "library/maps_polygon_world.hpp"
+#include "library/navigation_query.hpp"
+#include "maps_points.hpp"
 #include "navigation_route.hpp"
-
-using cspace::maps::GridWorld;
-using cspace::maps::PolygonCore;
 
 // The object of the core behind a Python object; null, with an error set, for other objects.
 template <class T>
@@ -24,16 +18,54 @@ T* core_of(PyObject* value) {
     return nullptr;
 }
 
-// Settings as numbers; false with an error set for others.
-template <std::size_t count>
-bool read_settings(PyObject* const* args, std::array<double, count>& numbers) {
-    for (double& number : numbers) number = PyFloat_AsDouble(*args++);
-    return !PyErr_Occurred();
+// A setting from the next arguments; false with an error set for others. It may hold a reference to them.
+inline bool read_setting(PyObject* const*& args, double& number) {
+    number = PyFloat_AsDouble(*args++);
+    return number != -1 || !PyErr_Occurred();
 }
-template <std::size_t count>
-bool read_settings(PyObject* const* args, std::array<std::int64_t, count>& numbers) {
-    for (std::int64_t& number : numbers) number = PyLong_AsLongLong(*args++);
-    return !PyErr_Occurred();
+inline bool read_setting(PyObject* const*& args, std::int64_t& number) {
+    number = PyLong_AsLongLong(*args++);
+    return number != -1 || !PyErr_Occurred();
+}
+inline bool read_setting(PyObject* const*& args, std::uint64_t& number) {
+    number = PyLong_AsUnsignedLongLong(*args++);
+    return number != std::uint64_t(-1) || !PyErr_Occurred();
+}
+inline bool read_setting(PyObject* const*& args, bool& truth) {
+    truth = *args++ == Py_True;
+    return true;
+}
+template <class T, std::size_t n>
+bool read_setting(PyObject* const*& args, std::array<T, n>& numbers) {
+    for (T& number : numbers)
+        if (!read_setting(args, number)) return false;
+    return true;
+}
+// A contiguous array of numbers, or None.
+inline bool read_setting(PyObject* const*& args, std::span<const double>& numbers) {
+    ConstDoubles array;
+    PyObject* given = *args++;
+    if (given != Py_None && !array.read(given))
+        return PyErr_SetString(PyExc_TypeError, "costs must be a contiguous float64 array"), false;
+    numbers = {array.data, std::size_t(array.size)};
+    return true;
+}
+template <class T>
+bool read_setting(PyObject* const*& args, const T*& core) {
+    return (core = core_of<T>(*args++));
+}
+
+template <class T>
+inline constexpr int arguments_for = 1;
+template <class T, std::size_t n>
+inline constexpr int arguments_for<std::array<T, n>> = int(n);
+
+// Settings from as many arguments.
+template <class... T>
+bool read_settings(PyObject* const* args, Py_ssize_t count, std::tuple<T&...> settings) {
+    if (count != (arguments_for<T> + ... + 0))
+        return PyErr_SetString(PyExc_TypeError, "the number of arguments does not fit the planner"), false;
+    return std::apply([&args](T&... each) { return (read_setting(args, each) && ...); }, settings);
 }
 
 // Start and goal. Objects other than a plain point go to world.check_free, which converts them or raises.
@@ -43,50 +75,37 @@ PyObject* refuse_ends(PyObject* world, const cspace::Point (&ends)[2]);
 // In a handler: null, with the error of Python for what was thrown.
 PyObject* translate_exception(PyObject* world);
 
-// What most searches of a core C have in common: each replaces what differs, and has
-//   bool find(const C&, start, goal, Trace*)  false where an end is not free; the trace may be null
-template <class C, class Found = cspace::navigation::Route>
-struct SearchOf {
-    using Core = C;
-    using Point = cspace::Point;
-    using Trace = cspace::navigation::Trace;
-    static constexpr int settings = 0;  // how many there are
-    Found found;
-    double spent = 0;  // [s] by Python for this search
-
-    bool read(const C&, PyObject* const*) { return true; }  // false with an error set
-    bool is_concurrent(const C&) const { return true; }     // whether the interpreter is free meanwhile
-    PyObject* evidence() const { return nullptr; }          // what backs the verdict; null for nothing
-    const cspace::navigation::Route& route() const {
-        if constexpr (requires { found.route; })
-            return found.route;
-        else
-            return found;
-    }
-};
-
-template <class Search>
+template <class Query>
 PyObject* ask(PyObject*, PyObject* const* args, Py_ssize_t count) try {
     constexpr int ends_at = 4, settings_at = 6;
-    if (count != settings_at + Search::settings)
-        return PyErr_Format(PyExc_TypeError, "expected %d arguments", settings_at + Search::settings);
+    constexpr bool has_evidence = requires(Query& query) { query.evidence(); };
+    if (count < settings_at + has_evidence)
+        return PyErr_Format(PyExc_TypeError, "expected %d arguments or more", settings_at + has_evidence);
     const bool is_traced = args[0] == Py_True;
     PyObject* world = args[1];
-    auto* core = core_of<typename Search::Core>(args[2]);
-    Search search;
+    const auto* core = core_of<typename Query::World>(args[2]);
+    Query query;
     cspace::Point ends[2];
-    if (!core || !search.read(*core, args + settings_at) || !read_ends(world, args + ends_at, ends))
+    if (!core || !read_settings(args + settings_at, count - settings_at - has_evidence, query.settings()) ||
+        !read_ends(world, args + ends_at, ends))
         return nullptr;
     cspace::navigation::Trace trace;
     const Watch watch;
     std::optional<nanobind::gil_scoped_release> released;
-    if (search.is_concurrent(*core)) released.emplace();
-    const bool is_free = search.find(*core, ends[0], ends[1], is_traced ? &trace : nullptr);
+    if (query.is_concurrent(*core)) released.emplace();
+    const bool is_free = query.find(*core, ends[0], ends[1], is_traced ? &trace : nullptr);
     released.reset();
     if (!is_free) return refuse_ends(world, ends);
     if (is_traced) return trace_arrays(trace);
-    const double seconds = watch.seconds() + search.spent;
-    return make_route(world, args[3], ends[0], ends[1], search.route(), seconds, search.evidence());
+    const double seconds = watch.seconds() + query.spent;
+    nanobind::object evidence;
+    if constexpr (has_evidence) {
+        const nanobind::handle describe = args[count - 1];
+        if (auto known = query.evidence())
+            evidence = std::apply([&](auto&... part) { return describe(nanobind::cast(std::move(part))...); },
+                                  *known);
+    }
+    return make_route(world, args[3], ends[0], ends[1], query.route(), seconds, evidence.release().ptr());
 } catch (...) {
     return translate_exception(args[1]);
 }

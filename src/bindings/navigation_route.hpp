@@ -21,19 +21,9 @@ struct RouteObject {
     cspace::Point path[1];
 };
 
-// A whole route from what a planner returned. evidence: taken over, also on failure; null for none, or with
-// an error set, which the caller gets.
+// A whole route from what a planner returned. evidence: taken over, also on failure; null for none.
 PyObject* make_route(PyObject* world, PyObject* planner, cspace::Point start, cspace::Point goal,
                      const cspace::navigation::Route& route, double seconds, PyObject* evidence);
-
-// Plain finite numbers: one, or so many in a tuple or an array; false (without error) for others, which the
-// caller hands to the checks in Python.
-bool read_number(PyObject* item, double& number);
-bool read_numbers(PyObject* value, double* row, int count);
-inline bool read_point(PyObject* value, cspace::Point& point) { return read_numbers(value, &point.x, 2); }
-
-// An array (count,) of numbers.
-PyObject* number_row(const double* numbers, npy_intp count);
 
 // The arrays of a Trace: kinds (k,), from (k, 2), to (k, 2), values (k,).
 PyObject* trace_arrays(const cspace::navigation::Trace& trace);

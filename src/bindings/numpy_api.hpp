@@ -11,6 +11,9 @@
 #include <numpy/arrayobject.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <initializer_list>
 
 // The numbers of an array that has this type.
 template <class T = double>
@@ -18,19 +21,46 @@ T* data_of(PyObject* array) {
     return static_cast<T*>(PyArray_DATA(reinterpret_cast<PyArrayObject*>(array)));
 }
 
+template <class T>
+inline constexpr int numpy_type = NPY_DOUBLE;
+template <>
+inline constexpr int numpy_type<std::int64_t> = NPY_INT64;
+template <>
+inline constexpr int numpy_type<std::int32_t> = NPY_INT32;
+template <>
+inline constexpr int numpy_type<std::uint32_t> = NPY_UINT32;
+template <>
+inline constexpr int numpy_type<std::int8_t> = NPY_INT8;
+template <>
+inline constexpr int numpy_type<std::uint8_t> = NPY_UINT8;
+template <>
+inline constexpr int numpy_type<bool> = NPY_BOOL;
+
+// A new array, of the numbers at `values` unless it is null. Null with an error set.
+template <class T = double>
+PyObject* new_array(std::initializer_list<npy_intp> shape, const T* values = nullptr) {
+    PyObject* made =
+        PyArray_SimpleNew(int(shape.size()), const_cast<npy_intp*>(shape.begin()), numpy_type<T>);
+    if (made && values)
+        std::copy_n(values, PyArray_SIZE(reinterpret_cast<PyArrayObject*>(made)), data_of<T>(made));
+    return made;
+}
+
+// Whether item is a float or an integer that fits into a double.
+inline bool read_number(PyObject* item, double& number) {
+    if (!PyFloat_Check(item) && !PyLong_CheckExact(item)) return false;
+    number = PyFloat_AsDouble(item);
+    if (number != -1 || !PyErr_Occurred()) return true;
+    PyErr_Clear();
+    return false;
+}
+
 // The numbers of a list or tuple of `count` floats and integers, in `copy`; null for everything else.
 inline const double* read_sequence(PyObject* value, npy_intp count, double* copy) {
     if (!PyList_CheckExact(value) && !PyTuple_CheckExact(value)) return nullptr;
     if (PySequence_Fast_GET_SIZE(value) != count) return nullptr;
-    PyObject** const items = PySequence_Fast_ITEMS(value);
-    for (npy_intp j = 0; j < count; ++j) {
-        if (!PyFloat_Check(items[j]) && !PyLong_CheckExact(items[j])) return nullptr;
-        copy[j] = PyFloat_AsDouble(items[j]);
-        if (copy[j] == -1 && PyErr_Occurred()) {  // an integer beyond all doubles
-            PyErr_Clear();
-            return nullptr;
-        }
-    }
+    for (npy_intp j = 0; j < count; ++j)
+        if (!read_number(PySequence_Fast_ITEMS(value)[j], copy[j])) return nullptr;
     return copy;
 }
 
@@ -51,4 +81,11 @@ inline const double* read_in_place(PyObject* value, npy_intp rows, npy_intp colu
                 PyArray_BYTES(array) + (rows ? i * PyArray_STRIDE(array, 0) : 0) +
                 j * PyArray_STRIDE(array, last));
     return copy;
+}
+
+// Whether value holds so many finite numbers, which are written into row; else no error is set.
+inline bool read_numbers(PyObject* value, double* row, int count) {
+    const double* numbers = read_in_place(value, 0, count, row);
+    if (numbers && numbers != row) std::copy_n(numbers, count, row);
+    return numbers && std::all_of(row, row + count, [](double number) { return std::isfinite(number); });
 }

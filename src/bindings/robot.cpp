@@ -10,20 +10,7 @@ struct RobotObject {
 };
 RobotObject* robot_of(PyObject* self) { return reinterpret_cast<RobotObject*>(self); }
 
-int visit_references(PyObject* self, visitproc visit, void* arg) {
-    Py_VISIT(Py_TYPE(self));
-    Py_VISIT(robot_of(self)->solver);
-    return 0;
-}
-int clear_references(PyObject* self) {
-    Py_CLEAR(robot_of(self)->solver);
-    return 0;
-}
-void free_robot(PyObject* self) {
-    PyObject_GC_UnTrack(self);
-    clear_references(self);
-    free_kinematics(self);
-}
+using Slots = Collected<RobotObject, free_kinematics, &RobotObject::solver>;
 
 // The property `solver` of the Python class builds the solver and leaves it in `_solver`.
 PyObject* robot_ik(PyObject* self, PyObject* const* args, Py_ssize_t nargs, PyObject* kwnames) {
@@ -56,9 +43,9 @@ PyGetSetDef robot_attributes[] = {
     {"_solver", &get_solver, &set_solver, "The solver, None before it is built; set once.", nullptr},
     {nullptr, nullptr, nullptr, nullptr, nullptr}};
 PyType_Slot robot_slots[] = {{Py_tp_new, reinterpret_cast<void*>(&create_kinematics)},
-                             {Py_tp_dealloc, reinterpret_cast<void*>(&free_robot)},
-                             {Py_tp_traverse, reinterpret_cast<void*>(&visit_references)},
-                             {Py_tp_clear, reinterpret_cast<void*>(&clear_references)},
+                             {Py_tp_dealloc, reinterpret_cast<void*>(&Slots::destroy)},
+                             {Py_tp_traverse, reinterpret_cast<void*>(&Slots::visit)},
+                             {Py_tp_clear, reinterpret_cast<void*>(&Slots::clear)},
                              {Py_tp_methods, robot_methods},
                              {Py_tp_getset, robot_attributes},
                              {Py_tp_doc, const_cast<char*>("The compiled half of cspace.Robot.")},

@@ -4,6 +4,7 @@
 from typing import Annotated, Any, overload
 
 import numpy
+import numpy.typing
 from numpy.typing import ArrayLike, NDArray
 
 
@@ -216,34 +217,11 @@ class SolutionsBase:
 
 AXIS_RELATION: float
 
-class RouteBase:
-    """The compiled half of cspace.navigation.Route."""
-
-    @property
-    def path(self) -> NDArray[numpy.float64]: ...
-    @property
-    def start(self) -> NDArray[numpy.float64]: ...
-    @property
-    def goal(self) -> NDArray[numpy.float64]: ...
-    @property
-    def length(self) -> float: ...
-    @property
-    def world(self) -> Any: ...
-    @property
-    def _asked(self) -> Any: ...
-    @property
-    def _verdict(self) -> int: ...
-    @property
-    def _numbers(self) -> tuple[int, int, float]: ...
-    @property
-    def _evidence(self) -> Any: ...
-    def __bool__(self) -> bool: ...
-
 class GridBase:
     """The compiled half of cspace.maps.OccupancyGrid."""
 
     @overload
-    def __init__(self, blocked: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu', writable=False)], resolution: float, x: float, y: float) -> None: ...
+    def __init__(self, blocked: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.NDArray[numpy.float64]) -> None: ...
 
     @overload
     def __init__(self, other: GridBase, radius: float, from_centers: bool) -> None: ...
@@ -276,36 +254,107 @@ class GridBase:
     def _y(self) -> float: ...
     @property
     def _corners(self) -> int: ...
-    def _unpack(self, into: NDArray[numpy.uint8]) -> None: ...
-    def _free(self, points: NDArray[numpy.float64], into: NDArray[numpy.uint8]) -> None: ...
-    def _locate(self, x: float, y: float) -> tuple[int, int, int]: ...
+    def _unpack(self) -> NDArray[numpy.uint8]: ...
+    def _free(self, points: NDArray[numpy.float64]) -> NDArray[numpy.uint8]: ...
+    def _locate(self, point: tuple[float, float]) -> tuple[int, int, int]: ...
     def _path_clearance(self, path: NDArray[numpy.float64]) -> float: ...
+
+class PolygonCore:
+    """The compiled half of cspace.maps.PolygonWorld."""
+
+    @overload
+    def __init__(self, points: numpy.typing.NDArray[numpy.float64], ends: numpy.typing.NDArray[numpy.int32], owners: numpy.typing.NDArray[numpy.int32], low: numpy.typing.NDArray[numpy.float64], high: numpy.typing.NDArray[numpy.float64], tolerance: float) -> None:
+        """
+        Closed rings (n, 2), the end of each, the obstacle of each; the corners of the bounds.
+        """
+
+    @overload
+    def __init__(self, blocked: numpy.typing.NDArray[numpy.uint8], side: float, origin: numpy.typing.NDArray[numpy.float64], tolerance: float) -> None:
+        """The blocked cells (rows, columns) of a grid as polygons."""
+
+    def rasterize(self, side: float, rows: int, columns: int) -> numpy.typing.NDArray[numpy.uint8]:
+        """A byte per cell (rows, columns): 1 where obstacles reach into it."""
+
+    @property
+    def complete(self) -> bool:
+        """False where the outlines cross too often."""
+
+    @property
+    def components(self) -> int:
+        """How many components free space has."""
+
+    def crossings(self) -> tuple[numpy.typing.NDArray[numpy.float64], list[tuple[int, int]]]:
+        """Where outlines cross (k, 2), and the two obstacles of each."""
+
+    def walls(self) -> tuple[numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.int32]]:
+        """Points (k, 2), next (k,), ring (k,), component of each ring."""
+
+    def triangles(self) -> list[numpy.typing.NDArray[numpy.float64]]:
+        """The free triangles, (3, 2) each."""
+
+    def convex_polygons(self) -> list[numpy.typing.NDArray[numpy.float64]]:
+        """Free space as convex polygons, (n, 2) each."""
+
+    def components_at(self, point: numpy.typing.NDArray[numpy.float64]) -> list[int]:
+        """The components whose closures hold a point."""
+
+    def obstacle_at(self, point: numpy.typing.NDArray[numpy.float64]) -> int:
+        """An obstacle that covers a point, or -1."""
+
+    def nearest_wall(self, point: numpy.typing.NDArray[numpy.float64]) -> tuple[float, float, float]:
+        """Distance to the nearest wall, and its point: x, y."""
+
+    def path_clearance(self, path: numpy.typing.NDArray[numpy.float64]) -> float:
+        """The least distance from a path to a wall."""
+
+class RouteBase:
+    """The compiled half of cspace.navigation.Route."""
+
+    @property
+    def path(self) -> NDArray[numpy.float64]: ...
+    @property
+    def start(self) -> NDArray[numpy.float64]: ...
+    @property
+    def goal(self) -> NDArray[numpy.float64]: ...
+    @property
+    def length(self) -> float: ...
+    @property
+    def world(self) -> Any: ...
+    @property
+    def _asked(self) -> Any: ...
+    @property
+    def _verdict(self) -> int: ...
+    @property
+    def _numbers(self) -> tuple[int, int, float]: ...
+    @property
+    def _evidence(self) -> Any: ...
+    def __bool__(self) -> bool: ...
 
 class GridReplanner:
     """The compiled half of cspace.navigation.DStarLite."""
 
-    def __init__(self, world: GridBase, corners: int, x0: float, y0: float, x1: float, y1: float) -> None: ...
+    def __init__(self, world: GridBase, corners: int, start: numpy.typing.NDArray[numpy.float64], goal: numpy.typing.NDArray[numpy.float64]) -> None: ...
 
-    def set(self, cells: Annotated[NDArray[numpy.int32], dict(shape=(None, 2), order='C', device='cpu', writable=False)], blocked: bool) -> None:
+    def set(self, cells: numpy.typing.NDArray[numpy.int32], blocked: bool) -> None:
         """Cells (k, 2) become blocked or free."""
 
-    def move(self, x: float, y: float) -> None:
+    def move(self, point: numpy.typing.NDArray[numpy.float64]) -> None:
         """The robot has moved."""
 
-    def replan(self) -> tuple[int, NDArray[numpy.float64], float, int, int, NDArray[numpy.int32]]:
+    def replan(self) -> tuple[int, numpy.typing.NDArray[numpy.float64], float, int, int, numpy.typing.NDArray[numpy.int32]]:
         """
         Status, path, length, nodes, edges, and the cells settled, in their order.
         """
 
-    def unpack(self, into: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu')]) -> None:
-        """Writes a byte per cell."""
+    def unpack(self) -> numpy.typing.NDArray[numpy.uint8]:
+        """A byte per cell (rows, columns)."""
 
 class ClearanceField:
     """The distance of every cell of a grid to the nearest wall."""
 
     def __init__(self, grid: GridBase) -> None: ...
 
-    def march_times(self, grid: GridBase, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], slow_within: float) -> NDArray[numpy.float64]:
+    def march_times(self, grid: GridBase, goal: numpy.typing.NDArray[numpy.float64], slow_within: float) -> numpy.typing.NDArray[numpy.float64]:
         """
         When a front from the goal arrives (rows, columns) [m, over the speed].
         """
@@ -313,7 +362,7 @@ class ClearanceField:
 class HarmonicField:
     """A harmonic potential over the cells of a grid."""
 
-    def __init__(self, grid: GridBase, clearance: ClearanceField, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], residual: float, most_cycles: int) -> None: ...
+    def __init__(self, grid: GridBase, clearance: ClearanceField, goal: numpy.typing.NDArray[numpy.float64], residual: float, most_cycles: int) -> None: ...
 
     @property
     def residual(self) -> float:
@@ -324,14 +373,10 @@ class HarmonicField:
         """Of the solver."""
 
     @property
-    def cells(self) -> int:
-        """From which a way leads to the goal."""
-
-    @property
     def rests(self) -> int:
         """Cells but the goal from which no step leads down."""
 
-    def heights(self, grid: GridBase) -> NDArray[numpy.float64]:
+    def heights(self, grid: GridBase) -> numpy.typing.NDArray[numpy.float64]:
         """Minus the logarithm of the chance (rows, columns)."""
 
 class BrushfireCore:
@@ -339,21 +384,17 @@ class BrushfireCore:
 
     def __init__(self, grid: GridBase) -> None: ...
 
-    def clearance(self) -> NDArray[numpy.float64]:
+    def clearance(self) -> numpy.typing.NDArray[numpy.float64]:
         """Of each cell (rows, columns) [m]."""
 
-    def labels(self) -> NDArray[numpy.int32]:
+    def labels(self) -> numpy.typing.NDArray[numpy.int32]:
         """The nearest piece of boundary of each cell (rows, columns), or -1."""
 
-    def cells(self) -> NDArray[numpy.uint8]:
+    def cells(self) -> numpy.typing.NDArray[numpy.uint8]:
         """A byte per cell (rows, columns): 1 in the diagram."""
 
-    def branches(self) -> tuple[NDArray[numpy.int32], NDArray[numpy.float64], NDArray[numpy.float64]]:
+    def branches(self) -> tuple[numpy.typing.NDArray[numpy.int32], numpy.typing.NDArray[numpy.float64], numpy.typing.NDArray[numpy.float64]]:
         """Ends (k, 4), lengths (k,) [m] and least clearances (k,) [m]."""
-
-    @property
-    def pieces(self) -> int:
-        """How many pieces the boundary has."""
 
 class NearWalls:
     """The walls of a PolygonWorld, sorted by where they repel."""
@@ -364,25 +405,25 @@ class NearWalls:
     def reach(self) -> float:
         """How far walls repel [m]."""
 
-    def values(self, core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], points: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], settings: Annotated[NDArray[numpy.float64], dict(shape=(6), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+    def values(self, core: PolygonCore, goal: numpy.typing.NDArray[numpy.float64], points: numpy.typing.NDArray[numpy.float64], settings: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """The potential at points (n, 2)."""
 
 class NavigationCore:
     """A navigation function of a star or sphere world."""
 
+    @overload
+    def __init__(self, core: PolygonCore, goal: numpy.typing.NDArray[numpy.float64], kappa: float, squares: int, steps: int) -> None:
+        """Of a world without fault."""
+
+    @overload
+    def __init__(self, discs: numpy.typing.NDArray[numpy.float64], goal: numpy.typing.NDArray[numpy.float64], kappa: float, squares: int, steps: int) -> None:
+        """Of discs (n, 3): x, y, radius; the first is the room."""
+
     @staticmethod
-    def fault(core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)]) -> tuple[int, float, float] | None:
+    def fault(core: PolygonCore, goal: numpy.typing.NDArray[numpy.float64]) -> tuple[int, float, float] | None:
         """
         An obstacle that is not star-shaped (1) or touches another (2): (1 or 2, x, y), a corner of it.
         """
-
-    @staticmethod
-    def of_polygons(core: PolygonCore, goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], kappa: float, squares: int, steps: int) -> NavigationCore:
-        """Of a world without fault."""
-
-    @staticmethod
-    def of_discs(discs: Annotated[NDArray[numpy.float64], dict(shape=(None, 3), order='C', device='cpu', writable=False)], goal: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)], kappa: float, squares: int, steps: int) -> NavigationCore:
-        """Of discs (n, 3): x, y, radius; the first is the room."""
 
     @property
     def kappa(self) -> float:
@@ -396,67 +437,20 @@ class NavigationCore:
     def obstacles(self) -> int:
         """How many."""
 
-    def saddles(self) -> NDArray[numpy.float64]:
+    def saddles(self) -> numpy.typing.NDArray[numpy.float64]:
         """Where they are (k, 2)."""
 
-    def log_odds(self, core: PolygonCore | None, points: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+    def log_odds(self, core: PolygonCore | None, points: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """V at points (n, 2)."""
 
-    def phi(self, logs: Annotated[NDArray[numpy.float64], dict(shape=(None,), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64]:
+    def phi(self, logs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """φ of V (n,)."""
 
-    def path(self, start: Annotated[NDArray[numpy.float64], dict(shape=(2), order='C', device='cpu', writable=False)]) -> NDArray[numpy.float64] | None:
+    def path(self, start: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64] | None:
         """The way down from a free point."""
 
-class PolygonCore:
-    """The compiled half of cspace.maps.PolygonWorld."""
-
-    def __init__(self, points: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)], ends: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], owners: Annotated[NDArray[numpy.int32], dict(shape=(None,), order='C', device='cpu', writable=False)], bounds: Annotated[NDArray[numpy.float64], dict(shape=(2, 2), order='C', device='cpu', writable=False)], tolerance: float) -> None:
-        """
-        Closed rings (n, 2), the end of each, the obstacle of each; the low and high corner of the bounds.
-        """
-
-    @staticmethod
-    def from_cells(blocked: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu', writable=False)], side: float, x: float, y: float, tolerance: float) -> PolygonCore:
-        """The blocked cells (rows, columns) of a grid as polygons."""
-
-    def rasterize(self, side: float, blocked: Annotated[NDArray[numpy.uint8], dict(shape=(None, None), order='C', device='cpu')]) -> None:
-        """Marks in blocked (rows, columns) the cells that obstacles reach into."""
-
-    @property
-    def complete(self) -> bool:
-        """False where the outlines cross too often."""
-
-    @property
-    def components(self) -> int:
-        """How many components free space has."""
-
-    def crossings(self) -> tuple[NDArray[numpy.float64], list[tuple[int, int]]]:
-        """Where outlines cross (k, 2), and the two obstacles of each."""
-
-    def walls(self) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32], NDArray[numpy.int32], NDArray[numpy.int32]]:
-        """Points (k, 2), next (k,), ring (k,), component of each ring."""
-
-    def triangles(self) -> list[NDArray[numpy.float64]]:
-        """The free triangles, (3, 2) each."""
-
-    def convex_polygons(self) -> list[NDArray[numpy.float64]]:
-        """Free space as convex polygons, (n, 2) each."""
-
-    def components_at(self, x: float, y: float) -> list[int]:
-        """The components whose closures hold a point."""
-
-    def obstacle_at(self, x: float, y: float) -> int:
-        """An obstacle that covers a point, or -1."""
-
-    def nearest_wall(self, x: float, y: float) -> tuple[float, float, float]:
-        """Distance to the nearest wall, and its point."""
-
-    def path_clearance(self, path: Annotated[NDArray[numpy.float64], dict(shape=(None, 2), order='C', device='cpu', writable=False)]) -> float:
-        """The least distance from a path to a wall."""
-
 def _car_clear(*arguments: Any) -> None: ...
-def _car_distance(*arguments: Any) -> float | None: ...
+def _car_distance(*arguments: Any) -> Any: ...
 def _car_shortest(*arguments: Any) -> Any: ...
 def _car_distances(*arguments: Any) -> None: ...
 def _car_poses(*arguments: Any) -> None: ...
@@ -471,14 +465,12 @@ def _navigation_function(*arguments: Any) -> Any: ...
 def _follow(*arguments: Any) -> tuple[int, NDArray[numpy.float64]]: ...
 def _hybrid_a_star(*arguments: Any) -> Any: ...
 def _grid_route(*arguments: Any) -> Any: ...
-def _any_angle(*arguments: Any) -> Any: ...
+def _polygon_route(*arguments: Any) -> Any: ...
 def _grid_any_angle(*arguments: Any) -> Any: ...
 def _walls_divide(grid: Any, start: Any, goal: Any) -> bool: ...
 def _approximate_cells(*arguments: Any) -> Any: ...
 def _approximate_cells_all(core: Any, settings: Any) -> Any: ...
-def _exact_cells(*arguments: Any) -> Any: ...
 def _exact_cells_all(core: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32]]: ...
-def _visibility(*arguments: Any) -> Any: ...
 def _visibility_graph(core: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.int32]]: ...
 def _sampling(*arguments: Any) -> Any: ...
 def _voronoi(*arguments: Any) -> Any: ...

@@ -9,6 +9,14 @@
 
 namespace cspace::maps {
 
+// A byte per cell.
+inline Table<std::uint8_t> unpack_bits(const BitGrid& bits) {
+    const auto columns = std::size_t(bits.columns());
+    Table<std::uint8_t> made{std::vector<std::uint8_t>(columns * std::size_t(bits.rows())), columns};
+    bits.unpack(made.values.data());
+    return made;
+}
+
 struct GridWorld::State {
     BitGrid bits;
     GridFrame frame;

@@ -57,7 +57,12 @@ struct PolygonCore::State {
     Memory walls, surroundings, polyanya, visibility_graph, visibility, exact_cells, quadtree, voronoi,
         samples;
 
-    Settled settle(Point p) const;
+    Settled settle(Point p) const { return world.settle(p, tolerance); }
+    // Start and goal taken off walls; false where one is not free.
+    bool settle(Point start, Point goal, Settled& from, Settled& to) const {
+        from = settle(start), to = settle(goal);
+        return from.is_free() && to.is_free();
+    }
 };
 
 }  // namespace cspace::maps

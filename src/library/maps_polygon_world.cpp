@@ -40,22 +40,23 @@ Outlines outlines_from(const BitGrid& grid, double side, Point origin) {
 }  // namespace
 
 PolygonCore::State::State(Outlines outlines, double t) : world(std::move(outlines)), tolerance(t) {}
-Settled PolygonCore::State::settle(Point p) const { return world.settle(p, tolerance); }
 
 PolygonCore::PolygonCore(std::span<const Point> points, std::span<const std::int32_t> ends,
                          std::span<const std::int32_t> owners, Point low, Point high, double tolerance)
     : state_(new State(outlines_from(points, ends, owners, low, high), tolerance)) {}
-PolygonCore::PolygonCore(const std::uint8_t* blocked, int rows, int columns, double side, Point origin,
-                         double tolerance)
-    : state_(new State(outlines_from(BitGrid(blocked, rows, columns), side, origin), tolerance)) {}
-PolygonCore::PolygonCore(PolygonCore&&) noexcept = default;
-PolygonCore::~PolygonCore() = default;
+PolygonCore::PolygonCore(CellBytes cells, double side, Point origin, double tolerance)
+    : state_(new State(outlines_from(BitGrid(cells.data, cells.rows, cells.columns), side, origin),
+                       tolerance)) {}
 
 bool PolygonCore::complete() const { return state_->world.space.complete; }
 int PolygonCore::components() const { return int(state_->world.space.components); }
-const Boundary& PolygonCore::walls() const { return state_->world.walls; }
+std::tuple<Table<Point>, Table<std::int32_t>, Table<std::int32_t>, Table<std::int32_t>> PolygonCore::walls()
+    const {
+    const Boundary& b = state_->world.walls;
+    return {{b.points}, {b.next}, {b.ring}, {b.component}};
+}
 
-std::vector<PolygonCore::Crossing> PolygonCore::crossings() const {
+std::pair<Table<Point>, std::vector<std::pair<int, int>>> PolygonCore::crossings() const {
     const FreeSpace& space = state_->world.space;
     const auto shared_owner = [&](Index one, Index other) {
         for (Index a = one; a != none; a = space.owners[std::size_t(a)].next)
@@ -64,32 +65,33 @@ std::vector<PolygonCore::Crossing> PolygonCore::crossings() const {
                     return space.owners[std::size_t(a)].id;
         return none;
     };
-    std::vector<Crossing> all;
+    std::pair<Table<Point>, std::vector<std::pair<int, int>>> all;
     for (const auto& [at, one, other] : space.crossings) {
         const Index shared = shared_owner(one, other);
         const auto first_owner = [&](Index list) {
             return shared != none ? shared : space.owners[std::size_t(list)].id;
         };
-        all.push_back({at, {first_owner(one), first_owner(other)}});
+        all.first.values.push_back(at);
+        all.second.emplace_back(first_owner(one), first_owner(other));
     }
     return all;
 }
 
-std::vector<std::vector<Point>> PolygonCore::triangles() const {
+std::vector<Table<Point>> PolygonCore::triangles() const {
     const FreeSpace& space = state_->world.space;
-    std::vector<std::vector<Point>> all;
+    std::vector<Table<Point>> all;
     for (Index t = 0; t < Index(space.mesh.triangles.size()); ++t) {
         if (!space.is_free(t)) continue;
-        auto& corners = all.emplace_back();
+        auto& corners = all.emplace_back().values;
         for (const Index v : space.mesh[t].corner) corners.push_back(space.mesh.point(v));
     }
     return all;
 }
-std::vector<std::vector<Point>> PolygonCore::convex_polygons() const {
+std::vector<Table<Point>> PolygonCore::convex_polygons() const {
     const ConvexMesh& mesh = state_->world.mesh();
-    std::vector<std::vector<Point>> all;
+    std::vector<Table<Point>> all;
     for (Index p = 0; p < mesh.size(); ++p) {
-        auto& corners = all.emplace_back();
+        auto& corners = all.emplace_back().values;
         for (Index e = mesh.begin(p); e < mesh.end(p); ++e)
             corners.push_back(mesh.point(mesh.corner[std::size_t(e)]));
     }
@@ -112,23 +114,27 @@ int PolygonCore::obstacle_at(Point p) const {
     return place.triangle == none ? none : world.space.obstacle[std::size_t(place.triangle)];
 }
 
-std::pair<double, Point> PolygonCore::nearest_wall(Point p) const {
+std::tuple<double, double, double> PolygonCore::nearest_wall(Point p) const {
     const Boundary& walls = state_->world.walls;
     std::pair<double, Point> best{std::numeric_limits<double>::infinity(), {}};
     for (Index e = 0; e < Index(walls.size()); ++e) {
         const Point foot = nearest_on(walls.begin(e), walls.end(e), p);
         if (const double d = distance(p, foot); d < best.first) best = {d, foot};
     }
-    return best;
+    return {best.first, best.second.x, best.second.y};
 }
 
 double PolygonCore::path_clearance(std::span<const Point> path) const {
     return maps::path_clearance(path, state_->world.walls);
 }
 
-void PolygonCore::rasterize(double side, int rows, int columns, std::uint8_t* blocked) const {
+Table<std::uint8_t> PolygonCore::rasterize(double side, int rows, int columns) const {
     const PolygonWorld& world = state_->world;
-    maps::rasterize(world.space, world.outlines.low, side, rows, columns, state_->tolerance, blocked);
+    Table<std::uint8_t> blocked{std::vector<std::uint8_t>(std::size_t(rows) * std::size_t(columns)),
+                                std::size_t(columns)};
+    maps::rasterize(world.space, world.outlines.low, side, rows, columns, state_->tolerance,
+                    blocked.values.data());
+    return blocked;
 }
 
 }  // namespace cspace::maps

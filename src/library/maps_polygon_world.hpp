@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
-#include "cspace/maps/boundary.hpp"
+#include "maps_grid.hpp"
 
 namespace cspace::maps {
 
@@ -20,41 +21,34 @@ class PolygonCore {
     // std::invalid_argument for ends that do not increase.
     PolygonCore(std::span<const Point> points, std::span<const std::int32_t> ends,
                 std::span<const std::int32_t> owners, Point low, Point high, double tolerance);
-    // The blocked cells of a grid, a byte each by rows.
-    PolygonCore(const std::uint8_t* blocked, int rows, int columns, double side, Point origin,
-                double tolerance);
-    PolygonCore(PolygonCore&&) noexcept;
-    ~PolygonCore();
+    // The blocked cells of a grid.
+    PolygonCore(CellBytes blocked, double side, Point origin, double tolerance);
 
     bool complete() const;   // false where the outlines cross too often
     int components() const;  // of free space
-    const Boundary& walls() const;
-
+    // Of the boundary: its points, the next of each, the ring of each, and the component of each ring.
+    std::tuple<Table<Point>, Table<std::int32_t>, Table<std::int32_t>, Table<std::int32_t>> walls() const;
     // Where outlines cross, and the two obstacles.
-    struct Crossing {
-        Point at;
-        std::pair<int, int> obstacles;
-    };
-    std::vector<Crossing> crossings() const;
+    std::pair<Table<Point>, std::vector<std::pair<int, int>>> crossings() const;
     // The corners of the free triangles, and of the convex polygons that they make.
-    std::vector<std::vector<Point>> triangles() const;
-    std::vector<std::vector<Point>> convex_polygons() const;
+    std::vector<Table<Point>> triangles() const;
+    std::vector<Table<Point>> convex_polygons() const;
 
     // The components of free space whose closures hold a point; none inside obstacles.
     std::vector<int> components_at(Point p) const;
     // An obstacle that covers a point, or −1.
     int obstacle_at(Point p) const;
     // The distance from a point to the nearest wall [m], and the wall's point.
-    std::pair<double, Point> nearest_wall(Point p) const;
+    std::tuple<double, double, double> nearest_wall(Point p) const;
     // The least distance from a path to a wall [m].
     double path_clearance(std::span<const Point> path) const;
-    // Marks the cells that obstacles reach into, a byte each by rows.
-    void rasterize(double side, int rows, int columns, std::uint8_t* blocked) const;
+    // A byte per cell: whether obstacles reach into it.
+    Table<std::uint8_t> rasterize(double side, int rows, int columns) const;
 
     State& state() const { return *state_; }
 
   private:
-    std::unique_ptr<State> state_;
+    std::shared_ptr<State> state_;
 };
 
 }  // namespace cspace::maps

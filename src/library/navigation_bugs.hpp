@@ -1,51 +1,49 @@
 // Robots without a map in a polygon world: what the bindings call.
 #pragma once
 
-#include <cstdint>
-#include <vector>
+#include <utility>
 
-#include "cspace/navigation/route.hpp"
-#include "maps_polygon_world.hpp"
+#include "navigation_query.hpp"
+#include "table.hpp"
 
 namespace cspace::navigation {
 
-using maps::PolygonCore;
+// Where the line to an unreachable goal enters the walls that shut it off: the boundary loop, and the point.
+using Shut = std::optional<std::pair<int, std::pair<double, double>>>;
 
-// What every robot tells: its walk, and where the line to an unreachable goal enters the walls that shut it
-// off.
-struct Walk {
-    Route route;
-    int shut_ring = -1;
-    Point shut_at;
-};
-
-struct WallFollower {
+struct WallQuery : Query<PolygonCore> {
     enum Kind { bug_1, bug_2, tangent_bug };
     enum Side { left, right, either };  // `either` for the tangent bug alone
     std::int64_t kind, side;
     double range;
+    // The stretches along walls, one row of each table for each.
+    Table<Point> hits, leaves;
+    Table<double> walked;  // [m]
+    Table<std::int64_t> rings;
+    Shut shut;
+
+    auto settings() { return std::tie(kind, side, range); }
+    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
+    auto evidence() {
+        return std::optional(
+            std::tuple(std::move(hits), std::move(leaves), std::move(walked), std::move(rings), shut));
+    }
 };
-// The stretches along walls, one entry of each list for each.
-struct WallWalk : Walk {
-    std::vector<Point> hits, leaves;
-    std::vector<double> walked;  // [m]
-    std::vector<std::int64_t> rings;
-};
-// False where an end lies in an obstacle, here and below.
-bool follow_walls(const PolygonCore& core, const WallFollower& robot, Point start, Point goal, WallWalk& walk,
-                  Trace* trace);
 
 // Voronoi Bug: the standard deviation of its sensor, 0 for one without noise.
-struct DiagramTracer {
+struct VoronoiBugQuery : Query<PolygonCore> {
     double range, deviation;
-    unsigned long long seed;
+    std::uint64_t seed;
+    Table<Point> meets;  // where three walls or more are nearest
+    std::int64_t branches, dead_ends, scans;
+    double clearance;  // least on the curves that it followed [m]
+    Shut shut;
+
+    auto settings() { return std::tie(range, deviation, seed); }
+    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
+    auto evidence() {
+        return std::optional(std::tuple(std::move(meets), branches, dead_ends, clearance, scans, shut));
+    }
 };
-struct DiagramWalk : Walk {
-    std::vector<Point> meets;  // where three walls or more are nearest
-    std::int64_t branches = 0, dead_ends = 0, scans = 0;
-    double clearance = 0;  // least on the curves that it followed [m]
-};
-bool trace_diagram(const PolygonCore& core, const DiagramTracer& robot, Point start, Point goal,
-                   DiagramWalk& walk, Trace* trace);
 
 }  // namespace cspace::navigation

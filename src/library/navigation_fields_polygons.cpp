@@ -34,32 +34,35 @@ NavigationFunction function_of(const PolygonCore::State& core, Point goal, doubl
     return NavigationFunction(std::move(model), std::move(stars), at.at, kappa, limits);
 }
 SphereWorld spheres_of(std::span<const StarFunction::Disc> discs) {
-    SphereWorld world{{{discs[0].x, discs[0].y}, discs[0].radius}, {}};
+    SphereWorld world{{{discs[0][0], discs[0][1]}, discs[0][2]}, {}};
     for (const auto& [x, y, radius] : discs.subspan(1)) world.obstacles.push_back({{x, y}, radius});
     return world;
 }
 
 }  // namespace
 
-struct RepellingWalls::State {
-    NearWalls walls;
-};
+RepellingWalls::RepellingWalls(const PolygonCore& core, double far)
+    : reach(far), walls(std::make_shared<NearWalls>(core.state().world.walls, far)) {}
 
-RepellingWalls::RepellingWalls(const PolygonCore& core, double reach)
-    : state_(new State{NearWalls(core.state().world.walls, reach)}) {}
+Table<double> RepellingWalls::values(const PolygonCore& core, Point goal, std::span<const Point> points,
+                                     const PotentialSettings& s) const {
+    const Potential potential(*walls, {s[0], s[1], s[2], s[3]}, goal);
+    Table<double> made;
+    for (const Point p : points)
+        made.values.push_back(core.state().settle(p).is_free() ? potential.value(p) : infinite);
+    return made;
+}
 
-double RepellingWalls::reach() const { return state_->walls.reach(); }
-
-bool RepellingWalls::descend(const PolygonCore& core, Point start, Point goal, PotentialSettings s,
-                             DescentRoute& found, Trace* trace) const {
+bool DescentQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
     const PolygonCore::State& state = core.state();
-    const NearWalls& walls = state_->walls;
+    const NearWalls& walls = *near->walls;
+    const auto& s = numbers;
     const Gains gains{s[0], s[1], s[2], s[3]};
-    const maps::Settled from = state.settle(start);
-    if (!from.is_free() || !state.settle(goal).is_free()) return false;
+    maps::Settled from, to;
+    if (!state.settle(start, goal, from, to)) return false;
     const Potential potential(walls, gains, start == goal ? from.at : goal);
-    const double near = std::max(2 * state.tolerance, DescentRun::least_step * gains.rho_0);
-    const std::vector<Point> inward = find_start_directions(state.world.space, from, walls, near);
+    const double closest = std::max(2 * state.tolerance, DescentRun::least_step * gains.rho_0);
+    const std::vector<Point> inward = find_start_directions(state.world.space, from, walls, closest);
     found = DescentRun(walls, potential, s[4], std::int64_t(s[5])).run(from.at, inward);
     std::vector<Point>& path = found.route.path;
     path.front() = start;
@@ -69,75 +72,69 @@ bool RepellingWalls::descend(const PolygonCore& core, Point start, Point goal, P
     return true;
 }
 
-std::vector<double> RepellingWalls::values(const PolygonCore& core, Point goal, std::span<const Point> points,
-                                           PotentialSettings s) const {
-    const Potential potential(state_->walls, {s[0], s[1], s[2], s[3]}, goal);
-    std::vector<double> found;
-    for (const Point p : points)
-        found.push_back(core.state().settle(p).is_free() ? potential.value(p) : infinite);
-    return found;
-}
-
-StarFault find_star_fault(const PolygonCore& core, Point goal) {
+std::optional<std::tuple<int, double, double>> find_star_fault(const PolygonCore& core, Point goal) {
     const StarWorld stars = stars_around(core.state(), core.state().settle(goal));
-    static_assert(int(StarWorld::none) == 0);
-    return {int(stars.fault), stars.where};
+    if (stars.fault == StarWorld::none) return std::nullopt;
+    return std::tuple(int(stars.fault), stars.where.x, stars.where.y);
 }
 
-struct StarFunction::State {
-    NavigationFunction function;
-};
-
-StarFunction::StarFunction(const PolygonCore& core, Point goal, double kappa, std::int64_t squares,
+StarFunction::StarFunction(std::shared_ptr<const NavigationFunction> made)
+    : function(std::move(made)),
+      kappa(function->kappa()),
+      is_proven(function->is_proven()),
+      obstacles(function->discs().obstacles.size()) {}
+StarFunction::StarFunction(const PolygonCore& core, Point goal, double power, std::int64_t squares,
                            std::int64_t steps)
-    : state_(new State{function_of(core.state(), goal, kappa, limits_of(squares, steps))}) {}
-StarFunction::StarFunction(std::span<const Disc> discs, Point goal, double kappa, std::int64_t squares,
+    : StarFunction(std::shared_ptr<const NavigationFunction>(
+          new NavigationFunction(function_of(core.state(), goal, power, limits_of(squares, steps))))) {}
+StarFunction::StarFunction(std::span<const Disc> discs, Point goal, double power, std::int64_t squares,
                            std::int64_t steps)
-    : state_(new State{
-          NavigationFunction(spheres_of(discs), std::nullopt, goal, kappa, limits_of(squares, steps))}) {}
+    : StarFunction(std::make_shared<const NavigationFunction>(spheres_of(discs), std::nullopt, goal, power,
+                                                              limits_of(squares, steps))) {}
 
-double StarFunction::kappa() const { return state_->function.kappa(); }
-bool StarFunction::is_proven() const { return state_->function.is_proven(); }
-std::size_t StarFunction::obstacles() const { return state_->function.discs().obstacles.size(); }
-double StarFunction::phi(double log_odds) const { return state_->function.phi(log_odds); }
-
-std::vector<Point> StarFunction::saddles() const {
-    std::vector<Point> found;
-    for (const Point p : state_->function.proof().saddles) found.push_back(state_->function.from_model(p));
-    return found;
+Table<Point> StarFunction::saddles() const {
+    Table<Point> made;
+    for (const Point p : function->proof().saddles) made.values.push_back(function->from_model(p));
+    return made;
 }
 
-std::vector<double> StarFunction::log_odds(const PolygonCore* core, std::span<const Point> points) const {
-    std::vector<double> found;
+Table<double> StarFunction::log_odds(const PolygonCore* core, std::span<const Point> points) const {
+    Table<double> made;
     for (const Point p : points)
-        found.push_back(!core || core->state().settle(p).is_free() ? state_->function.log_odds(p) : infinite);
-    return found;
+        made.values.push_back(!core || core->state().settle(p).is_free() ? function->log_odds(p) : infinite);
+    return made;
 }
 
-bool StarFunction::find_route(const PolygonCore& core, Point start, Point goal, DescentRoute& found,
-                              Trace* trace) const {
+Table<double> StarFunction::phi(std::span<const double> log_odds) const {
+    Table<double> made;
+    for (const double v : log_odds) made.values.push_back(function->phi(v));
+    return made;
+}
+
+std::optional<Table<Point>> StarFunction::find_path(Point start) const {
+    DescentRoute made = function->descend(start);
+    if (made.route.status != Status::found) return std::nullopt;
+    return Table<Point>{std::move(made.route.path)};
+}
+
+bool StarQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
     const PolygonCore::State& state = core.state();
-    const maps::Settled from = state.settle(start), to = state.settle(goal);
-    if (!from.is_free() || !to.is_free()) return false;
+    const NavigationFunction& function = *star->function;
+    maps::Settled from, to;
+    if (!state.settle(start, goal, from, to)) return false;
     if (state.world.shared_component(from, to) == maps::none) {
         found.route.status = Status::unreachable;
-    } else if (kappa() > 0) {
-        found = state_->function.descend(from.at);
+    } else if (star->kappa > 0) {
+        found = function.descend(from.at);
         found.route.path.front() = start;
         if (trace) {
-            for (double& value : found.values) value = phi(value);
+            for (double& value : found.values) value = function.phi(value);
             list_steps(found, *trace);
         }
         if (found.route.status == Status::found) found.route.path.back() = goal;
     }
-    found.route.stats.edges += state_->function.proof().squares;
+    found.route.stats.edges += function.proof().squares;
     return true;
-}
-
-std::vector<Point> StarFunction::find_path(Point start) const {
-    DescentRoute made = state_->function.descend(start);
-    if (made.route.status != Status::found) return {};
-    return std::move(made.route.path);
 }
 
 }  // namespace cspace::navigation

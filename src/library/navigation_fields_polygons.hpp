@@ -1,75 +1,73 @@
-// Potentials in polygon worlds and descents in them: what the bindings call. A search returns false where an
-// end lies in an obstacle, and writes its events into a trace that is not null.
+// Potentials in polygon worlds and descents in them: what the bindings call.
 #pragma once
 
-#include <cstdint>
+#include <array>
 #include <memory>
 #include <span>
-#include <vector>
 
-#include "cspace/navigation/route.hpp"
-#include "maps_polygon_world.hpp"
+#include "navigation_query.hpp"
+#include "table.hpp"
 
 namespace cspace::navigation {
 
-using maps::PolygonCore;
+class NearWalls;
+class NavigationFunction;
 
 // k, k_r, rho_0, cone, the longest step, the most evaluations of the potential.
-using PotentialSettings = const double*;
+using PotentialSettings = std::array<double, 6>;
 
 // The walls of a world, sorted by where they repel, that is within a reach [m].
-class RepellingWalls {
-  public:
+struct RepellingWalls {
     RepellingWalls(const PolygonCore& core, double reach);
+    double reach;
+    std::shared_ptr<const NearWalls> walls;
 
-    double reach() const;
-    bool descend(const PolygonCore& core, Point start, Point goal, PotentialSettings settings,
-                 DescentRoute& found, Trace* trace) const;
     // At points of free space; infinite elsewhere.
-    std::vector<double> values(const PolygonCore& core, Point goal, std::span<const Point> points,
-                               PotentialSettings settings) const;
+    Table<double> values(const PolygonCore& core, Point goal, std::span<const Point> points,
+                         const PotentialSettings& settings) const;
+};
+struct DescentQuery : Query<PolygonCore, DescentRoute> {
+    const RepellingWalls* near;
+    PotentialSettings numbers;
 
-  private:
-    struct State;
-    std::shared_ptr<const State> state_;
+    auto settings() { return std::tie(near, numbers); }
+    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
+    auto evidence() const { return std::optional(std::tuple(int(found.rest), found.force, found.saddles)); }
 };
 
-// What stands in the way of a star world around a point: kind 1 for a ring that is no star, 2 for one that
-// touches another, 0 for nothing.
-struct StarFault {
-    int kind;
-    Point where;
-};
-StarFault find_star_fault(const PolygonCore& core, Point goal);
+// What stands in the way of a star world around a point: 1 for a ring that is no star, 2 for one that touches
+// another, and a corner of it.
+std::optional<std::tuple<int, double, double>> find_star_fault(const PolygonCore& core, Point goal);
 
 // A navigation function of a star or sphere world. squares, steps: the most that its proof and a descent may
 // take.
-class StarFunction {
-  public:
-    struct Disc {
-        double x, y, radius;
-    };
+struct StarFunction {
+    using Disc = std::array<double, 3>;  // x, y, radius
+    explicit StarFunction(std::shared_ptr<const NavigationFunction> made);
     StarFunction(const PolygonCore& core, Point goal, double kappa, std::int64_t squares, std::int64_t steps);
     // The first disc is the room.
     StarFunction(std::span<const Disc> discs, Point goal, double kappa, std::int64_t squares,
                  std::int64_t steps);
 
-    double kappa() const;  // the power; zero where none was proven
-    bool is_proven() const;
-    std::size_t obstacles() const;
-    std::vector<Point> saddles() const;
+    std::shared_ptr<const NavigationFunction> function;
+    double kappa;  // the power; zero where none was proven
+    bool is_proven;
+    std::size_t obstacles;
+
+    Table<Point> saddles() const;
     // V at points of free space; infinite elsewhere. Without a core all points count as free.
-    std::vector<double> log_odds(const PolygonCore* core, std::span<const Point> points) const;
-    double phi(double log_odds) const;
+    Table<double> log_odds(const PolygonCore* core, std::span<const Point> points) const;
+    Table<double> phi(std::span<const double> log_odds) const;
+    // The way down from a free point; nothing where it does not come to the goal.
+    std::optional<Table<Point>> find_path(Point start) const;
+};
 
-    bool find_route(const PolygonCore& core, Point start, Point goal, DescentRoute& found,
-                    Trace* trace) const;
-    // The way down from a free point; empty where it does not come to the goal.
-    std::vector<Point> find_path(Point start) const;
+struct StarQuery : Query<PolygonCore, DescentRoute> {
+    const StarFunction* star;
 
-  private:
-    struct State;
-    std::shared_ptr<const State> state_;
+    auto settings() { return std::tie(star, spent); }
+    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
+    auto evidence() const { return std::optional(std::tuple(found.saddles)); }
 };
 
 }  // namespace cspace::navigation

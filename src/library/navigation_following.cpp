@@ -1,5 +1,7 @@
 #include "navigation_following.hpp"
 
+#include <bit>
+
 #include "cspace/math/interrupts.hpp"
 #include "cspace/navigation/cars/car_world.hpp"
 #include "cspace/navigation/following/dynamic_window.hpp"
@@ -10,14 +12,14 @@ namespace cspace::navigation {
 
 namespace {
 
-Track track_of(std::span<const Point> points, std::span<const FollowRun> runs) {
+Track track_of(std::span<const Point> points, const std::vector<FollowRun>& runs) {
     Track track;
     for (std::size_t k = 0; k < runs.size(); ++k) {
-        const std::size_t first = runs[k].first,
-                          end = k + 1 < runs.size() ? runs[k + 1].first : points.size() - 1;
+        const auto& [first, direction] = runs[k];
+        const std::size_t end = k + 1 < runs.size() ? runs[k + 1].first : points.size() - 1;
         if (end <= first || end >= points.size())
             throw std::invalid_argument("every run must have at least two points");
-        track.emplace_back(points.data() + first, end - first + 1, runs[k].direction);
+        track.emplace_back(points.data() + first, end - first + 1, direction);
     }
     if (track.empty()) throw std::invalid_argument("the track must have at least one run");
     return track;
@@ -55,40 +57,43 @@ struct Course {
 
 }  // namespace
 
-int follow_path(std::span<const Point> points, std::span<const FollowRun> runs, const FollowTask& task,
-                std::vector<double>& rows) {
-    const double *v = task.vehicle, *s = task.settings, *b = task.start, *f = task.footprint;
-    const double* n = task.numbers;
-    const Course course{{v[0], v[1], v[2], v[3], v[4], v[5]},
-                        {{b[0], b[1], b[2]}, b[3], b[4]},
+std::pair<int, Table<double>> follow_path(std::span<const Point> points, const std::vector<FollowRun>& runs,
+                                          const std::array<double, 6>& vehicle,
+                                          const std::array<double, 5>& start,
+                                          const std::array<double, 6>& settings, int controller,
+                                          const std::array<double, 7>& n, const maps::GridWorld* world,
+                                          const std::array<double, 4>& footprint) {
+    const Course course{std::bit_cast<Vehicle>(vehicle),
+                        std::bit_cast<Motion>(start),
                         track_of(points, runs),
-                        {s[0], s[1], s[2], s[3], s[4], s[5]},
-                        task.world,
-                        {f[0], f[1], f[2], f[3]}};
-    const maps::BitGrid* grid = task.world ? &task.world->state().bits : nullptr;
-    const maps::GridFrame frame = task.world ? task.world->state().frame : maps::GridFrame{};
+                        std::bit_cast<FollowSettings>(settings),
+                        world,
+                        std::bit_cast<Footprint>(footprint)};
+    const maps::BitGrid* grid = world ? &world->state().bits : nullptr;
+    const maps::GridFrame frame = world ? world->state().frame : maps::GridFrame{};
     FollowRecord record;
-    if (task.controller == 0) record = course.run(PurePursuit{n[0]});
-    if (task.controller == 1) record = course.run(Stanley{n[0], n[1]});
-    if (task.controller == 2)
+    if (controller == 0) record = course.run(PurePursuit{n[0]});
+    if (controller == 1) record = course.run(Stanley{n[0], n[1]});
+    if (controller == 2)
         record = course.run(DynamicWindow(grid, frame, {n[0], n[1], n[2], int(n[3]), n[4], n[5], n[6]}));
-    rows.reserve(follow_width * record.motion.size());
+    Table<double> rows{{}, follow_width};
     for (std::size_t k = 0; k < record.motion.size(); ++k) {
         const Motion& m = record.motion[k];
-        rows.insert(rows.end(), {m.pose.x, m.pose.y, m.pose.theta, m.speed, m.turn, record.offset[k],
-                                 record.progress[k]});
+        rows.values.insert(rows.values.end(), {m.pose.x, m.pose.y, m.pose.theta, m.speed, m.turn,
+                                               record.offset[k], record.progress[k]});
     }
-    return int(record.outcome);
+    return {int(record.outcome), std::move(rows)};
 }
 
-void cast_rays(const maps::GridWorld& world, std::span<const Point> from, const double* angles, double most,
-               double* ranges) {
+void cast_rays(const maps::GridWorld& world, std::span<const Point> from, std::span<const double> angles,
+               double most, std::span<double> ranges) {
+    if (from.size() != ranges.size() || angles.size() != ranges.size())
+        throw std::invalid_argument("points, angles and ranges must have equal lengths");
     const auto& [bits, frame, parts] = world.state();
     InterruptPoll poll(64);
-    for (const Point point : from) {
+    for (std::size_t k = 0; k < ranges.size(); ++k) {
         poll.step();
-        const double angle = *angles++;
-        *ranges++ = cast_ray(bits, frame, point, {std::cos(angle), std::sin(angle)}, most);
+        ranges[k] = cast_ray(bits, frame, from[k], {std::cos(angles[k]), std::sin(angles[k])}, most);
     }
 }
 

@@ -1,38 +1,35 @@
 // The simulator of vehicles that follow paths: what the bindings call.
 #pragma once
 
+#include <array>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "maps_grid.hpp"
+#include "table.hpp"
 
 namespace cspace::navigation {
 
-// A run of a path begins at a row of its points and ends where the next begins; direction: ±1.
-struct FollowRun {
-    std::size_t first;
-    int direction;
-};
+// A run of a path: the row of its points at which it begins, and its direction, ±1. It ends where the next
+// begins.
+using FollowRun = std::pair<std::size_t, int>;
+// x, y, theta, speed, turn, offset, progress
+inline constexpr std::size_t follow_width = 7;
 
-inline constexpr std::size_t follow_width = 7;  // x, y, theta, speed, turn, offset, progress
-
-// The numbers of Vehicle, of a start (x, y, theta, speed, turn), of FollowSettings, of a controller and of
-// Footprint. A controller: 0 pure pursuit (lookahead), 1 Stanley (gain, softening), 2 dynamic window (seven).
-struct FollowTask {
-    const double *vehicle, *start, *settings;
-    int controller;
-    const double* numbers;
-    const maps::GridWorld* world;  // or null
-    const double* footprint;
-};
-
-// Appends a row of follow_width numbers per step and returns the number of the outcome. Throws
-// std::invalid_argument for runs of fewer than two points, or none.
-int follow_path(std::span<const Point> points, std::span<const FollowRun> runs, const FollowTask& task,
-                std::vector<double>& rows);
+// The numbers of Vehicle, of Motion at the start, of FollowSettings, of a controller (0 pure pursuit:
+// lookahead; 1 Stanley: gain, softening; 2 dynamic window: WindowSettings) and of Footprint; a world or null.
+// Returns the number of the outcome and a row per step. Throws std::invalid_argument for runs of fewer than
+// two points, or none.
+std::pair<int, Table<double>> follow_path(std::span<const Point> points, const std::vector<FollowRun>& runs,
+                                          const std::array<double, 6>& vehicle,
+                                          const std::array<double, 5>& start,
+                                          const std::array<double, 6>& settings, int controller,
+                                          const std::array<double, 7>& numbers, const maps::GridWorld* world,
+                                          const std::array<double, 4>& footprint);
 
 // Ranges from points at angles.
-void cast_rays(const maps::GridWorld& world, std::span<const Point> from, const double* angles, double most,
-               double* ranges);
+void cast_rays(const maps::GridWorld& world, std::span<const Point> from, std::span<const double> angles,
+               double most, std::span<double> ranges);
 
 }  // namespace cspace::navigation

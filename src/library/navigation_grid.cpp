@@ -53,47 +53,52 @@ maps::Cell cell_at(const maps::GridFrame& frame, const maps::BitGrid& grid, Poin
         throw std::invalid_argument("the point must lie within the grid");
     return cell;
 }
-Corners known_rule(int corners) {
-    if (corners < 0 || corners >= corner_rules) throw std::invalid_argument("unknown corner rule");
-    return static_cast<Corners>(corners);
+constexpr auto last_rule = static_cast<Corners>(corner_rules - 1);
+
+template <class Choice>
+Choice known_choice(std::int64_t number, Choice last) {
+    if (number < 0 || number > std::int64_t(last))
+        throw std::invalid_argument("unknown planner, corner rule or metric");
+    return static_cast<Choice>(number);
 }
+
+thread_local Route kept_route;
 
 }  // namespace
 
-bool GridQuestion::is_known() const {
-    return planner >= 0 && planner <= int(GridPlanner::waves) && corners >= 0 && corners < corner_rules &&
-           metric >= 0 && metric <= int(Metric::euclidean);
-}
+CellsQuery::CellsQuery() { found = std::move(kept_route); }
+CellsQuery::~CellsQuery() { kept_route = std::move(found); }
 
-bool GridQuestion::has_bounds() const { return costs || planner == int(GridPlanner::focal); }
-
-bool find_grid_route(const maps::GridWorld& grid, const GridQuestion& question, Point start, Point goal,
-                     GridFinding& finding, Trace* trace) {
-    maps::GridWorld::State& world = grid.state();
+bool CellsQuery::find(const GridWorld& grid, Point start, Point goal, Trace* trace) {
+    GridWorld::State& world = grid.state();
+    const auto planner = known_choice(choices[0], GridPlanner::waves);
+    const auto corners = known_choice(choices[1], last_rule);
+    const auto metric = known_choice(choices[2], Metric::euclidean);
+    if (!costs.empty() && costs.size() != std::size_t(grid.rows) * std::size_t(grid.columns))
+        throw std::invalid_argument("costs need one number per cell");
     maps::Cell from, to;
     if (!world.find_cells(start, goal, from, to)) return false;
-    const GridQuery query{static_cast<GridPlanner>(question.planner),
-                          static_cast<Corners>(question.corners),
-                          static_cast<Metric>(question.metric),
-                          question.g_weight,
-                          question.h_weight,
-                          question.bound,
-                          question.costs,
-                          question.least_cost};
+    const double* each = costs.empty() ? nullptr : costs.data();
+    const GridQuery query{planner, corners, metric, weights[0], weights[1], weights[2], each, least_cost};
     Borrowed borrowed;
     auto& [nodes, answer] = borrowed.get();
     std::vector<Settled> settled;
     answer.settled = trace ? &settled : nullptr;
     find_way(world.bits, from, to, query, nodes, answer, &world.parts);
     if (trace) list_settled(world.frame, settled, *trace);
-    draw_route(world.frame, start, goal, answer, finding.route);
-    finding.found = answer.found;
-    finding.cost = answer.cost, finding.least = answer.least;
-    finding.parts = answer.parts;
+    draw_route(world.frame, start, goal, answer, found);
+    cost = grid.resolution * answer.cost, least = grid.resolution * answer.least;
+    parts = answer.parts;
     return true;
 }
 
-bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal, Route& route, Trace* trace) {
+std::optional<std::tuple<std::int64_t, double, double>> CellsQuery::evidence() const {
+    const bool has_bounds = !costs.empty() || choices[0] == std::int64_t(GridPlanner::focal);
+    if (parts || (has_bounds && found.status == Status::found)) return std::tuple(parts, cost, least);
+    return std::nullopt;
+}
+
+bool RunsQuery::find(const GridWorld& world, Point start, Point goal, Trace* trace) {
     auto& [bits, frame, parts] = world.state();
     if (!maps::RunMesh::fits(bits))
         throw std::invalid_argument(
@@ -101,7 +106,7 @@ bool find_any_angle_route(const maps::GridWorld& world, Point start, Point goal,
     GridAnyAngle search(bits, frame);
     const SettledInRuns from = search.settle(start), to = search.settle(goal);
     if (from.runs.empty() || to.runs.empty()) return false;
-    route = search.solve(start, from, goal, to, &parts, trace);
+    found = search.solve(start, from, goal, to, &parts, trace);
     return true;
 }
 
@@ -119,20 +124,16 @@ struct GridReplanner::State {
 };
 
 GridReplanner::GridReplanner(const maps::GridWorld& world, int corners, Point start, Point goal)
-    : state_(new State(world.state(), known_rule(corners), start, goal)) {}
-GridReplanner::GridReplanner(GridReplanner&&) noexcept = default;
-GridReplanner::~GridReplanner() = default;
+    : state_(new State(world.state(), known_choice(corners, last_rule), start, goal)) {}
 
-int GridReplanner::rows() const { return state_->search.grid().rows(); }
-int GridReplanner::columns() const { return state_->search.grid().columns(); }
-void GridReplanner::unpack(std::uint8_t* into) const { state_->search.grid().unpack(into); }
+Table<std::uint8_t> GridReplanner::unpack() const { return maps::unpack_bits(state_->search.grid()); }
 
-void GridReplanner::set_cells(std::span<const std::int32_t> cells, bool blocked) {
-    for (std::size_t k = 0; k < cells.size(); k += 2)
-        if (!state_->search.grid().contains({cells[k], cells[k + 1]}))
+void GridReplanner::set_cells(std::span<const std::array<std::int32_t, 2>> cells, bool blocked) {
+    for (const auto& [row, column] : cells)
+        if (!state_->search.grid().contains({row, column}))
             throw std::invalid_argument("the cells must lie within the grid");
-    visit_range(0, cells.size() / 2,
-                [&](std::size_t k) { state_->search.set({cells[2 * k], cells[2 * k + 1]}, blocked); });
+    visit_range(0, cells.size(),
+                [&](std::size_t k) { state_->search.set({cells[k][0], cells[k][1]}, blocked); });
 }
 
 void GridReplanner::move_to(Point start) {
@@ -141,7 +142,8 @@ void GridReplanner::move_to(Point start) {
     state_->search.move(cell);
 }
 
-Route GridReplanner::replan(std::vector<std::int32_t>& settled) {
+std::tuple<int, Table<Point>, double, std::int64_t, std::int64_t, Table<std::int32_t>>
+GridReplanner::replan() {
     auto& [search, frame, start, goal] = *state_;
     GridAnswer answer;
     std::vector<std::uint32_t> order;
@@ -150,11 +152,13 @@ Route GridReplanner::replan(std::vector<std::int32_t>& settled) {
     if (answer.found) search.way(answer.cells);
     Route route;
     draw_route(frame, start, goal, answer, route);
+    Table<std::int32_t> settled{{}, 2};
     for (const std::uint32_t number : order) {
         const maps::Cell cell = search.grid().cell(number);
-        settled.insert(settled.end(), {cell.row, cell.column});
+        settled.values.insert(settled.values.end(), {cell.row, cell.column});
     }
-    return route;
+    return {int(route.status), {std::move(route.path)}, route.length,
+            route.stats.nodes, route.stats.edges,       std::move(settled)};
 }
 
 }  // namespace cspace::navigation

@@ -22,8 +22,8 @@ namespace {
 template <class Search>
 bool find_between(const PolygonCore& core, Point start, Point goal, Route& route, const Search& search) {
     State& state = core.state();
-    Settled from = state.settle(start), to = state.settle(goal);
-    if (!from.is_free() || !to.is_free()) return false;
+    Settled from, to;
+    if (!state.settle(start, goal, from, to)) return false;
     route.status = Status::unreachable;
     search(state, state.world.shared_component(from, to), from, to);
     if (route.path.empty() || (from.at == start && to.at == goal)) return true;
@@ -51,22 +51,22 @@ Route find_by_visibility(State& state, Settled& from, Settled& to, Trace* trace)
 Route find_by_cells(State& state, Settled& from, Settled& to, Trace* trace) {
     return state.exact_cells.get<ExactCells>(state.world).solve(from.at, to.at, trace);
 }
-// By the numbers of PolygonPlanner.
-constexpr decltype(&find_any_angle) planners[] = {find_any_angle, find_by_visibility, find_by_cells};
+// By the numbers of PolygonQuery.
+constexpr std::array planners = {find_any_angle, find_by_visibility, find_by_cells};
 
-ApproximateCells cells_of(State& state, const std::int64_t* s, Trace* trace) {
+ApproximateCells cells_of(State& state, const QuadtreeSettings& s, Trace* trace) {
     const CellOptions options{int(s[0]), int(s[1]), s[2] != 0, s[3] != 0, s[4] != 0, std::size_t(s[5])};
     return ApproximateCells(state.world, options, trace, &state.quadtree.get<CellStages>());
 }
 
-SampledRoute search_roadmap(State& state, const sampling::Problem& problem, const SamplingSettings& s,
+SampledRoute search_roadmap(State& state, const sampling::Problem& problem, const SampleQuery& s,
                             Trace* trace) {
     const sampling::RoadmapKey key{problem.component, s.samples, s.neighbours, s.seed};
     const auto make = [&] { return std::make_shared<const sampling::Roadmap>(state.world, key); };
     const auto roadmap = state.samples.get<sampling::KeptRoadmap>().of(key, make, search::most_kept_bytes);
     return sampling::RoadmapSearch(problem, *roadmap).solve(trace);
 }
-SampledRoute grow_tree(const sampling::Problem& problem, const SamplingSettings& s, Trace* trace) {
+SampledRoute grow_tree(const sampling::Problem& problem, const SampleQuery& s, Trace* trace) {
     const sampling::Growth growth{s.samples, s.step, s.goal_bias, s.planner == s.rrt_star, s.seed};
     return sampling::Tree(problem, growth, trace).solve();
 }
@@ -75,54 +75,53 @@ const voronoi::Roadmap& diagram_of(State& state) { return state.voronoi.get<voro
 
 }  // namespace
 
-bool find_polygon_route(const PolygonCore& core, PolygonPlanner planner, Point start, Point goal,
-                        Route& route, Trace* trace) {
-    return find_between(core, start, goal, route, [&](State& state, Index component, auto& from, auto& to) {
-        if (component != maps::none) route = planners[int(planner)](state, from, to, trace);
+bool PolygonQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
+    return find_between(core, start, goal, found, [&](State& state, Index component, auto& from, auto& to) {
+        if (component != maps::none) found = planners.at(std::size_t(planner))(state, from, to, trace);
     });
 }
 
-bool find_cell_route(const PolygonCore& core, Point start, Point goal, const std::int64_t* settings,
-                     CellRoute& found, Trace* trace) {
+bool QuadtreeQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
     return find_between(core, start, goal, found.route, [&](State& state, Index, auto& from, auto& to) {
-        found = cells_of(state, settings, trace).solve(from.at, to.at);
+        found = cells_of(state, numbers, trace).solve(from.at, to.at);
     });
 }
 
-bool find_sampled_route(const PolygonCore& core, const SamplingSettings& settings, Point start, Point goal,
-                        SampledRoute& found, Trace* trace) {
+bool SampleQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
     const auto search = [&](State& state, Index component, auto& from, auto& to) {
         if (component == maps::none) return;
         const sampling::Problem problem = sampling::problem_of(state.world, component, from, to);
-        found = settings.planner == settings.prm ? search_roadmap(state, problem, settings, trace)
-                                                 : grow_tree(problem, settings, trace);
+        found =
+            planner == prm ? search_roadmap(state, problem, *this, trace) : grow_tree(problem, *this, trace);
     };
     return find_between(core, start, goal, found.route, search);
 }
 
-bool find_voronoi_route(const PolygonCore& core, Point start, Point goal, bool widest, double tolerance,
-                        DiagramRoute& found, Trace* trace) {
+bool VoronoiQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
     const auto search = [&](State& state, Index component, auto& from, auto& to) {
         if (component != maps::none)
-            found = diagram_of(state).solve(from, to, component, widest, tolerance, trace);
+            found = diagram_of(state).solve(from, to, component, is_widest, tolerance, trace);
     };
     return find_between(core, start, goal, found.route, search);
 }
 
-void list_visibility_graph(const PolygonCore& core, std::vector<Point>& nodes,
-                           std::vector<std::int32_t>& edges) {
+std::pair<Table<Point>, Table<std::int32_t>> list_visibility_graph(const PolygonCore& core) {
     State& state = core.state();
     const VisibilityGraph& graph = graph_of(state);
+    std::vector<Point> nodes;
+    std::vector<std::int32_t> edges;
     for (Index n = 0; n < graph.size(); ++n) {
         nodes.push_back(graph.point(n));
         for (const auto& edge : graph.edges_of(n))
             if (n < edge.to) edges.insert(edges.end(), {n, edge.to});
     }
+    return {{std::move(nodes)}, {std::move(edges), 2}};
 }
 
-void list_exact_cells(const PolygonCore& core, std::vector<Point>& corners,
-                      std::vector<std::int32_t>& doors) {
+std::pair<Table<Point>, Table<std::int32_t>> list_exact_cells(const PolygonCore& core) {
     State& state = core.state();
+    std::vector<Point> corners;
+    std::vector<std::int32_t> doors;
     const Trapezoids& all = state.exact_cells.get<ExactCells>(state.world).cells();
     for (const Trapezoid& c : all.cells) {
         const SweptWall &bottom = all.wall(c.bottom), &top = all.wall(c.top);
@@ -133,10 +132,13 @@ void list_exact_cells(const PolygonCore& core, std::vector<Point>& corners,
                                        {left, top.y_at(left)}});
     }
     for (const Door& d : all.doors) doors.insert(doors.end(), {d.left, d.right});
+    return {{std::move(corners), 4}, {std::move(doors), 2}};
 }
 
-void list_cell_leaves(const PolygonCore& core, const std::int64_t* settings, std::vector<double>& squares,
-                      std::vector<std::int8_t>& kinds) {
+std::pair<Table<double>, Table<std::int8_t>> list_cell_leaves(const PolygonCore& core,
+                                                              const QuadtreeSettings& settings) {
+    std::vector<double> squares;
+    std::vector<std::int8_t> kinds;
     const ApproximateCells cells = cells_of(core.state(), settings, nullptr);
     const Quadtree& tree = cells.tree();
     for (Index c = 0; c < Index(tree.cells().size()); ++c) {
@@ -145,26 +147,33 @@ void list_cell_leaves(const PolygonCore& core, const std::int64_t* settings, std
         squares.insert(squares.end(), {low.x, low.y, high.x, high.y});
         kinds.push_back(tree[c].kind);
     }
+    return {{std::move(squares), 4}, {std::move(kinds)}};
 }
 
-VoronoiArcs list_voronoi_arcs(const PolygonCore& core, double tolerance) {
+std::tuple<Table<Point>, Table<double>, Table<std::int32_t>, std::vector<VoronoiArc>, bool> list_voronoi_arcs(
+    const PolygonCore& core, double tolerance) {
     const voronoi::Diagram& diagram = diagram_of(core.state()).diagram();
-    VoronoiArcs made;
-    for (const auto whole : diagram.is_whole) made.is_whole = made.is_whole && whole;
+    Table<Point> vertices;
+    Table<double> radii;
+    Table<std::int32_t> ends{{}, 2};
+    std::vector<VoronoiArc> arcs;
     for (const auto& vertex : diagram.vertices) {
-        made.vertices.push_back(diagram.place(vertex.at));
-        made.clearance.push_back(vertex.radius);
+        vertices.values.push_back(diagram.place(vertex.at));
+        radii.values.push_back(vertex.radius);
     }
     for (const voronoi::Arc& arc : diagram.arcs) {
-        VoronoiArc& drawn = made.arcs.emplace_back(VoronoiArc{arc.from, arc.to, {}, {}});
-        drawn.line = {arc.curve.at(arc.begin)};
-        voronoi::Roadmap::sample(arc.curve, arc.begin, arc.end, tolerance, drawn.line);
-        for (Point& p : drawn.line) {
-            drawn.clearance.push_back(arc.curve.radius(arc.curve.parameter(p)));
+        ends.values.insert(ends.values.end(), {arc.from, arc.to});
+        auto& [line, clearance] = arcs.emplace_back();
+        line.values = {arc.curve.at(arc.begin)};
+        voronoi::Roadmap::sample(arc.curve, arc.begin, arc.end, tolerance, line.values);
+        for (Point& p : line.values) {
+            clearance.values.push_back(arc.curve.radius(arc.curve.parameter(p)));
             p = diagram.place(p);
         }
     }
-    return made;
+    const auto& whole = diagram.is_whole;
+    return {std::move(vertices), std::move(radii), std::move(ends), std::move(arcs),
+            std::find(whole.begin(), whole.end(), 0) == whole.end()};
 }
 
 }  // namespace cspace::navigation

@@ -50,7 +50,7 @@ class OccupancyGrid(_core.GridBase):
                 f"resolution is {side:g} and the farthest cell {reach:.3g} m away; the sides of cells must "
                 f"be at least {FINEST_CELL:g} m, and all cells must lie within {FARTHEST_POINT:g} m"
             )
-        super().__init__(cells, side, *corner)
+        super().__init__(cells, side, corner)
 
     @classmethod
     def from_movingai(
@@ -121,9 +121,7 @@ class OccupancyGrid(_core.GridBase):
     @property
     def blocked(self) -> npt.NDArray[np.bool_]:
         """Which cells are blocked, (rows, columns); a copy."""
-        cells = np.empty(self.shape, np.uint8)
-        self._unpack(cells)
-        return cells.view(np.bool_)
+        return self._unpack().view(np.bool_)
 
     def cell_of(self, point: ArrayLike) -> tuple[int, int]:
         """Row and column of the cell that contains a point (2,) [m].
@@ -142,8 +140,7 @@ class OccupancyGrid(_core.GridBase):
         """Whether points (..., 2) [m] lie in free cells or on their borders: (...) of bool; points outside
         do not."""
         given = as_floats(points, "points", last=(2,))
-        free = np.empty(given.size // 2, np.uint8)
-        self._free(np.ascontiguousarray(given).reshape(-1, 2), free)
+        free = self._free(np.ascontiguousarray(given).reshape(-1, 2))
         return free.view(np.bool_).reshape(given.shape[:-1]) if given.ndim > 1 else bool(free[0])
 
     def path_clearance(self, path: ArrayLike) -> float:
@@ -165,7 +162,7 @@ class OccupancyGrid(_core.GridBase):
     def _find_cell(self, point: ArrayLike, subject: str) -> tuple[float, float, int, int, int]:
         """x and y of a point (2,) [m], the kind of its position, its row and column; InputError outside."""
         x, y = as_point(point, subject)
-        place, row, column = self._locate(x, y)
+        place, row, column = self._locate((x, y))
         if place == OUTSIDE:
             x0, y0, x1, y1 = self.bounds
             spans = f"x {x0:g} … {x1:g}, y {y0:g} … {y1:g} [m]"

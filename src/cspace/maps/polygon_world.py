@@ -105,7 +105,7 @@ class PolygonWorld:
         rows, columns = grid.shape
         made._bounds = np.array([x, y, x + side * columns, y + side * rows])
         cells = np.ascontiguousarray(grid.blocked).view(np.uint8)
-        made._core = _core.PolygonCore.from_cells(cells, side, x, y, ON_WALL * side * max(rows, columns))
+        made._core = _core.PolygonCore(cells, side, (x, y), ON_WALL * side * max(rows, columns))
         made._repairs = ()
         return made
 
@@ -155,15 +155,15 @@ class PolygonWorld:
     def is_free(self, points: ArrayLike) -> Any:
         """Whether points (..., 2) [m] lie in free space or on its walls: (...) of bool."""
         given = as_floats(points, "points", last=(2,))
-        free = [bool(self._core.components_at(x, y)) for x, y in given.reshape(-1, 2)]
+        free = [bool(self._core.components_at(point)) for point in given.reshape(-1, 2)]
         return np.array(free).reshape(given.shape[:-1]) if given.ndim > 1 else free[0]
 
     def clearance(self, points: ArrayLike) -> Any:
         """The distance [m] from points (..., 2) [m] to the nearest wall: (...); zero inside obstacles."""
         given = as_floats(points, "points", last=(2,))
         found = [
-            self._core.nearest_wall(x, y)[0] if self._core.components_at(x, y) else 0.0
-            for x, y in given.reshape(-1, 2)
+            self._core.nearest_wall(point)[0] if self._core.components_at(point) else 0.0
+            for point in given.reshape(-1, 2)
         ]
         return np.array(found).reshape(given.shape[:-1]) if given.ndim > 1 else found[0]
 
@@ -176,7 +176,7 @@ class PolygonWorld:
         if not len(points):
             return nan
         least: float = self._core.path_clearance(points)
-        return least if self._core.components_at(*points[0]) else 0.0
+        return least if self._core.components_at(points[0]) else 0.0
 
     def inflate(self, radius: float, *, sides: int = 32, keep: ArrayLike = ()) -> PolygonWorld:
         """The world of the centre of a disc of a radius [m]: obstacles grown by it, bounds shrunk.
@@ -217,18 +217,18 @@ class PolygonWorld:
     def check_free(self, point: ArrayLike, subject: str) -> Array:
         """The point (2,) [m]; InputError if it is not finite, outside the bounds or inside an obstacle."""
         x, y = as_point(point, subject)
-        if self._core.components_at(x, y):
+        if self._core.components_at((x, y)):
             return np.array([x, y])
         where = f"{subject} ({x:g}, {y:g})"
         xmin, ymin, xmax, ymax = self.bounds
         if not (xmin <= x <= xmax and ymin <= y <= ymax):
             rule = f"the bounds are x from {xmin:g} to {xmax:g}, y from {ymin:g} to {ymax:g}"
             raise InputError(f"{where} lies outside the world; {rule}")
-        deep, wall_x, wall_y = self._core.nearest_wall(x, y)
+        deep, wall_x, wall_y = self._core.nearest_wall((x, y))
         if not np.isfinite(deep):
             raise InputError(f"{where} lies inside an obstacle; there is no free space at all")
         raise InputError(
-            f"{where} lies inside obstacle {self._core.obstacle_at(x, y)}, {deep:.3g} m deep; "
+            f"{where} lies inside obstacle {self._core.obstacle_at((x, y))}, {deep:.3g} m deep; "
             f"the nearest free point is ({wall_x:.9g}, {wall_y:.9g})"
         )
 
@@ -246,7 +246,8 @@ def _build_core(outlines: Sequence[Outline], bounds: Array) -> _core.PolygonCore
     points = np.vstack([np.empty((0, 2)), *(ring for ring, _ in rings)])
     ends = np.cumsum([len(ring) for ring, _ in rings], dtype=np.int32)
     owners = np.array([owner for _, owner in rings], dtype=np.int32)
-    core = _core.PolygonCore(points, ends, owners, bounds.reshape(2, 2), ON_WALL * longer_side(bounds))
+    tolerance = ON_WALL * longer_side(bounds)
+    core = _core.PolygonCore(points, ends, owners, bounds[:2], bounds[2:], tolerance)
     if not core.complete:
         raise GeometryError("the obstacles cross each other too often to be separated; simplify them")
     return core

@@ -34,9 +34,7 @@ def rasterize_world(
     )
     if rows * columns > MAP_CELLS:
         raise InputError(f"resolution {side:g} makes {rows} × {columns} cells; the maximum is {MAP_CELLS:g}")
-    blocked = np.zeros((rows, columns), dtype=np.uint8)
-    core.rasterize(side, blocked)
-    return blocked.view(np.bool_), side
+    return core.rasterize(side, rows, columns).view(np.bool_), side
 
 
 def _choose_parts(flatness: float) -> int:

@@ -99,7 +99,7 @@ def test_verdicts_in_fields_of_overlapping_polygons():
         start, goal = (points[k] for k in rng.integers(len(points), size=2))
         judged += 1
         # Two points of one triangulation: the parts of free space that hold them.
-        parts = [set(world._core.components_at(*point)) for point in (start, goal)]
+        parts = [set(world._core.components_at(point)) for point in (start, goal)]
         for planner, options in BUGS + TANGENT:
             route = cs.navigate(world, start, goal, planner=planner, **options)
             assert bool(route) == bool(parts[0] & parts[1]), (planner, options, start, goal)

@@ -41,7 +41,7 @@ def gate(low, high, side=16.0):
 
 
 def are_connected(world, start, goal):
-    one, other = (set(world._core.components_at(*map(float, p))) for p in (start, goal))
+    one, other = (set(world._core.components_at(tuple(map(float, p)))) for p in (start, goal))
     return bool(one & other)
 
 

@@ -35,7 +35,7 @@ class AnyAngle(PlanePlanner):
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
         if world.kind == "grid":
             return _core._grid_any_angle(traced, world, world, self, start, goal)
-        return _core._any_angle(traced, world, world._core, self, start, goal)
+        return _core._polygon_route(traced, world, world._core, self, start, goal, 0)
 
     def takes_grid(self, grid: OccupancyGrid) -> bool:
         """Whether runs of cells are faster than polygons for this grid: it has many corners."""

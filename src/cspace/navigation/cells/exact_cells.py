@@ -35,7 +35,7 @@ class ExactCells(PlanePlanner):
     events = ("enter",)
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
-        return _core._exact_cells(traced, world, world._core, self, start, goal)
+        return _core._polygon_route(traced, world, world._core, self, start, goal, 2)
 
     def explain_route(self, route: Route) -> str:
         cells = count_things(len(exact_cells(route.world)[0]), "cell")

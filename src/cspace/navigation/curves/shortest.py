@@ -57,26 +57,31 @@ def reeds_shepp_distance(start: Any, goal: Any, radius: float) -> Any:
 
 def find_curve(reverses: bool, start: Any, goal: Any, radius: Any) -> Curve:
     """The curve of one start and one goal."""
-    told = _core._car_shortest(reverses, start, goal, radius)
-    if told is None:  # no plain numbers
-        *ends, r = check_task(start, goal, radius)
-        for pose, name in zip(ends, ("start", "goal"), strict=True):
-            if pose.ndim != 1:
-                raise InputError(f"{name} has shape {pose.shape}, expected (3,): x, y, theta")
-        told = _core._car_shortest(reverses, *ends, r)
-    return Curve(*told)
+    return Curve(*_core._car_shortest(reverses, start, goal, radius, check_one))
 
 
 def measure_curves(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
     """The lengths of the curves of broadcast starts and goals."""
-    if (length := _core._car_distance(reverses, start, goal, radius)) is not None:
-        return length
+    return _core._car_distance(reverses, start, goal, radius, measure_broadcast)
+
+
+def measure_broadcast(reverses: bool, start: Any, goal: Any, radius: Any) -> Any:
+    """The lengths of the curves of arguments that are not plain numbers."""
     a, b, r = check_task(start, goal, radius)
     batch = leading_axes(start=a.shape[:-1], goal=b.shape[:-1])
     rows = [np.ascontiguousarray(np.broadcast_to(p, (*batch, 3)).reshape(-1, 3)) for p in (a, b)]
     out = np.empty(len(rows[0]))
     _core._car_distances(reverses, *rows, r, out)
     return out.reshape(batch) if batch else float(out[0])
+
+
+def check_one(start: Any, goal: Any, radius: Any) -> tuple[Array, Array, float]:
+    """One start and one goal (3,) and a turning radius [m]; InputError for anything else."""
+    a, b, r = check_task(start, goal, radius)
+    for pose, name in ((a, "start"), (b, "goal")):
+        if pose.ndim != 1:
+            raise InputError(f"{name} has shape {pose.shape}, expected (3,): x, y, theta")
+    return a, b, r
 
 
 def check_task(start: Any, goal: Any, radius: Any) -> tuple[Array, Array, float]:

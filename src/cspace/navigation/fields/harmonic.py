@@ -67,8 +67,8 @@ class Harmonic(PlanePlanner):
             return new_route(world, self, ends, "unreachable", np.empty((0, 2)), np.inf, stats, UNSOLVED)
         field = _field_of(world, ends[1])
         seconds = time.perf_counter() - began
-        evidence = HarmonicEvidence(field.residual, field.cycles, field.rests)
-        return _core._harmonic(traced, world, world, self, *ends, field, evidence, seconds)
+        settings = field, seconds, lambda: HarmonicEvidence(field.residual, field.cycles, field.rests)
+        return _core._harmonic(traced, world, world, self, *ends, *settings)
 
     def explain_route(self, route: Route) -> str:
         evidence: HarmonicEvidence = route.evidence

@@ -162,7 +162,7 @@ class RimonKoditschek(PlanePlanner):
             stats, evidence = Stats(0, 0, seconds), NavigationEvidence(None, 0, fault)
             if np.array_equal(*ends):
                 return new_route(world, self, ends, "found", ends[0][None], 0.0, stats, evidence)
-            apart = not set(world._core.components_at(*ends[0])) & set(world._core.components_at(*ends[1]))
+            apart = not set(world._core.components_at(ends[0])) & set(world._core.components_at(ends[1]))
             status = "unreachable" if apart else "undetermined"
             return new_route(world, self, ends, status, np.empty((0, 2)), np.inf, stats, evidence)
         given = world, world._core, self._in_force(kappa=function.kappa), *ends, function._core, seconds
@@ -212,7 +212,7 @@ def navigation_function(world: Any, goal: ArrayLike, *, kappa: float | None = No
     discs = np.ascontiguousarray(as_floats(world, "world", last=(3,), largest=FARTHEST_POINT))
     at = np.ascontiguousarray(as_floats(goal, "goal", last=(2,), largest=FARTHEST_POINT))
     _check_discs(discs, at)
-    core = _core.NavigationCore.of_discs(discs, at, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
+    core = _core.NavigationCore(discs, at, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if not core.kappa:
         raise InputError("no kappa was proven to leave a single minimum; give kappa= to skip the proof")
     return NavigationFunction(core, None, at, (discs, power))
@@ -265,7 +265,7 @@ def _make_function(world: Any, goal: Array, power: float) -> tuple[NavigationFun
     fault = _core.NavigationCore.fault(world._core, goal)
     if fault:
         return None, _explain_fault(world, *fault)
-    core = _core.NavigationCore.of_polygons(world._core, goal, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
+    core = _core.NavigationCore(world._core, goal, power, NAVIGATION_SQUARES, NAVIGATION_STEPS)
     if core.kappa:
         return NavigationFunction(core, world._core, goal, (world.__reduce__()[1], power)), ""
     if world.clearance(goal) <= ON_GOAL_WALL * longer_side(world.bounds):

@@ -49,7 +49,7 @@ class DStarLite:
 
     def _begin(self, grid: OccupancyGrid, ends: tuple[Array, Array], planner: DStarLiteSearch) -> None:
         self._grid, self._ends, self._planner = grid, ends, planner
-        self._core = _core.GridReplanner(grid, planner._settings.corners, *ends[0], *ends[1])
+        self._core = _core.GridReplanner(grid, planner._settings.corners, *ends)
         self._route: Route | None = None
         self._settled = np.empty((0, 2), np.int32)
         self._busy = threading.Lock()
@@ -70,9 +70,8 @@ class DStarLite:
     @property
     def grid(self) -> OccupancyGrid:
         """The grid as it is known now."""
-        cells = np.empty(self._grid.shape, np.uint8)
         with self._turn():
-            self._core.unpack(cells)
+            cells = self._core.unpack()
         return OccupancyGrid(cells.view(np.bool_), self._grid.resolution, self._grid.origin)
 
     def set_blocked(self, cells: ArrayLike, blocked: bool = True) -> None:
@@ -90,14 +89,14 @@ class DStarLite:
             raise InputError(message + f"columns 0 … {columns - 1}")
         with self._turn():
             self._route = None
-            self._core.set(index.astype(np.int32), bool(blocked))
+            self._core.set(np.ascontiguousarray(index, np.int32), bool(blocked))
 
     def move(self, point: ArrayLike) -> None:
         """The robot is at a point (2,) [m] now; InputError outside the grid."""
         x, y = as_point(point, "point")
         self._grid.cell_of((x, y))
         with self._turn():
-            self._core.move(x, y)
+            self._core.move((x, y))
             self._ends = (np.array([x, y]), self._ends[1])
             self._route = None
 
@@ -120,10 +119,9 @@ class DStarLite:
     def __reduce__(self) -> tuple[Any, ...]:
         """The grid, what is known of it now and the ends: copies and pickles search from there anew."""
         with self._turn():
-            cells = np.empty(self._grid.shape, np.uint8)
-            self._core.unpack(cells)
-            changed = np.argwhere(cells.view(np.bool_) != self._grid.blocked)
-            return _make_again, (self._grid, self._ends, self._planner, changed.astype(np.int32))
+            changed = np.argwhere(self._core.unpack().view(np.bool_) != self._grid.blocked)
+            cells = np.ascontiguousarray(changed, np.int32)
+            return _make_again, (self._grid, self._ends, self._planner, cells)
 
     def __repr__(self) -> str:
         (x0, y0), (x1, y1) = self._ends

@@ -31,6 +31,11 @@ distance."""
 FOUR_MOVES: Final = 3
 
 
+def describe_costs(parts: int, cost: float, least: float) -> dict[str, Any]:
+    """How many parts divide start from goal, or what the way costs and any way at least."""
+    return {"parts": parts} if parts else {"cost": cost, "at_least": least}
+
+
 class Settings(NamedTuple):
     """What the compiled search is told, in its order."""
 
@@ -43,6 +48,8 @@ class Settings(NamedTuple):
     costs: Array | None = None
     """(rows, columns)."""
     least_cost: float = 1.0
+    describe: Any = describe_costs
+    """What makes the evidence."""
 
 
 BEST_FIRST: Final = 0

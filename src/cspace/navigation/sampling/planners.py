@@ -51,7 +51,8 @@ class SamplePlanner(PlanePlanner):
         return self.kind, self.samples, self.rng, 0, 1.0, 0.0
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
-        return _core._sampling(traced, world, world._core, self, start, goal, self._settings(), Sampled)
+        settings = *self._settings(), Sampled
+        return _core._sampling(traced, world, world._core, self, start, goal, *settings)
 
     def explain_route(self, route: Route) -> str:
         done: Sampled = route.evidence

@@ -45,7 +45,7 @@ class VisibilityGraphSearch(PlanePlanner):
     events = ("expand",)
 
     def _search(self, traced: bool, world: Any, start: Any, goal: Any) -> Any:
-        return _core._visibility(traced, world, world._core, self, start, goal)
+        return _core._polygon_route(traced, world, world._core, self, start, goal, 1)
 
     def explain_route(self, route: Route) -> str:
         if not route:

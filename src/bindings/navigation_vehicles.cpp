@@ -1,0 +1,117 @@
+// Curves for cars, hybrid A*, and the simulator of vehicles that follow paths. One curve takes less than a
+// microsecond, so it is a raw entry.
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+
+#include "library/navigation_cars.hpp"
+#include "library/navigation_following.hpp"
+#include "maps_points.hpp"
+#include "navigation_route.hpp"
+
+namespace nb = nanobind;
+using namespace nb::literals;
+using namespace cspace::navigation;
+using cspace::maps::GridWorld;
+
+template <>
+struct nb::detail::type_caster<CarPose> : nb::detail::RowCaster<CarPose> {};
+
+namespace {
+
+constexpr double largest = 1e12;  // LARGEST_NUMBER of the package
+
+bool read_pose(PyObject* value, double radius, CarPose& pose) {
+    const double most = largest * std::min(radius, 1.0);
+    return read_numbers(value, &pose.x, 3) && std::fabs(pose.x) <= most && std::fabs(pose.y) <= most &&
+           std::fabs(pose.theta) <= largest;
+}
+
+struct CurveTask {
+    CarPose start, goal;
+    double radius;
+
+    // False, without an error, for what is no plain pose or radius.
+    bool read(PyObject* const* args) {
+        return read_number(args[2], radius) && 0 < radius && radius <= largest &&
+               read_pose(args[0], radius, start) && read_pose(args[1], radius, goal);
+    }
+};
+
+bool has_arguments(Py_ssize_t count) {
+    if (count != 5) PyErr_SetString(PyExc_TypeError, "reverses, start, goal, radius and a function");
+    return count == 5;
+}
+
+// _car_distance(reverses, start, goal, radius, otherwise) → length [m], or what otherwise returns of the
+// other arguments where they are no plain poses and radius.
+PyObject* find_distance(PyObject*, PyObject* const* args, Py_ssize_t count) {
+    CurveTask task;
+    if (!has_arguments(count)) return nullptr;
+    if (!task.read(args + 1)) return PyObject_Vectorcall(args[4], args, 4, nullptr);
+    return PyFloat_FromDouble(curve_length(args[0] == Py_True, task.start, task.goal, task.radius));
+}
+
+// _car_shortest(reverses, start, goal, radius, check) → (start, goal, radius, pieces). check makes a tuple of
+// plain ones from start, goal and radius, or raises.
+PyObject* find_shortest(PyObject*, PyObject* const* args, Py_ssize_t count) {
+    CurveTask task;
+    if (!has_arguments(count)) return nullptr;
+    if (!task.read(args + 1)) {
+        const nb::object plain = nb::steal(PyObject_Vectorcall(args[4], args + 1, 3, nullptr));
+        if (!plain) return nullptr;
+        if (!PyTuple_Check(plain.ptr()) || nb::len(plain) != 3 ||
+            !task.read(reinterpret_cast<PyTupleObject*>(plain.ptr())->ob_item))
+            return PyErr_Format(PyExc_TypeError, "_car_shortest: the check must return plain poses");
+    }
+    const Curve curve = find_shortest_curve(args[0] == Py_True, task.start, task.goal, task.radius);
+    PyObject* pieces = PyTuple_New(curve.count);
+    if (!pieces) return nullptr;
+    for (int k = 0; k < curve.count; ++k) {
+        PyObject* piece = Py_BuildValue("(id)", curve.piece[k].turn, task.radius * curve.piece[k].length);
+        if (!piece) return Py_DECREF(pieces), nullptr;
+        PyTuple_SET_ITEM(pieces, k, piece);
+    }
+    return Py_BuildValue("(NNdN)", new_array({3}, &task.start.x), new_array({3}, &task.goal.x), task.radius,
+                         pieces);
+}
+
+PyMethodDef methods[] = {{"_car_distance", fast(find_distance), METH_FASTCALL, nullptr},
+                         {"_car_shortest", fast(find_shortest), METH_FASTCALL, nullptr},
+                         {nullptr, nullptr, 0, nullptr}};
+
+// settings (7,): turning radius, box, headings, reverse cost, gear cost, most nodes, weight.
+nb::tuple find_route(const GridWorld& world, const BodyNumbers& body, const CarPose& start,
+                     const CarPose& goal, bool reverses, const std::array<double, 7>& settings) {
+    const Watch watch;
+    CarRoute found;
+    {
+        const nb::gil_scoped_release free;
+        found = find_car_route(world, body, start, goal, reverses, settings);
+    }
+    const double seconds = watch.seconds();
+    nb::list pieces;
+    for (const Piece& piece : found.pieces) pieces.append(nb::make_tuple(piece.turn, piece.length));
+    return nb::make_tuple(int(found.status), int(found.reason), pieces, found.stats.nodes, found.stats.edges,
+                          seconds);
+}
+
+}  // namespace
+
+void bind_navigation_vehicles(nb::module_& m) {
+    if (PyModule_AddFunctions(m.ptr(), methods) < 0) throw nb::python_error();
+    m.def("_car_distances", list_lengths, "reverses"_a, "starts"_a, "goals"_a, "radius"_a, "out"_a,
+          WithoutLock(), "Lengths of Dubins or Reeds–Shepp curves between rows of poses, written into out.");
+    m.def("_car_poses", list_poses, "start"_a, "pieces"_a, "radius"_a, "s"_a, "out"_a, WithoutLock(),
+          "Poses at the lengths s along a curve, written into out.");
+    m.def("_car_clear", check_poses, "grid"_a, "footprint"_a, "poses"_a, "out"_a, WithoutLock(),
+          "Whether a vehicle touches no blocked cell at rows of poses.");
+    m.def("_hybrid_a_star", find_route, "grid"_a, "footprint"_a, "start"_a, "goal"_a, "reverses"_a,
+          "settings"_a, "Status, reason, pieces (turn, signed length), nodes, edges and seconds.");
+    m.def("_follow", follow_path, "points"_a, "runs"_a, "vehicle"_a, "start"_a, "settings"_a, "controller"_a,
+          "numbers"_a, "world"_a.none(), "footprint"_a, WithoutLock(),
+          "Lets a vehicle follow a path; the outcome and a row per step.");
+    m.def("_cast_rays", cast_rays, "grid"_a, "points"_a, "angles"_a, "most"_a, "out"_a, WithoutLock(),
+          "Ranges from rows of points at angles, written into out.");
+}
