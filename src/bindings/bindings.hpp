@@ -7,9 +7,8 @@
 #define CSPACE_BINDINGS(bind)                                                                              \
     bind(math) bind(kinematics) bind(kinematics_rows) bind(spatial_rotations) bind(ik_subproblems)         \
     bind(ik_solver) bind(robot) bind(ik_result) bind(ik) bind(ik_self_motion) bind(ik_goals)               \
-    bind(ik_numeric) bind(ik_redundancy) bind(ik_tasks) bind(ik_tracking) bind(ik_description)             \
-    bind(maps) bind(navigation_route) bind(navigation_grid) bind(navigation_polygons)                      \
-    bind(navigation_vehicles)
+    bind(ik_numeric) bind(ik_redundancy) bind(ik_tracking) bind(ik_description) bind(maps)                 \
+    bind(navigation_route) bind(navigation_grid) bind(navigation_polygons) bind(navigation_vehicles)
 // clang-format on
 
 #define CSPACE_DECLARE_BINDING(part) void bind_##part(nanobind::module_& m);
@@ -31,6 +30,12 @@ PyObject* or_error(F f) noexcept {
         PyErr_SetString(PyExc_RuntimeError, error.what());
     }
     return nullptr;
+}
+
+// A raw entry for a table of methods.
+template <class F>
+PyCFunction as_method(F* f) {
+    return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(f));
 }
 
 // The interpreter is free while a function runs.

@@ -1,9 +1,13 @@
-// Numeric inverse kinematics: plain checked arrays in, filled arrays out, the interpreter free meanwhile.
+// Numeric inverse kinematics: descents, resolved rate, and several tasks at once. Plain checked arrays in,
+// filled arrays out, the interpreter free meanwhile.
 #include "library/ik_numeric.hpp"
+
+#include <nanobind/stl/tuple.h>
 
 #include "arrays.hpp"
 #include "bindings.hpp"
 #include "kinematics.hpp"
+#include "library/ik_tasks.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -56,6 +60,61 @@ std::size_t sample_rows(nb::handle robot, int frame, Goal goal, Matrix starts, M
 
 int count_moving(nb::handle robot, int frame) { return ik::moving_coordinates(chain_on(robot, frame)); }
 
+// --- velocities ----------------------------------------------------------------------------------------
+using Errors = Array<double, nb::shape<-1, 2>>;
+
+ik::TaskRows rows_from(nb::handle robot, const Matrix& tasks, const Matrix& postures, const LimitRows& limits,
+                       std::size_t q_size, const Errors& errors) {
+    const KinematicsObject& object = robot_from(robot);
+    const std::size_t n = std::size_t(object.model->n_coordinates());
+    require_sizes(tasks.shape(1) == ik::task_width && postures.shape(1) == 2 * n + 1 && q_size == n &&
+                  (limits.shape(1) == 0 || limits.shape(1) == n) && errors.shape(0) == tasks.shape(0));
+    return {*object.model,
+            object.floating,
+            tasks.data(),
+            tasks.shape(0),
+            postures.data(),
+            postures.shape(0),
+            limits.shape(1) ? limits.data() : nullptr};
+}
+
+bool compute_velocity(nb::handle robot, Matrix tasks, Matrix postures, Row q,
+                      Array<const double, nb::shape<4, 4>> T_world_base, LimitRows limits, Row speed,
+                      double dt, double damping, RowOut qd, Errors errors) {
+    const ik::TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
+    require_sizes(int(qd.shape(0)) == rows.dof() && (speed.shape(0) == 0 || speed.shape(0) == q.shape(0)));
+    return ik::task_velocity(rows, q.data(), T_world_base.data(), speed.shape(0) ? speed.data() : nullptr, dt,
+                             damping, qd.data(), errors.data());
+}
+
+std::tuple<int, bool, double> move_to_tasks(nb::handle robot, Matrix tasks, Matrix postures, RowOut q,
+                                            Array<double, nb::shape<4, 4>> T_world_base, LimitRows limits,
+                                            int most_steps, double settled, Errors errors) {
+    const ik::TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
+    const nb::gil_scoped_release release;
+    const ik::TaskEnding ending =
+        ik::serve_tasks(rows, most_steps, settled, q.data(), T_world_base.data(), errors.data());
+    return {ending.steps, ending.settled, ending.cost};
+}
+
+void resolve_rates(Array<const double, nb::shape<-1, 6, -1>> J, Array<const double, nb::shape<-1, 6>> twist,
+                   Matrix wish, Row most, double damping, double threshold, int threads,
+                   Array<double, nb::ndim<2>> qd) {
+    const std::size_t rows = J.shape(0), dof = J.shape(2);
+    require_sizes(twist.shape(0) == rows && has_shape(qd, rows, dof) &&
+                  (wish.shape(0) == 0 || has_shape(wish, rows, dof)) &&
+                  (most.shape(0) == 0 || most.shape(0) == dof) && dof <= ik::max_rate_dof);
+    const nb::gil_scoped_release release;
+    ik::resolve_rates({J.data(), rows, dof, twist.data(), wish.shape(0) ? wish.data() : nullptr,
+                       most.shape(0) ? most.data() : nullptr, damping, threshold, threads, qd.data()});
+}
+
+int solve_box_qp(Matrix H, Row g, Row lower, Row upper, RowOut x) {
+    const std::size_t n = g.shape(0);
+    require_sizes(has_shape(H, n, n) && has_shape(lower, n) && has_shape(upper, n) && has_shape(x, n));
+    return ik::solve_box_program(H.data(), g.data(), lower.data(), upper.data(), n, x.data());
+}
+
 }  // namespace
 
 void bind_ik_numeric(nb::module_& m) {
@@ -66,4 +125,14 @@ void bind_ik_numeric(nb::module_& m) {
     m.def("_ik_sample", sample_rows, "robot"_a, "frame"_a, "goal"_a, "starts"_a, "wanted"_a, "weights"_a,
           "limits"_a, "tolerance"_a, "most_steps"_a, "threads"_a, "q"_a, "residual"_a, "hits"_a,
           "The different solutions that descents from many starts reach; returns their number.");
+    m.def("_task_velocity", compute_velocity, "robot"_a, "tasks"_a, "postures"_a, "q"_a, "T_world_base"_a,
+          "limits"_a, "speed"_a, "dt"_a, "damping"_a, "qd"_a, "errors"_a,
+          "The velocities that serve tasks best in one step.");
+    m.def("_task_serve", move_to_tasks, "robot"_a, "tasks"_a, "postures"_a, "q"_a, "T_world_base"_a,
+          "limits"_a, "most_steps"_a, "settled"_a, "errors"_a,
+          "Moves q and T_world_base to where tasks are served best.");
+    m.def("_resolved_rate", resolve_rates, "J"_a, "twist"_a, "wish"_a, "most"_a, "damping"_a, "threshold"_a,
+          "threads"_a, "qd"_a, "The velocities that give twists.");
+    m.def("_box_qp", solve_box_qp, "H"_a, "g"_a, "lower"_a, "upper"_a, "x"_a,
+          "A quadratic program in a box; returns the number of steps, -1 if H is not positive definite.");
 }

@@ -37,22 +37,14 @@ void solve_rows(SolverArgument solver, const std::vector<int>& locked_joint, Mat
                        self_motion.data(), count.data(), status.data(), threads});
 }
 
-// Per interval: (lower, upper, branch, what ends it below, at which side, what ends it above, at which side),
-// and a configuration inside; and whether none is missing.
-using IntervalRow = std::tuple<double, double, int, int, int, int, int, std::vector<double>>;
-std::tuple<std::vector<IntervalRow>, bool> intervals_of(SolverArgument solver, int parameter, Goal goal) {
+// And whether none is missing.
+std::tuple<std::vector<ik::FeasibleInterval>, bool> intervals_of(SolverArgument solver, int parameter,
+                                                                 Goal goal) {
     RedundantSolver& arm = solver.core().redundant();
+    const nb::gil_scoped_release release;
     bool complete;
-    std::vector<ik::FeasibleInterval> found;
-    {
-        const nb::gil_scoped_release release;
-        found = arm.intervals(parameter, goal.data(), complete);
-    }
-    std::vector<IntervalRow> rows;
-    for (ik::FeasibleInterval& i : found)
-        rows.emplace_back(i.lower, i.upper, i.branch, i.end[0], i.side[0], i.end[1], i.side[1],
-                          std::move(i.q));
-    return {std::move(rows), complete};
+    std::vector<ik::FeasibleInterval> found = arm.intervals(parameter, goal.data(), complete);
+    return {std::move(found), complete};
 }
 
 // near= is answered by the compiled entry from now on.
@@ -87,14 +79,6 @@ void solve_swivels(SolverArgument solver, Goals goals, Row swivels, Array<double
 void measure_swivels(SolverArgument solver, Array<const double, nb::shape<-1, 7>> q, RowOut out) {
     const RedundantSolver& arm = swivel_solver(solver, out.shape(0) == q.shape(0));
     for (std::size_t i = 0; i < q.shape(0); ++i) out.data()[i] = arm.swivel_at(q.data() + 7 * i);
-}
-
-using Spans = Array<const double, nb::shape<-1, 2>>;
-std::vector<ik::Span> unite_rows(const Spans& intervals) {
-    std::vector<ik::Span> out;
-    for (std::size_t k = 0; k < intervals.shape(0); ++k)
-        out.emplace_back(intervals.data()[2 * k], intervals.data()[2 * k + 1]);
-    return ik::unite_intervals(std::move(out));
 }
 
 }  // namespace
@@ -137,10 +121,7 @@ void bind_ik_redundancy(nb::module_& m) {
     m.def("_ik_swivel_rows", &solve_swivels, "solver"_a, "goals"_a, "swivels"_a, "q"_a,
           "Every solution at given swivels.");
     m.def("_ik_swivels", &measure_swivels, "solver"_a, "q"_a, "out"_a, "The swivel of configurations.");
-    m.def(
-        "_ik_union", [](Spans intervals) { return unite_rows(intervals); }, "intervals"_a,
-        "Intervals (k, 2) as disjoint ones, ascending.");
-    m.def(
-        "_ik_spread", [](Spans intervals, int n) { return ik::spread_values(unite_rows(intervals), n); },
-        "intervals"_a, "n"_a, "The middles of n equal parts of all that intervals (k, 2) cover.");
+    m.def("_ik_union", ik::unite_intervals, "intervals"_a, "Intervals (k, 2) as disjoint ones, ascending.");
+    m.def("_ik_spread", ik::spread_values, "intervals"_a, "n"_a,
+          "The middles of n equal parts of all that intervals (k, 2) cover.");
 }

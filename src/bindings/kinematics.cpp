@@ -170,14 +170,17 @@ PyObject* compute_jacobian(PyObject* self, PyObject* const* args, Py_ssize_t nar
     if (!robot->floating && read_single(robot, args, nargs, kwnames, call)) {
         PyObject* J = new_array({6, robot->model->n_coordinates()});
         PyObject* T = with_pose && J ? new_array({4, 4}) : nullptr;
-        PyObject* answer = !with_pose ? J : T ? PyTuple_Pack(2, T, J) : nullptr;
-        Stack stack;
-        const bool is_found = answer && kernels::chain_jacobian(*call.chain, call.q, T ? data_of(T) : nullptr,
-                                                                data_of(J), &stack);
-        if (with_pose) {  // the tuple keeps them
+        PyObject* answer = !with_pose ? J : T ? PyTuple_New(2) : nullptr;
+        if (with_pose && answer) {
+            PyTuple_SET_ITEM(answer, 0, T);
+            PyTuple_SET_ITEM(answer, 1, J);
+        } else if (with_pose) {
             Py_XDECREF(T);
             Py_XDECREF(J);
         }
+        Stack stack;
+        const bool is_found = answer && kernels::chain_jacobian(*call.chain, call.q, T ? data_of(T) : nullptr,
+                                                                data_of(J), &stack);
         if (is_found) return answer;
         Py_XDECREF(answer);
         if (PyErr_Occurred()) return nullptr;

@@ -10,6 +10,7 @@
 
 #include <memory>
 
+#include "bindings.hpp"
 #include "cspace/model/robot_model.hpp"
 #include "numpy_api.hpp"
 
@@ -30,10 +31,6 @@ int kinematics_load(PyObject* self, PyObject* args, PyObject* kwargs);
 // For the types built on this one: an object whose kinematics are still to be read, and the end of them.
 PyObject* create_kinematics(PyTypeObject* type, PyObject*, PyObject*);
 void free_kinematics(PyObject* self);
-template <class F>
-PyCFunction as_method(F* f) {
-    return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(f));
-}
 
 // Calls the free function of that name in a Python module, with the robot before the arguments. Complaints
 // about the arguments name the method that was called.

@@ -63,7 +63,7 @@ NAMESPACE_BEGIN(detail)
 // A row of finite numbers, given as an array, a tuple or a list.
 template <class T>
 struct RowCaster {
-    NB_TYPE_CASTER(T, array_name<double>)
+    NB_TYPE_CASTER(T, const_name("numpy.typing.ArrayLike"))
     bool from_python(handle given, std::uint32_t, cleanup_list*) noexcept {
         return read_numbers(given.ptr(), reinterpret_cast<double*>(&value), width_of<T>);
     }

@@ -6,10 +6,19 @@
 #include "cspace/version.hpp"
 #include "kernels/dispatch.hpp"
 
+namespace {
+
+// The last part of a dotted name.
+const char* name_of(const char* dotted) {
+    const char* dot = std::strrchr(dotted, '.');
+    return dot ? dot + 1 : dotted;
+}
+
+}  // namespace
+
 PyTypeObject* add_type(nanobind::module_& m, PyType_Spec& spec, PyTypeObject* base) {
     PyObject* type = PyType_FromSpecWithBases(&spec, reinterpret_cast<PyObject*>(base));
-    if (!type || PyModule_AddObjectRef(m.ptr(), std::strrchr(spec.name, '.') + 1, type) < 0)
-        throw nanobind::python_error();
+    if (!type || PyModule_AddObjectRef(m.ptr(), name_of(spec.name), type) < 0) throw nanobind::python_error();
     return reinterpret_cast<PyTypeObject*>(type);
 }
 
@@ -19,7 +28,7 @@ void ResultType::add(nanobind::module_& m, PyType_Spec& spec) {
         auto* cls = reinterpret_cast<PyTypeObject*>(given.ptr());
         if (!PyType_Check(given.ptr()) || !PyType_IsSubtype(cls, base_))
             throw nanobind::type_error(
-                (std::string(entry_) + " takes a subclass of " + base_->tp_name).c_str());
+                (std::string(entry_) + " takes a subclass of " + name_of(base_->tp_name)).c_str());
         Py_XDECREF(made_of_);
         made_of_ = reinterpret_cast<PyTypeObject*>(given.inc_ref().ptr());
     };

@@ -14,12 +14,12 @@ using namespace cspace::navigation;
 
 namespace {
 
-PyMethodDef methods[] = {{"_grid_route", fast(ask<CellsQuery>), METH_FASTCALL, nullptr},
-                         {"_grid_any_angle", fast(ask<RunsQuery>), METH_FASTCALL, nullptr},
-                         {"_potential_a_star", fast(ask<PotentialQuery>), METH_FASTCALL, nullptr},
-                         {"_fast_marching", fast(ask<MarchQuery>), METH_FASTCALL, nullptr},
-                         {"_harmonic", fast(ask<HarmonicQuery>), METH_FASTCALL, nullptr},
-                         {"_brushfire", fast(ask<BrushfireQuery>), METH_FASTCALL, nullptr},
+PyMethodDef methods[] = {{"_grid_route", as_method(ask<CellsQuery>), METH_FASTCALL, nullptr},
+                         {"_grid_any_angle", as_method(ask<RunsQuery>), METH_FASTCALL, nullptr},
+                         {"_potential_a_star", as_method(ask<PotentialQuery>), METH_FASTCALL, nullptr},
+                         {"_fast_marching", as_method(ask<MarchQuery>), METH_FASTCALL, nullptr},
+                         {"_harmonic", as_method(ask<HarmonicQuery>), METH_FASTCALL, nullptr},
+                         {"_brushfire", as_method(ask<BrushfireQuery>), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
 }  // namespace

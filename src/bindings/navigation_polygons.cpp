@@ -18,14 +18,14 @@ using namespace cspace::navigation;
 
 namespace {
 
-PyMethodDef methods[] = {{"_polygon_route", fast(ask<PolygonQuery>), METH_FASTCALL, nullptr},
-                         {"_approximate_cells", fast(ask<QuadtreeQuery>), METH_FASTCALL, nullptr},
-                         {"_sampling", fast(ask<SampleQuery>), METH_FASTCALL, nullptr},
-                         {"_voronoi", fast(ask<VoronoiQuery>), METH_FASTCALL, nullptr},
-                         {"_bug", fast(ask<WallQuery>), METH_FASTCALL, nullptr},
-                         {"_voronoi_bug", fast(ask<VoronoiBugQuery>), METH_FASTCALL, nullptr},
-                         {"_potential_field", fast(ask<DescentQuery>), METH_FASTCALL, nullptr},
-                         {"_navigation_function", fast(ask<StarQuery>), METH_FASTCALL, nullptr},
+PyMethodDef methods[] = {{"_polygon_route", as_method(ask<PolygonQuery>), METH_FASTCALL, nullptr},
+                         {"_approximate_cells", as_method(ask<QuadtreeQuery>), METH_FASTCALL, nullptr},
+                         {"_sampling", as_method(ask<SampleQuery>), METH_FASTCALL, nullptr},
+                         {"_voronoi", as_method(ask<VoronoiQuery>), METH_FASTCALL, nullptr},
+                         {"_bug", as_method(ask<WallQuery>), METH_FASTCALL, nullptr},
+                         {"_voronoi_bug", as_method(ask<VoronoiBugQuery>), METH_FASTCALL, nullptr},
+                         {"_potential_field", as_method(ask<DescentQuery>), METH_FASTCALL, nullptr},
+                         {"_navigation_function", as_method(ask<StarQuery>), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
 }  // namespace

@@ -38,8 +38,3 @@ class Watch {
   private:
     std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
 };
-
-// A raw entry for a table of methods.
-inline PyCFunction fast(PyObject* (*function)(PyObject*, PyObject* const*, Py_ssize_t)) {
-    return reinterpret_cast<PyCFunction>(reinterpret_cast<void (*)()>(function));
-}

@@ -77,8 +77,8 @@ PyObject* find_shortest(PyObject*, PyObject* const* args, Py_ssize_t count) {
                          pieces);
 }
 
-PyMethodDef methods[] = {{"_car_distance", fast(find_distance), METH_FASTCALL, nullptr},
-                         {"_car_shortest", fast(find_shortest), METH_FASTCALL, nullptr},
+PyMethodDef methods[] = {{"_car_distance", as_method(find_distance), METH_FASTCALL, nullptr},
+                         {"_car_shortest", as_method(find_shortest), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
 // settings (7,): turning radius, box, headings, reverse cost, gear cost, most nodes, weight.

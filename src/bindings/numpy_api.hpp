@@ -48,8 +48,9 @@ PyObject* new_array(std::initializer_list<npy_intp> shape, const T* values = nul
 
 // Whether item is a float or an integer that fits into a double.
 inline bool read_number(PyObject* item, double& number) {
-    if (!PyFloat_Check(item) && !PyLong_CheckExact(item)) return false;
-    number = PyFloat_AsDouble(item);
+    if (PyFloat_Check(item)) return number = PyFloat_AS_DOUBLE(item), true;
+    if (!PyLong_CheckExact(item)) return false;
+    number = PyLong_AsDouble(item);
     if (number != -1 || !PyErr_Occurred()) return true;
     PyErr_Clear();
     return false;

@@ -221,7 +221,7 @@ class GridBase:
     """The compiled half of cspace.maps.OccupancyGrid."""
 
     @overload
-    def __init__(self, blocked: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.NDArray[numpy.float64]) -> None: ...
+    def __init__(self, blocked: numpy.typing.NDArray[numpy.uint8], resolution: float, origin: numpy.typing.ArrayLike) -> None: ...
 
     @overload
     def __init__(self, other: GridBase, radius: float, from_centers: bool) -> None: ...
@@ -263,13 +263,13 @@ class PolygonCore:
     """The compiled half of cspace.maps.PolygonWorld."""
 
     @overload
-    def __init__(self, points: numpy.typing.NDArray[numpy.float64], ends: numpy.typing.NDArray[numpy.int32], owners: numpy.typing.NDArray[numpy.int32], low: numpy.typing.NDArray[numpy.float64], high: numpy.typing.NDArray[numpy.float64], tolerance: float) -> None:
+    def __init__(self, points: numpy.typing.NDArray[numpy.float64], ends: numpy.typing.NDArray[numpy.int32], owners: numpy.typing.NDArray[numpy.int32], low: numpy.typing.ArrayLike, high: numpy.typing.ArrayLike, tolerance: float) -> None:
         """
         Closed rings (n, 2), the end of each, the obstacle of each; the corners of the bounds.
         """
 
     @overload
-    def __init__(self, blocked: numpy.typing.NDArray[numpy.uint8], side: float, origin: numpy.typing.NDArray[numpy.float64], tolerance: float) -> None:
+    def __init__(self, blocked: numpy.typing.NDArray[numpy.uint8], side: float, origin: numpy.typing.ArrayLike, tolerance: float) -> None:
         """The blocked cells (rows, columns) of a grid as polygons."""
 
     def rasterize(self, side: float, rows: int, columns: int) -> numpy.typing.NDArray[numpy.uint8]:
@@ -295,13 +295,13 @@ class PolygonCore:
     def convex_polygons(self) -> list[numpy.typing.NDArray[numpy.float64]]:
         """Free space as convex polygons, (n, 2) each."""
 
-    def components_at(self, point: numpy.typing.NDArray[numpy.float64]) -> list[int]:
+    def components_at(self, point: numpy.typing.ArrayLike) -> list[int]:
         """The components whose closures hold a point."""
 
-    def obstacle_at(self, point: numpy.typing.NDArray[numpy.float64]) -> int:
+    def obstacle_at(self, point: numpy.typing.ArrayLike) -> int:
         """An obstacle that covers a point, or -1."""
 
-    def nearest_wall(self, point: numpy.typing.NDArray[numpy.float64]) -> tuple[float, float, float]:
+    def nearest_wall(self, point: numpy.typing.ArrayLike) -> tuple[float, float, float]:
         """Distance to the nearest wall, and its point: x, y."""
 
     def path_clearance(self, path: numpy.typing.NDArray[numpy.float64]) -> float:
@@ -333,12 +333,12 @@ class RouteBase:
 class GridReplanner:
     """The compiled half of cspace.navigation.DStarLite."""
 
-    def __init__(self, world: GridBase, corners: int, start: numpy.typing.NDArray[numpy.float64], goal: numpy.typing.NDArray[numpy.float64]) -> None: ...
+    def __init__(self, world: GridBase, corners: int, start: numpy.typing.ArrayLike, goal: numpy.typing.ArrayLike) -> None: ...
 
     def set(self, cells: numpy.typing.NDArray[numpy.int32], blocked: bool) -> None:
         """Cells (k, 2) become blocked or free."""
 
-    def move(self, point: numpy.typing.NDArray[numpy.float64]) -> None:
+    def move(self, point: numpy.typing.ArrayLike) -> None:
         """The robot has moved."""
 
     def replan(self) -> tuple[int, numpy.typing.NDArray[numpy.float64], float, int, int, numpy.typing.NDArray[numpy.int32]]:
@@ -354,7 +354,7 @@ class ClearanceField:
 
     def __init__(self, grid: GridBase) -> None: ...
 
-    def march_times(self, grid: GridBase, goal: numpy.typing.NDArray[numpy.float64], slow_within: float) -> numpy.typing.NDArray[numpy.float64]:
+    def march_times(self, grid: GridBase, goal: numpy.typing.ArrayLike, slow_within: float) -> numpy.typing.NDArray[numpy.float64]:
         """
         When a front from the goal arrives (rows, columns) [m, over the speed].
         """
@@ -362,7 +362,7 @@ class ClearanceField:
 class HarmonicField:
     """A harmonic potential over the cells of a grid."""
 
-    def __init__(self, grid: GridBase, clearance: ClearanceField, goal: numpy.typing.NDArray[numpy.float64], residual: float, most_cycles: int) -> None: ...
+    def __init__(self, grid: GridBase, clearance: ClearanceField, goal: numpy.typing.ArrayLike, residual: float, most_cycles: int) -> None: ...
 
     @property
     def residual(self) -> float:
@@ -405,22 +405,22 @@ class NearWalls:
     def reach(self) -> float:
         """How far walls repel [m]."""
 
-    def values(self, core: PolygonCore, goal: numpy.typing.NDArray[numpy.float64], points: numpy.typing.NDArray[numpy.float64], settings: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
+    def values(self, core: PolygonCore, goal: numpy.typing.ArrayLike, points: numpy.typing.NDArray[numpy.float64], settings: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64]:
         """The potential at points (n, 2)."""
 
 class NavigationCore:
     """A navigation function of a star or sphere world."""
 
     @overload
-    def __init__(self, core: PolygonCore, goal: numpy.typing.NDArray[numpy.float64], kappa: float, squares: int, steps: int) -> None:
+    def __init__(self, core: PolygonCore, goal: numpy.typing.ArrayLike, kappa: float, squares: int, steps: int) -> None:
         """Of a world without fault."""
 
     @overload
-    def __init__(self, discs: numpy.typing.NDArray[numpy.float64], goal: numpy.typing.NDArray[numpy.float64], kappa: float, squares: int, steps: int) -> None:
+    def __init__(self, discs: numpy.typing.NDArray[numpy.float64], goal: numpy.typing.ArrayLike, kappa: float, squares: int, steps: int) -> None:
         """Of discs (n, 3): x, y, radius; the first is the room."""
 
     @staticmethod
-    def fault(core: PolygonCore, goal: numpy.typing.NDArray[numpy.float64]) -> tuple[int, float, float] | None:
+    def fault(core: PolygonCore, goal: numpy.typing.ArrayLike) -> tuple[int, float, float] | None:
         """
         An obstacle that is not star-shaped (1) or touches another (2): (1 or 2, x, y), a corner of it.
         """
@@ -446,7 +446,7 @@ class NavigationCore:
     def phi(self, logs: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64]:
         """φ of V (n,)."""
 
-    def path(self, start: numpy.typing.NDArray[numpy.float64]) -> numpy.typing.NDArray[numpy.float64] | None:
+    def path(self, start: numpy.typing.ArrayLike) -> numpy.typing.NDArray[numpy.float64] | None:
         """The way down from a free point."""
 
 def _car_clear(*arguments: Any) -> None: ...
@@ -496,8 +496,8 @@ def _ik_intervals(solver: Any, parameter: int, goal: NDArray[numpy.float64]) -> 
 def _ik_has_swivel(solver: Any) -> bool: ...
 def _ik_swivel_rows(*arguments: Any) -> None: ...
 def _ik_swivels(*arguments: Any) -> None: ...
-def _ik_union(intervals: NDArray[numpy.float64]) -> list[tuple[float, float]]: ...
-def _ik_spread(intervals: NDArray[numpy.float64], n: int) -> list[float]: ...
+def _ik_union(intervals: list[tuple[float, float]]) -> list[tuple[float, float]]: ...
+def _ik_spread(intervals: list[tuple[float, float]], n: int) -> list[float]: ...
 def _ik_near_singular(*arguments: Any) -> Any: ...
 def _ik_geometry(solver: Any) -> Any: ...
 def _ik_plan(solver: Any) -> dict[str, Any]: ...
@@ -508,7 +508,6 @@ def _ik_direction(*arguments: Any) -> NDArray[numpy.float64] | None: ...
 def _ik_follow(*arguments: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64], int]: ...
 def _ik_numbers(solver: Any) -> tuple[str, dict[str, Any]]: ...
 def _ik_onto(*arguments: Any) -> tuple[NDArray[numpy.float64], NDArray[numpy.float64]]: ...
-def _ik_exceeds_reach(solver: Any, goal: NDArray[numpy.float64]) -> bool: ...
 def _ik_nearest_pose(*arguments: Any) -> tuple[NDArray[numpy.float64], float, float]: ...
 def _ik_position(*arguments: Any) -> Any: ...
 def _ik_nearest_position(*arguments: Any) -> tuple[NDArray[numpy.float64], float]: ...

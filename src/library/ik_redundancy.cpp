@@ -100,13 +100,11 @@ struct RedundantSolver::State {
 
 RedundantSolver::RedundantSolver(const Chain& chain, const double* lower, const double* upper,
                                  const double* weight)
-    : state_(std::make_unique<State>()) {
+    : state_(std::make_shared<State>()) {
     kernels::ik_make_redundant(chain, lower, upper, weight, state_->arm);
     state_->unit = unit_of(state_->arm);
     state_->swivel = make_swivel_arm(chain);
 }
-RedundantSolver::RedundantSolver(RedundantSolver&&) noexcept = default;
-RedundantSolver::~RedundantSolver() = default;
 
 const Chain& RedundantSolver::chain() const { return state_->arm.chain; }
 int RedundantSolver::redundant_joints() const { return state_->arm.redundancy_degree; }
@@ -210,12 +208,8 @@ std::vector<FeasibleInterval> RedundantSolver::intervals(int parameter, const do
         const Interval& i = found->interval[k];
         std::vector<double> q(i.q, i.q + chain().n);
         for (int j = 0; j < chain().n; ++j) q[std::size_t(j)] = in_metres(j, i.q[j]);
-        out.push_back({in_metres(parameter, i.lower),
-                       in_metres(parameter, i.upper),
-                       i.branch,
-                       {i.end[0], i.end[1]},
-                       {i.side[0], i.side[1]},
-                       std::move(q)});
+        out.emplace_back(in_metres(parameter, i.lower), in_metres(parameter, i.upper), i.branch, i.end[0],
+                         i.side[0], i.end[1], i.side[1], std::move(q));
     }
     complete = found->complete;
     return out;
@@ -233,7 +227,8 @@ std::vector<Span> unite_intervals(std::vector<Span> intervals) {
     return out;
 }
 
-std::vector<double> spread_values(const std::vector<Span>& disjoint, int n) {
+std::vector<double> spread_values(std::vector<Span> intervals, int n) {
+    const std::vector<Span> disjoint = unite_intervals(std::move(intervals));
     double whole = 0;
     for (const Span& part : disjoint) whole += part.second - part.first;
     std::vector<double> out;
@@ -257,8 +252,8 @@ bool RedundantSolver::sample(const double* goal, int n, GoalAnswer& out) {
     out.feasible = !found.empty();
     if (found.empty()) found = state_->without_limits().intervals(parameter, goal, out.complete);
     std::vector<Span> spans;
-    for (const FeasibleInterval& interval : found) spans.emplace_back(interval.lower, interval.upper);
-    const std::vector<double> values = spread_values(unite_intervals(std::move(spans)), n);
+    for (const FeasibleInterval& one : found) spans.emplace_back(std::get<0>(one), std::get<1>(one));
+    const std::vector<double> values = spread_values(std::move(spans), n);
     const double at[max_joints] = {};
     std::vector<SweptRows> rows(values.size());
     if (!rows.empty())

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,14 +15,9 @@ namespace cspace::ik {
 
 struct LockedArm;
 
-// One feasible interval of a locked joint: what ends it at either side (a joint, or −1 nothing, −2 a fold),
-// which limit of that joint, and a configuration in its middle.
-struct FeasibleInterval {
-    double lower, upper;
-    int branch;
-    int end[2], side[2];
-    std::vector<double> q;
-};
+// One feasible interval of a locked joint: its lower and upper end; the branch; what ends it below (a joint,
+// or −1 nothing, −2 a fold) and which limit of that joint, the same above; a configuration in its middle.
+using FeasibleInterval = std::tuple<double, double, int, int, int, int, int, std::vector<double>>;
 
 // The configurations that answer one goal.
 struct GoalAnswer {
@@ -51,7 +47,7 @@ struct GoalAnswer {
 // Intervals as disjoint ones, ascending; and the middles of n equal parts of all that they cover.
 using Span = std::pair<double, double>;
 std::vector<Span> unite_intervals(std::vector<Span> intervals);
-std::vector<double> spread_values(const std::vector<Span>& disjoint, int n);
+std::vector<double> spread_values(std::vector<Span> intervals, int n);
 
 // Whether a joint stands for the distance to a point that the tool looks at: a goal's own prismatic joint
 // that begins at zero.
@@ -63,8 +59,6 @@ class RedundantSolver {
   public:
     // Limits and weights of distances per joint.
     RedundantSolver(const Chain& chain, const double* lower, const double* upper, const double* weight);
-    RedundantSolver(RedundantSolver&&) noexcept;
-    ~RedundantSolver();
 
     const Chain& chain() const;
     int redundant_joints() const;  // beyond those that the tip needs to move as it can
@@ -121,7 +115,7 @@ class RedundantSolver {
     void start_of_search(const double* goal, int attempt, double* start) const;
 
     struct State;
-    std::unique_ptr<State> state_;
+    std::shared_ptr<State> state_;
 };
 
 // One goal with the locked joints at their values `at` (dof,). False where the goal is no pose.

@@ -91,8 +91,8 @@ class Redundancy:
         return np.array(_core._ik_spread(self._ends, count), dtype=np.float64)
 
     @property
-    def _ends(self) -> Array:
-        return np.array([[i.lower, i.upper] for i in self.intervals], dtype=np.float64).reshape(-1, 2)
+    def _ends(self) -> list[tuple[float, float]]:
+        return [(float(i.lower), float(i.upper)) for i in self.intervals]
 
     def __str__(self) -> str:
         unit = "m" if self._slides else "rad"
