@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
@@ -13,6 +13,8 @@ from cspace import _core
 from cspace.arrays import Array
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputTypeError
+from cspace.ik.answers import NEAREST, UNREACHABLE
+from cspace.ik.context import Options
 from cspace.ik.goals.given import (
     checked_poses,
     goal_array,
@@ -28,7 +30,7 @@ from cspace.ik.goals.partial import KEYWORDS
 from cspace.ik.goals.parts import check_tool_axis, partial_goal
 from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.redundancy.solve import choose_nearest, solve_freedom
-from cspace.ik.solutions import NEAREST, UNREACHABLE, Solutions
+from cspace.ik.solutions import Solutions, nearest_to_goal
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.wrapping import wrap_joints
 from cspace.kinematics.batch import thread_count
@@ -42,23 +44,6 @@ if TYPE_CHECKING:
 MAX_POSITION_JOINTS = 3
 """A point determines up to so many joints."""
 Answer = Solutions | SolutionsBatch
-
-
-@dataclass(frozen=True)
-class Options:
-    """Which of the solutions: the keywords of `Solver.solve` of these names."""
-
-    near: Any
-    locked: Any
-    swivel: Any
-    samples: Any
-    least_squares: bool
-    threads: int
-
-    @property
-    def sets_freedom(self) -> bool:
-        """Whether some joints are locked, or sampled at a number of values."""
-        return self.locked is not None or self.samples is not None
 
 
 def solve(
@@ -187,25 +172,27 @@ def solve_many(solver: Solver, goals: Array, fill: Callable[..., int], workers: 
             raise too_far(f"position {index}", goals[index])
         as_pose(goals, "goal")  # raises where the goal is not a pose
         raise too_far(f"goal {index}", goals[index][:3, 3])
-    q = q.reshape(*leading, *q.shape[1:])
-    return SolutionsBatch(solver, goals, q, count.reshape(leading), verdict.reshape(leading))
+    return SolutionsBatch.of(solver, goals, q, count, verdict)
 
 
 def least_squares_batch(found: SolutionsBatch, threads: int) -> SolutionsBatch:
     """The batch with the configuration of least error for each goal that nothing reaches."""
-    bad = np.argwhere(found._status == UNREACHABLE)
-    if not len(bad):
+    bad: Any = np.nonzero(found._status == UNREACHABLE)
+    if not len(bad[0]):
         return found
-    q, count, verdict = found.q.copy(), found.count.copy(), found._verdict.copy()
-    if found._partial is None and found.goal.shape[found.count.ndim :] == (4, 4):
-        goals = np.ascontiguousarray(found.goal[tuple(bad.T)])
-        rows = wrap_joints(
-            _core._ik_nearest_poses(found.solver, goals, 1.0, threads), found.solver.joint_types
-        )
+    solver, whole = found._whole
+    if found._partial is None and not found._is_point:
+        goals = np.ascontiguousarray(found.goal[bad])
+        nearest = _core._ik_nearest_poses(solver, goals, 1.0, threads)
     else:
-        rows = np.array([least_squares_answer(found[tuple(index)]).q[0] for index in bad])
-    if not q.shape[-2]:
-        q = np.full((*q.shape[:-2], 1, q.shape[-1]), np.nan)
-    q[(*bad.T, 0)] = rows
-    count[tuple(bad.T)], verdict[tuple(bad.T)] = 1, NEAREST
-    return found._with(q, count, verdict)
+        each = (nearest_to_goal(found[index])[0] for index in zip(*bad, strict=True))
+        nearest = np.array(list(each))
+    nearest = wrap_joints(nearest, solver.joint_types)
+    q, count, verdict, about = found.q.copy(), found.count.copy(), found._verdict.copy(), found._about
+    q[(*bad, 0)] = found._wanted.own_joints(nearest)
+    count[bad], verdict[bad] = 1, NEAREST
+    if about is not None and about.q is not None:
+        whole = whole.copy()
+        whole[(*bad, 0)] = nearest
+        about = replace(about, q=whole)
+    return replace(found, q=q, count=count, _verdict=verdict, _about=about)

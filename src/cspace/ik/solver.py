@@ -18,6 +18,7 @@ from cspace.ik.conditions import NoClosedFormError, explain_missing_form
 from cspace.ik.goals.partial import PartialGoal
 from cspace.ik.locked_joints import joint_number, locked_values
 from cspace.kinematics import KinematicModel, assemble_chain
+from cspace.kinematics.batch import limits_of
 from cspace.model import Chain, Limits, chain, from_screws
 from cspace.tolerances import REACH_ROUNDING
 
@@ -57,7 +58,9 @@ class Solver(_core.SolverBase, KinematicModel):
                 f"Solver takes a Chain, got {type(chain).__name__}; robot.chain is one, and"
                 " Solver.from_screws takes joint axes"
             )
-        self._read(with_limits(chain, limits), chain.name if name is None else name)
+        own = chain.coordinates.limits
+        limited = chain.with_limits(limits_of(own, limits, chain.name))
+        self._read(limited, chain.name if name is None else name)
 
     def _read(self, source: Chain, name: str, goal_joints: Sequence[int] = (), reach: float = np.inf) -> None:
         super().__init__(assemble_chain(source), name)
@@ -169,20 +172,6 @@ def keep_solver(solvers: dict[Key, Solver], key: Key, build: Callable[[], Solver
             solvers.pop(next(iter(solvers)), None)
         found = solvers[key] = build()
     return found
-
-
-def with_limits(source: Chain, limits: Limits | bool | None) -> Chain:
-    """A chain with the limits given, with its own for None or True, without any for False."""
-    if limits is None or limits is True:
-        return source
-    if limits is False:
-        n = source.dof
-        return source.with_limits(Limits(np.full(n, -np.inf), np.full(n, np.inf)))
-    if not isinstance(limits, Limits):
-        raise InputTypeError(
-            f"limits is a {type(limits).__name__}, expected cspace.model.Limits, or False for none"
-        )
-    return source.with_limits(limits)
 
 
 def largest_reach(source: Chain) -> float:

@@ -12,6 +12,7 @@ from cspace.arrays import Array, as_floats, whole_number
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.kinematic_model import KinematicModel
+from cspace.model import Limits
 from cspace.spatial import as_pose
 
 MOST_THREADS = 1024
@@ -99,6 +100,25 @@ def check_robot(robot: object) -> None:
             f"the first argument must be a Robot, got {type(robot).__name__};"
             " cspace.load_robot(name) returns one"
         )
+
+
+def limits_of(own: Limits, limits: Any, name: str) -> Limits:
+    """The limits that an argument means: its own for None or True, none for False, or those given.
+
+    Raises InputTypeError for anything else, InputError for another number of joints than `own` has.
+    """
+    if limits is None or limits is True:
+        return own
+    n = len(own)
+    if limits is False:
+        return Limits(np.full(n, -np.inf), np.full(n, np.inf))
+    if not isinstance(limits, Limits):
+        raise InputTypeError(
+            f"limits is a {type(limits).__name__}, expected cspace.model.Limits, or False for none"
+        )
+    if len(limits) != n:
+        raise InputError(f"limits are for {len(limits)} joints, {name} has {n}")
+    return limits
 
 
 def frame_number(robot: KinematicModel, frame: str | None) -> int:

@@ -7,12 +7,17 @@ import pytest
 
 import cspace as cs
 from cspace.errors import InputError, InputTypeError, UnknownNameError
-from cspace.ik.solutions import pose_errors
+from cspace.ik.goals.partial import plain_goal
 from ik.tracking.paths import TURN, matched, random_path, straight
 
 ARMS = ["ur5e", "puma560", "jaco2", "stanford", "crx10ia"]
 SEEDS = [0, 2, 0, 7, 1]  # of paths on which some branches end
 FREE = {"limits": False, "max_step": np.inf}
+
+
+def pose_errors(robot, q, poses):
+    """The larger of the position error [m] and the angle [rad] between fk(q) and each pose."""
+    return plain_goal(poses).residual(robot.fk(q))
 
 
 def gap(a, b):

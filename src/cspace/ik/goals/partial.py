@@ -65,6 +65,8 @@ class PartialGoal:
     @property
     def text(self) -> str:
         """The goal in words."""
+        if "pose" in self.value:
+            return "the goal"
         return " and ".join(WORDS[name] for name in self.kind.split("+"))
 
     def extend_chain(self, chain: Chain) -> Chain:
@@ -111,14 +113,16 @@ class PartialGoal:
 
     def misses(self, T: Array) -> tuple[list[Array], list[Array]]:
         """How far poses (k, 4, 4) are from what the goal asks for: distances [m] and angles [rad], (k,)."""
-        p, a = T[..., :3, 3], T[..., :3, :3] @ self.axis
-        goal, d = self.T[..., :3, 3], self.T[..., :3, :3] @ self.axis
+        p, goal = T[..., :3, 3], self.T[..., :3, 3]
         distances, angles = [], []
         for name in self.kind.split("+"):
+            if name not in ("position", "rotation"):  # what involves the tool axis
+                a, d = T[..., :3, :3] @ self.axis, self.T[..., :3, :3] @ self.axis
             if name == "position":
-                asked = np.array([kind != "P" for kind in self._open_coordinates])
-                distances.append(np.linalg.norm((p - goal) * asked, axis=-1))
+                open_coordinates = sum((axis for _, axis in self.before), np.zeros(3))
+                distances.append(np.linalg.norm((p - goal) * (1.0 - open_coordinates), axis=-1))
             elif name == "rotation":
+                # ‖R − R_goal‖_F = 2√2 sin(angle/2), which keeps its digits for small angles.
                 gap = np.linalg.norm(T[..., :3, :3] - self.T[..., :3, :3], axis=(-2, -1))
                 angles.append(2 * np.arcsin(np.minimum(gap / np.sqrt(8), 1.0)))
             elif name == "angle_to":
@@ -140,12 +144,6 @@ class PartialGoal:
         words = [f"{max(distances):.4g} m"] if distances else []
         return " and ".join(words + ([f"{np.degrees(max(angles)):.4g}°"] if angles else []))
 
-    @property
-    def _open_coordinates(self) -> tuple[str, str, str]:
-        slides = [axis for kind, axis in self.before if kind == "P"]
-        marks = tuple("P" if any(axis[i] for axis in slides) else "R" for i in range(3))
-        return marks  # type: ignore[return-value]
-
 
 WORDS = {
     "position": "the position",
@@ -155,8 +153,22 @@ WORDS = {
     "ray": "the ray",
     "angle_to": "the angle of the tool axis",
 }
-BARE = {"rotation": 2}
+BARE = {"rotation": 2, "pose": 2}
 """Dimensions of the value of one goal, where it is no vector."""
+
+
+def plain_goal(goal: Array) -> PartialGoal:
+    """Whole poses (..., 4, 4) or points (..., 3) by their parts, without virtual joints."""
+    if goal.shape[-1] == 4:
+        return PartialGoal("position+rotation", goal, (), {"pose": goal})
+    return PartialGoal("position", position_goal(goal), (), {"position": goal})
+
+
+def position_goal(p: Array) -> Array:
+    """Points (..., 3) in the shape of poses, their rotations unknown."""
+    T = np.full((*p.shape[:-1], 4, 4), np.nan)
+    T[..., :3, 3] = p
+    return T
 
 
 def measure_angle(a: Array, b: Array) -> Array:

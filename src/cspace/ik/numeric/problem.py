@@ -11,8 +11,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, as_generator, positive_number
 from cspace.errors import InputError, InputTypeError
-from cspace.kinematics.batch import check_robot, frame_number
-from cspace.model import Limits
+from cspace.kinematics.batch import check_robot, frame_number, limits_of
 from cspace.spatial import as_pose
 from cspace.spatial.poses import assemble
 from cspace.tolerances import FARTHEST, LEAST_SLIDE
@@ -103,25 +102,8 @@ def _weights(value: Any) -> Array:
 
 
 def bounds_of(robot: KinematicModel, limits: Any) -> Array:
-    """The limits of the joints as rows lower and upper (2, n), or (2, 0) for none.
-
-    limits: True for the robot's own, False for none, or a Limits.
-    Raises InputTypeError for anything else, InputError for another number of joints or limits upside down.
-    """
-    if limits is False:
-        return np.empty((2, 0))
-    if limits is True:
-        return robot.limits.range
-    own = limits
-    if not isinstance(own, Limits):
-        raise InputTypeError(f"limits must be True, False or a Limits, got {type(limits).__name__}")
-    lower, upper = np.asarray(own.lower, dtype=np.float64), np.asarray(own.upper, dtype=np.float64)
-    n = len(robot.joint_names)
-    if lower.shape != (n,) or upper.shape != (n,):
-        raise InputError(f"limits are for {lower.shape} joints, expected {n} of {robot.name}")
-    if not (lower <= upper).all():
-        raise InputError("limits contain NaN, or a lower limit above the upper limit")
-    return np.array([lower, upper])
+    """The limits of the joints as rows lower and upper (2, n), or (2, 0) for False; errors of limits_of."""
+    return np.empty((2, 0)) if limits is False else limits_of(robot.limits, limits, robot.name).range
 
 
 def middle_configuration(robot: KinematicModel, bounds: Array) -> Array:

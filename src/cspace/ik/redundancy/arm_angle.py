@@ -8,7 +8,9 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes
-from cspace.ik.solutions import EXACT, UNREACHABLE, Solutions
+from cspace.ik.answers import EXACT, UNREACHABLE
+from cspace.ik.context import About
+from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solver import HasSolver, Solver, as_solver
 from cspace.tolerances import FARTHEST
@@ -42,20 +44,12 @@ def solve_swivel(solver: Solver, T: Array, angle: Any) -> Solutions | SolutionsB
     swivels = np.ascontiguousarray(np.broadcast_to(angles, shape).reshape(-1))
     q = np.empty((len(swivels), BRANCHES, JOINTS))
     _core._ik_swivel_rows(solver.check_swivel(), goals.reshape(-1, 4, 4), swivels, q)
-    if shape:
-        return batch_of(solver, goals, q, shape)
-    real = np.isfinite(q[0, :, 0])
-    rows, numbers = q[0, real], np.flatnonzero(real)
-    note = None if len(rows) else "no swivel reaches the goal, because the wrist centre is out of reach"
-    verdict = EXACT if len(rows) else UNREACHABLE
-    return Solutions.of(solver, goals, verdict, rows, numbers, (False,) * len(rows), note)
-
-
-def batch_of(solver: Solver, T: Array, q: Array, shape: tuple[int, ...]) -> SolutionsBatch:
-    """The rows of each goal first, NaN behind them."""
     real = np.isfinite(q[..., 0])
-    order = np.argsort(~real, axis=-1, kind="stable")
-    q = np.take_along_axis(q, order[..., None], axis=-2).reshape(*shape, BRANCHES, JOINTS)
-    count = real.sum(axis=-1).reshape(shape)
-    verdict = np.where(count, EXACT, UNREACHABLE).astype(np.uint8)
-    return SolutionsBatch(solver, T, q, count, verdict)
+    verdict = np.where(real.any(axis=-1), EXACT, UNREACHABLE).astype(np.uint8)
+    if shape:  # the rows of each goal first
+        order = np.argsort(~real, axis=-1, kind="stable")
+        q, count = np.take_along_axis(q, order[..., None], axis=-2), real.sum(axis=-1)
+        return SolutionsBatch.of(solver, goals, q, count, verdict, About(), np.zeros(real.shape, dtype=bool))
+    rows, numbers = q[0, real[0]], np.flatnonzero(real[0])
+    note = None if len(rows) else "no swivel reaches the goal, because the wrist centre is out of reach"
+    return Solutions.of(solver, goals, int(verdict[0]), rows, numbers, (False,) * len(rows), note)

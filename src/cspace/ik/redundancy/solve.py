@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Protocol, cast
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -11,13 +12,13 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, leading_axes, whole_number
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputError, InputTypeError
-from cspace.ik.context import About
+from cspace.ik.context import About, Options
 from cspace.ik.goals.given import one_configuration
 from cspace.ik.goals.partial import PartialGoal
 from cspace.ik.locked_joints import by_name, locked_values
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.solutions import Solutions
-from cspace.ik.solutions_batch import PartialRows, SolutionsBatch
+from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
@@ -27,17 +28,8 @@ if TYPE_CHECKING:
 SAMPLES = 16
 
 
-class Options(Protocol):
-    """The keywords that count here; see cspace.ik.solve.Options."""
-
-    near: Any
-    locked: Any
-    samples: Any
-    threads: int
-
-
 def solve_freedom(
-    solver: Solver, goal: PartialGoal | None, T: Array, options: Any
+    solver: Solver, goal: PartialGoal | None, T: Array, options: Options
 ) -> Solutions | SolutionsBatch:
     """The answer to goals T (..., 4, 4) that leave freedom, or have joints locked.
 
@@ -94,15 +86,7 @@ def ask_core(
     if not shape:
         return cast(Solutions, made)
     q, whole, count, verdict, self_motion = made
-    q = q.reshape(*shape, *q.shape[1:])
-    rows = None
-    if about.goal is not None:
-        rows = PartialRows(
-            about, q, whole.reshape(*shape, *whole.shape[1:]), self_motion.reshape(*shape, q.shape[-2])
-        )
-    return SolutionsBatch(
-        solver, T, q, count.reshape(shape), verdict.reshape(shape), rows, about.freedom, about.locked
-    )
+    return SolutionsBatch.of(solver, T, q, count, verdict, replace(about, q=whole), self_motion)
 
 
 def locked_joints(solver: Solver, whole: Solver, locked: Any) -> dict[int, Any]:
@@ -132,7 +116,7 @@ def seed_rows(solver: Solver, near: Any, shape: tuple[int, ...]) -> Array:
     return np.ascontiguousarray(seeds.reshape(-1, solver.dof))
 
 
-def check_samples(solver: Solver, options: Any, degree: int) -> None:
+def check_samples(solver: Solver, options: Options, degree: int) -> None:
     """Raise InputTypeError for samples= where it has no meaning."""
     if options.samples is None:
         return
@@ -163,7 +147,7 @@ def answer_locked(
     first: int,
     T: Array,
     values: dict[int, Any],
-    options: Any,
+    options: Options,
 ) -> Solutions | SolutionsBatch:
     """Of a partial goal: every solution of the other joints."""
     shape, goals, at = locked_rows(whole, T, values)
@@ -175,7 +159,7 @@ def answer_locked(
 
 
 def solve_locked(
-    solver: Solver, T: Array, values: dict[int, Any], options: Any
+    solver: Solver, T: Array, values: dict[int, Any], options: Options
 ) -> Solutions | SolutionsBatch:
     """Of poses: every solution of the other joints."""
     joints = list(values)
@@ -191,8 +175,7 @@ def solve_locked(
     rows = (q, branch, self_motion, count, status)
     _core._ik_locked_rows(solver, joints, at, goals.reshape(-1, 4, 4), seed, *rows, options.threads)
     if shape:
-        q = q.reshape(*shape, room, n)
-        return SolutionsBatch(solver, goals, q, count.reshape(shape), status.reshape(shape), None, (), values)
+        return SolutionsBatch.of(solver, goals, q, count, status, About(locked=values), self_motion)
     if options.near is None:
         _core._ik_serve_locked(solver, joints, About())
     k = int(count[0])

@@ -12,9 +12,9 @@ from cspace import _core
 from cspace.arrays import Array, as_floats, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.conditions import NoClosedFormError
+from cspace.ik.goals.partial import plain_goal
 from cspace.ik.numeric import ik_numeric
 from cspace.ik.numeric.problem import Question, middle_configuration, pose_problem
-from cspace.ik.solutions import pose_errors
 from cspace.ik.solver import as_solver
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.wrapping import turning_joints
@@ -150,7 +150,7 @@ def starts_of(robot: KinematicModel, question: Question, T: Array, start: Any) -
 
 def nearest_start(robot: KinematicModel, question: Question, first: Array, seed: Array) -> Starts:
     """The solution of the first pose nearest to a configuration: itself, if it is one."""
-    if pose_errors(robot, seed, first) <= NUMERIC_TOLERANCE:
+    if plain_goal(first).residual(robot.fk(seed)) <= NUMERIC_TOLERANCE:
         return np.ascontiguousarray(seed)[None], (-1,), False, ""
     if is_redundant(robot, question):  # near= looks past limits, a descent keeps them
         d = ik_numeric(robot, first, seed, rest=seed, limits=limits_of(robot, question))

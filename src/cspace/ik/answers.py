@@ -1,0 +1,118 @@
+"""What the results for one goal and for many have in common."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Final, cast
+
+import numpy as np
+
+from cspace.arrays import Array
+from cspace.errors import attribute_error
+from cspace.ik.derivative import solve_derivative
+from cspace.ik.goals.partial import PartialGoal, plain_goal
+from cspace.ik.on_limits import settle_on_limits
+from cspace.ik.wrapping import nearest_winding
+from cspace.kinematics.batch import check_choice
+
+if TYPE_CHECKING:
+    from cspace.ik.context import About
+    from cspace.ik.solver import Solver
+    from cspace.model import Limits
+
+UNREACHABLE: Final = 0
+EXACT: Final = 1
+SINGULAR: Final = 2
+NEAREST: Final = 3
+INCOMPLETE: Final = 8
+"""Added to a verdict where solutions may be missing."""
+VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
+METRICS: Final = ("euclidean", "max")
+
+
+class Answers:
+    """The rows q (..., k, dof) that answer goals (..., 4, 4) or (..., 3), without leading axes for one."""
+
+    __slots__ = ()
+
+    if TYPE_CHECKING:
+
+        @property
+        def solver(self) -> Solver: ...
+        @property
+        def goal(self) -> Array: ...
+        @property
+        def q(self) -> Array: ...
+        @property
+        def _about(self) -> About | None: ...
+
+    else:  # type checkers report unknown names themselves
+
+        def __getattr__(self, name: str) -> Any:
+            raise attribute_error(self, name)
+
+    @property
+    def _real(self) -> Any:
+        """Which rows are solutions, (..., k)."""
+        return np.isfinite(self.q[..., 0])
+
+    @property
+    def residual(self) -> Array:
+        """How far fk(q) is from the goal, (..., k): the larger of the position error [m] and the angle [rad];
+        NaN where a goal of many has fewer solutions.
+        """
+        real = self._real
+        out = np.full(real.shape, np.nan)
+        out[real] = self._wanted.take(np.nonzero(real)[:-1]).residual(self.solver.fk(self.q[real]))
+        return out
+
+    @property
+    def freedom(self) -> tuple[str, ...]:
+        """The names of the parameters that the goal leaves free, one per dimension; empty if it leaves
+        none except in self-motions.
+        """
+        return () if self._about is None else self._about.freedom
+
+    @property
+    def derivative(self) -> Array:
+        """dq per base twist [v; ω] of the goal, (..., k, dof, 6): to first order ik(exp(twist) goal) is
+        q + derivative @ twist. NaN where a solution is singular or missing. Computed on access.
+        """
+        moves = solve_derivative(*self._whole, self._is_point)
+        return np.swapaxes(self._wanted.own_joints(np.swapaxes(moves, -1, -2)), -1, -2)
+
+    @property
+    def _is_point(self) -> bool:
+        return self.goal.ndim < self.q.ndim
+
+    @property
+    def _partial(self) -> PartialGoal | None:
+        return None if self._about is None else self._about.goal
+
+    @property
+    def _wanted(self) -> PartialGoal:
+        """The goals by their parts, whole poses and points too."""
+        return self._partial or plain_goal(self.goal)
+
+    @property
+    def _whole(self) -> tuple[Solver, Array]:
+        """The solver that reaches the goal as a whole, and its rows: those of a partial goal have its virtual
+        joints too.
+        """
+        if self._about is None or self._about.goal is None:
+            return self.solver, self.q
+        return cast("Solver", self._about.extended), cast(Array, self._about.q)
+
+    def _settled(self, limits: Limits) -> Array:
+        """The solutions, those that rounding takes past a limit set to it."""
+        return settle_on_limits(self.solver, self.q, limits, slice(3 if self._is_point else 6))
+
+    def _towards(self, seed: Array, metric: str) -> tuple[Array, Any]:
+        """The rows (..., k, dof), each revolute joint by the turn that brings it closest to seeds (..., dof),
+        and the number of the nearest row, (...).
+        """
+        check_choice(metric, "metric", METRICS)
+        limits, seed = self.solver.limits, seed[..., None, :]
+        moved = nearest_winding(self.q, seed, self.solver.joint_types, limits.lower, limits.upper)
+        gap = np.abs(moved - seed)
+        distance = gap.max(axis=-1) if metric == "max" else np.linalg.norm(gap, axis=-1)
+        return moved, np.argmin(np.where(self._real, distance, np.inf), axis=-1)
