@@ -42,7 +42,6 @@
 #include "cspace/navigation/following/dynamic_window.hpp"
 #include "cspace/navigation/following/follow.hpp"
 #include "cspace/navigation/grid/d_star_lite.hpp"
-#include "cspace/navigation/grid/search.hpp"
 #include "cspace/navigation/sampling/prm.hpp"
 #include "cspace/navigation/sampling/rrt.hpp"
 #include "cspace/navigation/visibility/search.hpp"

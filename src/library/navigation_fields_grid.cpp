@@ -63,11 +63,10 @@ bool PotentialQuery::find(const GridWorld& world, Point start, Point goal, Trace
     maps::Cell from, to;
     if (!world.state().find_cells(start, goal, from, to)) return false;
     GridAnswer answer;
-    std::vector<Settled> settled;
-    if (trace) answer.settled = &settled;
+    answer.is_traced = trace;
     find_by_potential(bits, *field->cells, {s[0], s[1], s[2], s[3], s[4], s[5] != 0},
                       static_cast<Corners>(s[6]), from, to, answer);
-    if (trace) list_settled(frame, settled, *trace);
+    if (trace) list_settled(frame, answer.settled, *trace);
     draw_route(frame, start, goal, answer, found);
     return true;
 }

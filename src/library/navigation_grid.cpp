@@ -29,7 +29,7 @@ class Borrowed {
     }
     ~Borrowed() {
         constexpr std::size_t kept_bytes = std::size_t(32) << 20;
-        if (--depth() == 0 && of_thread().nodes.bytes() > kept_bytes) of_thread().nodes.release();
+        if (--depth() == 0 && of_thread().nodes.bytes() > kept_bytes) of_thread().nodes = {};
     }
     Borrowed(const Borrowed&) = delete;
     Borrowed& operator=(const Borrowed&) = delete;
@@ -82,10 +82,9 @@ bool CellsQuery::find(const GridWorld& grid, Point start, Point goal, Trace* tra
     const GridQuery query{planner, corners, metric, weights[0], weights[1], weights[2], each, least_cost};
     Borrowed borrowed;
     auto& [nodes, answer] = borrowed.get();
-    std::vector<Settled> settled;
-    answer.settled = trace ? &settled : nullptr;
+    answer.is_traced = trace;
     find_way(world.bits, from, to, query, nodes, answer, &world.parts);
-    if (trace) list_settled(world.frame, settled, *trace);
+    if (trace) list_settled(world.frame, answer.settled, *trace);
     draw_route(world.frame, start, goal, answer, found);
     cost = grid.resolution * answer.cost, least = grid.resolution * answer.least;
     parts = answer.parts;

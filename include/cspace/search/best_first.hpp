@@ -55,7 +55,6 @@ class Heap {
     // All entries, in no order; the heap is empty then.
     std::vector<Entry> take() { return std::exchange(entries_, {}); }
     std::size_t bytes() const { return entries_.capacity() * sizeof(Entry); }
-    void release() { std::vector<Entry>().swap(entries_); }
 
   private:
     void sink(const Entry& entry) {
@@ -86,7 +85,6 @@ class Waves {
     void push(const Waiting& entry) { nodes_.push_back(entry.node); }
     Waiting pop() { return {0, 0, nodes_[next_++]}; }
     std::size_t bytes() const { return nodes_.capacity() * sizeof(std::uint32_t); }
-    void release() { std::vector<std::uint32_t>().swap(nodes_), next_ = 0; }
 
   private:
     std::vector<std::uint32_t> nodes_;

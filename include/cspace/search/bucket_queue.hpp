@@ -50,12 +50,6 @@ class BucketQueue {
         return near_.bytes() + far_.bytes() + entries_.capacity() * sizeof(Linked) +
                heads_.capacity() * sizeof(std::uint32_t);
     }
-    void release() {
-        begin(1);
-        near_.release(), far_.release();
-        std::vector<Linked>().swap(entries_);
-        std::vector<std::uint32_t>().swap(heads_);
-    }
 
   private:
     struct Linked {

@@ -18,9 +18,9 @@
 #include "cspace/maps/convex_mesh.hpp"
 #include "cspace/math/isa.hpp"
 #include "cspace/math/predicates.hpp"
-#include "cspace/navigation/any_angle/vertex_table.hpp"
 #include "cspace/navigation/route.hpp"
 #include "cspace/search/best_first.hpp"
+#include "cspace/search/node_tables.hpp"
 
 namespace cspace::navigation {
 
@@ -35,7 +35,7 @@ class IntervalSearch {
     using Edge = typename Mesh::Edge;
     using Polygon = typename Mesh::Polygon;
 
-    explicit IntervalSearch(const Mesh& mesh) : mesh_(mesh), best_(mesh) {}
+    explicit IntervalSearch(const Mesh& mesh) : mesh_(mesh) {}
 
     // starts, goals: the polygons whose closures contain the start and the goal.
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
@@ -93,7 +93,7 @@ class IntervalSearch {
     };
 
     const Mesh& mesh_;
-    std::conditional_t<Mesh::is_vast, SparseTable<Arrival>, DenseTable<Arrival>> best_;
+    std::conditional_t<Mesh::is_vast, search::SparseTable<Arrival>, search::DenseTable<Arrival>> best_;
     std::uint32_t query_ = 0;
     std::vector<Node> nodes_;  // open nodes, and free places of expanded ones
     std::vector<Index> free_;
@@ -122,7 +122,10 @@ class IntervalSearch {
 
     void begin(Point start, Point goal, const std::vector<Polygon>& goals, Trace* trace) {
         if (++query_ == 0) query_ = 1, best_.forget();
-        best_.begin();
+        if constexpr (Mesh::is_vast)
+            best_.begin();
+        else
+            best_.begin(mesh_.points.size());
         nodes_.clear();
         free_.clear();
         queue_.clear();
@@ -138,8 +141,6 @@ class IntervalSearch {
         return route;
     }
 
-    // --- the order of nodes
-    // ----------------------------------------------------------------------------------
     // Intervals as nodes of best_first. A place that has been expanded serves another interval.
     struct Open {
         IntervalSearch& search;
@@ -196,8 +197,8 @@ class IntervalSearch {
         Point t = goal_;
         const Point along = left - right;
         const double t_side = cross(along, t - right);
-        if (t_side >
-            0) {  // the goal, mirrored at the edge: the interval is crossed from its left to its right side
+        // The goal, mirrored at the edge: the interval is crossed from its left to its right side.
+        if (t_side > 0) {
             const double s = 2 * t_side / squared_norm(along);
             t = {t.x + s * along.y, t.y - s * along.x};
         }
@@ -214,13 +215,14 @@ class IntervalSearch {
         if (!mesh_.leads_on(entered) && !is_goal(entered)) return;
         const Index a = mesh_.tail(edge), b = mesh_.head(edge);
         const double f = g + estimate(at(root), meet(on_left, a, b, b), meet(on_right, a, b, a));
-        Index place = Index(nodes_.size());
-        if (free_.empty())
-            nodes_.push_back({g, on_left, on_right, root, entered});
-        else
-            place = free_.back(), free_.pop_back(),
-            nodes_[std::size_t(place)] = {g, on_left, on_right, root, entered};
-        queue_.push({f, std::uint32_t(place)});
+        if (free_.empty()) {
+            free_.push_back(Index(nodes_.size()));
+            nodes_.emplace_back();
+        }
+        const std::uint32_t place = std::uint32_t(free_.back());
+        free_.pop_back();
+        nodes_[place] = {g, on_left, on_right, root, entered};
+        queue_.push({f, place});
     }
 
     // All of an edge is reached from its nearer end v, to which a path leads along the line of the edge.
@@ -297,10 +299,8 @@ class IntervalSearch {
         if (facing < 0) return;
         if (facing == 0) return see_along(from, edge, a, b);
         if (is_past(from.on_right, -1, r, b) || is_past(from.on_left, 1, r, a)) return;
-        const bool a_is_hidden = from.on_right.to != none && side(from.on_right, a) < 0;
-        const bool b_is_hidden = from.on_left.to != none && side(from.on_left, b) > 0;
-        push(from.root, from.g, b_is_hidden ? from.on_left : Line{from.root, b},
-             a_is_hidden ? from.on_right : Line{from.root, a}, edge);
+        push(from.root, from.g, side(from.on_left, b) > 0 ? from.on_left : Line{from.root, b},
+             side(from.on_right, a) < 0 ? from.on_right : Line{from.root, a}, edge);
     }
     // An edge on one line with the root: it is entered from the root itself, or from its nearer end. Where
     // the start lies on the edge, the polygon across holds it too; at an end of the edge that was entered it
@@ -320,8 +320,7 @@ class IntervalSearch {
     }
     bool is_end_of(const Edge& edge, Index v) const { return mesh_.tail(edge) == v || mesh_.head(edge) == v; }
     bool hidden(const Node& from, Index v) const {
-        return (from.on_right.to != none && side(from.on_right, v) < 0) ||
-               (from.on_left.to != none && side(from.on_left, v) > 0);
+        return side(from.on_right, v) < 0 || side(from.on_left, v) > 0;
     }
     // Whether a point lies on a side of a line (1: left) or, ahead of the root, on the line. Behind the root
     // the line bounds nothing: that far a path turns around the end of a wall.

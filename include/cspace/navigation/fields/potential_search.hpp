@@ -8,7 +8,7 @@
 
 #include "cspace/navigation/fields/clearance.hpp"
 #include "cspace/navigation/grid/grid_route.hpp"
-#include "cspace/navigation/grid/grid_search.hpp"
+#include "cspace/navigation/grid/search.hpp"
 #include "cspace/search/best_first.hpp"
 
 namespace cspace::navigation {
@@ -53,21 +53,14 @@ inline void find_by_potential(const maps::BitGrid& grid, const Clearance& cleara
     PagedNodes<Steps> nodes;
     search::PriorityQueue queue;
     const PotentialOrder order{clearance, gains, goal};
-    answer.effort.order = answer.settled ? &answer.order : nullptr;
+    const grid_search::Division division{grid, nullptr, start, goal, false};
+    answer.begin();
     const auto run = [&](auto length) {
-        GridSearch space(grid, corners, order, StepParents<decltype(length)>{length}, nodes, true);
-        space.start(start, queue, answer.effort);
-        answer.found = search::best_first(space, queue, answer.effort) != search::no_node;
+        grid_search::by_cells(grid, corners, order, start, StepParents<decltype(length)>{length}, nodes,
+                              queue, true, division, answer);
     };
     gains.is_greedy ? run(StepNothing{}) : run(StepLength{});
-    grid_search::note_settled(answer, [&](std::uint32_t n) {
-        const auto& node = nodes.at(n);
-        return Settled{grid.cell(n), grid.cell(node.parent), order.potential(grid.cell(n), n)};
-    });
-    if (!answer.found) return;
-    grid_search::follow_back(
-        grid.number(goal), [&](std::uint32_t n) { return nodes.at(n).parent; },
-        [&](std::uint32_t n) { return grid.cell(n); }, answer.cells);
+    for (Settled& one : answer.settled) one.g = order.potential(one.cell, grid.number(one.cell));
 }
 
 }  // namespace cspace::navigation

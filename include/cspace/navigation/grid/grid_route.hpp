@@ -23,39 +23,26 @@ struct Settled {
 };
 
 struct GridAnswer {
+    bool is_traced = false;
     bool found = false;
     std::vector<maps::Cell> cells;  // from start to goal; between two that follow each other the way is a
                                     // row, a column or a diagonal, or, of any angle, a straight line
     double cost = 0;                // of the way, as the planner counts [cells, or cells · cost]
     double least = 0;               // no path costs less, if the planner proves that
     search::Effort effort;
-    std::int64_t parts =
-        0;  // how many there are, where the ends lie in two of them, which proves the verdict
-    std::vector<Settled>* settled = nullptr;  // takes the cells in the order in which they were settled
-    std::vector<std::uint32_t> order;         // the same as the search numbers them
-};
+    std::int64_t parts = 0;  // how many there are, if the ends lie in two of them, which proves the verdict
+    std::vector<Settled> settled;      // of a traced search, in the order in which they were settled
+    std::vector<std::uint32_t> order;  // the same as the search numbers them
 
-namespace grid_search {
-
-template <class Look>
-void note_settled(GridAnswer& answer, const Look& look) {
-    if (!answer.settled) return;
-    for (const std::uint32_t node : answer.order) answer.settled->push_back(look(node));
-}
-
-// The cells from the start to a node, where parent_of(node) is itself for the start.
-template <class ParentOf, class CellOf>
-void follow_back(std::uint32_t node, const ParentOf& parent_of, const CellOf& cell_of,
-                 std::vector<maps::Cell>& cells) {
-    cells.clear();
-    for (std::uint32_t before = parent_of(node);; node = before, before = parent_of(node)) {
-        cells.push_back(cell_of(node));
-        if (before == node) break;
+    // Forgets what another search answered.
+    void begin() {
+        found = false;
+        parts = 0;
+        cells.clear(), settled.clear(), order.clear();
+        effort = {};
+        if (is_traced) effort.order = &order;
     }
-    std::reverse(cells.begin(), cells.end());
-}
-
-}  // namespace grid_search
+};
 
 // Start, the centres of the cells where the way turns, goal; no point twice in a row.
 inline void draw_path(const maps::GridFrame& frame, Point start, Point goal, const GridAnswer& answer,

@@ -6,9 +6,11 @@
 // Cells are reached in a direction; if several are equally short, the cell is expanded for all of them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstdlib>
 
 #include "cspace/maps/bit_grid.hpp"
 #include "cspace/navigation/grid/moves.hpp"
@@ -20,49 +22,32 @@ namespace cspace::navigation {
 
 namespace jump {
 
+// Word k of a line, each bit that of the place ahead of it, in a scan up the line or down.
+template <bool up>
+std::uint64_t look_ahead(const std::uint64_t* line, std::size_t k) {
+    return up ? line[k] >> 1 | line[k + 1] << 63 : line[k] << 1 | line[k - 1] >> 63;
+}
+
 // How far a scan goes: to a place where the way may have to turn, or, negative, to the last before a blocked
 // one.
-template <Corners rule>
-int forward(const std::uint64_t* left, const std::uint64_t* line, const std::uint64_t* right, int from) {
+template <Corners rule, bool up>
+int scan_line(const std::uint64_t* left, const std::uint64_t* line, const std::uint64_t* right, int from) {
     const unsigned at = unsigned(from + 1);
-    std::size_t k = at >> 6;
-    std::uint64_t after = (~std::uint64_t(0) << (at & 63)) << 1;
-    for (;; ++k, after = ~std::uint64_t(0)) {
+    const std::uint64_t above = ~std::uint64_t(0) << (at & 63);
+    std::uint64_t beyond = up ? above << 1 : ~above;
+    for (std::size_t k = at >> 6;; up ? ++k : --k, beyond = ~std::uint64_t(0)) {
         const std::uint64_t blocked = line[k];
         std::uint64_t turn;
         if constexpr (turns_behind(rule)) {
-            turn = ((left[k] << 1 | left[k - 1] >> 63) & ~left[k]) |
-                   ((right[k] << 1 | right[k - 1] >> 63) & ~right[k]);
+            turn = (look_ahead<!up>(left, k) & ~left[k]) | (look_ahead<!up>(right, k) & ~right[k]);
         } else {
-            turn = (left[k] & ~(left[k] >> 1 | left[k + 1] << 63)) |
-                   (right[k] & ~(right[k] >> 1 | right[k + 1] << 63));
-            if constexpr (rule == Corners::one) turn &= ~(blocked >> 1 | line[k + 1] << 63);
+            turn = (left[k] & ~look_ahead<up>(left, k)) | (right[k] & ~look_ahead<up>(right, k));
+            if constexpr (rule == Corners::one) turn &= ~look_ahead<up>(line, k);
         }
-        const std::uint64_t stops = (blocked | turn) & after;
+        const std::uint64_t stops = (blocked | turn) & beyond;
         if (!stops) continue;
-        const int bit = std::countr_zero(stops), steps = int(64 * k) + bit - int(at);
-        return blocked >> bit & 1 ? 1 - steps : steps;
-    }
-}
-template <Corners rule>
-int backward(const std::uint64_t* left, const std::uint64_t* line, const std::uint64_t* right, int from) {
-    const unsigned at = unsigned(from + 1);
-    std::size_t k = at >> 6;
-    std::uint64_t before = ~((~std::uint64_t(0)) << (at & 63));
-    for (;; --k, before = ~std::uint64_t(0)) {
-        const std::uint64_t blocked = line[k];
-        std::uint64_t turn;
-        if constexpr (turns_behind(rule)) {
-            turn = ((left[k] >> 1 | left[k + 1] << 63) & ~left[k]) |
-                   ((right[k] >> 1 | right[k + 1] << 63) & ~right[k]);
-        } else {
-            turn = (left[k] & ~(left[k] << 1 | left[k - 1] >> 63)) |
-                   (right[k] & ~(right[k] << 1 | right[k - 1] >> 63));
-            if constexpr (rule == Corners::one) turn &= ~(blocked << 1 | line[k - 1] >> 63);
-        }
-        const std::uint64_t stops = (blocked | turn) & before;
-        if (!stops) continue;
-        const int bit = 63 - std::countl_zero(stops), steps = int(at) - int(64 * k) - bit;
+        const int bit = up ? std::countr_zero(stops) : 63 - std::countl_zero(stops);
+        const int away = int(64 * k) + bit - int(at), steps = up ? away : -away;
         return blocked >> bit & 1 ? 1 - steps : steps;
     }
 }
@@ -122,24 +107,19 @@ class JumpPoints {
 
     // How far a straight scan from a cell goes, 0 where it leads nowhere; the goal is a place to stop.
     int stop(maps::Cell from, int d) const {
-        int steps, ahead;
-        if (d == 0 || d == 4) {
-            const std::uint64_t *above = grid_.row(from.row + 1), *line = grid_.row(from.row),
-                                *below = grid_.row(from.row - 1);
-            steps = d == 0 ? jump::forward<rule>(above, line, below, from.column)
-                           : jump::backward<rule>(above, line, below, from.column);
-            if (goal_.row != from.row) return steps > 0 ? steps : 0;
-            ahead = d == 0 ? goal_.column - from.column : from.column - goal_.column;
-        } else {
-            const std::uint64_t *left = grid_.column(from.column - 1), *line = grid_.column(from.column),
-                                *right = grid_.column(from.column + 1);
-            steps = d == 2 ? jump::forward<rule>(left, line, right, from.row)
-                           : jump::backward<rule>(left, line, right, from.row);
-            if (goal_.column != from.column) return steps > 0 ? steps : 0;
-            ahead = d == 2 ? goal_.row - from.row : from.row - goal_.row;
-        }
-        if (ahead > 0 && ahead <= (steps > 0 ? steps : -steps)) return ahead;
-        return steps > 0 ? steps : 0;
+        return d == 0 || d == 4 ? stop_along<true>(from, d == 0) : stop_along<false>(from, d == 2);
+    }
+    template <bool by_rows>
+    int stop_along(maps::Cell from, bool is_up) const {
+        const int line = by_rows ? from.row : from.column, at = by_rows ? from.column : from.row;
+        const int goal_line = by_rows ? goal_.row : goal_.column, goal = by_rows ? goal_.column : goal_.row;
+        const auto words = [&](int k) { return by_rows ? grid_.row(k) : grid_.column(k); };
+        const std::uint64_t *below = words(line - 1), *middle = words(line), *above = words(line + 1);
+        const int steps = is_up ? jump::scan_line<rule, true>(below, middle, above, at)
+                                : jump::scan_line<rule, false>(below, middle, above, at);
+        const int ahead = is_up ? goal - at : at - goal;
+        if (goal_line == line && ahead > 0 && ahead <= std::abs(steps)) return ahead;
+        return std::max(steps, 0);
     }
 
     template <class Queue>

@@ -2,7 +2,6 @@
 // touch in a query only what the query touches.
 #pragma once
 
-#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -10,6 +9,7 @@
 
 #include "cspace/math/isa.hpp"
 #include "cspace/navigation/grid/order.hpp"
+#include "cspace/search/node_tables.hpp"
 
 namespace cspace::navigation {
 
@@ -45,7 +45,6 @@ class PagedNodes {
     std::size_t bytes() const {
         return made_ * (sizeof(Node) << page_bits) + pages_.capacity() * sizeof(pages_[0]);
     }
-    void release() { std::vector<std::unique_ptr<Node[]>>().swap(pages_), made_ = 0; }
 
   private:
     static constexpr int page_bits = 12;
@@ -59,8 +58,7 @@ class PagedNodes {
     std::uint32_t stamp_ = 0;
 };
 
-// For searches that reach few cells, far from each other: a list of them, and a hash table that finds a
-// cell's place in it.
+// For searches that reach few cells, far from each other: a list of them, and the place of each in it.
 class SparseNodes {
   public:
     struct Node {
@@ -70,58 +68,28 @@ class SparseNodes {
     };
     void begin() {
         nodes_.clear();
-        if (table_.empty()) table_.resize(1024);
-        if (++stamp_ == 0) {
-            table_.assign(table_.size(), {});
-            stamp_ = 1;
-        }
+        places_.begin();
     }
     Node& operator[](std::uint32_t place) { return nodes_[place]; }
     const Node& operator[](std::uint32_t place) const { return nodes_[place]; }
     // The place of a cell; one that is new gets no g, and sets `is_new`.
     std::uint32_t find(std::uint32_t cell, bool& is_new) {
-        const std::size_t mask = table_.size() - 1;
-        std::size_t at = slot_of(cell);
-        for (; table_[at].stamp == stamp_; at = (at + 1) & mask)
-            if (table_[at].cell == cell) {
-                is_new = false;
-                return table_[at].place;
-            }
-        is_new = true;
-        const std::uint32_t place = std::uint32_t(nodes_.size());
-        nodes_.push_back({cell, 0, {}, 0, 0});
-        table_[at] = {cell, place, stamp_};
-        if (2 * nodes_.size() > table_.size()) grow();
+        std::uint32_t& place = places_[cell].number;
+        is_new = place == search::no_node;
+        if (is_new) {
+            place = std::uint32_t(nodes_.size());
+            nodes_.push_back({cell, 0, {}, 0, 0});
+        }
         return place;
     }
-    std::size_t size() const { return nodes_.size(); }
-    std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + table_.capacity() * sizeof(Slot); }
-    void release() {
-        std::vector<Node>().swap(nodes_);
-        std::vector<Slot>().swap(table_);
-        stamp_ = 0;
-    }
+    std::size_t bytes() const { return nodes_.capacity() * sizeof(Node) + places_.bytes(); }
 
   private:
-    struct Slot {
-        std::uint32_t cell = 0, place = 0, stamp = 0;
+    struct Place {
+        std::uint32_t number = search::no_node;
     };
-    // The upper bits of a product with 2³² over the golden ratio (Knuth, volume 3, section 6.4).
-    std::size_t slot_of(std::uint32_t cell) const {
-        return std::size_t((cell * 0x9e3779b9u) >> (32 - std::countr_zero(table_.size())));
-    }
-    void grow() {
-        table_.assign(2 * table_.size(), {});
-        for (std::uint32_t place = 0; place < nodes_.size(); ++place) {
-            std::size_t at = slot_of(nodes_[place].cell);
-            while (table_[at].stamp == stamp_) at = (at + 1) & (table_.size() - 1);
-            table_[at] = {nodes_[place].cell, place, stamp_};
-        }
-    }
-
     std::vector<Node> nodes_;
-    std::vector<Slot> table_;
-    std::uint32_t stamp_ = 0;
+    search::SparseTable<Place> places_;
 };
 
 }  // namespace cspace::navigation

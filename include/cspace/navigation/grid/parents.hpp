@@ -73,44 +73,33 @@ bool crosses(const LineOf& line_of, Corners rule, int k, int at, int down, int a
     return true;
 }
 
+// Whether the centres of place `at` of line k and of place `end` of line `last` see each other.
+template <class LineOf>
+bool is_open(const LineOf& line_of, Corners rule, int k, int at, int last, int end) {
+    if (last < k) std::swap(k, last), std::swap(at, end);
+    if (k == last) return is_clear(line_of(k), std::min(at, end), std::max(at, end));
+    return crosses(line_of, rule, k, at, last - k, end - at);
+}
+
 }  // namespace sight
 
 inline bool sees(const maps::BitGrid& grid, Corners rule, maps::Cell a, maps::Cell b) {
-    const bool by_rows = std::abs(b.row - a.row) <= std::abs(b.column - a.column);
-    if (by_rows) {
-        if (b.row < a.row) std::swap(a, b);
-        const auto line = [&](int k) { return grid.row(k); };
-        if (a.row == b.row)
-            return sight::is_clear(line(a.row), std::min(a.column, b.column), std::max(a.column, b.column));
-        return sight::crosses(line, rule, a.row, a.column, b.row - a.row, b.column - a.column);
-    }
-    if (b.column < a.column) std::swap(a, b);
-    const auto line = [&](int k) { return grid.column(k); };
-    if (a.column == b.column)
-        return sight::is_clear(line(a.column), std::min(a.row, b.row), std::max(a.row, b.row));
-    return sight::crosses(line, rule, a.column, a.row, b.column - a.column, b.row - a.row);
+    if (std::abs(b.row - a.row) <= std::abs(b.column - a.column))
+        return sight::is_open([&](int k) { return grid.row(k); }, rule, a.row, a.column, b.row, b.column);
+    return sight::is_open([&](int k) { return grid.column(k); }, rule, a.column, a.row, b.column, b.row);
 }
 
-// What a step costs: its length, exact.
-struct StepLength {
+// What a step costs, along a row or column and between them.
+template <Steps straight, Steps diagonal>
+struct StepBy {
     using G = Steps;
-    G step(maps::Cell, maps::Cell, int direction) const {
-        return is_diagonal(direction) ? Steps{0, 1} : Steps{1, 0};
+    G along(maps::Cell, int direction, unsigned) const {
+        return is_diagonal(direction) ? diagonal : straight;
     }
-    G along(maps::Cell, int direction, unsigned) const { return step({}, {}, direction); }
 };
-// Every step counts alike: the number of a wave.
-struct StepCount {
-    using G = Steps;
-    G step(maps::Cell, maps::Cell, int) const { return {1, 0}; }
-    G along(maps::Cell, int, unsigned) const { return {1, 0}; }
-};
-// No step counts: the first way to a cell stays.
-struct StepNothing {
-    using G = Steps;
-    G step(maps::Cell, maps::Cell, int) const { return {}; }
-    G along(maps::Cell, int, unsigned) const { return {}; }
-};
+using StepLength = StepBy<Steps{1, 0}, Steps{0, 1}>;  // exact
+using StepCount = StepBy<Steps{1, 0}, Steps{1, 0}>;   // the number of a wave
+using StepNothing = StepBy<Steps{}, Steps{}>;         // the first way to a cell stays
 // The integral of the cost of the cells along the step: half of it lies in either cell. [cells · cost]
 class StepCost {
   public:
@@ -119,7 +108,6 @@ class StepCost {
     StepCost(const double* costs, int columns) : costs_(costs), columns_(columns) {
         for (int d = 0; d < 8; ++d) offset_[d] = std::ptrdiff_t(row_step[d]) * columns + column_step[d];
     }
-    G step(maps::Cell from, maps::Cell, int direction) const { return along(from, direction, 1); }
     // is_open: 1, or 0 where the step may lead out of the grid: then it counts for nothing.
     G along(maps::Cell from, int direction, unsigned is_open) const {
         constexpr double half[2] = {0.5, 0.5 * sqrt_two};
@@ -145,11 +133,6 @@ struct StepParents {
     static constexpr bool is_neighbour = true;
     static constexpr bool is_length = std::is_same_v<Length, StepLength>;
     Length length;
-    template <class Search>
-    Reach<G> way(Search&, std::uint32_t number, const G& g, std::uint32_t, maps::Cell from, maps::Cell to,
-                 int direction) const {
-        return {g + length.step(from, to, direction), number};
-    }
     template <class Search>
     void settle(Search&, std::uint32_t) const {}
 };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -50,9 +51,6 @@ struct GridScratch {
     std::size_t bytes() const {
         return steps.bytes() + lengths.bytes() + sparse.bytes() + buckets.bytes() + waves.bytes();
     }
-    void release() {
-        steps.release(), lengths.release(), sparse.release(), buckets.release(), waves.release();
-    }
 };
 
 namespace grid_search {
@@ -65,7 +63,7 @@ double sum_costs(const std::vector<maps::Cell>& cells, const Length& length) {
     typename Length::G sum{};
     for (std::size_t k = 1; k < cells.size(); ++k) {
         const int down = cells[k].row - cells[k - 1].row, along = cells[k].column - cells[k - 1].column;
-        sum = sum + length.step(cells[k - 1], cells[k], direction_of[down + 1][along + 1]);
+        sum = sum + length.along(cells[k - 1], direction_of[down + 1][along + 1], 1);
     }
     return value_of(sum);
 }
@@ -90,34 +88,41 @@ struct Division {
     }
 };
 
-// Best first, unless it is proven meanwhile that no path exists.
-template <class Space, class Queue>
-std::uint32_t search_or_divide(Space& space, Queue& queue, const Division& division, GridAnswer& answer) {
+// Best first from start, unless it is proven meanwhile that no path exists. Returns the goal, or no_node;
+// settled_at(node) says what was settled.
+template <class Space, class Queue, class SettledAt>
+std::uint32_t search_from(maps::Cell start, Space& space, Queue& queue, const Division& division,
+                          GridAnswer& answer, const SettledAt& settled_at) {
     constexpr std::uint64_t never = std::numeric_limits<std::uint64_t>::max();
     search::Effort& effort = answer.effort;
+    space.start(start, queue, effort);
+    std::uint32_t reached;
     for (effort.pause = division.is_known() ? never : division.patience();; effort.pause = never) {
-        const std::uint32_t reached = search::best_first(space, queue, effort);
-        if (reached != search::no_node || queue.empty() || division.proves(answer)) return reached;
+        reached = search::best_first(space, queue, effort);
+        if (reached != search::no_node || queue.empty() || division.proves(answer)) break;
     }
+    answer.found = reached != search::no_node;
+    for (const std::uint32_t node : answer.order) answer.settled.push_back(settled_at(node));
+    return reached;
 }
 
-template <class Parents, class Queue>
-void by_cells(const maps::BitGrid& grid, const GridQuery& query, const Order& order, maps::Cell start,
+template <class Ranking, class Parents, class Queue>
+void by_cells(const maps::BitGrid& grid, Corners corners, const Ranking& order, maps::Cell start,
               const Parents& parents, PagedNodes<typename Parents::G>& nodes, Queue& queue, bool reopen,
               const Division& division, GridAnswer& answer) {
-    GridSearch space(grid, query.corners, order, parents, nodes, reopen);
-    space.start(start, queue, answer.effort);
-    const std::uint32_t reached = search_or_divide(space, queue, division, answer);
-    answer.found = reached != search::no_node;
-    note_settled(answer, [&](std::uint32_t k) {
+    GridSearch space(grid, corners, order, parents, nodes, reopen);
+    std::uint32_t at = search_from(start, space, queue, division, answer, [&](std::uint32_t k) {
         const auto& node = nodes.at(k);
         return Settled{grid.cell(k), grid.cell(node.parent), value_of(node.g)};
     });
     if (!answer.found) return;
-    answer.cost = answer.least = value_of(nodes.at(reached).g);
-    follow_back(
-        reached, [&](std::uint32_t k) { return nodes.at(k).parent; },
-        [&](std::uint32_t k) { return grid.cell(k); }, answer.cells);
+    answer.cost = answer.least = value_of(nodes.at(at).g);
+    answer.cells.assign(1, grid.cell(at));
+    while (nodes.at(at).parent != at) {
+        at = nodes.at(at).parent;
+        answer.cells.push_back(grid.cell(at));
+    }
+    std::reverse(answer.cells.begin(), answer.cells.end());
     // Cells that were reached again on a shorter way have children that do not know it.
     if constexpr (requires { parents.length; })
         if (reopen) answer.cost = sum_costs(answer.cells, parents.length);
@@ -128,17 +133,14 @@ void by_jumps(const maps::BitGrid& grid, const Order& order, maps::Cell start, G
               const Division& division, GridAnswer& answer) {
     SparseNodes& nodes = scratch.sparse;
     JumpPoints<rule> space(grid, order, nodes);
-    space.start(start, scratch.buckets, answer.effort);
-    const std::uint32_t reached = search_or_divide(space, scratch.buckets, division, answer);
-    answer.found = reached != search::no_node;
-    note_settled(answer, [&](std::uint32_t place) {
+    const auto settled_at = [&](std::uint32_t place) {
         const auto& node = nodes[place];
         return Settled{grid.cell(node.cell), grid.cell(nodes[node.parent].cell), node.g.value()};
-    });
+    };
+    const std::uint32_t reached = search_from(start, space, scratch.buckets, division, answer, settled_at);
     if (!answer.found) return;
     answer.cost = answer.least = nodes[reached].g.value();
     std::vector<maps::Cell>& cells = answer.cells;
-    cells.clear();
     for (std::uint32_t place = reached;; place = nodes[place].parent) {
         const maps::Cell to = grid.cell(nodes[place].cell);
         cells.push_back(to);
@@ -163,52 +165,35 @@ inline void find_way(const maps::BitGrid& grid, maps::Cell start, maps::Cell goa
     const bool backward = query.planner == GridPlanner::waves;
     const Order order = {backward ? start : goal, query.metric, query.g_weight, query.h_weight,
                          query.least_cost};
-    answer.found = false;
-    answer.cells.clear();
-    answer.order.clear();
-    answer.parts = 0;
-    answer.effort = {};
-    answer.effort.order = answer.settled ? &answer.order : nullptr;
+    answer.begin();
     const grid_search::Division division{grid, parts, start, goal, query.corners == Corners::always};
     if (division.is_known() && division.proves(answer)) return;
     const auto run = [&](const auto& parents, auto& nodes, auto& queue, bool reopen) {
-        grid_search::by_cells(grid, query, order, backward ? goal : start, parents, nodes, queue, reopen,
-                              division, answer);
+        grid_search::by_cells(grid, query.corners, order, backward ? goal : start, parents, nodes, queue,
+                              reopen, division, answer);
     };
+    const auto run_steps = [&](auto& queue, bool reopen) {
+        if (query.costs)
+            run(StepParents<StepCost>{StepCost(query.costs, grid.columns())}, scratch.lengths, queue, reopen);
+        else
+            run(StepParents<StepLength>{}, scratch.steps, queue, reopen);
+    };
+    constexpr std::array jumps = {grid_search::by_jumps<Corners::never>, grid_search::by_jumps<Corners::one>,
+                                  grid_search::by_jumps<Corners::always>,
+                                  grid_search::by_jumps<Corners::four>};
     scratch.buckets.begin(grid_search::bucket_width * query.least_cost);
     switch (query.planner) {
         case GridPlanner::best_first:
-            if (query.costs)
-                run(StepParents<StepCost>{StepCost(query.costs, grid.columns())}, scratch.lengths,
-                    scratch.buckets, false);
-            else
-                run(StepParents<StepLength>{}, scratch.steps, scratch.buckets, false);
+            run_steps(scratch.buckets, false);
             break;
         case GridPlanner::focal: {
             search::FocalQueue queue(query.bound, grid.numbers());
-            if (query.costs)
-                run(StepParents<StepCost>{StepCost(query.costs, grid.columns())}, scratch.lengths, queue,
-                    true);
-            else
-                run(StepParents<StepLength>{}, scratch.steps, queue, true);
+            run_steps(queue, true);
             answer.least = queue.least();
             break;
         }
         case GridPlanner::jump_points:
-            switch (query.corners) {
-                case Corners::never:
-                    grid_search::by_jumps<Corners::never>(grid, order, start, scratch, division, answer);
-                    break;
-                case Corners::one:
-                    grid_search::by_jumps<Corners::one>(grid, order, start, scratch, division, answer);
-                    break;
-                case Corners::always:
-                    grid_search::by_jumps<Corners::always>(grid, order, start, scratch, division, answer);
-                    break;
-                case Corners::four:
-                    grid_search::by_jumps<Corners::four>(grid, order, start, scratch, division, answer);
-                    break;
-            }
+            jumps[std::size_t(query.corners)](grid, order, start, scratch, division, answer);
             break;
         case GridPlanner::theta_star:
             run(SightParents{query.corners}, scratch.lengths, scratch.buckets, false);
