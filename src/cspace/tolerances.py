@@ -44,12 +44,9 @@ unique: below it rounding picks the mean."""
 DESCRIPTION_BYTES: Final = 64 * 2**20
 """Largest robot file that is read (bytes): a hundred times the largest humanoid."""
 
-DESCRIPTION_DEPTH: Final = 64
-"""Deepest nesting of elements in a robot file: URDF needs five levels, simulator extensions a dozen."""
-
-MJCF_DEPTH: Final = 500
-"""Deepest nesting of elements in MJCF, where each link stands inside the one before: as far as the XML reader
-of MuJoCo goes."""
+DESCRIPTION_DEPTH: Final = 500
+"""Deepest nesting of elements in a robot file: URDF needs five levels; in MJCF each link stands inside the
+one before, as deep as the XML reader of MuJoCo goes."""
 
 MJCF_SAME_AXIS: Final = 1e-10
 """Sine of the angle to the z axis below which `zaxis` of MJCF leaves z in place, or turns it over: MuJoCo's

@@ -57,7 +57,7 @@ def test_axes_become_unit_vectors_and_arrays_are_read_only():
         (lambda: hinge("j", "a", "b", lower=math.inf), InputError, "allow no finite value"),
         (lambda: hinge("j", "a", "b", lower=math.nan), InputError, "lower limit of joint 'j' is NaN"),
         (lambda: hinge("j", "a", "b", velocity=-1.0), InputError, "must not be negative"),
-        (lambda: hinge("j", "a", "b", origin=np.diag([1, 1, -1, 1])), InputError, "not a rigid transform"),
+        (lambda: hinge("j", "a", "b", origin=np.diag([1, 1, -1, 1])), InputError, "reflection"),
         (lambda: hinge("j", "a", "b", origin=np.full((4, 4), np.inf)), InputError, "finite"),
         (lambda: hinge("j", "a", "b", origin=np.ones((4, 4))), InputError, "last row"),
         (lambda: hinge("j", "a", "b", origin=translation_by([0, 0, 1e13])), InputError, "beyond 1e\\+12"),

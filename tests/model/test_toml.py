@@ -213,7 +213,7 @@ def test_screws_and_tables_survive_as_trees():
         (TREE, "[[links]]", "[links]", "malformed TOML", None),
         (TREE, 'shape = "mesh"', 'shape = "box"', "needs the sizes", "[[links.visual]]"),
         (SCREWS, "T_zero", "T_zer", "did you mean 'T_zero'", None),
-        (SCREWS, "[1, 0, 0, 0.5]", "[2, 0, 0, 0.5]", "not a rigid transform", None),
+        (SCREWS, "[1, 0, 0, 0.5]", "[2, 0, 0, 0.5]", "not a rotation", None),
         (SCREWS, 'type = "prismatic"', 'type = "fixed"', "one of revolute", "[[screws.joints]]"),
         (SCREWS, "point = [0, 0, 0.25]\n", "", "'point' is missing", "[[screws.joints]]"),
         (DH, 'convention = "modified"', 'convention = "modify"', "did you mean 'modified'", None),

@@ -11,6 +11,7 @@ import pytest
 import cspace.model.xacro
 from cspace.errors import DescriptionError, InputError, InputTypeError, MissingExtraError
 from cspace.model import from_urdf, from_xacro, to_toml
+from cspace.model.xml import parse_document
 from cspace.robots import load_description, load_robot
 from model.mutation import exercise_file, mutant
 
@@ -126,8 +127,10 @@ def test_xacro_elements_are_found_whatever_the_suffix(arm):
     path.write_text(ARM)
     assert load_robot(path, package_paths=[arm.parent / "src"]).dof == 2
     plain = '<!-- <xacro:macro/> --><robot name="r"><link name="a"/></robot>'
-    assert not cspace.model.xacro.is_xacro(plain.encode())
-    assert not cspace.model.xacro.is_xacro(ARM[:-20].encode())  # broken: the reader says how
+    assert not cspace.model.xacro.is_xacro(parse_document(plain.encode()))
+    path.write_text(ARM[:-20])
+    with pytest.raises(DescriptionError, match="malformed XML"):
+        load_robot(path)
 
 
 @needs_xacro

@@ -11,8 +11,8 @@ import numpy.typing as npt
 from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.model import Chain, Description, Limits, Tree, chain, default_tip, tree
-from cspace.model.transforms import invert_transform
 from cspace.model.tree import lump_links
+from cspace.spatial.poses import invert_pose
 from cspace.spatial.vectors import frame_along
 
 Numbers = npt.NDArray[np.intp]
@@ -125,7 +125,7 @@ def _from_chain(source: Chain, description: Description | None, floating: bool) 
     n = len(source.axes)
     T_base_joint = np.array([np.eye(4), *_turned(source.axes)])
     T_base_joint[1:, :3, 3] = source.points
-    back = np.array([invert_transform(T) for T in T_base_joint])
+    back = invert_pose(T_base_joint)
     shared = _shared(source, description, back, 0)
     mass, center = np.zeros(n + 1), np.zeros((n + 1, 3))
     if description is not None:

@@ -15,9 +15,9 @@ from cspace.model.description import Description
 from cspace.model.elementary import Coordinates, Elementary, coordinates_of, elementary_joints
 from cspace.model.joint import LIMIT_FIELDS, Joint, Limits
 from cspace.model.screws import twists
-from cspace.model.transforms import invert_transform
 from cspace.model.values import freeze_array
 from cspace.spatial import exp_se3
+from cspace.spatial.poses import invert_pose
 
 
 @dataclass(frozen=True, eq=False)
@@ -126,7 +126,7 @@ class Chain:
 
         Raises InputError for a chain with mimic joints.
         """
-        T, order = invert_transform(self.T_zero), slice(None, None, -1)
+        T, order = invert_pose(self.T_zero), slice(None, None, -1)
         turned = self._changed(
             self.joint_names[order],
             self.joint_types[order],
@@ -193,7 +193,7 @@ def zero_poses(description: Description, base: str | None = None) -> dict[str, A
         joint = description.parent_joint[link]
         poses[link] = poses[joint.parent] @ joint.origin
     if base is not None and base != description.root:
-        T_base_root = invert_transform(poses[description.link(base).name])
+        T_base_root = invert_pose(poses[description.link(base).name])
         poses = {link: T_base_root @ pose for link, pose in poses.items()}
     return poses
 

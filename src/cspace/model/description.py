@@ -81,7 +81,7 @@ class Description:
             for end in (loop.parent, loop.child):
                 if end not in self.link_by_name:
                     error = suggest("link", end, self.link_by_name, owner=f"robot {self.name!r}")
-                    raise ElementError(f"loop {loop.name!r}: {error}", "joint", loop.name)
+                    raise ElementError(f"loop {loop.name!r}: {error}", loop)
         store(self, "poses", MappingProxyType({k: self._checked_pose(k, v) for k, v in self.poses.items()}))
 
     def __reduce__(self) -> tuple[Any, ...]:

@@ -10,8 +10,8 @@ from cspace.arrays import Array
 from cspace.errors import InputTypeError
 from cspace.model.chain import Chain
 from cspace.model.dh import DHTable, check_convention, dh_matrix
-from cspace.model.transforms import invert_transform
 from cspace.model.values import freeze_array
+from cspace.spatial.poses import invert_pose
 from cspace.tolerances import DH_COINCIDENT, DH_PARALLEL
 
 Row = tuple[float, float, float, float]
@@ -54,7 +54,7 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
     frames = []
     for i in range(n):
         frames.append(frame)
-        to_frame = invert_transform(frame)
+        to_frame = invert_pose(frame)
         if i + 1 < n:
             direction = to_frame[:3, :3] @ chain.axes[i + 1]
             row = _row(direction, to_frame[:3, :3] @ chain.points[i + 1] + to_frame[:3, 3])
@@ -63,7 +63,7 @@ def to_dh(chain: Chain, *, convention: str) -> DHTable:
         rows.append(row)
         frame = frame @ dh_matrix(*row, convention="standard")
     table = np.array(rows).reshape(n, 4)
-    T_tool = invert_transform(frame) @ chain.T_zero
+    T_tool = invert_pose(frame) @ chain.T_zero
     if convention == "modified" and n:
         last_link = dh_matrix(table[-1, 0], table[-1, 1], 0.0, 0.0, convention="standard")
         T_tool = last_link @ T_tool

@@ -11,7 +11,7 @@ from cspace.model.chain import rigid_group, zero_poses
 from cspace.model.description import Description
 from cspace.model.joint import Joint
 from cspace.model.link import Link
-from cspace.model.transforms import invert_transform
+from cspace.spatial.poses import invert_pose
 
 
 def with_frame(
@@ -37,7 +37,7 @@ def mounted(description: Description, base: str, T_world_base: Array, name: str 
             f"link {base!r} moves against the root {description.root!r} of robot {description.name!r},"
             " so the file cannot contain the pose of its base; write the robot without with_base"
         )
-    T_world_root = T_world_base @ invert_transform(zero_poses(description)[base])
+    T_world_root = T_world_base @ invert_pose(zero_poses(description)[base])
     link = free_name(name, description.link_by_name)
     joint = free_name(f"{link}_fixed", description.joint_by_name)
     fixed = Joint(joint, "fixed", link, description.root, T_world_root)

@@ -18,13 +18,11 @@ class Named(Protocol):
 
 
 class ElementError(DescriptionError):
-    """A fault of one link or joint; a reader adds the file and the line of that element."""
+    """A fault of one link, joint or loop (None: of the robot); a reader adds its file and line."""
 
-    def __init__(self, message: str, kind: str, name: str, occurrence: int = 0) -> None:
+    def __init__(self, message: str, part: Named | None = None) -> None:
         super().__init__(message)
-        self.kind = kind
-        self.name = name
-        self.occurrence = occurrence
+        self.part = part
 
 
 def unique_names(elements: Iterable[Named], kind: str, robot: str) -> None:
@@ -32,8 +30,7 @@ def unique_names(elements: Iterable[Named], kind: str, robot: str) -> None:
     seen: set[str] = set()
     for element in elements:
         if element.name in seen:
-            message = f"two {kind}s of robot {robot!r} are named {element.name!r}"
-            raise ElementError(message, kind, element.name, 1)
+            raise ElementError(f"two {kind}s of robot {robot!r} are named {element.name!r}", element)
         seen.add(element.name)
 
 
@@ -45,7 +42,7 @@ def check_tree(robot: str, links: Sequence[Link], joints: Sequence[Joint]) -> tu
     """
     names = {link.name for link in links}
     if not names:
-        raise ElementError(f"robot {robot!r} has no links", "robot", robot)
+        raise ElementError(f"robot {robot!r} has no links")
     carried_by: dict[str, Joint] = {}
     carries: dict[str, list[str]] = {name: [] for name in names}
     for joint in joints:
@@ -55,23 +52,21 @@ def check_tree(robot: str, links: Sequence[Link], joints: Sequence[Joint]) -> tu
             raise ElementError(
                 f"link {joint.child!r} is the child of two joints, {other.name!r} and {joint.name!r};"
                 " a link has one parent (describe a closed loop by a Loop, not by a joint)",
-                "joint",
-                joint.name,
+                joint,
             )
         carried_by[joint.child] = joint
         carries[joint.parent].append(joint.child)
-    roots = [link.name for link in links if link.name not in carried_by]
+    roots = [link for link in links if link.name not in carried_by]
     if not roots:
         raise _cycle(links[0].name, carried_by)
     if len(roots) > 1:
-        shown = ", ".join(repr(root) for root in roots[:5]) + (", …" if len(roots) > 5 else "")
+        shown = ", ".join(repr(root.name) for root in roots[:5]) + (", …" if len(roots) > 5 else "")
         raise ElementError(
             f"robot {robot!r} has {len(roots)} roots: {shown}; every link except one must be the child of "
             "a joint",
-            "link",
             roots[1],
         )
-    order = _depth_first(roots[0], carries)
+    order = _depth_first(roots[0].name, carries)
     if len(order) < len(links):
         reached = set(order)
         raise _cycle(next(link.name for link in links if link.name not in reached), carried_by)
@@ -82,11 +77,9 @@ def _check_ends(robot: str, joint: Joint, names: set[str]) -> None:
     for end, link in (("parent", joint.parent), ("child", joint.child)):
         if link not in names:
             error = suggest("link", link, names, owner=f"robot {robot!r}")
-            raise ElementError(f"{end} of joint {joint.name!r}: {error}", "joint", joint.name)
+            raise ElementError(f"{end} of joint {joint.name!r}: {error}", joint)
     if joint.parent == joint.child:
-        raise ElementError(
-            f"joint {joint.name!r} connects link {joint.child!r} with itself", "joint", joint.name
-        )
+        raise ElementError(f"joint {joint.name!r} connects link {joint.child!r} with itself", joint)
 
 
 def _depth_first(root: str, carries: dict[str, list[str]]) -> tuple[str, ...]:
@@ -110,7 +103,7 @@ def _cycle(start: str, carried_by: dict[str, Joint]) -> ElementError:
     circle = [link, *reversed(path[path.index(link) :])]
     joint = carried_by[circle[-1]]
     shown = " → ".join(repr(name) for name in circle[:12]) + (" → …" if len(circle) > 12 else "")
-    return ElementError(f"the joints close a cycle: {shown}; a robot must be a tree", "joint", joint.name)
+    return ElementError(f"the joints close a cycle: {shown}; a robot must be a tree", joint)
 
 
 def check_mimics(robot: str, joints: Sequence[Joint]) -> None:
@@ -121,21 +114,19 @@ def check_mimics(robot: str, joints: Sequence[Joint]) -> None:
         if joint.mimic is None:
             continue
         if joint.type not in ("revolute", "continuous", "prismatic"):
-            raise ElementError(f"joint {joint.name!r} is {joint.type} and cannot mimic", "joint", joint.name)
+            raise ElementError(f"joint {joint.name!r} is {joint.type} and cannot mimic", joint)
         seen = {joint.name}
         follower = joint
         while follower.mimic is not None and follower.name not in sound:
             leader = by_name.get(follower.mimic.joint)
             if leader is None:
                 error = suggest("joint", follower.mimic.joint, by_name, owner=f"robot {robot!r}")
-                raise ElementError(f"joint {follower.name!r} mimics: {error}", "joint", follower.name)
+                raise ElementError(f"joint {follower.name!r} mimics: {error}", follower)
             if leader.name in seen:
-                raise ElementError(
-                    f"joint {joint.name!r} mimics itself through a cycle of joints", "joint", joint.name
-                )
+                raise ElementError(f"joint {joint.name!r} mimics itself through a cycle of joints", joint)
             if leader.type not in ("revolute", "continuous", "prismatic"):
                 message = f"joint {follower.name!r} mimics {leader.name!r}, which is {leader.type}"
-                raise ElementError(message, "joint", follower.name)
+                raise ElementError(message, follower)
             seen.add(leader.name)
             follower = leader
         sound |= seen

@@ -130,21 +130,18 @@ class _Reader:
 
     def tree(self, top: Table, name: str) -> Description:
         link_tables, joint_tables = top.tables("links"), top.tables("joints")
-        links = [self.link(table) for table in link_tables]
-        joints = [self.joint(table) for table in joint_tables]
-        loops = [self.loop(table) for table in top.tables("loops")]
+        loop_tables = top.tables("loops")
+        links = tuple(map(self.link, link_tables))
+        joints = tuple(map(self.joint, joint_tables))
+        loops = tuple(map(self.loop, loop_tables))
         try:
-            return Description(name, tuple(links), tuple(joints), tuple(loops))
+            return Description(name, links, joints, loops)
         except ElementError as error:
-            parts: list[tuple[Link | Joint, Table]] = [
-                *zip(links, link_tables, strict=True),
-                *zip(joints, joint_tables, strict=True),
-            ]
-            kind = Link if error.kind == "link" else Joint
-            culprits = [t for part, t in parts if isinstance(part, kind) and part.name == error.name]
-            if not culprits:
+            parts = zip((*links, *joints, *loops), (*link_tables, *joint_tables, *loop_tables), strict=True)
+            culprit = next((table for part, table in parts if part is error.part), None)
+            if culprit is None:
                 raise
-            raise culprits[min(error.occurrence, len(culprits) - 1)].located(error) from None
+            raise culprit.located(error) from None
 
     def link(self, table: Table) -> Link:
         table.known(("name", "mass", "com", "inertia", "visual", "collision"))

@@ -69,9 +69,8 @@ class _Reader:
         try:
             return Description(robot, tuple(link for _, link in links), tuple(joint for _, joint in joints))
         except ElementError as error:
-            named: list[tuple[Element, Link | Joint]] = [*links] if error.kind == "link" else [*joints]
-            culprits = [element for element, part in named if part.name == error.name]
-            culprit = culprits[min(error.occurrence, len(culprits) - 1)] if culprits else root
+            named: list[tuple[Element, Link | Joint]] = [*links, *joints]
+            culprit = next((element for element, part in named if part is error.part), root)
             raise fault_at(culprit, str(error)) from None
 
     def check_root(self, root: Element) -> None:

@@ -9,7 +9,8 @@ import numpy as np
 
 from cspace.arrays import Array, one_array
 from cspace.errors import InputError, InputTypeError, shown
-from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER, ROTATION_ERROR
+from cspace.spatial.checks import one_pose
+from cspace.tolerances import AXIS_LENGTH, LARGEST_NUMBER
 
 BEYOND = f"no robot has numbers beyond {LARGEST_NUMBER:g} in SI units"
 """The rule that a number broke which is larger than tolerances.LARGEST_NUMBER."""
@@ -67,41 +68,13 @@ def check_size(array: Array, subject: str) -> Array:
 
 
 def check_placement(value: object, subject: str) -> Array:
-    """A read-only (4, 4) rigid transform, copied from `value`.
-
-    Raises InputError where the last row is not (0, 0, 0, 1) or the upper left block is not a rotation.
-    """
-    pose = IDENTITY
-    if value is pose:
-        return pose
-    pose = one_array(value, subject, (4, 4))
-    if pose[3, 0] != 0.0 or pose[3, 1] != 0.0 or pose[3, 2] != 0.0 or pose[3, 3] != 1.0:
-        raise InputError(f"{subject} has the last row {pose[3].tolist()}, expected [0, 0, 0, 1]")
+    """A read-only (4, 4) rigid transform, copied from `value`; InputError as from spatial.as_pose."""
+    if value is IDENTITY:
+        return IDENTITY
+    pose = one_pose(value, subject).copy()
+    pose[3] = IDENTITY[3]
     check_size(pose[:3, 3], subject)
-    error = _rotation_error(pose)
-    if error > ROTATION_ERROR:
-        raise InputError(
-            f"{subject} is not a rigid transform: its rotation block violates RᵀR = I, det R = +1 by"
-            f" {error:.3g} (allowed {ROTATION_ERROR:g})"
-        )
-    return freeze_array(np.array(pose))
-
-
-def _rotation_error(pose: Array) -> float:
-    """The largest |entry| of RᵀR − I, or of r₃ − r₁ × r₂ for a reflection; in plain floats, for speed."""
-    rows: list[list[float]] = pose.tolist()
-    (a, b, c, _), (d, e, f, _), (g, h, i, _), _ = rows
-    return max(
-        abs(a * a + d * d + g * g - 1.0),
-        abs(b * b + e * e + h * h - 1.0),
-        abs(c * c + f * f + i * i - 1.0),
-        abs(a * b + d * e + g * h),
-        abs(a * c + d * f + g * i),
-        abs(b * c + e * f + h * i),
-        abs(d * h - g * e - c),
-        abs(g * b - a * h - f),
-        abs(a * e - d * b - i),
-    )
+    return freeze_array(pose)
 
 
 def unit_axis(value: Any, subject: str) -> Array:

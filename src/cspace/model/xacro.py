@@ -18,7 +18,7 @@ from cspace.model.description import Description
 from cspace.model.files import path_of, read_bytes
 from cspace.model.packages import check_folders
 from cspace.model.urdf import urdf_description
-from cspace.model.xml import Element, parse_document
+from cspace.model.xml import Element
 from cspace.tolerances import XACRO_SECONDS
 
 CHILD: Final = (
@@ -62,20 +62,9 @@ def from_xacro(
     return urdf_description(root, package_paths)
 
 
-def is_xacro(data: bytes) -> bool:
+def is_xacro(root: Element) -> bool:
     """Whether an XML document has elements of xacro; a comment that shows some does not count."""
-    if b"<xacro:" not in data:
-        return False
-    try:
-        stack = [parse_document(data)]
-    except DescriptionError:
-        return False
-    while stack:
-        element = stack.pop()
-        if element.tag.startswith("xacro:"):
-            return True
-        stack.extend(element.children)
-    return False
+    return any(element.tag.startswith("xacro:") for element in root.walk())
 
 
 def texts_of(arguments: Mapping[str, Any] | None) -> dict[str, str]:

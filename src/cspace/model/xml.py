@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
 from collections.abc import Iterator
 from dataclasses import dataclass, field
@@ -33,14 +32,21 @@ class Element:
         """The first child of that tag, or None."""
         return next(self.all(tag), None)
 
+    def walk(self) -> Iterator[Element]:
+        """The element and all inside it."""
+        stack = [self]
+        while stack:
+            element = stack.pop()
+            yield element
+            stack.extend(element.children)
+
 
 class _Builder:
     """Builds the tree from the events of one parser."""
 
-    def __init__(self, path: str | None, lines_before: int, depth: int) -> None:
+    def __init__(self, path: str | None, lines_before: int) -> None:
         self.path = path
         self.lines_before = lines_before
-        self.depth = depth
         self.root: Element | None = None
         self.stack: list[Element] = []
         self.parser = expat.ParserCreate()
@@ -56,8 +62,8 @@ class _Builder:
         else:
             self.root = element
         self.stack.append(element)
-        if len(self.stack) > self.depth:
-            raise self.fault(f"elements are nested more than {self.depth} deep; this is no robot")
+        if len(self.stack) > DESCRIPTION_DEPTH:
+            raise self.fault(f"elements are nested more than {DESCRIPTION_DEPTH} deep; this is no robot")
 
     def end(self, tag: str) -> None:
         self.stack.pop()
@@ -72,21 +78,18 @@ class _Builder:
         return DescriptionError(message, path=self.path, line=self.line())
 
 
-def parse_document(
-    data: bytes, path: str | None = None, lines_before: int = 0, depth: int = DESCRIPTION_DEPTH
-) -> Element:
+def parse_document(data: bytes, path: str | None = None, lines_before: int = 0) -> Element:
     """The root element of an XML document.
 
-    data: the file. path: its name in messages. lines_before: lines cut off ahead of data. depth: how deep
-    elements may be nested.
+    data: the file. path: its name in messages. lines_before: lines cut off ahead of data.
     Raises DescriptionError with file and line for malformed XML, for entity declarations (which a few lines
-    can blow up to gigabytes), for files beyond tolerances.DESCRIPTION_BYTES or nested beyond `depth`.
+    can blow up to gigabytes), for files beyond tolerances.DESCRIPTION_BYTES or DESCRIPTION_DEPTH.
     """
     if len(data) > DESCRIPTION_BYTES:
         raise DescriptionError(
             f"the file has {len(data)} bytes; the maximum is {DESCRIPTION_BYTES}", path=path
         )
-    builder = _Builder(path, lines_before, depth)
+    builder = _Builder(path, lines_before)
     try:
         builder.parser.Parse(data, True)
     except expat.ExpatError as error:
@@ -103,7 +106,7 @@ def parse_document(
     return builder.root
 
 
-def parse_source(source: str | os.PathLike[str] | bytes, depth: int = DESCRIPTION_DEPTH) -> Element:
+def parse_source(source: str | os.PathLike[str] | bytes) -> Element:
     """The root element of `source`: a path, or the text itself (a string that starts with "<", or bytes).
 
     The root's `path` tells which it was. Errors as in `parse` and files.read_bytes.
@@ -111,27 +114,8 @@ def parse_source(source: str | os.PathLike[str] | bytes, depth: int = DESCRIPTIO
     if isinstance(source, str) and source.lstrip(BLANKS).startswith("<"):
         blank = len(source) - len(source.lstrip(BLANKS))
         data = source[blank:].encode("utf-8", "replace")
-        return parse_document(data, None, source.count("\n", 0, blank), depth)
+        return parse_document(data, None, source.count("\n", 0, blank))
     if isinstance(source, bytes):
-        return parse_document(source, None, 0, depth)
+        return parse_document(source)
     path = path_of(source)
-    return parse_document(read_bytes(path), path, 0, depth)
-
-
-class _RootSeen(Exception):
-    """Ends the parser once the root's tag is known."""
-
-
-def root_tag(data: bytes) -> str | None:
-    """The tag of the root element, or None where the document is broken before it."""
-    parser = expat.ParserCreate()
-    found: list[str] = []
-
-    def seen(tag: str, _: dict[str, str]) -> None:
-        found.append(tag)
-        raise _RootSeen
-
-    parser.StartElementHandler = seen
-    with contextlib.suppress(_RootSeen, expat.ExpatError, LookupError, UnicodeError, ValueError):
-        parser.Parse(data, True)
-    return found[0] if found else None
+    return parse_document(read_bytes(path), path)

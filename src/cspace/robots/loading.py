@@ -8,10 +8,11 @@ from pathlib import Path
 from typing import Any
 
 from cspace.errors import DescriptionError, InputTypeError, UnknownNameError
-from cspace.model import Description, calibrated, from_mjcf, from_toml, from_urdf, from_xacro
+from cspace.model import Description, calibrated, from_toml, from_xacro
 from cspace.model.files import read_bytes
+from cspace.model.urdf import urdf_description
 from cspace.model.xacro import is_xacro
-from cspace.model.xml import root_tag
+from cspace.model.xml import Element, parse_document
 from cspace.robot import Robot
 from cspace.robots.lookup import catalogue_description
 
@@ -91,16 +92,17 @@ def _nominal(
     suffix = Path(path).suffix.lower()
     if suffix in ADVICE:
         raise DescriptionError(ADVICE[suffix], path=path)
-    data = read_bytes(path)
-    if suffix == ".xacro" or (suffix != ".toml" and is_xacro(data)):
+    root = None if suffix in (".toml", ".xacro") else _parsed(path, suffix)
+    if suffix == ".xacro" or (root is not None and is_xacro(root)):
         return from_xacro(path, xacro_args=xacro_args, package_paths=package_paths)
     _refuse_arguments(xacro_args, path)
-    if suffix == ".toml":
+    if root is None:
         return from_toml(path, package_paths=package_paths)
-    if suffix not in SUFFIXES:
-        _check_xml(path, data)
-    read = from_mjcf if root_tag(data) == "mujoco" else from_urdf
-    return read(path, package_paths=package_paths)
+    if root.tag == "mujoco":
+        from cspace.model.mjcf.reader import mjcf_description  # most users never need it
+
+        return mjcf_description(root, package_paths)
+    return urdf_description(root, package_paths)
 
 
 def _refuse_arguments(xacro_args: Mapping[str, Any] | None, name: object) -> None:
@@ -114,12 +116,14 @@ def _looks_like_a_path(text: str) -> bool:
     return "/" in text or os.sep in text or suffix in (*SUFFIXES, *ADVICE)
 
 
-def _check_xml(path: str, data: bytes) -> None:
-    """Complain about a file of unknown suffix unless it starts as XML does."""
+def _parsed(path: str, suffix: str) -> Element:
+    """The root element of an XML file; of a file of unknown suffix only if it starts as XML does."""
+    data = read_bytes(path)
     start = data[:64].lstrip(b"\xef\xbb\xbf \t\r\n")
-    if not start.startswith(b"<"):
+    if suffix not in SUFFIXES and not start.startswith(b"<"):
         raise DescriptionError(
             f"this is not a robot file: it starts with {start[:12]!r};"
             " a robot is URDF (.urdf, .xml), xacro (.xacro), MJCF (.xml) or TOML (.toml)",
             path=path,
         )
+    return parse_document(data, path)

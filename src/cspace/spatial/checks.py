@@ -35,7 +35,7 @@ def as_pose(value: PoseLike, subject: str = "pose") -> Array:
         return value
     T, from_method = _held_matrix(value, subject)
     if from_method and T.shape[-2:] == (3, 3):
-        return _with_zero_translation(as_rotation(T, subject))
+        return embed_rotation(as_rotation(T, subject))
     if T.shape == (4, 4) and _is_pose(T):
         return T
     if T.shape[-2:] != (4, 4):
@@ -134,7 +134,8 @@ def _held_matrix(value: Any, subject: str) -> tuple[Array, bool]:
     return as_floats(value if held is None else held, subject, finite=False), False
 
 
-def _with_zero_translation(R: Array) -> Array:
+def embed_rotation(R: Array) -> Array:
+    """The poses (..., 4, 4) of rotations (..., 3, 3), with zero translations."""
     T = np.zeros((*R.shape[:-2], 4, 4))
     T[..., :3, :3] = R
     T[..., 3, 3] = 1.0

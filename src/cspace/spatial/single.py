@@ -21,7 +21,7 @@ def matrix(entries: Nine) -> Array:
     return np.array(entries).reshape(3, 3)
 
 
-def pose(entries: Sequence[float], p: list[float]) -> Array:
+def pose(entries: Sequence[float], p: Sequence[float]) -> Array:
     """The 4×4 array of a rotation and a translation."""
     (a, b, c, d, e, f, g, h, i), (x, y, z) = entries, p
     return np.array([[a, b, c, x], [d, e, f, y], [g, h, i, z], [0.0, 0.0, 0.0, 1.0]])
@@ -79,7 +79,7 @@ def rotvec(R: Array) -> tuple[float, list[float]] | None:
     return 2.0 * atan2(sine, w), axis
 
 
-def euler(axes: tuple[int, int, int], angles: list[float]) -> Nine:
+def euler(axes: tuple[int, int, int], angles: Sequence[float]) -> Nine:
     """R_i(a) R_j(b) R_k(c): each rotation mixes two columns of the product."""
     columns = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     for axis, angle in zip(axes, angles, strict=True):

@@ -27,7 +27,7 @@ def from_mjcf(source: str | os.PathLike[str] | bytes, *, package_paths: Sequence
     Raises DescriptionError with file and line for whatever is wrong, for ball joints, and for elements that
     make bodies (replicate, attach, composite, flexcomp).
     """
-    from cspace.model.mjcf.document import read_document  # a dozen files that most users never need
-    from cspace.model.mjcf.reader import mjcf_description
+    from cspace.model.mjcf.reader import mjcf_description  # a dozen files that most users never need
+    from cspace.model.xml import parse_source
 
-    return mjcf_description(read_document(source), package_paths)
+    return mjcf_description(parse_source(source), package_paths)

@@ -7,41 +7,35 @@ import os
 from cspace.errors import DescriptionError
 from cspace.model.attributes import fault_at, text_of
 from cspace.model.files import read_bytes
-from cspace.model.xml import Element, parse_document, parse_source
-from cspace.tolerances import DESCRIPTION_BYTES, MJCF_DEPTH
+from cspace.model.xml import Element, parse_document
+from cspace.tolerances import DESCRIPTION_BYTES, DESCRIPTION_DEPTH
 
 
-def read_document(source: str | os.PathLike[str] | bytes) -> Element:
-    """The root element of an MJCF file or text, includes resolved; each element knows its file and line.
+class Includes:
+    """Puts the included files in their places; each element knows its file and line.
 
     An included file is looked for beside the main file, then beside the file that includes it; its root's
     children take the place of <include>. As in MuJoCo a file is included once, so there are no circles.
     Raises DescriptionError for files that are missing, broken or included twice, and for elements nested
-    deeper than tolerances.MJCF_DEPTH.
+    deeper than tolerances.DESCRIPTION_DEPTH.
     """
-    root = parse_source(source, MJCF_DEPTH)
-    return _Includes(root).resolve()
-
-
-class _Includes:
-    """Puts the included files in their places."""
 
     def __init__(self, root: Element) -> None:
-        self.root = root
         self.main = root.path
         self.seen = set() if root.path is None else {os.path.realpath(root.path)}
         self.bytes = 0
+        self.root = root
 
-    def resolve(self) -> Element:
+    def resolve(self) -> None:
         stack = [(self.root, 1)]
         while stack:
             element, depth = stack.pop()
-            if depth > MJCF_DEPTH:
-                raise fault_at(element, f"elements are nested more than {MJCF_DEPTH} deep; this is no robot")
+            if depth > DESCRIPTION_DEPTH:
+                text = f"elements are nested more than {DESCRIPTION_DEPTH} deep; this is no robot"
+                raise fault_at(element, text)
             while any(child.tag == "include" for child in element.children):
                 element.children = [part for child in element.children for part in self.parts(child)]
             stack.extend((child, depth + 1) for child in element.children)
-        return self.root
 
     def parts(self, element: Element) -> list[Element]:
         """What stands for an element: itself, or what the file holds that it includes."""
@@ -72,4 +66,4 @@ class _Includes:
         self.bytes += len(data)
         if self.bytes > DESCRIPTION_BYTES:
             raise fault_at(element, f"the included files hold more than {DESCRIPTION_BYTES} bytes")
-        return parse_document(data, path, 0, MJCF_DEPTH)
+        return parse_document(data, path)

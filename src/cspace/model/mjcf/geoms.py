@@ -16,8 +16,9 @@ from cspace.model.attributes import complain_at, fault_at, read_floats
 from cspace.model.link import Geometry, Mesh
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.settings import Settings, shortest_rotation, unit_direction
-from cspace.model.transforms import from_wxyz, invert_transform, translation_by
+from cspace.model.transforms import from_wxyz, translation_by
 from cspace.model.xml import Element
+from cspace.spatial.poses import invert_pose
 
 SOLIDS: Final = {"sphere": 1, "capsule": 2, "cylinder": 2, "box": 3, "ellipsoid": 3}
 """The solids, and how many half sizes each has: radii, half lengths."""
@@ -132,7 +133,7 @@ class Geoms:
             return None
         file = posixpath.basename(file.replace("\\", "/")) if self.settings.strip else file
         uri = posixpath.join(self.settings.mesh_folder, file)
-        T = geom.T_body_geom @ invert_transform(reference_frame(asset, np.array([x, y, z])))
+        T = geom.T_body_geom @ invert_pose(reference_frame(asset, np.array([x, y, z])))
         mesh = complain_at(asset.element, lambda: Mesh(uri, (x, y, z), self.beside, self.package_paths))
         return complain_at(given.element, lambda: Geometry("mesh", (), T, name, mesh, color))
 
@@ -159,8 +160,5 @@ def reference_frame(asset: Given, scale: Array) -> Array:
     T = translation_by(scale * asset.floats("refpos", (0.0, 0.0, 0.0), 3))
     if asset.holder("refquat") is None:
         return T
-    quaternion = np.array(asset.floats("refquat", None, 4))
-    length = math.hypot(*quaternion.tolist())
-    if length == 0.0:
-        raise fault_at(asset.element, "refquat of <mesh> is zero; a quaternion has the length 1")
-    return T @ from_wxyz(quaternion / length)
+    numbers = asset.floats("refquat", None, 4)
+    return T @ complain_at(asset.element, lambda: from_wxyz(numbers, "refquat of <mesh>"))

@@ -14,8 +14,9 @@ from cspace.model.joint import Loop
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.skeleton import WORLD, Skeleton
 from cspace.model.mounting import free_name
-from cspace.model.transforms import from_wxyz, invert_transform, translation_by
+from cspace.model.transforms import from_wxyz, translation_by
 from cspace.model.xml import Element
+from cspace.spatial.poses import invert_pose
 
 
 def read_loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skeleton) -> tuple[Loop, ...]:
@@ -41,17 +42,16 @@ def read_loop(name: str, element: Element, skeleton: Skeleton) -> Loop:
     if kind == "fixed":
         return Loop(name, kind, first, second, relative_pose(element, first, second, skeleton))
     origin = translation_by(np.array(Given(element).floats("anchor", None, 3)))
-    far = invert_transform(skeleton.rest[second]) @ skeleton.rest[first] @ origin
+    far = invert_pose(skeleton.rest[second]) @ skeleton.rest[first] @ origin
     return Loop(name, kind, first, second, origin, far)
 
 
 def relative_pose(element: Element, first: str, second: str, skeleton: Skeleton) -> Array:
     """The pose (4, 4) of the second body in the first; a quaternion of zeros means that of the rest."""
-    numbers = np.array(Given(element).floats("relpose", (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 7))
-    length = float(np.linalg.norm(numbers[3:]))
-    if length == 0.0:
-        return invert_transform(skeleton.rest[first]) @ skeleton.rest[second]
-    return translation_by(numbers[:3]) @ from_wxyz(numbers[3:] / length)
+    numbers = Given(element).floats("relpose", (0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0), 7)
+    if not any(numbers[3:]):
+        return invert_pose(skeleton.rest[first]) @ skeleton.rest[second]
+    return translation_by(np.array(numbers[:3])) @ from_wxyz(numbers[3:], "relpose")
 
 
 def two_sites(element: Element, skeleton: Skeleton) -> tuple[str, str] | None:

@@ -13,6 +13,7 @@ from cspace.arrays import Array
 from cspace.model.attributes import complain_at, fault_at, some_floats
 from cspace.model.description import Description
 from cspace.model.link import Geometry, Inertial, Link
+from cspace.model.mjcf.document import Includes
 from cspace.model.mjcf.geoms import Geom, Geoms
 from cspace.model.mjcf.given import Defaults, Given
 from cspace.model.mjcf.joints import Coupling, Draft, read_couplings, read_efforts, read_joint
@@ -52,6 +53,7 @@ def mjcf_description(root: Element, package_paths: Sequence[Any] = ()) -> Descri
     if root.tag != "mujoco":
         part = "; it is a part, so give the file that includes it" if root.tag == PART else ""
         raise fault_at(root, f"this is no MJCF: the root element is <{root.tag}>, not <mujoco>{part}")
+    Includes(root).resolve()
     check_words(root)
     return complain_at(root, _Reader(root, package_paths).read)
 
@@ -90,7 +92,7 @@ class _Reader:
         try:
             return Description(name, links, tuple(joints), ties, poses)
         except ElementError as error:
-            culprit = skeleton.drafts.get(error.name)
+            culprit = None if error.part is None else skeleton.drafts.get(error.part.name)
             raise fault_at(self.root if culprit is None else culprit.element, str(error)) from None
 
     def sections(self, tag: str) -> list[Element]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.model.attributes import fault_at
+from cspace.model.attributes import complain_at, fault_at
 from cspace.model.mjcf.given import Given
 from cspace.model.transforms import from_wxyz, rotation_about, translation_by
 from cspace.model.values import IDENTITY
@@ -59,11 +59,8 @@ class Settings:
             raise fault_at(element, f"<{element.tag}> is turned twice, by {names[0]!r} and {names[1]!r}")
         given = Given(element)
         if names[0] == "quat":
-            w, *axis = given.floats("quat", None, 4)
-            length = math.hypot(w, *axis)
-            if length < AXIS_LENGTH:
-                raise fault_at(element, f"quat of <{element.tag}> is zero; a quaternion has the length 1")
-            return from_wxyz(np.array([w, *axis]) / length)
+            numbers = given.floats("quat", None, 4)
+            return complain_at(element, lambda: from_wxyz(numbers, f"quat of <{element.tag}>"))
         if names[0] == "axisangle":
             *axis, angle = given.floats("axisangle", None, 4)
             return rotation_about(unit_direction(axis, element, "axisangle"), angle * self.unit)

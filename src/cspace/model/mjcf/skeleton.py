@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
@@ -11,9 +11,9 @@ from cspace.arrays import Array
 from cspace.model.attributes import fault_at
 from cspace.model.mjcf.joints import Draft
 from cspace.model.mounting import free_name
-from cspace.model.transforms import invert_transform
 from cspace.model.values import IDENTITY
 from cspace.model.xml import Element
+from cspace.spatial.poses import invert_pose
 
 WORLD: Final = "world"
 """The link of <worldbody>, as MuJoCo calls it."""
@@ -33,7 +33,7 @@ class Skeleton:
     """
 
     def __init__(self, root: Element) -> None:
-        inside = [part for world in root.all("worldbody") for part in walk_elements(world)]
+        inside = [part for world in root.all("worldbody") for part in world.walk()]
         named = {tag: [e.attributes.get("name", "") for e in inside if e.tag == tag] for tag in TAGS}
         self.link_names = {WORLD, *named["body"]}
         self.joint_names = {*named["joint"], *named["freejoint"]}
@@ -89,7 +89,7 @@ class Skeleton:
             link = name if whole else self.new_link(f"{name}/{draft.name}")
             self.segments.append((draft, here, link, place @ draft.anchor))
             self.links.append(link)
-            here, place = link, invert_transform(draft.anchor)
+            here, place = link, invert_pose(draft.anchor)
         if here != name:
             self.add_fixed(element, name, here, place)
 
@@ -111,12 +111,3 @@ class Skeleton:
 
 
 TAGS: Final = ("body", "joint", "freejoint")
-
-
-def walk_elements(root: Element) -> Iterator[Element]:
-    """An element and all inside it."""
-    stack = [root]
-    while stack:
-        element = stack.pop()
-        yield element
-        stack.extend(element.children)
