@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
+from operator import matmul
 from typing import Any
 
 import numpy as np
@@ -125,14 +127,8 @@ class Product:
 
     def matrix(self) -> TrigMatrix:
         """The product."""
-        out = self.factors[0][2]
-        for _, _, factor in self.factors[1:]:
-            out = out @ factor
-        return out
+        return reduce(matmul, (factor for _, _, factor in self.factors))
 
     def evaluate(self, values: Mapping[str, Any]) -> Array:
         """Its value (..., 4, 4), factor by factor."""
-        out = self.factors[0][2].evaluate(values)
-        for _, _, factor in self.factors[1:]:
-            out = out @ factor.evaluate(values)
-        return out
+        return reduce(matmul, (factor.evaluate(values) for _, _, factor in self.factors))

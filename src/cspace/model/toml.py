@@ -122,8 +122,7 @@ class _Reader:
             return np.array(table.numbers(key, (4, 4)))
         if key != "origin" or ("xyz" not in table and "rpy" not in table):
             return IDENTITY
-        xyz: Any = table.numbers("xyz", (3,)) if "xyz" in table else (0.0, 0.0, 0.0)
-        rpy: Any = table.numbers("rpy", (3,)) if "rpy" in table else (0.0, 0.0, 0.0)
+        xyz, rpy = (table.numbers(key, (3,), (0.0, 0.0, 0.0)) for key in ("xyz", "rpy"))
         if not np.isfinite(rpy).all():
             raise table.fault(f"rpy is {rpy}; every number must be finite")
         return from_rpy(xyz, rpy)
@@ -147,11 +146,9 @@ class _Reader:
         table.known(("name", "mass", "com", "inertia", "visual", "collision"))
         inertial = None
         if "mass" in table:
-            com = table.numbers("com", (3,)) if "com" in table else [0.0] * 3
-            inertia = table.numbers("inertia", (3, 3)) if "inertia" in table else [[0.0] * 3] * 3
-            inertial = self.at(
-                table, lambda: Inertial(table.number("mass"), np.array(com), np.array(inertia))
-            )
+            com = table.numbers("com", (3,), [0.0] * 3)
+            inertia = table.numbers("inertia", (3, 3), [[0.0] * 3] * 3)
+            inertial = self.at(table, lambda: Inertial(table.number("mass"), com, inertia))
         elif "com" in table or "inertia" in table:
             raise table.fault("com and inertia need mass")
         shapes = [tuple(self.geometry(t) for t in table.tables(key)) for key in ("visual", "collision")]
@@ -161,28 +158,26 @@ class _Reader:
         table.known(GEOMETRY_KEYS)
         mesh = None
         if "mesh" in table:
-            x, y, z = table.numbers("scale", (3,)) if "scale" in table else (1.0, 1.0, 1.0)
-            mesh = self.at(
-                table, lambda: Mesh(table.text("mesh"), (x, y, z), self.beside, self.package_paths)
-            )
+            uri, scale = table.text("mesh"), table.numbers("scale", (3,), (1.0, 1.0, 1.0))
+            mesh = self.at(table, lambda: Mesh(uri, scale, self.beside, self.package_paths))
         size = table.values.get("size", [])
         count = len(size) if isinstance(size, list) else 0
-        sizes = tuple(table.numbers("size", (count,))) if "size" in table else ()
+        sizes = tuple(table.numbers("size", (count,), ()))
         color = tuple(table.numbers("color", (4,))) if "color" in table else None
         shape, name, origin = table.text("shape"), table.text("name", ""), self.origin(table)
         return self.at(table, lambda: Geometry(shape, sizes, origin, name, mesh, color))
 
     def joint(self, table: Table) -> Joint:
         table.known(JOINT_KEYS)
-        words: dict[str, Any] = {key: table.text(key) for key in ENDS}
-        axis = np.array(table.numbers("axis", (3,))) if "axis" in table else X_AXIS
-        numbers: dict[str, Any] = self.limits(table)
-        numbers |= {key: table.number(key) for key in ("damping", "friction") if key in table}
-        origin, mimic = self.origin(table), self.mimic(table)
-        return self.at(table, lambda: Joint(**words, origin=origin, axis=axis, mimic=mimic, **numbers))
+        ends, mimic = self.ends(table), self.mimic(table)
+        numbers = (*LIMIT_FIELDS, "damping", "friction")
+        known: dict[str, Any] = {key: table.number(key) for key in numbers if key in table}
+        return self.at(table, lambda: Joint(**ends, mimic=mimic, **known))
 
-    def limits(self, table: Table) -> dict[str, float]:
-        return {key: table.number(key) for key in LIMIT_FIELDS if key in table}
+    def ends(self, table: Table) -> dict[str, Any]:
+        """What joints and loops have in common: names, type, place and axis."""
+        words = {key: table.text(key) for key in ENDS}
+        return {**words, "origin": self.origin(table), "axis": table.numbers("axis", (3,), X_AXIS)}
 
     def mimic(self, table: Table) -> Mimic | None:
         if "mimic" not in table:
@@ -194,10 +189,8 @@ class _Reader:
 
     def loop(self, table: Table) -> Loop:
         table.known((*ENDS, *PLACE, "child_origin", "axis"))
-        words: dict[str, Any] = {key: table.text(key) for key in ENDS}
-        axis = np.array(table.numbers("axis", (3,))) if "axis" in table else X_AXIS
-        origin, far = self.origin(table), self.origin(table, "child_origin")
-        return self.at(table, lambda: Loop(**words, origin=origin, child_origin=far, axis=axis))
+        ends, far = self.ends(table), self.origin(table, "child_origin")
+        return self.at(table, lambda: Loop(**ends, child_origin=far))
 
     def screws(self, top: Table, name: str) -> Description:
         table = top.table("screws")

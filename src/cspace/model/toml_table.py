@@ -102,9 +102,11 @@ class Table:
             raise self.fault(f"the key {key!r} is missing")
         return self._float(value, key)
 
-    def numbers(self, key: str, shape: tuple[int, ...]) -> Any:
+    def numbers(self, key: str, shape: tuple[int, ...], default: Any = None) -> Any:
         """Nested lists of numbers of the given shape."""
         if key not in self.values:
+            if default is not None:
+                return default
             raise self.fault(f"the key {key!r} is missing")
         return self._nested(self.values[key], key, shape)
 

@@ -7,6 +7,7 @@ import math
 import os
 import re
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
@@ -15,8 +16,8 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.files import write_text
 from cspace.model.description import Description
-from cspace.model.joint import LIMIT_FIELDS, Joint, Loop
-from cspace.model.link import Geometry, Link
+from cspace.model.joint import Joint, Mimic
+from cspace.model.link import Link, Mesh
 from cspace.model.toml import FORMAT
 from cspace.model.values import IDENTITY
 
@@ -40,9 +41,9 @@ def to_toml(description: Description, path: str | os.PathLike[str] | None = None
     for link in description.links:
         lines += _link(link)
     for joint in description.joints:
-        lines += _section("[[joints]]", _joint(joint))
+        lines += _section("[[joints]]", _fields(joint))
     for loop in description.loops:
-        lines += _section("[[loops]]", _loop(loop))
+        lines += _section("[[loops]]", _fields(loop))
     for pose, values in description.poses.items():
         lines += _section(f"[poses.{_key(pose)}]", dict(values))
     text = "\n".join(lines) + "\n"
@@ -99,52 +100,28 @@ def _place(T: Array, key: str = "origin") -> dict[str, Any]:
 
 def _link(link: Link) -> Iterable[str]:
     values: dict[str, Any] = {"name": link.name}
-    if link.inertial is not None:
-        values |= {"mass": link.inertial.mass, "com": link.inertial.com, "inertia": link.inertial.inertia}
-    lines = _section("[[links]]", values)
+    lines = _section("[[links]]", values | ({} if link.inertial is None else _fields(link.inertial)))
     for key, shapes in (("visual", link.visual), ("collision", link.collision)):
         for geometry in shapes:
-            lines += _section(f"[[links.{key}]]", _geometry(geometry))
+            lines += _section(f"[[links.{key}]]", _fields(geometry))
     return lines
 
 
-def _geometry(geometry: Geometry) -> dict[str, Any]:
-    values: dict[str, Any] = {"shape": geometry.shape}
-    values |= {"size": geometry.size} if geometry.size else {}
-    values |= _place(geometry.origin)
-    values |= {"name": geometry.name} if geometry.name else {}
-    if geometry.mesh is not None:
-        values |= {"mesh": geometry.mesh.uri, "scale": geometry.mesh.scale}
-    values |= {"color": geometry.color} if geometry.color is not None else {}
+def _fields(part: Any) -> dict[str, Any]:
+    """The fields of a part by the keys of the file, which are their names; what is absent is left out."""
+    values: dict[str, Any] = {}
+    for field in fields(part):
+        value = getattr(part, field.name)
+        if field.name in ("origin", "child_origin"):
+            values |= _place(value, field.name)
+        elif isinstance(value, Mesh):
+            values |= {"mesh": value.uri, "scale": value.scale}
+        elif isinstance(value, Mimic):
+            values[field.name] = _fields(value)
+        elif isinstance(value, float) and math.isinf(value):  # no limit
+            continue
+        elif isinstance(value, np.ndarray) or value not in (None, "", ()):
+            values[field.name] = value
+    if isinstance(part, Joint) and part.type in ("fixed", "floating"):
+        del values["axis"]
     return values
-
-
-def _joint(joint: Joint) -> dict[str, Any]:
-    values: dict[str, Any] = {
-        "name": joint.name,
-        "type": joint.type,
-        "parent": joint.parent,
-        "child": joint.child,
-        **_place(joint.origin),
-    }
-    if joint.type not in ("fixed", "floating"):
-        values["axis"] = joint.axis
-    values |= {key: getattr(joint, key) for key in LIMIT_FIELDS if math.isfinite(getattr(joint, key))}
-    known = {"damping": joint.damping, "friction": joint.friction}
-    values |= {key: value for key, value in known.items() if value is not None}
-    if joint.mimic is not None:
-        mimic = joint.mimic
-        values["mimic"] = {"joint": mimic.joint, "multiplier": mimic.multiplier, "offset": mimic.offset}
-    return values
-
-
-def _loop(loop: Loop) -> dict[str, Any]:
-    return {
-        "name": loop.name,
-        "type": loop.type,
-        "parent": loop.parent,
-        "child": loop.child,
-        **_place(loop.origin),
-        **_place(loop.child_origin, "child_origin"),
-        "axis": loop.axis,
-    }

@@ -59,17 +59,28 @@ def _quoted(text: str) -> str:
 
 
 def _numbers(values: Iterable[float]) -> str:
-    return '"' + " ".join(repr(float(value) + 0.0) for value in values) + '"'
+    return " ".join(repr(float(value) + 0.0) for value in values)
+
+
+def _tag(tag: str, /, **attributes: str | float | Iterable[float] | None) -> str:
+    """An element without content; attributes that are None are left out."""
+    words = [f"<{tag}"]
+    for key, value in attributes.items():
+        if isinstance(value, str):
+            words.append(f"{key}={_quoted(value)}")
+        elif value is not None:
+            words.append(f'{key}="{_numbers(value if isinstance(value, Iterable) else [value])}"')
+    return " ".join(words) + "/>"
 
 
 def _origin(T: Array, indent: str) -> Iterator[str]:
     if T is not IDENTITY:
-        yield f"{indent}<origin xyz={_numbers(T[:3, 3])} rpy={_numbers(to_rpy(T[:3, :3]))}/>"
+        yield indent + _tag("origin", xyz=T[:3, 3], rpy=to_rpy(T[:3, :3]))
 
 
 def _link(link: Link) -> Iterator[str]:
     if link.inertial is None and not link.visual and not link.collision:
-        yield f"  <link name={_quoted(link.name)}/>"
+        yield "  " + _tag("link", name=link.name)
         return
     yield f"  <link name={_quoted(link.name)}>"
     if link.inertial is not None:
@@ -82,11 +93,10 @@ def _link(link: Link) -> Iterator[str]:
 
 def _inertial(inertial: Inertial) -> Iterator[str]:
     (xx, xy, xz), (_, yy, yz), (_, _, zz) = inertial.inertia.tolist()
-    entries = {"ixx": xx, "ixy": xy, "ixz": xz, "iyy": yy, "iyz": yz, "izz": zz}
     yield "    <inertial>"
-    yield f'      <origin xyz={_numbers(inertial.com)} rpy="0 0 0"/>'
-    yield f"      <mass value={_numbers([inertial.mass])}/>"
-    yield "      <inertia " + " ".join(f"{key}={_numbers([value])}" for key, value in entries.items()) + "/>"
+    yield "      " + _tag("origin", xyz=inertial.com, rpy="0 0 0")
+    yield "      " + _tag("mass", value=inertial.mass)
+    yield "      " + _tag("inertia", ixx=xx, ixy=xy, ixz=xz, iyy=yy, iyz=yz, izz=zz)
     yield "    </inertial>"
 
 
@@ -96,37 +106,31 @@ def _geometry(tag: str, geometry: Geometry) -> Iterator[str]:
     yield from _origin(geometry.origin, "      ")
     yield f"      <geometry>{_shape(geometry)}</geometry>"
     if geometry.color is not None:
-        yield f'      <material name=""><color rgba={_numbers(geometry.color)}/></material>'
+        yield f'      <material name="">{_tag("color", rgba=geometry.color)}</material>'
     yield f"    </{tag}>"
 
 
 def _shape(geometry: Geometry) -> str:
     if geometry.mesh is not None:
         scale = geometry.mesh.scale
-        scaled = f" scale={_numbers(scale)}" if scale != (1.0, 1.0, 1.0) else ""
-        return f"<mesh filename={_quoted(geometry.mesh.uri)}{scaled}/>"
+        return _tag("mesh", filename=geometry.mesh.uri, scale=None if scale == (1.0, 1.0, 1.0) else scale)
     if geometry.shape == "box":
-        return f"<box size={_numbers(geometry.size)}/>"
-    sizes = zip(SHAPES[geometry.shape], geometry.size, strict=True)
-    return f"<{geometry.shape} " + " ".join(f"{key}={_numbers([value])}" for key, value in sizes) + "/>"
+        return _tag("box", size=geometry.size)
+    return _tag(geometry.shape, **dict(zip(SHAPES[geometry.shape], geometry.size, strict=True)))
 
 
 def _joint(joint: Joint) -> Iterator[str]:
     yield f"  <joint name={_quoted(joint.name)} type={_quoted(joint.type)}>"
     yield from _origin(joint.origin, "    ")
-    yield f"    <parent link={_quoted(joint.parent)}/>"
-    yield f"    <child link={_quoted(joint.child)}/>"
+    yield "    " + _tag("parent", link=joint.parent)
+    yield "    " + _tag("child", link=joint.child)
     if joint.type not in ("fixed", "floating"):
-        yield f"    <axis xyz={_numbers(joint.axis)}/>"
+        yield "    " + _tag("axis", xyz=joint.axis)
     yield from _limit(joint)
     if joint.damping is not None or joint.friction is not None:
-        known = {"damping": joint.damping, "friction": joint.friction}
-        words = [f"{key}={_numbers([value])}" for key, value in known.items() if value is not None]
-        yield f"    <dynamics {' '.join(words)}/>"
+        yield "    " + _tag("dynamics", damping=joint.damping, friction=joint.friction)
     if joint.mimic is not None:
-        numbers = {"multiplier": joint.mimic.multiplier, "offset": joint.mimic.offset}
-        words = [f"{key}={_numbers([value])}" for key, value in numbers.items()]
-        yield f"    <mimic joint={_quoted(joint.mimic.joint)} {' '.join(words)}/>"
+        yield "    " + _tag("mimic", **vars(joint.mimic))
     yield "  </joint>"
 
 
@@ -140,4 +144,4 @@ def _limit(joint: Joint) -> Iterator[str]:
     known |= {key: value for key, value in extra.items() if math.isfinite(value)}
     if joint.type in ("revolute", "prismatic") or any(math.isfinite(value) for value in known.values()):
         finite = {key: min(max(value, -UNLIMITED), UNLIMITED) for key, value in known.items()}
-        yield "    <limit " + " ".join(f"{key}={_numbers([value])}" for key, value in finite.items()) + "/>"
+        yield "    " + _tag("limit", **finite)
