@@ -23,13 +23,14 @@ include/cspace/ik/subproblems.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError
 from cspace.tolerances import FARTHEST
 
@@ -73,9 +74,9 @@ class SubproblemSolution:
         return "one solution" if self.count == 1 else f"{int(self.count)} solutions"
 
 
-def axis_rows(value: Any, subject: str, last: tuple[int, ...] = (3,)) -> Array:
+def axis_rows(value: Any, subject: str, shape: tuple[int, ...]) -> Array:
     """Axes (..., 3) brought to length one. Raises InputError on an axis of length zero."""
-    axes = as_floats(value, subject, last=last)
+    axes = as_floats(value, subject, last=shape)
     largest = np.abs(axes).max(axis=-1, keepdims=True)
     if not np.all(largest > 0):
         raise InputError(
@@ -86,31 +87,35 @@ def axis_rows(value: Any, subject: str, last: tuple[int, ...] = (3,)) -> Array:
     return directions
 
 
-def read_amounts(value: Any, subject: str, last: tuple[int, ...] = ()) -> Array:
-    """Points, normals and lengths (..., *last), small enough that no product of them overflows."""
-    return as_floats(value, subject, last=last, largest=FARTHEST)
+def read_amounts(value: Any, subject: str, shape: tuple[int, ...]) -> Array:
+    """Points, normals and lengths (..., *shape), small enough that no product of them overflows."""
+    return as_floats(value, subject, last=shape, largest=FARTHEST)
 
 
 def call_kernel(
-    kernel: Callable[..., None], most: int, angles: int, arrays: list[Array], tails: list[int]
+    kernel: Callable[..., None],
+    most: int,
+    angles: int,
+    given: dict[str, Any],
+    vectors: tuple[int, ...] = (3,),
+    numbers: tuple[int, ...] = (),
 ) -> SubproblemSolution:
-    """Calls a kernel on broadcast inputs; the last tails[i] axes of arrays[i] belong to one problem."""
-    heads = [a.shape[: a.ndim - tail] for a, tail in zip(arrays, tails, strict=True)]
-    try:
-        batch = np.broadcast_shapes(*heads)
-    except ValueError:
-        raise InputError(
-            f"the leading axes {', '.join(map(str, heads))} of the arguments do not broadcast"
-        ) from None
-    rows = []
-    for a, tail in zip(arrays, tails, strict=True):
-        own = a.shape[a.ndim - tail :]
-        rows.append(np.ascontiguousarray(np.broadcast_to(a, batch + own)).reshape((-1, *own)))
-    n = rows[0].shape[0]
+    """Calls a kernel on broadcast arguments: k, k1, … are axes, d holds numbers, all others are vectors.
+
+    vectors, numbers: their shapes in one problem.
+    """
+    own = {name: numbers if name == "d" else vectors for name in given}
+    arrays = {
+        name: (axis_rows if name.startswith("k") else read_amounts)(value, name, own[name])
+        for name, value in given.items()
+    }
+    batch = leading_axes(**{name: a.shape[: a.ndim - len(own[name])] for name, a in arrays.items()})
+    n = math.prod(batch)
+    rows = (np.broadcast_to(a, batch + own[name]).reshape(n, *own[name]) for name, a in arrays.items())
     theta = np.empty((n, most, angles))
     residual, count = np.empty(n), np.empty(n, dtype=np.int32)
     exact, free = np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.bool_)
-    kernel(*rows, theta, residual, count, exact, free)
+    kernel(*map(np.ascontiguousarray, rows), theta, residual, count, exact, free)
     shape = (*batch, most) if angles == 1 else (*batch, most, angles)
     facts: Any = (fact.reshape(batch)[()] for fact in (count, exact, free, residual))
     return SubproblemSolution(theta.reshape(shape), *facts)
@@ -123,8 +128,7 @@ def subproblem_1(k: Any, p1: Any, p2: Any) -> SubproblemSolution:
     and the same distance from it; free if one of them lies on the axis.
     Source: Paden 1986, §4.3; Elias & Wen 2022, §3.1.
     """
-    arrays = [axis_rows(k, "k"), read_amounts(p1, "p1", last=(3,)), read_amounts(p2, "p2", last=(3,))]
-    return call_kernel(_core.subproblem_1, 1, 1, arrays, [1, 1, 1])
+    return call_kernel(_core.subproblem_1, 1, 1, {"k": k, "p1": p1, "p2": p2})
 
 
 def subproblem_2(k1: Any, k2: Any, p1: Any, p2: Any) -> SubproblemSolution:
@@ -135,13 +139,7 @@ def subproblem_2(k1: Any, k2: Any, p1: Any, p2: Any) -> SubproblemSolution:
     Free if the axes are parallel (θ2 = 0 is given) or a point lies on its axis.
     Source: Paden 1986, §4.3; Elias & Wen 2022, §3.2.
     """
-    arrays = [
-        axis_rows(k1, "k1"),
-        axis_rows(k2, "k2"),
-        read_amounts(p1, "p1", last=(3,)),
-        read_amounts(p2, "p2", last=(3,)),
-    ]
-    return call_kernel(_core.subproblem_2, 2, 2, arrays, [1, 1, 1, 1])
+    return call_kernel(_core.subproblem_2, 2, 2, {"k1": k1, "k2": k2, "p1": p1, "p2": p2})
 
 
 def subproblem_3(k: Any, p1: Any, p2: Any, d: Any) -> SubproblemSolution:
@@ -151,16 +149,10 @@ def subproblem_3(k: Any, p1: Any, p2: Any, d: Any) -> SubproblemSolution:
     smallest and the largest distance of p2 from the circle of p1; free if either point lies on the axis.
     Source: Paden 1986, §4.3; Elias & Wen 2022, §3.3.
     """
-    distance = read_amounts(d, "d")
+    distance = read_amounts(d, "d", ())
     if np.any(distance < 0):
         raise InputError(f"d is {float(distance.min())}; a distance must be 0 or more")
-    arrays = [
-        axis_rows(k, "k"),
-        read_amounts(p1, "p1", last=(3,)),
-        read_amounts(p2, "p2", last=(3,)),
-        distance,
-    ]
-    return call_kernel(_core.subproblem_3, 2, 1, arrays, [1, 1, 1, 0])
+    return call_kernel(_core.subproblem_3, 2, 1, {"k": k, "p1": p1, "p2": p2, "d": distance})
 
 
 def subproblem_4(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
@@ -170,13 +162,7 @@ def subproblem_4(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
     ‖h‖ times length; theta (..., 2). Exact if the plane cuts the circle of p; free if the plane is
     perpendicular to the axis or p lies on the axis. Source: Elias & Wen 2022, §3.4.
     """
-    arrays = [
-        read_amounts(h, "h", last=(3,)),
-        axis_rows(k, "k"),
-        read_amounts(p, "p", last=(3,)),
-        read_amounts(d, "d"),
-    ]
-    return call_kernel(_core.subproblem_4, 2, 1, arrays, [1, 1, 1, 0])
+    return call_kernel(_core.subproblem_4, 2, 1, {"h": h, "k": k, "p": p, "d": d})
 
 
 def subproblem_5(
@@ -187,12 +173,12 @@ def subproblem_5(
     p0 … p4 (..., 3) points; k1, k2, k3 (..., 3) axes; theta (..., 4, 3). At most four answers.
     Source: Elias & Wen 2022, §3.5.
     """
-    named = {"p0": p0, "p1": p1, "p2": p2, "p3": p3, "p4": p4}
-    points = [read_amounts(value, name, last=(3,)) for name, value in named.items()]
-    axes = [axis_rows(k1, "k1"), axis_rows(k2, "k2"), axis_rows(k3, "k3")]
-    return call_kernel(
-        _core.subproblem_5, 4, 3, [stack_vectors(points, "points"), stack_vectors(axes, "axes")], [2, 2]
-    )
+
+    def kernel(*rows: Any) -> None:
+        _core.subproblem_5(np.stack(rows[:5], axis=1), np.stack(rows[5:8], axis=1), *rows[8:])
+
+    given = {"p0": p0, "p1": p1, "p2": p2, "p3": p3, "p4": p4, "k1": k1, "k2": k2, "k3": k3}
+    return call_kernel(kernel, 4, 3, given)
 
 
 def subproblem_6(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
@@ -205,13 +191,7 @@ def subproblem_6(h: Any, k: Any, p: Any, d: Any) -> SubproblemSolution:
     answers.
     Source: Elias & Wen 2022, §3.6.
     """
-    arrays = [
-        read_amounts(h, "h", last=(4, 3)),
-        axis_rows(k, "k", last=(4, 3)),
-        read_amounts(p, "p", last=(4, 3)),
-        read_amounts(d, "d", last=(2,)),
-    ]
-    return call_kernel(_core.subproblem_6, 4, 2, arrays, [2, 2, 2, 1])
+    return call_kernel(_core.subproblem_6, 4, 2, {"h": h, "k": k, "p": p, "d": d}, (4, 3), (2,))
 
 
 def paden_kahan_1(axis: Any, p: Any, q: Any, *, point: Any = (0.0, 0.0, 0.0)) -> SubproblemSolution:
@@ -220,8 +200,7 @@ def paden_kahan_1(axis: Any, p: Any, q: Any, *, point: Any = (0.0, 0.0, 0.0)) ->
     axis (..., 3) direction; p, q, point (..., 3); theta (..., 1). Subproblem 1 seen from `point`.
     Source: Murray, Li & Sastry 1994, §3.2.
     """
-    p_point, q_point = from_point(p, "p", point), from_point(q, "q", point)
-    return subproblem_1(axis, p_point, q_point)
+    return subproblem_1(axis, from_point(p, "p", point), from_point(q, "q", point))
 
 
 def paden_kahan_2(
@@ -246,19 +225,9 @@ def paden_kahan_3(
     from `point`.
     Source: Murray, Li & Sastry 1994, §3.2.
     """
-    p_point, q_point = from_point(p, "p", point), from_point(q, "q", point)
-    return subproblem_3(axis, p_point, q_point, distance)
+    return subproblem_3(axis, from_point(p, "p", point), from_point(q, "q", point), distance)
 
 
 def from_point(value: Any, subject: str, point: Any) -> Array:
     """The vector (..., 3) from `point` to `value`."""
-    return read_amounts(value, subject, last=(3,)) - read_amounts(point, "point", last=(3,))
-
-
-def stack_vectors(vectors: list[Array], subject: str) -> Array:
-    """Vectors (..., 3) that broadcast, as one array (..., len(vectors), 3)."""
-    try:
-        return np.stack(np.broadcast_arrays(*vectors), axis=-2)
-    except ValueError:
-        shapes = ", ".join(str(v.shape) for v in vectors)
-        raise InputError(f"the {subject} have shapes {shapes}, which do not broadcast") from None
+    return read_amounts(value, subject, (3,)) - read_amounts(point, "point", (3,))

@@ -70,20 +70,6 @@ def compute_chain(
     chosen: bit r set where row r of the Jacobian counts for the singular values. Raises InputError for NaN
     in q.
     """
-    finite = _core._chain_rows(
-        robot,
-        frame,
-        batch.q,
-        batch.qd,
-        batch.T_world_base,
-        batch.point,
-        T,
-        J,
-        J_rate,
-        sigma,
-        chosen,
-        in_tip,
-        batch.threads,
-    )
-    if not finite:
+    given = batch.q, batch.qd, batch.T_world_base, batch.point
+    if not _core._chain_rows(robot, frame, *given, T, J, J_rate, sigma, chosen, in_tip, batch.threads):
         refuse_infinite(batch)
