@@ -9,15 +9,15 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import _core
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.ik.answers import INCOMPLETE, METRICS, NEAREST, UNREACHABLE, VERDICTS, Answers
 from cspace.ik.context import About
+from cspace.ik.goals.given import rows_for_goals
 from cspace.ik.goals.partial import position_goal
 from cspace.ik.solutions import Solutions
 from cspace.ik.wrapping import into_limits, wrap_joints
 from cspace.kinematics.batch import limits_of
-from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -170,15 +170,7 @@ class SolutionsBatch(Answers):
 
     def _seed(self, q: Any) -> Array:
         """One configuration per goal, (..., dof), from as many as given or one for all."""
-        dof = self.solver.dof
-        seed = as_floats(q, "q", last=(dof,), largest=FARTHEST)
-        whole = (*self.count.shape, dof)
-        try:
-            return np.broadcast_to(seed, whole)
-        except ValueError:
-            raise InputError(
-                f"q has shape {seed.shape}, expected ({dof},) for all goals or {whole}, one for each"
-            ) from None
+        return rows_for_goals(q, "q", self.solver.dof, self.count.shape)
 
     def __repr__(self) -> str:
         reached = int(np.count_nonzero(self.count))

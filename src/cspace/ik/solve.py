@@ -27,7 +27,7 @@ from cspace.ik.goals.given import (
     too_far,
 )
 from cspace.ik.goals.partial import KEYWORDS
-from cspace.ik.goals.parts import check_tool_axis, partial_goal
+from cspace.ik.goals.parts import check_one_goal, partial_goal
 from cspace.ik.least_squares import least_squares_answer
 from cspace.ik.redundancy.solve import choose_nearest, solve_freedom
 from cspace.ik.solutions import Solutions, nearest_to_goal
@@ -75,12 +75,7 @@ def solve(
     position = open_in_space(solver, position)
     named = (position, rotation, direction, look_at, ray, angle_to)
     given = {name: value for name, value in zip(KEYWORDS, named, strict=True) if value is not None}
-    check_tool_axis(tool_axis, given)
-    if (goal is None) == (not given):
-        raise InputTypeError(
-            "ik needs one goal: robot.ik(T) with the pose of the tip in the base, or parts of it by name,"
-            " such as robot.ik(position=p)"
-        )
+    check_one_goal("ik", goal, given, tool_axis)
     if goal is not None:
         return answer_poses(solver, goal, options)
     if is_plain_position(solver, given):

@@ -99,6 +99,18 @@ def one_configuration(solver: Solver, value: Any, subject: str) -> Array:
     return one_array(value, subject, (solver.dof,), "one configuration", largest=FARTHEST)
 
 
+def rows_for_goals(value: Any, subject: str, n: int, shape: tuple[int, ...]) -> Array:
+    """Configurations: one (n,) for all goals of a shape, or one for each, (*shape, n)."""
+    rows = as_floats(value, subject, last=(n,), largest=FARTHEST)
+    if rows.ndim == 1:
+        return rows
+    try:
+        return np.broadcast_to(rows, (*shape, n))
+    except ValueError:
+        each = f" for all goals or {(*shape, n)}, one for each" if shape else ""
+        raise InputError(f"{subject} has shape {rows.shape}, expected ({n},){each}") from None
+
+
 def is_far(p: Array) -> Any:
     """Whether points (..., 3) lie too far away, (...); sums that no float64 holds are not formed."""
     return np.minimum(np.abs(p), 2 * FARTHEST).sum(axis=-1) > FARTHEST

@@ -43,7 +43,6 @@ class PartialGoal:
     axis: Array = field(default_factory=lambda: Z)
     before: tuple[tuple[str, Array], ...] = ()
     tilt: float = 0.0
-    base_axis: Array = field(default_factory=lambda: Z)
 
     @property
     def key(self) -> tuple[Any, ...]:
@@ -126,7 +125,7 @@ class PartialGoal:
                 gap = np.linalg.norm(T[..., :3, :3] - self.T[..., :3, :3], axis=(-2, -1))
                 angles.append(2 * np.arcsin(np.minimum(gap / np.sqrt(8), 1.0)))
             elif name == "angle_to":
-                angles.append(np.abs(measure_angle(a, np.broadcast_to(self.base_axis, a.shape)) - self.tilt))
+                angles.append(np.abs(measure_angle(a, self.value[name][0]) - self.tilt))
             elif name == "direction":
                 angles.append(measure_angle(a, d))
             elif name == "ray":

@@ -7,11 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_arrays, leading_axes
+from cspace.arrays import Array, as_arrays, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.given import is_open
 from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
+from cspace.spatial.poses import assemble
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
@@ -23,6 +24,21 @@ ONE_FOR_ALL = {
     "angle_to[0]": "(3,): one axis for all goals",
     "angle_to[1]": "one angle for all goals [rad]",
 }
+
+
+TURN, SLIDE = ("R", None), ("P", None)
+"""Joints about and along the tool axis."""
+BEHIND: dict[str, tuple[tuple[str, Array | None], ...]] = {
+    "position": BALL,
+    "rotation": CROSS,
+    "direction": (TURN, *CROSS),
+    "position+rotation": (),
+    "position+direction": (TURN,),
+    "look_at": (SLIDE, *BALL),
+    "ray": (SLIDE, TURN),
+    "position+angle_to": (TURN, TURN),
+}
+"""The virtual joints behind the tip for what each kind of goal leaves free."""
 
 
 def check_tool_axis(tool_axis: Any, names: Iterable[str]) -> None:
@@ -41,17 +57,16 @@ def partial_goal(given: dict[str, Any], tool_axis: Any) -> PartialGoal:
     Raises InputTypeError for keywords that do not go together, InputError for values outside their range.
     """
     kind = "+".join(name for name in KEYWORDS if name in given)
-    if kind not in MAKERS:
+    if kind not in BEHIND:
         names = " and ".join(name + "=" for name in given)
         raise InputTypeError(
             f"{names} cannot be combined; possible combinations are "
-            + ", ".join(" and ".join(part + "=" for part in k.split("+")) for k in MAKERS)
+            + ", ".join(" and ".join(part + "=" for part in k.split("+")) for k in BEHIND)
         )
     if kind != "position" and is_open(given.get("position")):
         others = " and ".join(name + "=" for name in given if name != "position")
         raise InputTypeError(f"position= with {others} needs three coordinates; None is not allowed there")
-    values = read_values(given, tool_axis)
-    return MAKERS[kind](values, values["tool_axis"])
+    return assemble_goal(kind, read_values(given, tool_axis))
 
 
 def read_values(given: dict[str, Any], tool_axis: Any) -> dict[str, Any]:
@@ -85,6 +100,16 @@ def read_values(given: dict[str, Any], tool_axis: Any) -> dict[str, Any]:
     return values
 
 
+def check_one_goal(function: str, goal: Any, given: dict[str, Any], tool_axis: Any) -> None:
+    """Raise InputTypeError unless there is one goal, a pose or parts of one, and a tool axis only for it."""
+    check_tool_axis(tool_axis, given)
+    if (goal is None) == (not given):
+        raise InputTypeError(
+            f"{function} needs one goal: robot.{function}(T) with the pose of the tip in the base, or parts of it"
+            f" by name, such as robot.{function}(position=p)"
+        )
+
+
 def pair_of(value: Any, name: str, words: str) -> Any:
     if isinstance(value, (tuple, list)) and len(value) == 2:
         return value
@@ -98,89 +123,47 @@ def axis_named(name: str) -> Array:
     return np.asarray(sign * AXES[name.removeprefix("-")])
 
 
-# --- one kind of goal each --------------------------------------------------------------------------------
-def goal_of_position(values: dict[str, Any], axis: Array) -> PartialGoal:
-    value = values["position"]
-    if not is_open(value):
-        return PartialGoal("position", assemble(ANY, value), BALL, {"position": value}, axis)
-    p, free = open_point(value)
-    before = tuple(("P", np.eye(3)[i]) for i in free)
-    return PartialGoal("position", assemble(ANY, p), BALL, {"position": value}, axis, before)
+def assemble_goal(kind: str, values: dict[str, Any]) -> PartialGoal:
+    """The goal of a kind from its values: a pose that meets it, and the virtual joints for what is free."""
+    axis, tilt = values["tool_axis"], 0.0
+    value: dict[str, Any] = {}
+    before: tuple[tuple[str, Array], ...] = ()
+    p, R, pointing = np.zeros(3), ANY, None
+    for name in kind.split("+"):
+        value[name] = values.get(name)
+        if name == "rotation":
+            R = values[name]
+        elif name == "direction":
+            pointing = values[name]
+        elif name == "ray":
+            value[name] = p, pointing = values["ray[0]"], values["ray[1]"]
+            p = p - np.sum(p * pointing, axis=-1, keepdims=True) * pointing  # its point nearest to the base
+        elif name == "angle_to":
+            value[name] = pointing, tilt = values["angle_to[0]"], float(values["angle_to[1]"])
+            if not 0 <= tilt <= np.pi:
+                raise InputError(
+                    f"angle_to[1] is {tilt:g}, expected 0 to π rad, the angle between two directions"
+                )
+        elif is_open(values[name]):
+            p, before = open_point(values[name])
+        else:  # position, look_at
+            p = values[name]
+    if pointing is not None:
+        R = turn_to(axis, pointing)
+    behind = tuple((joint, axis if h is None else h) for joint, h in BEHIND[kind])
+    leading_axes(position=p.shape[:-1], rotation=R.shape[:-2])
+    return PartialGoal(kind, assemble(R, p), behind, value, axis, before, tilt)
 
 
-def open_point(value: Any) -> tuple[Array, list[int]]:
-    """A point of which some coordinates are None, these at zero, and their indices."""
+def open_point(value: Any) -> tuple[Array, tuple[tuple[str, Array], ...]]:
+    """A point of which some coordinates are None, these at zero, and a prismatic joint along each of them."""
     if len(value) != 3:
         raise InputError(f"position has {len(value)} coordinates, expected 3 (None where any value will do)")
     free = [i for i in range(3) if value[i] is None]
     if len(free) == 3:
         raise InputError("position has None for all three coordinates; give at least one of them")
-    p = [0.0 if v is None else v for v in value]
-    return as_arrays({"position": (p, (3,))}, largest=FARTHEST)["position"], free
-
-
-def rotation(values: dict[str, Any], axis: Array) -> PartialGoal:
-    R = values["rotation"]
-    return PartialGoal("rotation", assemble(R, np.zeros(3)), CROSS, {"rotation": R}, axis)
-
-
-def position_and_rotation(values: dict[str, Any], axis: Array) -> PartialGoal:
-    p, R = values["position"], values["rotation"]
-    if p.ndim > 1 or R.ndim > 2:
-        leading_axes(position=p.shape[:-1], rotation=R.shape[:-2])
-    return PartialGoal("position+rotation", assemble(R, p), (), {"position": p, "rotation": R}, axis)
-
-
-def goal_of_direction(values: dict[str, Any], axis: Array) -> PartialGoal:
-    d = values["direction"]
-    behind = (("R", axis), *CROSS)
-    return PartialGoal("direction", assemble(turn_to(axis, d), np.zeros(3)), behind, {"direction": d}, axis)
-
-
-def position_and_direction(values: dict[str, Any], axis: Array) -> PartialGoal:
-    p, d = values["position"], values["direction"]
-    value = {"position": p, "direction": d}
-    return PartialGoal("position+direction", assemble(turn_to(axis, d), p), (("R", axis),), value, axis)
-
-
-def look_at(values: dict[str, Any], axis: Array) -> PartialGoal:
-    p = values["look_at"]
-    return PartialGoal("look_at", assemble(ANY, p), (("P", axis), *BALL), {"look_at": p}, axis)
-
-
-def goal_of_ray(values: dict[str, Any], axis: Array) -> PartialGoal:
-    p, d = values["ray[0]"], values["ray[1]"]
-    behind = (("P", axis), ("R", axis))
-    foot = p - np.sum(p * d, axis=-1, keepdims=True) * d  # the same line, by its point nearest to the base
-    return PartialGoal("ray", assemble(turn_to(axis, d), foot), behind, {"ray": (p, d)}, axis)
-
-
-def position_and_angle(values: dict[str, Any], axis: Array) -> PartialGoal:
-    p, h, tilt = values["position"], values["angle_to[0]"], float(values["angle_to[1]"])
-    if not 0 <= tilt <= np.pi:
-        raise InputError(f"angle_to[1] is {tilt:g}, expected 0 to π rad, the angle between two directions")
-    behind = (("R", axis), ("R", axis))
-    value = {"position": p, "angle_to": (h, tilt)}
-    return PartialGoal("position+angle_to", assemble(turn_to(axis, h), p), behind, value, axis, (), tilt, h)
-
-
-MAKERS = {
-    "position": goal_of_position,
-    "rotation": rotation,
-    "direction": goal_of_direction,
-    "position+rotation": position_and_rotation,
-    "position+direction": position_and_direction,
-    "look_at": look_at,
-    "ray": goal_of_ray,
-    "position+angle_to": position_and_angle,
-}
-
-
-def assemble(R: Array, p: Array) -> Array:
-    """Poses (..., 4, 4) from rotations (..., 3, 3) and points (..., 3), one of them perhaps for all."""
-    T = np.zeros((*np.broadcast_shapes(p.shape[:-1], R.shape[:-2]), 4, 4))
-    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = R, p, 1.0
-    return T
+    p = one_array([0.0 if v is None else v for v in value], "position", (3,), largest=FARTHEST)
+    return p, tuple(("P", np.eye(3)[i]) for i in free)
 
 
 def turn_to(a: Array, d: Array) -> Array:

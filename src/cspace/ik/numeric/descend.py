@@ -10,6 +10,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, as_generator, whole_number
 from cspace.errors import InputError
+from cspace.ik.goals.given import rows_for_goals
 from cspace.ik.numeric.problem import further_starts, middle_configuration, pose_problem
 from cspace.ik.numeric.solution import REACHED, NumericSolution, SampledSolutions
 from cspace.kinematics.batch import check_choice, thread_count
@@ -78,7 +79,8 @@ def ik_numeric(
     if start is None:
         first = middle_configuration(robot, question.limits)[None] if rest is None else posture[:1]
     else:
-        first = _starts(robot, start, lead)
+        rows = rows_for_goals(start, "start", n, lead)
+        first = np.ascontiguousarray(rows.reshape(math.prod(rows.shape[:-1]), n))
     goals = np.ascontiguousarray(question.goals.reshape(-1, 4, 4))
     workers = thread_count(threads, lead)
     q, info = np.empty((len(goals), n)), np.empty((len(goals), 5))
@@ -140,22 +142,6 @@ def ik_many_starts(
     )
     found = q[:count].copy(), hits[:count].copy(), residual[:count].copy()
     return SampledSolutions(robot, question.goals, *found, len(begin))
-
-
-def _starts(robot: KinematicModel, start: Any, lead: tuple[int, ...]) -> Array:
-    """Starts as rows: one for all goals (1, n), or one for each (goals, n)."""
-    n = len(robot.joint_names)
-    rows = as_floats(start, "start", last=(n,))
-    if np.abs(rows).max(initial=0.0) > FARTHEST:
-        raise InputError(f"start contains {np.abs(rows).max():g}; the largest allowed value is {FARTHEST:g}")
-    if rows.ndim > 1:
-        try:
-            rows = np.broadcast_to(rows, (*lead, n))
-        except ValueError:
-            raise InputError(
-                f"start has shape {rows.shape}, expected ({n},) or {(*lead, n)}: one per goal"
-            ) from None
-    return np.ascontiguousarray(rows.reshape(math.prod(rows.shape[:-1]), n))
 
 
 def _posture(robot: KinematicModel, rest: Any, rest_weights: Any) -> Array:

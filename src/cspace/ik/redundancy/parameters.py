@@ -8,7 +8,7 @@ from typing import Any
 
 from cspace.errors import RENAMED, InputError, InputTypeError
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
-from cspace.ik.goals.parts import check_tool_axis, partial_goal
+from cspace.ik.goals.parts import check_one_goal, partial_goal
 from cspace.ik.locked_joints import by_name, joint_number
 from cspace.ik.redundancy.feasible_intervals import redundancy_of_pose
 from cspace.ik.redundancy.result import Redundancy
@@ -47,9 +47,7 @@ def redundancy(
         raise InputTypeError(
             f"redundancy() has no keyword {unknown[0]!r}; the parts of a goal are {list(KEYWORDS)}"
         )
-    check_tool_axis(tool_axis, given)
-    if (goal is None) == (not given):
-        raise InputTypeError("redundancy needs one goal: a pose, or parts of it by name, such as position=p")
+    check_one_goal("redundancy", goal, given, tool_axis)
     if given:
         return redundancy_of_parts(solver, partial_goal(given, tool_axis), parameter, locked)
     T = one_pose(goal, "goal")

@@ -9,17 +9,16 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, leading_axes, whole_number
+from cspace.arrays import Array, leading_axes, whole_number
 from cspace.buffer_pool import pooled_array
-from cspace.errors import InputError, InputTypeError
+from cspace.errors import InputTypeError
 from cspace.ik.context import About, Options
-from cspace.ik.goals.given import one_configuration
+from cspace.ik.goals.given import one_configuration, rows_for_goals
 from cspace.ik.goals.partial import PartialGoal
 from cspace.ik.locked_joints import by_name, locked_values
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
-from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
     from cspace.ik.solver import Solver
@@ -57,7 +56,10 @@ def solve_freedom(
         asked = whole.lock({joint: float(value) for joint, value in values.items()})
     freedom = tuple(asked.joint_names[k] for k in asked.redundant_joints) if degree > 0 else ()
     about = About(goal, None if goal is None else whole, freedom, values)
-    seeds = None if options.near is None or degree <= 0 else seed_rows(solver, options.near, T.shape[:-2])
+    seeds = None
+    if options.near is not None and degree > 0:
+        near = rows_for_goals(options.near, "near", solver.dof, T.shape[:-2])
+        seeds = np.ascontiguousarray(near.reshape(-1, solver.dof))
     if goal is None and not values and degree > 0:
         _core._ik_serve_near(solver, About(freedom=freedom))
     columns, row = columns_of(whole, values)
@@ -103,17 +105,6 @@ def columns_of(whole: Solver, locked: Mapping[int, Any]) -> tuple[list[int], Arr
     moving = [k for k in range(whole.dof) if k not in locked]
     columns = [moving.index(k) if k not in locked else -1 for k in range(whole.dof)]
     return columns, np.array([float(locked.get(k, 0.0)) for k in range(whole.dof)])
-
-
-def seed_rows(solver: Solver, near: Any, shape: tuple[int, ...]) -> Array:
-    """near= as rows (1 or n, dof): one for all goals, or one for each."""
-    seeds = as_floats(near, "near", last=(solver.dof,), largest=FARTHEST)
-    if seeds.ndim > 1 and seeds.shape[:-1] != shape:
-        expected = f"({solver.dof},)"
-        if shape:
-            expected += f" for all goals or {(*shape, solver.dof)}, one for each"
-        raise InputError(f"near has shape {seeds.shape}, expected {expected}")
-    return np.ascontiguousarray(seeds.reshape(-1, solver.dof))
 
 
 def check_samples(solver: Solver, options: Options, degree: int) -> None:
