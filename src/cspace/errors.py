@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from functools import wraps
 from types import MappingProxyType
-from typing import Final, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Final, ParamSpec, TypeVar
 
 __all__ = [
     "CspaceError",
@@ -14,6 +14,7 @@ __all__ = [
     "InputTypeError",
     "MapError",
     "MissingExtraError",
+    "Renamed",
     "UnknownNameError",
     "attribute_error",
     "keyword_error",
@@ -147,6 +148,17 @@ def attribute_error(owner: object, name: str) -> AttributeError:
     if (ours := RENAMED.get(name)) in known:
         text += f": use {ours}"
     return AttributeError(text, name=name, obj=owner)
+
+
+class Renamed:
+    """A class whose error for an unknown attribute contains the new name of an old one."""
+
+    __slots__ = ()
+
+    if not TYPE_CHECKING:  # type checkers report such names themselves
+
+        def __getattr__(self, name: str) -> object:
+            raise attribute_error(self, name)
 
 
 def shown(value: object) -> str:

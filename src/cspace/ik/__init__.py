@@ -4,21 +4,11 @@ from cspace.ik import subproblems
 from cspace.ik.conditions import Condition, NoClosedFormError
 from cspace.ik.explain import IkPlan, InvariantDirection, InvariantPoint, Relation, Step, ik_plan
 from cspace.ik.geometry import Geometry, geometry
-from cspace.ik.numeric import (
-    CenterOfMassTask,
-    DirectionTask,
-    NumericSolution,
-    PoseTask,
-    PositionTask,
-    PostureTask,
-    SampledSolutions,
-    TaskSolution,
-    ik_many_starts,
-    ik_numeric,
-    ik_tasks,
-    resolved_rate,
-    task_velocity,
-)
+from cspace.ik.numeric.descend import ik_many_starts, ik_numeric
+from cspace.ik.numeric.multi_task import TaskSolution, ik_tasks, task_velocity
+from cspace.ik.numeric.resolved_rate import resolved_rate
+from cspace.ik.numeric.solution import NumericSolution, SampledSolutions
+from cspace.ik.numeric.tasks import CenterOfMassTask, DirectionTask, PoseTask, PositionTask, PostureTask
 from cspace.ik.redundancy.arm_angle import swivel
 from cspace.ik.redundancy.parameters import redundancy
 from cspace.ik.redundancy.result import Interval, Redundancy
@@ -26,7 +16,8 @@ from cspace.ik.self_motion.self_motion import SelfMotion
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
 from cspace.ik.solver import HasSolver, Solver, solver_of_robot
-from cspace.ik.tracking import Branch, Track, track
+from cspace.ik.tracking.result import Branch, Track
+from cspace.ik.tracking.track import track
 
 __all__ = [
     "Branch",

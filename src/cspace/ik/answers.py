@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final, cast
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import attribute_error
+from cspace.errors import Renamed
 from cspace.ik.derivative import solve_derivative
 from cspace.ik.goals.partial import PartialGoal, plain_goal
 from cspace.ik.on_limits import settle_on_limits
@@ -29,7 +29,7 @@ VERDICTS: Final = ("unreachable", "exact", "singular", "least_squares")
 METRICS: Final = ("euclidean", "max")
 
 
-class Answers:
+class Answers(Renamed):
     """The rows q (..., k, dof) that answer goals (..., 4, 4) or (..., 3), without leading axes for one."""
 
     __slots__ = ()
@@ -44,11 +44,6 @@ class Answers:
         def q(self) -> Array: ...
         @property
         def _about(self) -> About | None: ...
-
-    else:  # type checkers report unknown names themselves
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
 
     @property
     def _real(self) -> Any:

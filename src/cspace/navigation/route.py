@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from cspace import _core
 from cspace.arrays import Array
-from cspace.errors import attribute_error
+from cspace.errors import Renamed
 from cspace.navigation.text import count_things
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class Stats(NamedTuple):
     """Wall time of the compiled search."""
 
 
-class Route(_core.RouteBase):
+class Route(Renamed, _core.RouteBase):
     """The answer of one planner to one question; truthy if a path was found.
 
     path: (m, 2) [m] from start to goal, (1, 2) where they are the same point; of a robot that walks, the
@@ -98,11 +98,6 @@ class Route(_core.RouteBase):
     def _given_world(self) -> Any:
         """The world before it was grown by a radius, or converted."""
         return self.__dict__.get("given_world", self.world)
-
-    if not TYPE_CHECKING:  # type checkers report such names themselves
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """What it was made from: copies and pickles are made from that again."""

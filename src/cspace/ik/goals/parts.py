@@ -12,7 +12,6 @@ from cspace.errors import InputError, InputTypeError
 from cspace.ik.goals.given import is_open
 from cspace.ik.goals.partial import ANY, AXES, BALL, CROSS, KEYWORDS, PartialGoal
 from cspace.spatial import as_rotation
-from cspace.spatial.poses import assemble
 from cspace.spatial.vectors import length_and_direction
 from cspace.tolerances import FARTHEST
 
@@ -105,8 +104,8 @@ def check_one_goal(function: str, goal: Any, given: dict[str, Any], tool_axis: A
     check_tool_axis(tool_axis, given)
     if (goal is None) == (not given):
         raise InputTypeError(
-            f"{function} needs one goal: robot.{function}(T) with the pose of the tip in the base, or parts of it"
-            f" by name, such as robot.{function}(position=p)"
+            f"{function} needs one goal: robot.{function}(T) with the pose of the tip in the base, or parts"
+            f" of it by name, such as robot.{function}(position=p)"
         )
 
 
@@ -151,7 +150,8 @@ def assemble_goal(kind: str, values: dict[str, Any]) -> PartialGoal:
     if pointing is not None:
         R = turn_to(axis, pointing)
     behind = tuple((joint, axis if h is None else h) for joint, h in BEHIND[kind])
-    leading_axes(position=p.shape[:-1], rotation=R.shape[:-2])
+    if p.ndim > 1 and R.ndim > 2:
+        leading_axes(position=p.shape[:-1], rotation=R.shape[:-2])
     return PartialGoal(kind, assemble(R, p), behind, value, axis, before, tilt)
 
 
@@ -164,6 +164,13 @@ def open_point(value: Any) -> tuple[Array, tuple[tuple[str, Array], ...]]:
         raise InputError("position has None for all three coordinates; give at least one of them")
     p = one_array([0.0 if v is None else v for v in value], "position", (3,), largest=FARTHEST)
     return p, tuple(("P", np.eye(3)[i]) for i in free)
+
+
+def assemble(R: Array, p: Array) -> Array:
+    """Poses (..., 4, 4) from rotations (..., 3, 3) and points (..., 3), one of them perhaps for all."""
+    T = np.zeros((*np.broadcast_shapes(p.shape[:-1], R.shape[:-2]), 4, 4))
+    T[..., :3, :3], T[..., :3, 3], T[..., 3, 3] = R, p, 1.0
+    return T
 
 
 def turn_to(a: Array, d: Array) -> Array:

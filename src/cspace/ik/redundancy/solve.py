@@ -35,25 +35,18 @@ def solve_freedom(
     goal: the partial goal that T stands for; its virtual joints are then part of the arm.
     """
     whole = solver if goal is None else solver.extend(goal)
-    first = 0 if goal is None else len(goal.before)
     values = locked_joints(solver, whole, options.locked)
-    if not (values or whole.is_redundant):
-        check_samples(solver, options, 0)
-        asked = whole
-        degree = 0
-    else:
-        degree = whole.redundancy_degree(tuple(values))
-        check_samples(solver, options, degree)
-        if degree <= 0:
-            if goal is None:
-                return choose_nearest(solve_locked(solver, T, values, options), options.near)
-            return choose_nearest(answer_locked(solver, whole, goal, first, T, values, options), options.near)
-        if any(np.ndim(value) for value in values.values()):
-            raise InputTypeError(
-                "locked= takes one value per joint while dimensions stay free; lock all redundant joints,"
-                " or call it in a loop"
-            )
-        asked = whole.lock({joint: float(value) for joint, value in values.items()})
+    leaves_joints = bool(values) or whole.is_redundant
+    degree = whole.redundancy_degree(tuple(values)) if leaves_joints else 0
+    check_samples(solver, options, degree)
+    if leaves_joints and degree <= 0:
+        return choose_nearest(solve_locked(solver, whole, goal, T, values, options), options.near)
+    if any(np.ndim(value) for value in values.values()):
+        raise InputTypeError(
+            "locked= takes one value per joint while dimensions stay free; lock all redundant joints,"
+            " or call it in a loop"
+        )
+    asked = whole.lock({joint: float(value) for joint, value in values.items()})
     freedom = tuple(asked.joint_names[k] for k in asked.redundant_joints) if degree > 0 else ()
     about = About(goal, None if goal is None else whole, freedom, values)
     seeds = None
@@ -62,12 +55,10 @@ def solve_freedom(
         seeds = np.ascontiguousarray(near.reshape(-1, solver.dof))
     if goal is None and not values and degree > 0:
         _core._ik_serve_near(solver, About(freedom=freedom))
-    columns, row = columns_of(whole, values)
     samples = SAMPLES
     if options.samples is not None:
         samples = whole_number(options.samples, "samples", 1, MOST_SAMPLES)
-    request = (columns, row, first, goal is not None, seeds, samples, None, None)
-    found = ask_core(solver, asked, T, request, about, options.threads)
+    found = ask_core(solver, asked, T, about, options.threads, seeds=seeds, samples=samples)
     return found if seeds is not None else choose_nearest(found, options.near)
 
 
@@ -79,16 +70,30 @@ def choose_nearest(found: Solutions | SolutionsBatch, near: Any) -> Solutions | 
 
 
 def ask_core(
-    solver: Solver, asked: Solver, T: Array, request: tuple[Any, ...], about: About, threads: int
+    solver: Solver,
+    asked: Solver,
+    T: Array,
+    about: About,
+    threads: int,
+    *,
+    seeds: Array | None = None,
+    samples: int = SAMPLES,
+    at: Array | None = None,
 ) -> Solutions | SolutionsBatch:
-    """The core's answer to T (..., 4, 4). request: as of _core._ik_answer, from columns to at."""
-    shape = T.shape[:-2]
+    """The core's answer to T (..., 4, 4) by a solver that lacks the locked joints, or has them and takes rows
+    of their values, `at`. seeds: rows of the arm's joints. samples: values of one redundant joint.
+    """
+    shape, goal, whole = T.shape[:-2], about.goal, about.extended or solver
     goals = np.ascontiguousarray(T.reshape(-1, 4, 4))
+    columns, values = columns_of(whole, about.locked if at is None else {})
+    first = 0 if goal is None else len(goal.before)
+    locked = None if at is None else list(about.locked)
+    request = (columns, values, first, goal is not None, seeds, samples, locked, at)
     made = _core._ik_answer(solver, asked, goals, *request, threads, not shape, about)
     if not shape:
         return cast(Solutions, made)
-    q, whole, count, verdict, self_motion = made
-    return SolutionsBatch.of(solver, T, q, count, verdict, replace(about, q=whole), self_motion)
+    q, rows, count, verdict, self_motion = made
+    return SolutionsBatch.of(solver, T, q, count, verdict, replace(about, q=rows), self_motion)
 
 
 def locked_joints(solver: Solver, whole: Solver, locked: Any) -> dict[int, Any]:
@@ -131,30 +136,20 @@ def locked_rows(solver: Solver, T: Array, values: Mapping[int, Any]) -> tuple[tu
     return shape, np.ascontiguousarray(np.broadcast_to(T, (*shape, 4, 4))), at
 
 
-def answer_locked(
+def solve_locked(
     solver: Solver,
     whole: Solver,
-    goal: PartialGoal,
-    first: int,
+    goal: PartialGoal | None,
     T: Array,
     values: dict[int, Any],
     options: Options,
 ) -> Solutions | SolutionsBatch:
-    """Of a partial goal: every solution of the other joints."""
-    shape, goals, at = locked_rows(whole, T, values)
-    columns, row = columns_of(whole, {})
-    request = (columns, row, first, True, None, SAMPLES, list(values), at)
-    if shape != goal.T.shape[:-2]:
-        goal = goal.spread(shape)
-    return ask_core(solver, whole, goals, request, About(goal, whole, (), values), options.threads)
-
-
-def solve_locked(
-    solver: Solver, T: Array, values: dict[int, Any], options: Options
-) -> Solutions | SolutionsBatch:
-    """Of poses: every solution of the other joints."""
+    """Every solution of the other joints."""
     joints = list(values)
-    shape, goals, at = locked_rows(solver, T, values)
+    shape, goals, at = locked_rows(whole, T, values)
+    if goal is not None:
+        about = About(goal.spread(shape), whole, (), values)
+        return ask_core(solver, whole, goals, about, options.threads, at=at)
     n, N = solver.dof, len(at)
     seed = np.empty(0)
     if options.near is not None and not shape:

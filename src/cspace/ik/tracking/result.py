@@ -5,19 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
 
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.errors import attribute_error
+from cspace.errors import Renamed
 from cspace.ik.branches import branch_labels
 from cspace.ik.solver import as_solver
 from cspace.kinematics import KinematicModel, singularity
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Branch:
+class Branch(Renamed):
     """One way of the joints along the poses, as far as it goes.
 
     q (m, dof) [rad, m]: the configurations at the m poses it reaches, each angle continuous from pose to
@@ -37,11 +37,6 @@ class Branch:
     singular_value: float
     cost: float
     number: int = -1
-
-    if not TYPE_CHECKING:  # type checkers report such names themselves
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
 
     def __bool__(self) -> bool:
         return self.cause == "end"
@@ -83,7 +78,8 @@ class Branch:
         return f"<Branch of {self.robot.name}{label}: {self.reason}>"
 
 
-class Track:
+@dataclass(frozen=True, eq=False, repr=False)
+class Track(Renamed):
     """The branches along a path of poses, best first choice at hand.
 
     branches: every one, in the order of the solutions at the first pose. best: the one that follows all poses
@@ -92,19 +88,16 @@ class Track:
     complete: whether branches holds every one there is. Truthy if a branch follows every pose.
     """
 
-    __slots__ = ("_note", "best", "branches", "complete", "poses", "robot")
+    robot: KinematicModel
+    poses: Array
+    branches: tuple[Branch, ...]
+    complete: bool
+    _note: str
 
-    def __init__(
-        self, robot: KinematicModel, poses: Array, branches: tuple[Branch, ...], complete: bool, note: str
-    ) -> None:
-        self.robot, self.poses, self.branches = robot, poses, branches
-        self.complete, self._note = complete, note
-        self.best = min(branches, key=_order) if branches else None
-
-    if not TYPE_CHECKING:  # type checkers report such names themselves
-
-        def __getattr__(self, name: str) -> Any:
-            raise attribute_error(self, name)
+    @cached_property
+    def best(self) -> Branch | None:
+        """The branch that follows all poses at the least cost, else the one that gets farthest."""
+        return min(self.branches, key=_order) if self.branches else None
 
     def __bool__(self) -> bool:
         return bool(self.best)
