@@ -19,21 +19,17 @@ T* core_of(PyObject* value) {
 }
 
 // A setting from the next arguments; false with an error set for others. It may hold a reference to them.
-inline bool read_setting(PyObject* const*& args, double& number) {
-    number = PyFloat_AsDouble(*args++);
-    return number != -1 || !PyErr_Occurred();
-}
-inline bool read_setting(PyObject* const*& args, std::int64_t& number) {
-    number = PyLong_AsLongLong(*args++);
-    return number != -1 || !PyErr_Occurred();
-}
-inline bool read_setting(PyObject* const*& args, std::uint64_t& number) {
-    number = PyLong_AsUnsignedLongLong(*args++);
-    return number != std::uint64_t(-1) || !PyErr_Occurred();
-}
-inline bool read_setting(PyObject* const*& args, bool& truth) {
-    truth = *args++ == Py_True;
-    return true;
+template <class T>
+    requires std::is_arithmetic_v<T>
+bool read_setting(PyObject* const*& args, T& number) {
+    PyObject* given = *args++;
+    if constexpr (std::is_same_v<T, bool>)
+        return number = given == Py_True, true;
+    else if constexpr (std::is_floating_point_v<T>)
+        number = PyFloat_AsDouble(given);
+    else
+        number = std::is_signed_v<T> ? T(PyLong_AsLongLong(given)) : T(PyLong_AsUnsignedLongLong(given));
+    return number != T(-1) || !PyErr_Occurred();
 }
 template <class T, std::size_t n>
 bool read_setting(PyObject* const*& args, std::array<T, n>& numbers) {

@@ -1,6 +1,7 @@
 // Curves for cars, hybrid A*, and the simulator of vehicles that follow paths. One curve takes less than a
 // microsecond, so it is a raw entry.
 #include <nanobind/stl/pair.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
@@ -8,7 +9,6 @@
 #include "library/navigation_cars.hpp"
 #include "library/navigation_following.hpp"
 #include "maps_points.hpp"
-#include "navigation_route.hpp"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -81,37 +81,21 @@ PyMethodDef methods[] = {{"_car_distance", as_method(find_distance), METH_FASTCA
                          {"_car_shortest", as_method(find_shortest), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
-// settings (7,): turning radius, box, headings, reverse cost, gear cost, most nodes, weight.
-nb::tuple find_route(const GridWorld& world, const BodyNumbers& body, const CarPose& start,
-                     const CarPose& goal, bool reverses, const std::array<double, 7>& settings) {
-    const Watch watch;
-    CarRoute found;
-    {
-        const nb::gil_scoped_release free;
-        found = find_car_route(world, body, start, goal, reverses, settings);
-    }
-    const double seconds = watch.seconds();
-    nb::list pieces;
-    for (const Piece& piece : found.pieces) pieces.append(nb::make_tuple(piece.turn, piece.length));
-    return nb::make_tuple(int(found.status), int(found.reason), pieces, found.stats.nodes, found.stats.edges,
-                          seconds);
-}
-
 }  // namespace
 
 void bind_navigation_vehicles(nb::module_& m) {
     if (PyModule_AddFunctions(m.ptr(), methods) < 0) throw nb::python_error();
-    m.def("_car_distances", list_lengths, "reverses"_a, "starts"_a, "goals"_a, "radius"_a, "out"_a,
-          WithoutLock(), "Lengths of Dubins or Reeds–Shepp curves between rows of poses, written into out.");
-    m.def("_car_poses", list_poses, "start"_a, "pieces"_a, "radius"_a, "s"_a, "out"_a, WithoutLock(),
-          "Poses at the lengths s along a curve, written into out.");
-    m.def("_car_clear", check_poses, "grid"_a, "footprint"_a, "poses"_a, "out"_a, WithoutLock(),
-          "Whether a vehicle touches no blocked cell at rows of poses.");
-    m.def("_hybrid_a_star", find_route, "grid"_a, "footprint"_a, "start"_a, "goal"_a, "reverses"_a,
-          "settings"_a, "Status, reason, pieces (turn, signed length), nodes, edges and seconds.");
+    m.def("_car_distances", list_lengths, "reverses"_a, "starts"_a, "goals"_a, "radius"_a, WithoutLock(),
+          "Lengths of Dubins or Reeds–Shepp curves between rows of poses.");
+    m.def("_car_poses", list_poses, "start"_a, "pieces"_a, "radius"_a, "s"_a, WithoutLock(),
+          "Poses at the lengths s along a curve.");
+    m.def("_car_clear", is_pose_clear, "grid"_a, "footprint"_a, "pose"_a,
+          "Whether a vehicle touches no blocked cell.");
+    m.def("_hybrid_a_star", find_car_route, "grid"_a, "footprint"_a, "start"_a, "goal"_a, "reverses"_a,
+          "settings"_a, WithoutLock(), "Status, reason, pieces (turn, signed length), nodes and edges.");
     m.def("_follow", follow_path, "points"_a, "runs"_a, "vehicle"_a, "start"_a, "settings"_a, "controller"_a,
           "numbers"_a, "world"_a.none(), "footprint"_a, WithoutLock(),
           "Lets a vehicle follow a path; the outcome and a row per step.");
-    m.def("_cast_rays", cast_rays, "grid"_a, "points"_a, "angles"_a, "most"_a, "out"_a, WithoutLock(),
-          "Ranges from rows of points at angles, written into out.");
+    m.def("_cast_rays", cast_rays, "grid"_a, "points"_a, "angles"_a, "most"_a, WithoutLock(),
+          "Ranges from rows of points at angles.");
 }

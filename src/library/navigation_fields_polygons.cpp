@@ -21,17 +21,11 @@ void list_steps(const DescentRoute& made, Trace& trace) {
 StarWorld stars_around(const PolygonCore::State& core, const maps::Settled& goal) {
     return StarWorld(core.world.walls, core.world.space.component[std::size_t(goal.triangles.at(0))]);
 }
-NavigationFunction::Limits limits_of(std::int64_t squares, std::int64_t steps) {
-    NavigationFunction::Limits limits;
-    limits.squares = squares, limits.steps = steps;
-    return limits;
-}
-NavigationFunction function_of(const PolygonCore::State& core, Point goal, double kappa,
-                               const NavigationFunction::Limits& limits) {
+std::shared_ptr<const NavigationFunction> function_of(const PolygonCore::State& core, Point goal,
+                                                      double kappa, NavigationFunction::Limits limits) {
     const maps::Settled at = core.settle(goal);
-    StarWorld stars = stars_around(core, at);
-    SphereWorld model = stars.model();
-    return NavigationFunction(std::move(model), std::move(stars), at.at, kappa, limits);
+    const StarWorld stars = stars_around(core, at);
+    return std::make_shared<const NavigationFunction>(stars.model(), stars, at.at, kappa, limits);
 }
 SphereWorld spheres_of(std::span<const StarFunction::Disc> discs) {
     SphereWorld world{{{discs[0][0], discs[0][1]}, discs[0][2]}, {}};
@@ -85,12 +79,11 @@ StarFunction::StarFunction(std::shared_ptr<const NavigationFunction> made)
       obstacles(function->discs().obstacles.size()) {}
 StarFunction::StarFunction(const PolygonCore& core, Point goal, double power, std::int64_t squares,
                            std::int64_t steps)
-    : StarFunction(std::shared_ptr<const NavigationFunction>(
-          new NavigationFunction(function_of(core.state(), goal, power, limits_of(squares, steps))))) {}
+    : StarFunction(function_of(core.state(), goal, power, {squares, steps})) {}
 StarFunction::StarFunction(std::span<const Disc> discs, Point goal, double power, std::int64_t squares,
                            std::int64_t steps)
     : StarFunction(std::make_shared<const NavigationFunction>(spheres_of(discs), std::nullopt, goal, power,
-                                                              limits_of(squares, steps))) {}
+                                                              NavigationFunction::Limits{squares, steps})) {}
 
 Table<Point> StarFunction::saddles() const {
     Table<Point> made;

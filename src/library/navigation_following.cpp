@@ -32,69 +32,46 @@ std::pair<Piece, double> arc_of(double speed, double rate, double time) {
     return {{(rate < 0) == (speed < 0) ? 1 : -1, way}, std::fabs(speed / rate)};
 }
 
-// What every controller is let loose on.
-struct Course {
-    Vehicle vehicle;
-    Motion start;
-    Track track;
-    FollowSettings settings;
-    const maps::GridWorld* world;
-    Footprint footprint;
-
-    template <class Controller>
-    FollowRecord run(Controller controller) const {
-        if (world == nullptr)
-            return follow_track(vehicle, start, track, controller, settings,
-                                [](const CarPose&, double, double, double) { return false; });
-        const CarWorld cars(world->state().bits, world->state().frame);
-        return follow_track(vehicle, start, track, controller, settings,
-                            [&](const CarPose& from, double speed, double rate, double time) {
-                                const auto [piece, radius] = arc_of(speed, rate, time);
-                                return !cars.is_way_clear(footprint, from, piece, radius);
-                            });
-    }
-};
-
 }  // namespace
 
-std::pair<int, Table<double>> follow_path(std::span<const Point> points, const std::vector<FollowRun>& runs,
-                                          const std::array<double, 6>& vehicle,
-                                          const std::array<double, 5>& start,
-                                          const std::array<double, 6>& settings, int controller,
-                                          const std::array<double, 7>& n, const maps::GridWorld* world,
-                                          const std::array<double, 4>& footprint) {
-    const Course course{std::bit_cast<Vehicle>(vehicle),
-                        std::bit_cast<Motion>(start),
-                        track_of(points, runs),
-                        std::bit_cast<FollowSettings>(settings),
-                        world,
-                        std::bit_cast<Footprint>(footprint)};
+std::pair<int, Table<FollowRow>> follow_path(
+    std::span<const Point> points, const std::vector<FollowRun>& runs, const std::array<double, 6>& vehicle,
+    const std::array<double, 5>& start, const std::array<double, 6>& settings, int controller,
+    const std::array<double, 7>& n, const maps::GridWorld* world, const std::array<double, 4>& footprint) {
+    const Track track = track_of(points, runs);
     const maps::BitGrid* grid = world ? &world->state().bits : nullptr;
     const maps::GridFrame frame = world ? world->state().frame : maps::GridFrame{};
+    const auto touches = [&](const CarPose& from, double speed, double rate, double time) {
+        const auto [piece, radius] = arc_of(speed, rate, time);
+        return grid &&
+               !CarWorld(*grid, frame).is_way_clear(std::bit_cast<Footprint>(footprint), from, piece, radius);
+    };
+    const auto run = [&](auto steering) {
+        return follow_track(std::bit_cast<Vehicle>(vehicle), std::bit_cast<Motion>(start), track, steering,
+                            std::bit_cast<FollowSettings>(settings), touches);
+    };
     FollowRecord record;
-    if (controller == 0) record = course.run(PurePursuit{n[0]});
-    if (controller == 1) record = course.run(Stanley{n[0], n[1]});
+    if (controller == 0) record = run(PurePursuit{n[0]});
+    if (controller == 1) record = run(Stanley{n[0], n[1]});
     if (controller == 2)
-        record = course.run(DynamicWindow(grid, frame, {n[0], n[1], n[2], int(n[3]), n[4], n[5], n[6]}));
-    Table<double> rows{{}, follow_width};
-    for (std::size_t k = 0; k < record.motion.size(); ++k) {
-        const Motion& m = record.motion[k];
-        rows.values.insert(rows.values.end(), {m.pose.x, m.pose.y, m.pose.theta, m.speed, m.turn,
-                                               record.offset[k], record.progress[k]});
-    }
+        record = run(DynamicWindow(grid, frame, {n[0], n[1], n[2], int(n[3]), n[4], n[5], n[6]}));
+    Table<FollowRow> rows;
+    for (const FollowStep& step : record.steps) rows.values.push_back(std::bit_cast<FollowRow>(step));
     return {int(record.outcome), std::move(rows)};
 }
 
-void cast_rays(const maps::GridWorld& world, std::span<const Point> from, std::span<const double> angles,
-               double most, std::span<double> ranges) {
-    if (from.size() != ranges.size() || angles.size() != ranges.size())
-        throw std::invalid_argument("points, angles and ranges must have equal lengths");
+Table<double> cast_rays(const maps::GridWorld& world, std::span<const Point> from,
+                        std::span<const double> angles, double most) {
+    if (from.size() != angles.size()) throw std::invalid_argument("as many points as angles are needed");
     const auto& [bits, frame, parts] = world.state();
+    Table<double> ranges;
     InterruptPoll poll(64);
-    for (std::size_t k = 0; k < ranges.size(); ++k) {
+    for (std::size_t k = 0; k < from.size(); ++k) {
         poll.step();
-        ranges[k] = cast_ray(bits, frame, from[k], {std::cos(angles[k]), std::sin(angles[k])}, most);
+        const Point direction{std::cos(angles[k]), std::sin(angles[k])};
+        ranges.values.push_back(cast_ray(bits, frame, from[k], direction, most));
     }
+    return ranges;
 }
 
 }  // namespace cspace::navigation

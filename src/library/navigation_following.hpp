@@ -14,22 +14,20 @@ namespace cspace::navigation {
 // A run of a path: the row of its points at which it begins, and its direction, ±1. It ends where the next
 // begins.
 using FollowRun = std::pair<std::size_t, int>;
-// x, y, theta, speed, turn, offset, progress
-inline constexpr std::size_t follow_width = 7;
+using FollowRow = std::array<double, 7>;  // x, y, theta, speed, turn, offset, progress
 
 // The numbers of Vehicle, of Motion at the start, of FollowSettings, of a controller (0 pure pursuit:
 // lookahead; 1 Stanley: gain, softening; 2 dynamic window: WindowSettings) and of Footprint; a world or null.
 // Returns the number of the outcome and a row per step. Throws std::invalid_argument for runs of fewer than
 // two points, or none.
-std::pair<int, Table<double>> follow_path(std::span<const Point> points, const std::vector<FollowRun>& runs,
-                                          const std::array<double, 6>& vehicle,
-                                          const std::array<double, 5>& start,
-                                          const std::array<double, 6>& settings, int controller,
-                                          const std::array<double, 7>& numbers, const maps::GridWorld* world,
-                                          const std::array<double, 4>& footprint);
+std::pair<int, Table<FollowRow>> follow_path(
+    std::span<const Point> points, const std::vector<FollowRun>& runs, const std::array<double, 6>& vehicle,
+    const std::array<double, 5>& start, const std::array<double, 6>& settings, int controller,
+    const std::array<double, 7>& numbers, const maps::GridWorld* world,
+    const std::array<double, 4>& footprint);
 
-// Ranges from points at angles.
-void cast_rays(const maps::GridWorld& world, std::span<const Point> from, std::span<const double> angles,
-               double most, std::span<double> ranges);
+// Ranges from points at angles, as many.
+Table<double> cast_rays(const maps::GridWorld& world, std::span<const Point> from,
+                        std::span<const double> angles, double most);
 
 }  // namespace cspace::navigation

@@ -20,33 +20,6 @@ struct Scratch {
     GridAnswer answer;
 };
 
-// The scratch of this thread, or, for a search that a signal handler runs amid another one, its own. More
-// than so many bytes are given back after a search, which took far longer than to ask for them again.
-class Borrowed {
-  public:
-    Borrowed() {
-        if (depth()++ > 0) own_ = std::make_unique<Scratch>();
-    }
-    ~Borrowed() {
-        constexpr std::size_t kept_bytes = std::size_t(32) << 20;
-        if (--depth() == 0 && of_thread().nodes.bytes() > kept_bytes) of_thread().nodes = {};
-    }
-    Borrowed(const Borrowed&) = delete;
-    Borrowed& operator=(const Borrowed&) = delete;
-    Scratch& get() { return own_ ? *own_ : of_thread(); }
-
-  private:
-    static Scratch& of_thread() {
-        thread_local Scratch one;
-        return one;
-    }
-    static int& depth() {
-        thread_local int one = 0;
-        return one;
-    }
-    std::unique_ptr<Scratch> own_;
-};
-
 maps::Cell cell_at(const maps::GridFrame& frame, const maps::BitGrid& grid, Point p) {
     maps::Cell cell = {0, 0};
     if (frame.locate(grid, p, cell) == maps::CellState::outside)
@@ -62,7 +35,9 @@ Choice known_choice(std::int64_t number, Choice last) {
     return static_cast<Choice>(number);
 }
 
+// Of this thread; a search that a signal handler runs amid another one finds none.
 thread_local Route kept_route;
+thread_local std::unique_ptr<Scratch> kept_scratch;
 
 }  // namespace
 
@@ -80,14 +55,17 @@ bool CellsQuery::find(const GridWorld& grid, Point start, Point goal, Trace* tra
     if (!world.find_cells(start, goal, from, to)) return false;
     const double* each = costs.empty() ? nullptr : costs.data();
     const GridQuery query{planner, corners, metric, weights[0], weights[1], weights[2], each, least_cost};
-    Borrowed borrowed;
-    auto& [nodes, answer] = borrowed.get();
+    auto scratch = kept_scratch ? std::move(kept_scratch) : std::make_unique<Scratch>();
+    auto& [nodes, answer] = *scratch;
     answer.is_traced = trace;
     find_way(world.bits, from, to, query, nodes, answer, &world.parts);
     if (trace) list_settled(world.frame, answer.settled, *trace);
     draw_route(world.frame, start, goal, answer, found);
     cost = grid.resolution * answer.cost, least = grid.resolution * answer.least;
     parts = answer.parts;
+    // More takes far longer to fill than to ask for again.
+    constexpr std::size_t kept_bytes = std::size_t(32) << 20;
+    if (nodes.bytes() <= kept_bytes) kept_scratch = std::move(scratch);
     return true;
 }
 
@@ -113,17 +91,14 @@ struct GridReplanner::State {
     DStarLite search;
     maps::GridFrame frame;
     Point start, goal;
-
-    State(const maps::GridWorld::State& world, Corners corners, Point from, Point to)
-        : search(world.bits, corners, cell_at(world.frame, world.bits, from),
-                 cell_at(world.frame, world.bits, to)),
-          frame(world.frame),
-          start(from),
-          goal(to) {}
 };
 
-GridReplanner::GridReplanner(const maps::GridWorld& world, int corners, Point start, Point goal)
-    : state_(new State(world.state(), known_choice(corners, last_rule), start, goal)) {}
+GridReplanner::GridReplanner(const maps::GridWorld& world, int corners, Point start, Point goal) {
+    const auto& [bits, frame, parts] = world.state();
+    DStarLite search(bits, known_choice(corners, last_rule), cell_at(frame, bits, start),
+                     cell_at(frame, bits, goal));
+    state_.reset(new State{std::move(search), frame, start, goal});
+}
 
 Table<std::uint8_t> GridReplanner::unpack() const { return maps::unpack_bits(state_->search.grid()); }
 

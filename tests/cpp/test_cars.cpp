@@ -147,6 +147,6 @@ TEST(a_dynamic_window_never_touches) {
         const Footprint body{0, 0, 0, 0.25};
         const auto contact = [](const CarPose&, double, double, double) { return false; };
         const FollowRecord run = follow_track(vehicle, {{0.8, 3, 0}, 0, 0}, track, window, settings, contact);
-        for (const Motion& motion : run.motion) CHECK(world.is_clear(body, motion.pose));
+        for (const FollowStep& step : run.steps) CHECK(world.is_clear(body, step.motion.pose));
     }
 }

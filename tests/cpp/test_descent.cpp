@@ -67,8 +67,8 @@ TEST(descents_go_down_and_never_through_walls) {
 }
 
 TEST(the_nearest_point_to_zero_of_a_hull) {
-    CHECK(nearest_to_zero({{1, 1}}) == (Point{1, 1}));
-    CHECK_NEAR(norm(nearest_to_zero({{1, 1}, {1, -1}})), 1, 1e-15);
-    CHECK(nearest_to_zero({{1, 1}, {-2, 1}, {0, -3}}) == (Point{0, 0}));
-    CHECK_NEAR(norm(nearest_to_zero({{2, 1}, {2, -1}, {5, 0}})), 2, 1e-15);
+    CHECK(nearest_to_zero(std::vector<Point>{{1, 1}}) == (Point{1, 1}));
+    CHECK_NEAR(norm(nearest_to_zero(std::vector<Point>{{1, 1}, {1, -1}})), 1, 1e-15);
+    CHECK(nearest_to_zero(std::vector<Point>{{1, 1}, {-2, 1}, {0, -3}}) == (Point{0, 0}));
+    CHECK_NEAR(norm(nearest_to_zero(std::vector<Point>{{2, 1}, {2, -1}, {5, 0}})), 2, 1e-15);
 }

@@ -87,7 +87,7 @@ TEST(a_wall_of_discs_with_a_low_power_has_a_minimum_behind_it) {
     for (int k = -3; k <= 3; ++k) world.obstacles.push_back({{0, 1.7 * k}, 0.8});
     const SpherePotential low(world, {8, 0}, 2);
     CHECK(MinimumProof(low).run(400'000).verdict == SingleMinimum::refuted);
-    const Tuned found = tune_kappa(world, {8, 0}, 65536, 400'000);
+    const Tuned found = tune_kappa(world, {8, 0}, 400'000);
     CHECK(found.kappa > 2);
     CHECK(found.proof.saddles.size() == 7);
 }

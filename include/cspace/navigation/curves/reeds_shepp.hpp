@@ -18,6 +18,8 @@
 // equally long but for rounding the first counts, and simple shapes come first.
 #pragma once
 
+#include <string_view>
+
 #include "cspace/navigation/curves/curve.hpp"
 
 namespace cspace::navigation {
@@ -25,6 +27,13 @@ namespace cspace::navigation {
 namespace reeds_shepp {
 
 enum class Shape { lsl, lsr, lrl, lrlr_opposed, lrlr_alike, lrsl, lrsr, lsrl, rsrl, lrslr };
+// The turns of each shape, and the number of a word that is the length of each: U is −u, w the quarter turn.
+struct Pattern {
+    std::string_view turns, lengths;
+};
+constexpr Pattern patterns[] = {{"LSL", "tuv"},   {"LSR", "tuv"},    {"LRL", "tuv"},   {"LRLR", "tuUv"},
+                                {"LRLR", "tuuv"}, {"LRSL", "twuv"},  {"LRSR", "twuv"}, {"LSRL", "tuwv"},
+                                {"RSRL", "tuwv"}, {"LRSLR", "twuwv"}};
 
 struct Word {
     double length = std::numeric_limits<double>::infinity();
@@ -157,41 +166,18 @@ inline Word find_shortest_word(const Task& task) {
 }
 
 inline Curve curve_of(const Word& word, double nothing) {
-    const int left = word.mirrored ? -1 : 1, right = -left;
+    const auto& [turns, lengths] = patterns[std::size_t(word.shape)];
+    const int left = word.mirrored ? -1 : 1;
+    const auto length_of = [&](char number) {
+        return number == 't'   ? word.t
+               : number == 'u' ? word.u
+               : number == 'U' ? -word.u
+               : number == 'v' ? word.v
+                               : word.quarter;
+    };
     Curve curve;
-    const auto add = [&](int turn, double length) { curve.add(turn, length, nothing); };
-    const bool begins_right = word.shape == Shape::rsrl;
-    add(begins_right ? right : left, word.t);
-    switch (word.shape) {
-        case Shape::lsl:
-        case Shape::lsr:
-            add(0, word.u);
-            break;
-        case Shape::lrl:
-            add(right, word.u);
-            break;
-        case Shape::lrlr_opposed:
-            add(right, word.u), add(left, -word.u);
-            break;
-        case Shape::lrlr_alike:
-            add(right, word.u), add(left, word.u);
-            break;
-        case Shape::lrsl:
-        case Shape::lrsr:
-            add(right, word.quarter), add(0, word.u);
-            break;
-        case Shape::lsrl:
-        case Shape::rsrl:
-            add(0, word.u), add(right, word.quarter);
-            break;
-        case Shape::lrslr:
-            add(right, word.quarter), add(0, word.u), add(left, word.quarter);
-            break;
-    }
-    const bool ends_left = word.shape == Shape::lsl || word.shape == Shape::lrl ||
-                           word.shape == Shape::lrsl || word.shape == Shape::lsrl ||
-                           word.shape == Shape::rsrl;
-    add(ends_left ? left : right, word.v);
+    for (std::size_t k = 0; k < turns.size(); ++k)
+        curve.add(turns[k] == 'S' ? 0 : turns[k] == 'L' ? left : -left, length_of(lengths[k]), nothing);
     return curve;
 }
 

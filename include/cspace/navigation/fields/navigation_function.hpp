@@ -15,7 +15,6 @@ namespace cspace::navigation {
 class NavigationFunction {
   public:
     struct Limits {
-        double most_kappa = 65536;
         std::int64_t squares = 400'000, steps = 20'000;
     };
     // kappa: zero for the least power of two that is proven to leave a single minimum.
@@ -27,7 +26,7 @@ class NavigationFunction {
             if (kappa > 0)
                 tuned_ = {kappa, MinimumProof(SpherePotential(discs_, to, kappa)).run(limits.squares)};
             else
-                tuned_ = tune_kappa(discs_, to, limits.most_kappa, limits.squares);
+                tuned_ = tune_kappa(discs_, to, limits.squares);
         }
         potential_ = std::make_unique<SpherePotential>(discs_, to, std::max(tuned_.kappa, 1.0));
     }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "cspace/maps/boundary.hpp"
@@ -16,16 +15,14 @@ namespace cspace::navigation {
 
 class NearWalls {
   public:
-    NearWalls(maps::Boundary walls, double reach)
-        : walls_(std::move(walls)), previous_(walls_.size()), reach_(reach) {
-        for (std::size_t e = 0; e < walls_.size(); ++e)
-            previous_[std::size_t(walls_.next[e])] = std::int32_t(e);
-        for (std::size_t e = 0; e < walls_.size(); ++e) {
-            const std::int32_t k = std::int32_t(e);
-            const Point a = walls_.begin(k), b = walls_.end(k);
-            prepared_.push_back({a, b, b - a, a - walls_.begin(previous(k)), walls_.ring[e]});
+    NearWalls(const maps::Boundary& walls, double reach) : reach_(reach) {
+        for (std::int32_t e = 0; e < std::int32_t(walls.size()); ++e) {
+            const Point a = walls.begin(e), b = walls.end(e);
+            walls_.push_back({a, b, b - a, {}, walls.ring[std::size_t(e)]});
         }
-        choose_cells();
+        for (std::size_t e = 0; e < walls_.size(); ++e)
+            walls_[std::size_t(walls.next[e])].before = walls_[e].along;
+        choose_cells(walls.points);
         members_ = {std::size_t(columns_) * std::size_t(rows_), [&](const auto& add) { each_member(add); }};
     }
 
@@ -34,23 +31,21 @@ class NearWalls {
         Point before;  // along the wall before it
         std::int32_t ring;
     };
-    const Wall& wall(std::int32_t e) const { return prepared_[std::size_t(e)]; }
+    const Wall& wall(std::int32_t e) const { return walls_[std::size_t(e)]; }
 
-    const maps::Boundary& walls() const { return walls_; }
-    std::int32_t previous(std::int32_t wall) const { return previous_[std::size_t(wall)]; }
-    double reach() const { return reach_; }
     // At least the walls within the reach of a point inside the bounds.
     template <class Visit>
     void visit(Point p, const Visit& visit) const {
-        const std::size_t cell = cell_of(p);
-        for (const std::int32_t wall : members_.of(cell)) visit(wall);
+        const std::size_t column = clamped((p.x - low_.x) / side_, columns_);
+        const std::size_t row = clamped((p.y - low_.y) / side_, rows_);
+        for (const std::int32_t wall : members_.of(row * std::size_t(columns_) + column)) visit(wall);
     }
     // Whether the segment from p to q, no longer than the reach, meets a wall between its ends that has them
     // on different sides; exact. A corner on the segment counts: it may lead into an obstacle.
     bool is_crossed(Point p, Point q) const {
         bool crossed = false;
         visit(p, [&](std::int32_t e) {
-            const Point a = walls_.begin(e), b = walls_.end(e);
+            const Point a = wall(e).begin, b = wall(e).end;
             crossed = crossed || (orientation(a, b, p) * orientation(a, b, q) < 0 &&
                                   orientation(p, q, a) * orientation(p, q, b) <= 0);
         });
@@ -61,7 +56,7 @@ class NearWalls {
         constexpr double folded2 = 1e-6;  // square of a sum of normals that point against each other
         Point sum, first;
         visit(p, [&](std::int32_t e) {
-            const Point a = walls_.begin(e), b = walls_.end(e), along = b - a;
+            const auto& [a, b, along, before, ring] = wall(e);
             if (distance(p, nearest_on(a, b, p)) > tolerance) return;
             const Point left = (1 / norm(along)) * Point{-along.y, along.x};
             if (squared_norm(first) == 0) first = left;
@@ -72,23 +67,16 @@ class NearWalls {
 
   private:
     static constexpr int most = 96;  // cells along the longer side
-    maps::Boundary walls_;
-    std::vector<std::int32_t> previous_;
-    std::vector<Wall> prepared_;
+    std::vector<Wall> walls_;
     double reach_, side_ = 1;
     Point low_;
     int columns_ = 1, rows_ = 1;
     search::Adjacency<std::int32_t> members_;
 
     static int clamped(double at, int count) { return at <= 0 ? 0 : at >= count ? count - 1 : int(at); }
-    std::size_t cell_of(Point p) const {
-        const int column = clamped((p.x - low_.x) / side_, columns_);
-        return std::size_t(clamped((p.y - low_.y) / side_, rows_)) * std::size_t(columns_) +
-               std::size_t(column);
-    }
-    void choose_cells() {
-        if (walls_.size() == 0) return;
-        const auto [low, high] = bounds_of(walls_.points);
+    void choose_cells(const std::vector<Point>& corners) {
+        if (corners.empty()) return;
+        const auto [low, high] = bounds_of(corners);
         low_ = low;
         const double longest = std::max(high.x - low_.x, high.y - low_.y);
         side_ = std::max(0.5 * reach_, longest / most);
@@ -100,7 +88,7 @@ class NearWalls {
         const double around =
             0.7072 * side_ + reach_ * (1 + tolerance::widening);  // from the centre of a cell
         for (std::int32_t e = 0; e < std::int32_t(walls_.size()); ++e) {
-            const Point a = walls_.begin(e), b = walls_.end(e);
+            const Point a = wall(e).begin, b = wall(e).end;
             const auto from = [&](double x, double low) {
                 return (x - reach_ - low) / side_ - tolerance::cell_border;
             };

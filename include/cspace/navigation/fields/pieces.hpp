@@ -46,8 +46,6 @@ class Pieces {
     }
 
     const std::vector<Side>& sides() const { return sides_; }
-    int rings() const { return int(ring_begin_.size()) - 1; }
-    int count() const { return pieces_; }
     std::int32_t piece(Mark mark) const { return sides_[std::size_t(mark >> 1)].piece; }
     HalfCells at(Mark mark) const {
         const Side& side = sides_[std::size_t(mark >> 1)];
@@ -100,16 +98,8 @@ class Pieces {
     std::int32_t pieces_ = 0;
 
     std::int32_t& slot(int row, int column, int heading) {
-        switch (heading) {
-            case 0:
-                return below_[grid_.number({row, column})];
-            case 1:
-                return before_[grid_.number({row, column})];
-            case 2:
-                return below_[grid_.number({row, column - 1})];
-            default:
-                return before_[grid_.number({row - 1, column})];
-        }
+        auto& sides = heading % 2 ? before_ : below_;
+        return sides[grid_.number({row - (heading == 3), column - (heading == 2)})];
     }
     bool is_blocked_left(int row, int column, int heading) const {
         return grid_.blocked(row + left_row[heading], column + left_column[heading]);

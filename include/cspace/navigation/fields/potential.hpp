@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "cspace/navigation/fields/near_walls.hpp"
@@ -51,14 +51,10 @@ struct Stiffness {
 class FewPoints {
   public:
     static constexpr std::size_t most = 6;
-    FewPoints() = default;
-    FewPoints(std::initializer_list<Point> points) {
-        for (const Point p : points) push_back(p);
-    }
     void push_back(Point p) { points_[size_++] = p; }
-    void clear() { size_ = 0; }
     std::size_t size() const { return size_; }
     Point operator[](std::size_t k) const { return points_[k]; }
+    operator std::span<const Point>() const { return {points_, size_}; }
 
   private:
     Point points_[most];
@@ -66,7 +62,7 @@ class FewPoints {
 };
 
 // The point nearest to zero of all that lie between points.
-inline Point nearest_to_zero(const FewPoints& points) {
+inline Point nearest_to_zero(std::span<const Point> points) {
     Point best = points[0];
     const auto offer = [&](Point p) {
         if (squared_norm(p) < squared_norm(best)) best = p;

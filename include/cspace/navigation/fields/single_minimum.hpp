@@ -148,12 +148,13 @@ class MinimumProof {
     }
 };
 
-// The least power of two for κ, up to a limit, with which the goal is proven to be the only minimum.
+// The least power of two for κ with which the goal is proven to be the only minimum.
 struct Tuned {
     double kappa = 0;  // zero: none was
     SingleMinimum proof;
 };
-inline Tuned tune_kappa(const SphereWorld& world, Point goal, double most_kappa, std::int64_t most_squares) {
+inline Tuned tune_kappa(const SphereWorld& world, Point goal, std::int64_t most_squares) {
+    constexpr double most_kappa = 65536;
     Point refuted = world.room.center;  // where the last power had another minimum: the next may, too
     for (double kappa = 2; kappa <= most_kappa; kappa *= 2) {
         const SpherePotential potential(world, goal, kappa);

@@ -63,8 +63,7 @@ class Thinning {
           fate_(fate),
           up_(filled_vector<std::int8_t>(grid.numbers())),
           offset_(grid.stride()) {}
-    // The direction from a cell that was taken to one that is not lower.
-    std::int8_t up(std::uint32_t cell) const { return up_[cell]; }
+    // The cell beside one that was taken which is not lower.
     std::uint32_t above(std::uint32_t cell) const { return cell + offset_[up_[cell]]; }
 
     void run() {
@@ -89,7 +88,7 @@ class Thinning {
   private:
     const std::vector<std::uint32_t>& height_;
     std::vector<Fate>& fate_;
-    std::vector<std::int8_t> up_;
+    std::vector<std::int8_t> up_;  // the direction to the cell above
     NeighbourOffsets offset_;
 
     bool take(std::uint32_t cell) {

@@ -21,10 +21,13 @@ struct FollowSettings {
     double patience;    // how long the vehicle may stay without getting ahead [s]
 };
 
+struct FollowStep {
+    Motion motion;
+    double offset;    // from the run, above zero to its left
+    double progress;  // along all runs
+};
 struct FollowRecord {
-    std::vector<Motion> motion;
-    std::vector<double> offset;    // from the run, above zero to its left
-    std::vector<double> progress;  // along all runs
+    std::vector<FollowStep> steps;
     Outcome outcome = Outcome::timeout;
 };
 
@@ -71,9 +74,7 @@ FollowRecord follow_track(const Vehicle& vehicle, const Motion& start, const Tra
     for (std::int64_t step = 0;; ++step) {
         poll.step();
         const double time = double(step) * dt;
-        record.motion.push_back(at.now);
-        record.offset.push_back(at.guided.offset);
-        record.progress.push_back(at.progress());
+        record.steps.push_back({at.now, at.guided.offset, at.progress()});
         if (touched) return finish(Outcome::collision);
         double left = at.left(Controller::leaves_path);
         if (left <= settings.tolerance && std::fabs(at.now.speed) <= rest) {

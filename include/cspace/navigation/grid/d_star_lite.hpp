@@ -25,12 +25,12 @@ class DStarLite {
     // start and goal lie within the grid; blocked or not.
     DStarLite(const maps::BitGrid& grid, Corners corners, maps::Cell start, maps::Cell goal)
         : grid_(grid), corners_(corners), start_(start), goal_(goal) {
-        begin();
+        Node& last = at(grid_.number(goal));
+        last.rhs = {{0, 0}};
+        wait(goal, last);
     }
 
     const maps::BitGrid& grid() const { return grid_; }
-    maps::Cell start() const { return start_; }
-    maps::Cell goal() const { return goal_; }
     // The robot has moved. The keys of open nodes were computed for its old position and are too large by at
     // most the distance moved; keys from now on are increased by that distance.
     void move(maps::Cell start) {
@@ -102,10 +102,6 @@ class DStarLite {
         bool waits = false;
     };
 
-    void begin() {
-        at(grid_.number(goal_)).rhs = {{0, 0}};
-        wait(goal_, at(grid_.number(goal_)));
-    }
     Steps left(maps::Cell a, maps::Cell b) const {
         const int down = a.row - b.row, along = a.column - b.column;
         return corners_ == Corners::four ? Steps{std::abs(down) + std::abs(along), 0}
@@ -170,9 +166,7 @@ class DStarLite {
     }
     Node& at(std::uint32_t cell) {
         auto& page = pages_[cell >> page_bits];
-        if (page.empty()) {
-            page.resize(std::size_t(1) << page_bits);
-        }
+        if (page.empty()) page.resize(std::size_t(1) << page_bits);
         return page[cell & ((1u << page_bits) - 1)];
     }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from time import perf_counter
 from typing import Any
 
 import numpy as np
@@ -71,17 +72,17 @@ def hybrid_a_star(
     settings = np.array([turning, side, turns, backwards, gear, *ends])
     body = np.array(car._footprint)
     a, b = (check_pose(grid, body, pose, name) for pose, name in ((start, "start"), (goal, "goal")))
-    status, cause, pieces, *stats = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)
+    began = perf_counter()
+    status, cause, pieces, nodes, edges = _core._hybrid_a_star(grid, body, a, b, bool(reverse), settings)
+    stats = Stats(nodes, edges, perf_counter() - began)
     curve = Curve(a, b, turning, tuple(pieces)) if status == 0 else None
-    return CarRoute(grid, car, a, b, curve, STATUSES[status], Stats(*stats), cause)
+    return CarRoute(grid, car, a, b, curve, STATUSES[status], stats, cause)
 
 
 def check_pose(grid: Any, body: Array, pose: Any, name: str) -> Array:
     """A pose (3,) at which the vehicle touches nothing."""
     p = one_array(pose, name, (3,), "x, y, theta", largest=LARGEST_NUMBER)
-    clear = np.empty(1, dtype=np.bool_)
-    _core._car_clear(grid, body, p[None], clear)
-    if not clear[0]:
+    if not _core._car_clear(grid, body, p):
         behind, ahead, aside, _ = body
         raise InputError(
             f"at {name} ({p[0]:g}, {p[1]:g}, {p[2]:g}) the vehicle covers a blocked cell or leaves the grid;"

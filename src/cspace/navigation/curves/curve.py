@@ -81,9 +81,8 @@ class Curve:
         beyond = lengths[(lengths < 0) | (lengths > self.length)]
         if beyond.size:
             raise InputError(f"s holds {beyond[0]:g}; the curve has lengths of 0 to {self.length:g} m")
-        poses = np.empty((lengths.size, 3))
         pieces = np.array(self._pieces).reshape(-1, 2)
-        _core._car_poses(self.start, pieces, self.radius, np.ascontiguousarray(lengths.ravel()), poses)
+        poses = _core._car_poses(self.start, pieces, self.radius, np.ascontiguousarray(lengths.ravel()))
         return poses.reshape(*lengths.shape, 3)
 
     def sample(self, spacing: float) -> Array:

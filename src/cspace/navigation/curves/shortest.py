@@ -70,9 +70,8 @@ def measure_broadcast(reverses: bool, start: Any, goal: Any, radius: Any) -> Any
     a, b, r = check_task(start, goal, radius)
     batch = leading_axes(start=a.shape[:-1], goal=b.shape[:-1])
     rows = [np.ascontiguousarray(np.broadcast_to(p, (*batch, 3)).reshape(-1, 3)) for p in (a, b)]
-    out = np.empty(len(rows[0]))
-    _core._car_distances(reverses, *rows, r, out)
-    return out.reshape(batch) if batch else float(out[0])
+    lengths = _core._car_distances(reverses, *rows, r)
+    return lengths.reshape(batch) if batch else float(lengths[0])
 
 
 def check_one(start: Any, goal: Any, radius: Any) -> tuple[Array, Array, float]:
