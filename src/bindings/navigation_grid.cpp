@@ -14,12 +14,15 @@ using namespace cspace::navigation;
 
 namespace {
 
-PyMethodDef methods[] = {{"_grid_route", as_method(ask<CellsQuery>), METH_FASTCALL, nullptr},
-                         {"_grid_any_angle", as_method(ask<RunsQuery>), METH_FASTCALL, nullptr},
-                         {"_potential_a_star", as_method(ask<PotentialQuery>), METH_FASTCALL, nullptr},
-                         {"_fast_marching", as_method(ask<MarchQuery>), METH_FASTCALL, nullptr},
-                         {"_harmonic", as_method(ask<HarmonicQuery>), METH_FASTCALL, nullptr},
-                         {"_brushfire", as_method(ask<BrushfireQuery>), METH_FASTCALL, nullptr},
+// A search of few cells takes no longer than to free the interpreter.
+bool has_many_cells(const GridWorld& grid) { return grid.cells() > 1 << 14; }
+
+PyMethodDef methods[] = {{"_grid_route", as_method(ask<plan_cells, has_many_cells>), METH_FASTCALL, nullptr},
+                         {"_grid_any_angle", as_method(ask<plan_runs>), METH_FASTCALL, nullptr},
+                         {"_potential_a_star", as_method(ask<plan_by_potential>), METH_FASTCALL, nullptr},
+                         {"_fast_marching", as_method(ask<plan_march>), METH_FASTCALL, nullptr},
+                         {"_harmonic", as_method(ask<plan_harmonic>), METH_FASTCALL, nullptr},
+                         {"_brushfire", as_method(ask<plan_brushfire>), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
 }  // namespace

@@ -18,14 +18,16 @@ using namespace cspace::navigation;
 
 namespace {
 
-PyMethodDef methods[] = {{"_polygon_route", as_method(ask<PolygonQuery>), METH_FASTCALL, nullptr},
-                         {"_approximate_cells", as_method(ask<QuadtreeQuery>), METH_FASTCALL, nullptr},
-                         {"_sampling", as_method(ask<SampleQuery>), METH_FASTCALL, nullptr},
-                         {"_voronoi", as_method(ask<VoronoiQuery>), METH_FASTCALL, nullptr},
-                         {"_bug", as_method(ask<WallQuery>), METH_FASTCALL, nullptr},
-                         {"_voronoi_bug", as_method(ask<VoronoiBugQuery>), METH_FASTCALL, nullptr},
-                         {"_potential_field", as_method(ask<DescentQuery>), METH_FASTCALL, nullptr},
-                         {"_navigation_function", as_method(ask<StarQuery>), METH_FASTCALL, nullptr},
+bool never(const PolygonCore&) { return false; }
+
+PyMethodDef methods[] = {{"_polygon_route", as_method(ask<plan_in_polygons, never>), METH_FASTCALL, nullptr},
+                         {"_approximate_cells", as_method(ask<plan_quadtree>), METH_FASTCALL, nullptr},
+                         {"_sampling", as_method(ask<plan_samples>), METH_FASTCALL, nullptr},
+                         {"_voronoi", as_method(ask<plan_voronoi>), METH_FASTCALL, nullptr},
+                         {"_bug", as_method(ask<plan_bug>), METH_FASTCALL, nullptr},
+                         {"_voronoi_bug", as_method(ask<plan_voronoi_bug>), METH_FASTCALL, nullptr},
+                         {"_potential_field", as_method(ask<plan_descent>), METH_FASTCALL, nullptr},
+                         {"_navigation_function", as_method(ask<plan_star>), METH_FASTCALL, nullptr},
                          {nullptr, nullptr, 0, nullptr}};
 
 }  // namespace

@@ -58,7 +58,7 @@ inline constexpr int arguments_for<std::array<T, n>> = int(n);
 
 // Settings from as many arguments.
 template <class... T>
-bool read_settings(PyObject* const* args, Py_ssize_t count, std::tuple<T&...> settings) {
+bool read_settings(PyObject* const* args, Py_ssize_t count, std::tuple<T...>& settings) {
     if (count != (arguments_for<T> + ... + 0))
         return PyErr_SetString(PyExc_TypeError, "the number of arguments does not fit the planner"), false;
     return std::apply([&args](T&... each) { return (read_setting(args, each) && ...); }, settings);
@@ -71,37 +71,47 @@ PyObject* refuse_ends(PyObject* world, const cspace::Point (&ends)[2]);
 // In a handler: null, with the error of Python for what was thrown.
 PyObject* translate_exception(PyObject* world);
 
-template <class Query>
-PyObject* ask(PyObject*, PyObject* const* args, Py_ssize_t count) try {
+// is_concurrent(core): whether others may ask the world meanwhile; null: always.
+template <class World, class Found, class... Settings>
+PyObject* ask_planner(bool (*plan)(const cspace::navigation::Query<World>&, Found&, Settings...),
+                      bool (*is_concurrent)(const std::type_identity_t<World>&), PyObject* const* args,
+                      Py_ssize_t count) {
     constexpr int ends_at = 4, settings_at = 6;
-    constexpr bool has_evidence = requires(Query& query) { query.evidence(); };
+    constexpr bool has_evidence = requires(Found& found) { found.evidence; };
     if (count < settings_at + has_evidence)
         return PyErr_Format(PyExc_TypeError, "expected %d arguments or more", settings_at + has_evidence);
     const bool is_traced = args[0] == Py_True;
     PyObject* world = args[1];
-    const auto* core = core_of<typename Query::World>(args[2]);
-    Query query;
+    const auto* core = core_of<World>(args[2]);
+    std::tuple<std::remove_cvref_t<Settings>...> settings;
     cspace::Point ends[2];
-    if (!core || !read_settings(args + settings_at, count - settings_at - has_evidence, query.settings()) ||
+    if (!core || !read_settings(args + settings_at, count - settings_at - has_evidence, settings) ||
         !read_ends(world, args + ends_at, ends))
         return nullptr;
+    Found found;
     cspace::navigation::Trace trace;
+    const cspace::navigation::Query<World> query{*core, ends[0], ends[1], is_traced ? &trace : nullptr};
     const Watch watch;
     std::optional<nanobind::gil_scoped_release> released;
-    if (query.is_concurrent(*core)) released.emplace();
-    const bool is_free = query.find(*core, ends[0], ends[1], is_traced ? &trace : nullptr);
+    if (!is_concurrent || is_concurrent(*core)) released.emplace();
+    const bool is_free = std::apply([&](auto&... each) { return plan(query, found, each...); }, settings);
     released.reset();
     if (!is_free) return refuse_ends(world, ends);
     if (is_traced) return trace_arrays(trace);
-    const double seconds = watch.seconds() + query.spent;
+    double seconds = watch.seconds();
     nanobind::object evidence;
     if constexpr (has_evidence) {
+        seconds += found.spent;
         const nanobind::handle describe = args[count - 1];
-        if (auto known = query.evidence())
-            evidence = std::apply([&](auto&... part) { return describe(nanobind::cast(std::move(part))...); },
-                                  *known);
+        const auto tell = [&](auto&... part) { return describe(nanobind::cast(std::move(part))...); };
+        if (found.evidence) evidence = std::apply(tell, *found.evidence);
     }
-    return make_route(world, args[3], ends[0], ends[1], query.route(), seconds, evidence.release().ptr());
+    return make_route(world, args[3], ends[0], ends[1], route_of(found), seconds, evidence.release().ptr());
+}
+
+template <auto plan, auto is_concurrent = nullptr>
+PyObject* ask(PyObject*, PyObject* const* args, Py_ssize_t count) try {
+    return ask_planner(plan, is_concurrent, args, count);
 } catch (...) {
     return translate_exception(args[1]);
 }

@@ -16,19 +16,18 @@ namespace {
 
 // Calls move(walls, start, goal) with the ends taken off walls, for a trip with a route and a witness; false
 // where an end lies in an obstacle.
-template <class Trip, class Robot, class Move>
-bool send_robot(const PolygonCore& core, Point start, Point goal, Trip& trip, Robot& robot,
-                const Move& move) {
-    PolygonCore::State& state = core.state();
+template <class Trip, class Move>
+bool send_robot(const Query<PolygonCore>& query, Trip& trip, Route& route, Shut& shut, const Move& move) {
+    PolygonCore::State& state = query.world.state();
     maps::Settled from, to;
-    if (!state.settle(start, goal, from, to)) return false;
+    if (!state.settle(query.start, query.goal, from, to)) return false;
     const Walls& walls = state.walls.get<Walls>(state.world.walls);
     trip = move(walls, from.at, to.at);
-    Route& route = robot.found = std::move(trip.route);
-    route.path.front() = start;
-    if (route.status == Status::found) route.path.back() = goal;
+    route = std::move(trip.route);
+    route.path.front() = query.start;
+    if (route.status == Status::found) route.path.back() = query.goal;
     if (route.status == Status::unreachable)
-        robot.shut.emplace(walls.ring(trip.witness.in.name), std::pair(trip.witness.at.x, trip.witness.at.y));
+        shut.emplace(walls.ring(trip.witness.in.name), std::pair(trip.witness.at.x, trip.witness.at.y));
     return true;
 }
 
@@ -59,8 +58,12 @@ void list_events(const std::vector<Follow>& follows, const std::vector<Point>& p
 
 }  // namespace
 
-bool WallQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
+bool plan_bug(const Query<PolygonCore>& query, WallAnswer& answer, std::int64_t kind, std::int64_t side,
+              double range) {
+    enum Kind { bug_1, bug_2, tangent_bug };
+    enum Side { left, right, either };
     Trip trip;
+    Shut shut;
     const auto walk = [&](const Walls& walls, Point from, Point to) {
         const Hand hand = side == left ? Hand::left : Hand::right;
         if (kind == tangent_bug) {
@@ -70,20 +73,26 @@ bool WallQuery::find(const PolygonCore& core, Point start, Point goal, Trace* tr
         ContactRobot touching(walls, from);
         return kind == bug_1 ? navigation::bug_1(touching, to, hand) : navigation::bug_2(touching, to, hand);
     };
-    if (!send_robot(core, start, goal, trip, *this, walk)) return false;
-    if (trace) list_events(trip.follows, found.path, goal, *trace);
-    const Walls& walls = core.state().walls.get<Walls>(core.state().world.walls);
+    if (!send_robot(query, trip, answer.route, shut, walk)) return false;
+    const std::vector<Point>& path = answer.route.path;
+    if (query.trace) list_events(trip.follows, path, query.goal, *query.trace);
+    PolygonCore::State& state = query.world.state();
+    const Walls& walls = state.walls.get<Walls>(state.world.walls);
+    auto& [hits, leaves, walked, rings, known] = answer.evidence.emplace();
     for (const Follow& f : trip.follows) {
-        hits.values.push_back(found.path[f.first]);
-        leaves.values.push_back(found.path[f.last]);
+        hits.values.push_back(path[f.first]);
+        leaves.values.push_back(path[f.last]);
         walked.values.push_back(f.walked);
         rings.values.push_back(walls.ring(f.hit.in.name));
     }
+    known = shut;
     return true;
 }
 
-bool VoronoiBugQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
-    PolygonCore::State& state = core.state();
+bool plan_voronoi_bug(const Query<PolygonCore>& query, VoronoiBugAnswer& answer, double range,
+                      double deviation, std::uint64_t seed) {
+    PolygonCore::State& state = query.world.state();
+    Shut shut;
     Exploration trip;
     const auto explore = [&](const Walls& walls, Point from, Point to) {
         Exploration made = deviation > 0
@@ -95,13 +104,13 @@ bool VoronoiBugQuery::find(const PolygonCore& core, Point start, Point goal, Tra
             made.route.status = Status::undetermined;
         return made;
     };
-    if (!send_robot(core, start, goal, trip, *this, explore)) return false;
+    if (!send_robot(query, trip, answer.route, shut, explore)) return false;
+    const std::vector<Point>& path = answer.route.path;
     for (const Leg& leg : trip.legs)
-        for (std::size_t i = leg.first; trace && i < leg.last; ++i)
-            trace->push_back({std::int8_t(leg.move), found.path[i], found.path[i + 1], leg.clearance});
-    meets.values = std::move(trip.meets);
-    branches = trip.branches, dead_ends = trip.dead_ends, scans = trip.scans;
-    clearance = trip.clearance;
+        for (std::size_t i = leg.first; query.trace && i < leg.last; ++i)
+            query.trace->push_back({std::int8_t(leg.move), path[i], path[i + 1], leg.clearance});
+    answer.evidence = {
+        Table<Point>{std::move(trip.meets)}, trip.branches, trip.dead_ends, trip.clearance, trip.scans, shut};
     return true;
 }
 

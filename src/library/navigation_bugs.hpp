@@ -11,39 +11,17 @@ namespace cspace::navigation {
 // Where the line to an unreachable goal enters the walls that shut it off: the boundary loop, and the point.
 using Shut = std::optional<std::pair<int, std::pair<double, double>>>;
 
-struct WallQuery : Query<PolygonCore> {
-    enum Kind { bug_1, bug_2, tangent_bug };
-    enum Side { left, right, either };  // `either` for the tangent bug alone
-    std::int64_t kind, side;
-    double range;
-    // The stretches along walls, one row of each table for each.
-    Table<Point> hits, leaves;
-    Table<double> walked;  // [m]
-    Table<std::int64_t> rings;
-    Shut shut;
+// Bug 1 (0), Bug 2 (1) and tangent bug (2), with walls on the left (0), on the right (1) or, for the last,
+// either (2). Tables with a row for each stretch along a wall: where it was hit and left, its length [m] and
+// its boundary loop.
+using WallAnswer = Answer<Table<Point>, Table<Point>, Table<double>, Table<std::int64_t>, Shut>;
+bool plan_bug(const Query<PolygonCore>& query, WallAnswer& answer, std::int64_t kind, std::int64_t side,
+              double range);
 
-    auto settings() { return std::tie(kind, side, range); }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-    auto evidence() {
-        return std::optional(
-            std::tuple(std::move(hits), std::move(leaves), std::move(walked), std::move(rings), shut));
-    }
-};
-
-// Voronoi Bug: the standard deviation of its sensor, 0 for one without noise.
-struct VoronoiBugQuery : Query<PolygonCore> {
-    double range, deviation;
-    std::uint64_t seed;
-    Table<Point> meets;  // where three walls or more are nearest
-    std::int64_t branches, dead_ends, scans;
-    double clearance;  // least on the curves that it followed [m]
-    Shut shut;
-
-    auto settings() { return std::tie(range, deviation, seed); }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-    auto evidence() {
-        return std::optional(std::tuple(std::move(meets), branches, dead_ends, clearance, scans, shut));
-    }
-};
+// Voronoi Bug. deviation: of its sensor, 0 for one without noise. Where three walls or more are nearest; the
+// numbers of branches and dead ends; the least clearance on the curves that it followed [m]; scans.
+using VoronoiBugAnswer = Answer<Table<Point>, std::int64_t, std::int64_t, double, std::int64_t, Shut>;
+bool plan_voronoi_bug(const Query<PolygonCore>& query, VoronoiBugAnswer& answer, double range,
+                      double deviation, std::uint64_t seed);
 
 }  // namespace cspace::navigation

@@ -57,27 +57,29 @@ bool walls_divide(const GridWorld& world, Point start, Point goal) {
 ClearanceField::ClearanceField(const GridWorld& world)
     : cells(std::make_shared<Clearance>(make_clearance(world.state().bits))) {}
 
-bool PotentialQuery::find(const GridWorld& world, Point start, Point goal, Trace* trace) {
-    const auto& [bits, frame, parts] = world.state();
-    const auto& s = numbers;
+bool plan_by_potential(const Query<GridWorld>& query, Route& route, const ClearanceField* field,
+                       const std::array<double, 7>& s) {
+    const auto& [bits, frame, parts] = query.world.state();
     maps::Cell from, to;
-    if (!world.state().find_cells(start, goal, from, to)) return false;
+    if (!query.world.state().find_cells(query.start, query.goal, from, to)) return false;
     GridAnswer answer;
-    answer.is_traced = trace;
+    answer.is_traced = query.trace;
     find_by_potential(bits, *field->cells, {s[0], s[1], s[2], s[3], s[4], s[5] != 0},
                       static_cast<Corners>(s[6]), from, to, answer);
-    if (trace) list_settled(frame, answer.settled, *trace);
-    draw_route(frame, start, goal, answer, found);
+    if (query.trace) list_settled(frame, answer.settled, *query.trace);
+    draw_route(frame, query.start, query.goal, answer, route);
     return true;
 }
 
-bool MarchQuery::find(const GridWorld& world, Point start, Point goal, Trace* trace) {
-    const auto& [bits, frame, parts] = world.state();
+bool plan_march(const Query<GridWorld>& query, Answer<double>& answer, const ClearanceField* field,
+                double slow_within) {
+    const auto& [bits, frame, parts] = query.world.state();
     maps::Cell from, to;
-    if (!world.state().find_cells(start, goal, from, to)) return false;
-    MarchAnswer answer =
-        march_front(bits, frame, field->cells.get(), slow_within, start, from, goal, to, trace);
-    found = std::move(answer.route), time = frame.resolution * answer.time;
+    if (!query.world.state().find_cells(query.start, query.goal, from, to)) return false;
+    MarchAnswer made = march_front(bits, frame, field->cells.get(), slow_within, query.start, from,
+                                   query.goal, to, query.trace);
+    answer.route = std::move(made.route);
+    if (answer.route.status == Status::found) answer.evidence = {frame.resolution * made.time};
     return true;
 }
 
@@ -105,17 +107,21 @@ Table<double> list_heights(const HarmonicPotential& potential, const GridWorld& 
     return map_cells<double>(world.state().bits, [&](maps::Cell c) { return potential.field->height(c); });
 }
 
-bool HarmonicQuery::find(const GridWorld& world, Point start, Point goal, Trace* trace) {
-    const maps::GridFrame& frame = world.state().frame;
+bool plan_harmonic(const Query<GridWorld>& query, Answer<>& answer, const HarmonicPotential* potential,
+                   double spent) {
+    const maps::GridFrame& frame = query.world.state().frame;
     const HarmonicField& field = *potential->field;
     maps::Cell from, to;
-    if (!world.state().find_cells(start, goal, from, to)) return false;
-    const GridAnswer answer = field.descend(from);
-    const auto& cells = answer.cells;
-    for (std::size_t k = 1; trace && k < cells.size(); ++k)
-        trace->push_back({0, frame.center(cells[k - 1]), frame.center(cells[k]), field.height(cells[k])});
-    draw_route(frame, start, goal, answer, found);
-    if (!answer.found && !cells.empty()) found.status = Status::undetermined;
+    if (!query.world.state().find_cells(query.start, query.goal, from, to)) return false;
+    const GridAnswer way = field.descend(from);
+    const auto& cells = way.cells;
+    for (std::size_t k = 1; query.trace && k < cells.size(); ++k)
+        query.trace->push_back(
+            {0, frame.center(cells[k - 1]), frame.center(cells[k]), field.height(cells[k])});
+    draw_route(frame, query.start, query.goal, way, answer.route);
+    if (!way.found && !cells.empty()) answer.route.status = Status::undetermined;
+    answer.evidence.emplace();
+    answer.spent = spent;
     return true;
 }
 
@@ -165,15 +171,16 @@ std::tuple<Table<std::int32_t>, Table<double>, Table<double>> BrushfireDiagram::
     return {std::move(ends), std::move(lengths), std::move(least)};
 }
 
-bool BrushfireQuery::find(const GridWorld& world, Point start, Point goal, Trace* trace) {
-    const auto& [searched, frame] = *diagram->state_;
+bool plan_brushfire(const Query<GridWorld>& query, Answer<double>& answer, const BrushfireDiagram* diagram,
+                    bool is_widest) {
+    const auto& [searched, frame] = diagram->state();
     maps::Cell from, to;
-    if (!world.state().find_cells(start, goal, from, to)) return false;
-    if (trace) list_waves(searched, frame, *trace);
-    const BrushfireAnswer answer =
+    if (!query.world.state().find_cells(query.start, query.goal, from, to)) return false;
+    if (query.trace) list_waves(searched, frame, *query.trace);
+    const BrushfireAnswer found =
         find_along(searched, from, to, is_widest ? Prefer::clearance : Prefer::length);
-    draw_route(frame, start, goal, answer.way, found);
-    least_clearance = diagram->state_->width(answer.squared);
+    draw_route(frame, query.start, query.goal, found.way, answer.route);
+    if (found.way.found) answer.evidence = {diagram->state().width(found.squared)};
     return true;
 }
 

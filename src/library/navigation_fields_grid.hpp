@@ -23,27 +23,13 @@ struct ClearanceField {
     std::shared_ptr<const Clearance> cells;
 };
 
-// By a potential.
-struct PotentialQuery : Query<GridWorld> {
-    const ClearanceField* field;
-    std::array<double, 7> numbers;  // gain, rho_0, cap, all in cells; scale, weight, whether greedy, Corners
-
-    auto settings() { return std::tie(field, numbers); }
-    bool find(const GridWorld& world, Point start, Point goal, Trace* trace);
-};
-
-// By fast marching, slower within a distance of walls [cells].
-struct MarchQuery : Query<GridWorld> {
-    const ClearanceField* field;
-    double slow_within;
-    double time;  // that the way takes [m, over the speed]
-
-    auto settings() { return std::tie(field, slow_within); }
-    bool find(const GridWorld& world, Point start, Point goal, Trace* trace);
-    auto evidence() const {
-        return found.status == Status::found ? std::optional(std::tuple(time)) : std::nullopt;
-    }
-};
+// By a potential. numbers: gain, rho_0, cap, all in cells; scale, weight, whether greedy, Corners.
+bool plan_by_potential(const Query<GridWorld>& query, Route& route, const ClearanceField* field,
+                       const std::array<double, 7>& numbers);
+// By fast marching, slower within a distance of walls [cells]; the time that the way takes [m, over the
+// speed].
+bool plan_march(const Query<GridWorld>& query, Answer<double>& answer, const ClearanceField* field,
+                double slow_within);
 // The times at which a front from the goal arrives.
 Table<double> march_times(const ClearanceField& field, const GridWorld& world, Point goal,
                           double slow_within);
@@ -60,13 +46,8 @@ struct HarmonicPotential {
 // Minus the logarithm of the chance.
 Table<double> list_heights(const HarmonicPotential& potential, const GridWorld& world);
 
-struct HarmonicQuery : Query<GridWorld> {
-    const HarmonicPotential* potential;
-
-    auto settings() { return std::tie(potential, spent); }
-    bool find(const GridWorld& world, Point start, Point goal, Trace* trace);
-    auto evidence() const { return std::optional(std::tuple<>()); }
-};
+bool plan_harmonic(const Query<GridWorld>& query, Answer<>& answer, const HarmonicPotential* potential,
+                   double spent);
 
 // The diagram of a grid by brushfire, and ways along it.
 class BrushfireDiagram {
@@ -79,23 +60,16 @@ class BrushfireDiagram {
     // Cells (row, column, row, column) where branches end, their lengths and least clearances [m].
     std::tuple<Table<std::int32_t>, Table<double>, Table<double>> branches() const;
 
-  private:
-    friend struct BrushfireQuery;
     struct State;
+    const State& state() const { return *state_; }
+
+  private:
     std::shared_ptr<const State> state_;
 };
 
-// The events are the waves as they burn, outwards from walls, and the diagram that they leave.
-struct BrushfireQuery : Query<GridWorld> {
-    const BrushfireDiagram* diagram;
-    bool is_widest;
-    double least_clearance;  // [m]
-
-    auto settings() { return std::tie(diagram, is_widest); }
-    bool find(const GridWorld& world, Point start, Point goal, Trace* trace);
-    auto evidence() const {
-        return found.status == Status::found ? std::optional(std::tuple(least_clearance)) : std::nullopt;
-    }
-};
+// Along it; the least clearance [m]. The events are the waves as they burn, outwards from walls, and the
+// diagram that they leave.
+bool plan_brushfire(const Query<GridWorld>& query, Answer<double>& answer, const BrushfireDiagram* diagram,
+                    bool is_widest);
 
 }  // namespace cspace::navigation

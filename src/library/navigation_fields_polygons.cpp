@@ -47,22 +47,26 @@ Table<double> RepellingWalls::values(const PolygonCore& core, Point goal, std::s
     return made;
 }
 
-bool DescentQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
-    const PolygonCore::State& state = core.state();
+bool plan_descent(const Query<PolygonCore>& query, Answer<int, double, int>& answer,
+                  const RepellingWalls* near, const PotentialSettings& s) {
+    const PolygonCore::State& state = query.world.state();
     const NearWalls& walls = *near->walls;
-    const auto& s = numbers;
     const Gains gains{s[0], s[1], s[2], s[3]};
     maps::Settled from, to;
-    if (!state.settle(start, goal, from, to)) return false;
-    const Potential potential(walls, gains, start == goal ? from.at : goal);
+    if (!state.settle(query.start, query.goal, from, to)) return false;
+    const Potential potential(walls, gains, query.start == query.goal ? from.at : query.goal);
     const double closest = std::max(2 * state.tolerance, DescentRun::least_step * gains.rho_0);
     const std::vector<Point> inward = find_start_directions(state.world.space, from, walls, closest);
-    found = DescentRun(walls, potential, s[4], std::int64_t(s[5])).run(from.at, inward);
+    DescentRoute found = DescentRun(walls, potential, s[4], std::int64_t(s[5])).run(from.at, inward);
     std::vector<Point>& path = found.route.path;
-    path.front() = start;
-    if (!trace) return true;
-    list_steps(found, *trace);
-    if (found.rest != Rest::goal) trace->push_back({1, path.back(), path.back(), found.values.back()});
+    path.front() = query.start;
+    if (query.trace) {
+        list_steps(found, *query.trace);
+        if (found.rest != Rest::goal)
+            query.trace->push_back({1, path.back(), path.back(), found.values.back()});
+    }
+    answer.route = std::move(found.route);
+    answer.evidence = {int(found.rest), found.force, found.saddles};
     return true;
 }
 
@@ -110,23 +114,27 @@ std::optional<Table<Point>> StarFunction::find_path(Point start) const {
     return Table<Point>{std::move(made.route.path)};
 }
 
-bool StarQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
-    const PolygonCore::State& state = core.state();
+bool plan_star(const Query<PolygonCore>& query, Answer<int>& answer, const StarFunction* star, double spent) {
+    const PolygonCore::State& state = query.world.state();
     const NavigationFunction& function = *star->function;
     maps::Settled from, to;
-    if (!state.settle(start, goal, from, to)) return false;
+    if (!state.settle(query.start, query.goal, from, to)) return false;
+    DescentRoute found;
     if (state.world.shared_component(from, to) == maps::none) {
         found.route.status = Status::unreachable;
     } else if (star->kappa > 0) {
         found = function.descend(from.at);
-        found.route.path.front() = start;
-        if (trace) {
+        found.route.path.front() = query.start;
+        if (query.trace) {
             for (double& value : found.values) value = function.phi(value);
-            list_steps(found, *trace);
+            list_steps(found, *query.trace);
         }
-        if (found.route.status == Status::found) found.route.path.back() = goal;
+        if (found.route.status == Status::found) found.route.path.back() = query.goal;
     }
-    found.route.stats.edges += function.proof().squares;
+    answer.route = std::move(found.route);
+    answer.route.stats.edges += function.proof().squares;
+    answer.evidence = {found.saddles};
+    answer.spent = spent;
     return true;
 }
 

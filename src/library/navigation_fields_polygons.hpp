@@ -26,14 +26,9 @@ struct RepellingWalls {
     Table<double> values(const PolygonCore& core, Point goal, std::span<const Point> points,
                          const PotentialSettings& settings) const;
 };
-struct DescentQuery : Query<PolygonCore, DescentRoute> {
-    const RepellingWalls* near;
-    PotentialSettings numbers;
-
-    auto settings() { return std::tie(near, numbers); }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-    auto evidence() const { return std::optional(std::tuple(int(found.rest), found.force, found.saddles)); }
-};
+// By descent: the Rest, the force that is left, and places without force that were left again.
+bool plan_descent(const Query<PolygonCore>& query, Answer<int, double, int>& answer,
+                  const RepellingWalls* near, const PotentialSettings& settings);
 
 // What stands in the way of a star world around a point: 1 for a ring that is no star, 2 for one that touches
 // another, and a corner of it.
@@ -62,12 +57,7 @@ struct StarFunction {
     std::optional<Table<Point>> find_path(Point start) const;
 };
 
-struct StarQuery : Query<PolygonCore, DescentRoute> {
-    const StarFunction* star;
-
-    auto settings() { return std::tie(star, spent); }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-    auto evidence() const { return std::optional(std::tuple(found.saddles)); }
-};
+// By the navigation function; how many saddles were left.
+bool plan_star(const Query<PolygonCore>& query, Answer<int>& answer, const StarFunction* star, double spent);
 
 }  // namespace cspace::navigation

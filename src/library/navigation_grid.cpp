@@ -36,54 +36,48 @@ Choice known_choice(std::int64_t number, Choice last) {
 }
 
 // Of this thread; a search that a signal handler runs amid another one finds none.
-thread_local Route kept_route;
 thread_local std::unique_ptr<Scratch> kept_scratch;
 
 }  // namespace
 
-CellsQuery::CellsQuery() { found = std::move(kept_route); }
-CellsQuery::~CellsQuery() { kept_route = std::move(found); }
-
-bool CellsQuery::find(const GridWorld& grid, Point start, Point goal, Trace* trace) {
-    GridWorld::State& world = grid.state();
+bool plan_cells(const Query<GridWorld>& query, Answer<std::int64_t, double, double>& answer,
+                const std::array<std::int64_t, 3>& choices, const std::array<double, 3>& weights,
+                std::span<const double> costs, double least_cost) {
+    GridWorld::State& world = query.world.state();
     const auto planner = known_choice(choices[0], GridPlanner::waves);
     const auto corners = known_choice(choices[1], last_rule);
     const auto metric = known_choice(choices[2], Metric::euclidean);
-    if (!costs.empty() && costs.size() != std::size_t(grid.rows) * std::size_t(grid.columns))
+    const double side = world.frame.resolution;
+    if (!costs.empty() && costs.size() != std::size_t(query.world.rows) * std::size_t(query.world.columns))
         throw std::invalid_argument("costs need one number per cell");
     maps::Cell from, to;
-    if (!world.find_cells(start, goal, from, to)) return false;
+    if (!world.find_cells(query.start, query.goal, from, to)) return false;
     const double* each = costs.empty() ? nullptr : costs.data();
-    const GridQuery query{planner, corners, metric, weights[0], weights[1], weights[2], each, least_cost};
     auto scratch = kept_scratch ? std::move(kept_scratch) : std::make_unique<Scratch>();
-    auto& [nodes, answer] = *scratch;
-    answer.is_traced = trace;
-    find_way(world.bits, from, to, query, nodes, answer, &world.parts);
-    if (trace) list_settled(world.frame, answer.settled, *trace);
-    draw_route(world.frame, start, goal, answer, found);
-    cost = grid.resolution * answer.cost, least = grid.resolution * answer.least;
-    parts = answer.parts;
+    auto& [nodes, found] = *scratch;
+    found.is_traced = query.trace;
+    find_way(world.bits, from, to,
+             {planner, corners, metric, weights[0], weights[1], weights[2], each, least_cost}, nodes, found,
+             &world.parts);
+    if (query.trace) list_settled(world.frame, found.settled, *query.trace);
+    draw_route(world.frame, query.start, query.goal, found, answer.route);
+    if (found.parts || (found.found && (each || planner == GridPlanner::focal)))
+        answer.evidence = {found.parts, side * found.cost, side * found.least};
     // More takes far longer to fill than to ask for again.
     constexpr std::size_t kept_bytes = std::size_t(32) << 20;
     if (nodes.bytes() <= kept_bytes) kept_scratch = std::move(scratch);
     return true;
 }
 
-std::optional<std::tuple<std::int64_t, double, double>> CellsQuery::evidence() const {
-    const bool has_bounds = !costs.empty() || choices[0] == std::int64_t(GridPlanner::focal);
-    if (parts || (has_bounds && found.status == Status::found)) return std::tuple(parts, cost, least);
-    return std::nullopt;
-}
-
-bool RunsQuery::find(const GridWorld& world, Point start, Point goal, Trace* trace) {
-    auto& [bits, frame, parts] = world.state();
+bool plan_runs(const Query<GridWorld>& query, Route& route) {
+    auto& [bits, frame, parts] = query.world.state();
     if (!maps::RunMesh::fits(bits))
         throw std::invalid_argument(
             "the grid has too many cells for a search over runs of cells; use larger cells");
     GridAnyAngle search(bits, frame);
-    const SettledInRuns from = search.settle(start), to = search.settle(goal);
+    const SettledInRuns from = search.settle(query.start), to = search.settle(query.goal);
     if (from.runs.empty() || to.runs.empty()) return false;
-    found = search.solve(start, from, goal, to, &parts, trace);
+    route = search.solve(query.start, from, query.goal, to, &parts, query.trace);
     return true;
 }
 

@@ -20,8 +20,9 @@ namespace {
 // Calls search(state, component, from, to) with the ends taken off walls, and gives the path the ends that
 // were asked for; false where one lies in an obstacle.
 template <class Search>
-bool find_between(const PolygonCore& core, Point start, Point goal, Route& route, const Search& search) {
-    State& state = core.state();
+bool find_between(const Query<PolygonCore>& query, Route& route, const Search& search) {
+    State& state = query.world.state();
+    const auto& [world, start, goal, trace] = query;
     Settled from, to;
     if (!state.settle(start, goal, from, to)) return false;
     route.status = Status::unreachable;
@@ -51,7 +52,7 @@ Route find_by_visibility(State& state, Settled& from, Settled& to, Trace* trace)
 Route find_by_cells(State& state, Settled& from, Settled& to, Trace* trace) {
     return state.exact_cells.get<ExactCells>(state.world).solve(from.at, to.at, trace);
 }
-// By the numbers of PolygonQuery.
+// By the numbers of plan_in_polygons.
 constexpr std::array planners = {find_any_angle, find_by_visibility, find_by_cells};
 
 ApproximateCells cells_of(State& state, const QuadtreeSettings& s, Trace* trace) {
@@ -59,50 +60,62 @@ ApproximateCells cells_of(State& state, const QuadtreeSettings& s, Trace* trace)
     return ApproximateCells(state.world, options, trace, &state.quadtree.get<CellStages>());
 }
 
-SampledRoute search_roadmap(State& state, const sampling::Problem& problem, const SampleQuery& s,
+SampledRoute search_roadmap(State& state, const sampling::Problem& problem, const sampling::RoadmapKey& key,
                             Trace* trace) {
-    const sampling::RoadmapKey key{problem.component, s.samples, s.neighbours, s.seed};
     const auto make = [&] { return std::make_shared<const sampling::Roadmap>(state.world, key); };
     const auto roadmap = state.samples.get<sampling::KeptRoadmap>().of(key, make, search::most_kept_bytes);
     return sampling::RoadmapSearch(problem, *roadmap).solve(trace);
-}
-SampledRoute grow_tree(const sampling::Problem& problem, const SampleQuery& s, Trace* trace) {
-    const sampling::Growth growth{s.samples, s.step, s.goal_bias, s.planner == s.rrt_star, s.seed};
-    return sampling::Tree(problem, growth, trace).solve();
 }
 
 const voronoi::Roadmap& diagram_of(State& state) { return state.voronoi.get<voronoi::Roadmap>(state.world); }
 
 }  // namespace
 
-bool PolygonQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
-    return find_between(core, start, goal, found, [&](State& state, Index component, auto& from, auto& to) {
-        if (component != maps::none) found = planners.at(std::size_t(planner))(state, from, to, trace);
+bool plan_in_polygons(const Query<PolygonCore>& query, Route& route, std::int64_t planner) {
+    return find_between(query, route, [&](State& state, Index component, auto& from, auto& to) {
+        if (component != maps::none) route = planners.at(std::size_t(planner))(state, from, to, query.trace);
     });
 }
 
-bool QuadtreeQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
-    return find_between(core, start, goal, found.route, [&](State& state, Index, auto& from, auto& to) {
-        found = cells_of(state, numbers, trace).solve(from.at, to.at);
+bool plan_quadtree(const Query<PolygonCore>& query,
+                   Answer<std::int64_t, std::int64_t, std::int64_t, int>& answer,
+                   const QuadtreeSettings& settings) {
+    return find_between(query, answer.route, [&](State& state, Index, auto& from, auto& to) {
+        CellRoute found = cells_of(state, settings, query.trace).solve(from.at, to.at);
+        answer.route = std::move(found.route);
+        answer.evidence = std::tuple_cat(found.leaves, std::tuple(found.depth));
     });
 }
 
-bool SampleQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
+bool plan_samples(const Query<PolygonCore>& query, Answer<std::int64_t, std::int64_t, std::int64_t>& answer,
+                  std::int64_t planner, std::int64_t samples, std::uint64_t seed, std::int64_t neighbours,
+                  double step, double goal_bias) {
+    enum { prm, rrt, rrt_star };
+    SampledRoute found;
     const auto search = [&](State& state, Index component, auto& from, auto& to) {
         if (component == maps::none) return;
         const sampling::Problem problem = sampling::problem_of(state.world, component, from, to);
-        found =
-            planner == prm ? search_roadmap(state, problem, *this, trace) : grow_tree(problem, *this, trace);
+        const sampling::Growth growth{samples, step, goal_bias, planner == rrt_star, seed};
+        found = planner == prm
+                    ? search_roadmap(state, problem, {component, samples, neighbours, seed}, query.trace)
+                    : sampling::Tree(problem, growth, query.trace).solve();
     };
-    return find_between(core, start, goal, found.route, search);
+    if (!find_between(query, found.route, search)) return false;
+    answer.evidence = {found.samples, found.route.stats.nodes, found.route.stats.edges};
+    answer.route = std::move(found.route);
+    return true;
 }
 
-bool VoronoiQuery::find(const PolygonCore& core, Point start, Point goal, Trace* trace) {
-    const auto search = [&](State& state, Index component, auto& from, auto& to) {
-        if (component != maps::none)
-            found = diagram_of(state).solve(from, to, component, is_widest, tolerance, trace);
-    };
-    return find_between(core, start, goal, found.route, search);
+bool plan_voronoi(const Query<PolygonCore>& query, Answer<double, double, double, double>& answer,
+                  bool is_widest, double tolerance) {
+    return find_between(query, answer.route, [&](State& state, Index component, auto& from, auto& to) {
+        if (component == maps::none) return;
+        auto [route, clearance, on_diagram, at_start, at_goal] =
+            diagram_of(state).solve(from, to, component, is_widest, tolerance, query.trace);
+        answer.route = std::move(route);
+        if (answer.route.status == Status::found)
+            answer.evidence = {clearance, on_diagram, at_start, at_goal};
+    });
 }
 
 std::pair<Table<Point>, Table<std::int32_t>> list_visibility_graph(const PolygonCore& core) {

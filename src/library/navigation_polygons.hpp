@@ -12,13 +12,8 @@
 
 namespace cspace::navigation {
 
-struct PolygonQuery : Query<PolygonCore> {
-    std::int64_t planner;  // 0 any angle, 1 visibility, 2 exact cells
-
-    auto settings() { return std::tie(planner); }
-    bool is_concurrent(const PolygonCore&) const { return false; }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-};
+// planner: 0 any angle, 1 visibility, 2 exact cells
+bool plan_in_polygons(const Query<PolygonCore>& query, Route& route, std::int64_t planner);
 
 // The nodes of the visibility graph and its edges as pairs of them, each once.
 std::pair<Table<Point>, Table<std::int32_t>> list_visibility_graph(const PolygonCore& core);
@@ -28,46 +23,24 @@ std::pair<Table<Point>, Table<std::int32_t>> list_exact_cells(const PolygonCore&
 
 // Approximate cells: depth, most_depth, refine, uniform, manhattan, most_cells.
 using QuadtreeSettings = std::array<std::int64_t, 6>;
-struct QuadtreeQuery : Query<PolygonCore, CellRoute> {
-    QuadtreeSettings numbers;
-
-    auto settings() { return std::tie(numbers); }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-    auto evidence() const { return std::optional(std::tuple_cat(found.leaves, std::tuple(found.depth))); }
-};
+// The numbers of free, mixed and full leaves, and the depth of the deepest.
+bool plan_quadtree(const Query<PolygonCore>& query,
+                   Answer<std::int64_t, std::int64_t, std::int64_t, int>& answer,
+                   const QuadtreeSettings& settings);
 // The leaves as squares (least x and y, largest x and y), and their kinds.
 std::pair<Table<double>, Table<std::int8_t>> list_cell_leaves(const PolygonCore& core,
                                                               const QuadtreeSettings& settings);
 
-// Planners that draw points from free space.
-struct SampleQuery : Query<PolygonCore, SampledRoute> {
-    enum Planner { prm, rrt, rrt_star };
-    std::int64_t planner, samples;
-    std::uint64_t seed;
-    std::int64_t neighbours;  // of a node of a roadmap
-    double step, goal_bias;   // of a tree
+// Planners that draw points from free space: 0 PRM, 1 RRT, 2 RRT*. neighbours: of a node of a roadmap. step,
+// goal_bias: of a tree. Returns the numbers of points drawn, nodes and edges.
+bool plan_samples(const Query<PolygonCore>& query, Answer<std::int64_t, std::int64_t, std::int64_t>& answer,
+                  std::int64_t planner, std::int64_t samples, std::uint64_t seed, std::int64_t neighbours,
+                  double step, double goal_bias);
 
-    auto settings() { return std::tie(planner, samples, seed, neighbours, step, goal_bias); }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-    auto evidence() const {
-        return std::optional(std::tuple(found.samples, found.route.stats.nodes, found.route.stats.edges));
-    }
-};
-
-// Along the Voronoi diagram. tolerance: how far a chord may lie from its arc [m].
-struct VoronoiQuery : Query<PolygonCore, DiagramRoute> {
-    bool is_widest;
-    double tolerance;
-
-    auto settings() { return std::tie(is_widest, tolerance); }
-    bool find(const PolygonCore& core, Point start, Point goal, Trace* trace);
-    auto evidence() const {
-        const auto& [route, clearance, on_diagram, at_start, at_goal] = found;
-        const bool is_found = route.status == Status::found;
-        const std::tuple distances(clearance, on_diagram, at_start, at_goal);
-        return is_found ? std::optional(distances) : std::nullopt;
-    }
-};
+// Along the Voronoi diagram. tolerance: how far a chord may lie from its arc [m]. Least distances from walls:
+// on the whole way, on the diagram, and on the ways to and from it [m].
+bool plan_voronoi(const Query<PolygonCore>& query, Answer<double, double, double, double>& answer,
+                  bool is_widest, double tolerance);
 // Vertices and their clearance [m]; for each arc its two vertices, and its points and their clearance [m];
 // whether no component of free space lacks a part.
 using VoronoiArc = std::pair<Table<Point>, Table<double>>;

@@ -1,4 +1,6 @@
-// A query: the settings of a planner, its search between two points and what it found.
+// What planners are asked and what they answer. Each is a function
+//   bool plan(const Query<W>&, Route& or Answer<…>&, settings…)
+// that returns false where an end is not free; its settings come in the order of the package.
 #pragma once
 
 #include <cstdint>
@@ -14,25 +16,25 @@ namespace cspace::navigation {
 using maps::GridWorld;
 using maps::PolygonCore;
 
-// What queries of a world of type W have in common. Each derives from it and has
-//   bool find(const W&, start, goal, Trace*)  false where an end is not free; the trace may be null
-// and, where it has more than a route, its own
-//   settings()   references to what has to be set before, in the order of the package
-//   evidence()   what backs the verdict beside path and length: an optional tuple
-template <class W, class F = Route>
+// A question about a world of type W; the trace may be null.
+template <class W>
 struct Query {
-    using World = W;
-    F found;
-    double spent = 0;  // [s] by Python for this query
-
-    std::tuple<> settings() { return {}; }
-    bool is_concurrent(const W&) const { return true; }  // whether others may ask the world meanwhile
-    const Route& route() const {
-        if constexpr (requires { found.route; })
-            return found.route;
-        else
-            return found;
-    }
+    const W& world;
+    Point start, goal;
+    Trace* trace;
 };
+
+// A route and what backs its verdict, where path and length do not say it.
+template <class... Evidence>
+struct Answer {
+    Route route;
+    std::optional<std::tuple<Evidence...>> evidence;
+    double spent = 0;  // [s] by Python for this query
+};
+inline const Route& route_of(const Route& route) { return route; }
+template <class... Evidence>
+const Route& route_of(const Answer<Evidence...>& answer) {
+    return answer.route;
+}
 
 }  // namespace cspace::navigation

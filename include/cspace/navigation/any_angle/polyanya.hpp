@@ -37,17 +37,14 @@ class IntervalSearch {
 
     explicit IntervalSearch(const Mesh& mesh) : mesh_(mesh) {}
 
-    // starts, goals: the polygons whose closures contain the start and the goal.
+    static constexpr auto never = [] { return std::numeric_limits<std::uint64_t>::max(); };
+
+    // starts, goals: the polygons whose closures contain the start and the goal. After `pause` nodes look()
+    // is asked, which says after how many it is to be asked again; 0: there is no path.
+    template <class Look = decltype(never)>
     Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
-                const std::vector<Polygon>& goals, Trace* trace = nullptr) {
-        constexpr auto never = [] { return std::numeric_limits<std::uint64_t>::max(); };
-        return solve(start, starts, goal, goals, trace, never(), never);
-    }
-    // After `pause` nodes look() is asked, which says after how many it is to be asked again; 0: there is no
-    // path.
-    template <class Look>
-    Route solve(Point start, const std::vector<Polygon>& starts, Point goal,
-                const std::vector<Polygon>& goals, Trace* trace, std::uint64_t pause, Look look) {
+                const std::vector<Polygon>& goals, Trace* trace = nullptr, std::uint64_t pause = never(),
+                Look look = never) {
         begin(start, goal, goals, trace);
         for (const Polygon& p : starts)
             for (const Polygon& q : goals)

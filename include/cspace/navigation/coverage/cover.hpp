@@ -52,9 +52,7 @@ struct FreeRun {
     int region;
 };
 
-struct SweepRegion {
-    std::vector<FreeRun> runs;  // one on each of its lines, in order
-};
+using SweepRegion = std::vector<FreeRun>;  // one on each of its lines, in order
 
 struct Decomposition {
     std::vector<SweepRegion> regions;
@@ -92,7 +90,7 @@ inline Decomposition decompose_frame(const SweepFrame& frame, const std::vector<
             const bool goes_on = back[k] == 1 && onward[std::size_t(behind[k])] == 1;
             runs[k].region = goes_on ? before[std::size_t(behind[k])].region : int(made.regions.size());
             if (!goes_on) made.regions.emplace_back();
-            made.regions[std::size_t(runs[k].region)].runs.push_back(runs[k]);
+            made.regions[std::size_t(runs[k].region)].push_back(runs[k]);
             for (int at = runs[k].first; at <= runs[k].last; ++at)
                 made.region_of[std::size_t(frame.number(line, at))] = runs[k].region;
         }
@@ -140,10 +138,10 @@ class Coverer {
     // The lines of a region that are driven: a bar's width apart, the first and last within it.
     std::vector<FreeRun> lanes_of(const SweepRegion& region) const {
         std::vector<FreeRun> lanes;
-        const int count = int(region.runs.size());
+        const int count = int(region.size());
         for (int first = 0; first < count; first += 2 * half_ + 1) {
             const bool whole = first + 2 * half_ < count;
-            lanes.push_back(region.runs[std::size_t(whole ? first + half_ : (first + count - 1) / 2)]);
+            lanes.push_back(region[std::size_t(whole ? first + half_ : (first + count - 1) / 2)]);
         }
         return lanes;
     }
@@ -181,17 +179,11 @@ class Coverer {
     }
 
     void sweep_leftovers() {
-        std::int64_t left = 0;
-        visit_range(0, size_, [&](std::size_t k) { left += reach_[k] && passes_[k] == 0; });
-        out_.leftover = left;
         const auto unswept = [&](std::int32_t place) {
             return reach_[std::size_t(place)] && passes_[std::size_t(place)] == 0;
         };
-        while (true) {
-            const std::int32_t next = search(unswept);
-            if (next < 0) return;
-            go(next);
-        }
+        visit_range(0, size_, [&](std::size_t k) { out_.leftover += unswept(std::int32_t(k)); });
+        for (std::int32_t next; (next = search(unswept)) >= 0;) go(next);
     }
 
     // The nearest place that is wanted, −1 if there is none; from_ leads back to the robot.

@@ -29,10 +29,6 @@ inline double forward_arc(double angle, double slack) {
     return whole - angle <= slack ? 0 : angle;
 }
 
-inline void keep_shorter_word(Word& best, const Word& word) {
-    if (word.length < best.length) best = word;
-}
-
 // The words that begin with L in the task, or in its mirror image.
 inline void words_from_left(const Task& task, bool mirrored, Word& best) {
     constexpr double pi = std::numbers::pi;
@@ -43,7 +39,7 @@ inline void words_from_left(const Task& task, bool mirrored, Word& best) {
     const auto consider = [&](int middle, bool crosses, double t, double u, double v, double slack) {
         t = forward_arc(t, slack);
         v = forward_arc(v, slack);
-        keep_shorter_word(best, {t + u + v, middle, crosses, mirrored, t, u, v});
+        if (t + u + v < best.length) best = {t + u + v, middle, crosses, mirrored, t, u, v};
     };
     // A straight piece of length u turns by slack / u where its ends are moved by slack.
     const auto loose = [&](double u) { return rounding + task.slack / std::max(u, 1.0); };

@@ -57,6 +57,7 @@ class HittingSolver {
     std::size_t size() const { return cells_.size(); }
     double residual() const { return residual_; }
     int cycles() const { return cycles_; }
+    const maps::BitGrid& grid() const { return grid_; }
     maps::Cell cell(std::size_t i) const { return grid_.cell(cells_[i]); }
     // The number of a cell here, or size() if no path leads to the goal.
     std::size_t index(maps::Cell c) const { return std::size_t(index_[grid_.number(c)]); }
@@ -67,7 +68,7 @@ class HittingSolver {
     double log_chance(std::size_t i) const { return std::log(m_[i]) + std::numbers::ln2 * double(e_[i]); }
 
   private:
-    const maps::BitGrid& grid_;
+    maps::BitGrid grid_;
     std::vector<std::uint32_t> cells_;  // from the goal outwards
     std::vector<std::int32_t> index_;
     std::vector<std::array<std::int32_t, 4>> beside_;
@@ -211,61 +212,54 @@ class HittingSolver {
     }
 };
 
-class HarmonicField {
+class HarmonicField : public HittingSolver {
   public:
     HarmonicField(const maps::BitGrid& grid, const Clearance& clearance, maps::Cell goal, double residual,
                   int most_cycles)
-        : grid_(grid), chance_(grid_, clearance, goal) {
-        chance_.solve(residual, most_cycles);
-        visit_range(1, chance_.size(),
-                    [&](std::size_t i) { rests_ += uphill(chance_.cell(i)) == chance_.cell(i); });
+        : HittingSolver(grid, clearance, goal) {
+        solve(residual, most_cycles);
+        visit_range(1, size(), [&](std::size_t i) { rests_ += uphill(cell(i)) == cell(i); });
     }
-    HarmonicField(const HarmonicField&) = delete;
-    HarmonicField& operator=(const HarmonicField&) = delete;
 
-    std::size_t size() const { return chance_.size(); }
-    double residual() const { return chance_.residual(); }
-    int cycles() const { return chance_.cycles(); }
     // Cells but the goal from which no step leads down: none, where the equation is solved well enough.
     std::int64_t rests() const { return rests_; }
     // Minus the logarithm of the chance: 0 at the goal, infinite on walls and where no path leads to the
     // goal.
     double height(maps::Cell cell) const {
-        const std::size_t i = chance_.index(cell);
-        return i == chance_.size() ? std::numeric_limits<double>::infinity() : 0.0 - chance_.log_chance(i);
+        const std::size_t i = index(cell);
+        return i == size() ? std::numeric_limits<double>::infinity() : 0.0 - log_chance(i);
     }
     // From a cell to the goal, or as far as a step leads down.
     GridAnswer descend(maps::Cell start) const {
         GridAnswer answer;
-        answer.effort.settled = chance_.size();
-        answer.effort.pushed = 4 * chance_.size() * std::size_t(chance_.cycles());
-        if (chance_.index(start) == chance_.size()) return answer;
+        answer.effort.settled = size();
+        answer.effort.pushed = 4 * size() * std::size_t(cycles());
+        if (index(start) == size()) return answer;
         answer.cells = {start};
         for (maps::Cell next; !((next = uphill(answer.cells.back())) == answer.cells.back());)
             answer.cells.push_back(next);
-        answer.found = chance_.index(answer.cells.back()) == 0;
+        answer.found = index(answer.cells.back()) == 0;
         return answer;
     }
 
   private:
-    maps::BitGrid grid_;
-    HittingSolver chance_;
     std::int64_t rests_ = 0;
 
     // The neighbour towards which the chance grows most, past no blocked corner; the cell itself where none
     // has more.
     maps::Cell uphill(maps::Cell from) const {
-        const std::size_t i = chance_.index(from);
-        const double here = chance_.log_chance(i);
+        const std::size_t i = index(from);
+        const double here = log_chance(i);
         maps::Cell best = from;
         double most = 0;
         for (int d = 0; d < 8; ++d) {
             const maps::Cell to{from.row + row_step[d], from.column + column_step[d]};
-            if (grid_.blocked(to) || grid_.blocked(from.row, to.column) || grid_.blocked(to.row, from.column))
+            if (grid().blocked(to) || grid().blocked(from.row, to.column) ||
+                grid().blocked(to.row, from.column))
                 continue;
-            const std::size_t j = chance_.index(to);
-            if (!chance_.is_less(i, j)) continue;
-            const double rise = (chance_.log_chance(j) - here) / (is_diagonal(d) ? std::numbers::sqrt2 : 1.0);
+            const std::size_t j = index(to);
+            if (!is_less(i, j)) continue;
+            const double rise = (log_chance(j) - here) / (is_diagonal(d) ? std::numbers::sqrt2 : 1.0);
             if (best == from || rise > most) best = to, most = rise;
         }
         return best;

@@ -44,27 +44,6 @@ struct GridAnswer {
     }
 };
 
-// Start, the centres of the cells where the way turns, goal; no point twice in a row.
-inline void draw_path(const maps::GridFrame& frame, Point start, Point goal, const GridAnswer& answer,
-                      Route& route) {
-    const auto& cells = answer.cells;
-    route.path.assign(1, start);
-    const auto add = [&](Point p) {
-        if (!(p == route.path.back())) route.path.push_back(p);
-    };
-    if (cells.size() > 1) {
-        add(frame.center(cells.front()));
-        for (std::size_t k = 1; k + 1 < cells.size(); ++k) {
-            const int r0 = cells[k].row - cells[k - 1].row, c0 = cells[k].column - cells[k - 1].column;
-            const int r1 = cells[k + 1].row - cells[k].row, c1 = cells[k + 1].column - cells[k].column;
-            const bool is_straight = std::int64_t(r0) * c1 == std::int64_t(r1) * c0;
-            if (!is_straight) add(frame.center(cells[k]));
-        }
-        add(frame.center(cells.back()));
-    }
-    add(goal);
-}
-
 // The length of a way whose pieces are rows, columns and diagonals, exact to a rounding; of one of any angle
 // the sum of its pieces. [cells]
 inline double length_of(const std::vector<maps::Cell>& cells) {
@@ -81,7 +60,8 @@ inline double length_of(const std::vector<maps::Cell>& cells) {
     return steps.value() + slanted;
 }
 
-// The route between two points in free cells, from what a search has found between the cells.
+// The route between two points in free cells, from what a search has found between the cells: start, the
+// centres of the cells where the way turns, goal; no point twice in a row.
 inline void draw_route(const maps::GridFrame& frame, Point start, Point goal, const GridAnswer& answer,
                        Route& route) {
     route.stats = {std::int64_t(answer.effort.settled), std::int64_t(answer.effort.pushed)};
@@ -89,8 +69,21 @@ inline void draw_route(const maps::GridFrame& frame, Point start, Point goal, co
     route.path.clear();
     route.length = std::numeric_limits<double>::infinity();
     if (!answer.found) return;
-    draw_path(frame, start, goal, answer, route);
     const auto& cells = answer.cells;
+    route.path.reserve(cells.size() + 2);
+    route.path.assign(1, start);
+    const auto add = [&](Point p) {
+        if (!(p == route.path.back())) route.path.push_back(p);
+    };
+    for (std::size_t k = 0; cells.size() > 1 && k < cells.size(); ++k) {
+        if (k > 0 && k + 1 < cells.size()) {
+            const int r0 = cells[k].row - cells[k - 1].row, c0 = cells[k].column - cells[k - 1].column;
+            const int r1 = cells[k + 1].row - cells[k].row, c1 = cells[k + 1].column - cells[k].column;
+            if (std::int64_t(r0) * c1 == std::int64_t(r1) * c0) continue;  // straight on
+        }
+        add(frame.center(cells[k]));
+    }
+    add(goal);
     route.length = cells.size() < 2
                        ? distance(start, goal)
                        : distance(start, frame.center(cells.front())) + frame.resolution * length_of(cells) +
