@@ -160,9 +160,10 @@ def leading_axes(**shapes: tuple[int, ...]) -> tuple[int, ...]:
     try:
         return np.broadcast_shapes(*shapes.values())
     except ValueError:
-        each = ", ".join(f"{name} {shape}" for name, shape in shapes.items())
+        each = " and ".join(f"{name} {shape}" for name, shape in shapes.items())
         raise InputError(
             f"the leading axes of {each} do not broadcast; give equally many of each, or one for all"
+            " ([:, None] adds an axis)"
         ) from None
 
 

@@ -13,7 +13,8 @@ from typing import Any, Final
 
 from cspace.errors import DescriptionError, InputError, InputTypeError, MapError
 
-__all__ = ["YamlLine", "path_of", "read_regular", "unquote", "whole_file", "write_text", "yaml_lines"]
+__all__ = ["YamlLine", "path_of", "read_regular", "read_text", "unquote", "whole_file", "write_text"]
+__all__ += ["yaml_lines"]
 
 DRAFTS: Final = count()
 """Numbers the drafts of this process, so that two threads never write into one."""
@@ -52,13 +53,26 @@ def read_regular(
         if not os.path.isfile(name):
             raise error("this is no regular file", path=name)
         if (size := os.path.getsize(name)) > most:
-            raise error(f"the file holds {size} bytes; more than {most} are refused", path=name)
+            raise error(f"the file has {size} bytes; the maximum is {most}", path=name)
         with open(name, "rb") as file:
             return file.read(most)  # a bound for a file that grows
     except (OSError, ValueError) as fault:
         if isinstance(fault, error):
             raise
         raise error(f"cannot be read: {getattr(fault, 'strerror', None) or fault}", path=name) from None
+
+
+def read_text(
+    path: str | os.PathLike[str], kind: str, most: int, error: type[DescriptionError] | type[MapError]
+) -> str:
+    """The text of a file in UTF-8; `error` as from read_regular, or with the line of an invalid byte."""
+    data = read_regular(path, kind, most, error)
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as fault:
+        line = data.count(b"\n", 0, fault.start) + 1
+        text = f"this is no {kind}: the text is not UTF-8"
+        raise error(text, path=os.fspath(path), line=line) from None
 
 
 @contextmanager

@@ -22,10 +22,5 @@ def read_map_bytes(path: str | os.PathLike[str]) -> bytes:
 
 
 def read_map_text(path: str | os.PathLike[str]) -> str:
-    """The text of a map file in UTF-8; MapError as in read_map_bytes, or with the invalid byte."""
-    try:
-        return read_map_bytes(path).decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise MapError(
-            f"byte {error.start}: a map file must be UTF-8 text", path=check_map_path(path)
-        ) from None
+    """The text of a map file in UTF-8; MapError as in read_map_bytes, or with the line of an invalid byte."""
+    return files.read_text(check_map_path(path), "map", MAP_BYTES, MapError)

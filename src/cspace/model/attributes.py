@@ -30,15 +30,11 @@ def complain_at(element: Element, make: Callable[[], T]) -> T:
         raise fault_at(element, str(error)) from None
 
 
-def read_floats(element: Element, attribute: str, default: Sequence[float] | None, n: int) -> list[float]:
-    """The n finite numbers of an attribute."""
-    return some_floats(element, attribute, default, n, n)
-
-
-def some_floats(
-    element: Element, attribute: str, default: Sequence[float] | None, least: int, most: int
+def read_floats(
+    element: Element, attribute: str, default: Sequence[float] | None, least: int, most: int | None = None
 ) -> list[float]:
-    """The finite numbers of an attribute, from `least` to `most` of them."""
+    """The finite numbers of an attribute, from `least` to `most` of them (default: as many)."""
+    most = least if most is None else most
     text = element.attributes.get(attribute)
     if text is None:
         if default is None:

@@ -16,8 +16,8 @@ from typing import Final
 
 from cspace.arrays import Array
 from cspace.errors import DescriptionError, suggest
-from cspace.files import YamlLine, unquote, yaml_lines
-from cspace.model.files import path_of, read_bytes
+from cspace.files import YamlLine, read_text, unquote, yaml_lines
+from cspace.model.files import path_of
 from cspace.model.transforms import from_rpy
 from cspace.model.values import freeze_array
 from cspace.tolerances import CALIBRATION_BYTES, LARGEST_NUMBER
@@ -56,17 +56,8 @@ def read_calibration(path: str | os.PathLike[str]) -> Calibration:
     Raises DescriptionError with file and line for a missing, unknown or non-numeric entry, or a missing file.
     """
     name = path_of(path)
-    data = read_bytes(name)
-    if len(data) > CALIBRATION_BYTES:
-        raise DescriptionError(
-            f"the file has {len(data)} bytes; the maximum is {CALIBRATION_BYTES}", path=name
-        )
+    rows = list(yaml_lines(read_text(name, "calibration", CALIBRATION_BYTES, DescriptionError)))
     fault = partial(DescriptionError, path=name)
-    try:
-        rows = list(yaml_lines(data.decode("utf-8-sig")))
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise fault("this is no calibration: not UTF-8 text", line=line) from None
     first = rows[0] if rows else YamlLine(1, 0, "", "")
     if (first.indent, first.key, first.value) != (0, "kinematics", ""):
         raise fault(

@@ -8,7 +8,7 @@ from typing import Any, Final
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_arrays, as_floats
 from cspace.errors import InputError, suggest
 from cspace.model.description import Description
 from cspace.model.joint import Joint
@@ -43,12 +43,8 @@ def dh_matrix(alpha: Any, a: Any, d: Any, theta: Any, *, convention: str) -> Arr
     Sources: Denavit, Hartenberg 1955; Craig 1986, section 3.4.
     """
     standard = check_convention(convention) == "standard"
-    numbers = [as_floats(x, name) for x, name in zip((alpha, a, d, theta), COLUMNS, strict=True)]
-    try:
-        alpha, a, d, theta = np.broadcast_arrays(*numbers)
-    except ValueError:
-        shapes = ", ".join(f"{name} {x.shape}" for name, x in zip(COLUMNS, numbers, strict=True))
-        raise InputError(f"the shapes of {shapes} do not broadcast") from None
+    numbers = as_arrays({name: (x, ()) for name, x in zip(COLUMNS, (alpha, a, d, theta), strict=True)})
+    alpha, a, d, theta = np.broadcast_arrays(*numbers.values())
     ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
     zero, one = np.zeros_like(ca), np.ones_like(ca)
     if standard:

@@ -8,7 +8,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array, one_array
-from cspace.errors import DescriptionError, InputError, suggest
+from cspace.errors import InputError, suggest
 from cspace.model.packages import locate_file
 from cspace.model.values import IDENTITY, check_placement, check_size, finite_number, freeze_array, name_of
 from cspace.tolerances import INERTIA_SYMMETRY
@@ -72,14 +72,7 @@ class Mesh:
 
         Raises DescriptionError naming every place searched if there is no such file.
         """
-        path, searched = locate_file(self.uri, self.beside, self.package_paths)
-        if path is None:
-            places = "".join(f"\n  {place}" for place in searched) or " nowhere"
-            raise DescriptionError(
-                f"mesh {self.uri!r} not found; searched:{places}\n"
-                "Pass package_paths=[folder that contains the package], or set ROS_PACKAGE_PATH."
-            )
-        return path
+        return locate_file(self.uri, self.beside, self.package_paths)
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
 
-from cspace.errors import CspaceError, InputTypeError
+from cspace.errors import CspaceError, DescriptionError, InputTypeError
 from cspace.model.files import read_bytes
 
 PACKAGE_SCHEMES = ("package://", "model://")
@@ -27,10 +27,8 @@ def check_folders(package_paths: Any) -> tuple[str, ...]:
         raise InputTypeError(f"package_paths is a list of folders: {error}") from None
 
 
-def locate_file(
-    uri: str, beside: str | None, package_paths: Sequence[str]
-) -> tuple[str | None, tuple[str, ...]]:
-    """The file that `uri` names, or None, and the places tried in order.
+def locate_file(uri: str, beside: str | None, package_paths: Sequence[str]) -> str:
+    """The file of the mesh that `uri` names; DescriptionError with every place tried if there is none.
 
     uri: package://NAME/rest, model://NAME/rest, file://path, or a plain path. beside: the folder of the
     robot file. package_paths: folders given by the caller, each either holding packages or being one.
@@ -38,25 +36,27 @@ def locate_file(
     ROS_PACKAGE_PATH, and in the share folders of AMENT_PREFIX_PATH and CMAKE_PREFIX_PATH. A folder is a
     package by its name or by the name that its package.xml gives.
     """
-    return _first(_candidates(uri, beside, package_paths), os.path.isfile)
+    return _first(_candidates(uri, beside, package_paths), os.path.isfile, f"mesh {uri!r}")
 
 
-def locate_package(
-    name: str, beside: str | None, package_paths: Sequence[str]
-) -> tuple[str | None, tuple[str, ...]]:
-    """The folder of a package, or None, and the places tried in order; rules as in `locate_file`."""
-    return _first(_packages(name, beside, package_paths), os.path.isdir)
+def locate_package(name: str, beside: str | None, package_paths: Sequence[str]) -> str:
+    """The folder of a package; rules and error as in `locate_file`."""
+    return _first(_packages(name, beside, package_paths), os.path.isdir, f"package {name!r}")
 
 
-def _first(places: Iterator[str], fits: Callable[[str], bool]) -> tuple[str | None, tuple[str, ...]]:
-    """The first place that fits, or None, and the places tried."""
+def _first(places: Iterator[str], fits: Callable[[str], bool], subject: str) -> str:
+    """The first place that fits."""
     tried: dict[str, None] = {}
     for place in places:
         if place not in tried:
             tried[place] = None
             if fits(place):
-                return place, tuple(tried)
-    return None, tuple(tried)
+                return place
+    searched = "".join(f"\n  {place}" for place in tried) or " nowhere"
+    raise DescriptionError(
+        f"{subject} not found; searched:{searched}\n"
+        "Pass package_paths=[folder that contains the package], or set ROS_PACKAGE_PATH."
+    )
 
 
 def _candidates(uri: str, beside: str | None, package_paths: Sequence[str]) -> Iterator[str]:

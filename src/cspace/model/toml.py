@@ -10,9 +10,10 @@ import numpy as np
 
 from cspace.arrays import Array
 from cspace.errors import CspaceError, DescriptionError
+from cspace.files import read_text
 from cspace.model.description import Description, Provenance, Source
 from cspace.model.dh import DHTable, from_dh
-from cspace.model.files import path_of, read_bytes
+from cspace.model.files import path_of
 from cspace.model.joint import LIMIT_FIELDS, Joint, Loop, Mimic
 from cspace.model.link import Geometry, Inertial, Link, Mesh
 from cspace.model.packages import check_folders
@@ -49,14 +50,7 @@ def from_toml(source: str | os.PathLike[str], *, package_paths: Sequence[Any] = 
     if isinstance(source, str) and "\n" in source:
         return _Reader(Document(source, None), package_paths).read()
     path = path_of(source)
-    data = read_bytes(path)
-    if len(data) > TOML_BYTES:
-        raise DescriptionError(f"the file has {len(data)} bytes; the maximum is {TOML_BYTES}", path=path)
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = data.count(b"\n", 0, error.start) + 1
-        raise DescriptionError("this is not TOML: the text is not UTF-8", path=path, line=line) from None
+    text = read_text(path, "robot in TOML", TOML_BYTES, DescriptionError)
     return _Reader(Document(text.replace("\r\n", "\n"), path), package_paths).read()
 
 

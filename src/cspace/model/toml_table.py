@@ -82,10 +82,15 @@ class Table:
     def __contains__(self, key: str) -> bool:
         return key in self.values
 
-    def text(self, key: str, default: str | None = None) -> str:
+    def needed(self, key: str, default: Any = None) -> Any:
+        """The value of a key, or else the default; a complaint where there is neither."""
         value = self.values.get(key, default)
         if value is None:
             raise self.fault(f"the key {key!r} is missing")
+        return value
+
+    def text(self, key: str, default: str | None = None) -> str:
+        value = self.needed(key, default)
         if not isinstance(value, str):
             raise self.fault(f"{key} must be a string, got {_shown(value)}")
         return value
@@ -97,18 +102,12 @@ class Table:
         return tuple(value)
 
     def number(self, key: str, default: float | None = None) -> float:
-        value = self.values.get(key, default)
-        if value is None:
-            raise self.fault(f"the key {key!r} is missing")
-        return self._float(value, key)
+        return self._float(self.needed(key, default), key)
 
     def numbers(self, key: str, shape: tuple[int, ...], default: Any = None) -> Any:
         """Nested lists of numbers of the given shape."""
-        if key not in self.values:
-            if default is not None:
-                return default
-            raise self.fault(f"the key {key!r} is missing")
-        return self._nested(self.values[key], key, shape)
+        value = self.needed(key, default)
+        return self._nested(value, key, shape) if key in self.values else value
 
     def table(self, key: str) -> Table:
         value = self.values.get(key, {})

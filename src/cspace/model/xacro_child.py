@@ -45,8 +45,9 @@ def answer_request(request: dict[str, Any]) -> dict[str, Any]:
     except Exception as error:
         fault = fault_text(error)
     else:
-        if arguments.unused():
-            return {"unknown": arguments.complaint()}
+        for name in request["arguments"]:
+            if name not in arguments.asked:
+                return {"unknown": str(suggest("argument", name, arguments.asked, owner="the xacro file"))}
         files: dict[str, int] = {}
         rows = [
             (depth, tag, attributes, files.setdefault(file, len(files)), line)
@@ -70,24 +71,15 @@ class Arguments(dict[str, str]):
 
     def __init__(self, given: dict[str, str]) -> None:
         super().__init__(given)
-        self.given = tuple(given)
-        self.asked: dict[str, None] = {}
+        self.asked: set[str] = set()
 
     def __contains__(self, name: object) -> bool:
-        self.asked[str(name)] = None
+        self.asked.add(str(name))
         return super().__contains__(name)
 
     def __getitem__(self, name: str) -> str:
-        self.asked[name] = None
+        self.asked.add(name)
         return super().__getitem__(name)
-
-    def unused(self) -> list[str]:
-        """The given names that the file did not request."""
-        return [name for name in self.given if name not in self.asked]
-
-    def complaint(self) -> str:
-        """Says that a name given is none of the file's."""
-        return str(suggest("argument", self.unused()[0], self.asked, owner="the xacro file"))
 
 
 class Expansion:
@@ -119,15 +111,7 @@ class Expansion:
 
     def find(self, name: str) -> str:
         """The folder of a package: the value of $(find name)."""
-        beside = os.path.dirname(os.path.abspath(self.file))
-        folder, searched = locate_package(name, beside, self.package_paths)
-        if folder is None:
-            places = "".join(f"\n  {place}" for place in searched)
-            raise DescriptionError(
-                f"package {name!r} not found; searched:{places}\n"
-                "Pass package_paths=[folder that contains the package], or set ROS_PACKAGE_PATH."
-            )
-        return folder
+        return locate_package(name, os.path.dirname(os.path.abspath(self.file)), self.package_paths)
 
     def parse(self, source: Any, filename: str | None = None) -> Any:
         """xacro.parse, with the checks and the places of our own reader."""

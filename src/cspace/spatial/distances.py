@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, bounded_number
+from cspace.arrays import Array, bounded_number, leading_axes
 from cspace.spatial.checks import (
     PoseLike,
     RotationLike,
@@ -16,7 +16,6 @@ from cspace.spatial.checks import (
     as_rotation_2d,
 )
 from cspace.spatial.planar import angle_of
-from cspace.spatial.poses import broadcast_batches
 from cspace.spatial.rotations import rotvec_of_matrix
 from cspace.spatial.vectors import length_and_direction
 
@@ -83,7 +82,7 @@ def _weighted(distance: Array, angle: Array, length: float) -> Array:
 
 
 def _angle_between(R_a: Array, R_b: Array) -> Array:
-    broadcast_batches(R_a.shape[:-2], R_b.shape[:-2], "first", "second")
+    leading_axes(first=R_a.shape[:-2], second=R_b.shape[:-2])
     between = np.swapaxes(R_a, -1, -2) @ R_b
     if between.shape[-1] == 2:
         return np.abs(angle_of(between))
@@ -91,5 +90,5 @@ def _angle_between(R_a: Array, R_b: Array) -> Array:
 
 
 def _length_between(T_a: Array, T_b: Array) -> Array:
-    broadcast_batches(T_a.shape[:-2], T_b.shape[:-2], "first", "second")
+    leading_axes(first=T_a.shape[:-2], second=T_b.shape[:-2])
     return length_and_direction(T_b[..., :-1, -1] - T_a[..., :-1, -1])[0]

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError
 from cspace.spatial import planar_twists, twists
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_pose_2d, as_rotation
-from cspace.spatial.poses import assemble, broadcast_batches, invert_pose
+from cspace.spatial.poses import assemble, invert_pose
 from cspace.spatial.rotations import matrix_of_rotvec, rotvec_of_matrix
 
 
@@ -91,18 +91,18 @@ def _is_planar(value: Any) -> bool:
 
 
 def _relative(start: Array, end: Array) -> Array:
-    broadcast_batches(start.shape[:-2], end.shape[:-2], "start", "end")
+    leading_axes(start=start.shape[:-2], end=end.shape[:-2])
     return np.asarray(invert_pose(start) @ end)
 
 
 def _fractions(step: Array, t: npt.ArrayLike) -> tuple[Array, Array]:
     """The step (..., k) and the fractions (..., 1), known to broadcast."""
     fractions = as_floats(t, "t")
-    broadcast_batches(step.shape[:-1], fractions.shape, "start and end", "t")
+    leading_axes(**{"start and end": step.shape[:-1], "t": fractions.shape})
     return step, fractions[..., None]
 
 
 def _slerp(start: Array, end: Array, t: npt.ArrayLike) -> Array:
-    broadcast_batches(start.shape[:-2], end.shape[:-2], "start", "end")
+    leading_axes(start=start.shape[:-2], end=end.shape[:-2])
     step, fractions = _fractions(rotvec_of_matrix(np.swapaxes(start, -1, -2) @ end), t)
     return np.asarray(start @ matrix_of_rotvec(step * fractions, "t times the angle"))

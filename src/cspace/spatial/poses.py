@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from cspace.arrays import Array, as_floats
-from cspace.errors import InputError, InputTypeError
+from cspace.arrays import Array, as_floats, leading_axes
+from cspace.errors import InputTypeError
 from cspace.spatial import single
 from cspace.spatial.checks import PoseLike, RotationLike, as_pose, as_rotation
 from cspace.spatial.quaternions import matrix_of_quaternion
@@ -105,7 +105,7 @@ def to_xyz(T: PoseLike) -> Array:
 def assemble(R: Array, p: Array) -> Array:
     """Poses from rotations (..., n, n) and translations (..., n), broadcast, for n = 2 or 3."""
     n = p.shape[-1]
-    T = np.zeros((*broadcast_batches(R.shape[:-2], p.shape[:-1], "rotation", "translation"), n + 1, n + 1))
+    T = np.zeros((*leading_axes(rotation=R.shape[:-2], translation=p.shape[:-1]), n + 1, n + 1))
     T[..., :n, :n] = R
     T[..., :n, n] = p
     T[..., n, n] = 1.0
@@ -123,18 +123,8 @@ def invert_pose(T: Array) -> Array:
 
 def turn_vectors(R: Array, v: Array) -> Array:
     """R v for (..., n, n) and (..., n), broadcast."""
-    broadcast_batches(R.shape[:-2], v.shape[:-1], "pose", "vector")
+    leading_axes(pose=R.shape[:-2], vector=v.shape[:-1])
     return np.asarray(np.einsum("...ij,...j->...i", R, v))
-
-
-def broadcast_batches(a: tuple[int, ...], b: tuple[int, ...], of_a: str, of_b: str) -> tuple[int, ...]:
-    """The common leading shape, or an error that names both."""
-    try:
-        return np.broadcast_shapes(a, b)
-    except ValueError:
-        raise InputError(
-            f"leading axes of {of_a} {a} and {of_b} {b} do not broadcast; add axes of length 1 with [:, None]"
-        ) from None
 
 
 def _given(*values: Any) -> dict[str, Any]:
@@ -156,7 +146,7 @@ def _rotation_of(given: dict[str, Any], caller: str) -> Array:
 def _from_axis_angle(value: Any) -> Array:
     axis, angle = _pair(value, "axis_angle", "(axis, angle)")
     axis, angle = as_floats(axis, "axis", last=(3,)), as_floats(angle, "angle")
-    broadcast_batches(axis.shape[:-1], angle.shape, "axis", "angle")
+    leading_axes(axis=axis.shape[:-1], angle=angle.shape)
     return matrix_of_axis_angle(axis, angle)
 
 

@@ -8,10 +8,9 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace import tolerances
-from cspace.arrays import Array, as_floats
+from cspace.arrays import Array, as_floats, leading_axes
 from cspace.errors import InputError
 from cspace.spatial.checks import PoseLike, as_pose
-from cspace.spatial.poses import broadcast_batches
 from cspace.spatial.twists import exponential_se3, logarithm_se3
 from cspace.spatial.vectors import cross, length_and_direction
 
@@ -44,9 +43,8 @@ class Screw:
         if np.isnan(pitch).any() or (pitch == -np.inf).any():
             raise InputError("pitch is NaN or -inf; it is a number [m/rad], or inf for a pure translation")
         magnitude = as_floats(self.magnitude, "magnitude")
-        batch = broadcast_batches(length.shape, point.shape[:-1], "screw axis", "screw point")
-        batch = broadcast_batches(batch, pitch.shape, "screw axis", "pitch")
-        batch = broadcast_batches(batch, magnitude.shape, "screw axis", "magnitude")
+        shapes = {"axis": length.shape, "point": point.shape[:-1]}
+        batch = leading_axes(**shapes, pitch=pitch.shape, magnitude=magnitude.shape)
         object.__setattr__(self, "axis", np.broadcast_to(axis, (*batch, 3)))
         object.__setattr__(self, "point", np.broadcast_to(point, (*batch, 3)))
         object.__setattr__(self, "pitch", np.broadcast_to(pitch, batch)[()])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from cspace.errors import suggest
-from cspace.model.attributes import fault_at, some_floats
+from cspace.model.attributes import fault_at, read_floats
 from cspace.model.values import BEYOND
 from cspace.model.xml import Element
 from cspace.tolerances import LARGEST_NUMBER
@@ -42,7 +42,7 @@ class Given:
     ) -> list[float]:
         """The numbers of an attribute, `least` to `most` (default: as many), no larger than robots go."""
         holder = self.holder(name) or self.element
-        numbers = some_floats(holder, name, default, least, least if most is None else most)
+        numbers = read_floats(holder, name, default, least, most)
         largest = max(numbers, key=abs, default=0.0)
         if abs(largest) > LARGEST_NUMBER:
             raise fault_at(holder, f"{name} of <{holder.tag}> holds {largest:g}; {BEYOND}")
@@ -50,7 +50,7 @@ class Given:
 
     def span(self, name: str) -> tuple[float, float]:
         """A range, from 0 to 0 where it is not given; its ends may stand for infinity and be of any size."""
-        low, high = some_floats(self.holder(name) or self.element, name, (0.0, 0.0), 2, 2)
+        low, high = read_floats(self.holder(name) or self.element, name, (0.0, 0.0), 2)
         return low, high
 
     def number(self, name: str, default: float | None = None) -> float:

@@ -12,8 +12,7 @@ from cspace.errors import suggest
 from cspace.model.attributes import complain_at, fault_at
 from cspace.model.joint import Loop
 from cspace.model.mjcf.given import Defaults, Given
-from cspace.model.mjcf.skeleton import WORLD, Skeleton
-from cspace.model.mounting import free_name
+from cspace.model.mjcf.skeleton import WORLD, Skeleton, new_name
 from cspace.model.transforms import from_wxyz, translation_by
 from cspace.model.xml import Element
 from cspace.spatial.poses import invert_pose
@@ -26,7 +25,7 @@ def read_loops(equalities: Sequence[Element], defaults: Defaults, skeleton: Skel
         if element.tag not in ("connect", "weld") or not defaults.given(element).flag("active", True):
             continue
         wish = element.attributes.get("name", "") or f"{element.tag}_{len(found) + 1}"
-        name = free_name(wish, {*skeleton.joint_names, *(loop.name for loop in found)})
+        name = new_name(wish, skeleton.joint_names)
         found.append(complain_at(element, partial(read_loop, name, element, skeleton)))
     return tuple(found)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Final
 
 from cspace.arrays import Array
-from cspace.model.attributes import complain_at, fault_at, some_floats
+from cspace.model.attributes import complain_at, fault_at, read_floats
 from cspace.model.description import Description
 from cspace.model.link import Geometry, Inertial, Link
 from cspace.model.mjcf.document import Includes
@@ -205,7 +205,7 @@ def read_keyframes(
     for key in keys:
         if not key.attributes.get("name") or "qpos" not in key.attributes:
             continue
-        numbers = some_floats(key, "qpos", None, count, count)
+        numbers = read_floats(key, "qpos", None, count)
         ends = accumulate(widths.values())
         values = {name: numbers[end - 1] for name, end in zip(drafts, ends, strict=True)}
         independent = [name for name in drafts if widths[name] == 1 and name not in followers]

@@ -50,27 +50,15 @@ class Skeleton:
         name = element.attributes.get("name", "")
         if name in self.bodies:
             raise fault_at(element, f"a second body is named {name!r}")
-        return name or self.new_link(f"body_{len(self.bodies)}")
+        return name or new_name(f"body_{len(self.bodies)}", self.link_names)
 
     def joint_name(self, element: Element, body: str) -> str:
         """The name of a joint, made up where it has none."""
         name = element.attributes.get("name", "")
         if name in self.given_joints:
             raise fault_at(element, f"a second joint is named {name!r}")
-        name = name or self.new_joint(f"{body}_joint")
+        name = name or new_name(f"{body}_joint", self.joint_names)
         self.given_joints.add(name)
-        return name
-
-    def new_link(self, wish: str) -> str:
-        """A name that no link has."""
-        name = free_name(wish, self.link_names)
-        self.link_names.add(name)
-        return name
-
-    def new_joint(self, wish: str) -> str:
-        """A name that no joint has."""
-        name = free_name(wish, self.joint_names)
-        self.joint_names.add(name)
         return name
 
     def add_body(
@@ -86,7 +74,7 @@ class Skeleton:
         for draft in drafts:
             self.drafts[draft.name] = draft
             whole = draft is last and np.array_equal(draft.anchor, IDENTITY)
-            link = name if whole else self.new_link(f"{name}/{draft.name}")
+            link = name if whole else new_name(f"{name}/{draft.name}", self.link_names)
             self.segments.append((draft, here, link, place @ draft.anchor))
             self.links.append(link)
             here, place = link, invert_pose(draft.anchor)
@@ -98,7 +86,7 @@ class Skeleton:
         name = element.attributes["name"]
         if name in self.sites:
             raise fault_at(element, f"a second site is named {name!r}")
-        link = self.new_link(f"{name}_site" if name in self.link_names else name)
+        link = new_name(f"{name}_site" if name in self.link_names else name, self.link_names)
         self.sites[name] = link
         self.rest[link] = self.rest[body] @ place
         self.add_fixed(element, link, body, place)
@@ -106,8 +94,15 @@ class Skeleton:
     def add_fixed(self, element: Element, link: str, parent: str, place: Array) -> None:
         """A link that is fixed to its parent at `place` (4, 4)."""
         self.links.append(link)
-        draft = Draft(self.new_joint(f"{link}_fixed"), "fixed", element)
+        draft = Draft(new_name(f"{link}_fixed", self.joint_names), "fixed", element)
         self.segments.append((draft, parent, link, place))
+
+
+def new_name(wish: str, taken: set[str]) -> str:
+    """A name that is none of those taken, which it joins."""
+    name = free_name(wish, taken)
+    taken.add(name)
+    return name
 
 
 TAGS: Final = ("body", "joint", "freejoint")
