@@ -57,11 +57,9 @@ class GridAnyAngle {
             route.path.front() = start, route.path.back() = goal;
             route.length = length_of(route.path);
         }
-        for (std::size_t k = 0; trace && k < trace->size(); ++k) {
-            Event& event = (*trace)[k];
-            event.from = in_metres(event.from), event.to = in_metres(event.to);
-            event.value *= frame_.resolution;
-        }
+        if (!trace) return route;
+        for (Event& event : *trace)
+            event = {event.kind, in_metres(event.from), in_metres(event.to), event.value * frame_.resolution};
         return route;
     }
     std::size_t bytes() const { return search_.bytes(); }

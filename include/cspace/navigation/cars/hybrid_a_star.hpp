@@ -155,7 +155,10 @@ class HybridAStar {
                                                : HybridReason::budget;
         if (arrives_) {
             route.status = Status::found;
-            collect(last, route.pieces);
+            for (std::uint32_t k = last; nodes_[k].parent >= 0; k = std::uint32_t(nodes_[k].parent))
+                route.pieces.push_back(nodes_[k].piece);
+            std::reverse(route.pieces.begin(), route.pieces.end());
+            route.pieces.insert(route.pieces.end(), end_.piece, end_.piece + end_.count);
             cut_corners(route.pieces);
         }
         return route;
@@ -244,13 +247,6 @@ class HybridAStar {
         return (x << 40 | y << 16) + h;
     }
 
-    void collect(std::uint32_t last, std::vector<Piece>& pieces) const {
-        for (std::uint32_t k = last; nodes_[k].parent >= 0; k = std::uint32_t(nodes_[k].parent))
-            pieces.push_back(nodes_[k].piece);
-        std::reverse(pieces.begin(), pieces.end());
-        for (int i = 0; i < end_.count; ++i) pieces.push_back(end_.piece[i]);
-    }
-
     // Of every two poses of the way the farthest apart first: a cheaper curve without contact takes its
     // place.
     void cut_corners(std::vector<Piece>& pieces) const {
@@ -291,8 +287,7 @@ class HybridAStar {
     }
 
     static void join(std::vector<Piece>& pieces, const Piece& next) {
-        if (!pieces.empty() && pieces.back().turn == next.turn &&
-            (pieces.back().length < 0) == (next.length < 0))
+        if (!pieces.empty() && next.continues(pieces.back()))
             pieces.back().length += next.length;
         else
             pieces.push_back(next);

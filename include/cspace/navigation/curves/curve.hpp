@@ -22,6 +22,8 @@ struct CarPose {
 struct Piece {
     int turn;  // +1 to the left, 0 straight on, −1 to the right, as seen when driving forwards
     double length;
+
+    bool continues(const Piece& last) const { return turn == last.turn && (length < 0) == (last.length < 0); }
 };
 
 struct Curve {
@@ -32,7 +34,7 @@ struct Curve {
     // A piece too short to move the car is omitted, and one that continues the last is merged with it.
     void add(int turn, double length, double nothing) {
         if (std::fabs(length) <= nothing) return;
-        if (count > 0 && piece[count - 1].turn == turn && (piece[count - 1].length < 0) == (length < 0))
+        if (count > 0 && Piece{turn, length}.continues(piece[count - 1]))
             piece[count - 1].length += length;
         else
             piece[count++] = {turn, length};

@@ -22,7 +22,6 @@ namespace cspace::navigation {
 
 // The Voronoi diagram of a grid by brushfire: every free cell gets its nearest piece of boundary, cells where
 // waves of different stretches meet are kept, and thinning joins them.
-
 class Diagram {
   public:
     static constexpr std::uint32_t none = 0xffffffff;
@@ -263,29 +262,27 @@ inline BrushfireAnswer find_along(const Diagram& diagram, maps::Cell start, maps
     std::vector<std::uint32_t> way = brushfire::climb_to_diagram(diagram, grid.number(start));
     std::vector<std::uint32_t> back = brushfire::climb_to_diagram(diagram, grid.number(goal));
     const std::uint32_t from = diagram.place(way.back()), to = diagram.place(back.back());
-    const auto search = [&](bool widest, std::uint32_t least, const auto& then) {
-        brushfire::Walk walk(diagram, to, widest, least);
+    const auto walk = [&](bool widest, std::uint32_t least) {
+        brushfire::Walk made(diagram, to, widest, least);
         search::PriorityQueue queue;
-        walk.start(from, queue);
-        const bool found = search::best_first(walk, queue, answer.way.effort) == to;
-        answer.way.effort.pushed += walk.edges();
-        if (found) then(walk);
-        return found;
+        made.start(from, queue);
+        answer.way.found = search::best_first(made, queue, answer.way.effort) == to;
+        answer.way.effort.pushed += made.edges();
+        return made;
     };
     std::uint32_t least = 0;
-    if (prefer == Prefer::clearance &&
-        !search(true, 0, [&](const auto& walk) { least = std::uint32_t(-walk.value(to)); }))
-        return answer;
+    if (prefer == Prefer::clearance) {
+        const brushfire::Walk widest = walk(true, 0);
+        if (!answer.way.found) return answer;
+        least = std::uint32_t(-widest.value(to));
+    }
+    const brushfire::Walk shortest = walk(false, least);
+    if (!answer.way.found) return answer;
     std::vector<std::uint32_t> along;
-    if (!search(false, least, [&](const auto& walk) {
-            for (std::uint32_t at = to; at != from; at = walk.parent(at))
-                along.push_back(diagram.cells()[at]);
-        }))
-        return answer;
+    for (std::uint32_t at = to; at != from; at = shortest.parent(at)) along.push_back(diagram.cells()[at]);
     way.insert(way.end(), along.rbegin(), along.rend());
     way.insert(way.end(), back.rbegin() + 1, back.rend());
     brushfire::straighten_way(grid, way);
-    answer.way.found = true;
     answer.squared = diagram.clearance().squared[way.front()];
     for (const std::uint32_t n : way) {
         answer.way.cells.push_back(grid.cell(n));

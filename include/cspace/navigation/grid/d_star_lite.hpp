@@ -57,13 +57,11 @@ class DStarLite {
             poll.step();
             const Entry top = queue_.top();
             Node& node = at(top.cell);
-            if (is_outdated(top, node)) {
-                queue_.pop();
-                continue;
-            }
             const Node& target = at(start);
-            if (!(top.key < key_of(target, start_)) && !(target.g < target.rhs)) break;
+            const bool is_outdated = !node.waits || !(top.key == node.key);
+            if (!is_outdated && !(top.key < key_of(target, start_)) && !(target.g < target.rhs)) break;
             queue_.pop();
+            if (is_outdated) continue;
             node.waits = false;
             settle(top, node, effort);
         }
@@ -117,9 +115,6 @@ class DStarLite {
         node.key = key;
         node.waits = true;
         queue_.push({node.key, grid_.number(cell)});
-    }
-    static bool is_outdated(const Entry& entry, const Node& node) {
-        return !node.waits || !(entry.key == node.key);
     }
     void settle(const Entry& top, Node& node, search::Effort& effort) {
         const maps::Cell cell = grid_.cell(top.cell);
