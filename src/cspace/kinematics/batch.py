@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from cspace.arrays import Array, as_floats, whole_number
+from cspace.arrays import Array, as_floats, leading_axes, whole_number
 from cspace.buffer_pool import pooled_array
 from cspace.errors import InputError, InputTypeError, suggest
 from cspace.kinematics.kinematic_model import KinematicModel
@@ -59,11 +59,7 @@ def rows_of(
         what = "[v; ω] of the base, then " if robot.floating else ""
         given["qd"] = (_row_vectors(qd, "qd", robot.dof, what + "one velocity per joint", robot), 1)
     leads = {name: array.shape[: array.ndim - own] for name, (array, own) in given.items()}
-    try:
-        shape = np.broadcast_shapes(*leads.values())
-    except ValueError:
-        listed = ", ".join(f"{name} {array.shape}" for name, (array, _) in given.items())
-        raise InputError(f"the leading axes of {listed} do not broadcast") from None
+    shape = leading_axes(**leads)
 
     def rows(name: str, *, shared: bool) -> Array | None:
         if name not in given:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, bounded_number
+from cspace.arrays import Array, as_floats, bounded_number, leading_axes
 from cspace.errors import InputError
 from cspace.ik.numeric.problem import largest_speeds
 from cspace.kinematics.batch import thread_count
@@ -59,12 +59,8 @@ def resolved_rate(
         raise InputError(f"{robot.name} has {dof} velocities; resolved_rate takes up to {MOST_JOINTS}")
     wanted = as_floats(twist, "twist", last=(6,), largest=FARTHEST)
     wish = None if null_space is None else as_floats(null_space, "null_space", last=(dof,), largest=FARTHEST)
-    try:
-        lead = np.broadcast_shapes(J.shape[:-2], wanted.shape[:-1], () if wish is None else wish.shape[:-1])
-    except ValueError:
-        raise InputError(
-            f"the leading axes of q {J.shape[:-2]}, twist {wanted.shape} and null_space do not broadcast"
-        ) from None
+    wish_axes = () if wish is None else wish.shape[:-1]
+    lead = leading_axes(q=J.shape[:-2], twist=wanted.shape[:-1], null_space=wish_axes)
 
     number = math.prod(lead)
 

@@ -78,13 +78,12 @@ class Geoms:
             size = [*size[:1] * (count - 1), length]
         if len(size) < count or min(size[:count]) <= 0.0:
             rule = f"it needs {count} above zero: radii and half lengths"
-            holder = given.holder("size") or given.element
-            raise fault_at(holder, f"size of a {kind} is {size[:count]}; {rule}")
+            raise fault_at(given.place("size"), f"size of a {kind} is {size[:count]}; {rule}")
         return Geom(kind, tuple(size[:count]), T_body_frame @ place, given)
 
     def between(self, given: Given, kind: str) -> tuple[Array, float]:
         """The frame (4, 4) of a long solid between two points, and half its length [m]."""
-        element = given.holder("fromto") or given.element
+        element = given.place("fromto")
         if kind == "sphere":
             raise fault_at(element, "fromto makes capsules, cylinders, boxes and ellipsoids, no sphere")
         if "pos" in element.attributes:
@@ -122,10 +121,9 @@ class Geoms:
     def mesh(self, geom: Geom, name: str, color: Color | None) -> Geometry | None:
         """The mesh of a geom by reference; None where no file holds it."""
         given = geom.given
-        holder = given.holder("mesh") or given.element
         called = given.text("mesh")
         if called not in self.meshes:
-            raise fault_at(holder, str(suggest("mesh", called, self.meshes, owner="<asset>")))
+            raise fault_at(given.place("mesh"), str(suggest("mesh", called, self.meshes, owner="<asset>")))
         asset = self.meshes[called]
         file = asset.element.attributes.get("file", "").strip()
         x, y, z = asset.floats("scale", (1.0, 1.0, 1.0), 3)

@@ -32,6 +32,10 @@ class Given:
         """The nearest element that has any of the attributes."""
         return next((e for e in (self.element, *self.behind) if any(n in e.attributes for n in names)), None)
 
+    def place(self, name: str) -> Element:
+        """Where a complaint about an attribute belongs: the nearest element that has it, else this one."""
+        return self.holder(name) or self.element
+
     def text(self, name: str, default: str = "") -> str:
         """The text of an attribute."""
         holder = self.holder(name)
@@ -41,7 +45,7 @@ class Given:
         self, name: str, default: Sequence[float] | None, least: int, most: int | None = None
     ) -> list[float]:
         """The numbers of an attribute, `least` to `most` (default: as many), no larger than robots go."""
-        holder = self.holder(name) or self.element
+        holder = self.place(name)
         numbers = read_floats(holder, name, default, least, most)
         largest = max(numbers, key=abs, default=0.0)
         if abs(largest) > LARGEST_NUMBER:
@@ -50,7 +54,7 @@ class Given:
 
     def span(self, name: str) -> tuple[float, float]:
         """A range, from 0 to 0 where it is not given; its ends may stand for infinity and be of any size."""
-        low, high = read_floats(self.holder(name) or self.element, name, (0.0, 0.0), 2)
+        low, high = read_floats(self.place(name), name, (0.0, 0.0), 2)
         return low, high
 
     def number(self, name: str, default: float | None = None) -> float:

@@ -72,7 +72,7 @@ def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings)
         return Draft(name, kind, element)
     if kind == "ball":
         raise fault_at(
-            given.holder("type") or element,
+            given.place("type"),
             f"joint {name!r} is a ball joint, which has no single coordinate; write it as three hinges with"
             " one 'pos' and perpendicular axes",
         )
@@ -80,9 +80,7 @@ def read_joint(given: Given, name: str, T_body_frame: Array, settings: Settings)
     R = T_body_frame[:3, :3]
     anchor = R @ given.floats("pos", (0.0, 0.0, 0.0), 3) + T_body_frame[:3, 3]
     direction = given.floats("axis", (0.0, 0.0, 1.0), 3)
-    axis = complain_at(
-        given.holder("axis") or element, lambda: unit_axis(R @ direction, f"axis of joint {name!r}")
-    )
+    axis = complain_at(given.place("axis"), lambda: unit_axis(R @ direction, f"axis of joint {name!r}"))
     lower, upper = read_limits(given, name, unit, settings)
     damping, friction = (
         None if given.holder(key) is None else given.floats(key, None, 1, 9)[0]
@@ -105,7 +103,7 @@ def read_limits(given: Given, name: str, unit: float, settings: Settings) -> tup
         return -math.inf, math.inf
     if not low < high:
         text = f"joint {name!r} is limited to the range {low:g} to {high:g}; the first must be less"
-        raise fault_at(holder or given.element, text)
+        raise fault_at(given.place("range"), text)
     return low * unit, high * unit
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from functools import partial
 
 import numpy as np
@@ -34,10 +34,10 @@ def read_loop(name: str, element: Element, skeleton: Skeleton) -> Loop:
     """Two bodies that share a point, or are one: at two sites; else where the anchor in the first is when all
     is at rest, or as `relpose` says or the rest has it."""
     kind = "spherical" if element.tag == "connect" else "fixed"
-    ends = two_sites(element, skeleton)
-    if ends is not None:
-        return Loop(name, kind, *ends)
-    first, second = two_bodies(element, skeleton)
+    if element.attributes.keys() & {"site1", "site2"}:
+        first, second = two_ends(element, "site", skeleton.sites)
+        return Loop(name, kind, skeleton.sites[first], skeleton.sites[second])
+    first, second = two_ends(element, "body", skeleton.bodies, WORLD)  # the world where one is left out
     if kind == "fixed":
         return Loop(name, kind, first, second, relative_pose(element, first, second, skeleton))
     origin = translation_by(np.array(Given(element).floats("anchor", None, 3)))
@@ -53,22 +53,10 @@ def relative_pose(element: Element, first: str, second: str, skeleton: Skeleton)
     return translation_by(np.array(numbers[:3])) @ from_wxyz(numbers[3:], "relpose")
 
 
-def two_sites(element: Element, skeleton: Skeleton) -> tuple[str, str] | None:
-    """The links of the two sites that an equality names; None where it names none."""
-    names = [element.attributes.get(key) for key in ("site1", "site2")]
-    if names == [None, None]:
-        return None
-    for name in names:
-        if name not in skeleton.sites:
-            raise fault_at(element, f"<{element.tag}>: {suggest('site', name, skeleton.sites)}")
-    first, second = (skeleton.sites[str(name)] for name in names)
-    return first, second
-
-
-def two_bodies(element: Element, skeleton: Skeleton) -> tuple[str, str]:
-    """The two bodies that an equality names; the second is the world where it is left out."""
-    first, second = (element.attributes.get(key, WORLD) for key in ("body1", "body2"))
+def two_ends(element: Element, kind: str, known: Collection[str], default: str = "") -> tuple[str, str]:
+    """The two sites, or bodies, that an equality names."""
+    first, second = (element.attributes.get(f"{kind}{i}", default) for i in (1, 2))
     for name in (first, second):
-        if name not in skeleton.bodies:
-            raise fault_at(element, f"<{element.tag}>: {suggest('body', name, skeleton.bodies)}")
+        if name not in known:
+            raise fault_at(element, f"<{element.tag}>: {suggest(kind, name, known)}")
     return first, second

@@ -111,16 +111,12 @@ def settings_of(root: Element) -> Settings:
     elements = list(root.all("compiler"))
     given = Given(elements[-1], elements[-2::-1]) if elements else Given(Element("compiler", {}, root.line))
     if given.text("coordinate", "local") != "local":
-        holder = given.holder("coordinate") or given.element
-        raise fault_at(
-            holder, "global coordinates were dropped from MJCF; save the file with MuJoCo 2.3.3 first"
-        )
+        text = "global coordinates were dropped from MJCF; save the file with MuJoCo 2.3.3 first"
+        raise fault_at(given.place("coordinate"), text)
     sequence = given.text("eulerseq", "xyz")
     if len(sequence) != 3 or not set(sequence.lower()) <= set("xyz"):
-        holder = given.holder("eulerseq") or given.element
-        raise fault_at(
-            holder, f"eulerseq is {sequence[:20]!r}; it holds three letters out of x, y, z, X, Y, Z"
-        )
+        text = f"eulerseq is {sequence[:20]!r}; it holds three letters out of x, y, z, X, Y, Z"
+        raise fault_at(given.place("eulerseq"), text)
     total = given.number("settotalmass", -1.0)
     low, high = given.floats("inertiagrouprange", (0.0, 5.0), 2)
     return Settings(
