@@ -22,11 +22,9 @@ def complain_at(element: Element, make: Callable[[], T]) -> T:
     """What `make` returns; its complaint gets the file and the line of `element`."""
     try:
         return make()
-    except DescriptionError as error:
-        if error.line is not None:
-            raise
-        raise fault_at(element, str(error)) from None
     except CspaceError as error:
+        if isinstance(error, DescriptionError) and error.line is not None:
+            raise
         raise fault_at(element, str(error)) from None
 
 

@@ -67,12 +67,10 @@ class _Reader:
         """What `make` returns; its complaint gets the place of `table`."""
         try:
             return make()
-        except DescriptionError as error:
-            if error.path is not None or error.line is not None or self.document.path is None:
-                raise
-            raise table.located(error) from None
         except CspaceError as error:
-            raise table.located(error) from None
+            if isinstance(error, DescriptionError) and (error.path or error.line or not self.document.path):
+                raise
+            raise table.fault(str(error)) from None
 
     def read(self) -> Description:
         top = parse_toml(self.document)
@@ -134,7 +132,7 @@ class _Reader:
             culprit = next((table for part, table in parts if part is error.part), None)
             if culprit is None:
                 raise
-            raise culprit.located(error) from None
+            raise culprit.fault(str(error)) from None
 
     def link(self, table: Table) -> Link:
         table.known(("name", "mass", "com", "inertia", "visual", "collision"))

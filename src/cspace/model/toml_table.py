@@ -7,7 +7,7 @@ import sys
 from collections.abc import Collection
 from typing import Any
 
-from cspace.errors import CspaceError, DescriptionError, suggest
+from cspace.errors import DescriptionError, suggest
 
 
 class Document:
@@ -68,10 +68,6 @@ class Table:
     def fault(self, message: str) -> DescriptionError:
         line = self.document.line_of(self.header, self.index) if self.header else None
         return self.document.fault(f"{self.where}: {message}", line)
-
-    def located(self, error: CspaceError) -> DescriptionError:
-        """The complaint of a part, with the place of this table."""
-        return self.fault(str(error))
 
     def known(self, keys: Collection[str]) -> None:
         """Complain about a key that is not one of `keys`."""

@@ -83,8 +83,7 @@ def unit_axis(value: Any, subject: str) -> Array:
     Raises InputError for a vector shorter than tolerances.AXIS_LENGTH.
     """
     vector = one_array(value, subject, (3,))
-    scale = float(np.abs(vector).max())
-    length = scale * math.sqrt(sum((x / scale) ** 2 for x in vector.tolist())) if scale > 0.0 else 0.0
+    length = math.hypot(*vector.tolist())
     if length < AXIS_LENGTH:
         raise InputError(f"{subject} is {vector.tolist()}, which has no direction; an axis must not be zero")
     if abs(length - 1.0) <= 2.0**-51:  # a unit vector to rounding stays as it is, bit for bit
