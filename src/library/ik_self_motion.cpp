@@ -47,7 +47,7 @@ SelfMotionCurve follow_self_motion(const BuiltArm& built, const double* q, const
     double along[max_joints];
     for (int i = 0; i < chain.n; ++i) along[i] = direction[i];
     scale_prismatic(chain, 1 / locked_joint.length, along);
-    const auto visit = [&](const double* at, const double* t) {
+    const auto visit = [&](const double* at, const double* t, double) {
         curve.q.insert(curve.q.end(), at, at + chain.n);
         curve.tangents.insert(curve.tangents.end(), t, t + chain.n);
         scale_prismatic(chain, locked_joint.length, curve.tangents.data() + curve.tangents.size() - chain.n);

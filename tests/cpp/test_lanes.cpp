@@ -119,6 +119,19 @@ TEST(bits) {
     });
 }
 
+template <int s, int N>
+void check_swapped(Pack<N> a) {
+    for (int k = 0; k < N; ++k) CHECK(same(lane(swap_lanes<s>(a), k), lane(a, k ^ s)));
+}
+template <int N, int... distances>
+void check_all_swapped(Pack<N> a, std::integer_sequence<int, distances...>) {
+    (check_swapped<distances>(a), ...);
+}
+TEST(lanes_change_places) {
+    over_widths(
+        []<int N>(Pack<N> a, Pack<N>) { check_all_swapped(a, std::make_integer_sequence<int, N>()); });
+}
+
 // --- memory ----------------------------------------------------------------------------------------------
 template <class V>
 void check_rows() {

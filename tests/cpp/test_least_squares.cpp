@@ -164,6 +164,38 @@ TEST(newtons_method_ends_where_the_gradient_vanishes) {
     }
 }
 
+// Matrices of every size up to 6 × 16, of full rank or not, with columns of very different lengths.
+TEST(a_decomposition_is_orthogonal_and_gives_the_matrix_back) {
+    constexpr int most_columns = 16;
+    Random random{9};
+    for (int round = 0; round < 3000; ++round) {
+        const int m = 1 + random.below(rows), n = 1 + random.below(most_columns);
+        SmallSvd<rows, most_columns> svd{m, n, {}, {}, {}};
+        double A[most_columns][rows], largest = 0;
+        for (int j = 0; j < n; ++j) {
+            const double size = random.below(4) ? 1 : std::pow(10, -random.below(12));
+            const int copied = random.below(4) || j == 0 ? -1 : random.below(j);
+            for (int r = 0; r < m; ++r) {
+                A[j][r] = svd.us[j][r] = copied < 0 ? random.uniform(-size, size) : -2 * A[copied][r];
+                largest = std::fmax(largest, std::fabs(A[j][r]));
+            }
+        }
+        decompose(svd);
+        for (int j = 0; j < n; ++j) {
+            CHECK_NEAR(std::sqrt(dot_n(svd.us[j], svd.us[j], m)), svd.sigma[j], 1e-14 * largest);
+            for (int i = 0; i <= j; ++i) {
+                CHECK_NEAR(dot_n(svd.v[i], svd.v[j], n), double(i == j), 1e-13);
+                if (i < j) CHECK_NEAR(dot_n(svd.us[i], svd.us[j], m), 0.0, 1e-13 * largest * largest);
+            }
+            for (int r = 0; r < m; ++r) {
+                double sum = 0;
+                for (int k = 0; k < n; ++k) sum += svd.us[k][r] * svd.v[k][j];
+                CHECK_NEAR(sum, A[j][r], 2e-14 * largest);
+            }
+        }
+    }
+}
+
 TEST(a_least_norm_step_stays_in_the_row_space) {
     Random random{8};
     for (int round = 0; round < 200; ++round) {

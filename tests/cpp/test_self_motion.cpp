@@ -33,14 +33,15 @@ TEST(three_links_on_a_point_swing_as_a_four_bar_linkage) {
     const double* along = at.jacobian.v[weakest_direction(at.jacobian)];
     double low = q[0], high = q[0], last[3] = {}, worst = 0;
     int steps = 0;
-    const ik::CurveEnd end = follow_curve(chain, constraint, q, along, [&](const double* p, const double* t) {
-        worst = max(worst, norm(forward(chain, p).t - goal.t));
-        CHECK_NEAR(dot_n(t, t, 3), 1.0, 1e-12);
-        low = min(low, p[0]);
-        high = max(high, p[0]);
-        for (int i = 0; i < 3; ++i) last[i] = p[i];
-        ++steps;
-    });
+    const ik::CurveEnd end =
+        follow_curve(chain, constraint, q, along, [&](const double* p, const double* t, double) {
+            worst = max(worst, norm(forward(chain, p).t - goal.t));
+            CHECK_NEAR(dot_n(t, t, 3), 1.0, 1e-12);
+            low = min(low, p[0]);
+            high = max(high, p[0]);
+            for (int i = 0; i < 3; ++i) last[i] = p[i];
+            ++steps;
+        });
     CHECK(end == ik::CurveEnd::closed);
     CHECK(steps > 50);
     CHECK(worst < 1e-12);

@@ -128,6 +128,12 @@ template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Mask<N> lowest_bit(Pack<N> a) {
     return {lowest_bit(a.low), lowest_bit(a.high)};
 }
+template <int s, int N, when<is_split<N>> = 0>
+CSPACE_INLINE Pack<N> swap_lanes(Pack<N> a) {
+    const auto low = swap_lanes<s % (N / 2)>(a.low), high = swap_lanes<s % (N / 2)>(a.high);
+    if constexpr (s >= N / 2) return {high, low};
+    return {low, high};
+}
 // The lanes of a mask as the low bits of an integer.
 template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE unsigned bits_of(Mask<N> m) {

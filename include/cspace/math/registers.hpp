@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "cspace/math/isa.hpp"
 
@@ -154,6 +155,21 @@ CSPACE_INLINE Pack<N> operator-(Pack<N> a) {
 template <int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Mask<N> operator!(Mask<N> a) {
     CSPACE_EACH_LANE(Mask, m, ~a.m, ~a.m[i])
+}
+
+// Lane i of the result is lane i ^ s.
+template <int s, int N, when<!is_split<N>> = 0>
+CSPACE_INLINE Pack<N> swap_lanes(Pack<N> a) {
+#if CSPACE_VECTOR_EXTENSIONS
+    const auto swap = [&]<int... lanes>(std::integer_sequence<int, lanes...>) {
+        return Pack<N>{__builtin_shufflevector(a.v, a.v, (lanes ^ s)...)};
+    };
+    return swap(std::make_integer_sequence<int, N>());
+#else
+    Pack<N> r;
+    for (int i = 0; i < N; ++i) r.v[i] = a.v[i ^ s];
+    return r;
+#endif
 }
 
 // --- bits ------------------------------------------------------------------------------------------------

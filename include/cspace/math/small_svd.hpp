@@ -4,8 +4,9 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
-#include "cspace/math/isa.hpp"
+#include "cspace/math/linear.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace {
@@ -22,15 +23,6 @@ struct SmallSvd {
 }  // namespace cspace
 
 namespace cspace::inline CSPACE_ISA {
-
-// Turns the pairs (a[k], b[k]) by the angle with cosine c and sine s.
-inline void turn_columns(double* a, double* b, int n, double c, double s) {
-    for (int k = 0; k < n; ++k) {
-        const double x = a[k], y = b[k];
-        a[k] = c * x - s * y;
-        b[k] = s * x + c * y;
-    }
-}
 
 inline double dot_n(const double* a, const double* b, int n) {
     double sum = 0;
@@ -52,35 +44,104 @@ inline double project(const double* const* basis, int k, int n, double* v) {
     return size;
 }
 
-// On entry us contains the columns of A.
-template <int R, int C>
-void decompose(SmallSvd<R, C>& m) {
-    for (int j = 0; j < m.columns; ++j)
-        for (int k = 0; k < m.columns; ++k) m.v[j][k] = j == k;
-    constexpr double noise2 = 1e-36;  // the square of rounding on a column that is itself rounding
-    // A column this small against the largest is rounding noise, whose direction never settles.
-    double largest2 = 0;
-    for (int j = 0; j < m.columns; ++j) largest2 = std::fmax(largest2, dot_n(m.us[j], m.us[j], m.rows));
-    const double nothing = noise2 * largest2;
-    bool moved = true;
-    for (int sweep = 0; moved && sweep < 40; ++sweep) {
-        moved = false;
-        for (int i = 0; i + 1 < m.columns; ++i)
-            for (int j = i + 1; j < m.columns; ++j) {
-                const double aa = dot_n(m.us[i], m.us[i], m.rows), bb = dot_n(m.us[j], m.us[j], m.rows);
-                const double ab = dot_n(m.us[i], m.us[j], m.rows);
-                if (!(std::fabs(ab) > tolerance::last_digits * std::sqrt(aa * bb)) ||
-                    std::fmin(aa, bb) <= nothing)
-                    continue;
-                const double zeta = (bb - aa) / (2 * ab);
-                const double t = std::copysign(1.0, zeta) / (std::fabs(zeta) + std::sqrt(1 + zeta * zeta));
-                const double c = 1 / std::sqrt(1 + t * t), s = c * t;
-                turn_columns(m.us[i], m.us[j], m.rows, c, s);
-                turn_columns(m.v[i], m.v[j], m.columns, c, s);
-                moved = true;
-            }
+// The columns of A, and of V below them, as lanes: row k is entry k of every column.
+template <int W, int R>
+struct SvdLanes {
+    Pack<W> row[R + W];
+    int height, rows;  // of A, of A and V together
+};
+
+// Turns every column i against column i ^ s. Returns whether a pair was not orthogonal yet.
+template <int s, int W, int R>
+bool turn_pairs(SvdLanes<W, R>& m, double nothing) {
+    constexpr double tolerance2 = tolerance::last_digits * tolerance::last_digits;
+    const int height = R <= W ? R : m.height;  // a constant for small matrices; the rows past A are zero
+    Pack<W> other[R], own2 = fill<Pack<W>>(0), both = own2, order = own2;
+    for (int k = 0; k < height; ++k) {
+        other[k] = swap_lanes<s>(m.row[k]);
+        own2 = mul_add(m.row[k], m.row[k], own2);
+        both = mul_add(m.row[k], other[k], both);
     }
-    for (int j = 0; j < m.columns; ++j) m.sigma[j] = std::sqrt(dot_n(m.us[j], m.us[j], m.rows));
+    const Pack<W> other2 = swap_lanes<s>(own2);
+    const Mask<W> apart = both * both > tolerance2 * (own2 * other2) && min(own2, other2) > nothing;
+    if (!any(apart)) return false;
+    // The tangent p / (d + √(d² + p²)) of the smaller angle; the two of a pair have opposite signs.
+    for (int i = 0; i < W; ++i) set_lane(order, i, (i ^ s) > i ? 1 : -1);
+    const Pack<W> difference = other2 - own2, p = both + both;
+    const Pack<W> sign = sign_bit(select(difference == 0.0, order, difference)), d = abs(difference);
+    const Pack<W> t = where(apart, bit_xor(p / (d + sqrt(mul_add(d, d, p * p))), sign));
+    const Pack<W> c = 1.0 / sqrt(mul_add(t, t, fill<Pack<W>>(1))), sine = c * t;
+    for (int k = 0; k < height; ++k) m.row[k] = c * m.row[k] - sine * other[k];
+    for (int k = height; k < m.rows; ++k) m.row[k] = c * m.row[k] - sine * swap_lanes<s>(m.row[k]);
+    return true;
+}
+template <int W, int R, int... rounds>
+bool turn_all_pairs(SvdLanes<W, R>& m, double nothing, std::integer_sequence<int, rounds...>) {
+    bool moved = false;
+    ((moved |= turn_pairs<rounds + 1>(m, nothing)), ...);
+    return moved;
+}
+
+// At most eight columns.
+template <int R, int C>
+void decompose_on_lanes(SmallSvd<R, C>& m, bool from_v) {
+    constexpr int W = 8;
+    constexpr double noise2 = 1e-36;  // the square of rounding on a column that is itself rounding
+    SvdLanes<W, R> lanes;
+    const int height = lanes.height = R <= W ? R : m.rows;
+    lanes.rows = height + m.columns;
+    for (int k = 0; k < lanes.rows; ++k) lanes.row[k] = fill<Pack<W>>(0);
+    double largest2 = 0;
+    for (int j = 0; j < m.columns; ++j) {
+        Pack<W>& v = lanes.row[height + j];
+        if (from_v) {
+            for (int i = 0; i < m.columns; ++i) set_lane(v, i, m.v[i][j]);
+        } else {
+            set_lane(v, j, 1);
+        }
+        for (int k = 0; k < m.rows; ++k) lanes.row[k] = mul_add(fill<Pack<W>>(m.us[j][k]), v, lanes.row[k]);
+        largest2 = max(largest2, dot_n(m.us[j], m.us[j], m.rows));
+    }
+    // A column this small against the largest is rounding noise, whose direction never settles.
+    const double nothing = noise2 * largest2;
+    for (int sweep = 0; sweep < 40; ++sweep)
+        if (!turn_all_pairs(lanes, nothing, std::make_integer_sequence<int, W - 1>())) break;
+    for (int j = 0; j < m.columns; ++j) {
+        for (int k = 0; k < m.rows; ++k) m.us[j][k] = lane(lanes.row[k], j);
+        for (int k = 0; k < m.columns; ++k) m.v[j][k] = lane(lanes.row[height + k], j);
+        m.sigma[j] = std::sqrt(dot_n(m.us[j], m.us[j], m.rows));
+    }
+}
+// More columns than rows: Aᵀ = Q L', so that A V = U Σ with V = Q V' and L'ᵀ V' = U Σ (Chan 1982).
+template <int R, int C>
+void decompose_wide(SmallSvd<R, C>& m) {
+    static_assert(R <= 8, "the triangle has as many columns as A has rows");
+    double A[C][R] = {}, diagonal[R], factor[R];
+    const int columns = m.columns;
+    for (int j = 0; j < columns; ++j)
+        for (int k = 0; k < R; ++k) A[j][k] = k < m.rows ? m.us[j][k] : 0;
+    for (int k = 0; k < m.rows; ++k) linear::reduce_column(A, columns, m.rows, k, diagonal[k], factor[k]);
+    for (int j = 0; j < m.rows; ++j)
+        for (int k = 0; k < m.rows; ++k) m.us[j][k] = k < j ? 0 : k == j ? diagonal[k] : A[j][k];
+    m.columns = m.rows;
+    decompose_on_lanes(m, false);
+    m.columns = columns;
+    for (int j = 0; j < columns; ++j) {
+        const bool null = j >= m.rows;
+        for (int k = 0; k < columns; ++k) m.v[j][k] = null ? k == j : k < m.rows ? m.v[j][k] : 0;
+        for (int k = m.rows - 1; k >= 0; --k) linear::reflect(A, columns, k, factor[k], m.v[j]);
+        for (int k = 0; k < m.rows && null; ++k) m.us[j][k] = 0;
+        if (null) m.sigma[j] = 0;
+    }
+}
+// On entry us contains the columns of A. from_v: v contains those of a similar matrix, with which it takes
+// fewer turns.
+template <int R, int C>
+CSPACE_NOINLINE void decompose(SmallSvd<R, C>& m, bool from_v = false) {
+    if constexpr (C > 8) {
+        if (m.columns > 8) return decompose_wide(m);
+    }
+    decompose_on_lanes(m, from_v);
 }
 
 template <int R, int C>

@@ -110,7 +110,8 @@ inline void keep_one_per_self_motion(const Chain& chain, const Posed& goal, cons
         double start[max_joints], along[max_joints];
         for (int i = 0; i < chain.n; ++i) start[i] = out.q[k][i], along[i] = out.direction[k][i];
         follow_self_motion(
-            chain, constraint, start, along, steps_left, [&](int way, const double* q, const double* t) {
+            chain, constraint, start, along, steps_left,
+            [&](int way, const double* q, const double* t, double) {
                 offer_next(chain, constraint, r, way, q, t);
                 for (int m = k + 1; m < out.count; ++m)
                     dropped[m] = dropped[m] ||

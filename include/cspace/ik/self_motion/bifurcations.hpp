@@ -23,21 +23,6 @@ struct CurveMargin {
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-// The smallest singular value other than that of the self-motion.
-inline double margin_at(const Chain& chain, const TipConstraint& constraint, const double* q) {
-    PoseError at;
-    measure_constrained(chain, constraint, q, at);
-    double least = 1e300, second = 1e300;
-    for (int i = 0; i < chain.n; ++i) {
-        const double s = at.jacobian.sigma[i];
-        if (s < least)
-            second = least, least = s;
-        else if (s < second)
-            second = s;
-    }
-    return second;
-}
-
 // Whether the self-motion only rolls a spherical wrist or shoulder whose centre is fixed by the other three
 // joints. Then no other curve crosses it.
 inline bool only_rolls(const Chain& chain, const TipConstraint& constraint, const double* q,
@@ -75,8 +60,7 @@ inline CurveMargin follow_margin(const Chain& chain, const TipConstraint& constr
     double loose = 0;  // how far it ran with more than one freedom
     int seen = 0, last_way = 0;
     bool fits = true;
-    const auto visit = [&](int way, const double* at, const double* t) {
-        const double here = margin_at(chain, constraint, at);
+    const auto visit = [&](int way, const double* at, const double* t, double here) {
         if (way != last_way) seen = 0;
         const bool least = seen > 1 && margin[1] < crossed && margin[1] <= margin[0] && margin[1] < here;
         fits = fits && !(least && out.crossings == CurveMargin::most);
@@ -119,7 +103,7 @@ inline void add_self_motion(const Chain& chain, const TipConstraint& constraint,
     Representative r;
     r.joint = leading_joint(direction, chain.n);
     r.value = unconstrained ? unconstrained[r.joint] : 0;
-    const auto visit = [&](int way, const double* at, const double* t) {
+    const auto visit = [&](int way, const double* at, const double* t, double) {
         offer_next(chain, constraint, r, way, at, t);
         for (int m = 0; m < out.count; ++m)
             met = met || (out.self_motion[m] && lies_near(chain, constraint.length, at, t, out.q[m]));

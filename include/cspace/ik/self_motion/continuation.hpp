@@ -32,9 +32,18 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 inline double unit_of(const Chain& chain, int i, double length) { return chain.prismatic[i] ? length : 1; }
 
-// The error at q and its decomposed Jacobian, in joint units.
+// The size of the error e at q alone, the rotation to first order.
+inline double constrained_error(const Chain& chain, const TipConstraint& constraint, const double* q,
+                                double* e) {
+    tip_error(forward(chain, q), constraint.goal, constraint.length, e);
+    for (int k = 3; k < 6 && !constraint.whole_pose; ++k) e[k] = 0;
+    return std::sqrt(dot_n(e, e, 6));
+}
+
+// The error at q and its decomposed Jacobian, in joint units. near_by: `at` belongs to a configuration
+// nearby.
 inline double measure_constrained(const Chain& chain, const TipConstraint& constraint, const double* q,
-                                  PoseError& at) {
+                                  PoseError& at, bool near_by = false) {
     measure_error(chain, constraint.goal, constraint.length, q, at);
     if (!constraint.whole_pose)
         for (int k = 3; k < 6; ++k) at.e[k] = 0;
@@ -42,7 +51,7 @@ inline double measure_constrained(const Chain& chain, const TipConstraint& const
         for (int k = 0; k < 6; ++k)
             at.jacobian.us[i][k] *=
                 !constraint.whole_pose && k >= 3 ? 0 : unit_of(chain, i, constraint.length);
-    decompose(at.jacobian);
+    decompose(at.jacobian, near_by);
     return size_of_error(at);
 }
 
@@ -61,12 +70,21 @@ inline bool tangent_at(const Chain& chain, const PoseSvd& J, const double* along
     return project(basis, k, chain.n, tangent) > leading;
 }
 
-// The smallest of the other singular values. It vanishes where two curves cross.
-inline double margin_on_curve(const PoseSvd& J) {
-    double least_margin = 1;
-    for (int j = 0; j < J.columns; ++j)
-        if (J.sigma[j] > still) least_margin = min(least_margin, J.sigma[j]);
-    return least_margin;
+// Of the singular values other than that of the curve the smallest, and the smallest that does not vanish.
+// They vanish where two curves cross.
+struct Margin {
+    double second, positive;
+};
+inline Margin margin_on_curve(const PoseSvd& J) {
+    double least = 1e300;
+    Margin out = {1e300, 1};
+    for (int j = 0; j < J.columns; ++j) {
+        const double sigma = J.sigma[j];
+        out.second = min(out.second, max(least, sigma));
+        least = min(least, sigma);
+        if (sigma > still) out.positive = min(out.positive, sigma);
+    }
+    return out;
 }
 
 // Upper bound of a step: a longer one could switch to another curve. Towards a crossing this singular value
@@ -87,39 +105,46 @@ struct Room {
 };
 
 // Brings q onto the curve by minimum-norm steps; true if the tip satisfies the constraint. `at` belongs to q.
-inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q, PoseError& at) {
+// Newton's step is followed by others with the same Jacobian while each divides the error by ten. near_by: on
+// entry `at` belongs to a configuration nearby.
+inline bool onto_curve(const Chain& chain, const TipConstraint& constraint, double* q, PoseError& at,
+                       bool near_by = false) {
     constexpr int most_steps = 12;
-    constexpr double settled = tolerance::last_digits;
-    double size = measure_constrained(chain, constraint, q, at);
+    constexpr double settled = tolerance::last_digits, fast = 0.1;
+    double size = measure_constrained(chain, constraint, q, at, near_by);
     for (int step = 0; step < most_steps && size > settled; ++step) {
-        double dq[max_joints], next[max_joints];
-        PoseError trial;
-        least_norm_step(at.jacobian, at.e, 0, still, -1, dq);
-        for (int i = 0; i < chain.n; ++i) next[i] = q[i] + unit_of(chain, i, constraint.length) * dq[i];
-        const double left = measure_constrained(chain, constraint, next, trial);
-        if (!(left < size)) break;
-        for (int i = 0; i < chain.n; ++i) q[i] = next[i];
-        at = trial;
-        size = left;
+        double e[6], next[max_joints], dq[max_joints], best = size;
+        for (int k = 0; k < 6; ++k) e[k] = at.e[k];
+        for (int i = 0; i < chain.n; ++i) next[i] = q[i];
+        for (bool again = true; again;) {
+            least_norm_step(at.jacobian, e, 0, still, -1, dq);
+            for (int i = 0; i < chain.n; ++i) next[i] += unit_of(chain, i, constraint.length) * dq[i];
+            const double left = constrained_error(chain, constraint, next, e);
+            again = left < fast * best && left > settled;
+            for (int i = 0; i < chain.n && left < best; ++i) q[i] = next[i];
+            best = min(best, left);
+        }
+        if (!(best < size)) break;
+        size = measure_constrained(chain, constraint, q, at, true);
     }
     // An arm whose axes are parallel to ten digits only has its families to ten digits only.
     return size <= tolerance::reached;
 }
 
-// One step of length h from q along its tangent. False if the curve bends too much for this length.
+// One step of length h from q along its tangent; `at` belongs to q, then to the end. False if the curve bends
+// too much for this length.
 inline bool step_along(const Chain& chain, const TipConstraint& constraint, const double* q,
-                       const double* tangent, double h, double* next, double* next_tangent, double* margin) {
+                       const double* tangent, double h, double* next, double* next_tangent, PoseError& at) {
     constexpr double least_cosine = 0.995;
-    PoseError at;
     for (int i = 0; i < chain.n; ++i) next[i] = q[i] + h * unit_of(chain, i, constraint.length) * tangent[i];
-    if (!onto_curve(chain, constraint, next, at) || !tangent_at(chain, at.jacobian, tangent, next_tangent))
+    if (!onto_curve(chain, constraint, next, at, true) ||
+        !tangent_at(chain, at.jacobian, tangent, next_tangent))
         return false;
     double back2 = 0;
     for (int i = 0; i < chain.n; ++i) {
         const double moved = (next[i] - q[i]) / unit_of(chain, i, constraint.length) - h * tangent[i];
         back2 += moved * moved;
     }
-    *margin = margin_on_curve(at.jacobian);
     return back2 <= most_correction * most_correction * h * h &&
            dot_n(tangent, next_tangent, chain.n) >= least_cosine;
 }
@@ -142,7 +167,7 @@ inline bool start_is_next(const Chain& chain, const TipConstraint& constraint, c
 
 inline double first_step(const PoseSvd& J) {
     constexpr double longest = 1e-3;  // [rad] nothing is known yet about how the curve bends
-    return min(longest, 0.2 * Room{}.here(margin_on_curve(J)));
+    return min(longest, 0.2 * Room{}.here(margin_on_curve(J).positive));
 }
 
 // The tangent at a configuration, from a guess. Where curves cross, the null space has more dimensions than
@@ -155,9 +180,10 @@ inline bool start_direction(const Chain& chain, const TipConstraint& constraint,
     PoseError at;
     measure_constrained(chain, constraint, q, at);
     const double h = first_step(at.jacobian);
-    double next[max_joints], beyond[max_joints], margin, best = -1;
+    double next[max_joints], beyond[max_joints], best = -1;
+    PoseError there = at;
     if (tangent_at(chain, at.jacobian, guess, tangent) &&
-        step_along(chain, constraint, q, tangent, h, next, beyond, &margin))
+        step_along(chain, constraint, q, tangent, h, next, beyond, there))
         return true;
     for (int a = 0; a < n; ++a)
         for (int b = a + 1; b < n; ++b)
@@ -168,12 +194,11 @@ inline bool start_direction(const Chain& chain, const TipConstraint& constraint,
                 for (int i = 0; i < n; ++i)
                     next[i] = q[i] + h * unit_of(chain, i, constraint.length) *
                                          (c * at.jacobian.v[a][i] + s * at.jacobian.v[b][i]);
-                PoseError there;
-                if (!onto_curve(chain, constraint, next, there)) continue;
+                if (!onto_curve(chain, constraint, next, there, true)) continue;
                 for (int i = 0; i < n; ++i)
                     way[i] = (next[i] - q[i]) / (h * unit_of(chain, i, constraint.length));
                 if (!(dot_n(way, way, n) > 0.25) || !tangent_at(chain, at.jacobian, way, trial) ||
-                    !step_along(chain, constraint, q, trial, h, next, beyond, &margin))
+                    !step_along(chain, constraint, q, trial, h, next, beyond, there))
                     continue;
                 const double agrees = dot_n(trial, guess, n);
                 if (agrees <= best) continue;
@@ -183,9 +208,9 @@ inline bool start_direction(const Chain& chain, const TipConstraint& constraint,
     return best > -1;
 }
 
-// Follows the curve from `start` along `direction` (in joint units). Calls `visit` with every configuration
-// and its tangent, the start first. If the curve closes, the start also comes last, with its angles
-// unwrapped.
+// Follows the curve from `start` along `direction` (in joint units). Calls `visit` with every configuration,
+// its tangent and the second singular value there, the start first. If the curve closes, the start also comes
+// last, with its angles unwrapped.
 template <class Visit>
 CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const double* start,
                       const double* direction, Visit&& visit, int most_steps = most_curve_steps) {
@@ -196,21 +221,24 @@ CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const
     measure_constrained(chain, constraint, start, at);
     const bool leaves = start_direction(chain, constraint, start, direction, first);
     for (int i = 0; i < n; ++i) q[i] = start[i], t[i] = leaves ? first[i] : direction[i];
-    visit(q, t);
+    const Margin first_margin = margin_on_curve(at.jacobian);
+    visit(q, t, first_margin.second);
     if (!leaves) return CurveEnd::lost;
-    double h = first_step(at.jacobian), margin = margin_on_curve(at.jacobian);
+    double h = first_step(at.jacobian);
+    Margin margin = first_margin;
     Room room;
     for (int step = 0; step < most_steps; ++step) {
         double next[max_joints] = {}, next_t[max_joints] = {};
         if (step > 2 && start_is_next(chain, constraint, q, t, start, first, 1.5 * h, next)) {
-            visit(next, first);
+            visit(next, first, first_margin.second);
             return CurveEnd::closed;
         }
-        const double last_margin = margin;
+        const double last_margin = margin.positive;
         const auto attempt = [&](double step) {
-            return step_along(chain, constraint, q, t, step, next, next_t, &margin);
+            return step_along(chain, constraint, q, t, step, next, next_t, at);
         };
         if (!halve_step(h, shortest, attempt)) return CurveEnd::lost;
+        margin = margin_on_curve(at.jacobian);
         double turning = 0, away = 0;
         for (int i = 0; i < n; ++i) {
             q[i] = next[i], t[i] = next_t[i];
@@ -219,9 +247,9 @@ CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const
             else
                 turning = max(turning, std::fabs(t[i]));
         }
-        visit(q, t);
+        visit(q, t, margin.second);
         if (away > endless_slide) return CurveEnd::far;
-        const double longest_here = min(room.after(margin, last_margin, h), longest);
+        const double longest_here = min(room.after(margin.positive, last_margin, h), longest);
         // Slides alone run along a line.
         h = turning > tolerance::resting ? min(1.5 * h, longest_here) : 2 * h;
     }
@@ -229,7 +257,7 @@ CurveEnd follow_curve(const Chain& chain, const TipConstraint& constraint, const
 }
 
 // The whole self-motion: in both directions from q, or once around if it closes. Calls `visit` with the
-// direction (0 or 1), every configuration and its tangent; each uses one of the remaining steps. False if the
+// direction (0 or 1) and what `follow_curve` passes; each call uses one of the remaining steps. False if the
 // curve was lost, or the steps were used up, before its end.
 template <class Visit>
 bool follow_self_motion(const Chain& chain, const TipConstraint& constraint, const double* q,
@@ -239,9 +267,9 @@ bool follow_self_motion(const Chain& chain, const TipConstraint& constraint, con
     for (int way = 0; way < 2; ++way) {
         double along[max_joints];
         for (int i = 0; i < chain.n; ++i) along[i] = (way ? -1 : 1) * direction[i];
-        const auto count = [&](const double* at, const double* tangent) {
+        const auto count = [&](const double* at, const double* tangent, double margin) {
             --steps_left;
-            visit(way, at, tangent);
+            visit(way, at, tangent, margin);
         };
         const int most = std::clamp(steps_left, 0, most_steps);
         const CurveEnd end = follow_curve(chain, constraint, q, along, count, most);

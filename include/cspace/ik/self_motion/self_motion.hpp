@@ -59,7 +59,7 @@ inline bool runs_round(const Chain& chain, const Posed& goal, double length, con
     constexpr double least = 1e-3;
     constexpr int most_steps = 400;
     double farthest = 0;
-    const auto visit = [&](const double* at, const double*) {
+    const auto visit = [&](const double* at, const double*, double) {
         for (int i = 0; i < chain.n; ++i) farthest = max(farthest, std::fabs(at[i] - q[i]));
     };
     const TipConstraint constraint = {goal, true, length};
