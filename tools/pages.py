@@ -13,7 +13,9 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 DOCS = ROOT / "docs"
 sys.path.insert(0, str(ROOT / "src"))
-NOT_ROOMS = {"index", "conventions", "status", "lectures", "benchmarks", "claims"}
+COURSE = ("spatial", "robots", "catalogue", "kinematics", "ik", "subproblems", "redundancy", "tracking")
+COURSE += ("differential-kinematics", "export", "maps", "navigation", "planners", "cars", "plot", "cli", "cpp")
+"""The pages of the rooms, in the order in which they build on each other."""
 
 
 def heading(page: Path) -> str:
@@ -27,8 +29,8 @@ def first_sentence(page: Path) -> str:
 
 
 def rooms() -> str:
-    """A table of the room pages with their first sentences."""
-    pages = [page for page in sorted(DOCS.glob("*.md")) if page.stem not in NOT_ROOMS]
+    """A table of the pages of the rooms with their first sentences."""
+    pages = [DOCS / f"{name}.md" for name in COURSE]
     rows = [f"| [{heading(page)}]({page.name}) | {first_sentence(page)} |" for page in pages]
     return "\n".join(["| page | what |", "|---|---|", *rows])
 

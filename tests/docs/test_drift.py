@@ -55,12 +55,19 @@ def test_every_public_name_is_on_a_page(name):
     assert any(word.search(page.read_text(encoding="utf-8")) for page in PAGES), "document it in docs/"
 
 
+def test_every_page_is_in_the_index():
+    index = (ROOT / "docs/index.md").read_text(encoding="utf-8")
+    pages = {page.name for page in (ROOT / "docs").glob("*.md")} - {"index.md"}
+    assert {name for name in pages if f"]({name})" not in index} == set()
+
+
 def test_errors_of_the_library_are_on_the_page_of_conventions():
     from cspace import errors
 
     page = (ROOT / "docs/conventions.md").read_text(encoding="utf-8")
     for name in errors.__all__:
-        if isinstance(getattr(errors, name), type):
+        known = getattr(errors, name)
+        if isinstance(known, type) and issubclass(known, Exception):
             assert re.search(rf"\b{name}\b", page), f"{name} is not explained"
 
 
