@@ -35,15 +35,38 @@ RENAMED: Final = MappingProxyType(
         "asked": "goal_parts",
         "families": "self_motions",
         "fixed": "locked",
+        "fkine": "fk",
+        "fkine_all": "fk_all",
+        "ikine": "ik",
+        "ikine_LM": "ik",
+        "ikine_a": "ik",
+        "jacob0": "jacobian",
+        "jacobe": "jacobian",
         "line": "summary",
         "missing": "out_of_reach",
+        "n": "dof",
+        "nq": "dof",
         "price": "stats",
+        "q0": "near",
+        "qlim": "limits",
         "robot": "solver",
+        "seed": "near= or rng",
         "sees": "sensing",
         "why": "cause",
     }
 )
-"""Names that people may bring, and ours."""
+"""Attributes and keywords of earlier versions and of other libraries, and ours."""
+FOREIGN_WORDS: Final = MappingProxyType(
+    {
+        "a*": "a_star",
+        "astar": "a_star",
+        "d*": "d_star_lite",
+        "local": "tip",
+        "theta*": "theta_star",
+        "world": "base",
+    }
+)
+"""Choices that other libraries offer under another name, and ours."""
 
 
 class CspaceError(Exception):
@@ -103,6 +126,8 @@ def suggest(subject: str, name: object, known: Iterable[str], *, owner: str = ""
 
     names, asked = sorted(known), _short(str(name))
     near = [repr(n) for n in difflib.get_close_matches(asked, names, n=3, cutoff=0.5)]
+    if (ours := FOREIGN_WORDS.get(asked.lower())) in names:
+        near = [repr(ours)]
     said = repr(asked) if isinstance(name, SHOWN) else f"of type {type(name).__name__}"
     text = f"no {subject} {said}" + (f" in {owner}" if owner else "")
     if near:
@@ -127,7 +152,7 @@ def keyword_error(text: str) -> TypeError:
 
 
 def name_new_keywords(function: Callable[Given, Answer]) -> Callable[Given, Answer]:
-    """The function, whose error for an old keyword contains the new one; see keyword_error."""
+    """The function, whose error for an old or foreign keyword contains ours; see keyword_error."""
 
     @wraps(function)
     def call(*args: Given.args, **keywords: Given.kwargs) -> Answer:
@@ -144,7 +169,8 @@ def name_new_keywords(function: Callable[Given, Answer]) -> Callable[Given, Answ
 def attribute_error(owner: object, name: str) -> AttributeError:
     """The error for an unknown attribute, with the new name of an old attribute."""
     text = f"{type(owner).__name__!r} object has no attribute {name!r}"
-    known = {*dir(type(owner)), *getattr(type(owner), "__annotations__", ())}
+    own = owner.__dict__ if type(owner).__dictoffset__ else ()
+    known = {*dir(type(owner)), *getattr(type(owner), "__annotations__", ()), *own}
     if (ours := RENAMED.get(name)) in known:
         text += f": use {ours}"
     return AttributeError(text, name=name, obj=owner)

@@ -12,7 +12,7 @@ import numpy as np
 from cspace import kinematics, model
 from cspace._core import RobotBase
 from cspace.arrays import Array
-from cspace.errors import InputTypeError, name_new_keywords
+from cspace.errors import InputTypeError, Renamed, name_new_keywords
 from cspace.kinematics import KinematicModel
 from cspace.model import Chain, Description, DHTable, LinkMatrices
 from cspace.spatial.checks import PoseLike, one_pose
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 __all__ = ["Robot"]
 
 
-class Robot(RobotBase, KinematicModel):
+class Robot(Renamed, RobotBase, KinematicModel):
     """A robot: a kinematic chain or tree with its poses, velocities, inverse kinematics and export.
 
     description: links and joints. base, tip: links. With a tip, or when the joints form a chain anyway, the
@@ -242,6 +242,7 @@ class Robot(RobotBase, KinematicModel):
         mount = one_pose(T_world_base, "T_world_base")
         return self._changed(T_world_base=mount if self._T_world_base is None else mount @ self._T_world_base)
 
+    @name_new_keywords
     def random_configuration(
         self, n: int | None = None, *, rng: Seed = None, reach: float | None = None
     ) -> Array:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -64,6 +66,42 @@ def test_an_old_attribute_names_the_new_one():
         with pytest.raises(AttributeError, match=r"no attribute 'colour'$"):
             _ = owner.colour
         assert not hasattr(owner, "colour")
+
+
+@pytest.mark.parametrize(
+    ("theirs", "ours"),
+    [("fkine", "fk"), ("ikine_LM", "ik"), ("jacob0", "jacobian"), ("qlim", "limits"), ("n", "dof")],
+)
+def test_an_attribute_of_another_library_names_ours(theirs, ours):
+    robot = cs.load_robot("ur5e")
+    getattr(robot, ours)
+    with pytest.raises(AttributeError, match=f"'Robot' object has no attribute '{theirs}': use {ours}$"):
+        getattr(robot, theirs)
+
+
+def test_a_keyword_of_another_library_names_ours():
+    robot = cs.load_robot("ur5e")
+    with pytest.raises(errors.InputTypeError, match=r"^unknown keyword 'q0': use near=$"):
+        robot.ik(np.eye(4), q0=np.zeros(6))
+    for call in (robot.random_configuration, cs.random_pose, cs.random_rotation):
+        with pytest.raises(errors.InputTypeError, match=r"^unknown keyword 'seed': use near= or rng=$"):
+            call(seed=7)
+        assert np.array_equal(call(rng=7), call(rng=7))
+
+
+def test_a_choice_of_another_library_names_ours():
+    world, robot = cs.PolygonWorld([], (0, 0, 4, 4)), cs.load_robot("ur5e")
+    for theirs, ours in (
+        ("astar", "a_star"),
+        ("A*", "a_star"),
+        ("D*", "d_star_lite"),
+        ("Theta*", "theta_star"),
+    ):
+        with pytest.raises(errors.UnknownNameError, match=re.escape(f"{theirs!r}; did you mean {ours!r}?")):
+            cs.navigate(world, (1, 1), (3, 3), planner=theirs)
+    for theirs, ours in (("local", "tip"), ("world", "base")):
+        with pytest.raises(errors.UnknownNameError, match=f"{theirs!r}; did you mean {ours!r}"):
+            robot.jacobian(np.zeros(6), expressed_in=theirs)
 
 
 def test_names_say_each_what_is_meant():

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from cspace.arrays import Array, as_floats, as_generator, guard_memory
-from cspace.errors import InputError, InputTypeError, shown
+from cspace.errors import InputError, InputTypeError, name_new_keywords, shown
 from cspace.spatial.planar import matrix_of_angle
 from cspace.spatial.poses import assemble
 from cspace.spatial.quaternions import matrix_of_quaternion
@@ -17,6 +17,7 @@ from cspace.spatial.quaternions import matrix_of_quaternion
 Size = int | tuple[int, ...]
 
 
+@name_new_keywords
 def random_rotation(size: Size = (), *, rng: int | np.random.Generator | None = None) -> Array:
     """Rotations drawn uniformly: turned by any fixed rotation, the distribution stays the same.
 
@@ -30,6 +31,7 @@ def random_rotation(size: Size = (), *, rng: int | np.random.Generator | None = 
         return _rotations(shape, as_generator(rng))
 
 
+@name_new_keywords
 def random_pose(
     size: Size = (),
     *,
@@ -48,6 +50,7 @@ def random_pose(
         return assemble(R, _box(shape, 3, lower, upper, generator))
 
 
+@name_new_keywords
 def random_rotation_2d(size: Size = (), *, rng: int | np.random.Generator | None = None) -> Array:
     """Planar rotations with the angle uniform in [−π, π).
 
@@ -58,6 +61,7 @@ def random_rotation_2d(size: Size = (), *, rng: int | np.random.Generator | None
         return matrix_of_angle(np.asarray(as_generator(rng).uniform(-np.pi, np.pi, shape)))
 
 
+@name_new_keywords
 def random_pose_2d(
     size: Size = (),
     *,
