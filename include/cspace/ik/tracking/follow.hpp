@@ -85,17 +85,14 @@ inline Outside meet_limit(const Track& t, Walker& w) {
 
 // Records where the branch of a walker ends, and the cause.
 inline void finish_branch(const Track& t, const Walker& w, Fate fate, int joint, std::size_t reached) {
-    const int n = t.path->n;
-    t.fate[w.branch] = fate;
-    t.joint[w.branch] = joint;
-    t.reached[w.branch] = std::int64_t(reached);
-    t.ends[w.branch] = double(w.row) + w.u;
-    t.weakest[w.branch] = least_singular_value(*t.path, w.q);
-    double* last = t.last + w.branch * std::size_t(n);
-    for (int j = 0; j < n; ++j) last[j] = w.q[j] + track::whole_turn * w.turns[j];
-    for (int j = 0; j < n; ++j) {
+    double* last = t.last + w.branch * t.dof;
+    t.ends[w.branch] = {reached, double(w.row) + w.u, fate, joint, least_singular_value(*t.path, w.q)};
+    write_row(t, w, w.q, last);
+    for (int j = 0; j < t.path->n; ++j) {
         if (w.turns[j] == 0) continue;
-        for (std::size_t k = 0; k < reached; ++k) row_of(t, w, k)[j] += track::whole_turn * w.turns[j];
+        const double shift = track::whole_turn * w.turns[j];
+        last[t.column[j]] += shift;
+        for (std::size_t k = 0; k < reached; ++k) row_of(t, w, k)[t.column[j]] += shift;
     }
 }
 
@@ -121,9 +118,9 @@ inline void begin_branch(const Track& t, std::size_t branch, Walker& w) {
     w.by_rows = false;
     w.starts = w.rows_tried = true;
     w.corrections = w.tries = 0;
-    const double* start = t.starts + branch * std::size_t(t.path->n);
+    const double* start = t.starts + branch * t.dof;
     for (int j = 0; j < t.path->n; ++j) {
-        w.q[j] = w.trial[j] = w.least[j] = w.most[j] = start[j];
+        w.q[j] = w.trial[j] = w.least[j] = w.most[j] = start[t.column[j]];
         w.planned[j] = w.slope[j] = w.bend[j] = w.turns[j] = 0;
         w.lower[j] = t.lower[j];
         w.upper[j] = t.upper[j];
@@ -135,7 +132,7 @@ inline bool arrive_at_pose(const Track& t, Walker& w) {
     w.u = 0;
     w.rows_tried = false;
     w.tries = 0;
-    copy_numbers(w.q, t.path->n, row_of(t, w, w.row));
+    write_row(t, w, w.q, row_of(t, w, w.row));
     if (w.row + 1 < t.count) return false;
     finish_branch(t, w, Fate::end, -1, t.count);
     return true;
@@ -202,7 +199,8 @@ inline bool evaluate_trial(const Track& t, Walker& w, const Motion<double>& at) 
     }
     if (++w.tries < track::most_tries && plan_step(t, w)) return false;
     finish_branch(t, w, Fate::singularity, -1, reached);
-    t.fate[w.branch] = t.weakest[w.branch] < track::near_singular ? Fate::singularity : Fate::jump;
+    BranchEnd& end = t.ends[w.branch];
+    if (!(end.weakest < track::near_singular)) end.fate = Fate::jump;
     return true;
 }
 

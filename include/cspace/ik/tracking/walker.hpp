@@ -25,26 +25,33 @@ enum class Fate : unsigned char {
     unreachable,  // an arm of fewer than six joints cannot keep to the poses
 };
 
+// The end of a branch.
+struct BranchEnd {
+    std::size_t reached;  // how many poses
+    double at;            // number of a pose and the share of the way to the next
+    Fate fate;
+    int joint;       // the coordinate of the path that ended it, or −1
+    double weakest;  // the least singular value there
+};
+
 // Data shared by all branches, and the destination of their results.
 struct Track {
     const Path* path;
+    const int* column;  // coordinate j of the path is coordinate column[j] of the robot
+    std::size_t dof;    // coordinates of the robot
     const Posed* poses;
     const Way* ways;  // between poses; the last one is not used
     std::size_t count;
-    const double *lower, *upper;  // (n,)
-    const double* stride;         // (n,): how far a coordinate may move from one pose to the next
-    bool whole_turns;             // a branch may begin at its start plus multiples of 2π
-    const double* starts;         // (branches, n)
+    bool whole_turns;      // a branch may begin at its start plus multiples of 2π
+    const double* starts;  // (branches, dof)
     std::size_t branches;
     // Outputs, one per branch.
-    double* q;              // (count, n): of the poses it reaches
-    double* last;           // (n,): where it ends
-    std::int64_t* reached;  // how many poses
-    double* ends;           // number of a pose and the share of the way to the next
-    double* weakest;        // the least singular value at its end
-    std::int32_t* joint;    // the coordinate that ended it, or −1
-    Fate* fate;
-    void (*poll)() = nullptr;  // called now and then; throws to stop
+    double* q;     // (count, dof): of the poses it reaches
+    double* last;  // (dof,): where it ends
+    BranchEnd* ends;
+    void (*poll)();  // called now and then; throws to stop
+    double lower[max_joints], upper[max_joints];
+    double stride[max_joints];  // how far a coordinate may move from one pose to the next
 };
 
 struct Walker {
@@ -100,11 +107,16 @@ inline constexpr double whole_turn = 6.283185307179586476925287;
 }  // namespace track
 
 CSPACE_INLINE double* row_of(const Track& t, const Walker& w, std::size_t row) {
-    return t.q + (w.branch * t.count + row) * std::size_t(t.path->n);
+    return t.q + (w.branch * t.count + row) * t.dof;
 }
 
 CSPACE_INLINE void copy_numbers(const double* from, int n, double* to) {
     for (int j = 0; j < n; ++j) to[j] = from[j];
+}
+// Coordinates of the robot: q on the path, the others as at the start.
+inline void write_row(const Track& t, const Walker& w, const double* q, double* row) {
+    copy_numbers(t.starts + w.branch * t.dof, int(t.dof), row);
+    for (int j = 0; j < t.path->n; ++j) row[t.column[j]] = q[j];
 }
 // The step estimated from the last three rows: the parabola through them, by the lengths of the segments
 // between them.
@@ -112,7 +124,8 @@ inline void plan_by_rows(const Track& t, Walker& w) {
     const double a = t.ways[w.row - 2].length, b = t.ways[w.row - 1].length, h = t.ways[w.row].length;
     const double *q0 = row_of(t, w, w.row - 2), *q1 = row_of(t, w, w.row - 1);
     for (int j = 0; j < t.path->n; ++j) {
-        const double first = (q1[j] - q0[j]) / a, second = (w.q[j] - q1[j]) / b;
+        const double before = q0[t.column[j]], last = q1[t.column[j]];
+        const double first = (last - before) / a, second = (w.q[j] - last) / b;
         const double bend = (second - first) / (a + b);
         w.planned[j] = h * (second + (b + h) * bend) / unit_of(*t.path, j);
     }
@@ -235,7 +248,7 @@ inline int extend_ranges(const Track& t, Walker& w, const double* q) {
 inline int too_far(const Track& t, const Walker& w, const double* q) {
     const double* from = row_of(t, w, w.row);
     for (int j = 0; j < t.path->n; ++j)
-        if (std::fabs(q[j] - from[j]) > t.stride[j]) return j;
+        if (std::fabs(q[j] - from[t.column[j]]) > t.stride[j]) return j;
     return -1;
 }
 
