@@ -6,11 +6,11 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "cspace/math/box_qp.hpp"
 #include "kinematics.hpp"
 #include "library/ik_tasks.hpp"
 
 namespace nb = nanobind;
-using namespace nb::literals;
 using namespace cspace;
 
 namespace {
@@ -92,9 +92,7 @@ std::tuple<int, bool, double> move_to_tasks(nb::handle robot, Matrix tasks, Matr
                                             int most_steps, double settled, Errors errors) {
     const ik::TaskRows rows = rows_from(robot, tasks, postures, limits, q.shape(0), errors);
     const nb::gil_scoped_release release;
-    const ik::TaskEnding ending =
-        ik::serve_tasks(rows, most_steps, settled, q.data(), T_world_base.data(), errors.data());
-    return {ending.steps, ending.settled, ending.cost};
+    return ik::serve_tasks(rows, most_steps, settled, q.data(), T_world_base.data(), errors.data());
 }
 
 void resolve_rates(Array<const double, nb::shape<-1, 6, -1>> J, Array<const double, nb::shape<-1, 6>> twist,
@@ -109,30 +107,27 @@ void resolve_rates(Array<const double, nb::shape<-1, 6, -1>> J, Array<const doub
                        most.shape(0) ? most.data() : nullptr, damping, threshold, threads, qd.data()});
 }
 
-int solve_box_qp(Matrix H, Row g, Row lower, Row upper, RowOut x) {
+int solve_box_program(Matrix H, Row g, Row lower, Row upper, RowOut x) {
     const std::size_t n = g.shape(0);
     require_sizes(has_shape(H, n, n) && has_shape(lower, n) && has_shape(upper, n) && has_shape(x, n));
-    return ik::solve_box_program(H.data(), g.data(), lower.data(), upper.data(), n, x.data());
+    BoxQp qp{int(n)};
+    std::copy_n(H.data(), n * n, qp.H.begin());
+    std::copy_n(g.data(), n, qp.g.begin());
+    std::copy_n(lower.data(), n, qp.lower.begin());
+    std::copy_n(upper.data(), n, qp.upper.begin());
+    return solve_box_qp(qp, x.data());
 }
 
 }  // namespace
 
 void bind_ik_numeric(nb::module_& m) {
-    m.def("_ik_moving", count_moving, "robot"_a, "frame"_a, "How many coordinates move a frame.");
-    m.def("_ik_descend", descend_rows, "robot"_a, "frame"_a, "goals"_a, "starts"_a, "more"_a, "posture"_a,
-          "weights"_a, "limits"_a, "tolerance"_a, "most_steps"_a, "newton"_a, "threads"_a, "q"_a, "info"_a,
-          "Descends from starts to goals; q and info take the answers.");
-    m.def("_ik_sample", sample_rows, "robot"_a, "frame"_a, "goal"_a, "starts"_a, "wanted"_a, "weights"_a,
-          "limits"_a, "tolerance"_a, "most_steps"_a, "threads"_a, "q"_a, "residual"_a, "hits"_a,
+    m.def("_ik_moving", count_moving, "How many coordinates move a frame.");
+    m.def("_ik_descend", descend_rows, "Descends from starts to goals; q and info take the answers.");
+    m.def("_ik_sample", sample_rows,
           "The different solutions that descents from many starts reach; returns their number.");
-    m.def("_task_velocity", compute_velocity, "robot"_a, "tasks"_a, "postures"_a, "q"_a, "T_world_base"_a,
-          "limits"_a, "speed"_a, "dt"_a, "damping"_a, "qd"_a, "errors"_a,
-          "The velocities that serve tasks best in one step.");
-    m.def("_task_serve", move_to_tasks, "robot"_a, "tasks"_a, "postures"_a, "q"_a, "T_world_base"_a,
-          "limits"_a, "most_steps"_a, "settled"_a, "errors"_a,
-          "Moves q and T_world_base to where tasks are served best.");
-    m.def("_resolved_rate", resolve_rates, "J"_a, "twist"_a, "wish"_a, "most"_a, "damping"_a, "threshold"_a,
-          "threads"_a, "qd"_a, "The velocities that give twists.");
-    m.def("_box_qp", solve_box_qp, "H"_a, "g"_a, "lower"_a, "upper"_a, "x"_a,
+    m.def("_task_velocity", compute_velocity, "The velocities that serve tasks best in one step.");
+    m.def("_task_serve", move_to_tasks, "Moves q and T_world_base to where tasks are served best.");
+    m.def("_resolved_rate", resolve_rates, "The velocities that give twists.");
+    m.def("_box_qp", solve_box_program,
           "A quadratic program in a box; returns the number of steps, -1 if H is not positive definite.");
 }

@@ -10,10 +10,8 @@
 namespace cspace::ik {
 struct Arm;
 struct DescentRows;
-struct Intervals;
 struct LimitArms;
 struct LockedArm;
-struct NearestPose;
 struct PositionSolutions;
 struct Redundant;
 struct SweptRows;
@@ -93,10 +91,6 @@ CSPACE_NARROW_KERNEL(cspace::ik, void, swivel_solutions,
 // --- ik_numeric.cpp ------------------------------------------------------------------------------------
 // Descents on the pose error: see cspace/ik/numeric/descent.hpp.
 CSPACE_KERNEL(cspace::ik, void, ik_descend, (const DescentRows& rows))
-// One descent per start to one goal: see cspace/ik/numeric/many_starts.hpp.
-CSPACE_KERNEL(cspace::ik, void, ik_many_starts,
-              (const Chain& chain, const double* T, const double* starts, std::size_t count, double* q,
-               double* residual))
 
 // --- ik_tracking.cpp -----------------------------------------------------------------------------------
 // Branches along a path of poses: see cspace/ik/tracking/follow.hpp.

@@ -52,8 +52,9 @@ void descend_to_goals(const DescentTask& task, const double* goals, std::size_t 
         std::copy_n(starts + (start_each ? dof * k : 0), dof, q + dof * k);
         on.scatter(answers.data() + n * k, q + dof * k);
         const Found& f = found[k];
-        const double values[descent_info] = {f.position, f.rotation, double(f.steps), double(f.start),
-                                             double(f.ending)};
+        const DescentEnd& end = f.end;
+        const double values[descent_info] = {end.position, end.rotation, double(end.steps), double(f.start),
+                                             double(end.ending)};
         std::copy_n(values, descent_info, info + descent_info * k);
     }
 }
@@ -67,13 +68,10 @@ std::size_t sample_solutions(const DescentTask& given, const double* goal, const
     const std::vector<double> from = on.gather_rows(starts, count), near = on.gather_rows(wanted, 1);
     DescentResults results(count, on.path.n);
     over_rows(count, given.threads, 4, 64, [&](std::size_t begin, std::size_t end) {
-        DescentRows rows = results.rows_for(on.path, task);
-        std::vector<std::int64_t> pick(end - begin);
-        for (std::size_t k = begin; k < end; ++k) pick[k - begin] = std::int64_t(k);
-        rows.pick = pick.data();
-        rows.count = pick.size();
+        DescentRows rows = results.rows_for(on.path, task, begin);
+        rows.count = end - begin;
         rows.goals = goal;
-        rows.starts = from.data();
+        rows.starts = from.data() + n * begin;
         rows.start_stride = n;
         kernels::ik_descend(rows);
         return true;

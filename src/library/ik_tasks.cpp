@@ -57,22 +57,6 @@ void write_errors(const TaskPlace& at, double* errors) {
     }
 }
 
-// The bounds of a step of length dt: speeds, and the way to the limits. From outside it leads back in.
-void bound_by_speed(const TaskProblem& problem, const double* q, const double* speed, double dt, BoxQp& qp) {
-    const std::size_t first = problem.floating ? 6 : 0;
-    constexpr double endless = std::numeric_limits<double>::infinity();
-    for (std::size_t j = 0; j < std::size_t(qp.n); ++j) {
-        const double most = j >= first && speed ? speed[j - first] * dt : endless;
-        double low = -most, high = most;
-        if (j >= first && problem.lower) {
-            low = std::min(std::max(problem.lower[j - first] - q[j - first], -most), most);
-            high = std::max(std::min(problem.upper[j - first] - q[j - first], most), -most);
-        }
-        qp.lower[j] = low;
-        qp.upper[j] = std::max(low, high);
-    }
-}
-
 // A velocity that, after dt, is past a limit by rounding alone, taken back by as much.
 double kept_inside(double qd, double q, double dt, double lower, double upper) {
     if (q < lower || q > upper) return qd;
@@ -91,7 +75,11 @@ bool task_velocity(const TaskRows& rows, const double* q, const double* T_world_
     TaskPlace at = place_at(problem, q, T_world_base);
     measure_tasks(problem, work, at);
     BoxQp qp(dof);
-    bound_by_speed(problem, q, speed, dt, qp);
+    const auto most = [&](std::size_t j) {
+        const bool slow = speed && int(j) >= first;
+        return slow ? speed[int(j) - first] * dt : std::numeric_limits<double>::infinity();
+    };
+    bound_step(problem, q, most, qp);
     if (!best_step(at, damping, true, qp, qd)) return false;
     for (int j = 0; j < dof; ++j) {
         qd[j] /= dt;
@@ -103,11 +91,11 @@ bool task_velocity(const TaskRows& rows, const double* q, const double* T_world_
     return true;
 }
 
-TaskEnding serve_tasks(const TaskRows& rows, int most_steps, double settled, double* q, double* T_world_base,
-                       double* errors) {
+std::tuple<int, bool, double> serve_tasks(const TaskRows& rows, int most_steps, double settled, double* q,
+                                          double* T_world_base, double* errors) {
     const TaskProblem problem = problem_from(rows);
     TaskPlace at = place_at(problem, q, T_world_base);
-    const Served served = serve_tasks(problem, {most_steps, settled}, at);
+    const Served served = serve_tasks(problem, most_steps, settled, at);
     std::copy(at.q.begin(), at.q.end(), q);
     kinematics::write_matrix(at.T_world_base, T_world_base);
     write_errors(at, errors);
@@ -125,16 +113,6 @@ void resolve_rates(const RateRows& given) {
                           given.wish ? given.wish + dof * k : nullptr, settings, svd, given.qd + dof * k);
         return true;
     });
-}
-
-int solve_box_program(const double* H, const double* g, const double* lower, const double* upper,
-                      std::size_t n, double* x) {
-    BoxQp qp{int(n)};
-    std::copy_n(H, n * n, qp.H.begin());
-    std::copy_n(g, n, qp.g.begin());
-    std::copy_n(lower, n, qp.lower.begin());
-    std::copy_n(upper, n, qp.upper.begin());
-    return solve_box_qp(qp, x);
 }
 
 }  // namespace cspace::ik

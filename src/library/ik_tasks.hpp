@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <tuple>
 
 #include "cspace/model/robot_model.hpp"
 
@@ -28,14 +29,10 @@ struct TaskRows {
 bool task_velocity(const TaskRows& rows, const double* q, const double* T_world_base, const double* speed,
                    double dt, double damping, double* qd, double* errors);
 
-// Moves q and T_world_base to where the tasks are served best.
-struct TaskEnding {
-    int steps;
-    bool settled;
-    double cost;
-};
-TaskEnding serve_tasks(const TaskRows& rows, int most_steps, double settled, double* q, double* T_world_base,
-                       double* errors);
+// Moves q and T_world_base to where the tasks are served best. Returns the number of steps, whether nothing
+// nearby serves better, and the cost.
+std::tuple<int, bool, double> serve_tasks(const TaskRows& rows, int most_steps, double settled, double* q,
+                                          double* T_world_base, double* errors);
 
 // For each row of J (rows, 6, dof) and twist (rows, 6) the velocities qd (rows, dof); wish (rows, dof) or
 // null, most (dof,) or null.
@@ -51,10 +48,5 @@ struct RateRows {
     double* qd;
 };
 void resolve_rates(const RateRows& given);
-
-// A quadratic program in a box: ½ xᵀHx + gᵀx, H (n, n). Returns the number of steps, −1 if H is not positive
-// definite.
-int solve_box_program(const double* H, const double* g, const double* lower, const double* upper,
-                      std::size_t n, double* x);
 
 }  // namespace cspace::ik

@@ -5,7 +5,7 @@
 #include "check.hpp"
 #include "cspace/ik/arm.hpp"
 #include "cspace/ik/numeric/descent.hpp"
-#include "kernels/ik.hpp"
+#include "cspace/model/reduce_joint.hpp"
 #include "random_arms.hpp"
 
 using namespace cspace;
@@ -21,6 +21,25 @@ ik::Chain random_chain(int n, unsigned slides, arms::Rng& rng) {
     for (int i = 0; i < n; ++i) chain.prismatic[i] = slides >> i & 1u;
     return chain;
 }
+// The path of an arm given by its joint axes; joint i is coordinate i.
+ik::Path path_of(const ik::Chain& chain) {
+    ik::Path path;
+    path.joints = path.n = chain.n;
+    Posed frame[ik::max_joints + 1];  // of each joint at zero, its axis along z
+    for (int i = 0; i < chain.n; ++i) frame[i] = {frame_along(chain.axis[i]), chain.point[i]};
+    frame[chain.n] = chain.tip;
+    path.T_base_first = frame[0];
+    double carried = 0;
+    for (int i = 0; i < chain.n; ++i) {
+        const model::Joint joint = {frame[i], i - 1, i, 1.0, 0.0, chain.prismatic[i], 0.0};
+        path.joint[i] = model::reduce_joint(joint, inverse(frame[i]) * frame[i + 1], carried);
+        path.slides[i] = chain.prismatic[i];
+    }
+    path.cos_last = std::cos(carried);
+    path.sin_last = std::sin(carried);
+    path.length = length_of(path);
+    return path;
+}
 std::vector<double> random_q(int count, arms::Rng& rng, double reach = pi) {
     std::vector<double> q(count);
     for (double& x : q) x = arms::uniform(rng, -reach, reach);
@@ -34,26 +53,18 @@ double largest_difference(const Posed& A, const Posed& B) {
 
 // The results of one descent per start.
 struct Runs {
-    std::vector<double> q, cost, position, rotation;
-    std::vector<std::int32_t> steps;
-    std::vector<ik::Ending> ending;
+    std::vector<double> q;
+    std::vector<ik::DescentEnd> ends;
 };
 template <class V = Pack<native_width>>
 Runs run(const ik::Path& path, const ik::Task& task, const Posed& goal, const std::vector<double>& starts,
          bool first_only = false) {
     const std::size_t n = starts.size() / std::size_t(path.n);
-    Runs out{std::vector<double>(starts.size()),
-             std::vector<double>(n),
-             std::vector<double>(n),
-             std::vector<double>(n),
-             std::vector<std::int32_t>(n),
-             std::vector<ik::Ending>(n)};
-    std::fill(out.ending.begin(), out.ending.end(), ik::Ending::unknown);
+    Runs out{std::vector<double>(starts.size()), std::vector<ik::DescentEnd>(n)};
     double T[16];
     kinematics::write_matrix(goal, T);
     run_descents<V>({&path, &task, T, 0, starts.data(), std::size_t(path.n), nullptr, n, first_only,
-                     out.q.data(), out.cost.data(), out.position.data(), out.rotation.data(),
-                     out.steps.data(), out.ending.data()});
+                     out.q.data(), out.ends.data()});
     return out;
 }
 double apart(const ik::Chain& chain, const double* a, const double* b) {
@@ -122,14 +133,11 @@ TEST(what_descents_reach_is_among_the_solutions_of_the_closed_form) {
         const auto truth = random_q(6, rng);
         const Posed goal = forward(chain, truth.data());
         const ik::Solutions all = solve_pose(arm, goal, nullptr);
-        double T[16];
-        kinematics::write_matrix(goal, T);
-        const auto start = random_q(6 * 32, rng);
-        std::vector<double> q(start.size()), residual(32);
-        kernels::ik_many_starts(chain, T, start.data(), 32, q.data(), residual.data());
+        const Runs runs = run(path_of(chain), {}, goal, random_q(6 * 32, rng));
+        const std::vector<double>& q = runs.q;
         for (int k = 0; k < 32; ++k) {
             ++starts;
-            if (!(residual[k] < 1e-9)) continue;
+            if (!(std::fmax(runs.ends[k].position, runs.ends[k].rotation) < 1e-9)) continue;
             ++reached;
             CHECK(largest_difference(forward(chain, &q[6 * k]), goal) < 2e-9);
             double nearest = 10;
@@ -152,7 +160,7 @@ TEST(any_kinds_of_joints_reach_what_they_can) {
             const Runs runs = run(path_of(chain), {}, goal, random_q(32 * n, rng));
             bool some = false;
             for (std::size_t k = 0; k < 32; ++k) {
-                if (runs.ending[k] != ik::Ending::reached) continue;
+                if (runs.ends[k].ending != ik::Ending::reached) continue;
                 some = true;
                 CHECK(largest_difference(forward(chain, &runs.q[k * std::size_t(n)]), goal) < 2e-9);
             }
@@ -176,12 +184,14 @@ TEST(a_start_ends_alike_in_any_company) {
             const Runs alone =
                 run(path, {}, goal, {starts.begin() + long(row), starts.begin() + long(row) + n});
             CHECK(std::equal(alone.q.begin(), alone.q.end(), together.q.begin() + long(row)));
-            CHECK(alone.steps[0] == together.steps[k] && alone.ending[0] == together.ending[k]);
-            if (alone.ending[0] == ik::Ending::reached) first = k;
+            CHECK(alone.ends[0].steps == together.ends[k].steps &&
+                  alone.ends[0].ending == together.ends[k].ending);
+            if (alone.ends[0].ending == ik::Ending::reached) first = k;
         }
         const Runs until_first = run(path, {}, goal, starts, true);
-        if (first < 23) CHECK(until_first.ending[first] == ik::Ending::reached);
-        for (std::size_t k = 0; k < first && k < 23; ++k) CHECK(until_first.ending[k] == together.ending[k]);
+        if (first < 23) CHECK(until_first.ends[first].ending == ik::Ending::reached);
+        for (std::size_t k = 0; k < first && k < 23; ++k)
+            CHECK(until_first.ends[k].ending == together.ends[k].ending);
     }
 }
 
@@ -203,7 +213,7 @@ TEST(limits_hold_and_goals_within_them_are_found) {
         const Runs runs = run(path_of(chain), task, forward(chain, truth.data()), random_q(64 * n, rng));
         bool reached = false;
         for (std::size_t k = 0; k < 64; ++k) {
-            reached = reached || runs.ending[k] == ik::Ending::reached;
+            reached = reached || runs.ends[k].ending == ik::Ending::reached;
             for (int j = 0; j < n; ++j) {
                 const double q = runs.q[k * std::size_t(n) + std::size_t(j)];
                 CHECK(task.lower[j] <= q && q <= task.upper[j]);
@@ -226,9 +236,9 @@ TEST(what_is_out_of_reach_is_never_reached) {
             task.method = method;
             const Runs runs = run(path_of(chain), task, goal, random_q(16 * n, rng));
             for (std::size_t k = 0; k < 16; ++k) {
-                CHECK(runs.ending[k] != ik::Ending::reached);
-                CHECK(runs.position[k] > 10);
-                CHECK(runs.steps[k] <= task.most_steps);
+                CHECK(runs.ends[k].ending != ik::Ending::reached);
+                CHECK(runs.ends[k].position > 10);
+                CHECK(runs.ends[k].steps <= task.most_steps);
             }
         }
     }
@@ -246,7 +256,7 @@ TEST(rows_without_weight_are_free) {
         const Runs runs = run(path_of(chain), task, goal, random_q(6 * 32, rng));
         int reached = 0;
         for (std::size_t k = 0; k < 32; ++k) {
-            if (runs.ending[k] != ik::Ending::reached) continue;
+            if (runs.ends[k].ending != ik::Ending::reached) continue;
             ++reached;
             const Posed miss = inverse(goal) * forward(chain, &runs.q[6 * k]);
             if (free_row == 5) {
@@ -273,9 +283,9 @@ TEST(half_turns_and_singular_starts_are_left_again) {
     const double truth[6] = {0.4, 1.1, -0.7, 0.3, 0.9, -0.2};
     Posed goal = forward(chain, truth);
     const std::vector<double> zero(6, 0.0);
-    CHECK(run(path_of(chain), {}, goal, zero).ending[0] == ik::Ending::reached);
+    CHECK(run(path_of(chain), {}, goal, zero).ends[0].ending == ik::Ending::reached);
     const Posed turned = {{{{-1, 0, 0}, {0, -1, 0}, {0, 0, 1}}}, chain.tip.t};
     const Runs runs = run(path_of(chain), {}, turned, zero);
-    CHECK(runs.ending[0] == ik::Ending::reached);
+    CHECK(runs.ends[0].ending == ik::Ending::reached);
     CHECK(largest_difference(forward(chain, runs.q.data()), turned) < 2e-9);
 }

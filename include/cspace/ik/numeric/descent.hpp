@@ -16,6 +16,13 @@
 
 namespace cspace::ik {
 
+struct DescentEnd {
+    Ending ending = Ending::unknown;
+    std::int32_t steps = 0;             // how many it took
+    double cost = 0;                    // ½ |e|²
+    double position = 0, rotation = 0;  // errors left [m, rad]
+};
+
 // Items k = 0 … count − 1: item k is row `pick[k]`, or k where pick is null. A stride is the number of values
 // per row, and 0 where all rows share one.
 struct DescentRows {
@@ -29,12 +36,8 @@ struct DescentRows {
     std::size_t count;
     bool first_only;  // stop as soon as the first item that reaches its goal is known
     // Outputs, one per row; a row that is there already (ending < unknown) is replaced by a better one alone.
-    double* q;            // (n,) each
-    double* cost;         // ½ |e|²
-    double* position;     // [m]
-    double* rotation;     // [rad]
-    std::int32_t* steps;  // how many it took
-    Ending* ending;
+    double* q;  // (n,) each
+    DescentEnd* ends;
 };
 
 // The lanes of a descent.
@@ -156,15 +159,12 @@ template <class V>
 bool end_lane(const DescentRows& rows, std::size_t row, int l, const Descent<V>& d) {
     const double position = lane(d.at.position, l), rotation = lane(d.at.rotation, l), cost = lane(d.cost, l);
     const bool reached = position <= rows.task->tolerance && rotation <= rows.task->tolerance;
-    const bool known = rows.ending[row] != Ending::unknown;
-    if (known && (rows.ending[row] == Ending::reached || !(cost < rows.cost[row]))) return reached;
-    rows.ending[row] = reached                                             ? Ending::reached
-                       : lane(d.steps, l) >= double(rows.task->most_steps) ? Ending::exhausted
-                                                                           : Ending::stalled;
-    rows.cost[row] = cost;
-    rows.steps[row] = std::int32_t(lane(d.steps, l));
-    rows.position[row] = position;
-    rows.rotation[row] = rotation;
+    DescentEnd& end = rows.ends[row];
+    const bool known = end.ending != Ending::unknown;
+    if (known && (end.ending == Ending::reached || !(cost < end.cost))) return reached;
+    const auto steps = std::int32_t(lane(d.steps, l));
+    const Ending missed = steps >= rows.task->most_steps ? Ending::exhausted : Ending::stalled;
+    end = {reached ? Ending::reached : missed, steps, cost, position, rotation};
     for (int j = 0; j < rows.path->n; ++j)
         rows.q[row * std::size_t(rows.path->n) + std::size_t(j)] = lane(d.q[j], l);
     return reached;
@@ -207,30 +207,6 @@ void run_descents(const DescentRows& rows) {
             alive = alive || live[l];
         }
         if (!alive) return;
-    }
-}
-
-// Multi-start descent to one goal: a sample of its solutions, not necessarily complete.
-
-// One descent per start. T: T_base_tip (4, 4). starts, q (count, chain.n). residual (count,): the larger of
-// the remaining position error [m] and angle [rad]. Starts that reach the goal end at rounding, others at a
-// local minimum. Nothing is wrapped or compared. The result q of a start does not depend on the other starts.
-template <class V>
-void descend_from_starts(const Chain& chain, const double* T, const double* starts, std::size_t count,
-                         double* q, double* residual) {
-    const Path path = path_of(chain);
-    const Task task;
-    constexpr std::size_t part = 64;
-    double cost[part], position[part], rotation[part];
-    std::int32_t steps[part];
-    Ending ending[part];
-    for (std::size_t first = 0; first < count; first += part) {
-        const std::size_t n = count - first < part ? count - first : part;
-        const std::size_t offset = first * std::size_t(chain.n);
-        for (std::size_t k = 0; k < n; ++k) ending[k] = Ending::unknown;
-        run_descents<V>({&path, &task, T, 0, starts + offset, std::size_t(chain.n), nullptr, n, false,
-                         q + offset, cost, position, rotation, steps, ending});
-        for (std::size_t k = 0; k < n; ++k) residual[first + k] = max(position[k], rotation[k]);
     }
 }
 

@@ -4,7 +4,6 @@
 
 #include "cspace/ik/chain.hpp"
 #include "cspace/kinematics/jacobian.hpp"
-#include "cspace/model/reduce_joint.hpp"
 
 namespace cspace::ik {
 
@@ -40,26 +39,6 @@ inline double length_of(const Path& path) {
         path.joints, [&](int i) { return axes[i].direction; },
         [&](int i) { return i < path.joints ? axes[i].point : tip.t; },
         [&](int i) { return path.joint[i].prismatic; });
-}
-
-// The path of an arm given by its joint axes; joint i is coordinate i.
-inline Path path_of(const Chain& chain) {
-    Path path;
-    path.joints = path.n = chain.n;
-    Posed frame[max_joints + 1];  // of each joint at zero, its axis along z
-    for (int i = 0; i < chain.n; ++i) frame[i] = {frame_along(chain.axis[i]), chain.point[i]};
-    frame[chain.n] = chain.tip;
-    path.T_base_first = frame[0];
-    double carried = 0;
-    for (int i = 0; i < chain.n; ++i) {
-        const model::Joint joint = {frame[i], i - 1, i, 1.0, 0.0, chain.prismatic[i], 0.0};
-        path.joint[i] = model::reduce_joint(joint, inverse(frame[i]) * frame[i + 1], carried);
-        path.slides[i] = chain.prismatic[i];
-    }
-    path.cos_last = std::cos(carried);
-    path.sin_last = std::sin(carried);
-    path.length = length_of(path);
-    return path;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

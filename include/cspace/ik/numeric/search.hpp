@@ -29,37 +29,25 @@ struct Search {
 // The result for a goal. The configuration is that of the first start that reached the goal, or else of the
 // start with the smallest error.
 struct Found {
-    double position, rotation;  // errors left [m, rad]
-    std::int32_t steps;         // of the descent that ended there
-    std::int32_t start;         // its number, 0 for the first
-    Ending ending;
+    DescentEnd end;
+    std::int32_t start;  // its number, 0 for the first
 };
 
 // Working arrays of the descents, one row each.
 struct DescentResults {
-    std::vector<double> q, cost, position, rotation;
-    std::vector<std::int32_t> steps;
-    std::vector<Ending> ending;
+    std::vector<double> q;
+    std::vector<DescentEnd> ends;
 
-    DescentResults(std::size_t rows, int n)
-        : q(rows * std::size_t(n)),
-          cost(rows),
-          position(rows),
-          rotation(rows),
-          steps(rows),
-          ending(rows, Ending::unknown) {}
+    DescentResults(std::size_t rows, int n) : q(rows * std::size_t(n)), ends(rows) {}
 
-    DescentRows rows_for(const Path& path, const Task& task) {
+    // From row `first` on.
+    DescentRows rows_for(const Path& path, const Task& task, std::size_t first = 0) {
         DescentRows rows{};
         rows.path = &path;
         rows.task = &task;
-        rows.count = ending.size();
-        rows.q = q.data();
-        rows.cost = cost.data();
-        rows.position = position.data();
-        rows.rotation = rotation.data();
-        rows.steps = steps.data();
-        rows.ending = ending.data();
+        rows.count = ends.size() - first;
+        rows.q = q.data() + std::size_t(path.n) * first;
+        rows.ends = ends.data() + first;
         return rows;
     }
 };
@@ -100,22 +88,23 @@ inline DescentResults passes(const Search& search, std::size_t begin, std::size_
     rows.start_stride = search.start_stride;
     descend(rows);
     std::vector<std::int64_t> left;
-    std::vector<double> cost;
+    std::vector<DescentEnd> before;
     for (std::size_t k = 0; k < search.n_more; ++k) {
         left.clear();
         for (std::size_t row = 0; row < end - begin; ++row)
-            if (results.ending[row] != Ending::reached) left.push_back(std::int64_t(row));
+            if (results.ends[row].ending != Ending::reached) left.push_back(std::int64_t(row));
         if (left.empty()) break;
-        cost = results.cost;
+        before = results.ends;
         rows.pick = left.data();
         rows.count = left.size();
         rows.starts = search.more + n * k;
         rows.start_stride = 0;
         descend(rows);
-        for (const std::int64_t row : left)
-            if (results.cost[std::size_t(row)] != cost[std::size_t(row)] ||
-                results.ending[std::size_t(row)] == Ending::reached)
+        for (const std::int64_t row : left) {
+            const DescentEnd& now = results.ends[std::size_t(row)];
+            if (now.cost != before[std::size_t(row)].cost || now.ending == Ending::reached)
                 start[std::size_t(row)] = std::int32_t(k + 1);
+        }
     }
     return results;
 }
@@ -136,11 +125,10 @@ inline DescentResults side_by_side(const Search& search, std::size_t goal, Desce
     descend(rows);
     best = 0;
     for (std::size_t k = 0; k < count; ++k) {
-        if (results.ending[k] == Ending::reached) {
-            best = k;
-            break;
-        }
-        if (results.ending[k] != Ending::unknown && results.cost[k] < results.cost[best]) best = k;
+        const DescentEnd& end = results.ends[k];
+        if (end.ending == Ending::unknown) continue;
+        if (end.ending == Ending::reached || end.cost < results.ends[best].cost) best = k;
+        if (end.ending == Ending::reached) break;
     }
     return results;
 }
@@ -150,15 +138,14 @@ inline Found finish(const Search& search, std::size_t goal, const DescentResults
                     std::int32_t start, double* q) {
     const Path& path = search.path;
     std::copy_n(results.q.begin() + std::ptrdiff_t(row) * path.n, path.n, q);
-    Found found = {results.position[row], results.rotation[row], results.steps[row], start,
-                   results.ending[row]};
+    Found found = {results.ends[row], start};
     const double* wanted = search.posture ? search.posture->rest : search.starts + search.start_stride * goal;
     nearest_turns(path, search.task, wanted, q);
-    if (!search.posture || found.ending != Ending::reached) return found;
+    if (!search.posture || found.end.ending != Ending::reached) return found;
     const Gap<double> left =
         settle_posture(path, search.task, *search.posture, read_goal(search.goals + 16 * goal).T, q);
-    found.position = left.position;
-    found.rotation = left.rotation;
+    found.end.position = left.position;
+    found.end.rotation = left.rotation;
     return found;
 }
 
@@ -218,15 +205,16 @@ inline std::size_t pick_distinct(const Path& path, const Task& task, const doubl
     const Rows rows = rows_of(task);
     const Posed T_goal_first = inverse(read_goal(goal).T) * path.T_base_first;
     std::size_t count = 0;
-    for (std::size_t row = 0; row < results.ending.size(); ++row) {
-        if (results.ending[row] != Ending::reached) continue;
+    for (std::size_t row = 0; row < results.ends.size(); ++row) {
+        const DescentEnd& end = results.ends[row];
+        if (end.ending != Ending::reached) continue;
         const double* found = results.q.data() + n * row;
         std::size_t k = 0;
         while (k < count && !is_one_solution(path, task, rows, T_goal_first, q + n * k, found)) ++k;
         if (k == count) {
             std::copy_n(found, n, q + n * k);
             nearest_turns(path, task, wanted, q + n * k);
-            residual[k] = std::fmax(results.position[row], results.rotation[row]);
+            residual[k] = std::fmax(end.position, end.rotation);
             hits[count++] = 0;
         }
         ++hits[k];

@@ -63,10 +63,6 @@ struct TaskWork {
     std::vector<Vec3d> moments;
 };
 
-struct ServeSettings {
-    int most_steps;
-    double settled;  // a step this small ends the descent [rad, m]
-};
 struct Served {
     int steps;
     bool settled;  // nothing nearby serves better
@@ -253,32 +249,36 @@ inline void move_by(const TaskProblem& problem, const TaskPlace& from, const dou
 //
 // Not for kernels: it uses the standard library.
 
-// The bounds of the next step: joint limits and the maximum stride.
-inline void bound_step(const TaskProblem& problem, const TaskPlace& at, BoxQp& qp) {
+// The bounds of the next step from q: coordinate j moves by most(j) at most, and not past its limits. From
+// outside them it comes back in.
+template <class Most>
+inline void bound_step(const TaskProblem& problem, const double* q, const Most& most, BoxQp& qp) {
     const std::size_t first = problem.floating ? 6 : 0;
     for (std::size_t j = 0; j < std::size_t(qp.n); ++j) {
-        qp.lower[j] = -serving::stride;
-        qp.upper[j] = serving::stride;
-        if (j < first || !problem.lower) continue;
-        qp.lower[j] = std::max(qp.lower[j], std::min(problem.lower[j - first] - at.q[j - first], 0.0));
-        qp.upper[j] = std::min(qp.upper[j], std::max(problem.upper[j - first] - at.q[j - first], 0.0));
+        const double high = most(j), low = -high;
+        const bool limited = j >= first && problem.lower;
+        qp.lower[j] = limited ? std::clamp(problem.lower[j - first] - q[j - first], low, high) : low;
+        qp.upper[j] = limited ? std::clamp(problem.upper[j - first] - q[j - first], low, high) : high;
+        qp.upper[j] = std::max(qp.lower[j], qp.upper[j]);
     }
 }
+inline double longest_stride(std::size_t) { return serving::stride; }
 
 // Second-order correction after a step (Nocedal & Wright 2006, section 18.3). A soft posture task makes a
 // curved valley, on whose floor the frame tasks are satisfied. The shortest step for the frame tasks alone
 // returns to the floor.
 inline void back_to_the_valley(const TaskProblem& problem, TaskWork& work, BoxQp& qp, double* step,
                                TaskPlace& there, TaskPlace& spare) {
-    bound_step(problem, there, qp);
+    bound_step(problem, there.q.data(), longest_stride, qp);
     if (!best_step(there, serving::floor, false, qp, step)) return;
     move_by(problem, there, step, spare);
     measure_tasks(problem, work, spare);
     if (spare.cost < there.cost) std::swap(there, spare);
 }
 
-// Minimises the task error locally, from at.q (within the limits) and at.T_world_base.
-inline Served serve_tasks(const TaskProblem& problem, const ServeSettings& settings, TaskPlace& at) {
+// Minimises the task error locally, from at.q (within the limits) and at.T_world_base. settled: a step this
+// small ends the descent [rad, m].
+inline Served serve_tasks(const TaskProblem& problem, int most_steps, double settled, TaskPlace& at) {
     TaskWork work = task_work(problem);
     BoxQp qp(dof_of(problem));
     TaskPlace there, spare;
@@ -286,9 +286,9 @@ inline Served serve_tasks(const TaskProblem& problem, const ServeSettings& setti
     double mu = serving::first_mu;
     measure_tasks(problem, work, at);
     InterruptPoll poll(8);
-    for (int k = 0; k < settings.most_steps; ++k) {
+    for (int k = 0; k < most_steps; ++k) {
         poll.step();
-        bound_step(problem, at, qp);
+        bound_step(problem, at.q.data(), longest_stride, qp);
         if (!best_step(at, 2 * mu * at.cost + serving::floor, true, qp, step.data())) return {k, false};
         double reach = 0;
         for (const double d : step) reach = std::max(reach, std::fabs(d));
@@ -298,11 +298,11 @@ inline Served serve_tasks(const TaskProblem& problem, const ServeSettings& setti
             back_to_the_valley(problem, work, qp, step.data(), there, spare);
         const bool better = there.cost < at.cost;
         if (better) std::swap(at, there);
-        if (reach <= settings.settled) return {k + 1, true};
+        if (reach <= settled) return {k + 1, true};
         mu = better ? std::max(serving::gained * mu, serving::least_mu) : serving::lost * mu;
         if (mu > serving::largest_mu) return {k + 1, true};
     }
-    return {settings.most_steps, false};
+    return {most_steps, false};
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA
