@@ -8,31 +8,12 @@
 #include "ik.hpp"
 
 namespace nb = nanobind;
-using namespace nb::literals;
 using namespace cspace;
 
 namespace {
 
-nb::object to_python(const ik::Value& value) {
-    switch (value.kind) {
-        case ik::Value::Kind::truth:
-            return nb::bool_(value.number != 0);
-        case ik::Value::Kind::integer:
-            return nb::int_(int(value.number));
-        case ik::Value::Kind::real:
-            return nb::float_(value.number);
-        case ik::Value::Kind::list: {
-            nb::list out;
-            for (const ik::Value& item : value.items) out.append(to_python(item));
-            return out;
-        }
-        default: {
-            nb::dict out;
-            for (std::size_t k = 0; k < value.items.size(); ++k)
-                out[value.names[k].c_str()] = to_python(value.items[k]);
-            return out;
-        }
-    }
+nb::object to_python(const std::string& json) {
+    return nb::module_::import_("json").attr("loads")(nb::str(json.c_str()));
 }
 
 // None for an object that is not a solver.
@@ -58,12 +39,8 @@ double compute_determinant(SolverArgument solver, const std::vector<double>& goa
 
 void bind_ik_description(nb::module_& m) {
     m.def(
-        "_ik_numbers", &describe_numbers, "solver"_a,
+        "_ik_numbers", &describe_numbers,
         "How the arm of a solver is solved (closed, general, few_joints, any) and the numbers of its plan.");
-    m.def("_ik_geometry", &describe_geometry, "solver"_a, "What the classification of an arm saw.");
-    m.def(
-        "_ik_plan", [](SolverArgument solver) { return to_python(ik::plan_outline(solver.arm())); },
-        "solver"_a, "What a solver rests on.");
-    m.def("_ik_determinant", &compute_determinant, "solver"_a, "goal"_a, "formulation"_a, "a0"_a,
-          "The determinant of a general arm at one hidden angle.");
+    m.def("_ik_geometry", &describe_geometry, "What the classification of an arm saw.");
+    m.def("_ik_determinant", &compute_determinant, "The determinant of a general arm at one hidden angle.");
 }

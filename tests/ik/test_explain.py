@@ -12,6 +12,7 @@ import cspace as cs
 from cspace import _core
 from cspace.errors import InputError, UnknownNameError
 from cspace.ik import ik_plan
+from cspace.ik.explain.general import Loop
 from cspace.ik.explain.goal_parts import goal_of_parts
 from cspace.ik.explain.locked_joints import Split
 from cspace.model import from_screws
@@ -22,6 +23,12 @@ from ik.geometries import unit
 
 NAMES = cs.robots.names()
 FORMS = ("to_text", "to_markdown", "to_latex")
+
+
+def loop_of(robot):
+    kind, plan = _core._ik_numbers(robot.solver)
+    assert kind == "general"
+    return Loop.of(plan)
 
 
 def configurations(robot, rng, n=6):
@@ -94,7 +101,7 @@ def test_every_class_of_six_joints(word, square):
     rng = np.random.default_rng([ord(letter) for letter in word])
     robot = geometries.random_arm(geometries.CLASSES[word], rng, square=square)
     plan = expect_true(robot, rng)
-    form = _core._ik_plan(robot.solver)["form"]
+    form = _core._ik_numbers(robot.solver)[1]["form"]
     order = slice(None, None, -1) if _core._ik_geometry(robot.solver)["reversed"] else slice(None)
     assert [each.parallel for each in plan.relations][order] == form["parallel"]
     assert [each.meet and not each.parallel for each in plan.relations][order] == form["meeting"]
@@ -156,7 +163,7 @@ def test_the_hidden_angle_of_an_arm_with_two_slides_is_a_root_of_degree_four(kin
     assert "degree 4" in robot.ik_plan().to_text().replace("\n", " ")
     for q in configurations(robot, rng):
         goal = robot.fk(q).ravel().tolist()
-        for number, joints, backwards in _core._ik_plan(robot.solver)["loop"]["order"]:
+        for number, joints, backwards in loop_of(robot).order:
             f = [_core._ik_determinant(robot.solver, goal, number, a) for a in 2 * np.pi * np.arange(32) / 32]
             harmonics = np.abs(np.fft.rfft(f))
             noise = 1e-9 * harmonics.max()
@@ -171,7 +178,7 @@ def test_an_arm_that_is_solved_through_its_neighbours_says_so():
     tip = cs.pose([0.3, 0.2, 0.5])
     robot = Robot(from_screws([y, z, x, y, x, z], points, tip, joint_types="RPRRRR"))
     plan = expect_true(robot, np.random.default_rng(4))
-    assert _core._ik_plan(robot.solver)["loop"]["perturbed_arms"]
+    assert loop_of(robot).perturbed_arms
     assert "Two neighbours of the arm" in plan.to_text()
     assert "neighbour" not in load("jaco2").ik_plan().to_text()
 
@@ -191,12 +198,12 @@ def test_the_hidden_angle_of_a_general_arm_is_a_root_of_degree_eight(name):
     plan = expect_true(robot, rng)
     assert plan.family == "general"
     assert plan.branches == 16
-    loop = _core._ik_plan(robot.solver)["loop"]
-    assert f"{len(loop['order'])} of the twelve" in plan.to_text().replace("\n", " ")
+    loop = loop_of(robot)
+    assert f"{len(loop.order)} of the twelve" in plan.to_text().replace("\n", " ")
     around = 2 * np.pi * np.arange(64) / 64
     for q in configurations(robot, rng):
         goal = robot.fk(q).ravel().tolist()
-        for number, joints, backwards in loop["order"]:
+        for number, joints, backwards in loop.order:
             f = [_core._ik_determinant(robot.solver, goal, number, a) for a in around]
             harmonics = np.abs(np.fft.rfft(f))
             noise = 1e-8 * harmonics.max()  # formulations next to vanishing ones enlarge rounding

@@ -12,6 +12,7 @@ import numpy as np
 from cspace.export.arm import ExportedArm
 from cspace.export.words import fill_template
 from cspace.ik.conditions import NoClosedFormError
+from cspace.ik.geometry import as_arrays
 from cspace.tolerances import ON_LIMIT
 
 PACKAGE = "cspace.export.python"
@@ -107,7 +108,7 @@ def numbers(arm: ExportedArm) -> dict[str, Any]:
     if arm.kind == "few_joints":
         return {**chain_numbers(arm), "length": size_of(arm)}
     plan = {key: arm.plan[key] for key in arm.plan if key not in ("chain", "polish", "on_lanes")}
-    return {**chain_numbers(arm), "length": float(plan["form"]["length"]), "plan": plain(plan)}
+    return {**chain_numbers(arm), "length": float(plan["form"]["length"]), "plan": as_arrays(plan)}
 
 
 def chain_numbers(arm: ExportedArm) -> dict[str, Any]:
@@ -124,22 +125,6 @@ def size_of(arm: ExportedArm) -> float:
     """A length typical of the arm [m]."""
     reach = np.abs(np.vstack([arm.points, arm.T_zero[:3, 3]]) - arm.points[0]).max()
     return float(reach) or 1.0
-
-
-def plain(value: Any) -> Any:
-    """Structures of the core as arrays: poses (4, 4), vectors (3,), rotations as complex numbers."""
-    if not isinstance(value, dict):
-        return [plain(entry) for entry in value] if isinstance(value, list) else value
-    keys = set(value)
-    if keys == {"R", "t"}:
-        T = np.eye(4)
-        T[:3, :3], T[:3, 3] = value["R"]["m"], plain(value["t"])
-        return T
-    if keys == {"x", "y", "z"}:
-        return np.array([value["x"], value["y"], value["z"]])
-    if keys == {"c", "s"}:
-        return complex(value["c"], value["s"])
-    return {key: plain(entry) for key, entry in value.items()}
 
 
 def literal(value: Any, depth: int) -> str:

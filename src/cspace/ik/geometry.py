@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import cast
+from typing import Any, cast
+
+import numpy as np
 
 from cspace import _core
 from cspace.ik.conditions import Condition, NoClosedFormError, explain_missing_form, measure_conditions
@@ -94,3 +96,19 @@ def redundant_geometry(solver: Solver, tested: tuple[Condition, ...]) -> Geometr
     closed = _core._ik_has_closed_form(solver)
     method = "a closed form of the others" if closed else "the general method for the others"
     return Geometry("redundant", f"{names} held, {method}", False, 0.0, tested)
+
+
+def as_arrays(value: Any) -> Any:
+    """The numbers of a plan as arrays: poses (4, 4), vectors (3,), rotations as complex numbers."""
+    if not isinstance(value, dict):
+        return [as_arrays(entry) for entry in value] if isinstance(value, list) else value
+    keys = set(value)
+    if keys == {"R", "t"}:
+        T = np.eye(4)
+        T[:3, :3], T[:3, 3] = value["R"]["m"], as_arrays(value["t"])
+        return T
+    if keys == {"x", "y", "z"}:
+        return np.array([value["x"], value["y"], value["z"]])
+    if keys == {"c", "s"}:
+        return complex(value["c"], value["s"])
+    return {key: as_arrays(entry) for key, entry in value.items()}

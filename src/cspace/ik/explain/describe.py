@@ -62,12 +62,13 @@ def settled_plan(solver: Solver, survey: IkPlan, numbers: tuple[int, ...] | None
     if solver.is_redundant:
         return refused_plan(survey, explain_missing_form(solver))
     chain = solver.chain
-    seen, inside = _core._ik_geometry(solver), _core._ik_plan(solver)
+    seen = _core._ik_geometry(solver)
+    kind, plan = _core._ik_numbers(solver)
     survey = replace(survey, length=seen["length"])
-    if "form" in inside and seen["family"] in SUMMARIES:
-        return form_plan(Form.of(seen, inside["form"]), seen, survey, numbers)
-    if "loop" in inside:
-        return general_plan(Loop.of(inside["loop"]), survey)
+    if kind == "closed" and seen["family"] in SUMMARIES:
+        return form_plan(Form.of(plan), seen, survey, numbers)
+    if kind == "general":
+        return general_plan(Loop.of(plan), survey)
     return few_joint_plan(chain, survey)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from cspace.arrays import Array
 from cspace.ik.explain.page import Block, lay_out_table
 from cspace.ik.explain.screws import goal_values
+from cspace.ik.geometry import as_arrays
 from cspace.math import Angle, Product, TrigMatrix, TrigPolynomial
 from cspace.model.text import shown
 
@@ -41,14 +42,14 @@ class Form:
     length: float
 
     @classmethod
-    def of(cls, seen: Mapping[str, Any], plan: Mapping[str, Any]) -> Form:
-        """From what the core says of the geometry and of the form."""
-        columns = {
-            name: tuple(plan[name])
-            for name in ("joint", "sign", "offset", "a", "d", "ca", "sa", "parallel", "meeting")
+    def of(cls, plan: Mapping[str, Any]) -> Form:
+        """From the numbers of a plan in closed form."""
+        table = as_arrays(plan["form"])
+        columns: dict[str, Any] = {
+            name: tuple(table[name]) for name in ("offset", "a", "d", "ca", "sa", "parallel", "meeting")
         }
-        base, tool = np.array(plan["base"]), np.array(plan["tool"])
-        return cls(**columns, base=base, tool=tool, reversed=seen["reversed"], length=seen["length"])
+        columns |= {name: table[name] for name in ("base", "tool", "length")}
+        return cls(tuple(plan["joint"]), tuple(plan["sign"]), **columns, reversed=plan["reversed"])
 
     @property
     def angles(self) -> tuple[Angle, ...]:

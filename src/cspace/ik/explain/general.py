@@ -12,9 +12,18 @@ from cspace.arrays import Array
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.page import Block, lay_out_table
 from cspace.ik.explain.screws import Screws, goal_values, joint_values
+from cspace.ik.geometry import as_arrays
 from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomial
 
 Factor = tuple[str, str, TrigMatrix]
+
+
+def formulation(number: int) -> tuple[int, tuple[int, ...], bool]:
+    """Its number, the joints behind a_0 … a_5 (from 0), and whether the loop is read backwards: from number 6
+    on, where they count from the tip."""
+    shifted = [(number + k) % 6 for k in range(6)]
+    backwards = number >= 6
+    return number, tuple(5 - k if backwards else k for k in shifted), backwards
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,14 +46,18 @@ class Loop:
     wrist: bool | None
 
     @classmethod
-    def of(cls, loop: Mapping[str, Any]) -> Loop:
-        """From what the core says."""
-        order = tuple((number, tuple(joints), backwards) for number, joints, backwards in loop["order"])
-        links = tuple(np.array(link) for link in loop["between"])
-        kinds = "".join("P" if slides else "R" for slides in loop["prismatic"])
-        six = Screws(kinds, np.array(loop["axes"]), np.array(loop["points"]), np.array(loop["tip"]))
-        ends = np.array(loop["first"]), np.array(loop["last"])
-        return cls(six, links, *ends, loop["length"], order, loop["perturbed_arms"], loop.get("wrist"))
+    def of(cls, arm: Mapping[str, Any]) -> Loop:
+        """From the numbers of a general arm."""
+        plan = as_arrays(arm["plan"])
+        chain, frames, length = plan["chain"], plan["frames"], plan["length"]
+        kinds = "".join("P" if slides else "R" for slides in chain["prismatic"])
+        tip = chain["tip"].copy()
+        tip[:3, 3] *= length
+        six = Screws(kinds, np.array(chain["axis"]), length * np.array(chain["point"]), tip)
+        order = tuple(formulation(number) for number in plan["order"] if plan["slides"] < 3)
+        wrist = arm["position_first"].get("backwards")
+        links = tuple(frames["between"])
+        return cls(six, links, frames["first"], frames["last"], length, order, arm["has_perturbed"], wrist)
 
     @property
     def slides(self) -> int:
