@@ -13,7 +13,6 @@
 #include "library/ik_arm.hpp"
 
 namespace nb = nanobind;
-using namespace nb::literals;
 using namespace cspace;
 
 const char solve_doc[] =
@@ -52,10 +51,12 @@ namespace {
 constexpr int most_threads = 1024;
 
 // Null without an error for an invalid goal.
-PyObject* answer_single(PyObject* solver, const ik::BuiltArm& arm, const double* goal) {
+PyObject* answer_single(PyObject* solver, const ik::BuiltArm& arm, const double* goal,
+                        const double* unconstrained = nullptr) {
     ik::SolutionStore store;
     ik::SolutionRows rows;
-    return ik::list_solutions(arm, goal, nullptr, store, rows) ? new_solutions(solver, goal, rows) : nullptr;
+    return ik::list_solutions(arm, goal, unconstrained, store, rows) ? new_solutions(solver, goal, rows)
+                                                                     : nullptr;
 }
 
 // The answer where near= or locked= is the one keyword of one goal; null without an error for what is not
@@ -106,14 +107,14 @@ nb::object solve_near_singular(SolverArgument solver, const ConstDoubles& goal,
                                const ConstDoubles& unconstrained) {
     const ik::BuiltArm& arm = solver.arm();
     require_sizes(arm.room && goal.size == 16 && unconstrained.size == arm.dof);
-    const ik::Solutions found = ik::solve_goal(arm, goal.data, unconstrained.data);
-    return solutions_from(new_solutions(solver.object, goal.data, ik::rows_of(found)));
+    PyObject* answer = answer_single(solver.object, arm, goal.data, unconstrained.data);
+    return answer || PyErr_Occurred() ? solutions_from(answer) : nb::none();
 }
 
 std::tuple<Doubles, double, double> find_nearest_pose(SolverArgument solver, const ConstDoubles& goal,
                                                       double stiffness) {
     require_sizes(goal.size == 16);
-    const ik::NearestMiss best = ik::nearest_to_goal(solver.arm(), goal.data, stiffness);
+    const ik::NearestPose best = ik::nearest_to_goal(solver.arm(), goal.data, stiffness);
     return {Doubles({solver.arm().dof}, best.q), best.position, best.rotation};
 }
 
@@ -128,7 +129,7 @@ nb::object solve_position(SolverArgument solver, const ConstDoubles& p) {
 
 std::tuple<Doubles, double> find_nearest_position(SolverArgument solver, const ConstDoubles& p) {
     const ik::BuiltArm& arm = arm_for_points(solver, p.size == 3);
-    const ik::NearestMiss best = ik::nearest_to_point(arm, {p.data[0], p.data[1], p.data[2]});
+    const ik::NearestPose best = ik::nearest_to_point(arm, {p.data[0], p.data[1], p.data[2]});
     return {Doubles({arm.dof}, best.q), best.position};
 }
 
@@ -151,20 +152,17 @@ std::size_t solve_many(SolverArgument solver, const ConstDoubles& goals, const D
 void bind_ik(nb::module_& m) {
     m.attr("AXIS_RELATION") = tolerance::axis_relation;
     m.def(
-        "_ik_room", [](SolverArgument solver) { return solver.arm().room; }, "solver"_a,
+        "_ik_room", [](SolverArgument solver) { return solver.arm().room; },
         "Rows that the solutions of a goal may need; 0 for a redundant arm.");
-    m.def("_ik_single", solve_single, "solver"_a, "goal"_a,
-          "Every solution of one goal; None for one that is not a pose.");
-    m.def("_ik_near_singular", solve_near_singular, "solver"_a, "goal"_a, "unconstrained"_a,
-          "Solves one goal by the slow path, unconstrained joints as given.");
-    m.def("_ik_nearest_pose", find_nearest_pose, "solver"_a, "goal"_a, "stiffness"_a,
+    m.def("_ik_single", solve_single, "Every solution of one goal; None for one that is not a pose.");
+    m.def("_ik_near_singular", solve_near_singular,
+          "The same with values of the joints that the goal leaves free.");
+    m.def("_ik_nearest_pose", find_nearest_pose,
           "The configuration that comes nearest to a goal out of reach, and its errors [m], [rad].");
-    m.def("_ik_position", solve_position, "solver"_a, "p"_a,
-          "Solves a position goal of an arm of up to three joints.");
-    m.def("_ik_nearest_position", find_nearest_position, "solver"_a, "p"_a,
+    m.def("_ik_position", solve_position, "Solves a position goal of an arm of up to three joints.");
+    m.def("_ik_nearest_position", find_nearest_position,
           "The configuration that comes nearest to a position, and its error [m].");
-    m.def("_ik_many", solve_many<16, ik::solve_goals>, "solver"_a, "goals"_a, "q"_a, "count"_a, "status"_a,
-          "threads"_a, "Solves many goals; returns the index of the first that is not a pose.");
-    m.def("_ik_positions", solve_many<3, ik::solve_points>, "solver"_a, "points"_a, "q"_a, "count"_a,
-          "status"_a, "threads"_a, "Solves many position goals, likewise.");
+    m.def("_ik_many", solve_many<16, ik::solve_goals>,
+          "Solves many goals; returns the index of the first that is not a pose.");
+    m.def("_ik_positions", solve_many<3, ik::solve_points>, "Solves many position goals, likewise.");
 }

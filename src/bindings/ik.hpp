@@ -43,7 +43,7 @@ struct SolverArgument {
 };
 template <>
 struct nanobind::detail::type_caster<SolverArgument> {
-    NB_TYPE_CASTER(SolverArgument, const_name("SolverBase"))
+    NB_TYPE_CASTER(SolverArgument, const_name("solver"))
     bool from_python(handle given, std::uint32_t, cleanup_list*) noexcept { return value.read(given.ptr()); }
 };
 

@@ -19,18 +19,6 @@ using namespace cspace;
 
 namespace {
 
-ik::RowMap row_map(const ik::Solver& core, const std::vector<int>& columns, const Row& values) {
-    ik::RowMap whole = {int(columns.size()), {}, {}};
-    bool fits = columns.size() <= std::size_t(ik::max_joints) && values.shape(0) == columns.size();
-    for (std::size_t j = 0; fits && j < columns.size(); ++j) {
-        fits = columns[j] < core.chain().n;
-        whole.column[j] = columns[j];
-        whole.value[j] = values.data()[j];
-    }
-    if (!fits) throw nb::value_error("columns and values need one number per joint of the whole arm");
-    return whole;
-}
-
 // One goal's result. What `about` says of it: the rows of the longer arm of a partial goal, and over how many
 // values of a redundant joint its rows are spread.
 nb::object to_result(SolverArgument solver, const ik::GoalRequest& request, const ik::GoalAnswer& answer,
@@ -93,12 +81,16 @@ nb::object answer_rows(SolverArgument solver, SolverArgument asked, Goals goals,
     };
     require_rows(seeds, std::size_t(own));
     require_rows(at, n);
-    if (first < 0 || std::size_t(first + own) > columns.size() || samples < 1 ||
-        locked.has_value() != at.has_value() || (is_single && N != 1))
+    const int whole = int(columns.size());
+    if (columns.size() > std::size_t(ik::max_joints) || values.shape(0) != columns.size() ||
+        std::any_of(columns.begin(), columns.end(), [n](int column) { return column >= int(n); }))
+        throw nb::value_error("columns and values need one number per joint of the whole arm");
+    if (first < 0 || first + own > whole || samples < 1 || locked.has_value() != at.has_value() ||
+        (is_single && N != 1))
         throw nb::value_error("samples, locked joints, values and goals do not fit together");
     const ik::GoalRequest request = {goals.data(),
                                      N,
-                                     row_map(core, columns, values),
+                                     {whole, columns.data(), values.data()},
                                      first,
                                      own,
                                      is_partial,
@@ -133,6 +125,6 @@ void bind_ik_goals(nb::module_& m) {
           "is_partial"_a, "seeds"_a.none(), "samples"_a, "locked"_a.none(), "at"_a.none(), "threads"_a,
           "is_single"_a, "about"_a,
           "Answers goals that leave freedom: a result for one goal, arrays for many.");
-    m.def("_ik_nearest_poses", &find_nearest_poses, "solver"_a, "goals"_a, "stiffness"_a, "threads"_a,
+    m.def("_ik_nearest_poses", &find_nearest_poses,
           "The configurations that come nearest to goals out of reach.");
 }

@@ -68,7 +68,7 @@ PyObject* solve_locked(PyObject* self, const double* goal, PyObject* locked) {
     const auto set =
         std::find_if(known.begin(), known.end(), [joints](const LockedSet& k) { return k.joints == joints; });
     if (!joints || set == known.end()) return nullptr;
-    ik::LockedStore store;
+    ik::SolutionStore store;
     ik::SolutionRows rows;
     // Where nothing reaches the goal there is more to say.
     if (!ik::solve_locked_goal(*set->plan, goal, at, store, rows) || !rows.count) return nullptr;

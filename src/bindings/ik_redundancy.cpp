@@ -2,10 +2,9 @@
 #include "library/ik_redundancy.hpp"
 
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
-#include <tuple>
+#include <algorithm>
 #include <vector>
 
 #include "arrays.hpp"
@@ -13,12 +12,19 @@
 #include "ik.hpp"
 
 namespace nb = nanobind;
-using namespace nb::literals;
 using namespace cspace;
 
 namespace {
 
 using ik::RedundantSolver;
+
+// A member as a function of the solver.
+template <class Result, class... Arguments>
+auto of_redundant(Result (RedundantSolver::*member)(Arguments...) const) {
+    return [member](SolverArgument solver, Arguments... arguments) -> Result {
+        return (solver.core().redundant().*member)(arguments...);
+    };
+}
 
 // Fills q (N, room, n) with NaN behind the solutions; the solutions themselves stand for what they show.
 void solve_rows(SolverArgument solver, const std::vector<int>& locked_joint, Matrix at, Goals goals,
@@ -37,14 +43,24 @@ void solve_rows(SolverArgument solver, const std::vector<int>& locked_joint, Mat
                        self_motion.data(), count.data(), status.data(), threads});
 }
 
-// And whether none is missing.
-std::tuple<std::vector<ik::FeasibleInterval>, bool> intervals_of(SolverArgument solver, int parameter,
-                                                                 Goal goal) {
+// Rows (lower, upper, branch, end below, side, end above, side), a configuration inside each (k, n), and
+// whether none is missing.
+nb::tuple intervals_of(SolverArgument solver, int parameter, Goal goal) {
     RedundantSolver& arm = solver.core().redundant();
-    const nb::gil_scoped_release release;
+    std::vector<ik::Interval> found;
     bool complete;
-    std::vector<ik::FeasibleInterval> found = arm.intervals(parameter, goal.data(), complete);
-    return {std::move(found), complete};
+    {
+        const nb::gil_scoped_release release;
+        found = arm.intervals(parameter, goal.data(), complete);
+    }
+    const int n = arm.chain().n;
+    const Doubles q({npy_intp(found.size()), n});
+    nb::list rows;
+    for (const ik::Interval& i : found) {
+        std::copy_n(i.q, n, q.data + n * npy_intp(nb::len(rows)));
+        rows.append(nb::make_tuple(i.lower, i.upper, i.branch, i.end[0], i.side[0], i.end[1], i.side[1]));
+    }
+    return nb::make_tuple(rows, q, complete);
 }
 
 // near= is answered by the compiled entry from now on.
@@ -84,44 +100,24 @@ void measure_swivels(SolverArgument solver, Array<const double, nb::shape<-1, 7>
 }  // namespace
 
 void bind_ik_redundancy(nb::module_& m) {
-    m.def(
-        "_ik_default_locked",
-        [](SolverArgument solver) { return solver.core().redundant().default_locked(); }, "solver"_a,
-        "The redundant joints that are locked unless others are named, ascending.");
-    m.def(
-        "_ik_redundancy_degree",
-        [](SolverArgument solver, const std::vector<int>& locked) {
-            RedundantSolver& arm = solver.core().redundant();
-            return locked.empty() ? arm.redundant_joints() : arm.redundant_with(locked);
-        },
-        "solver"_a, "locked"_a, "How many dimensions a goal leaves free with these joints locked.");
-    m.def(
-        "_ik_has_closed_form",
-        [](SolverArgument solver) { return solver.core().redundant().has_closed_form(); }, "solver"_a,
-        "Whether the joints that move have a closed form.");
-    m.def("_ik_serve_near", &serve_near, "solver"_a, "about"_a,
-          "Answers near= from now on, for one goal without other keywords.");
-    m.def("_ik_serve_locked", &serve_locked, "solver"_a, "locked"_a, "about"_a,
+    m.def("_ik_default_locked", of_redundant(&RedundantSolver::default_locked),
+          "The redundant joints that are locked unless others are named, ascending.");
+    m.def("_ik_redundancy_degree", of_redundant(&RedundantSolver::redundant_with),
+          "How many dimensions a goal leaves free with these joints locked.");
+    m.def("_ik_has_closed_form", of_redundant(&RedundantSolver::has_closed_form),
+          "Whether the joints that move have a closed form.");
+    m.def("_ik_serve_near", &serve_near, "Answers near= from now on, for one goal without other keywords.");
+    m.def("_ik_serve_locked", &serve_locked,
           "Answers locked= with these joints from now on, for one goal without other keywords.");
-    m.def(
-        "_ik_locked_room",
-        [](SolverArgument solver, const std::vector<int>& locked) {
-            RedundantSolver& arm = solver.core().redundant();
-            return arm.room_for(arm.lock(locked));
-        },
-        "solver"_a, "locked"_a, "Rows that the solutions of a goal may need with these joints locked.");
-    m.def("_ik_locked_rows", &solve_rows, "solver"_a, "locked"_a, "at"_a, "goals"_a, "unconstrained"_a, "q"_a,
-          "branch"_a, "self_motion"_a, "count"_a, "status"_a, "threads"_a,
-          "Every solution with joints locked at their values.");
-    m.def("_ik_intervals", &intervals_of, "solver"_a, "parameter"_a, "goal"_a,
-          "The feasible intervals of one joint.");
-    m.def(
-        "_ik_has_swivel", [](SolverArgument solver) { return solver.core().redundant().has_swivel(); },
-        "solver"_a, "Whether axes 1, 2, 3 and 5, 6, 7 of an arm of seven revolute joints meet.");
-    m.def("_ik_swivel_rows", &solve_swivels, "solver"_a, "goals"_a, "swivels"_a, "q"_a,
-          "Every solution at given swivels.");
-    m.def("_ik_swivels", &measure_swivels, "solver"_a, "q"_a, "out"_a, "The swivel of configurations.");
-    m.def("_ik_union", ik::unite_intervals, "intervals"_a, "Intervals (k, 2) as disjoint ones, ascending.");
-    m.def("_ik_spread", ik::spread_values, "intervals"_a, "n"_a,
+    m.def("_ik_locked_room", of_redundant(&RedundantSolver::room_for),
+          "Rows that the solutions of a goal may need with these joints locked.");
+    m.def("_ik_locked_rows", &solve_rows, "Every solution with joints locked at their values.");
+    m.def("_ik_intervals", &intervals_of, "The feasible intervals of one joint.");
+    m.def("_ik_has_swivel", of_redundant(&RedundantSolver::has_swivel),
+          "Whether axes 1, 2, 3 and 5, 6, 7 of an arm of seven revolute joints meet.");
+    m.def("_ik_swivel_rows", &solve_swivels, "Every solution at given swivels.");
+    m.def("_ik_swivels", &measure_swivels, "The swivel of configurations.");
+    m.def("_ik_union", ik::unite_intervals, "Intervals (k, 2) as disjoint ones, ascending.");
+    m.def("_ik_spread", ik::spread_values,
           "The middles of n equal parts of all that intervals (k, 2) cover.");
 }

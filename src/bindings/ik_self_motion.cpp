@@ -12,7 +12,6 @@
 #include "ik.hpp"
 
 namespace nb = nanobind;
-using namespace nb::literals;
 using namespace cspace;
 
 namespace {
@@ -49,10 +48,9 @@ std::tuple<Doubles, Doubles> project_rows(SolverArgument solver, const ConstDoub
 }  // namespace
 
 void bind_ik_self_motion(nb::module_& m) {
-    m.def("_ik_direction", find_direction, "solver"_a, "q"_a, "whole_pose"_a,
-          "The unit joint velocity of the self-motion through q, or None.");
-    m.def("_ik_follow", follow_curve, "solver"_a, "q"_a, "direction"_a, "whole_pose"_a,
+    m.def("_ik_direction", find_direction, "The unit joint velocity of the self-motion through q, or None.");
+    m.def("_ik_follow", follow_curve,
           "The self-motion through q from there on: configurations (m, n), tangents (m, n), how it ends.");
-    m.def("_ik_onto", project_rows, "solver"_a, "q"_a, "near"_a, "along"_a, "whole_pose"_a,
+    m.def("_ik_onto", project_rows,
           "Rows (k, n) brought onto the self-motion through q, and their tangents; NaN where that failed.");
 }

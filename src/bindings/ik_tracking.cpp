@@ -6,7 +6,6 @@
 #include "kinematics.hpp"
 
 namespace nb = nanobind;
-using namespace nb::literals;
 using namespace cspace;
 
 namespace {
@@ -29,6 +28,5 @@ void track_rows(nb::handle robot, int frame, Goals poses, Matrix starts,
 }  // namespace
 
 void bind_ik_tracking(nb::module_& m) {
-    m.def("_ik_track", track_rows, "robot"_a, "frame"_a, "poses"_a, "starts"_a, "bounds"_a, "whole_turns"_a,
-          "q"_a, "last"_a, "info"_a, "Follows branches along poses; q, last and info take the results.");
+    m.def("_ik_track", track_rows, "Follows branches along poses; q, last and info take the results.");
 }

@@ -100,12 +100,6 @@ bool list_solutions(const BuiltArm& built, const double* goal, const double* unc
     return quick != FastPath::refused;
 }
 
-Solutions solve_goal(const BuiltArm& built, const double* goal, const double* unconstrained) {
-    Solutions found;
-    kernels::ik_pose(*built.arm, read_goal(goal).T, unconstrained, found);
-    return found;
-}
-
 Solutions solve_point(const BuiltArm& built, const Vec3d& goal) {
     const Chain& chain = built.arm->plan.chain;
     PositionSolutions found;
@@ -120,12 +114,10 @@ std::size_t solve_points(const BuiltArm& built, const GoalRows& rows) {
     return solve_on_threads(built, rows, solve_point_slice);
 }
 
-NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness) {
+NearestPose nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness) {
     NearestPose best;
     kernels::ik_nearest_miss(*built.arm, read_goal(goal).T, stiffness, best);
-    NearestMiss out = {{}, best.position, best.rotation};
-    std::copy(best.q, best.q + built.dof, out.q);
-    return out;
+    return best;
 }
 
 void nearest_to_goals(const BuiltArm& built, const double* goals, std::size_t n, double stiffness, double* q,
@@ -133,17 +125,18 @@ void nearest_to_goals(const BuiltArm& built, const double* goals, std::size_t n,
     over_rows(n, threads, 1, 1, [&](std::size_t from, std::size_t to) {
         for (std::size_t i = from; i < to; ++i) {
             poll_interrupts();
-            const NearestMiss best = nearest_to_goal(built, goals + 16 * i, stiffness);
+            const NearestPose best = nearest_to_goal(built, goals + 16 * i, stiffness);
             std::copy(best.q, best.q + built.dof, q + std::size_t(built.dof) * i);
         }
         return true;
     });
 }
 
-NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal) {
+NearestPose nearest_to_point(const BuiltArm& built, const Vec3d& goal) {
     PositionSolutions found;
     kernels::ik_position(built.arm->plan.chain, goal, true, found);
-    NearestMiss out = {{}, found.out_of_reach, 0};
+    NearestPose out;
+    out.position = found.out_of_reach;
     const double* best = found.count ? found.q[0] : found.nearest;
     std::copy(best, best + built.dof, out.q);
     return out;

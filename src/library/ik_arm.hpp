@@ -37,17 +37,17 @@ inline SolutionRows rows_of(const Solutions& found) {
     return {found.count, found.q[0], max_arm, found.branch, self_motion, found.status, found.complete};
 }
 
-// Every solution of a goal, in the memory of `store`: by the closed form alone where nothing is in doubt.
-// False for a goal that is not a pose.
+// The memory of the rows of one goal.
 struct SolutionStore {
-    double q[max_branches * 6];
+    double q[max_solutions * max_joints];
     std::int8_t branch[max_branches];
     Solutions found;
 };
+// Every solution of a goal: by the closed form alone where nothing is in doubt. unconstrained: null, or
+// values of the joints that the goal leaves free. False for a goal that is not a pose.
 bool list_solutions(const BuiltArm& built, const double* goal, const double* unconstrained,
                     SolutionStore& store, SolutionRows& rows);
 
-Solutions solve_goal(const BuiltArm& built, const double* goal, const double* unconstrained);
 Solutions solve_point(const BuiltArm& built, const Vec3d& goal);
 
 // In a verdict as a number: solutions may be missing.
@@ -66,17 +66,12 @@ struct GoalRows {
 std::size_t solve_goals(const BuiltArm& built, const GoalRows& rows);
 std::size_t solve_points(const BuiltArm& built, const GoalRows& rows);
 
-// The configuration that comes nearest to a goal out of reach, and what is missing there.
-struct NearestMiss {
-    double q[max_joints];
-    double position;  // [m]
-    double rotation;  // [rad]
-};
-NearestMiss nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness);
+// The configuration that comes nearest to a goal out of reach.
+NearestPose nearest_to_goal(const BuiltArm& built, const double* goal, double stiffness);
 // The configurations alone, q (n, dof).
 void nearest_to_goals(const BuiltArm& built, const double* goals, std::size_t n, double stiffness, double* q,
                       int threads);
-NearestMiss nearest_to_point(const BuiltArm& built, const Vec3d& goal);
+NearestPose nearest_to_point(const BuiltArm& built, const Vec3d& goal);
 
 // Whether the lengths and directions of the axes alone rule the goal out.
 bool is_ruled_out(const BuiltArm& built, const double* goal);

@@ -6,7 +6,7 @@
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/redundancy/tip_jacobian.hpp"
 #include "cspace/ik/refine.hpp"
-#include "cspace/math/linear.hpp"
+#include "cspace/math/least_squares.hpp"
 #include "cspace/math/threads.hpp"
 #include "ik_self_motion.hpp"
 
@@ -46,6 +46,7 @@ void meet_goal(const Solver& solver, const Posed& goal, const int* own_of, doubl
     constexpr double settled = 1e-12, stride = 0.5, damping = 1e-9;
     const Chain& chain = solver.chain();
     int open[most], count = 0;
+    const double loose[most] = {1, 1, 1, 1, 1, 1, 1, 1};
     for (int j = 0; j < chain.n; ++j) {
         if (own_of[j] >= 0) continue;
         q[j] = 0;
@@ -60,21 +61,14 @@ void meet_goal(const Solver& solver, const Posed& goal, const int* own_of, doubl
         const Vec3d turned = spatial::rotvec_of_rotation(goal.R * transpose(forward(chain, q).R));
         const double error[6] = {motion.error[0], motion.error[1], motion.error[2],
                                  turned.x,        turned.y,        turned.z};
-        double A[most][most] = {}, b[most] = {};
-        for (int i = 0; i < most; ++i) {
-            A[i][i] = i < count ? damping : 1;
-            for (int j = 0; i < count && j < count; ++j)
-                for (int k = 0; k < 6; ++k) A[i][j] += motion.column[open[i]][k] * motion.column[open[j]][k];
-            for (int k = 0; i < count && k < 6; ++k) b[i] += motion.column[open[i]][k] * error[k];
-        }
-        solve_linear(A, b);
-        double reach = stride, largest = 0;
-        for (int i = 0; i < count; ++i) {
-            if (!chain.prismatic[open[i]]) reach = std::fmax(reach, std::fabs(b[i]));
-            largest = std::fmax(largest, std::fabs(b[i]));
-        }
-        for (int i = 0; i < count; ++i) q[open[i]] += b[i] * stride / reach;
-        if (largest < settled) break;
+        double J[6][most], dq[most], reach = stride;
+        for (int i = 0; i < count; ++i)
+            for (int k = 0; k < 6; ++k) J[k][i] = motion.column[open[i]][k];
+        damped_step(6, count, J, error, loose, damping, dq);
+        for (int i = 0; i < count; ++i)
+            if (!chain.prismatic[open[i]]) reach = std::fmax(reach, std::fabs(dq[i]));
+        for (int i = 0; i < count; ++i) q[open[i]] += dq[i] * stride / reach;
+        if (largest_of(dq, count) < settled) break;
     }
 }
 
@@ -138,28 +132,25 @@ bool moves_own_joints(Solver& solver, const GoalRequest& request, const double* 
 // has it in front.
 void keep_own_rows(Solver& solver, const GoalRequest& request, GoalAnswer& out) {
     const std::size_t own = std::size_t(request.own), n = std::size_t(request.whole.n);
-    std::size_t kept = 0;
+    GoalAnswer kept;
     bool any_moves = false;
     for (std::size_t k = 0; k < std::size_t(out.count); ++k) {
         const double *whole = out.whole.data() + n * k, *q = out.q.data() + own * k;
         bool keep = has_point_ahead(solver, request.whole, whole);
-        for (std::size_t i = 0; i < kept && keep; ++i)
-            keep = !is_same(solver, request, out.q.data() + own * i, q);
+        for (std::size_t i = 0; i < kept.branch.size() && keep; ++i)
+            keep = !is_same(solver, request, kept.q.data() + own * i, q);
         if (!keep) continue;
         const bool moves =
             out.self_motion[k] && (solver.is_redundant() || moves_own_joints(solver, request, whole));
-        std::copy(q, q + own, out.q.begin() + std::ptrdiff_t(own * kept));
-        std::copy(whole, whole + n, out.whole.begin() + std::ptrdiff_t(n * kept));
-        out.branch[kept] = request.whole.n == request.own ? out.branch[k] : std::int8_t(-1);
-        out.self_motion[kept++] = moves;
+        kept.append_row(q, request.own, n == own ? out.branch[k] : -1, moves);
+        kept.whole.insert(kept.whole.end(), whole, whole + n);
         any_moves |= moves;
     }
-    out.count = int(kept);
-    out.q.resize(own * kept);
-    out.whole.resize(n * kept);
-    out.branch.resize(kept);
-    out.self_motion.resize(kept);
-    out.status = any_moves ? Status::singular : kept ? Status::exact : Status::unreachable;
+    kept.status = any_moves ? Status::singular : kept.count ? Status::exact : Status::unreachable;
+    kept.complete = out.complete;
+    kept.values = out.values;
+    kept.feasible = out.feasible;
+    out = std::move(kept);
     if (any_moves && solver.is_redundant()) {  // self-motions that nobody describes where joints are locked
         out.status = Status::exact;
         out.complete = false;
@@ -171,15 +162,13 @@ GoalAnswer answer_goal(Solver& solver, const GoalRequest& request, std::size_t i
     const std::size_t n = std::size_t(solver.chain().n);
     const double* goal = request.goals + 16 * i;
     GoalAnswer out;
-    if (request.locked) {
-        LockedStore store;
-        SolutionRows rows = {};
-        solve_locked_goal(*request.locked, goal, request.at + (request.at_each ? n * i : 0), store, rows);
-        out.append(rows, int(n));
-    } else if (!solver.is_redundant()) {
+    if (request.locked || !solver.is_redundant()) {
         SolutionStore store;
         SolutionRows rows = {};
-        list_solutions(solver.arm(), goal, nullptr, store, rows);
+        if (request.locked)
+            solve_locked_goal(*request.locked, goal, request.at + (request.at_each ? n * i : 0), store, rows);
+        else
+            list_solutions(solver.arm(), goal, nullptr, store, rows);
         out.append(rows, int(n));
     } else if (solver.exceeds_reach(goal)) {
         return out;

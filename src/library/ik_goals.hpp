@@ -13,8 +13,8 @@ namespace cspace::ik {
 // value[j] where column[j] is negative.
 struct RowMap {
     int n;
-    int column[max_joints];
-    double value[max_joints];
+    const int* column;
+    const double* value;
 };
 
 // n goals of 16 numbers. The solver lacks the joints that are locked, which `whole` puts back; for a partial

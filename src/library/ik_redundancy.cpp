@@ -10,6 +10,7 @@
 #include "cspace/ik/goal.hpp"
 #include "cspace/ik/redundancy/arcs.hpp"
 #include "cspace/ik/redundancy/arm_angle.hpp"
+#include "cspace/math/made_once.hpp"
 #include "cspace/math/threads.hpp"
 #include "kernels/ik.hpp"
 
@@ -51,26 +52,22 @@ struct RedundantSolver::State {
     double unit;  // [m]
     SwivelArm swivel;
     std::mutex mutex;
-    std::unique_ptr<RedundantSolver> scaled;     // the same arm with lengths in its unit
-    std::unique_ptr<RedundantSolver> unlimited;  // the same arm without limits
     std::map<std::vector<int>, std::unique_ptr<LockedArm>> plans;
-    std::unique_ptr<LimitArms> limits;
+    MadeOnce<RedundantSolver> scaled, unlimited;
+    MadeOnce<LimitArms> limits;
 
+    // The same arm with lengths in its unit.
     RedundantSolver& in_its_unit() {
-        const std::lock_guard<std::mutex> guard(mutex);
-        if (!scaled) {
-            Chain chain = arm.chain;
+        return scaled.get([this] {
+            Chain chain = in_units_of(unit, arm.chain);
             double lower[max_joints], upper[max_joints];
             for (int i = 0; i < chain.n; ++i) {
                 const double size = chain.prismatic[i] ? unit : 1;
-                chain.point[i] = (1 / unit) * chain.point[i];
                 lower[i] = arm.lower[i] / size;
                 upper[i] = arm.upper[i] / size;
             }
-            chain.tip.t = (1 / unit) * chain.tip.t;
-            scaled = std::make_unique<RedundantSolver>(chain, lower, upper, arm.weight);
-        }
-        return *scaled;
+            return std::make_unique<RedundantSolver>(chain, lower, upper, arm.weight);
+        });
     }
     bool looks() const {
         bool any = false;
@@ -78,23 +75,19 @@ struct RedundantSolver::State {
         return any;
     }
     RedundantSolver& without_limits() {
-        const std::lock_guard<std::mutex> guard(mutex);
-        if (!unlimited) {
+        return unlimited.get([this] {
             double lower[max_joints], upper[max_joints];
             std::fill(lower, lower + max_joints, -std::numeric_limits<double>::infinity());
             std::fill(upper, upper + max_joints, std::numeric_limits<double>::infinity());
-            unlimited = std::make_unique<RedundantSolver>(arm.chain, lower, upper, arm.weight);
-        }
-        return *unlimited;
+            return std::make_unique<RedundantSolver>(arm.chain, lower, upper, arm.weight);
+        });
     }
     const LimitArms& limit_arms() {
-        const std::lock_guard<std::mutex> guard(mutex);
-        if (!limits) {
+        return limits.get([this] {
             auto made = std::make_unique<LimitArms>();
             kernels::ik_make_limit_arms(arm, *made);
-            limits = std::move(made);
-        }
-        return *limits;
+            return made;
+        });
     }
 };
 
@@ -115,6 +108,7 @@ std::vector<int> RedundantSolver::default_locked() const {
 }
 
 int RedundantSolver::redundant_with(const std::vector<int>& locked) const {
+    if (locked.empty()) return redundant_joints();
     unsigned bits = 0;
     for (const int joint : locked) {
         if (joint < 0 || joint >= chain().n) throw std::invalid_argument("locked joints belong to the arm");
@@ -123,7 +117,7 @@ int RedundantSolver::redundant_with(const std::vector<int>& locked) const {
     return redundancy_degree_with(state_->arm, bits);
 }
 
-const LockedArm& RedundantSolver::lock(const std::vector<int>& joints) {
+const LockedArm& RedundantSolver::lock(const std::vector<int>& joints) const {
     const int n = chain().n, moving = n - int(joints.size());
     const bool ascending =
         std::adjacent_find(joints.begin(), joints.end(), std::greater_equal<>()) == joints.end();
@@ -143,7 +137,8 @@ const LockedArm& RedundantSolver::lock(const std::vector<int>& joints) {
     return *slot;
 }
 
-int RedundantSolver::room_for(const LockedArm& locked) const {
+int RedundantSolver::room_for(const std::vector<int>& joints) const {
+    const LockedArm& locked = lock(joints);
     return locked.at_ends ? ik::room_for(locked.arm) : max_solutions;
 }
 
@@ -190,7 +185,7 @@ bool RedundantSolver::find_nearest_turned(const double* goal, const double* seed
     return true;
 }
 
-std::vector<FeasibleInterval> RedundantSolver::intervals(int parameter, const double* goal, bool& complete) {
+std::vector<Interval> RedundantSolver::intervals(int parameter, const double* goal, bool& complete) {
     if (redundant_joints() != 1 || parameter < 0 || parameter >= chain().n)
         throw std::invalid_argument("intervals are those of a joint of an arm with one redundant joint");
     const double unit = state_->unit;
@@ -199,20 +194,19 @@ std::vector<FeasibleInterval> RedundantSolver::intervals(int parameter, const do
     T.t = (1 / unit) * T.t;
     const LockedArm& locked = solver.lock({parameter});
     const auto trail = std::make_unique_for_overwrite<Trail>();
-    const auto found = std::make_unique<Intervals>();
+    const auto found = std::make_unique_for_overwrite<Intervals>();
     kernels::ik_intervals(solver.state_->arm, locked, parameter, solver.state_->limit_arms(), T, *trail,
                           *found);
-    const auto in_metres = [&](int joint, double q) { return chain().prismatic[joint] ? unit * q : q; };
-    std::vector<FeasibleInterval> out;
+    const Redundant& own = state_->arm;
     for (int k = 0; k < found->count; ++k) {
-        const Interval& i = found->interval[k];
-        std::vector<double> q(i.q, i.q + chain().n);
-        for (int j = 0; j < chain().n; ++j) q[std::size_t(j)] = in_metres(j, i.q[j]);
-        out.emplace_back(in_metres(parameter, i.lower), in_metres(parameter, i.upper), i.branch, i.end[0],
-                         i.side[0], i.end[1], i.side[1], std::move(q));
+        Interval& i = found->interval[k];
+        for (int j = 0; j < own.chain.n; ++j)
+            if (own.chain.prismatic[j]) i.q[j] *= unit;
+        if (own.chain.prismatic[parameter]) i.lower *= unit, i.upper *= unit;
+        turn_to_seed(own.chain.prismatic, own.chain.n, own.lower, own.upper, i.q, i.q);
     }
     complete = found->complete;
-    return out;
+    return {found->interval, found->interval + found->count};
 }
 
 std::vector<Span> unite_intervals(std::vector<Span> intervals) {
@@ -248,11 +242,11 @@ std::vector<double> spread_values(std::vector<Span> intervals, int n) {
 
 bool RedundantSolver::sample(const double* goal, int n, GoalAnswer& out) {
     const int parameter = default_locked().front();
-    std::vector<FeasibleInterval> found = intervals(parameter, goal, out.complete);
+    std::vector<Interval> found = intervals(parameter, goal, out.complete);
     out.feasible = !found.empty();
     if (found.empty()) found = state_->without_limits().intervals(parameter, goal, out.complete);
     std::vector<Span> spans;
-    for (const FeasibleInterval& one : found) spans.emplace_back(std::get<0>(one), std::get<1>(one));
+    for (const Interval& one : found) spans.emplace_back(one.lower, one.upper);
     const std::vector<double> values = spread_values(std::move(spans), n);
     const double at[max_joints] = {};
     std::vector<SweptRows> rows(values.size());
@@ -274,8 +268,7 @@ void RedundantSolver::start_of_search(const double* goal, int attempt, double* s
     constexpr double near_by = 300, golden = 0.6180339887498949;  // [m], and a number whose multiples spread
     const Redundant& arm = state_->arm;
     for (int j = 0; j < arm.chain.n; ++j) {
-        const bool bounded = std::isfinite(arm.lower[j]) && std::isfinite(arm.upper[j]);
-        start[j] = bounded ? 0.5 * arm.lower[j] + 0.5 * arm.upper[j] : 0.0;
+        start[j] = arm.middle[j];
         if (attempt > 0 && !arm.chain.prismatic[j]) {
             const double place = golden * (attempt + j * attempt);
             start[j] += place - std::floor(place) - 0.5;
@@ -317,7 +310,7 @@ void RedundantSolver::solve_swivels(const double* goals, bool one_goal, const do
 
 double RedundantSolver::swivel_at(const double* q) const { return swivel_of(state_->swivel, q); }
 
-bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, LockedStore& store,
+bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, SolutionStore& store,
                        SolutionRows& rows) {
     const ReadGoal<double> read = read_goal(goal);
     if (!read.is_pose) return false;

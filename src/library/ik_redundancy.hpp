@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,10 +13,6 @@
 namespace cspace::ik {
 
 struct LockedArm;
-
-// One feasible interval of a locked joint: its lower and upper end; the branch; what ends it below (a joint,
-// or −1 nothing, −2 a fold) and which limit of that joint, the same above; a configuration in its middle.
-using FeasibleInterval = std::tuple<double, double, int, int, int, int, int, std::vector<double>>;
 
 // The configurations that answer one goal.
 struct GoalAnswer {
@@ -63,13 +58,13 @@ class RedundantSolver {
     const Chain& chain() const;
     int redundant_joints() const;  // beyond those that the tip needs to move as it can
     std::vector<int> default_locked() const;
-    bool has_closed_form() const;  // of the joints that move by default
-    int redundant_with(const std::vector<int>& locked) const;
+    bool has_closed_form() const;                              // of the joints that move by default
+    int redundant_with(const std::vector<int>& locked) const;  // the same, some locked
 
     // The plan with these joints locked, built when first needed. Throws std::invalid_argument unless they
     // ascend and leave one to six to move.
-    const LockedArm& lock(const std::vector<int>& joints);
-    int room_for(const LockedArm& locked) const;
+    const LockedArm& lock(const std::vector<int>& joints) const;
+    int room_for(const std::vector<int>& locked) const;
 
     // Goals (n, 16) with the locked joints at their values: `at` (n, dof), or one row for all; q (n, room,
     // dof).
@@ -93,8 +88,9 @@ class RedundantSolver {
     // the search finds none.
     bool find_nearest_turned(const double* goal, const double* seed, double* q) const;
 
-    // The feasible intervals of one locked joint, and whether none is missing.
-    std::vector<FeasibleInterval> intervals(int parameter, const double* goal, bool& complete);
+    // The feasible intervals of one locked joint, with configurations within the limits, and whether none is
+    // missing.
+    std::vector<Interval> intervals(int parameter, const double* goal, bool& complete);
 
     // All branches at n values of the default locked joint, spread over its feasible intervals; where none is
     // feasible, over the values that reach the goal. Returns whether there are any such values.
@@ -119,11 +115,7 @@ class RedundantSolver {
 };
 
 // One goal with the locked joints at their values `at` (dof,). False where the goal is no pose.
-struct LockedStore {
-    double q[max_solutions * max_joints];
-    Solutions found;
-};
-bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, LockedStore& store,
+bool solve_locked_goal(const LockedArm& locked, const double* goal, const double* at, SolutionStore& store,
                        SolutionRows& rows);
 
 }  // namespace cspace::ik

@@ -2,11 +2,11 @@
 // built when first needed. Several threads may ask one solver at once.
 #pragma once
 
-#include <atomic>
-#include <limits>
+#include <algorithm>
+#include <cmath>
 #include <memory>
-#include <mutex>
 
+#include "cspace/math/made_once.hpp"
 #include "ik_arm.hpp"
 #include "ik_redundancy.hpp"
 
@@ -16,8 +16,12 @@ class Solver {
   public:
     // Limits and weights of distances per joint; the weight of a joint that only stands for a freedom of the
     // goal is 0. reach: no pose farther from the base is met [m].
-    Solver(const Chain& chain, const double* lower, const double* upper, const double* weight,
-           double reach = std::numeric_limits<double>::infinity());
+    Solver(const Chain& chain, const double* lower, const double* upper, const double* weight, double reach)
+        : chain_(chain), reach_(reach) {
+        std::copy(lower, lower + chain.n, lower_);
+        std::copy(upper, upper + chain.n, upper_);
+        std::copy(weight, weight + chain.n, weight_);
+    }
 
     const Chain& chain() const { return chain_; }
     const double* lower() const { return lower_; }
@@ -29,25 +33,24 @@ class Solver {
     // Where a goal leaves finitely many configurations, but for singular ones, it is solved by arm(); else
     // joints are locked by redundant().
     const BuiltArm& arm() {
-        const BuiltArm* built = arm_.load(std::memory_order_acquire);
-        return built ? *built : build();
+        return arm_.get([this] { return std::make_unique<BuiltArm>(build_arm(chain_)); });
     }
     bool is_redundant() { return arm().room == 0; }
-    RedundantSolver& redundant();
+    RedundantSolver& redundant() {
+        return redundant_.get(
+            [this] { return std::make_unique<RedundantSolver>(chain_, lower_, upper_, weight_); });
+    }
 
     // Whether the lengths and directions of the axes alone rule the goal out.
-    bool exceeds_reach(const double* goal);
+    bool exceeds_reach(const double* goal) {
+        return std::hypot(goal[3], goal[7], goal[11]) > reach_ || is_ruled_out(arm(), goal);
+    }
 
   private:
-    const BuiltArm& build();
-
     Chain chain_;
     double lower_[max_joints], upper_[max_joints], weight_[max_joints], reach_;
-    std::mutex mutex_;
-    BuiltArm built_;
-    std::atomic<const BuiltArm*> arm_ = nullptr;  // once it is built
-    std::once_flag redundant_once_;
-    std::unique_ptr<RedundantSolver> redundant_;
+    MadeOnce<BuiltArm> arm_;
+    MadeOnce<RedundantSolver> redundant_;
 };
 
 }  // namespace cspace::ik

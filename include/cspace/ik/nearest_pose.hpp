@@ -4,18 +4,8 @@
 #pragma once
 
 #include "cspace/ik/refine.hpp"
+#include "cspace/ik/solution.hpp"
 #include "cspace/math/least_squares.hpp"
-
-namespace cspace::ik {
-
-struct NearestPose {
-    double q[max_joints];
-    double position = 0;  // [m]
-    double rotation = 0;  // [rad]
-    double cost = 0;      // ½ (‖Δp‖/length)² + ½ (weight · angle)²
-};
-
-}  // namespace cspace::ik
 
 namespace cspace::ik::inline CSPACE_ISA {
 

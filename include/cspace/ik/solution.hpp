@@ -34,6 +34,32 @@ struct Solutions {
     double direction[max_solutions][max_arm];  // of the family at q, unit; undefined where not a family
 };
 
+// The configuration that comes nearest to a goal out of reach, and what is missing there.
+struct NearestPose {
+    double q[max_joints];
+    double position = 0;  // [m]
+    double rotation = 0;  // [rad]
+    double cost = 0;      // ½ (‖Δp‖/length)² + ½ (weight · angle)²
+};
+
+// The feasible intervals of a redundant joint for one goal. What ends one, if not a joint: nothing (it is the
+// full circle), or a fold.
+inline constexpr int end_none = -1, end_fold = -2;
+
+struct Interval {
+    double lower, upper;  // of the parameter [rad or m]
+    int branch;
+    int end[2];            // the joint that stops it, end_fold or end_none
+    int side[2];           // at its lower (0) or upper (1) limit
+    double q[max_joints];  // a configuration in its middle
+};
+struct Intervals {
+    static constexpr int room = 128;
+    int count = 0;
+    bool complete = true;
+    Interval interval[room];
+};
+
 // Results of a closed form for six joints: up to eight candidates, each with the angles of all joints.
 
 inline constexpr int max_branches = 8;

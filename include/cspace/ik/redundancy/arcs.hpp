@@ -12,8 +12,7 @@ enum class ArcEnd { limit, known_limit, closed, open, lost };
 struct Turns {
     static constexpr int room = 96;
     int count = 0;
-    double value[room];
-    int end[room], side[room];
+    Critical at[room];
     double q[room][max_joints];  // on the piece that ends there
     double closing;              // of the parameter where the arc has closed
 };
@@ -25,12 +24,10 @@ namespace cspace::ik::inline CSPACE_ISA {
 // Tracing an arc of the self-motion until a joint stops or the curve closes, and dividing it at the turning
 // points of the parameter.
 
-inline bool add_turn(const Tracer& tracer, Turns& turns, double value, int end, int side, const double* q) {
+inline bool add_turn(const Tracer& tracer, Turns& turns, const Critical& at, const double* q) {
     if (turns.count == Turns::room) return false;
     const int k = turns.count++;
-    turns.value[k] = value;
-    turns.end[k] = end;
-    turns.side[k] = side;
+    turns.at[k] = at;
     for (int i = 0; i < tracer.arm->chain.n; ++i) turns.q[k][i] = q[i];
     return true;
 }
@@ -61,9 +58,7 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
     const int n = arm.chain.n, p = tracer.parameter;
     const CurvePoint origin = at;
     double stride = 0.02, inside[max_joints];
-    const auto add = [&](double value, int end, int side) {
-        return add_turn(tracer, turns, value, end, side, inside);
-    };
+    const auto add = [&](const Critical& turn) { return add_turn(tracer, turns, turn, inside); };
     for (int i = 0; i < n; ++i) inside[i] = at.q[i];
     record_point(tracer, at.q, true);
     for (int k = 0; k < most_steps; ++k) {
@@ -74,17 +69,17 @@ inline ArcEnd follow_arc(Tracer& tracer, CurvePoint at, Turns& turns) {
         if (at.tangent[p] * next.tangent[p] < 0 &&
             max(std::fabs(at.tangent[p]), std::fabs(next.tangent[p])) > tolerance::resting) {
             const CurvePoint fold = turn_between(tracer, at, next);
-            if (!add(fold.q[p], end_fold, 0)) return ArcEnd::lost;
+            if (!add({fold.q[p], end_fold, 0})) return ArcEnd::lost;
             for (int i = 0; i < n; ++i) inside[i] = fold.q[i];
         } else {
             for (int i = 0; i < n; ++i) inside[i] = at.q[i];
         }
         record_point(tracer, next.q, false);
         if (stop >= 0) {
-            if (!add(next.q[p], stop, side)) return ArcEnd::lost;
+            if (!add({next.q[p], stop, side})) return ArcEnd::lost;
             return use_points(tracer, next, -1) ? ArcEnd::limit : ArcEnd::known_limit;
         }
-        if (is_far(tracer, next.q)) return add(next.q[p], end_none, 0) ? ArcEnd::open : ArcEnd::lost;
+        if (is_far(tracer, next.q)) return add({next.q[p], end_none, 0}) ? ArcEnd::open : ArcEnd::lost;
         if (k > 0 && part_of_chord(arm.chain, at.q, next.q, origin.q) >= 0) {
             turns.closing = next.q[p] + joint_difference(arm.chain, p, origin.q[p] - next.q[p]);
             return ArcEnd::closed;
@@ -127,20 +122,17 @@ inline void add_piece(Tracer& tracer, const Critical& from, const Critical& to, 
         add_interval(tracer, k ? cut[0] : low, k + 1 < parts ? cut[1] : high, q);
     }
 }
-inline Critical turn_at(const Turns& turns, int k, double shift = 0) {
-    return {turns.value[k] + shift, turns.end[k], turns.side[k]};
-}
 inline void add_pieces(Tracer& tracer, const Turns& turns) {
-    for (int k = 0; k + 1 < turns.count; ++k)
-        add_piece(tracer, turn_at(turns, k), turn_at(turns, k + 1), turns.q[k + 1]);
+    for (int k = 0; k + 1 < turns.count; ++k) add_piece(tracer, turns.at[k], turns.at[k + 1], turns.q[k + 1]);
 }
 // start: the parameter at which tracing began.
 inline void add_closed_pieces(Tracer& tracer, const Turns& turns, double start, const double* q) {
     const double shift = turns.closing - start;
     if (turns.count) {
         add_pieces(tracer, turns);
-        const int last = turns.count - 1;
-        add_piece(tracer, turn_at(turns, last), turn_at(turns, 0, shift), turns.q[0]);
+        Critical next = turns.at[0];
+        next.value += shift;
+        add_piece(tracer, turns.at[turns.count - 1], next, turns.q[0]);
         return;
     }
     const double rounds = std::fabs(std::round(shift / (2 * pi)));  // 0 where it rests at its one value
@@ -164,7 +156,7 @@ inline void trace_from_limits(Tracer& tracer) {
         for (int i = 0; inwards < 0 && i < n; ++i) at.tangent[i] = -at.tangent[i];
         use_points(tracer, at, 1);
         Turns turns;
-        add_turn(tracer, turns, at.q[tracer.parameter], point.joint, point.side, at.q);
+        add_turn(tracer, turns, {at.q[tracer.parameter], point.joint, point.side}, at.q);
         const ArcEnd end = follow_arc(tracer, at, turns);
         // An arc has two ends of its own, or none where two limits meet in a corner that it only touches.
         const bool touches = joint_gap(tracer.arm->chain, at.q, last_of_trail(tracer)) < same_point;
@@ -177,9 +169,8 @@ inline void trace_from_limits(Tracer& tracer) {
 inline Turns joined_turns(const Tracer& tracer, const Turns& back, const Turns& on) {
     Turns out;
     for (int k = back.count - 1; k >= 0; --k)
-        add_turn(tracer, out, back.value[k], back.end[k], back.side[k],
-                 back.q[k + 1 < back.count ? k + 1 : k]);
-    for (int k = 0; k < on.count; ++k) add_turn(tracer, out, on.value[k], on.end[k], on.side[k], on.q[k]);
+        add_turn(tracer, out, back.at[k], back.q[k + 1 < back.count ? k + 1 : k]);
+    for (int k = 0; k < on.count; ++k) add_turn(tracer, out, on.at[k], on.q[k]);
     return out;
 }
 

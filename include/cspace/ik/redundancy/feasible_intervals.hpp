@@ -5,25 +5,9 @@
 
 #include "cspace/ik/redundancy/limits.hpp"
 #include "cspace/ik/redundancy/turning_points.hpp"
+#include "cspace/ik/solution.hpp"
 
 namespace cspace::ik {
-
-// What ends an interval, if not a joint: nothing (the interval is the full circle), or a fold.
-inline constexpr int end_none = -1, end_fold = -2;
-
-struct Interval {
-    double lower, upper;  // of the parameter [rad or m]
-    int branch;
-    int end[2];            // the joint that stops it, end_fold or end_none
-    int side[2];           // at its lower (0) or upper (1) limit
-    double q[max_joints];  // a configuration in its middle
-};
-struct Intervals {
-    static constexpr int room = 128;
-    int count = 0;
-    bool complete = true;
-    Interval interval[room];
-};
 
 // A value of the parameter at which a branch may change.
 struct Critical {
@@ -52,6 +36,18 @@ struct Looks {
     CellView view[room];
 };
 
+// The cells between neighbouring critical values. Cell k reaches from boundary k to boundary k + 1. On a
+// circle the first cell follows the last.
+struct Cells {
+    static constexpr int room = CriticalValues::room + 1;
+    int count = 0;
+    bool is_circle;
+    double fuzz;  // how far apart changes may lie that count as one place
+    double boundary[room + 1], middle[room];
+    unsigned there[room], within[room];  // as of CellView
+    Looks looks;
+};
+
 }  // namespace cspace::ik
 
 namespace cspace::ik::inline CSPACE_ISA {
@@ -76,7 +72,7 @@ inline CellView view_of(const Redundant& arm, const SweptRows& rows, int paramet
         const int b = rows.branch[k];
         if (b >= max_branches) continue;
         out.there |= 1u << b;
-        if (others_within(arm, rows.q[k], parameter, 0)) out.within |= 1u << b;
+        if (is_within(arm, rows.q[k], 0, parameter)) out.within |= 1u << b;
         for (int i = 0; i < arm.chain.n; ++i) out.q[b][i] = rows.q[k][i];
     }
     return out;
@@ -115,102 +111,27 @@ inline Critical bisect_change(const Redundant& arm, const Sweep& sweep, Looks& l
     return {in, cause, side, branch};
 }
 
-// The state while the cells are visited in ascending order.
-struct Walk {
-    const Redundant* arm;
-    const Sweep* sweep;
-    const CriticalValues* critical;
-    Domain domain;
-    Intervals* out;
-    Looks* looks;
-    int open[max_branches];  // the interval that a branch is in, or −1
-    CellView first, before;
-    double first_at, before_at;
-    double fuzz;  // how far apart changes may lie that count as one place
-};
-
-// The cause for which a branch is feasible on one side of a boundary only, and the exact value. turn: the
-// multiple of 2π added to the boundary on a circle.
-inline Critical end_between(const Walk& walk, int branch, const CellView& out, double in_at, double out_at,
-                            double boundary, double turn = 0) {
-    const bool vanishes = !(out.there >> branch & 1);
+// Why a branch is feasible on one side of boundary c alone, above it or below, and the exact value.
+// Boundaries beyond the last are those of the next turn.
+inline Critical end_at(const Redundant& arm, const Sweep& sweep, const CriticalValues& critical, Cells& cells,
+                       int c, int branch, bool above) {
+    const int n = cells.count;
+    if (!cells.is_circle && (c == 0 || c == n)) return {cells.boundary[c], sweep.parameter, c == n, branch};
+    const int round = c < 1 ? -1 : c > n, high = c - n * round, outside = above ? high - 1 : high % n;
+    const double turn = high == n ? 2 * pi : 0, moved = 2 * pi * round;
+    const bool vanishes = !(cells.there[outside] >> branch & 1);
     for (const bool by_fold : {vanishes, !vanishes})
-        for (int k = 0; k < walk.critical->count; ++k) {
-            const Critical& c = walk.critical->at[k];
-            if (!(std::fabs(c.value + turn - boundary) <= walk.fuzz)) continue;
-            const bool folds = c.end == end_fold && (c.branch < 0 || c.branch == branch);
-            if (by_fold ? vanishes && folds : c.end != end_fold && c.branch == branch)
-                return {c.value + turn, c.end, c.side, branch};
+        for (int k = 0; k < critical.count; ++k) {
+            const Critical& at = critical.at[k];
+            if (!(std::fabs(at.value + turn - cells.boundary[high]) <= cells.fuzz)) continue;
+            const bool folds = at.end == end_fold && (at.branch < 0 || at.branch == branch);
+            if (by_fold ? vanishes && folds : at.end != end_fold && at.branch == branch)
+                return {at.value + turn + moved, at.end, at.side, branch};
         }
-    return bisect_change(*walk.arm, *walk.sweep, *walk.looks, branch, in_at, out_at);
-}
-
-inline void open_interval(Walk& walk, int branch, const CellView& view, const Critical& end) {
-    Intervals& out = *walk.out;
-    if (out.count == Intervals::room) {
-        out.complete = false;
-        return;
-    }
-    Interval& made = out.interval[walk.open[branch] = out.count++];
-    made = {end.value, end.value, branch, {end.end, end_none}, {end.side, 0}, {}};
-    for (int i = 0; i < walk.arm->chain.n; ++i) made.q[i] = view.q[branch][i];
-}
-inline void close_interval(Walk& walk, int branch, const Critical& end) {
-    if (walk.open[branch] < 0) return;
-    Interval& made = walk.out->interval[walk.open[branch]];
-    made.upper = end.value;
-    made.end[1] = end.end;
-    made.side[1] = end.side;
-    walk.open[branch] = -1;
-}
-
-// Crosses `boundary` from the previous cell to the next.
-inline void cross_boundary(Walk& walk, const CellView& next, double next_at, double boundary) {
-    for (int b = 0; b < max_branches; ++b) {
-        const bool was = walk.before.within >> b & 1, is = next.within >> b & 1;
-        if (was && !is)
-            close_interval(walk, b, end_between(walk, b, next, walk.before_at, next_at, boundary));
-        else if (is && !was)
-            open_interval(walk, b, next,
-                          end_between(walk, b, walk.before, next_at, walk.before_at, boundary));
-    }
-    walk.before = next;
-    walk.before_at = next_at;
-}
-
-// On a circle the last cell is followed by the first.
-inline void close_circle(Walk& walk, double boundary) {
-    constexpr double turn = 2 * pi;
-    Intervals& out = *walk.out;
-    for (int b = 0; b < max_branches; ++b) {
-        const bool was = walk.before.within >> b & 1, is = walk.first.within >> b & 1;
-        const double first_at = walk.first_at + turn;
-        int head = -1;  // the interval that the first cell began in
-        for (int k = 0; k < out.count && is; ++k)
-            if (head < 0 && out.interval[k].branch == b && out.interval[k].end[0] == end_none) head = k;
-        if (was && !is) {
-            close_interval(walk, b,
-                           end_between(walk, b, walk.first, walk.before_at, first_at, boundary, turn));
-        } else if (is && !was && head >= 0) {
-            const Critical end = end_between(walk, b, walk.before, first_at, walk.before_at, boundary, turn);
-            out.interval[head].lower = end.value - turn;
-            out.interval[head].end[0] = end.end;
-            out.interval[head].side[0] = end.side;
-        } else if (was && is && head >= 0 && walk.open[b] == head) {
-            out.interval[head].lower = -pi;
-            out.interval[head].upper = pi;
-        } else if (was && is && head >= 0 && walk.open[b] >= 0) {
-            Interval& tail = out.interval[walk.open[b]];
-            tail.upper = out.interval[head].upper + turn;
-            tail.end[1] = out.interval[head].end[1];
-            tail.side[1] = out.interval[head].side[1];
-            out.interval[head].branch = -1;
-        }
-    }
-    int kept = 0;
-    for (int k = 0; k < out.count; ++k)
-        if (out.interval[k].branch >= 0) out.interval[kept++] = out.interval[k];
-    out.count = kept;
+    const double sides[2] = {cells.middle[high - 1], cells.middle[high % n] + turn};
+    Critical found = bisect_change(arm, sweep, cells.looks, branch, sides[above], sides[!above]);
+    found.value += moved;
+    return found;
 }
 
 // [rad, m] Distance from a branch up to which a point at a limit belongs to it.
@@ -253,52 +174,72 @@ inline void collect_critical(const Redundant& arm, const Sweep& sweep, const Dom
     insert_sorted(out, {domain.upper, p, 1, -1});
 }
 
-// For one locked joint at an end of the chain and a closed form with known folds.
-inline void walk_cells(const Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
-                       const Domain& domain, Intervals& out) {
-    // [rad, m] The square root of the form's error.
-    constexpr double merging = 1e-6, merging_idealised = 1e-4;
-    // Where two branches all but meet, nothing can be told from a value in between.
-    const double fuzz = sweep.locked->arm.plan.idealised ? merging_idealised : merging;
-    double boundary[CriticalValues::room + 1], middle[CriticalValues::room + 1];
+// The boundaries and middles of the cells, those of nearly equal critical values once.
+inline void divide_domain(const CriticalValues& critical, Cells& cells) {
+    double* boundary = cells.boundary;
     int n = 0;
     for (int k = 0; k < critical.count; ++k)
-        if (n == 0 || critical.at[k].value - boundary[n - 1] > fuzz) boundary[n++] = critical.at[k].value;
-    if (domain.is_circle) {
-        boundary[n] = n ? boundary[0] + 2 * pi : pi;
-        if (n == 0) boundary[n++] = -pi, boundary[n] = pi;
-        ++n;
+        if (n == 0 || critical.at[k].value - boundary[n - 1] > cells.fuzz)
+            boundary[n++] = critical.at[k].value;
+    if (cells.is_circle) {
+        if (n == 0) boundary[n++] = -pi;
+        boundary[n] = boundary[0] + 2 * pi;
+    } else {
+        --n;
     }
-    for (int k = 0; k + 1 < n; ++k) middle[k] = 0.5 * (boundary[k] + boundary[k + 1]);
-    Looks looks;
-    Walk walk{&arm, &sweep, &critical, domain, &out, &looks, {}, {}, {}, 0, 0, fuzz};
-    for (int& k : walk.open) k = -1;
-    sweep_values(sweep, middle, n - 1, [&](int k, const SweptRows& rows) {
-        const CellView view = view_of(arm, rows, sweep.parameter);
-        out.complete = out.complete && rows.complete;
-        if (k > 0) {
-            cross_boundary(walk, view, middle[k], boundary[k]);
-            return;
-        }
-        walk.first = walk.before = view;
-        walk.first_at = walk.before_at = middle[k];
-        const int end = domain.is_circle ? end_none : sweep.parameter;
-        for (int b = 0; b < max_branches; ++b)
-            if (view.within >> b & 1) open_interval(walk, b, view, {boundary[0], end, 0, b});
-    });
-    if (domain.is_circle) {
-        close_circle(walk, boundary[n - 1]);
-        return;
-    }
-    for (int b = 0; b < max_branches; ++b) close_interval(walk, b, {boundary[n - 1], sweep.parameter, 1, b});
+    cells.count = n;
+    for (int k = 0; k < n; ++k) cells.middle[k] = 0.5 * (boundary[k] + boundary[k + 1]);
 }
 
-// Removes empty intervals that rounding produces at interval ends.
-inline void drop_empty(Intervals& out) {
-    int kept = 0;
-    for (int k = 0; k < out.count; ++k)
-        if (out.interval[k].upper - out.interval[k].lower > limit_slack)
-            out.interval[kept++] = out.interval[k];
+// For one locked joint at an end of the chain and a closed form with known folds. An interval is a run of
+// cells in which one branch is feasible.
+inline void walk_cells(const Redundant& arm, const Sweep& sweep, const CriticalValues& critical,
+                       bool is_circle, Intervals& out) {
+    // [rad, m] The square root of the form's error.
+    constexpr double merging = 1e-6, merging_idealised = 1e-4;
+    Cells cells;
+    cells.is_circle = is_circle;
+    // Where two branches all but meet, nothing can be told from a value in between.
+    cells.fuzz = sweep.locked->arm.plan.idealised ? merging_idealised : merging;
+    divide_domain(critical, cells);
+    const int n = cells.count;
+    int first[Intervals::room], kept = 0;
+    sweep_values(sweep, cells.middle, n, [&](int k, const SweptRows& rows) {
+        const CellView view = view_of(arm, rows, sweep.parameter);
+        out.complete = out.complete && rows.complete;
+        cells.there[k] = view.there;
+        cells.within[k] = view.within;
+        const unsigned begun = view.within & ~(k ? cells.within[k - 1] : 0);
+        for (int b = 0; b < max_branches; ++b) {
+            if (!(begun >> b & 1)) continue;
+            if (out.count == Intervals::room) {
+                out.complete = false;
+                return;
+            }
+            first[out.count] = k;
+            Interval& made = out.interval[out.count++];
+            made.branch = b;
+            for (int i = 0; i < arm.chain.n; ++i) made.q[i] = view.q[b][i];
+        }
+    });
+    for (int i = 0; i < out.count; ++i) {
+        Interval made = out.interval[i];
+        const auto holds = [&](int cell) { return cells.within[cell % n] >> made.branch & 1; };
+        const int farthest = is_circle ? first[i] + n - 1 : n - 1;
+        int last = first[i];
+        while (last < farthest && holds(last + 1)) ++last;
+        Critical low = {-pi, end_none, 0}, high = {pi, end_none, 0};
+        if (!is_circle || last - first[i] < n - 1) {
+            if (is_circle && first[i] == 0 && holds(n - 1)) continue;  // the run that began below goes on
+            low = end_at(arm, sweep, critical, cells, first[i], made.branch, true);
+            high = end_at(arm, sweep, critical, cells, last + 1, made.branch, false);
+        }
+        if (!(high.value - low.value > limit_slack)) continue;  // what rounding leaves of none
+        made.lower = low.value, made.upper = high.value;
+        made.end[0] = low.end, made.end[1] = high.end;
+        made.side[0] = low.side, made.side[1] = high.side;
+        out.interval[kept++] = made;
+    }
     out.count = kept;
 }
 
@@ -318,8 +259,7 @@ inline bool intervals_by_cells(const Redundant& arm, const LimitArms& arms, cons
     collect_critical(arm, sweep, domain, points, folds, critical);
     out.count = 0;
     out.complete = points.complete;
-    walk_cells(arm, sweep, critical, domain, out);
-    drop_empty(out);
+    walk_cells(arm, sweep, critical, domain.is_circle, out);
     return true;
 }
 

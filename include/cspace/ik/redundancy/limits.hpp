@@ -74,13 +74,6 @@ inline void make_limit_arms(const Redundant& arm, LimitArms& out) {
     }
 }
 
-// Whether all joints except one are within their limits.
-inline bool others_within(const Redundant& arm, const double* q, int joint, double slack) {
-    for (int i = 0; i < arm.chain.n; ++i)
-        if (i != joint && excess(arm, i, q[i]) > slack) return false;
-    return true;
-}
-
 // Joint `except` is left out (−1: none).
 inline void find_limit_points(const Redundant& arm, const LimitArms& arms, const Posed& goal, int except,
                               LimitPoints& out) {
@@ -101,7 +94,7 @@ inline void find_limit_points(const Redundant& arm, const LimitArms& arms, const
             for (int j = 0; j < found.count; ++j) {
                 LimitPoint point{joint, side, {}};
                 whole_row(locked, at, found.q[j], point.q);
-                if (!others_within(arm, point.q, joint, limit_slack)) continue;
+                if (!is_within(arm, point.q, limit_slack, joint)) continue;
                 if (out.count == LimitPoints::room)
                     out.complete = false;
                 else

@@ -94,24 +94,12 @@ inline Arm arm_at(const LockedArm& locked, const double* at) {
     return arm;
 }
 
-// Solutions of an arm without another solver, by descent from configurations over all joints. They may be
-// members of a self-motion.
-inline Solutions solve_by_descent(const Chain& chain, const Posed& goal) {
-    constexpr int starts = 48;
-    Solutions out;
-    out.complete = false;
-    search_by_descent(chain, goal, characteristic_length(chain), starts, out);
-    return out;
-}
-
 // By the closed form alone where it certifies its result.
 CSPACE_ONCE Solutions solve_arm_quickly(const Arm& arm, const Posed& goal) {
     Solutions out;
     if (arm.has_plan) {
-        double T[16] = {0, 0, 0, goal.t.x, 0, 0, 0, goal.t.y, 0, 0, 0, goal.t.z, 0, 0, 0, 1},
-               q[max_branches * 6];
-        for (int i = 0; i < 3; ++i)
-            for (int j = 0; j < 3; ++j) T[4 * i + j] = goal.R.m[i][j];
+        double T[16], q[max_branches * 6];
+        kinematics::write_matrix(goal, T);
         if (solve_quickly(arm.plan, T, q, out.branch, &out.count) == FastPath::settled) {
             out.status = out.count ? Status::exact : Status::unreachable;
             for (int k = 0; k < out.count; ++k) {
@@ -127,7 +115,14 @@ CSPACE_ONCE Solutions solve_arm_quickly(const Arm& arm, const Posed& goal) {
 
 inline Solutions solve_arm(const Arm& arm, const Posed& goal, const double* unconstrained) {
     if (!unconstrained && arm.has_plan) return solve_arm_quickly(arm, goal);
-    return is_solvable(arm) ? solve_pose(arm, goal, unconstrained) : solve_by_descent(arm.plan.chain, goal);
+    if (is_solvable(arm)) return solve_pose(arm, goal, unconstrained);
+    // By descent from configurations over all joints. What it finds may be members of a self-motion.
+    constexpr int starts = 48;
+    const Chain& chain = arm.plan.chain;
+    Solutions out;
+    out.complete = false;
+    search_by_descent(chain, goal, characteristic_length(chain), starts, out);
+    return out;
 }
 
 // Every solution of the moving joints, with the locked joints at their values `at`. unconstrained (null, or

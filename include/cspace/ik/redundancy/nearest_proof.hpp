@@ -13,7 +13,7 @@
 #pragma once
 
 #include "cspace/ik/redundancy/split_chain.hpp"
-#include "cspace/math/linear.hpp"
+#include "cspace/math/least_squares.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::ik {
@@ -211,11 +211,6 @@ CSPACE_INLINE void put_joints(const Halves& arm, const HalvesPoint& at, double* 
         for (int half = 0; half < 2; ++half)
             if (arm.joint[k][half] >= 0) q[arm.joint[k][half]] = lane(at.q[k], half);
 }
-CSPACE_INLINE double missing_between(const HalvesMotion& motion) {
-    double most = 0;
-    for (const double e : motion.error) most = max(most, std::fabs(e));
-    return most;
-}
 
 // Newton's method from a seed close to the manifold, and the proof; false if either fails. All joints must
 // have the same weight.
@@ -236,7 +231,7 @@ CSPACE_INLINE bool nearest_by_proof(const Halves& arm, const Posed& goal, double
     for (int k = 0; k < most_steps && !done; ++k) {
         move_halves(arm, goal, 1 / length, at.q, motion);
         if (!(motion.aligned > 2)) return false;
-        if (k == 0 && missing_between(motion) < there) {
+        if (k == 0 && largest_of(motion.error, 6) < there) {
             put_joints(arm, at, q);  // the seed itself
             return true;
         }
@@ -248,7 +243,7 @@ CSPACE_INLINE bool nearest_by_proof(const Halves& arm, const Posed& goal, double
     if (!done || !is_proven_nearest(arm, at)) return false;
     move_halves(arm, goal, 1 / length, at.q, motion);
     put_joints(arm, at, q);
-    return missing_between(motion) < tolerance::reached && motion.aligned > 2;
+    return largest_of(motion.error, 6) < tolerance::reached && motion.aligned > 2;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -109,9 +109,10 @@ inline double excess(const Redundant& arm, int i, double q) {
 
 inline constexpr double limit_slack = 1e-9;  // [rad or m] what rounding may put outside
 
-inline bool is_within(const Redundant& arm, const double* q, double slack) {
+// Whether all joints but one are within their limits.
+inline bool is_within(const Redundant& arm, const double* q, double slack, int except = -1) {
     for (int i = 0; i < arm.chain.n; ++i)
-        if (excess(arm, i, q[i]) > slack) return false;
+        if (i != except && excess(arm, i, q[i]) > slack) return false;
     return true;
 }
 

@@ -13,7 +13,6 @@ from cspace.arrays import Array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.locked_joints import joint_number, locked_values, value_in_words
 from cspace.ik.redundancy.result import Interval, Redundancy
-from cspace.ik.wrapping import into_limits
 from cspace.tolerances import MOVING_JOINT
 
 if TYPE_CHECKING:
@@ -85,19 +84,17 @@ def check_moves(solver: Solver, T: Array, joint: int) -> None:
 
 
 def intervals_of(solver: Solver, T: Array, joint: int) -> Redundancy:
-    rows, complete = _core._ik_intervals(solver, joint, T)
+    rows, inside, complete = _core._ik_intervals(solver, joint, T)
     names, slides = solver.joint_names, solver.joint_types[joint] == "P"
-    bounds = solver.joint_types, solver.limits.lower, solver.limits.upper
 
     def end(what: int, side: int) -> str:
         if what == END_FOLD:
             return "fold"
         return "nothing" if what == END_NOTHING else f"{names[what]} at {'upper' if side else 'lower'} limit"
 
-    inside, _ = into_limits(np.array([row[-1] for row in rows]).reshape(-1, len(names)), *bounds)
     made = [
         Interval(low, high, branch + 1, (end(a, sa), end(b, sb)), q, slides)
-        for (low, high, branch, a, sa, b, sb, _), q in zip(rows, inside, strict=True)
+        for (low, high, branch, a, sa, b, sb), q in zip(rows, inside, strict=True)
     ]
     made.sort(key=lambda interval: (interval.branch, interval.lower))
     return Redundancy(solver, T, names[joint], tuple(made), complete, slides)

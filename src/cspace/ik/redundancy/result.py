@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ import numpy as np
 from cspace import _core
 from cspace.arrays import Array, as_floats, whole_number
 from cspace.errors import InputError
-from cspace.math.wrapping import wrap_near
+from cspace.math.wrapping import TURN
 from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
@@ -42,8 +43,8 @@ class Interval:
 
     def __contains__(self, value: object) -> bool:
         number = float(value)  # type: ignore[arg-type]
-        if not self._slides:
-            number = float(wrap_near(number, 0.5 * (self.lower + self.upper)))
+        if not self._slides and math.isfinite(number):
+            number -= TURN * round((number - 0.5 * (self.lower + self.upper)) / TURN)
         return self.lower <= number <= self.upper
 
 
