@@ -18,7 +18,7 @@ from cspace.math import Angle, MatrixEquation, Product, TrigMatrix, TrigPolynomi
 Factor = tuple[str, str, TrigMatrix]
 
 
-def formulation(number: int) -> tuple[int, tuple[int, ...], bool]:
+def read_formulation(number: int) -> tuple[int, tuple[int, ...], bool]:
     """Its number, the joints behind a_0 … a_5 (from 0), and whether the loop is read backwards: from number 6
     on, where they count from the tip."""
     shifted = [(number + k) % 6 for k in range(6)]
@@ -54,7 +54,7 @@ class Loop:
         tip = chain["tip"].copy()
         tip[:3, 3] *= length
         six = Screws(kinds, np.array(chain["axis"]), length * np.array(chain["point"]), tip)
-        order = tuple(formulation(number) for number in plan["order"] if plan["slides"] < 3)
+        order = tuple(read_formulation(number) for number in plan["order"] if plan["slides"] < 3)
         wrist = arm["position_first"].get("backwards")
         links = tuple(frames["between"])
         return cls(six, links, frames["first"], frames["last"], length, order, arm["has_perturbed"], wrist)
