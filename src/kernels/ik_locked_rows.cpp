@@ -16,17 +16,7 @@ void locked_goals(const LockedArm& locked, const double* goals, const double* at
         for (int k = 0; k < locked.n_locked; ++k)
             load_rows(at + stride * first + locked.locked_joint[k], stride, count, 1,
                       value + locked.locked_joint[k]);
-        const Pose<V> goal = {{{{m[0], m[1], m[2]}, {m[4], m[5], m[6]}, {m[8], m[9], m[10]}}},
-                              {m[3], m[7], m[11]}};
-        const Pose<V> T = goal_between_ends(locked, goal, value);
-        const Vec3<V>& t = T.t;
-        const V offset[3] = {t.x, t.y, t.z}, zero = fill<V>(0.0);
-        for (int i = 0; i < 3; ++i) {
-            for (int j = 0; j < 3; ++j) m[4 * i + j] = T.R.m[i][j];
-            m[4 * i + 3] = offset[i];
-        }
-        m[12] = m[13] = m[14] = zero;
-        m[15] = fill<V>(1.0);
+        kinematics::write_matrix(goal_between_ends(locked, kinematics::read_matrix(m), value), m);
         store_rows(m, 16, moved + 16 * first, 16, count);
     });
 }

@@ -31,11 +31,7 @@ bool all_finite(const V* values, int n) {
 
 template <class V>
 Pose<V> load_pose(const double* matrix, std::size_t stride, int count) {
-    if (!matrix)
-        return {{{{fill<V>(1.0), fill<V>(0.0), fill<V>(0.0)},
-                  {fill<V>(0.0), fill<V>(1.0), fill<V>(0.0)},
-                  {fill<V>(0.0), fill<V>(0.0), fill<V>(1.0)}}},
-                {fill<V>(0.0), fill<V>(0.0), fill<V>(0.0)}};
+    if (!matrix) return fill_pose<V>(identity_pose());
     V m[16];
     load_rows(matrix, stride, count, 16, m);
     return read_matrix(m);
@@ -87,7 +83,7 @@ void jacobian_rate(const ChainRows& rows, const ChainWork<V>& w, const Pose<V>& 
     if (rows.floating) base = {{w.qd[0], w.qd[1], w.qd[2]}, {w.qd[3], w.qd[4], w.qd[5]}};
     const Twist<V> end = axis_rates(rows.chain, w.axes, p, w.qd + w.first, base, T_world_base.t, w.rates);
     joint_column_rates(rows.chain, w.axes, w.rates, p, end.v, w.J_rate, w.dof, w.first);
-    if (rows.floating) base_column_rates(end.v - base.v, w.J_rate, w.dof);
+    if (rows.floating) base_columns(end.v - base.v, w.J_rate, w.dof, 6, 0);
     if (rows.in_tip) express_rate_in(T.R, end.w, w.J, w.J_rate, w.dof);
     put_rows(w, w.J_rate, 6 * w.dof, rows.J_rate, i, count);
 }

@@ -36,7 +36,7 @@ inline ik::Chain random_arm(Random& random, int w, bool wild) {
     }
     const int last = chain.n - 1;
     const Vec3d on_axis = chain.point[last] + random.uniform(-1, 1) * chain.axis[last];
-    chain.tip = {ik::identity_pose().R, wild && random.below(4) == 0 ? on_axis : random.vector()};
+    chain.tip = {identity_pose().R, wild && random.below(4) == 0 ? on_axis : random.vector()};
     return chain;
 }
 inline void random_joints(Random& random, const ik::Chain& chain, double* q) {

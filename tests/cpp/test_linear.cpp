@@ -12,6 +12,38 @@ struct System {
     V A[m][n], b[m];
 };
 
+// The x of least |A x − b| for m ≥ n, the least x with A x = b for m < n, by reflections. A and b are used
+// up; true where A has full rank.
+template <int m, int n, class V>
+cspace::mask_of<V> least_squares(V (&A)[m][n], V (&b)[m], V (&x)[n]) {
+    if constexpr (m >= n) {
+        V diagonal[n], factor[n];
+        cspace::linear::factor_qr(A, diagonal, factor);
+        for (int k = 0; k < n; ++k) cspace::linear::reflect(A, m, k, factor[k], b);
+        for (int k = n - 1; k >= 0; --k) {
+            x[k] = b[k];
+            for (int j = k + 1; j < n; ++j) x[k] = cspace::mul_add(-A[k][j], x[j], x[k]);
+            x[k] = x[k] * cspace::linear::safe_inverse(diagonal[k]);
+        }
+        return cspace::linear::full_rank(diagonal);
+    } else {
+        // Aᵀ = Q R: Rᵀ y = b, and x = Q y has no part outside the rows of A.
+        V transposed[n][m], diagonal[m], factor[m];
+        for (int i = 0; i < n; ++i) {
+            for (int j = 0; j < m; ++j) transposed[i][j] = A[j][i];
+        }
+        cspace::linear::factor_qr(transposed, diagonal, factor);
+        for (int i = 0; i < n; ++i) x[i] = cspace::fill<V>(0.0);
+        for (int k = 0; k < m; ++k) {
+            x[k] = b[k];
+            for (int j = 0; j < k; ++j) x[k] = cspace::mul_add(-transposed[j][k], x[j], x[k]);
+            x[k] = x[k] * cspace::linear::safe_inverse(diagonal[k]);
+        }
+        for (int k = m - 1; k >= 0; --k) cspace::linear::reflect(transposed, n, k, factor[k], x);
+        return cspace::linear::full_rank(diagonal);
+    }
+}
+
 // Rows of very different sizes, and zeros on the diagonal, so that pivots must be chosen lane by lane.
 template <int m, int n, class V>
 System<m, n, V> random_system(check::Random& random) {
@@ -112,7 +144,7 @@ void check_least_squares() {
         const auto s = random_system<m, n, V>(random);
         auto used = s;
         V x[n];
-        const auto full = cspace::least_squares(used.A, used.b, x);
+        const auto full = least_squares(used.A, used.b, x);
         for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
             if (!cspace::lane(full, k)) continue;
             const double largest = largest_size(s, x, k);
@@ -136,7 +168,7 @@ void check_least_squares() {
                 image.b[i] = cspace::fill<V>(0.0);
                 for (int j = 0; j < n; ++j) image.b[i] = image.b[i] + s.A[i][j] * w[j];
             }
-            const auto full_too = cspace::least_squares(image.A, image.b, same_image);
+            const auto full_too = least_squares(image.A, image.b, same_image);
             for (int k = 0; k < cspace::Lanes<V>::count; ++k) {
                 if (!cspace::lane(full_too, k)) continue;
                 double inner = 0, length = 0, x_length = 0;
@@ -202,7 +234,7 @@ TEST(a_singular_lane_is_told_and_harms_no_other) {
         auto eliminated = s, reflected = s;
         cspace::Pack<4> x[6];
         const auto regular = cspace::solve_linear(eliminated.A, eliminated.b);
-        const auto full = cspace::least_squares(reflected.A, reflected.b, x);
+        const auto full = least_squares(reflected.A, reflected.b, x);
         CHECK(!cspace::lane(regular, 2) && !cspace::lane(full, 2));
         for (int k : {0, 1, 3}) {
             double A[6][6], b[6];

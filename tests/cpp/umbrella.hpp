@@ -16,7 +16,7 @@ inline cspace::ik::Chain planar_arm() {
         chain.axis[i] = {0, 0, 1};
         chain.point[i] = {double(i), 0, 0};
     }
-    chain.tip = {cspace::ik::identity_pose().R, {2, 0, 0}};
+    chain.tip = {cspace::identity_pose().R, {2, 0, 0}};
     return chain;
 }
 

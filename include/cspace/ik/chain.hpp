@@ -23,8 +23,6 @@ struct Chain {
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-CSPACE_INLINE Posed identity_pose() { return {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}}; }
-
 // The difference of two values of joint i, of a revolute joint the short way round.
 template <class V>
 CSPACE_INLINE V joint_difference(const Chain& chain, int i, V difference) {

@@ -1,7 +1,7 @@
 // Validation of goals: 4×4 matrices that should be poses.
 #pragma once
 
-#include "cspace/math/vec.hpp"
+#include "cspace/kinematics/forward.hpp"
 #include "cspace/tolerances.hpp"
 
 namespace cspace::ik {
@@ -35,10 +35,8 @@ template <class V>
 CSPACE_INLINE ReadGoal<V> read_goal(const V* m) {
     constexpr double exact_rotation = 1e-14;  // what products of rotations lose
     ReadGoal<V> out;
+    out.T = kinematics::read_matrix(m);
     Mat3<V>& R = out.T.R;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j) R.m[i][j] = m[4 * i + j];
-    out.T.t = {m[3], m[7], m[11]};
     const Vec3<V> x = column(R, 0), y = column(R, 1), z = column(R, 2);
     const V lengths = max(max(abs(dot(x, x) - 1.0), abs(dot(y, y) - 1.0)), abs(dot(z, z) - 1.0));
     const V error = max(max(max(abs(dot(x, y)), abs(dot(y, z))), abs(dot(x, z))), lengths);

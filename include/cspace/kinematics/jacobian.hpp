@@ -54,43 +54,48 @@ CSPACE_INLINE void add_to_column(V* J, int columns, int j, int first, const Vec3
     put_column(J, columns, j, first, get_column(J, columns, j, first) + a);
 }
 
-// The columns of the joints of a chain for the point p, from column `first` of J (6, columns) on.
-// Everything in one frame: the axes, p and the result. The other columns are set to zero.
-template <class V>
-CSPACE_INLINE void joint_columns(const model::Chain& chain, const Axis<V>* axes, const Vec3<V>& p, V* J,
-                                 int columns, int first) {
-    if (chain.ordered) {
-        for (int i = 0; i < chain.n; ++i) {
-            const Twist<V> twist =
-                joint_twist(chain.joints[i].prismatic, axes[i].direction, axes[i].point, p);
-            put_column(J, columns, first + i, 0, twist.v);
-            put_column(J, columns, first + i, 3, twist.w);
-        }
-        return;
-    }
-    for (int r = 0; r < 6; ++r) {
+// The columns of the joints of a chain, from column `first` of J (6, columns) on, from the twist per unit
+// velocity of each joint, twist_of(i). The other columns behind `first` are set to zero.
+template <class V, class TwistOf>
+CSPACE_INLINE void sum_columns(const model::Chain& chain, V* J, int columns, int first,
+                               const TwistOf& twist_of) {
+    for (int r = 0; r < 6 && !chain.ordered; ++r) {
         for (int j = first; j < columns; ++j) J[r * columns + j] = fill<V>(0.0);
     }
     for (int i = 0; i < chain.n; ++i) {
         const model::ChainJoint& joint = chain.joints[i];
-        const Vec3<V> d = joint.ratio * axes[i].direction;
-        const Twist<V> twist = joint_twist(joint.prismatic, d, axes[i].point, p);
-        add_to_column(J, columns, first + joint.coordinate, 0, twist.v);
-        if (!joint.prismatic) add_to_column(J, columns, first + joint.coordinate, 3, twist.w);
+        const Twist<V> twist = twist_of(i);
+        if (chain.ordered) {
+            put_column(J, columns, first + i, 0, twist.v);
+            put_column(J, columns, first + i, 3, twist.w);
+        } else {
+            add_to_column(J, columns, first + joint.coordinate, 0, joint.ratio * twist.v);
+            add_to_column(J, columns, first + joint.coordinate, 3, joint.ratio * twist.w);
+        }
     }
 }
 
-// The columns of a floating base: its twist [v; ω] refers to its origin, `arm` away from the point p.
+// The columns of the joints of a chain for the point p. Everything in one frame: the axes, p and the result.
 template <class V>
-CSPACE_INLINE void base_columns(const Vec3<V>& arm, V* J, int columns, int rows) {
+CSPACE_INLINE void joint_columns(const model::Chain& chain, const Axis<V>* axes, const Vec3<V>& p, V* J,
+                                 int columns, int first) {
+    sum_columns(chain, J, columns, first, [&](int i) {
+        return joint_twist(chain.joints[i].prismatic, axes[i].direction, axes[i].point, p);
+    });
+}
+
+// The columns of a floating base: its twist [v; ω] refers to its origin, `arm` away from the point p. unit:
+// 1, or 0 for their derivatives, where `arm` is its rate: nothing else changes.
+template <class V>
+CSPACE_INLINE void base_columns(const Vec3<V>& arm, V* J, int columns, int rows, double unit = 1) {
     const V zero = fill<V>(0.0), one = fill<V>(1.0);
-    const Vec3<V> unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
+    const Vec3<V> axis[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
     for (int j = 0; j < 3; ++j) {
-        put_column(J, columns, j, 0, unit[j]);
-        put_column(J, columns, 3 + j, 0, cross(unit[j], arm));
+        put_column(J, columns, j, 0, unit * axis[j]);
+        put_column(J, columns, 3 + j, 0, cross(axis[j], arm));
         if (rows < 6) continue;
         put_column(J, columns, j, 3, {zero, zero, zero});
-        put_column(J, columns, 3 + j, 3, unit[j]);
+        put_column(J, columns, 3 + j, 3, unit * axis[j]);
     }
 }
 

@@ -42,32 +42,13 @@ CSPACE_INLINE Twist<V> joint_twist_rate(bool prismatic, const Axis<V>& axis, con
             rate.direction};
 }
 
-// The columns of the joints of a chain, differentiated; the other columns from `first` on are set to zero.
+// The columns of the joints of a chain, differentiated.
 template <class V>
 CSPACE_INLINE void joint_column_rates(const model::Chain& chain, const Axis<V>* axes, const Axis<V>* rates,
                                       const Vec3<V>& p, const Vec3<V>& p_rate, V* J, int columns, int first) {
-    for (int r = 0; r < 6; ++r) {
-        for (int j = first; j < columns; ++j) J[r * columns + j] = fill<V>(0.0);
-    }
-    for (int i = 0; i < chain.n; ++i) {
-        const model::ChainJoint& joint = chain.joints[i];
-        const Twist<V> rate = joint_twist_rate(joint.prismatic, axes[i], rates[i], p, p_rate);
-        add_to_column(J, columns, first + joint.coordinate, 0, joint.ratio * rate.v);
-        if (!joint.prismatic) add_to_column(J, columns, first + joint.coordinate, 3, joint.ratio * rate.w);
-    }
-}
-
-// The columns of a floating base, differentiated: only the arm from its origin to the point changes.
-template <class V>
-CSPACE_INLINE void base_column_rates(const Vec3<V>& arm_rate, V* J, int columns) {
-    const V zero = fill<V>(0.0), one = fill<V>(1.0);
-    const Vec3<V> unit[3] = {{one, zero, zero}, {zero, one, zero}, {zero, zero, one}};
-    for (int j = 0; j < 3; ++j) {
-        put_column(J, columns, j, 0, {zero, zero, zero});
-        put_column(J, columns, j, 3, {zero, zero, zero});
-        put_column(J, columns, 3 + j, 0, cross(unit[j], arm_rate));
-        put_column(J, columns, 3 + j, 3, {zero, zero, zero});
-    }
+    sum_columns(chain, J, columns, first, [&](int i) {
+        return joint_twist_rate(chain.joints[i].prismatic, axes[i], rates[i], p, p_rate);
+    });
 }
 
 // The derivative of Rᵀ J, of a frame that turns with w: Rᵀ (J̇ − [w]× J), written over J_rate.

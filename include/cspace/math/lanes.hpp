@@ -100,18 +100,19 @@ CSPACE_ON_HALVES(Pack, bit_and_not, Pack)
 CSPACE_ON_HALVES(Pack, min, Pack)
 CSPACE_ON_HALVES(Pack, max, Pack)
 #undef CSPACE_ON_HALVES
-template <int N, when<is_split<N>> = 0>
-CSPACE_INLINE Pack<N> operator-(Pack<N> a) {
-    return {-a.low, -a.high};
-}
-template <int N, when<is_split<N>> = 0>
-CSPACE_INLINE Mask<N> operator!(Mask<N> a) {
-    return {!a.low, !a.high};
-}
-template <int N, when<is_split<N>> = 0>
-CSPACE_INLINE Pack<N> sqrt(Pack<N> a) {
-    return {sqrt(a.low), sqrt(a.high)};
-}
+#define CSPACE_ON_HALVES(Result, name, Operand)  \
+    template <int N, when<is_split<N>> = 0>      \
+    CSPACE_INLINE Result<N> name(Operand<N> a) { \
+        return {name(a.low), name(a.high)};      \
+    }
+CSPACE_ON_HALVES(Pack, operator-, Pack)
+CSPACE_ON_HALVES(Mask, operator!, Mask)
+CSPACE_ON_HALVES(Pack, sqrt, Pack)
+CSPACE_ON_HALVES(Mask, lowest_bit, Pack)
+#if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
+CSPACE_ON_HALVES(Pack, round, Pack)
+#endif
+#undef CSPACE_ON_HALVES
 template <int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> mul_add(Pack<N> a, Pack<N> b, Pack<N> c) {
     return {mul_add(a.low, b.low, c.low), mul_add(a.high, b.high, c.high)};
@@ -123,10 +124,6 @@ CSPACE_INLINE Pack<N> select(Mask<N> m, Pack<N> yes, Pack<N> no) {
 template <int count, int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> shift_bits_left(Pack<N> a) {
     return {shift_bits_left<count>(a.low), shift_bits_left<count>(a.high)};
-}
-template <int N, when<is_split<N>> = 0>
-CSPACE_INLINE Mask<N> lowest_bit(Pack<N> a) {
-    return {lowest_bit(a.low), lowest_bit(a.high)};
 }
 template <int s, int N, when<is_split<N>> = 0>
 CSPACE_INLINE Pack<N> swap_lanes(Pack<N> a) {
@@ -230,12 +227,7 @@ template <class V>
 CSPACE_INLINE V copysign(V magnitude, V sign) {
     return bit_or(abs(magnitude), sign_bit(sign));
 }
-#if defined(CSPACE_X86_REGISTERS) && defined(__AVX__)
-template <int N, when<is_split<N>> = 0>
-CSPACE_INLINE Pack<N> round(Pack<N> a) {
-    return {round(a.low), round(a.high)};
-}
-#else
+#if !defined(CSPACE_X86_REGISTERS) || !defined(__AVX__)
 // The nearest integer, ties to even. Adding 2⁵² removes the fraction; larger numbers have none.
 template <class V>
 CSPACE_INLINE V round(V x) {

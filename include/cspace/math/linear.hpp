@@ -138,36 +138,4 @@ CSPACE_INLINE mask_of<V> solve_positive(Matrix& A, int n, V* b, double floor = 0
     return definite;
 }
 
-// The x of least |A x − b| for m ≥ n, the least x with A x = b for m < n, by reflections. A and b are used
-// up; true where A has full rank.
-template <int m, int n, class V>
-CSPACE_INLINE mask_of<V> least_squares(V (&A)[m][n], V (&b)[m], V (&x)[n]) {
-    if constexpr (m >= n) {
-        V diagonal[n], factor[n];
-        linear::factor_qr(A, diagonal, factor);
-        for (int k = 0; k < n; ++k) linear::reflect(A, m, k, factor[k], b);
-        for (int k = n - 1; k >= 0; --k) {
-            x[k] = b[k];
-            for (int j = k + 1; j < n; ++j) x[k] = mul_add(-A[k][j], x[j], x[k]);
-            x[k] = x[k] * linear::safe_inverse(diagonal[k]);
-        }
-        return linear::full_rank(diagonal);
-    } else {
-        // Aᵀ = Q R: Rᵀ y = b, and x = Q y has no part outside the rows of A.
-        V transposed[n][m], diagonal[m], factor[m];
-        for (int i = 0; i < n; ++i) {
-            for (int j = 0; j < m; ++j) transposed[i][j] = A[j][i];
-        }
-        linear::factor_qr(transposed, diagonal, factor);
-        for (int i = 0; i < n; ++i) x[i] = fill<V>(0.0);
-        for (int k = 0; k < m; ++k) {
-            x[k] = b[k];
-            for (int j = 0; j < k; ++j) x[k] = mul_add(-transposed[j][k], x[j], x[k]);
-            x[k] = x[k] * linear::safe_inverse(diagonal[k]);
-        }
-        for (int k = m - 1; k >= 0; --k) linear::reflect(transposed, n, k, factor[k], x);
-        return linear::full_rank(diagonal);
-    }
-}
-
 }  // namespace cspace::inline CSPACE_ISA

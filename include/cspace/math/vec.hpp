@@ -109,6 +109,7 @@ template <class V>
 CSPACE_INLINE Pose<V> fill_pose(const Pose<double>& T) {
     return {fill33<V>(T.R), fill3<V>(T.t)};
 }
+CSPACE_INLINE Posed identity_pose() { return {{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, {0, 0, 0}}; }
 template <class V>
 CSPACE_INLINE void set_pose_lane(Pose<V>& to, int l, const Posed& from) {
     for (int i = 0; i < 3; ++i)
