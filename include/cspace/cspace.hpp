@@ -15,7 +15,6 @@
 #include "cspace/ik/redundancy/nearest_search.hpp"
 #include "cspace/ik/subproblems/sp2.hpp"
 #include "cspace/ik/subproblems/sp3.hpp"
-#include "cspace/ik/subproblems/sp4.hpp"
 #include "cspace/ik/subproblems/sp5.hpp"
 #include "cspace/ik/subproblems/sp6.hpp"
 #include "cspace/ik/tracking/follow.hpp"

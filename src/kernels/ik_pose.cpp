@@ -9,7 +9,6 @@ template bool find_self_motion(const Chain&, const Posed&, double, const double*
 template void accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
 template Arm make_arm(const Chain&, bool);
 template Solutions solve_pose(const Arm&, const Posed&, const double*);
-template NearestPose nearest_to_goal(const Arm&, const Posed&, double);
 
 void ik_make_arm(const Chain& chain, Arm& arm) { arm = make_arm(chain); }
 

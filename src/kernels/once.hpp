@@ -19,7 +19,6 @@ extern template bool find_self_motion(const Chain&, const Posed&, double, const 
 extern template void accept_solution(Solutions&, const Chain&, const Posed&, double, double*, int, int);
 extern template Arm make_arm(const Chain&, bool);
 extern template Solutions solve_pose(const Arm&, const Posed&, const double*);
-extern template NearestPose nearest_to_goal(const Arm&, const Posed&, double);
 // ik_locked.cpp
 extern template LockedArm lock_joints(const Chain&, const int*, int, const double*, bool);
 extern template Solutions solve_arm_quickly(const Arm&, const Posed&);

@@ -101,10 +101,9 @@ bool list_solutions(const BuiltArm& built, const double* goal, const double* unc
 }
 
 Solutions solve_point(const BuiltArm& built, const Vec3d& goal) {
-    const Chain& chain = built.arm->plan.chain;
     PositionSolutions found;
-    kernels::ik_position(chain, goal, false, found);
-    return from_few_joints(chain, found);
+    kernels::ik_position(built.arm->plan.chain, goal, false, found);
+    return found;
 }
 
 std::size_t solve_goals(const BuiltArm& built, const GoalRows& rows) {

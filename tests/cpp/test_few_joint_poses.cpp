@@ -17,13 +17,13 @@ TEST(the_joints_a_pose_was_made_from_come_back) {
             double made[3] = {};
             few_joints::random_joints(random, chain, made);
             const Posed T = forward(chain, made);
-            const ik::FewJointSolutions s = solve_few_joint_pose(chain, T);
+            const ik::Solutions s = solve_few_joint_pose(chain, T);
             CHECK(s.count > 0);
             bool listed = false;
             for (int i = 0; i < s.count; ++i) {
-                CHECK(s.position_error[i] < 1e-11 && s.rotation_error[i] < 1e-11);
-                CHECK_NEAR(norm(forward(chain, s.q[i]).t - T.t), s.position_error[i], 1e-15);
-                listed = listed || s.free[i] || few_joints::apart(chain, s.q[i], made) < 1e-5;
+                const Posed reached = forward(chain, s.q[i]);
+                CHECK(norm(reached.t - T.t) < 1e-11 && spatial::angle_between(reached.R, T.R) < 1e-11);
+                listed = listed || s.self_motion[i] || few_joints::apart(chain, s.q[i], made) < 1e-5;
             }
             CHECK(listed);
         }
@@ -39,7 +39,7 @@ TEST(a_pose_off_the_arm_has_no_answer) {
             Posed T = forward(chain, made);
             T.R = T.R * spatial::rotation_about(random.axis(), 0.8, 0.6);
             T.t = T.t + 0.1 * random.axis();
-            const ik::FewJointSolutions s = solve_few_joint_pose(chain, T);
+            const ik::Solutions s = solve_few_joint_pose(chain, T);
             for (int i = 0; i < s.count; ++i) {  // a planar displacement may happen to fit a planar arm
                 CHECK_NEAR(norm(forward(chain, s.q[i]).t - T.t), 0, 1e-11);
                 CHECK_NEAR(norm(column(forward(chain, s.q[i]).R, 0) - column(T.R, 0)), 0, 1e-11);
@@ -54,7 +54,7 @@ TEST(a_planar_pose_has_two_answers) {
     for (int i = 0; i < 3; ++i) chain.axis[i] = {0, 0, 1}, chain.point[i] = {0.4 * i, 0, 0};
     chain.tip = {identity_pose().R, {1.2, 0, 0}};
     const double made[3] = {0.3, 0.9, -0.5};
-    const ik::FewJointSolutions s = solve_few_joint_pose(chain, forward(chain, made));
+    const ik::Solutions s = solve_few_joint_pose(chain, forward(chain, made));
     CHECK(s.count == 2);
-    for (int i = 0; i < s.count; ++i) CHECK(!s.free[i]);
+    for (int i = 0; i < s.count; ++i) CHECK(!s.self_motion[i]);
 }

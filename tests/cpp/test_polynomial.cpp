@@ -12,6 +12,48 @@ using check::Random;
 
 namespace {
 
+// The power of two 2ᵏ of Fujiwara's bound (1916) 2 max |a_{n−i} / a_n|^{1/i}, rounded up: the roots of
+// Σ a_i 2ᵏⁱ yⁱ lie within the unit circle, and none of its coefficients exceeds the leading one.
+inline int root_exponent(const double* a, int n) {
+    int k = -2000;
+    for (int i = 1; i <= n; ++i) {
+        if (a[n - i] == 0) continue;
+        const int e = std::ilogb(a[n - i]) - std::ilogb(a[n]) + 1;
+        const int up = e >= 0 ? (e + i - 1) / i : -(-e / i);
+        k = up > k ? up : k;
+    }
+    return k + 1;
+}
+
+// The real roots of a[0] + a[1] x + … + a[n] xⁿ, n ≤ 4. Coefficients of any scale; a root beyond 2¹⁰⁰⁰ counts
+// as infinite and is left out. Roots are distinguished as long as their sizes lie within 1e70 of each other.
+template <int n>
+RealRoots real_roots(const double* a, double unit = 0.0) {
+    if constexpr (n == 0) {
+        RealRoots none;
+        none.everywhere = a[0] == 0;
+        return none;
+    } else {
+        if (a[n] == 0) return real_roots<n - 1>(a, unit);
+        const int k = root_exponent(a, n);
+        if (k > 1000) return real_roots<n - 1>(a, unit);
+        RealRoots roots;
+        if (k < -1000) {
+            polynomial::append(roots, 0.0, n);
+            return roots;
+        }
+        polynomial::Uncertain<n> p;
+        const int top = std::ilogb(a[n]);
+        for (int i = 0; i <= n; ++i) {
+            p.a[i] = std::ldexp(a[i], (i - n) * k - top);
+            p.error[i] = polynomial::evaluation_error<n> * std::fabs(p.a[i]);
+        }
+        roots = polynomial::bounded_roots(p, 1.0, std::ldexp(unit, -k));
+        for (int i = 0; i < roots.count; ++i) roots.x[i] = std::ldexp(roots.x[i], k);
+        return roots;
+    }
+}
+
 // Multiplies the polynomial a (degree n, room for n + 2) by (x − root).
 void times_linear(double* a, int n, double root) {
     a[n + 1] = a[n];
@@ -227,7 +269,8 @@ TEST(a_touching_trigonometric_polynomial_has_double_roots) {
         const double p = random.uniform(-3, 3), q = random.uniform(-3, 3);
         if (std::fabs(std::sin(0.5 * (p - q))) < 0.4) continue;
         // (1 − cos(θ − p)) (1 − cos(θ − q)) touches zero at p and q.
-        const TrigRoots r = trig_roots(product(1, -std::cos(p), -std::sin(p), 1, -std::cos(q), -std::sin(q)));
+        const TrigRoots r =
+            trig_roots(product({1, -std::cos(p), -std::sin(p)}, {1, -std::cos(q), -std::sin(q)}));
         CHECK(r.count == 2 && r.multiplicity[0] == 2 && r.multiplicity[1] == 2);
         for (int i = 0; i < r.count; ++i) {
             const double to_p = std::hypot(r.theta[i].c - std::cos(p), r.theta[i].s - std::sin(p));

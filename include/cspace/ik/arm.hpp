@@ -43,23 +43,6 @@ CSPACE_ONCE Arm make_arm(const Chain& chain, bool with_general = true) {
     return arm;
 }
 
-// The solutions of an arm with fewer than six joints for a position or a pose, in the common format.
-inline Solutions from_few_joints(const Chain& chain, const FewJointRows& found) {
-    Solutions out;
-    out.count = found.count;
-    out.status = found.count ? Status::exact : Status::unreachable;
-    for (int k = 0; k < found.count; ++k) {
-        for (int i = 0; i < chain.n; ++i) {
-            out.q[k][i] = found.q[k][i];
-            out.direction[k][i] = found.direction[k][i];
-        }
-        out.branch[k] = static_cast<signed char>(k);
-        out.self_motion[k] = found.free[k];
-        if (found.free[k]) out.status = Status::singular;
-    }
-    return out;
-}
-
 // Refines the solutions of an arm with few joints to rounding.
 inline void refine_few_joints(const Chain& chain, const Posed& goal, double length, Solutions& out) {
     for (int k = 0; k < out.count; ++k) {
@@ -92,7 +75,6 @@ inline Solutions solve_both_ways(const Arm& arm, const Posed& goal, const double
         const bool agree = form.count == alone && alone % 2 == 0;
         const bool certain = out.complete || (agree && !solve_closed_form(arm.plan, goal_form, care).doubt);
         out.complete = certain && out.count == alone;
-        classify_solutions(out);
     }
     number_by_branches(arm.plan, goal, out);
     return out;
@@ -105,8 +87,7 @@ inline bool search_perturbed_goals_in_form(const Plan& plan, const Posed& goal, 
         for (int k = 0; k < max_branches; ++k) {
             if (!b.ok[k]) continue;
             double q[max_joints] = {};
-            for (int i = 0; i < 6; ++i)
-                if (plan.joint[i] >= 0) q[plan.joint[i]] = joint_angle(plan, i, b.t[k][i]);
+            configuration_of(plan, b.t[k], q);
             add_candidate(q);
         }
     };
@@ -138,7 +119,7 @@ inline Solutions solutions_and_self_motions(const Arm& arm, const Posed& goal, c
         out.complete = out.complete && out.count > 0;
         return out;
     }
-    Solutions out = from_few_joints(chain, solve_few_joint_pose(chain, goal));
+    Solutions out = solve_few_joint_pose(chain, goal);
     if (out.count == 0) search_by_descent(chain, goal, length, starts, out);
     refine_few_joints(chain, goal, length, out);
     return out;
@@ -156,7 +137,7 @@ CSPACE_ONCE Solutions solve_pose(const Arm& arm, const Posed& goal, const double
 // large weight keeps the orientation, and the result is the distance by which the goal is out of reach.
 // Starts are the branches clipped at their boundaries, and configurations spread over the joints. A large
 // weight is increased in steps, because the set of configurations with the required orientation is narrow.
-CSPACE_ONCE NearestPose nearest_to_goal(const Arm& arm, const Posed& goal, double weight) {
+inline NearestPose nearest_to_goal(const Arm& arm, const Posed& goal, double weight) {
     const Plan& plan = arm.plan;
     const int n = plan.chain.n;
     Care care;

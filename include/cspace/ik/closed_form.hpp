@@ -109,24 +109,12 @@ CSPACE_INLINE Pose<V> goal_in_form(const Plan& plan, const Pose<V>& T_base_tip) 
 
 template <class V>
 CSPACE_INLINE Branches<V> closed_form(const Plan& plan, const Pose<V>& goal, const Care& care) {
-    using Kind = FirstThree;
     if (plan.family == Family::three_parallel) return solve_three_parallel(plan.parallel, goal, care);
     if constexpr (Lanes<V>::count == 1) {
         if (plan.family == Family::middle_parallel) return solve_middle_parallel(plan.form, goal, care);
         if (plan.family == Family::first_parallel) return solve_first_parallel(plan.form, goal, care);
     }
-    switch (plan.wrist.first.kind) {
-        case Kind::last_parallel:
-            return solve_spherical_wrist<Kind::last_parallel>(plan.wrist, goal, care);
-        case Kind::first_meet:
-            return solve_spherical_wrist<Kind::first_meet>(plan.wrist, goal, care);
-        case Kind::last_meet:
-            return solve_spherical_wrist<Kind::last_meet>(plan.wrist, goal, care);
-        case Kind::first_parallel:
-            return solve_spherical_wrist<Kind::first_parallel>(plan.wrist, goal, care);
-        default:
-            return solve_spherical_wrist<Kind::general>(plan.wrist, goal, care);
-    }
+    return solve_spherical_wrist(plan.wrist, goal, care);
 }
 
 // One goal on one lane, for the careful solvers.
@@ -143,20 +131,8 @@ inline Care care_of(const Plan& plan) {
 
 // One goal, for the types of arm that have a kernel.
 CSPACE_INLINE Abreast closed_form_abreast(const Plan& plan, const Posed& goal, const Care& care) {
-    using Kind = FirstThree;
     if (plan.family == Family::three_parallel) return solve_abreast(plan.parallel, goal, care);
-    switch (plan.wrist.first.kind) {
-        case Kind::last_parallel:
-            return solve_abreast<Kind::last_parallel>(plan.wrist, goal, care);
-        case Kind::first_meet:
-            return solve_abreast<Kind::first_meet>(plan.wrist, goal, care);
-        case Kind::last_meet:
-            return solve_abreast<Kind::last_meet>(plan.wrist, goal, care);
-        case Kind::first_parallel:
-            return solve_abreast<Kind::first_parallel>(plan.wrist, goal, care);
-        default:
-            return solve_abreast<Kind::general>(plan.wrist, goal, care);
-    }
+    return solve_abreast(plan.wrist, goal, care);
 }
 
 // Converts an angle of the form to that of the joint, in (−π, π].

@@ -30,20 +30,20 @@ CSPACE_ONCE FastPath solve_quickly(const Plan& plan, const double* T, double* q,
     for (int e = 0; e < 2; ++e)
         for (int i = 0; i < 6; ++i) angles[e][plan.joint[i]] = joint_angle(plan, i, found.t[e][i]);
     if (plan.polish)
-        for (int e = 0; e < 2; ++e)
-            if (any(found.ok[e] && !polished_angles(plan, fill_pose<Pack<4>>(goal.T), angles[e])))
+        for (auto& row : angles)
+            if (any(found.ok && !polished_angles(plan, fill_pose<Pack<4>>(goal.T), row)))
                 return FastPath::doubtful;
     // Branch 2 l + e is lane l of angles[e].
     for (int e = 0; e < 2; ++e) store_rows(angles[e], 6, q + 6 * e, 12, 4);
-    const unsigned ok[2] = {bits_of(found.ok[0]), bits_of(found.ok[1])};
-    if ((ok[0] & ok[1]) == 15) {
+    const unsigned ok = bits_of(found.ok);
+    if (ok == 15) {
         for (int k = 0; k < max_branches; ++k) branch[k] = static_cast<signed char>(k);
         *count = max_branches;
         return FastPath::settled;
     }
     int n = 0;
     for (int k = 0; k < max_branches; ++k) {
-        if (!(ok[k & 1] >> (k >> 1) & 1)) continue;
+        if (!(ok >> (k >> 1) & 1)) continue;
         if (n != k)
             for (int i = 0; i < 6; ++i) q[6 * n + i] = q[6 * k + i];
         branch[n++] = static_cast<signed char>(k);

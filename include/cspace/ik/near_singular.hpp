@@ -12,19 +12,13 @@
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-// Sets the status of a list of solutions.
-inline void classify_solutions(Solutions& out) {
-    out.status = out.count ? Status::exact : Status::unreachable;
-    for (int k = 0; k < out.count; ++k)
-        if (out.self_motion[k]) out.status = Status::singular;
-}
-
 // Appends a configuration, as no member of a self-motion; returns its row.
 inline int append_solution(const Chain& chain, const double* q, int branch, Solutions& out) {
     const int n = out.count++;
     for (int i = 0; i < chain.n; ++i) out.q[n][i] = wrap_joint(chain, i, q[i]);
     out.branch[n] = static_cast<signed char>(branch);
     out.self_motion[n] = false;
+    if (out.status == Status::unreachable) out.status = Status::exact;
     return n;
 }
 
@@ -89,6 +83,7 @@ CSPACE_ONCE void accept_solution(Solutions& out, const Chain& chain, const Posed
     }
     const int n = append_solution(chain, q, branch, out);
     out.self_motion[n] = find_self_motion(chain, goal, length, out.q[n], error.jacobian, out.direction[n]);
+    if (out.self_motion[n]) out.status = Status::singular;
 }
 
 // Value of a virtual joint [rad] up to which it counts as zero near a singularity, on an exact form.
@@ -102,6 +97,19 @@ struct CandidateSearch {
     int most_steps = 60;  // of the refinement
 };
 
+// The configuration of the chain for angles of the form. Returns by how much its virtual joints stray.
+inline double configuration_of(const Plan& plan, const double* t, double* q) {
+    double stray = 0;
+    for (int i = 0; i < 6; ++i) {
+        const double angle = joint_angle(plan, i, t[i]);
+        if (plan.joint[i] >= 0)
+            q[plan.joint[i]] = angle;
+        else
+            stray = max(stray, std::fabs(angle));
+    }
+    return stray;
+}
+
 // The branches of the plan for one choice of unconstrained joints, as configurations of the chain.
 inline void closed_form_candidates(const Plan& plan, const Posed& goal_form, const Care& care, Solutions& out,
                                    const Posed& goal, const CandidateSearch& search = {}) {
@@ -109,16 +117,8 @@ inline void closed_form_candidates(const Plan& plan, const Posed& goal_form, con
     for (int k = search.first; k < search.last; ++k) {
         if (!b.ok[k]) continue;
         double q[max_joints] = {};
-        bool real = true;
-        for (int i = 0; i < 6; ++i) {
-            const double angle = joint_angle(plan, i, b.t[k][i]);
-            if (plan.joint[i] >= 0)
-                q[plan.joint[i]] = angle;
-            else
-                real = real && std::fabs(angle) <= search.stray;
-        }
-        if (!real) continue;
-        accept_solution(out, plan.chain, goal, plan.form.length, q, k, search.most_steps);
+        if (configuration_of(plan, b.t[k], q) <= search.stray)
+            accept_solution(out, plan.chain, goal, plan.form.length, q, k, search.most_steps);
     }
 }
 
@@ -224,10 +224,10 @@ inline void number_by_branches(const Plan& plan, const Posed& goal, Solutions& o
         if (out.branch[m] < 0) out.branch[m] = static_cast<signed char>(beyond++);
 }
 
-// Adds the solutions that are not in `out` yet. `unconstrained`: the values of the chain's joints that are
+// All solutions of a goal. `unconstrained`: the values of the chain's joints that are
 // free at the goal.
-inline void solve_carefully(const Plan& plan, const Posed& goal, const double* unconstrained,
-                            Solutions& out) {
+inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const double* unconstrained) {
+    Solutions out;
     Care care = care_of(plan);
     const double slack = 4 * plan.form.deviation;
     care.free = max(tolerance::free_joint, slack);
@@ -245,17 +245,11 @@ inline void solve_carefully(const Plan& plan, const Posed& goal, const double* u
         try_perturbed_goals(plan, goal_form, care, out, goal);
     if (plan.idealised || plan.virtual_joints) sweep_free_joints(plan, goal_form, care, t, out, goal);
     if (plan.family == Family::three_parallel) turn_free_wrist(plan, goal_form, care, t[3], out, goal);
-    classify_solutions(out);
     out.crowded = plan.virtual_joints == 0;  // most goals are settled before they come here
     // Merging pairs of the true arm may lie where the form has none.
     if (plan.form.deviation > tolerance::visible_deviation &&
         solve_closed_form(plan, goal_form, care_of(plan)).doubt)
         out.complete = false;
-}
-
-inline Solutions solve_carefully(const Plan& plan, const Posed& goal, const double* unconstrained) {
-    Solutions out;
-    solve_carefully(plan, goal, unconstrained, out);
     return out;
 }
 
@@ -285,6 +279,20 @@ inline void descend_to_solution(const Chain& chain, const Posed& goal, double le
         accept_solution(out, chain, goal, length, q, out.count, 2);
 }
 
+// Descends from `starts` configurations spread over all joints until there are `enough` solutions: where a
+// determinant vanishes all round the circle a family runs through every hidden angle, and where a completed
+// arm is singular the arm itself need not be.
+inline void search_by_descent(const Chain& chain, const Posed& goal, double length, int starts,
+                              Solutions& out, int enough = max_solutions) {
+    constexpr int most_steps = 60;
+    for (int k = 0; k < starts && out.count < enough; ++k) {
+        double q[max_joints];
+        spread_configuration(k, chain.n, q);
+        for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
+        descend_to_solution(chain, goal, length, q, most_steps, out);
+    }
+}
+
 // list_solutions(goal, add_candidate) calls add_candidate(q) for every solution of a goal, as a configuration
 // of the chain. Returns whether a new solution was found.
 template <class ListSolutions>
@@ -296,7 +304,6 @@ inline bool search_perturbed_goals(const Chain& chain, const Posed& goal, double
         descend_to_solution(chain, goal, length, q, most_steps, out);
     };
     for (int k = 0; k < perturbed_goals; ++k) list_solutions(perturbed_goal(goal, length, k), add_candidate);
-    classify_solutions(out);
     return out.count > before;
 }
 

@@ -19,17 +19,18 @@ inline Turn<double> turn_about_z(const Mat3d& R) {
 }
 
 // `planar` = Rz(t_j) Tx(a_j) Rz(t_k) Tx(a_k) Rz(t_l), the displacement required of the parallel joints j, k,
-// l. Both elbow solutions are written into rows n and n + 1.
-inline void planar_three(const DhForm& f, int j, const Posed& planar, const Care& care, Branches<double>& out,
-                         int n) {
+// l. Both elbow solutions are written into rows n and n + 1, with the other joints from l + 1 on, round the
+// arm.
+inline void planar_three(const DhForm& f, int j, const Posed& planar, const Turn<double> (&others)[3],
+                         const Care& care, Branches<double>& out, int n) {
     const TwoLink<double> arm =
         two_link(planar.t.x, planar.t.y, f.a[j], f.a[j + 1], f.length, care, care.unconstrained[j]);
     const Turn<double> all = turn_about_z(planar.R);
     for (int e = 0; e < 2; ++e) {
-        const Turn<double> elbow = {arm.cos_elbow, e == 0 ? arm.sin_elbow : -arm.sin_elbow};
         out.t[n + e][j] = angle_of(arm.first[e]);
-        out.t[n + e][j + 1] = angle_of(elbow);
-        out.t[n + e][j + 2] = angle_of(all - (arm.first[e] + elbow));
+        out.t[n + e][j + 1] = angle_of(arm.elbow[e]);
+        out.t[n + e][j + 2] = angle_of(all - (arm.first[e] + arm.elbow[e]));
+        for (int i = 0; i < 3; ++i) out.t[n + e][(j + 3 + i) % 6] = angle_of(others[i]);
         out.ok[n + e] = arm.ok;
     }
 }
@@ -56,33 +57,19 @@ inline Branches<double> solve_middle_parallel(const DhForm& f, const Posed& goal
     out.doubt = true;
     const Vec3d p = goal.t, g = column(goal.R, 2);
     const double length = f.length, height = f.d[1] + f.d[2] + f.d[3] + f.ca[3] * f.d[4];
-    TwoTurnEquations e;
-    e.alpha[0] = (f.ca[0] * p.z - height) / length;
-    e.beta[0][0] = -f.sa[0] * p.y / length;
-    e.beta[0][1] = f.sa[0] * p.x / length;
-    e.gamma[0][0] = 0;
-    e.gamma[0][1] = -f.sa[3] * f.a[4] / length;
-    e.alpha[1] = f.ca[0] * g.z - f.ca[3] * f.ca[4];
-    e.beta[1][0] = -f.sa[0] * g.y;
-    e.beta[1][1] = f.sa[0] * g.x;
-    e.gamma[1][0] = f.sa[3] * f.sa[4];
-    e.gamma[1][1] = 0;
-    const TwoTurns found = both_angles(e);
+    const TwoTurns found =
+        both_angles({{(f.ca[0] * p.z - height) / length, f.ca[0] * g.z - f.ca[3] * f.ca[4]},
+                     {{-f.sa[0] * p.y / length, f.sa[0] * p.x / length}, {-f.sa[0] * g.y, f.sa[0] * g.x}},
+                     {{0, -f.sa[3] * f.a[4] / length}, {f.sa[3] * f.sa[4], 0}}});
     for (int n = 0; n < found.count; ++n) {
         const Turn<double>&t1 = found.u[n], &t5 = found.w[n];
         const Posed seen = inverse(link(f, 0, t1)) * goal;  // Rz(t2)…Rz(t4) · rest · Rz(t6)
-        const Posed five = link(f, 4, t5);
-        const Posed rest = Posed{link(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * Posed{five.R, five.t};
+        const Posed rest = Posed{link(f, 3, {1, 0}).R, {f.a[3], 0, 0}} * link(f, 4, t5);
         const Vec3d z = column(rest.R, 2), want = column(seen.R, 2);
         const Turn<double> t234 = align(z.x, z.y, want.x, want.y, 1.0, care, care.unconstrained[3]).t;
         const Posed turned = {spatial::rotation_about(Vec3d{0, 0, 1}, t234.c, t234.s), {0, 0, 0}};
         const Turn<double> t6 = turn_about_z(transpose((turned * rest).R) * seen.R);
-        planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, care, out, 2 * n);
-        for (int k = 2 * n; k < 2 * n + 2; ++k) {
-            out.t[k][0] = angle_of(t1);
-            out.t[k][4] = angle_of(t5);
-            out.t[k][5] = angle_of(t6);
-        }
+        planar_three(f, 1, {turned.R, seen.t - turned.R * rest.t}, {t5, t6, t1}, care, out, 2 * n);
     }
     return out;
 }
@@ -93,18 +80,12 @@ inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal,
     out.doubt = true;
     const Vec3d r = row(goal.R, 2);
     const double length = f.length;
-    TwoTurnEquations e;
-    e.alpha[0] = r.z * f.ca[4] - f.ca[2] * f.ca[3];
-    e.beta[0][0] = f.sa[2] * f.sa[3];
-    e.beta[0][1] = 0;
-    e.gamma[0][0] = r.y * f.sa[4];
-    e.gamma[0][1] = r.x * f.sa[4];
-    e.alpha[1] = (f.d[1] + f.d[2] + f.ca[2] * f.d[3] + f.d[4] * f.ca[4] * r.z - goal.t.z) / length;
-    e.beta[1][0] = 0;
-    e.beta[1][1] = f.sa[2] * f.a[3] / length;
-    e.gamma[1][0] = (f.a[4] * r.x + f.d[4] * f.sa[4] * r.y) / length;
-    e.gamma[1][1] = (-f.a[4] * r.y + f.d[4] * f.sa[4] * r.x) / length;
-    const TwoTurns found = both_angles(e);
+    const double height = f.d[1] + f.d[2] + f.ca[2] * f.d[3] + f.d[4] * f.ca[4] * r.z - goal.t.z;
+    const TwoTurns found = both_angles({{r.z * f.ca[4] - f.ca[2] * f.ca[3], height / length},
+                                        {{f.sa[2] * f.sa[3], 0}, {0, f.sa[2] * f.a[3] / length}},
+                                        {{r.y * f.sa[4], r.x * f.sa[4]},
+                                         {(f.a[4] * r.x + f.d[4] * f.sa[4] * r.y) / length,
+                                          (-f.a[4] * r.y + f.d[4] * f.sa[4] * r.x) / length}}});
     for (int n = 0; n < found.count; ++n) {
         const Turn<double>&t4 = found.u[n], &t6 = found.w[n];
         const Posed to_four = Posed{link(f, 2, {1, 0}).R, {f.a[2], 0, 0}} * link(f, 3, t4);
@@ -115,12 +96,7 @@ inline Branches<double> solve_first_parallel(const DhForm& f, const Posed& goal,
             align(x, f.ca[4] * y - f.sa[4] * r.z, k.x, k.y, 1.0, care, care.unconstrained[4]).t;
         const Posed rest =
             to_four * link(f, 4, t5) * Posed{spatial::rotation_about(Vec3d{0, 0, 1}, t6.c, t6.s), {0, 0, 0}};
-        planar_three(f, 0, goal * inverse(rest), care, out, 2 * n);
-        for (int m = 2 * n; m < 2 * n + 2; ++m) {
-            out.t[m][3] = angle_of(t4);
-            out.t[m][4] = angle_of(t5);
-            out.t[m][5] = angle_of(t6);
-        }
+        planar_three(f, 0, goal * inverse(rest), {t4, t5, t6}, care, out, 2 * n);
     }
     return out;
 }

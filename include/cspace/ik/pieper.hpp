@@ -27,14 +27,9 @@ struct ThreeJoints {
 
 template <class V>
 struct Triples {
-    Turn<V> t1[4], t2[4], t3[4];
+    Turn<V> t[3][4];  // of each joint
     mask_of<V> ok[4];
     mask_of<V> doubt;
-};
-
-// k + c cos t + s sin t
-struct LinearInTurn {
-    double k, c, s;
 };
 
 }  // namespace cspace::ik
@@ -45,23 +40,19 @@ namespace cspace::ik::inline CSPACE_ISA {
 template <class V>
 CSPACE_INLINE Triples<V> last_parallel(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
     Triples<V> out;
-    const V k = ((g.w.z + g.d2) - g.ca1 * p.z) * (1 / g.sa1);
-    // s1 px − c1 py = k
-    const TwoAngles<V> shoulder = linear_equation<V>(-p.y, p.x, k, g.length, care, care.unconstrained[0]);
+    const TwoAngles<V> shoulder = shoulder_angles(g.w.z + g.d2, g.ca1, g.sa1, p, g.length, care);
     out.doubt = shoulder.doubt;
     for (int i = 0; i < 2; ++i) {
-        const Turn<V>& t1 = shoulder.root[i];
-        const V x = t1.c * p.x + t1.s * p.y - g.a1;
-        const V y = g.ca1 * (t1.c * p.y - t1.s * p.x) + g.sa1 * p.z;
-        const TwoLink<V> arm = two_link(x, y, g.a2, g.wrist_reach, g.length, care, care.unconstrained[1]);
+        const Vec3<V> q = undo_joint(shoulder.root[i], g.ca1, g.sa1, p);
+        const TwoLink<V> arm =
+            two_link(q.x - g.a1, q.y, g.a2, g.wrist_reach, g.length, care, care.unconstrained[1]);
         out.doubt = out.doubt || (shoulder.ok && arm.doubt);
         for (int j = 0; j < 2; ++j) {
             const int n = 2 * i + j;
-            const Turn<V> elbow = {arm.cos_elbow, j == 0 ? arm.sin_elbow : -arm.sin_elbow};
             const Turn<V> w = {fill<V>(g.w_angle.c), fill<V>(g.w_angle.s)};
-            out.t1[n] = t1;
-            out.t2[n] = arm.first[j];
-            out.t3[n] = elbow - w;
+            out.t[0][n] = shoulder.root[i];
+            out.t[1][n] = arm.first[j];
+            out.t[2][n] = arm.elbow[j] - w;
             out.ok[n] = shoulder.ok && arm.ok;
         }
     }
@@ -81,94 +72,82 @@ inline LinearInTurn half_square_behind(const ThreeJoints& g) {
             g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y, g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y};
 }
 
-// The triples of one elbow and its two lifts; pan_of(t2) gives the bearing t1.
-template <class V, class PanOf>
-CSPACE_INLINE void add_lifts(const TwoAngles<V>& elbow, int i, const TwoAngles<V>& lift, Triples<V>& out,
-                             const PanOf& pan_of) {
-    out.doubt = out.doubt || (elbow.ok && lift.doubt);
-    for (int j = 0; j < 2; ++j) {
-        const Aligned<V> pan = pan_of(lift.root[j]);
-        const int n = 2 * i + j;
-        out.t1[n] = pan.t;
-        out.t2[n] = lift.root[j];
-        out.t3[n] = elbow.root[i];
-        out.ok[n] = elbow.ok && lift.ok;
-        out.doubt = out.doubt || (out.ok[n] && pan.doubt);
-    }
+// The triples of two angles of joint `outer`, two of `inner` for each, and one of the third joint for both:
+// visit(t, add) of an outer angle t calls add(inner, third_of), third_of(t) being the third angle.
+template <int outer, int inner, class V, class Visit>
+CSPACE_INLINE Triples<V> nested_triples(const TwoAngles<V>& first, const Visit& visit) {
+    Triples<V> out;
+    out.doubt = first.doubt;
+    for (int i = 0; i < 2; ++i)
+        visit(first.root[i], [&](const TwoAngles<V>& second, const auto& third_of) {
+            out.doubt = out.doubt || (first.ok && second.doubt);
+            for (int j = 0; j < 2; ++j) {
+                const Aligned<V> third = third_of(second.root[j]);
+                const int n = 2 * i + j;
+                out.t[outer][n] = first.root[i];
+                out.t[inner][n] = second.root[j];
+                out.t[3 - outer - inner][n] = third.t;
+                out.ok[n] = first.ok && second.ok;
+                out.doubt = out.doubt || (out.ok[n] && third.doubt);
+            }
+        });
+    return out;
 }
 
 // Axes 1 and 2 intersect: the distance of p from their intersection determines t3, its height along axis 1
 // t2, its bearing t1.
 template <class V>
 CSPACE_INLINE Triples<V> first_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
-    Triples<V> out;
     const auto [fixed, a, b] = half_square_behind(g);
     const TwoAngles<V> elbow = linear_equation<V>(fill<V>(a), fill<V>(b), 0.5 * dot(p, p) - fixed,
                                                   std::hypot(a, b), care, care.unconstrained[2]);
-    out.doubt = elbow.doubt;
-    for (int i = 0; i < 2; ++i) {
-        const Vec3<V> v = behind_joint_two(g, elbow.root[i]);
+    return nested_triples<2, 1>(elbow, [&](const Turn<V>& t3, const auto& add) {
+        const Vec3<V> v = behind_joint_two(g, t3);
         const TwoAngles<V> lift = linear_equation<V>(g.sa1 * v.y, g.sa1 * v.x, p.z - g.ca1 * v.z, g.length,
                                                      care, care.unconstrained[1]);
-        add_lifts(elbow, i, lift, out, [&](const Turn<V>& t2) {
+        add(lift, [&](const Turn<V>& t2) {
             const V x = t2.c * v.x - t2.s * v.y, y = g.ca1 * (t2.s * v.x + t2.c * v.y) - g.sa1 * v.z;
             return align(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
         });
-    }
-    return out;
+    });
+}
+
+// The height of w along axis 2 determines t3 where axis 2 meets or is parallel to its neighbour.
+template <class V>
+CSPACE_INLINE TwoAngles<V> elbow_angles(const ThreeJoints& g, V height, const Care& care) {
+    return linear_equation<V>(fill<V>(g.sa2 * g.w.y), fill<V>(g.sa2 * g.w.x), height - g.ca2 * g.w.z,
+                              g.sa2 * g.wrist_reach, care, care.unconstrained[2]);
 }
 
 // Axes 2 and 3 intersect: the distance of p from their intersection determines t1, then a height along axis 2
 // t3, a bearing t2.
 template <class V>
 CSPACE_INLINE Triples<V> last_meet(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
-    Triples<V> out;
     const double out_of_plane = -g.sa1 * g.d2, height = g.ca1 * g.d2;
     const V r = 0.5 * (dot(p, p) + (g.a1 * g.a1 + g.d2 * g.d2 - dot(g.w, g.w))) - height * p.z;
     const TwoAngles<V> pan =
         linear_equation<V>(g.a1 * p.x + out_of_plane * p.y, g.a1 * p.y - out_of_plane * p.x, r,
                            g.length * std::hypot(g.a1, out_of_plane), care, care.unconstrained[0]);
-    out.doubt = pan.doubt;
-    for (int i = 0; i < 2; ++i) {
-        const Turn<V>& t1 = pan.root[i];
-        const V x1 = t1.c * p.x + t1.s * p.y - g.a1, y1 = t1.c * p.y - t1.s * p.x;
-        const V y = g.ca1 * y1 + g.sa1 * p.z, z = g.ca1 * p.z - g.sa1 * y1 - g.d2;
-        const TwoAngles<V> elbow =
-            linear_equation<V>(fill<V>(g.sa2 * g.w.y), fill<V>(g.sa2 * g.w.x), z - g.ca2 * g.w.z,
-                               g.sa2 * g.wrist_reach, care, care.unconstrained[2]);
-        out.doubt = out.doubt || (pan.ok && elbow.doubt);
-        for (int j = 0; j < 2; ++j) {
-            const Vec3<V> v = behind_joint_two(g, elbow.root[j]);
-            const Aligned<V> lift = align(v.x, v.y, x1, y, g.length, care, care.unconstrained[1]);
-            const int n = 2 * i + j;
-            out.t1[n] = t1;
-            out.t2[n] = lift.t;
-            out.t3[n] = elbow.root[j];
-            out.ok[n] = pan.ok && elbow.ok;
-            out.doubt = out.doubt || (out.ok[n] && lift.doubt);
-        }
-    }
-    return out;
+    return nested_triples<0, 2>(pan, [&](const Turn<V>& t1, const auto& add) {
+        const Vec3<V> q = undo_joint(t1, g.ca1, g.sa1, p);
+        add(elbow_angles(g, q.z - g.d2, care), [&](const Turn<V>& t3) {
+            const Vec3<V> v = behind_joint_two(g, t3);
+            return align(v.x, v.y, q.x - g.a1, q.y, g.length, care, care.unconstrained[1]);
+        });
+    });
 }
 
 // Axes 1 ∥ 2: the height of p determines t3, its distance from axis 1 t2, its bearing t1.
 template <class V>
 CSPACE_INLINE Triples<V> first_parallel(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
-    Triples<V> out;
-    const TwoAngles<V> elbow =
-        linear_equation<V>(fill<V>(g.sa2 * g.w.y), fill<V>(g.sa2 * g.w.x), p.z - (g.d2 + g.ca2 * g.w.z),
-                           g.sa2 * g.wrist_reach, care, care.unconstrained[2]);
-    out.doubt = elbow.doubt;
-    for (int i = 0; i < 2; ++i) {
-        const Vec3<V> v = behind_joint_two(g, elbow.root[i]);
+    return nested_triples<2, 1>(elbow_angles(g, p.z - g.d2, care), [&](const Turn<V>& t3, const auto& add) {
+        const Vec3<V> v = behind_joint_two(g, t3);
         const V r = (p.x * p.x + p.y * p.y - (v.x * v.x + v.y * v.y) - g.a1 * g.a1) * (0.5 / g.a1);
-        const TwoAngles<V> lift = linear_equation<V>(v.x, -v.y, r, g.length, care, care.unconstrained[1]);
-        add_lifts(elbow, i, lift, out, [&](const Turn<V>& t2) {
+        add(linear_equation<V>(v.x, -v.y, r, g.length, care, care.unconstrained[1]), [&](const Turn<V>& t2) {
             return align(t2.c * v.x - t2.s * v.y + g.a1, t2.s * v.x + t2.c * v.y, p.x, p.y, g.length, care,
                          care.unconstrained[0]);
         });
-    }
-    return out;
+    });
 }
 
 // The first three joints with axes in general position: Pieper's quartic (1968).
@@ -177,18 +156,13 @@ CSPACE_INLINE Triples<V> first_parallel(const ThreeJoints& g, const Vec3<V>& p, 
 //     X = c2 vx − s2 vy = (|p|² − a1² − |v|²) / (2 a1),   Y = s2 vx + c2 vy = (pz − cos α1 vz) / sin α1,
 // both linear in cos t3 and sin t3. X² + Y² = vx² + vy² is a trigonometric polynomial of degree two in t3.
 
-inline TrigPolynomial square(const LinearInTurn& f) { return product(f.k, f.c, f.s, f.k, f.c, f.s); }
-inline TrigPolynomial negative(const TrigPolynomial& f) { return {-f.a0, -f.a1, -f.b1, -f.a2, -f.b2}; }
-
 // The part of X and Y that does not depend on the pose; p adds |p|²/(2 a1) to X.k and pz/sin α1 to Y.k.
 inline LinearInTurn pieper_x(const ThreeJoints& g) {
-    const double fixed = g.a2 * g.a2 + g.d2 * g.d2 + dot(g.w, g.w) + 2 * g.d2 * g.ca2 * g.w.z;
-    return {-(g.a1 * g.a1 + fixed) / (2 * g.a1), -(g.a2 * g.w.x + g.d2 * g.sa2 * g.w.y) / g.a1,
-            -(g.d2 * g.sa2 * g.w.x - g.a2 * g.w.y) / g.a1};
+    const auto [fixed, c, s] = half_square_behind(g);
+    return {-(0.5 * g.a1 * g.a1 + fixed) / g.a1, -c / g.a1, -s / g.a1};
 }
 inline LinearInTurn pieper_y(const ThreeJoints& g) {
-    const double cot = g.ca1 / g.sa1;
-    return {-cot * (g.ca2 * g.w.z + g.d2), -cot * g.sa2 * g.w.y, -cot * g.sa2 * g.w.x};
+    return -g.ca1 / g.sa1 * LinearInTurn{g.ca2 * g.w.z + g.d2, g.sa2 * g.w.y, g.sa2 * g.w.x};
 }
 template <class V>
 CSPACE_INLINE V at(const LinearInTurn& f, const Turn<V>& t) {
@@ -204,7 +178,7 @@ inline PieperRoots pieper_roots(const ThreeJoints& g, double p2, double pz, doub
     X.k += p2 / (2 * g.a1);
     Y.k += pz / g.sa1;
     const LinearInTurn vx = {g.a2, g.w.x, -g.w.y}, vy = {-g.sa2 * g.w.z, g.ca2 * g.w.y, g.ca2 * g.w.x};
-    const TrigPolynomial f = square(X) + square(Y) + negative(square(vx) + square(vy));
+    const TrigPolynomial f = product(X, X) + product(Y, Y) + product(-1.0 * vx, vx) + product(-1.0 * vy, vy);
     PieperRoots out{trig_roots(f), false};
     const double size =
         std::fabs(f.a0) + std::fabs(f.a1) + std::fabs(f.b1) + std::fabs(f.a2) + std::fabs(f.b2);
@@ -227,27 +201,28 @@ CSPACE_INLINE Triples<V> any_three(const ThreeJoints& g, const Vec3<V>& p, const
     Triples<V> out;
     const V p2 = dot(p, p);
     V count = fill<V>(0.0), close = fill<V>(0.0);
-    for (auto& t : out.t3) t = no_turn<V>();
+    for (auto& t : out.t[2]) t = no_turn<V>();
     for (int l = 0; l < Lanes<V>::count; ++l) {
         const PieperRoots found = pieper_roots(g, lane(p2, l), lane(p.z, l), care.band);
         set_lane(count, l, found.roots.count);
         set_lane(close, l, found.close);
         for (int i = 0; i < found.roots.count; ++i) {
-            set_lane(out.t3[i].c, l, found.roots.theta[i].c);
-            set_lane(out.t3[i].s, l, found.roots.theta[i].s);
+            set_lane(out.t[2][i].c, l, found.roots.theta[i].c);
+            set_lane(out.t[2][i].s, l, found.roots.theta[i].s);
         }
     }
     out.doubt = close > 0.0;
     const LinearInTurn fx = pieper_x(g), fy = pieper_y(g);
     for (int i = 0; i < 4; ++i) {
-        const V X = at(fx, out.t3[i]) + p2 * (0.5 / g.a1), Y = at(fy, out.t3[i]) + p.z * (1 / g.sa1);
-        const Vec3<V> v = behind_joint_two(g, out.t3[i]);
+        const Turn<V>& t3 = out.t[2][i];
+        const V X = at(fx, t3) + p2 * (0.5 / g.a1), Y = at(fy, t3) + p.z * (1 / g.sa1);
+        const Vec3<V> v = behind_joint_two(g, t3);
         const Aligned<V> lift = align(v.x, v.y, X, Y, g.length, care, care.unconstrained[1]);
         const V x = X + g.a1, y = g.ca1 * Y - g.sa1 * v.z;
         const Aligned<V> pan = align(x, y, p.x, p.y, g.length, care, care.unconstrained[0]);
         out.ok[i] = count > double(i);
-        out.t1[i] = pan.t;
-        out.t2[i] = lift.t;
+        out.t[0][i] = pan.t;
+        out.t[1][i] = lift.t;
         out.doubt = out.doubt || (out.ok[i] && (lift.doubt || pan.doubt));
     }
     return out;

@@ -2,7 +2,7 @@
 // (Levenberg 1944, Nakamura & Hanafusa 1986), and conditioning and null space from the Jacobian there.
 #pragma once
 
-#include "cspace/ik/chain.hpp"
+#include "cspace/ik/dh_form.hpp"
 #include "cspace/math/least_squares.hpp"
 #include "cspace/math/small_svd.hpp"
 #include "cspace/tolerances.hpp"
@@ -216,8 +216,9 @@ inline double make_unit6(double* v) {
     return size;
 }
 
-// Of six columns, as `measure` leaves them.
-inline WeakDirection weak_direction(const double (*columns)[6]) {
+// Of a Jacobian of six columns that is not decomposed.
+inline WeakDirection weak_direction(const PoseSvd& jacobian) {
+    const auto& columns = jacobian.us;
     double A[6][6], diagonal[6], factor[6];
     for (int i = 0; i < 6; ++i)
         for (int j = 0; j < 6; ++j) A[i][j] = columns[j][i];
@@ -246,6 +247,45 @@ inline WeakDirection weak_direction(const double (*columns)[6]) {
         for (int i = 0; i < 6; ++i) out.u[i] += columns[j][i] * out.v[j];
     make_unit6(out.u);
     return out;
+}
+
+// The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some generic
+// configurations, at which the joints with is_zero(i) are zero.
+template <class IsZero>
+double generic_conditioning(const Chain& chain, double length, int k, const IsZero& is_zero) {
+    double q[max_joints] = {};
+    spread_configuration(k, chain.n, q);
+    for (int i = 0; i < chain.n; ++i)
+        if (is_zero(i)) q[i] = 0;
+    PoseError error;
+    measure_error(chain, chain.tip, length, q, error);
+    if (chain.n == 6) return weak_direction(error.jacobian).sigma;
+    decompose(error.jacobian);
+    return error.jacobian.sigma[weakest_direction(error.jacobian)];
+}
+
+// Whether an arm has a redundant joint (two wrists, a wrist on axis 3, four parallel axes). Then each of its
+// poses is singular, to within `blind`, and no list of solutions is complete.
+inline bool is_always_singular(const Chain& chain, double length, double blind) {
+    for (int k = 0; k < 8; ++k)
+        if (generic_conditioning(chain, length, k, [](int) { return false; }) > blind) return false;
+    return true;
+}
+
+// How well an arm that virtual joints complete is conditioned where they are zero: the median. Where it is
+// more than `regular_enough` the branches of the completed arm coincide with those of the arm.
+inline constexpr double regular_enough = 1e-3;  // as of real arms
+template <class IsVirtual>
+double completed_conditioning(const Chain& six, double length, const IsVirtual& is_virtual) {
+    constexpr int trials = 5;
+    double sigma[trials];
+    for (int k = 0; k < trials; ++k) {
+        const double value = generic_conditioning(six, length, k, is_virtual);
+        int at = k;
+        for (; at > 0 && sigma[at - 1] > value; --at) sigma[at] = sigma[at - 1];
+        sigma[at] = value;
+    }
+    return sigma[trials / 2];
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -76,7 +76,7 @@ struct Branches {
 // The same for one goal, with its branches on lanes: branch 2 k + i is lane k of t[i].
 struct Abreast {
     Pack<4> t[2][6];
-    Mask<4> ok[2];
+    Mask<4> ok;  // of both
     bool doubt;
 };
 

@@ -23,97 +23,79 @@ inline SphericalWrist make_spherical_wrist(const DhForm& f) {
     const Vec3d w = {f.a[2], -f.sa[2] * f.d[3], f.d[2] + f.ca[2] * f.d[3]};
     const double reach = std::hypot(w.x, w.y);
     const Turn<double> w_angle = {reach > 0 ? w.x / reach : 1, reach > 0 ? w.y / reach : 0};
-    ThreeJoints& g = arm.first;
-    g = {FirstThree::general,
-         f.a[0],
-         f.ca[0],
-         f.sa[0],
-         f.d[1],
-         f.a[1],
-         f.ca[1],
-         f.sa[1],
-         w,
-         f.length,
-         reach,
-         w_angle};
     // A planar pair of links first: it is the cheapest and the best conditioned.
-    if (f.parallel[1])
-        g.kind = FirstThree::last_parallel;
-    else if (f.parallel[0])
-        g.kind = FirstThree::first_parallel;
-    else if (f.meeting[0])
-        g.kind = FirstThree::first_meet;
-    else if (f.meeting[1])
-        g.kind = FirstThree::last_meet;
+    const FirstThree kind = f.parallel[1]   ? FirstThree::last_parallel
+                            : f.parallel[0] ? FirstThree::first_parallel
+                            : f.meeting[0]  ? FirstThree::first_meet
+                            : f.meeting[1]  ? FirstThree::last_meet
+                                            : FirstThree::general;
+    arm.first = {kind,    f.a[0],  f.ca[0], f.sa[0],  f.d[1], f.a[1],
+                 f.ca[1], f.sa[1], w,       f.length, reach,  w_angle};
     arm.last = make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]);
     arm.ca3 = f.ca[2];
     arm.sa3 = f.sa[2];
     return arm;
 }
 
-template <FirstThree kind, class V>
+template <class V>
 CSPACE_INLINE Triples<V> place_wrist(const ThreeJoints& g, const Vec3<V>& p, const Care& care) {
-    if constexpr (kind == FirstThree::last_parallel) return last_parallel(g, p, care);
-    if constexpr (kind == FirstThree::first_parallel) return first_parallel(g, p, care);
-    if constexpr (kind == FirstThree::first_meet) return first_meet(g, p, care);
-    if constexpr (kind == FirstThree::last_meet) return last_meet(g, p, care);
-    if constexpr (kind == FirstThree::general) return any_three(g, p, care);
-}
-
-// The orientation behind the first three joints, in the frame of the wrist.
-template <class V>
-CSPACE_INLINE WristAngles<V> turn_wrist(const SphericalWrist& arm, const Turn<V>& t1, const Turn<V>& t2,
-                                        const Turn<V>& t3, const Mat3<V>& R, const Care& care) {
-    Vec3<V> seen[2];
-    for (int k = 0; k < 2; ++k) {
-        Vec3<V> v = column(R, k == 0 ? 2 : 0);
-        v = undo_joint(t1, arm.first.ca1, arm.first.sa1, v);
-        v = undo_joint(t2, arm.first.ca2, arm.first.sa2, v);
-        seen[k] = undo_joint(t3, arm.ca3, arm.sa3, v);
+    switch (g.kind) {
+        case FirstThree::last_parallel:
+            return last_parallel(g, p, care);
+        case FirstThree::first_meet:
+            return first_meet(g, p, care);
+        case FirstThree::last_meet:
+            return last_meet(g, p, care);
+        case FirstThree::first_parallel:
+            return first_parallel(g, p, care);
+        default:
+            return any_three(g, p, care);
     }
-    return wrist(arm.last, seen[0], seen[1], care, care.unconstrained[3]);
 }
 
-// The angles of both wrist solutions for one triple of the first three joints.
+// The angles of both wrist solutions for a triple t of the first three joints, in two rows; R: the
+// orientation in the base frame of the form, up to its tool frame. Returns the common view of the wrist.
 template <class V>
-CSPACE_INLINE void write_wrist(const Wrist& w, const WristAngles<V>& r, V* flip_up, V* flip_down) {
-    flip_up[3] = angle_of(r.t4[0]);
-    flip_up[4] = atan2(r.t5[0].s, r.t5[0].c);
-    flip_up[5] = angle_of(r.t6[0]);
-    flip_down[4] = -flip_up[4];
+CSPACE_INLINE WristView<V> write_wrist(const SphericalWrist& arm, const Turn<V> (&t)[3], const Mat3<V>& R,
+                                       const Care& care, V* up, V* down) {
+    const auto seen = [&](Vec3<V> v) {
+        v = undo_joint(t[0], arm.first.ca1, arm.first.sa1, v);
+        v = undo_joint(t[1], arm.first.ca2, arm.first.sa2, v);
+        return undo_joint(t[2], arm.ca3, arm.sa3, v);
+    };
+    const Wrist& w = arm.last;
+    const WristView<V> view = look_at_wrist(w, seen(column(R, 2)), seen(column(R, 0)), care);
+    for (int i = 0; i < 3; ++i) up[i] = down[i] = angle_of(t[i]);
+    const WristSide<V> r = wrist_side(w, view, view.s5, care.unconstrained[3]);
+    up[3] = angle_of(r.t4);
+    up[4] = atan2(r.t5.s, r.t5.c);
+    up[5] = angle_of(r.t6);
+    down[4] = -up[4];
     if (w.right_angled) {
-        flip_down[3] = flip_up[3] - copysign(fill<V>(pi), flip_up[3]);
-        flip_down[5] = flip_up[5] - copysign(fill<V>(pi), flip_up[5]);
+        down[3] = up[3] - copysign(fill<V>(pi), up[3]);
+        down[5] = up[5] - copysign(fill<V>(pi), up[5]);
     } else {
-        flip_down[3] = angle_of(r.t4[1]);
-        flip_down[5] = angle_of(r.t6[1]);
+        const WristSide<V> other = wrist_side(w, view, -view.s5, care.unconstrained[3]);
+        down[3] = angle_of(other.t4);
+        down[5] = angle_of(other.t6);
     }
-}
-
-template <class V>
-CSPACE_INLINE Branches<V> finish_with_wrist(const SphericalWrist& arm, const Triples<V>& first,
-                                            const Mat3<V>& R, const Care& care) {
-    Branches<V> out;
-    out.doubt = first.doubt;
-    for (int n = 0; n < 4; ++n) {
-        const WristAngles<V> r = turn_wrist(arm, first.t1[n], first.t2[n], first.t3[n], R, care);
-        V* up = out.t[2 * n];
-        V* down = out.t[2 * n + 1];
-        up[0] = down[0] = angle_of(first.t1[n]);
-        up[1] = down[1] = angle_of(first.t2[n]);
-        up[2] = down[2] = angle_of(first.t3[n]);
-        write_wrist(arm.last, r, up, down);
-        out.ok[2 * n] = out.ok[2 * n + 1] = first.ok[n] && r.ok;
-        out.doubt = out.doubt || (first.ok[n] && r.doubt);
-    }
-    return out;
+    return view;
 }
 
 // goal: in the base frame of the form, up to its tool frame.
-template <FirstThree kind, class V>
+template <class V>
 CSPACE_INLINE Branches<V> solve_spherical_wrist(const SphericalWrist& arm, const Pose<V>& goal,
                                                 const Care& care) {
-    return finish_with_wrist(arm, place_wrist<kind>(arm.first, goal.t, care), goal.R, care);
+    const Triples<V> first = place_wrist(arm.first, goal.t, care);
+    Branches<V> out;
+    out.doubt = first.doubt;
+    for (int n = 0; n < 4; ++n) {
+        const Turn<V> t[3] = {first.t[0][n], first.t[1][n], first.t[2][n]};
+        const WristView<V> view = write_wrist(arm, t, goal.R, care, out.t[2 * n], out.t[2 * n + 1]);
+        out.ok[2 * n] = out.ok[2 * n + 1] = first.ok[n] && view.ok;
+        out.doubt = out.doubt || (first.ok[n] && view.doubt);
+    }
+    return out;
 }
 
 // --- one goal: its four triples side by side on lanes ---------------------------------------------------
@@ -133,19 +115,13 @@ CSPACE_INLINE Four side_by_side(const bool* ok) {
     return out;
 }
 
-template <FirstThree kind>
 CSPACE_INLINE Abreast solve_abreast(const SphericalWrist& arm, const Posed& goal, const Care& care) {
-    const Triples<double> first = place_wrist<kind>(arm.first, goal.t, care);
-    const Turn<Four> t1 = side_by_side(first.t1), t2 = side_by_side(first.t2), t3 = side_by_side(first.t3);
-    const WristAngles<Four> r = turn_wrist(arm, t1, t2, t3, fill33<Four>(goal.R), care);
+    const Triples<double> first = place_wrist(arm.first, goal.t, care);
+    const Turn<Four> t[3] = {side_by_side(first.t[0]), side_by_side(first.t[1]), side_by_side(first.t[2])};
     Abreast out;
-    out.t[0][0] = out.t[1][0] = angle_of(t1);
-    out.t[0][1] = out.t[1][1] = angle_of(t2);
-    out.t[0][2] = out.t[1][2] = angle_of(t3);
-    write_wrist(arm.last, r, out.t[0], out.t[1]);
-    const Mask<4> ok = (side_by_side(first.ok) > 0.0) && r.ok;
-    out.ok[0] = out.ok[1] = ok;
-    out.doubt = first.doubt || any(ok && r.doubt);
+    const WristView<Four> view = write_wrist(arm, t, fill33<Four>(goal.R), care, out.t[0], out.t[1]);
+    out.ok = (side_by_side(first.ok) > 0.0) && view.ok;
+    out.doubt = first.doubt || any(out.ok && view.doubt);
     return out;
 }
 

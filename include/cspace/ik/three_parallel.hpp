@@ -21,6 +21,14 @@ struct ThreeParallel {
     double length;
 };
 
+// What one shoulder solution leaves: the wrist, and the place that it has in the plane of the parallel axes.
+template <class V>
+struct BehindShoulder {
+    Turn<V> t1;
+    WristView<V> wrist;
+    V x, y;
+};
+
 // Candidate sums, the best first.
 struct FreeSums {
     static constexpr int most = 12;
@@ -38,57 +46,58 @@ inline ThreeParallel make_three_parallel(const DhForm& f) {
             f.a[2], f.a[3],  -f.sa[3] * f.d[4], make_wrist(f.ca[3], f.sa[3], f.ca[4], f.sa[4]), f.length};
 }
 
-// Completes one shoulder and one wrist solution by the planar arm: both elbow solutions.
+// The height of p over the plane of the three joints determines t1.
 template <class V>
-CSPACE_INLINE void finish_in_plane(const ThreeParallel& arm, const Turn<V>& t234, V x, V y, V* const out[2],
-                                   mask_of<V>& ok, mask_of<V>& doubt, const Care& care) {
-    const V u = x - (t234.c * arm.x4 - t234.s * arm.y4), v = y - (t234.s * arm.x4 + t234.c * arm.y4);
+CSPACE_INLINE TwoAngles<V> shoulder_angles(const ThreeParallel& arm, const Vec3<V>& p, const Care& care) {
+    return shoulder_angles(arm.height, arm.ca1, arm.sa1, p, arm.length, care);
+}
+
+template <class V>
+CSPACE_INLINE BehindShoulder<V> look_behind_shoulder(const ThreeParallel& arm, const Turn<V>& t1,
+                                                     const Pose<V>& goal, const Care& care) {
+    const auto seen = [&](const Vec3<V>& v) { return undo_joint(t1, arm.ca1, arm.sa1, v); };
+    const Vec3<V> p = seen(goal.t);
+    return {t1, look_at_wrist(arm.last, seen(column(goal.R, 2)), seen(column(goal.R, 0)), care), p.x - arm.a1,
+            p.y};
+}
+
+// Completes one shoulder and one wrist solution, that with sin t5 = s5, by the planar arm: both elbow
+// solutions, in two rows.
+template <class V>
+CSPACE_INLINE void write_elbows(const ThreeParallel& arm, const BehindShoulder<V>& at, V s5, const Care& care,
+                                V* const rows[2], mask_of<V>& ok, mask_of<V>& doubt) {
+    const WristSide<V> wrist = wrist_side(arm.last, at.wrist, s5, care.unconstrained[3]);
+    const Turn<V>& t234 = wrist.t4;
+    const V u = at.x - (t234.c * arm.x4 - t234.s * arm.y4), v = at.y - (t234.s * arm.x4 + t234.c * arm.y4);
     const TwoLink<V> links = two_link(u, v, arm.l2, arm.l3, arm.length, care, care.unconstrained[1]);
     doubt = doubt || (ok && links.doubt);
     ok = ok && links.ok;
-    const V elbow = atan2(links.sin_elbow, links.cos_elbow);
+    const V angle1 = angle_of(at.t1), angle3 = atan2(links.elbow[0].s, links.elbow[0].c);
+    const V angle5 = atan2(wrist.t5.s, wrist.t5.c), angle6 = angle_of(wrist.t6);
     for (int j = 0; j < 2; ++j) {
-        const Turn<V> t3 = {links.cos_elbow, j == 0 ? links.sin_elbow : -links.sin_elbow};
-        out[j][1] = angle_of(links.first[j]);
-        out[j][2] = j == 0 ? elbow : -elbow;
-        out[j][3] = angle_of(t234 - (links.first[j] + t3));
+        rows[j][0] = angle1;
+        rows[j][1] = angle_of(links.first[j]);
+        rows[j][2] = j == 0 ? angle3 : -angle3;
+        rows[j][3] = angle_of(t234 - (links.first[j] + links.elbow[j]));
+        rows[j][4] = angle5;
+        rows[j][5] = angle6;
     }
-}
-
-// The height of p over the plane of the three joints determines t1: s1 px − c1 py = k.
-template <class V>
-CSPACE_INLINE TwoAngles<V> shoulder_angles(const ThreeParallel& arm, const Vec3<V>& p, const Care& care) {
-    const V k = (arm.height - arm.ca1 * p.z) * (1 / arm.sa1);
-    return linear_equation<V>(-p.y, p.x, k, arm.length, care, care.unconstrained[0]);
 }
 
 template <class V>
 CSPACE_INLINE Branches<V> solve_three_parallel(const ThreeParallel& arm, const Pose<V>& goal,
                                                const Care& care) {
     Branches<V> out;
-    const Vec3<V>& p = goal.t;
-    const TwoAngles<V> shoulder = shoulder_angles(arm, p, care);
+    const TwoAngles<V> shoulder = shoulder_angles(arm, goal.t, care);
     out.doubt = shoulder.doubt;
     for (int i = 0; i < 2; ++i) {
-        const Turn<V>& t1 = shoulder.root[i];
-        const V angle1 = angle_of(t1);
-        const WristAngles<V> r =
-            wrist(arm.last, undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2)),
-                  undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 0)), care, care.unconstrained[3]);
-        out.doubt = out.doubt || (shoulder.ok && r.doubt);
-        const V x = t1.c * p.x + t1.s * p.y - arm.a1;
-        const V y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
+        const BehindShoulder<V> at = look_behind_shoulder(arm, shoulder.root[i], goal, care);
+        out.doubt = out.doubt || (shoulder.ok && at.wrist.doubt);
         for (int j = 0; j < 2; ++j) {
             const int n = 4 * i + 2 * j;
             V* const rows[2] = {out.t[n], out.t[n + 1]};
-            mask_of<V> ok = shoulder.ok && r.ok;
-            finish_in_plane(arm, r.t4[j], x, y, rows, ok, out.doubt, care);
-            const V angle5 = atan2(r.t5[j].s, r.t5[j].c), angle6 = angle_of(r.t6[j]);
-            for (V* row : rows) {
-                row[0] = angle1;
-                row[4] = angle5;
-                row[5] = angle6;
-            }
+            mask_of<V> ok = shoulder.ok && at.wrist.ok;
+            write_elbows(arm, at, j == 0 ? at.wrist.s5 : -at.wrist.s5, care, rows, ok, out.doubt);
             out.ok[n] = out.ok[n + 1] = ok;
         }
     }
@@ -98,30 +107,18 @@ CSPACE_INLINE Branches<V> solve_three_parallel(const ThreeParallel& arm, const P
 // One goal: the lanes are (shoulder, wrist) = (0, 0), (0, 1), (1, 0), (1, 1); t[0] and t[1] differ in the
 // elbow.
 CSPACE_INLINE Abreast solve_abreast(const ThreeParallel& arm, const Posed& goal, const Care& care) {
-    const Vec3d& p = goal.t;
-    const TwoAngles<double> shoulder = shoulder_angles(arm, p, care);
+    const TwoAngles<double> shoulder = shoulder_angles(arm, goal.t, care);
     const Turn<double> each[4] = {shoulder.root[0], shoulder.root[0], shoulder.root[1], shoulder.root[1]};
-    const Turn<Four> t1 = side_by_side(each);
-    const Mat3<Four> R = fill33<Four>(goal.R);
-    const WristView<Four> view = look_at_wrist(arm.last, undo_joint(t1, arm.ca1, arm.sa1, column(R, 2)),
-                                               undo_joint(t1, arm.ca1, arm.sa1, column(R, 0)), care);
+    const BehindShoulder<Four> at =
+        look_behind_shoulder(arm, side_by_side(each), fill_pose<Four>(goal), care);
     Four side = fill<Four>(1.0);
     set_lane(side, 1, -1.0);
     set_lane(side, 3, -1.0);
-    const WristSide<Four> r = wrist_side(arm.last, view, side * view.s5, care.unconstrained[3]);
-    const Four x = t1.c * p.x + t1.s * p.y - arm.a1, y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
     Abreast out;
-    const Mask<4> reached = shoulder.ok ? view.ok : fill<Four>(0.0) > 1.0;
-    Mask<4> ok = reached, doubt = reached && view.doubt;
+    out.ok = shoulder.ok ? at.wrist.ok : fill<Four>(0.0) > 1.0;
+    Mask<4> doubt = out.ok && at.wrist.doubt;
     Four* const rows[2] = {out.t[0], out.t[1]};
-    finish_in_plane(arm, r.t4, x, y, rows, ok, doubt, care);
-    const Four angle1 = angle_of(t1), angle5 = atan2(r.t5.s, r.t5.c), angle6 = angle_of(r.t6);
-    for (Four* row : rows) {
-        row[0] = angle1;
-        row[4] = angle5;
-        row[5] = angle6;
-    }
-    out.ok[0] = out.ok[1] = ok;
+    write_elbows(arm, at, side * at.wrist.s5, care, rows, out.ok, doubt);
     out.doubt = shoulder.doubt || any(doubt);
     return out;
 }
@@ -166,16 +163,14 @@ inline FreeSums free_sums(const ThreeParallel& arm, const Posed& goal, int i, do
                           const Care& care) {
     constexpr double merged = 1e-4;  // [rad] both solutions of a double root give the same sums
     FreeSums out;
-    const Vec3d& p = goal.t;
-    const TwoAngles<double> shoulder = shoulder_angles(arm, p, care);
+    const TwoAngles<double> shoulder = shoulder_angles(arm, goal.t, care);
     const Turn<double>& t1 = shoulder.root[i];
     const bool is_same = i == 1 && std::fabs(angle_of(t1 - shoulder.root[0])) < merged;
     const Vec3d z = undo_joint(t1, arm.ca1, arm.sa1, column(goal.R, 2));
     if (!shoulder.ok || is_same || z.x * z.x + z.y * z.y > care.free * care.free) return out;
-    const double x = t1.c * p.x + t1.s * p.y - arm.a1;
-    const double y = arm.ca1 * (t1.c * p.y - t1.s * p.x) + arm.sa1 * p.z;
+    const Vec3d p = undo_joint(t1, arm.ca1, arm.sa1, goal.t);
     for (const double reach : {arm.l2 + arm.l3, arm.l2 - arm.l3})
-        add_ends(out, arm, x, y, reach, unconstrained, care);
+        add_ends(out, arm, p.x - arm.a1, p.y, reach, unconstrained, care);
     return out;
 }
 

@@ -100,11 +100,19 @@ CSPACE_INLINE TwoAngles<V> linear_equation(V a, V b, V r, double unit, const Car
     return out;
 }
 
+// Where a joint and a link of twist α keep a height along the axis behind them: the angle t of the joint from
+// sin t px − cos t py = (height − cos α pz) / sin α.
+template <class V>
+CSPACE_INLINE TwoAngles<V> shoulder_angles(double height, double ca, double sa, const Vec3<V>& p, double unit,
+                                           const Care& care) {
+    const V k = (height - ca * p.z) * (1 / sa);
+    return linear_equation<V>(-p.y, p.x, k, unit, care, care.unconstrained[0]);
+}
+
 // A planar arm of links l1, l2 reaching (x, y): γ is the angle at the elbow, ± for its two sides.
 template <class V>
 struct TwoLink {
-    V cos_elbow, sin_elbow;  // of +γ
-    Turn<V> first[2];        // first joint for +γ and −γ
+    Turn<V> elbow[2], first[2];  // ±γ, and the first joint for both
     mask_of<V> ok, doubt;
 };
 template <class V>
@@ -115,9 +123,11 @@ CSPACE_INLINE TwoLink<V> two_link(V x, V y, double l1, double l2, double unit, c
     const V room_out = (size2 - r2) * (1 / product);                 // 1 − cos γ
     const V room_in = (r2 - (l1 - l2) * (l1 - l2)) * (1 / product);  // 1 + cos γ
     TwoLink<V> out;
-    out.cos_elbow = 0.5 * (room_in - room_out);
-    out.sin_elbow = root_above(room_out * room_in, fill<V>(care.spread));
-    const V along = l1 + l2 * out.cos_elbow, across = l2 * out.sin_elbow;
+    const V cosine = 0.5 * (room_in - room_out);
+    const V sine = root_above(room_out * room_in, fill<V>(care.spread));
+    out.elbow[0] = {cosine, sine};
+    out.elbow[1] = {cosine, -sine};
+    const V along = l1 + l2 * cosine, across = l2 * sine;
     const mask_of<V> is_free = r2 <= care.free * care.free * size2;
     const V scale = 1.0 / select(is_free, fill<V>(1.0), r2);
     out.first[0] = {(x * along + y * across) * scale, (y * along - x * across) * scale};
@@ -150,12 +160,6 @@ inline Wrist make_wrist(double ca4, double sa4, double ca5, double sa5) {
             1 / (sa4 * sa5),
             square};
 }
-template <class V>
-struct WristAngles {
-    Turn<V> t4[2], t5[2], t6[2];
-    mask_of<V> ok, doubt;
-};
-
 // cos a − cos b from the cosines, or from the sines where both are small and the cosines would cancel.
 template <class V>
 CSPACE_INLINE V cosine_gap(V ca, V sa2, double cb, double sb) {
@@ -210,15 +214,6 @@ CSPACE_INLINE WristSide<V> wrist_side(const Wrist& w, const WristView<V>& view, 
     const V along = w.ca4 * y2 + w.sa4 * x.z, across = w.ca4 * x.z - w.sa4 * y2;
     return {
         t4, {view.c5, s}, {view.c5 * y1 + s * along, w.ca5 * (view.c5 * along - s * y1) + w.sa5 * across}};
-}
-
-template <class V>
-CSPACE_INLINE WristAngles<V> wrist(const Wrist& w, const Vec3<V>& z, const Vec3<V>& x, const Care& care,
-                                   const Turn<double>& unconstrained) {
-    const WristView<V> view = look_at_wrist(w, z, x, care);
-    const WristSide<V> up = wrist_side(w, view, view.s5, unconstrained),
-                       down = wrist_side(w, view, -view.s5, unconstrained);
-    return {{up.t4, down.t4}, {up.t5, down.t5}, {up.t6, down.t6}, view.ok, view.doubt};
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

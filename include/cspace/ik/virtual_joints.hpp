@@ -70,41 +70,13 @@ inline Chain with_axis(const Chain& c, int at, const Axis& axis) {
     return longer;
 }
 
-// The smallest singular value of the Jacobian (lengths over `length`) at the k-th of some generic
-// configurations; virtual joints stay at zero.
-inline double completed_conditioning(const Chain& chain, const int* source, double length, int k) {
-    double q[6];
-    spread_configuration(k, chain.n, q);
-    for (int i = 0; i < chain.n; ++i)
-        if (source[i] < 0) q[i] = 0;
-    PoseError error;
-    measure_error(chain, chain.tip, length, q, error);
-    decompose(error.jacobian);
-    return error.jacobian.sigma[weakest_direction(error.jacobian)];
-}
-
-// Whether the completed arm is regular where its virtual joints are zero. Only then do its branches coincide
-// with those of the arm.
-inline bool is_regular(const Chain& six, const int* source, double length) {
-    int regular = 0;
-    constexpr int trials = 5;
-    constexpr double regular_singular_value = 1e-3;  // (lengths over the arm's length), as of real arms
-    for (int k = 0; k < trials; ++k)
-        regular += completed_conditioning(six, source, length, k) > regular_singular_value;
-    return 2 * regular > trials;
-}
-
-// Whether an arm has a redundant joint (two wrists, a wrist on axis 3, four parallel axes). Then each of its
-// poses is singular, to within `blind`, and so are those of every completed arm.
-inline bool is_always_singular(const Chain& chain, const int* source, double length, double blind) {
-    for (int k = 0; k < 8; ++k)
-        if (completed_conditioning(chain, source, length, k) > blind) return false;
-    return true;
-}
-
 // `source[i]`: the joint of the arm that is joint i of the completed arm, or −1 for a virtual joint.
 inline bool complete_plan(Plan& plan, const Chain& c, const int* source) {
-    if (c.n == 6) return is_regular(c, source, characteristic_length(c)) && plan_six(plan, c, source);
+    if (c.n == 6) {
+        const auto is_virtual = [&](int i) { return source[i] < 0; };
+        return completed_conditioning(c, characteristic_length(c), is_virtual) > regular_enough &&
+               plan_six(plan, c, source);
+    }
     for (int at = c.n; at >= 0; --at) {
         const AxisChoices choices = axes_to_insert(c, at);
         int longer_source[6];
@@ -126,10 +98,10 @@ CSPACE_ONCE bool make_plan(Plan& plan, const Chain& chain) {
     plan.virtual_joints = 6 - chain.n;
     constexpr double rounding = tolerance::always_singular;
     if (chain.n < 6)
-        return !is_always_singular(chain, source, characteristic_length(chain), rounding) &&
+        return !is_always_singular(chain, characteristic_length(chain), rounding) &&
                complete_plan(plan, chain, source);
     if (plan_six(plan, chain, source) &&
-        !is_always_singular(chain, source, plan.form.length, max(rounding, 10 * plan.form.deviation)))
+        !is_always_singular(chain, plan.form.length, max(rounding, 10 * plan.form.deviation)))
         return true;
     plan.family = Family::none;
     return false;

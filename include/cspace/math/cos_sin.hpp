@@ -14,7 +14,7 @@ namespace cspace {
 template <class V>
 struct CosSinRoots {
     Turn<V> theta[2];
-    V excess;  // the error: max(|d| − r, 0)
+    V error;  // max(|d| − r, 0)
     mask_of<V> two, free;
 };
 
@@ -37,7 +37,7 @@ CSPACE_INLINE CosSinRoots<V> cos_sin_roots(V a, V b, V d, V scale) {
     CosSinRoots<V> roots;
     roots.free = r <= tolerance::rounding * scale;
     roots.two = inside > tolerance::rounding * r * r && !roots.free;
-    roots.excess = max(abs(d) - r, zero);
+    roots.error = max(abs(d) - r, zero);
     const Turn<V> middle = direction(a, b, r, roots.free);
     const V one_sided = copysign(fill<V>(1.0), d);
     const V inverse = 1.0 / select(roots.free, fill<V>(1.0), r);

@@ -15,6 +15,10 @@ namespace cspace {
 struct TrigPolynomial {
     double a0, a1, b1, a2, b2;
 };
+// k + c cos θ + s sin θ
+struct LinearInTurn {
+    double k, c, s;
+};
 // `everywhere` if f is zero for every angle. multiplicity as in RealRoots.
 struct TrigRoots {
     int count = 0;
@@ -41,13 +45,18 @@ inline TrigPolynomial seen_from(const Turn<double>& origin, const TrigPolynomial
     return {f.a0, f.a1 * o.c + f.b1 * o.s, f.b1 * o.c - f.a1 * o.s, f.a2 * oo.c + f.b2 * oo.s,
             f.b2 * oo.c - f.a2 * oo.s};
 }
-// The product (f0 + f1 cos θ + g1 sin θ)(h0 + h1 cos θ + k1 sin θ) of two linear ones is of degree two.
-inline TrigPolynomial product(double f0, double f1, double g1, double h0, double h1, double k1) {
-    return {f0 * h0 + 0.5 * (f1 * h1 + g1 * k1), f0 * h1 + f1 * h0, f0 * k1 + g1 * h0,
-            0.5 * (f1 * h1 - g1 * k1), 0.5 * (f1 * k1 + g1 * h1)};
-}
 inline TrigPolynomial operator+(const TrigPolynomial& f, const TrigPolynomial& g) {
     return {f.a0 + g.a0, f.a1 + g.a1, f.b1 + g.b1, f.a2 + g.a2, f.b2 + g.b2};
+}
+inline LinearInTurn operator+(const LinearInTurn& f, const LinearInTurn& g) {
+    return {f.k + g.k, f.c + g.c, f.s + g.s};
+}
+inline LinearInTurn operator*(double factor, const LinearInTurn& f) {
+    return {factor * f.k, factor * f.c, factor * f.s};
+}
+inline TrigPolynomial product(const LinearInTurn& f, const LinearInTurn& g) {
+    return {f.k * g.k + 0.5 * (f.c * g.c + f.s * g.s), f.k * g.c + f.c * g.k, f.k * g.s + f.s * g.k,
+            0.5 * (f.c * g.c - f.s * g.s), 0.5 * (f.c * g.s + f.s * g.c)};
 }
 
 // One Newton step on the circle, kept if it brings f closer to zero.

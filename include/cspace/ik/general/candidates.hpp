@@ -111,7 +111,7 @@ inline bool find_near_double(const GeneralPlan& plan, const Posed& goal, const d
     PoseError error;
     const double length = 1.0;
     measure_error(plan.chain, goal, length, q, error);
-    const WeakDirection weak = weak_direction(&error.jacobian.us[0]);
+    const WeakDirection weak = weak_direction(error.jacobian);
     if (weak.sigma > most) return false;
     constexpr double h = 1e-3;
     double bend = 2 * dot_n(weak.u, error.e, 6);
@@ -170,6 +170,17 @@ inline void refine_unsettled(const GeneralPlan& plan, const Posed& goal, Candida
             append_candidate(all, near_double, false);
     }
     admit_candidates(plan, goal, direct, all, out);
+}
+
+// The solutions near the candidates that list(add) adds by add(q, close). Returns what list returns.
+template <class List>
+inline bool admit_listed(const GeneralPlan& plan, const Posed& goal, const List& list, Solutions& out) {
+    Candidates found;
+    const bool result = list([&](const double* q, bool close) { append_candidate(found, q, close); });
+    admit_candidates(plan, goal, 0, found, out);
+    add_near_double_roots(plan, goal, found, out);
+    refine_unsettled(plan, goal, found, out);
+    return result;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -35,23 +35,9 @@ struct PositionFirst {
     ThreeTurns wrist;
 };
 
-struct PlacedAndTurned {
-    static constexpr int room = 2 * max_position_solutions;
-    int count = 0;
-    double q[room][6];
-    bool close[room];    // to another one
-    bool doubt = false;  // a joint is free, or two solutions merge
-};
-
 struct OrientationFirst {
     int turn[3], slide[3];
     ThreeTurns turns;
-};
-
-struct TwoOrientations {
-    int count = 0;
-    double q[2][6];
-    double inside, volume;  // see TurnedTwice; of the slides' directions, the lesser of both
 };
 
 }  // namespace cspace::ik
@@ -127,9 +113,12 @@ inline PositionFirst position_first(const Chain& six) {
     return out;
 }
 
-inline PlacedAndTurned solve_position_first(const PositionFirst& plan, const Posed& goal_of_six) {
+// Calls add(q, close) for every solution; close: it may stand close to another. Returns whether any does, or
+// a joint is free.
+template <class Add>
+bool solve_position_first(const PositionFirst& plan, const Posed& goal_of_six, const Add& add) {
     constexpr double merging = 1e-6;
-    PlacedAndTurned out;
+    bool doubt = false;
     const Posed goal = plan.backwards ? inverse(goal_of_six) : goal_of_six;
     const PositionSolutions placed = solve_position(plan.first, goal * plan.centre_in_tip, false);
     for (int k = 0; k < placed.count; ++k) {
@@ -137,14 +126,15 @@ inline PlacedAndTurned solve_position_first(const PositionFirst& plan, const Pos
         for (int i = 0; i < 3; ++i) G = transpose(joint_motion(plan.first, i, placed.q[k][i]).R) * G;
         const TurnedTwice turned = solve_three_turns(plan.wrist, G);
         const bool close = placed.close[k] || turned.inside < merging;
-        out.doubt = out.doubt || close;
-        for (int j = 0; j < turned.count; ++j, ++out.count) {
-            out.close[out.count] = close;
+        doubt = doubt || close;
+        for (int j = 0; j < turned.count; ++j) {
+            double q[6];
             for (int i = 0; i < 6; ++i)
-                out.q[out.count][plan.backwards ? 5 - i : i] = i < 3 ? placed.q[k][i] : turned.q[j][i - 3];
+                q[plan.backwards ? 5 - i : i] = i < 3 ? placed.q[k][i] : turned.q[j][i - 3];
+            add(q, close);
         }
     }
-    return out;
+    return doubt;
 }
 
 // Three joints that turn and three that slide, in any order: the turns alone make the orientation, in up to
@@ -163,7 +153,8 @@ inline OrientationFirst orientation_first(const Chain& chain) {
     return out;
 }
 
-// The slides that bring the tip to the goal, the turns being as in q.
+// The slides that bring the tip to the goal, the turns being as in q. Lowers `volume` to that of the slides'
+// directions.
 inline bool solve_slides(const Chain& chain, const OrientationFirst& arm, const Posed& goal, double* q,
                          double& volume) {
     for (const int i : arm.slide) q[i] = 0;
@@ -181,17 +172,20 @@ inline bool solve_slides(const Chain& chain, const OrientationFirst& arm, const 
     return regular;
 }
 
-inline TwoOrientations two_orientations(const Chain& chain, const OrientationFirst& arm, const Posed& goal) {
+// Calls add(q, close) as above. Returns whether nothing but these solves the goal.
+template <class Add>
+bool solve_orientation_first(const Chain& chain, const Posed& goal, const Add& add) {
+    constexpr double clear = 1e-9, flat = 1e-9;
+    constexpr double merging = 1e-6;  // square of a sine: the two solutions for it nearly meet
+    const OrientationFirst arm = orientation_first(chain);
     const TurnedTwice turned = solve_three_turns(arm.turns, goal.R * transpose(chain.tip.R));
-    TwoOrientations out;
-    out.inside = turned.inside;
-    out.volume = 1;
+    double volume = 1;
     for (int k = 0; k < turned.count; ++k) {
-        double* const q = out.q[out.count];
+        double q[6];
         for (int i = 0; i < 3; ++i) q[arm.turn[i]] = turned.q[k][i];
-        out.count += solve_slides(chain, arm, goal, q, out.volume);
+        if (solve_slides(chain, arm, goal, q, volume)) add(q, turned.inside < merging);
     }
-    return out;
+    return volume > flat && std::fabs(turned.inside) > clear;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

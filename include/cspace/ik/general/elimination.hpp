@@ -86,15 +86,12 @@ inline Invariants pulled_back(const Posed& T, const Invariants& g) {
 }
 
 // Rz(a) v = level + cos a · across + sin a · quarter.
-inline Vec3d level(const Vec3d& a) { return {0, 0, a.z}; }
 inline Vec3d across(const Vec3d& a) { return {a.x, a.y, 0}; }
 inline Vec3d quarter(const Vec3d& a) { return {-a.y, a.x, 0}; }
-inline Invariants level(const Invariants& v) {
-    return {level(v.l), level(v.p), level(v.m), level(v.q), v.pp, v.pl, v.one};
-}
 inline Invariants across(const Invariants& v) {
     return {across(v.l), across(v.p), across(v.m), across(v.q), 0, 0, 0};
 }
+inline Invariants level(const Invariants& v) { return v - across(v); }
 inline Invariants quarter(const Invariants& v) {
     return {quarter(v.l), quarter(v.p), quarter(v.m), quarter(v.q), 0, 0, 0};
 }

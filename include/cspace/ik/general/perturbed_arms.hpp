@@ -93,7 +93,6 @@ inline void solve_perturbed(const GeneralArm& arm, const Posed& goal, Solutions&
     for (int m = 0; m < out.count && out.complete; ++m)
         out.complete = (led[0].from[m] && led[1].from[m]) || is_about_to_merge(plan, goal, out.q[m]);
     out.complete = out.complete && out.count % 2 == 0;
-    out.status = out.count ? Status::exact : Status::unreachable;
 }
 
 // Goals that are special to an arm, say a tool held along its first axis, have solutions that share every
@@ -119,13 +118,8 @@ inline bool certify_by_tilting(const GeneralPlan& plan, const Posed& goal, doubl
 
 // Whether descents from all over the joints come to solutions that `out` lacks: families attract them.
 inline bool lacks_by_descent(const GeneralPlan& plan, const Posed& goal, const Solutions& out) {
-    constexpr int starts = 16, most_steps = 60;
     Solutions more = out;
-    for (int k = 0; k < starts && more.count == out.count; ++k) {
-        double q[max_joints];
-        spread_configuration(k, 6, q);
-        descend_to_solution(plan.chain, goal, 1, q, most_steps, more);
-    }
+    search_by_descent(plan.chain, goal, 1, 16, more, out.count + 1);
     return more.count > out.count;
 }
 
@@ -146,7 +140,6 @@ inline void solve_tilted(const GeneralPlan& plan, const Posed& goal, const Tried
             return;
         out = tried;
         out.complete = out.crowded = true;
-        out.status = out.count ? Status::exact : Status::unreachable;
         return;
     }
 }
@@ -176,15 +169,9 @@ inline bool serves_in_some_order(GeneralPlan& plan) {
 
 // By the wrist that the arm has. Where solutions merge or joints are free its list may be short.
 inline void solve_with_wrist(const GeneralArm& arm, const Posed& goal, Solutions& out) {
-    const PlacedAndTurned found = solve_position_first(arm.position_first, goal);
-    Candidates start;
-    for (int k = 0; k < found.count; ++k) append_candidate(start, found.q[k], found.close[k]);
-    admit_candidates(arm.plan, goal, 0, start, out);
-    add_near_double_roots(arm.plan, goal, start, out);
-    refine_unsettled(arm.plan, goal, start, out);
+    const auto list = [&](const auto& add) { return solve_position_first(arm.position_first, goal, add); };
+    out.crowded = admit_listed(arm.plan, goal, list, out);
     out.complete = true;
-    out.crowded = found.doubt;
-    out.status = out.count ? Status::exact : Status::unreachable;
 }
 
 inline void solve_general(const GeneralArm& arm, const Posed& goal, Solutions& out) {

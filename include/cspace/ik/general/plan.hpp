@@ -89,7 +89,8 @@ inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutio
     constexpr int most_shared = 3;  // a goal special to so many joints is special to most
     out.crowded = false;
     if (plan.slides == 3) {
-        out.complete = plan.regular > 0 && solve_orientation_first(plan, goal, out);
+        const auto list = [&](const auto& add) { return solve_orientation_first(plan.chain, goal, add); };
+        out.complete = plan.regular > 0 && admit_listed(plan, goal, list, out);
         out.crowded = !out.complete;
     } else {
         out.complete = plan.slides == 0 && is_beyond_reach(plan.frames, goal);
@@ -106,7 +107,6 @@ inline void try_formulations(const GeneralPlan& plan, const Posed& goal, Solutio
     if (tried_all.count > 0 && !out.complete)
         out.complete = is_announced_by_one(plan, goal, tried_all, false, out);
     out.complete = out.complete && come_in_pairs(plan, goal, out);
-    out.status = out.count ? Status::exact : Status::unreachable;
 }
 
 // Returns the work.
@@ -166,19 +166,6 @@ inline void try_formulation(const GeneralPlan& plan, const Posed* goal, int last
         trial.shared += seen.shared;
         trial.found[trial.poses++] = out.count;
     }
-}
-
-// Whether two of the joints do one's work, or would but for rounded axes: then every configuration is
-// singular and no list of solutions could be complete.
-inline bool is_redundant(const Chain& chain) {
-    for (int k = 0; k < 8; ++k) {
-        double q[max_joints];
-        spread_configuration(k, 6, q);
-        PoseError error;
-        measure_error(chain, forward(chain, q), 1, q, error);
-        if (weak_direction(&error.jacobian.us[0]).sigma > tolerance::axis_relation) return false;
-    }
-    return true;
 }
 
 // The k-th of some poses of an arm without a pattern.

@@ -6,12 +6,6 @@
 
 namespace cspace::ik {
 
-// Products of half angles, x[3 i + j] belonging to S1^(3−i) C1^i and S2^(2−j) C2^j.
-template <class V>
-struct Monomials {
-    V x[12];
-};
-
 // Sums over neighbouring monomials: the sines and cosines of a1 and a2, from their origins, not normalised.
 template <class V>
 struct TwoHalfAngles {
@@ -29,11 +23,6 @@ struct Step {
 template <class V>
 struct ReducedEquations {
     V A[12][12], diagonal[12], factor[12];
-};
-
-template <class V>
-struct WeakPlane {
-    V z[2][12];  // orthonormal
 };
 
 }  // namespace cspace::ik
@@ -54,20 +43,18 @@ template <class V>
 CSPACE_INLINE void turn_back(const ReducedEquations<V>& r, V (&y)[12]) {
     for (int k = 11; k >= 0; --k) linear::reflect(r.A, 12, k, r.factor[k], y);
 }
-// The monomials that all equations but the last in line annihilate.
+// The monomials that all equations but the last in line annihilate: products of half angles, x[3 i + j]
+// belonging to S1^(3−i) C1^i and S2^(2−j) C2^j.
 template <class V>
-CSPACE_INLINE Monomials<V> null_vector(const ReducedEquations<V>& r) {
-    Monomials<V> out;
-    for (int i = 0; i < 12; ++i) out.x[i] = fill<V>(i == 11 ? 1.0 : 0.0);
-    turn_back(r, out.x);
-    return out;
+CSPACE_INLINE void null_vector(const ReducedEquations<V>& r, V (&x)[12]) {
+    for (int i = 0; i < 12; ++i) x[i] = fill<V>(i == 11 ? 1.0 : 0.0);
+    turn_back(r, x);
 }
 
 // Neighbouring monomials differ by the factor C1/S1 or C2/S2: sums over all neighbours, as sine and cosine of
 // the whole angles.
 template <class V>
-CSPACE_INLINE TwoHalfAngles<V> half_angles(const Monomials<V>& m) {
-    const V* x = m.x;
+CSPACE_INLINE TwoHalfAngles<V> half_angles(const V (&x)[12]) {
     const V zero = fill<V>(0.0);
     V aa = zero, ab = zero, bb = zero, cc = zero, cd = zero, dd = zero;
     for (int i = 0; i < 9; ++i) {
@@ -210,11 +197,12 @@ CSPACE_INLINE void make_unit(V* y) {
 }
 
 // The singular vectors of the two smallest singular values, by subspace iteration with the inverse of R Rᵀ
-// (Golub & Van Loan 2013, section 8.2); the triangle is read from a reduction of the transposed equations.
+// (Golub & Van Loan 2013, section 8.2), orthonormal; the triangle is read from a reduction of the transposed
+// equations.
 template <class V>
-CSPACE_NOINLINE void weak_plane(const ReducedEquations<V>& r, WeakPlane<V>& out) {
+CSPACE_NOINLINE void weak_plane(const ReducedEquations<V>& r, V (&y)[2][12]) {
     constexpr int steps = 2;
-    V floor = fill<V>(0.0), inverse[12], y[2][12];
+    V floor = fill<V>(0.0), inverse[12];
     for (const V& d : r.diagonal) floor = max(floor, abs(d));
     floor = tolerance::last_digits * floor;
     for (int k = 0; k < 12; ++k) {
@@ -239,25 +227,22 @@ CSPACE_NOINLINE void weak_plane(const ReducedEquations<V>& r, WeakPlane<V>& out)
         for (int i = 0; i < 12; ++i) y[1][i] = mul_add(-along, y[0][i], y[1][i]);
         make_unit(y[1]);
     }
-    for (int k = 0; k < 2; ++k) {
-        turn_back(r, y[k]);
-        for (int i = 0; i < 12; ++i) out.z[k][i] = y[k][i];
-    }
+    for (auto& v : y) turn_back(r, v);
 }
 
 // Vectors Z u of the plane with (upper nine) = t (lower nine): t is an eigenvalue of the 2 × 2 pencil that
 // the plane makes of the two. Both, one twice where they coincide; true where they are real.
 template <class V>
-CSPACE_NOINLINE mask_of<V> split_plane(const WeakPlane<V>& plane, Monomials<V> (&out)[2]) {
+CSPACE_NOINLINE mask_of<V> split_plane(const V (&plane)[2][12], V (&out)[2][12]) {
     // Normal equations of  upper u = t lower u,  the better of the two halves inverted.
     V ll[2][2], lu[2][2], uu[2][2];
     for (int a = 0; a < 2; ++a)
         for (int b = 0; b < 2; ++b) {
             ll[a][b] = uu[a][b] = lu[a][b] = fill<V>(0.0);
             for (int i = 0; i < 9; ++i) {
-                ll[a][b] = mul_add(plane.z[a][i + 3], plane.z[b][i + 3], ll[a][b]);
-                uu[a][b] = mul_add(plane.z[a][i], plane.z[b][i], uu[a][b]);
-                lu[a][b] = mul_add(plane.z[a][i + 3], plane.z[b][i], lu[a][b]);
+                ll[a][b] = mul_add(plane[a][i + 3], plane[b][i + 3], ll[a][b]);
+                uu[a][b] = mul_add(plane[a][i], plane[b][i], uu[a][b]);
+                lu[a][b] = mul_add(plane[a][i + 3], plane[b][i], lu[a][b]);
             }
         }
     constexpr double rounding = 1e-12;  // of entries that cancel
@@ -281,7 +266,7 @@ CSPACE_NOINLINE mask_of<V> split_plane(const WeakPlane<V>& plane, Monomials<V> (
         const mask_of<V> any_vector = !(size > rounding);  // a multiple of the unit matrix
         u0 = select(any_vector, fill<V>(k == 0 ? 1.0 : 0.0), u0);
         u1 = select(any_vector, fill<V>(k == 0 ? 0.0 : 1.0), u1);
-        for (int i = 0; i < 12; ++i) out[k].x[i] = u0 * plane.z[0][i] + u1 * plane.z[1][i];
+        for (int i = 0; i < 12; ++i) out[k][i] = u0 * plane[0][i] + u1 * plane[1][i];
     }
     return det > 0.0;
 }

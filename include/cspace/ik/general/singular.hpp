@@ -14,27 +14,12 @@ inline void mark_self_motions(const GeneralPlan& plan, const Posed& goal, Soluti
     for (int k = 0; k < out.count; ++k) {
         PoseError error;
         measure_error(plan.chain, goal, 1, out.q[k], error);
-        if (weak_direction(&error.jacobian.us[0]).sigma > hardly) continue;
+        if (weak_direction(error.jacobian).sigma > hardly) continue;
         decompose(error.jacobian);
         out.self_motion[k] =
             find_self_motion(plan.chain, goal, 1, out.q[k], error.jacobian, out.direction[k]);
         if (out.self_motion[k]) out.status = Status::singular;
     }
-}
-
-// Where a determinant vanishes all round the circle a family runs through every hidden angle, and where a
-// completed arm is singular the arm itself need not be: what is there is found by descent from configurations
-// all over the joints.
-inline void search_by_descent(const Chain& chain, const Posed& goal, double length, int starts,
-                              Solutions& out) {
-    constexpr int most_steps = 60;
-    for (int k = 0; k < starts && out.count < max_solutions; ++k) {
-        double q[max_joints];
-        spread_configuration(k, chain.n, q);
-        for (int i = 0; i < chain.n; ++i) q[i] *= chain.prismatic[i] ? length / pi : 1;
-        descend_to_solution(chain, goal, length, q, most_steps, out);
-    }
-    classify_solutions(out);
 }
 
 // Slides in metres again, and directions of length one.
@@ -114,7 +99,6 @@ inline Solutions solve_general_carefully(const GeneralArm& arm, const Posed& goa
     if (!out.complete || empty || (!certain && may_hide))
         look_at_perturbed_goals(arm, chain, goal, certain, out);
     if (!certain && !completed) mark_self_motions(arm.plan, goal, out);
-    classify_solutions(out);
     if (out.status == Status::singular) {
         double rest[max_joints];
         for (int i = 0; i < chain.n; ++i)

@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "cspace/ik/general/candidates.hpp"
-#include "cspace/ik/general/decoupled.hpp"
 #include "cspace/ik/general/isolate.hpp"
 #include "cspace/ik/general/recover.hpp"
 #include "cspace/ik/general/two_prismatic.hpp"
@@ -49,7 +48,9 @@ inline void follow_roots(const Loop& loop, const Elimination& e, const double* a
         const Turn<V> a0 = turn_by(load<V>(angle + first, lanes));
         ReducedEquations<V> reduced;
         reduce_equations(e, a0.c, a0.s, reduced);
-        joints_from(loop, e, a0, half_angles(null_vector(reduced)), q, second);
+        V null[12];
+        null_vector(reduced, null);
+        joints_from(loop, e, a0, half_angles(null), q, second);
         for (int k = 0; k < lanes; ++k) {
             put_lane(out, q, k, close || doubled);
             if (doubled) put_lane(out, second, k, true);
@@ -69,11 +70,10 @@ inline void split_planes(const Loop& loop, const Elimination& e, const double* a
         const Turn<V> a0 = turn_by(at);
         ReducedEquations<V> reduced;
         reduce_equations(e, a0.c, a0.s, reduced);
-        WeakPlane<V> plane;
+        V plane[2][12], both[2][12];
         weak_plane(reduced, plane);
-        Monomials<V> both[2];
         const mask_of<V> split = split_plane(plane, both);
-        for (const Monomials<V>& one : both) {
+        for (const auto& one : both) {
             V q[6], second[6];
             joints_from(loop, e, a0, half_angles(one), q, second);
             for (int k = 0; k < lanes; ++k) {
@@ -319,19 +319,6 @@ inline Certificate solve_formulation(const GeneralPlan& plan, const Posed& goal,
     seen.trusted = seen.trusted && e.faintest > clear_equation;
     seen.complete = seen.complete && seen.trusted;
     return seen;
-}
-
-// Of three joints that turn and three that slide.
-inline bool solve_orientation_first(const GeneralPlan& plan, const Posed& goal, Solutions& out) {
-    constexpr double clear = 1e-9, flat = 1e-9;
-    constexpr double close = 1e-6;  // square of a sine: the two solutions for it nearly meet
-    const TwoOrientations both = two_orientations(plan.chain, orientation_first(plan.chain), goal);
-    Candidates found;
-    for (int k = 0; k < both.count; ++k) append_candidate(found, both.q[k], both.inside < close);
-    admit_candidates(plan, goal, 0, found, out);
-    add_near_double_roots(plan, goal, found, out);
-    refine_unsettled(plan, goal, found, out);
-    return both.volume > flat && std::fabs(both.inside) > clear;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -8,27 +8,9 @@
 
 namespace cspace::ik::inline CSPACE_ISA {
 
-inline constexpr double regular_enough = 1e-3;  // singular value of a completed Jacobian
-
-// How well a completed arm is conditioned where its virtual joints are zero: the median over some
-// configurations of the smallest singular value.
+// How well the arm is conditioned that virtual joints behind its own complete.
 inline double completed_conditioning(const Chain& six, int joints) {
-    constexpr int trials = 5;
-    double sigma[trials];
-    for (int k = 0; k < trials; ++k) {
-        double q[max_joints];
-        spread_configuration(k, 6, q);
-        for (int i = joints; i < 6; ++i) q[i] = 0;
-        PoseError error;
-        measure_error(six, six.tip, 1, q, error);
-        sigma[k] = weak_direction(&error.jacobian.us[0]).sigma;
-        for (int j = k; j > 0 && sigma[j - 1] > sigma[j]; --j) {
-            const double kept = sigma[j];
-            sigma[j] = sigma[j - 1];
-            sigma[j - 1] = kept;
-        }
-    }
-    return sigma[trials / 2];
+    return completed_conditioning(six, 1, [=](int i) { return i >= joints; });
 }
 
 // The chain with virtual joints, the first `slides` of which slide, in directions without a pattern.
@@ -104,7 +86,7 @@ CSPACE_ONCE bool make_general_arm(const Chain& chain, GeneralArm& arm) {
     Chain six = in_units_of(length, chain);
     if (chain.n > 6 || (chain.n < 6 && !complete_arm(in_units_of(length, chain), six))) return false;
     arm.plan.chain = six;
-    if (is_redundant(six)) return false;
+    if (is_always_singular(six, 1, tolerance::axis_relation)) return false;
     arm.position_first = position_first(six);
     if (arm.position_first.serves)
         describe_formulation(six, arm.plan);
@@ -140,7 +122,7 @@ CSPACE_ONCE bool renumber_general_arm(const GeneralArm& typical, const Chain& ch
         arm.perturbed[k].frames = loop_frames(arm.perturbed[k].chain);
         forget_spurious_roots(arm.perturbed[k]);
     }
-    return !is_redundant(six);
+    return !is_always_singular(six, 1, tolerance::axis_relation);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

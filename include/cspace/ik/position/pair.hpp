@@ -165,16 +165,10 @@ inline void circle_and_line(const OnCurve f[2], const OnCurve g[2], PairCandidat
     // L = f_0 − k_0 = a_0 q; then a_0² (f_1 − k_1) = a_0 a_1 L + square L².
     const double a0 = g[0].a, a1 = g[1].a, square = g[1].square;
     const double scale = 1 + square;
-    const double l[3] = {f[0].k - g[0].k, f[0].a, f[0].b}, m[3] = {f[1].k - g[1].k, f[1].a, f[1].b};
-    TrigPolynomial p;
-    if (square == 0) {
-        p = {a0 * m[0] - a1 * l[0], a0 * m[1] - a1 * l[1], a0 * m[2] - a1 * l[2], 0, 0};
-    } else {
-        p = product(l[0], l[1], l[2], -square * l[0], -square * l[1], -square * l[2]);
-        p.a0 += a0 * (a0 * m[0] - a1 * l[0]);
-        p.a1 += a0 * (a0 * m[1] - a1 * l[1]);
-        p.b1 += a0 * (a0 * m[2] - a1 * l[2]);
-    }
+    const LinearInTurn l = {f[0].k - g[0].k, f[0].a, f[0].b}, m = {f[1].k - g[1].k, f[1].a, f[1].b};
+    const LinearInTurn n = a0 * m + -a1 * l;
+    const TrigPolynomial p =
+        square == 0 ? product({1, 0, 0}, n) : product({a0, 0, 0}, n) + product(-square * l, l);
     const TrigRoots u = trig_roots(p, scale);
     for (int i = 0; i < u.count; ++i) follow_last(f, g, angle_of(u.theta[i]), found);
     // A condition that hardly sees the line gives the angle alone.

@@ -56,22 +56,15 @@ struct Search {
     const Posed& goal;
     PoseGap<n> gap;
     double size;
-    FewJointSolutions& found;
+    PositionSolutions& found;
 
     // q in units of the chain; refined in units of its size.
     void add_candidate(const double* q) {
         double scaled[n];
         for (int i = 0; i < n; ++i) scaled[i] = chain.prismatic[i] ? q[i] / size : q[i];
         if (refine_angles(gap, scaled) > gap.reached) return;
-        Linearised<PoseGap<n>> at;
-        if (linearise(gap, scaled, at) > gap.reached || is_opposed(scaled)) return;
-        keep_distinct(gap, scaled, found);
-    }
-    // Half a turn away from the goal the sum of g × r vanishes too.
-    bool is_opposed(const double* scaled) const {
-        double q[n];
-        for (int i = 0; i < n; ++i) q[i] = chain.prismatic[i] ? scaled[i] * size : scaled[i];
-        return spatial::angle_between(forward(chain, q).R, goal.R) > 1;
+        // Half a turn away from the goal the sum of g × r vanishes too.
+        if (spatial::angle_between(forward(chain, scaled).R, goal.R) <= 1) keep_distinct(gap, scaled, found);
     }
 };
 
@@ -112,7 +105,7 @@ void by_last_axis(const Chain& chain, const Posed& G, double size, bool backward
 }
 
 template <int n>
-void find_solutions(const Chain& chain, const Posed& T, FewJointSolutions& found) {
+void find_solutions(const Chain& chain, const Posed& T, PositionSolutions& found) {
     const PositionScale scale = position_scale(chain, T.t);
     PoseGap<n> gap{tip_gap<n>(chain, T.t, scale), chain.tip.R, T.R, {}, scale.reached};
     for (int i = 0; i < n; ++i) gap.prismatic[i] = chain.prismatic[i];
@@ -129,20 +122,16 @@ void find_solutions(const Chain& chain, const Posed& T, FewJointSolutions& found
             by_last_axis<n>(back, inverse(T) * inverse(back.tip), scale.size, true, search);
         }
     }
-    for (int k = 0; k < found.count; ++k) {
+    for (int k = 0; k < found.count; ++k)
         for (int i = 0; i < n; ++i)
             if (chain.prismatic[i]) found.q[k][i] *= scale.size;
-        const Posed reached = forward(chain, found.q[k]);
-        found.position_error[k] = norm(reached.t - T.t);
-        found.rotation_error[k] = spatial::angle_between(reached.R, T.R);
-    }
 }
 
 }  // namespace few_joint_pose
 
 // Moves the tip of the chain (n ≤ 3) to T, in base coordinates.
-inline FewJointSolutions solve_few_joint_pose(const Chain& chain, const Posed& T) {
-    FewJointSolutions found;
+inline Solutions solve_few_joint_pose(const Chain& chain, const Posed& T) {
+    PositionSolutions found;
     if (chain.n == 1) few_joint_pose::find_solutions<1>(chain, T, found);
     if (chain.n == 2) few_joint_pose::find_solutions<2>(chain, T, found);
     if (chain.n == 3) few_joint_pose::find_solutions<3>(chain, T, found);

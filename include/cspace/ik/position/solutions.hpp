@@ -1,7 +1,7 @@
 // Results of inverse kinematics for an arm with up to three joints.
 #pragma once
 
-#include "cspace/ik/chain.hpp"
+#include "cspace/ik/solution.hpp"
 #include "cspace/ik/subproblems/least_squares.hpp"
 #include "cspace/math/small_svd.hpp"
 
@@ -9,28 +9,13 @@ namespace cspace::ik {
 
 inline constexpr int max_position_joints = 3, max_position_solutions = 8;
 
-// The configurations that reach a goal. Whether solution i belongs to a family, and the unit direction in
-// which its joints move without the tip; close: whether it does, or merges with another, but for what
-// rounding leaves.
-struct FewJointRows {
-    int count = 0;
-    double q[max_position_solutions][max_position_joints] = {};
-    bool free[max_position_solutions] = {};
-    bool close[max_position_solutions] = {};
-    double direction[max_position_solutions][max_position_joints] = {};
-};
-// The result of a position goal.
-struct PositionSolutions : FewJointRows {
-    double residual[max_position_solutions] = {};  // ‖tip − goal‖ [m]
+// The result for a position or a pose. close: whether solution i belongs to a self-motion, or merges with
+// another, but for what rounding leaves.
+struct PositionSolutions : Solutions {
+    bool close[max_position_solutions];
     // Without a solution: the distance that is missing [m], and the joints that come nearest.
     double out_of_reach = 0;
     double nearest[max_position_joints] = {};
-};
-
-// The result of a pose goal for such an arm.
-struct FewJointSolutions : FewJointRows {
-    double position_error[max_position_solutions] = {};  // [m]
-    double rotation_error[max_position_solutions] = {};  // [rad]
 };
 
 }  // namespace cspace::ik
@@ -100,7 +85,7 @@ bool is_free(const System& g, const double* q, double* along, bool& close) {
 
 // Appends the refined solution q of a system if it is new.
 template <class System>
-void keep_distinct(const System& g, double* q, FewJointRows& found) {
+void keep_distinct(const System& g, double* q, PositionSolutions& found) {
     constexpr int n = System::angles;
     if (found.count == max_position_solutions) return;
     for (int i = 0; i < n; ++i)
@@ -109,7 +94,10 @@ void keep_distinct(const System& g, double* q, FewJointRows& found) {
         if (same_joints(g, q, found.q[i])) return;
     for (int i = 0; i < n; ++i) found.q[found.count][i] = q[i];
     const int k = found.count++;
-    found.free[k] = is_free(g, q, found.direction[k], found.close[k]);
+    found.branch[k] = static_cast<signed char>(k);
+    found.self_motion[k] = is_free(g, q, found.direction[k], found.close[k]);
+    if (found.self_motion[k] || k == 0)
+        found.status = found.self_motion[k] ? Status::singular : Status::exact;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -114,7 +114,6 @@ void find_solutions(const Chain& chain, const Vec3d& goal, bool measure_miss, Po
         found.nearest[i] *= size;
         for (int k = 0; k < found.count; ++k) found.q[k][i] *= size;
     }
-    for (int k = 0; k < found.count; ++k) found.residual[k] = norm(forward(chain, found.q[k]).t - goal);
 }
 
 }  // namespace position

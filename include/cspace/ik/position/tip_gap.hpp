@@ -132,33 +132,18 @@ double follow(const TipGap<n>& g, int dimension, double* q) {
 }  // namespace nearest
 
 template <int n>
-double nearest_configuration(const TipGap<n>& g, double* best_q) {
-    constexpr int most = 10, steps = AngleSweep::steps;
+double nearest_configuration(const TipGap<n>& g, double* q) {
     int swept[2];
     const int dimension = nearest::swept_joints(g, swept);
-    AngleSweep sweep;
-    sweep.rows = dimension > 0 ? steps : 1;
-    sweep.columns = dimension > 1 ? steps : 1;
-    const auto start = [&](int i, int j, double* q) {
-        for (int k = 0; k < n; ++k) q[k] = 0;
-        if (dimension > 0) q[swept[0]] = 2 * pi * (i + 0.37) / steps - pi;
-        if (dimension > 1) q[swept[1]] = 2 * pi * (j + 0.37) / steps - pi;
-        return nearest::follow(g, dimension, q);
+    const auto angle = [](int step) { return 2 * pi * (step + 0.37) / sweep_steps - pi; };
+    const auto start = [&](int i, int j, double* t) {
+        for (int k = 0; k < n; ++k) t[k] = 0;
+        if (dimension > 0) t[swept[0]] = angle(i);
+        if (dimension > 1) t[swept[1]] = angle(j);
+        return nearest::follow(g, dimension, t);
     };
-    double q[n];
-    for (int i = 0; i < sweep.rows; ++i)
-        for (int j = 0; j < sweep.columns; ++j) sweep.value[i][j] = start(i, j, q);
-    Valley valleys[most];
-    const int count = find_valleys(sweep, most, valleys);
-    double best = std::numeric_limits<double>::infinity();
-    for (int k = 0; k < count; ++k) {
-        start(valleys[k].row, valleys[k].column, q);
-        const double error = descend_angles(g, q);
-        if (error >= best) continue;
-        best = error;
-        for (int i = 0; i < n; ++i) best_q[i] = q[i];
-    }
-    return best;
+    return minimise_from_sweep<10>(g, dimension > 0 ? sweep_steps : 1, dimension > 1 ? sweep_steps : 1, start,
+                                   q);
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

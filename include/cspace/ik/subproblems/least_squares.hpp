@@ -127,25 +127,34 @@ bool continues_along(const System& system, const Unknown* t, const double* along
     return drift < 0.5 * reach;
 }
 
-// A sweep of two angles, and its lowest points: each is below its neighbours, modulo 2π.
-struct AngleSweep {
-    static constexpr int steps = 24;
-    int rows = steps, columns = steps;  // 1 for an angle that is not swept
-    double value[steps][steps];
+// Points of a sweep over the circle.
+inline constexpr int sweep_steps = 24;
+struct SweepTurns {
+    Turn<double> at[sweep_steps];
+    SweepTurns() {
+        for (int i = 0; i < sweep_steps; ++i) at[i] = turn_by(2 * pi * i / sweep_steps);
+    }
 };
-struct Valley {
-    int row, column;
-    double value;
-};
-// The lowest first, at most `most`; returns their number.
-inline int find_valleys(const AngleSweep& sweep, int most, Valley* found) {
-    const int rows = sweep.rows, columns = sweep.columns;
+
+// The global minimum of the residual: start(i, j, t) sets the unknowns to row i and column j of a sweep of up
+// to two angles and returns the residual there. The minimum is sought from its `most` lowest valleys, which
+// are below their neighbours, modulo 2π. Returns the length of the residual at the minimum.
+template <int most, class System, class Unknown, class Start>
+double minimise_from_sweep(const System& system, int rows, int columns, const Start& start, Unknown* best) {
+    double value[sweep_steps][sweep_steps];
+    Unknown t[System::angles];
+    for (int i = 0; i < rows; ++i)
+        for (int j = 0; j < columns; ++j) value[i][j] = start(i, j, t);
+    struct Valley {
+        int row, column;
+        double value;
+    } found[most];  // the lowest first
     int count = 0;
     for (int i = 0; i < rows; ++i)
         for (int j = 0; j < columns; ++j) {
-            const double here = sweep.value[i][j];
+            const double here = value[i][j];
             const auto is_below = [&](int row, int column) {
-                return here <= sweep.value[(i + row) % rows][(j + column) % columns];
+                return here <= value[(i + row) % rows][(j + column) % columns];
             };
             if (!is_below(1, 0) || !is_below(rows - 1, 0) || !is_below(0, 1) || !is_below(0, columns - 1) ||
                 (count == most && here >= found[most - 1].value))
@@ -154,39 +163,15 @@ inline int find_valleys(const AngleSweep& sweep, int most, Valley* found) {
             for (; k > 0 && found[k - 1].value > here; --k) found[k] = found[k - 1];
             found[k] = {i, j, here};
         }
-    return count;
-}
-
-// The lowest points of a coarse sweep of both angles, at most `most` ≤ 16; returns their number.
-template <class System>
-int sweep_valleys(const System& system, int most, Turn<double> (*at)[2]) {
-    constexpr int steps = AngleSweep::steps;
-    Turn<double> turns[steps];
-    for (int i = 0; i < steps; ++i) turns[i] = turn_by(2 * pi * i / steps);
-    AngleSweep sweep;
-    Linearised<System> point;
-    for (int i = 0; i < steps; ++i)
-        for (int j = 0; j < steps; ++j) {
-            const Turn<double> t[2] = {turns[i], turns[j]};
-            sweep.value[i][j] = linearise(system, t, point);
-        }
-    Valley found[16];
-    const int count = find_valleys(sweep, most, found);
-    for (int k = 0; k < count; ++k) at[k][0] = turns[found[k].row], at[k][1] = turns[found[k].column];
-    return count;
-}
-
-// The global minimum over both angles; returns the length of the residual there.
-template <class System>
-double least_squares(const System& system, Turn<double>* t) {
-    Turn<double> at[6][2];
-    const int count = sweep_valleys(system, 6, at);
-    double best = std::numeric_limits<double>::infinity();
-    for (int i = 0; i < count; ++i) {
-        const double error = descend_angles(system, at[i]);
-        if (error < best) best = error, t[0] = at[i][0], t[1] = at[i][1];
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k < count; ++k) {
+        start(found[k].row, found[k].column, t);
+        const double error = descend_angles(system, t);
+        if (!(error < least)) continue;
+        least = error;
+        for (int i = 0; i < System::angles; ++i) best[i] = t[i];
     }
-    return best;
+    return least;
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

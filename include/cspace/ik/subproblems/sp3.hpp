@@ -15,16 +15,13 @@
 #pragma once
 
 #include "cspace/ik/subproblems/sp1.hpp"
+#include "cspace/ik/subproblems/sp4.hpp"
 
 namespace cspace::ik {
 
-// theta[0] is always a solution; theta[1] is a second one if `two`, otherwise equal to the first.
+// `error` is | ‖Rot(k, θ) p1 − p2‖ − d | at the answer.
 template <class V>
-struct Sp3 {
-    Turn<V> theta[2];
-    V error;  // | ‖Rot(k, θ) p1 − p2‖ − d | at the answer
-    mask_of<V> two, exact, free;
-};
+using Sp3 = Sp4<V>;
 
 }  // namespace cspace::ik
 

@@ -16,12 +16,10 @@
 
 namespace cspace::ik {
 
-// theta[0] is always a solution; theta[1] is a second one if `two`, otherwise equal to the first.
+// `error` is |hᵀ Rot(k, θ) p − d| at the answer.
 template <class V>
-struct Sp4 {
-    Turn<V> theta[2];
-    V error;  // |hᵀ Rot(k, θ) p − d| at the answer
-    mask_of<V> two, exact, free;
+struct Sp4 : CosSinRoots<V> {
+    mask_of<V> exact;
 };
 
 }  // namespace cspace::ik
@@ -34,14 +32,7 @@ CSPACE_INLINE Sp4<V> subproblem_4(const Vec3<V>& h, const Vec3<V>& k, const Vec3
     const V size = norm(h) * norm(p);
     const CosSinRoots<V> roots =
         cos_sin_roots(dot(cross(k, h), kp), dot(h, kp), d - dot(h, k) * dot(k, p), size);
-    Sp4<V> r;
-    r.theta[0] = roots.theta[0];
-    r.theta[1] = roots.theta[1];
-    r.error = roots.excess;
-    r.exact = r.error <= tolerance::exact * max(size, abs(d));
-    r.two = roots.two;
-    r.free = roots.free;
-    return r;
+    return {roots, roots.error <= tolerance::exact * max(size, abs(d))};
 }
 
 }  // namespace cspace::ik::inline CSPACE_ISA

@@ -37,26 +37,7 @@ namespace cspace::ik::inline CSPACE_ISA {
 
 namespace sp5 {
 
-// The two points of the half plane of k2, as functions of θ1 and θ3.
-struct HalfPlaneDistance {
-    static constexpr int angles = 2, equations = 2;
-    const Sp5Problem& s;
-    void operator()(const Turn<double>* t, double* value, double (*slope)[2]) const {
-        const Vec3d turned1 = rotate(s.k1, t[0], s.p1), turned4 = rotate(s.k3, t[1], s.p4);
-        const Vec3d a = s.p0 - s.p2 + turned1, b = s.p3 + turned4;
-        const Vec3d da = cross(s.k1, turned1), db = cross(s.k3, turned4);
-        const Vec3d a_across = cross(s.k2, a), b_across = cross(s.k2, b);
-        const double rho_a = norm(a_across), rho_b = norm(b_across);
-        value[0] = dot(s.k2, a) - dot(s.k2, b);
-        value[1] = rho_a - rho_b;
-        slope[0][0] = dot(s.k2, da);
-        slope[0][1] = -dot(s.k2, db);
-        slope[1][0] = rho_a > 0 ? dot(a_across, cross(s.k2, da)) / rho_a : 0;
-        slope[1][1] = rho_b > 0 ? -dot(b_across, cross(s.k2, db)) / rho_b : 0;
-    }
-};
-
-// The gap itself as a function of all three angles. It is smooth also where the points meet on the axis k2.
+// The gap as a function of all three angles. It is smooth also where the points meet on the axis k2.
 struct Gap {
     static constexpr int angles = 3, equations = 3;
     const Sp5Problem& s;
@@ -92,14 +73,13 @@ inline TwoTurnEquations equations(const Sp5Problem& s) {
     return e;
 }
 
-// Computes θ2 for θ1 and θ3, refines all three and appends them; returns the remaining distance.
-inline double append(const Sp5Problem& s, const Turn<double>& first, const Turn<double>& third, Sp5& r) {
+// Writes θ1 and θ3, with the best θ2 between them.
+inline Sp1<double> complete(const Sp5Problem& s, const Turn<double>& first, const Turn<double>& third,
+                            Turn<double>* theta) {
     const Sp1<double> second =
         subproblem_1(s.k2, s.p3 + rotate(s.k3, third, s.p4), s.p0 - s.p2 + rotate(s.k1, first, s.p1));
-    Turn<double>* theta = r.theta[r.count++];
     theta[0] = first, theta[1] = second.theta, theta[2] = third;
-    r.free = r.free || second.free;
-    return refine_angles(Gap{s}, theta, 100);
+    return second;
 }
 
 // Divides all lengths by their sum, which is one afterwards.
@@ -108,19 +88,19 @@ inline Sp5Problem scaled(const Sp5Problem& s, double size) {
     return {f * s.p0, f * s.p1, f * s.p2, f * s.p3, f * s.p4, s.k1, s.k2, s.k3};
 }
 
-// The least-squares solution.
+// The least-squares solution. What the best θ2 leaves is the distance in the half plane of k2.
 inline Sp5 nearest(const Sp5Problem& s, double size) {
-    Turn<double> at[6][2];
-    const int count = sweep_valleys(HalfPlaneDistance{s}, 6, at);
-    Sp5 best;
-    for (int i = 0; i < count; ++i) {
-        Sp5 r;
-        append(s, at[i][0], at[i][1], r);
-        r.error = size * descend_angles(Gap{s}, r.theta[0]);
-        if (i == 0 || r.error < best.error) best = r;
-    }
-    best.exact = best.error <= tolerance::exact * size;
-    return best;
+    const SweepTurns turns;
+    const auto start = [&](int i, int j, Turn<double>* t) {
+        return complete(s, turns.at[i], turns.at[j], t).error;
+    };
+    Sp5 r;
+    r.count = 1;
+    r.error = size * minimise_from_sweep<6>(Gap{s}, sweep_steps, sweep_steps, start, r.theta[0]);
+    r.exact = r.error <= tolerance::exact * size;
+    Turn<double> again[3];
+    r.free = complete(s, r.theta[0][0], r.theta[0][2], again).free;
+    return r;
 }
 
 }  // namespace sp5
@@ -138,11 +118,13 @@ inline Sp5 subproblem_5(const Sp5Problem& given) {
     const TwoTurns found = solve_two_turns(sp5::equations(s));
     r.free = found.free;
     for (int i = 0; i < found.count; ++i) {
-        const double left = sp5::append(s, found.u[i], found.w[i], r);
-        if (left > tolerance::exact)
-            --r.count;
-        else
-            r.error = std::fmax(r.error, size * left);
+        Turn<double>* const theta = r.theta[r.count];
+        const bool is_free = sp5::complete(s, found.u[i], found.w[i], theta).free;
+        const double left = refine_angles(sp5::Gap{s}, theta, 100);
+        r.free = r.free || is_free;
+        if (left > tolerance::exact) continue;
+        ++r.count;
+        r.error = std::fmax(r.error, size * left);
     }
     r.exact = r.count > 0;
     if (r.exact) return r;

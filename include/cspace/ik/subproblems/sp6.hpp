@@ -61,7 +61,13 @@ inline Sp6 subproblem_6(const Sp6Problem& s) {
     for (int i = 0; i < found.count; ++i) r.theta[i][0] = found.u[i], r.theta[i][1] = found.w[i];
     if (!r.exact) {
         r.count = 1;
-        least_squares(two_turns::Residual{e}, r.theta[0]);
+        const SweepTurns turns;
+        const auto start = [&](int i, int j, Turn<double>* t) {
+            t[0] = turns.at[i], t[1] = turns.at[j];
+            Linearised<two_turns::Residual> at;
+            return linearise(two_turns::Residual{e}, t, at);
+        };
+        minimise_from_sweep<6>(two_turns::Residual{e}, sweep_steps, sweep_steps, start, r.theta[0]);
     }
     for (int i = 0; i < r.count; ++i) {
         Linearised<two_turns::Residual> at;

@@ -138,18 +138,14 @@ inline void range_of(const double m[2][2], double line[2]) {
     line[0] = m[0][j], line[1] = m[1][j];
 }
 
-// Eliminates w by the inverse of Γ.
+// Eliminates w by the inverse of Γ: f and h are adj Γ (α + B u).
 inline void by_quartic(const TwoTurnEquations& e, TwoTurns& found) {
     const double (*g)[2] = e.gamma;
-    double f[2][3];  // adj Γ (α + B u) as coefficients of 1, cos θ, sin θ
-    for (int j = 0; j < 3; ++j) {
-        const double first = j ? e.beta[0][j - 1] : e.alpha[0], second = j ? e.beta[1][j - 1] : e.alpha[1];
-        f[0][j] = g[1][1] * first - g[0][1] * second;
-        f[1][j] = g[0][0] * second - g[1][0] * first;
-    }
+    const LinearInTurn first = {e.alpha[0], e.beta[0][0], e.beta[0][1]},
+                       second = {e.alpha[1], e.beta[1][0], e.beta[1][1]};
+    const LinearInTurn f = g[1][1] * first + -g[0][1] * second, h = g[0][0] * second + -g[1][0] * first;
     const double d = determinant(g), scale = size(g) * size(g) * noise(e) / tolerance::rounding;
-    TrigPolynomial norm = product(f[0][0], f[0][1], f[0][2], f[0][0], f[0][1], f[0][2]) +
-                          product(f[1][0], f[1][1], f[1][2], f[1][0], f[1][1], f[1][2]);
+    TrigPolynomial norm = product(f, f) + product(h, h);
     norm.a0 -= d * d;
     const TrigRoots u = trig_roots(norm, scale);
     if (u.everywhere) propose_with(e, no_turn<double>(), found);
