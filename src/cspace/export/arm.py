@@ -44,6 +44,7 @@ class ExportedArm:
     from 0; moving: the arm of the other joints, with the locked ones at zero, if these are at the ends.
     """
 
+    solver: Solver
     identifier: str
     title: str
     kind: str
@@ -145,6 +146,7 @@ def describe_arm(
     """The names and numbers of an arm."""
     chain = solver.chain
     return ExportedArm(
+        solver=solver,
         identifier=check_name(name) if name is not None else identifier_from(solver.name),
         title=in_ascii(" ".join(str(solver.name).split()).replace("*/", "")) or "arm",
         kind=kind,

@@ -10,30 +10,23 @@ from typing import Any
 import numpy as np
 
 from cspace.export.arm import ExportedArm
+from cspace.export.python_steps import python_steps
 from cspace.export.words import fill_template
 from cspace.ik.conditions import NoClosedFormError
 from cspace.ik.geometry import as_arrays
 from cspace.tolerances import ON_LIMIT
 
 PACKAGE = "cspace.export.python"
-WITH_WRIST = 1
-THREE_PARALLEL = 2
 IMPORTS = (ast.Import, ast.ImportFrom)
 
-# The modules of each method, in the order in which they are written.
-CLOSED = ("base", "trig_steps", "closed")
-METHODS = {
-    "wrist": (*CLOSED, "spherical_wrist"),
-    "three_parallel": (*CLOSED, "three_parallel"),
-    "parallel_general": (*CLOSED, "parallel_general"),
-    "few_joints": ("base", "few_joints"),
-}
+# The modules of each kind of arm, in the order in which they are written.
+MODULES = {"closed": ("base", "steps", "closed"), "few_joints": ("base", "few_joints")}
 
 
 def python_file(arm: ExportedArm) -> str:
     """The text of the file; NoClosedFormError for an arm without a closed form."""
-    method = method_of(arm)
-    names = (*METHODS[method], *["locked_joints"] * bool(arm.locked))
+    check_method(arm)
+    names = (*MODULES[arm.solved.kind], *["locked_joints"] * bool(arm.locked))
     modules = [
         (Path(__file__).parent / "python" / f"{name}.py").read_text(encoding="utf-8") for name in names
     ]
@@ -46,8 +39,7 @@ def python_file(arm: ExportedArm) -> str:
         "imports": "\n".join(standard_imports(modules)),
         "body": body,
         "arm": literal(numbers(arm.solved), 1),
-        "free_turns": 'ARM["free_turns"] = free_turns\n' if method == "three_parallel" else "",
-        "branches": "None" if method == "few_joints" else "branches",
+        "steps": python_steps(arm.solved) if arm.solved.kind == "closed" else "",
         "joint_names": repr(list(arm.joint_names)),
         "lower": literal(np.array(arm.lower), 0),
         "upper": literal(np.array(arm.upper), 0),
@@ -87,28 +79,24 @@ def python_method(arm: ExportedArm) -> str:
     return f"{how}, with {arm.locked_names} locked" if arm.locked else how
 
 
-def method_of(arm: ExportedArm) -> str:
-    """Which of METHODS solves the arm; NoClosedFormError for an arm without a closed form."""
-    solved = arm.solved
-    if solved.kind == "closed":
-        return {WITH_WRIST: "wrist", THREE_PARALLEL: "three_parallel"}.get(
-            solved.plan["family"], "parallel_general"
+def check_method(arm: ExportedArm) -> None:
+    """Raise NoClosedFormError for an arm without a closed form."""
+    if arm.solved.kind not in MODULES:
+        chosen = f" with {arm.locked_names} locked" if arm.locked else ""
+        raise NoClosedFormError(
+            f"{arm.title}{chosen} has no closed form, and a Python file can contain only closed forms; "
+            "export it with lang='cpp' or lang='c'"
         )
-    if solved.kind == "few_joints":
-        return "few_joints"
-    chosen = f" with {arm.locked_names} locked" if arm.locked else ""
-    raise NoClosedFormError(
-        f"{arm.title}{chosen} has no closed form, and a Python file can contain only closed forms; "
-        "export it with lang='cpp' or lang='c'"
-    )
 
 
 def numbers(arm: ExportedArm) -> dict[str, Any]:
     """The data of the arm that the functions of the file use."""
     if arm.kind == "few_joints":
         return {**chain_numbers(arm), "length": size_of(arm)}
-    plan = {key: arm.plan[key] for key in arm.plan if key not in ("chain", "polish", "on_lanes")}
-    return {**chain_numbers(arm), "length": float(plan["form"]["length"]), "plan": as_arrays(plan)}
+    plan = as_arrays(arm.plan)
+    form = {name: plan["form"][name] for name in ("offset", "base", "tool", "deviation")}
+    form |= {name: plan[name] for name in ("joint", "sign", "reversed", "idealised", "virtual_joints")}
+    return {**chain_numbers(arm), "length": float(plan["form"]["length"]), "form": form}
 
 
 def chain_numbers(arm: ExportedArm) -> dict[str, Any]:

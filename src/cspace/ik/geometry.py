@@ -99,7 +99,7 @@ def redundant_geometry(solver: Solver, tested: tuple[Condition, ...]) -> Geometr
 
 
 def as_arrays(value: Any) -> Any:
-    """The numbers of a plan as arrays: poses (4, 4), vectors (3,), rotations as complex numbers."""
+    """The numbers of a plan as arrays: poses (4, 4) and vectors (3,)."""
     if not isinstance(value, dict):
         return [as_arrays(entry) for entry in value] if isinstance(value, list) else value
     keys = set(value)
@@ -109,6 +109,4 @@ def as_arrays(value: Any) -> Any:
         return T
     if keys == {"x", "y", "z"}:
         return np.array([value["x"], value["y"], value["z"]])
-    if keys == {"c", "s"}:
-        return complex(value["c"], value["s"])
     return {key: as_arrays(entry) for key, entry in value.items()}

@@ -64,13 +64,9 @@ def pose_and_jacobian(arm: dict[str, Any], q: Array) -> tuple[Array, Array]:
         points.append(T[:3, :3] @ arm["points"][i] + T[:3, 3])
         T = T @ joint_motion(arm, i, value)
     T = T @ arm["T_zero"]
-    J = np.zeros((6, len(q)))
-    for i, (axis, point) in enumerate(zip(axes, points, strict=True)):
-        if arm["slides"][i]:
-            J[:3, i] = axis
-        else:
-            J[:3, i], J[3:, i] = np.cross(axis, T[:3, 3] - point), axis
-    return T, J
+    h, slides = np.array(axes), arm["slides"][:, None]
+    v = np.where(slides, h, np.cross(h, T[:3, 3] - points))
+    return T, np.hstack([v, np.where(slides, 0.0, h)]).T
 
 
 def rotation_vector(R: Array) -> Array:

@@ -7,89 +7,73 @@ from typing import Any
 
 import numpy as np
 
-from cspace.export.python.base import Array, Solutions, accept_candidate, inverse, make_answer, pose_gap
-from cspace.export.python.trig_steps import Care
+from cspace.export.python.base import Array, Solutions, accept_candidate, inverse, make_answer
+from cspace.export.python.steps import Care, Known, follow_steps
 
-Branch = list[complex]  # the turns t1 … t6 of the Denavit–Hartenberg form
-
-
-def goal_in_form(plan: dict[str, Any], T: Array) -> Array:
-    """The goal as the closed form sees it."""
-    goal = inverse(T) if plan["reversed"] else T
-    return np.asarray(plan["to_form_left"] @ goal @ plan["to_form_right"])
+STARTS = 16  # values of an angle that nothing fixes
 
 
-def candidates(arm: dict[str, Any], T: Array, care: Care, stray: float) -> list[Array]:
-    """The branches as configurations of the arm; those whose virtual joints are not at zero are left out."""
-    plan, found = arm["plan"], []
-    for branch in arm["branches"](plan, goal_in_form(plan, T), care):
+def goal_in_form(form: dict[str, Any], T: Array) -> Known:
+    """The goal from the frame of axis 1 to that of axis 6: position p, rotation r."""
+    P = inverse(form["base"]) @ (inverse(T) if form["reversed"] else T) @ inverse(form["tool"])
+    turned = {f"r_{i + 1}{j + 1}": float(P[i, j]) for i in range(3) for j in range(3)}
+    return Known(p_x=float(P[0, 3]), p_y=float(P[1, 3]), p_z=float(P[2, 3]), **turned)
+
+
+def candidates(
+    arm: dict[str, Any], T: Array, care: Care, stray: float
+) -> list[tuple[Array, tuple[str, ...]]]:
+    """The ways through the steps as configurations, each with the angles that nothing fixes.
+
+    Ways whose virtual joints stray from zero are left out.
+    """
+    form, found = arm["form"], []
+    for way in follow_steps(arm["steps"], goal_in_form(form, T), care):
         q, real = np.zeros(len(arm["axes"])), True
-        for i, turn in enumerate(branch):
-            angle = plan["sign"][i] * (np.angle(turn) - plan["form"]["offset"][i])
-            if plan["joint"][i] >= 0:
-                q[plan["joint"][i]] = angle
+        for i, angle in enumerate(arm["angles"](way)):
+            value = form["sign"][i] * (angle - form["offset"][i])
+            if form["joint"][i] >= 0:
+                q[form["joint"][i]] = value
             else:
-                real = real and abs(np.angle(np.exp(1j * angle))) <= stray
+                real = real and abs(np.angle(np.exp(1j * value))) <= stray
         if real:
-            found.append(q)
+            found.append((q, way.free))
     return found
 
 
-def unconstrained_turns(plan: dict[str, Any], unconstrained: Array) -> list[complex]:
-    """What the turns of the form are where the joints have the values that they take when free."""
-    t = [plan["form"]["offset"][i] + plan["sign"][i] * (unconstrained[j] if j >= 0 else 0.0)
-         for i, j in enumerate(plan["joint"])]  # fmt: skip
-    if plan["family"] == 2:
-        t[3] += t[1] + t[2]  # three parallel axes leave their sum free
-    return [complex(np.exp(1j * angle)) for angle in t]
+def unconstrained_angles(arm: dict[str, Any], q: Array) -> dict[str, float]:
+    """The angles of the steps where the joints have the values that they take when free."""
+    form = arm["form"]
+    rows = zip(form["joint"], form["sign"], form["offset"], strict=True)
+    t = [offset + sign * (q[joint] if joint >= 0 else 0.0) for joint, sign, offset in rows]
+    names = [name for _, names in arm["steps"] for name in names]
+    return {name: float(sum(t[int(number) - 1] for number in name[1:])) for name in names}
 
 
 def sweep(arm: dict[str, Any], T: Array, care: Care, found: list[Array]) -> None:
-    """Starts with each joint of the form turned around: where it is free, solutions lie along a family."""
-    plain = candidates(arm, T, care, np.pi)
-    for i in range(6):
-        turned = replace(care, unconstrained=list(care.unconstrained))
-        turned.unconstrained[i] *= complex(np.exp(2.4j))
-        moved = candidates(arm, T, turned, np.pi)
-        if len(moved) == len(plain) and np.allclose(moved, plain, atol=1e-3):
-            continue
-        for k in range(1, 16):
-            turned.unconstrained[i] = care.unconstrained[i] * complex(np.exp(2j * np.pi * k / 16))
-            for q in candidates(arm, T, turned, np.pi):
+    """Starts with each free angle turned around: solutions lie along a self-motion where an angle is free."""
+    for name in {name for _, free in candidates(arm, T, care, np.pi) for name in free}:
+        for turn in 2 * np.pi * np.arange(1, STARTS) / STARTS:
+            turned = {**care.unconstrained, name: care.unconstrained[name] + turn}
+            for q, _ in candidates(arm, T, replace(care, unconstrained=turned), np.pi):
                 accept_candidate(arm, T, found, q, 20)
 
 
-def turn_free_wrist(arm: dict[str, Any], T: Array, care: Care, found: list[Array]) -> None:
-    """Behind a shoulder without a solution: a free wrist turned to where the elbow reaches the goal."""
-    care = replace(care, free=max(care.free, 1e-6))
-    for shoulder in (0, 1):
-        here = replace(care, shoulder=shoulder)
-        known = len(found)
-        for q in candidates(arm, T, here, 1e-3):
-            if any(pose_gap(arm, q, other) < 1e-6 for other in found):
-                known = -1
-        for turn in arm["free_turns"](arm["plan"], goal_in_form(arm["plan"], T), here) if known >= 0 else []:
-            here.unconstrained = [*care.unconstrained[:3], turn, *care.unconstrained[4:]]
-            if any([accept_candidate(arm, T, found, q) for q in candidates(arm, T, here, 1e-3)]):
-                break
-
-
 def solve_closed(arm: dict[str, Any], T: Array, unconstrained: Array) -> Solutions:
-    """Every branch, refined on the true arm; joints that the pose leaves free at their idle values."""
-    plan = arm["plan"]
-    slack = 4 * plan["form"]["deviation"]
-    care = Care(max(1e-10, slack), 0.0, max(1e-12, slack), unconstrained_turns(plan, unconstrained))
-    stray = 0.1 if plan["idealised"] else 1e-3
+    """Every way through the steps, refined on the true arm."""
+    form = arm["form"]
+    slack = 4 * form["deviation"]
+    care = Care(max(1e-10, slack), 0.0, max(1e-12, slack), unconstrained_angles(arm, unconstrained))
+    tries = [(care, 0.1 if form["idealised"] else 1e-3)]
+    if form["idealised"]:
+        tries.append((replace(care, spread=slack), 0.1))
     found: list[Array] = []
-    for spread in (0.0, slack) if plan["idealised"] else (0.0,):
-        care.spread = spread
-        for q in candidates(arm, T, care, stray):
+    for each, stray in tries:
+        for q, _ in candidates(arm, T, each, stray):
             accept_candidate(arm, T, found, q)
-    if plan["idealised"] and plan["virtual_joints"] and not found:
-        for q in candidates(arm, T, replace(care, band=float(np.sqrt(care.band))), np.pi):
+    if form["idealised"] and form["virtual_joints"] and not found:
+        for q, _ in candidates(arm, T, replace(care, band=float(np.sqrt(care.band))), np.pi):
             accept_candidate(arm, T, found, q)
-    if plan["idealised"] or plan["virtual_joints"]:
+    if form["idealised"] or form["virtual_joints"]:
         sweep(arm, T, care, found)
-    if "free_turns" in arm:
-        turn_free_wrist(arm, T, care, found)
     return make_answer(arm, T, found)

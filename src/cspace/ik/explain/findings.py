@@ -24,6 +24,7 @@ class Step:
     """One step of a solver. finds: the unknowns, as $t_1$. ways: how many answers it has at most.
 
     method: what solves it. words: what happens, a sentence. equations: what holds, definitions first.
+    angles: what the equations of a closed form fix, by joints: "3", "1 5" for two, "234" for a sum.
     """
 
     finds: str
@@ -31,6 +32,15 @@ class Step:
     method: str
     words: str
     equations: tuple[Equation | MatrixEquation, ...] = ()
+    angles: str = ""
+
+    @classmethod
+    def of_angles(cls, angles: str, ways: int, method: str, words: str, *equations: Equation) -> Step:
+        """A step that fixes angles."""
+        finds = "t_" + ", t_".join(word if len(word) == 1 else f"{{{word}}}" for word in angles.split())
+        if len(angles) > 1 and " " not in angles:
+            finds += " = " + " + ".join(f"t_{i}" for i in angles)
+        return cls(f"${finds}$", ways, method, words, equations, angles)
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,89 +2,96 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from cspace.ik.explain.findings import Step
 from cspace.ik.explain.form import Form, symbol
-from cspace.ik.explain.wrist import define, in_frame_one, px, py, pz, sum_squares, turn_steps
+from cspace.ik.explain.wrist import (
+    a1,
+    a2,
+    define,
+    height_behind_one,
+    in_frame_one,
+    pz,
+    sum_squares,
+    turn_steps,
+)
 from cspace.math import Equation, Product, TrigMatrix, TrigPolynomial
 
+a3, a4, a5, d3, d4, d5 = (symbol(name) for name in ("a_3", "a_4", "a_5", "d_3", "d_4", "d_5"))
+u, v, x, y, d2 = map(symbol, ("u", "v", "x", "y", "d_2"))
 
-def wrist_heights(form: Form) -> tuple[TrigPolynomial, TrigPolynomial]:
-    """The height of the goal and of the wrist along axes 2, 3, 4; that of the wrist without joint 5."""
-    (c1, s1), (ca1, sa1), ca4 = (form.cos(1), form.sin(1)), form.twist(1), form.twist(4)[0]
-    d = [symbol(f"d_{i}") for i in range(1, 6)]
-    return sa1 * (s1 * px - c1 * py) + ca1 * pz, d[1] + d[2] + d[3] + ca4 * d[4]
+
+def wrist_height(form: Form) -> TrigPolynomial:
+    """The height of the wrist along axes 2, 3, 4, without joint 5."""
+    return d2 + d3 + d4 + form.twist(4)[0] * d5
 
 
 def three_parallel_steps(form: Form) -> list[Step]:
     """Axes 2, 3, 4 parallel, 5 and 6 meet."""
-    goal, own = wrist_heights(form)
-    shoulder = Step(
-        "$t_1$",
+    shoulder = Step.of_angles(
+        "1",
         2,
         "subproblem 4",
         "Joints 2, 3 and 4 do not change heights along their axes, and joints 5 and 6 do not move the "
         "wrist, so its height depends only on $t_1$.",
-        (Equation(goal, own, unit="m"),),
+        Equation(height_behind_one(form), wrist_height(form), unit="m"),
     )
-    return [shoulder, *turn_steps(form, 1, (2, 3, 4)), *planar_steps(form, meeting=True)]
+    return [shoulder, *turn_steps(form, 1, "234"), *planar_steps(form, TrigPolynomial())]
 
 
 def middle_parallel_steps(form: Form) -> list[Step]:
     """Axes 2, 3, 4 parallel, 5 and 6 apart."""
-    (goal, own), (ca1, sa1), (ca4, sa4) = wrist_heights(form), form.twist(1), form.twist(4)
-    ca5, sa5 = form.twist(5)
-    c1, s1, c5, s5 = form.cos(1), form.sin(1), form.cos(5), form.sin(5)
+    (ca1, sa1), (ca4, sa4), (ca5, sa5) = (form.twist(i) for i in (1, 4, 5))
     r = {i: symbol(f"r_{i}3") for i in (1, 2, 3)}
-    both = Step(
-        "$t_1, t_5$",
+    both = Step.of_angles(
+        "1 5",
         4,
         "subproblem 6",
         "Joints 2, 3 and 4 change neither heights along their axes nor angles with them: the height of "
         "axis 6 and its slope are two equations in $t_1$ and $t_5$.",
-        (
-            Equation(goal, own + sa4 * symbol("a_5") * s5, unit="m"),
-            Equation(ca1 * r[3] + sa1 * (s1 * r[1] - c1 * r[2]), ca4 * ca5 - sa4 * sa5 * c5),
+        Equation(height_behind_one(form), wrist_height(form) + sa4 * a5 * form.sin(5), unit="m"),
+        Equation(
+            ca1 * r[3] + sa1 * (form.sin(1) * r[1] - form.cos(1) * r[2]), ca4 * ca5 - sa4 * sa5 * form.cos(5)
         ),
     )
-    turns = turn_steps(form, 1, (2, 3, 4))[1:]
+    _, first, last = turn_steps(form, 1, "234")
     front = "$M = (R_z(t_1) R_x(\\alpha_1))^T R$ is what the plane sees of the orientation. "
-    turns[0] = Step(turns[0].finds, 1, turns[0].method, front + turns[0].words, turns[0].equations)
-    return [both, *turns, *planar_steps(form, meeting=False)]
+    return [both, replace(first, words=front + first.words), last, *planar_steps(form, a5)]
 
 
-def planar_steps(form: Form, *, meeting: bool) -> list[Step]:
-    """The planar arm of joints 2, 3, 4, its last angle the rest of their sum."""
-    c234, s234, c5, s5 = form.cos(2, 3, 4), form.sin(2, 3, 4), form.cos(5), form.sin(5)
-    (c2, s2), c23, s23, c3 = (form.cos(2), form.sin(2)), form.cos(2, 3), form.sin(2, 3), form.cos(3)
-    ca4, sa4 = form.twist(4)
-    a2, a3, a4, a5 = (symbol(f"a_{i}") for i in (2, 3, 4, 5))
-    X, Y = a4, -sa4 * symbol("d_5")
-    if not meeting:
-        X, Y = X + a5 * c5, Y + ca4 * a5 * s5
-    u, v, x, y = symbol("u"), symbol("v"), symbol("x"), symbol("y")
+def law_of_cosines(middle: str, first: TrigPolynomial, second: TrigPolynomial, form: Form) -> Equation:
+    """The distance |(u, v)| that two links with an angle between them span."""
+    span = sum_squares(first, second) + 2.0 * first * second * form.cos(int(middle))
+    return Equation(sum_squares(u, v), span, unit="m²")
+
+
+def planar_steps(form: Form, a5: TrigPolynomial) -> list[Step]:
+    """The planar arm of joints 2, 3, 4, its last angle the rest of their sum.
+
+    a5: zero if axes 5 and 6 meet.
+    """
+    c234, s234, (ca4, sa4) = form.cos(2, 3, 4), form.sin(2, 3, 4), form.twist(4)
+    X, Y = a4 + a5 * form.cos(5), ca4 * a5 * form.sin(5) - sa4 * d5
     return [
-        Step(
-            "$t_3$",
+        Step.of_angles(
+            "3",
             2,
             "subproblem 3",
             "Axis 4, seen from axis 2 in the plane, is at $(u, v)$; links $a_2$ and $a_3$ span that "
             "distance: the law of cosines.",
-            (
-                *in_frame_one(form),
-                define("u", x - c234 * X + s234 * Y, "m"),
-                define("v", y - s234 * X - c234 * Y, "m"),
-                Equation(sum_squares(u, v), sum_squares(a2, a3) + 2.0 * a2 * a3 * c3, unit="m²"),
-            ),
+            *in_frame_one(form),
+            define("u", x - c234 * X + s234 * Y, "m"),
+            define("v", y - s234 * X - c234 * Y, "m"),
+            law_of_cosines("3", a2, a3, form),
         ),
-        Step(
-            "$t_2, t_4$",
+        Step.of_angles(
+            "2",
             1,
             "subproblem 1",
             "$t_2$ rotates the bent arm to $(u, v)$; $t_4$ is the rest of the sum $t_{234}$.",
-            (
-                Equation(u, a2 * c2 + a3 * c23, unit="m"),
-                Equation(v, a2 * s2 + a3 * s23, unit="m"),
-            ),
+            Equation(u, a2 * form.cos(2) + a3 * form.cos(2, 3), unit="m"),
+            Equation(v, a2 * form.sin(2) + a3 * form.sin(2, 3), unit="m"),
         ),
     ]
 
@@ -94,7 +101,6 @@ def first_parallel_steps(form: Form) -> list[Step]:
     c = {i: form.cos(i) for i in (4, 5, 6)}
     s = {i: form.sin(i) for i in (4, 5, 6)}
     (ca3, sa3), (ca4, sa4), (ca5, sa5) = (form.twist(i) for i in (3, 4, 5))
-    a4, a5, d2, d3, d4, d5 = (symbol(name) for name in ("a_4", "a_5", "d_2", "d_3", "d_4", "d_5"))
     rx, ry, rz = (symbol(f"r_3{j}") for j in (1, 2, 3))
     slope = Equation(rz * ca5 + sa5 * (ry * c[6] + rx * s[6]), ca3 * ca4 - sa3 * sa4 * c[4])
     level = Equation(
@@ -106,53 +112,53 @@ def first_parallel_steps(form: Form) -> list[Step]:
     k = Product((form.about_x(3), form.about_z(4), form.about_x(4))).matrix()
     kx, ky = symbol("k_x"), symbol("k_y")
     Q = parallel_displacement(form)
-    qx, qy, a1, a2 = symbol("u"), symbol("v"), symbol("a_1"), symbol("a_2")
     return [
-        Step(
-            "$t_4, t_6$",
+        Step.of_angles(
+            "4 6",
             4,
             "subproblem 6",
             "Joints 1, 2 and 3 change neither heights along their axes nor angles with them: the height "
             "of the goal and the slope of axis 5 against them are two equations in $t_4$ and $t_6$.",
-            (slope, level),
+            slope,
+            level,
         ),
-        Step(
-            "$t_5$",
+        Step.of_angles(
+            "5",
             1,
             "subproblem 1",
             "The direction of the parallel axes, seen from both sides of joint 5.",
-            (
-                define("k_x", k[2, 0]),
-                define("k_y", k[2, 1]),
-                Equation(kx * c[5] + ky * s[5], rx * c[6] - ry * s[6]),
-                Equation(ky * c[5] - kx * s[5], ca5 * (rx * s[6] + ry * c[6]) - sa5 * rz),
-            ),
+            define("k_x", k[2, 0]),
+            define("k_y", k[2, 1]),
+            Equation(kx * c[5] + ky * s[5], rx * c[6] - ry * s[6]),
+            Equation(ky * c[5] - kx * s[5], ca5 * (rx * s[6] + ry * c[6]) - sa5 * rz),
         ),
-        Step(
-            "$t_2$",
+        Step.of_angles(
+            "2",
             2,
             "subproblem 3",
             "With joints 4, 5, 6 known, axis 3 seen from axis 1 in the plane is at $(u, v)$; links $a_1$ "
             "and $a_2$ span that distance: the law of cosines.",
-            (
-                define("u", Q[0, 3], "m"),
-                define("v", Q[1, 3], "m"),
-                Equation(sum_squares(qx, qy), sum_squares(a1, a2) + 2.0 * a1 * a2 * form.cos(2), unit="m²"),
-            ),
+            define("u", Q[0, 3], "m"),
+            define("v", Q[1, 3], "m"),
+            law_of_cosines("2", a1, a2, form),
         ),
-        Step(
-            "$t_1, t_3$",
+        Step.of_angles(
+            "1",
             1,
             "subproblem 1",
-            "$t_1$ rotates the bent arm to $(u, v)$; $t_3$ is the rest of $t_{123}$, the angle of the plane.",
-            (
-                Equation(qx, a1 * form.cos(1) + a2 * form.cos(1, 2), unit="m"),
-                Equation(qy, a1 * form.sin(1) + a2 * form.sin(1, 2), unit="m"),
-                define("n_x", Q[0, 0]),
-                define("n_y", Q[1, 0]),
-                Equation(symbol("n_x"), form.cos(1, 2, 3)),
-                Equation(symbol("n_y"), form.sin(1, 2, 3)),
-            ),
+            "$t_1$ rotates the bent arm to $(u, v)$.",
+            Equation(u, a1 * form.cos(1) + a2 * form.cos(1, 2), unit="m"),
+            Equation(v, a1 * form.sin(1) + a2 * form.sin(1, 2), unit="m"),
+        ),
+        Step.of_angles(
+            "123",
+            1,
+            "",
+            "The sum is the angle of the plane; $t_3$ is its rest.",
+            define("n_x", Q[0, 0]),
+            define("n_y", Q[1, 0]),
+            Equation(symbol("n_x"), form.cos(1, 2, 3)),
+            Equation(symbol("n_y"), form.sin(1, 2, 3)),
         ),
     ]
 
