@@ -30,8 +30,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, leading_axes
+from cspace.arrays import Array, as_floats
 from cspace.errors import InputError
+from cspace.kinematics.batch import broadcast_rows
 from cspace.tolerances import FARTHEST
 
 if TYPE_CHECKING:
@@ -105,17 +106,14 @@ def call_kernel(
     vectors, numbers: their shapes in one problem.
     """
     own = {name: numbers if name == "d" else vectors for name in given}
-    arrays = {
-        name: (axis_rows if name.startswith("k") else read_amounts)(value, name, own[name])
-        for name, value in given.items()
-    }
-    batch = leading_axes(**{name: a.shape[: a.ndim - len(own[name])] for name, a in arrays.items()})
+    read = {name: axis_rows if name.startswith("k") else read_amounts for name in given}
+    arrays = {name: (read[name](v, name, own[name]), len(own[name])) for name, v in given.items()}
+    batch, rows = broadcast_rows(arrays)
     n = math.prod(batch)
-    rows = (np.broadcast_to(a, batch + own[name]).reshape(n, *own[name]) for name, a in arrays.items())
     theta = np.empty((n, most, angles))
     residual, count = np.empty(n), np.empty(n, dtype=np.int32)
     exact, free = np.empty(n, dtype=np.bool_), np.empty(n, dtype=np.bool_)
-    kernel(*map(np.ascontiguousarray, rows), theta, residual, count, exact, free)
+    kernel(*rows.values(), theta, residual, count, exact, free)
     shape = (*batch, most) if angles == 1 else (*batch, most, angles)
     facts: Any = (fact.reshape(batch)[()] for fact in (count, exact, free, residual))
     return SubproblemSolution(theta.reshape(shape), *facts)

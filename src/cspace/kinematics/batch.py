@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -58,30 +59,27 @@ def rows_of(
     if qd is not None:
         what = "[v; ω] of the base, then " if robot.floating else ""
         given["qd"] = (_row_vectors(qd, "qd", robot.dof, what + "one velocity per joint", robot), 1)
+    shape, rows = broadcast_rows(given, shared=("T_world_base", "point"))
+    return Batch(shape=shape, threads=thread_count(threads, shape), **rows)
+
+
+def broadcast_rows(
+    given: Mapping[str, tuple[Array, int]], shared: tuple[str, ...] = ()
+) -> tuple[tuple[int, ...], dict[str, Array]]:
+    """The leading axes of arrays together, and the arrays as contiguous rows.
+
+    given: by name, each with the number of its trailing axes. shared: of these, one may serve all rows.
+    """
     leads = {name: array.shape[: array.ndim - own] for name, (array, own) in given.items()}
     shape = leading_axes(**leads)
-
-    def rows(name: str, *, shared: bool) -> Array | None:
-        if name not in given:
-            return None
-        array, own = given[name]
+    rows = {}
+    for name, (array, own) in given.items():
+        lead = () if name in shared and not leads[name] else shape
         last = array.shape[array.ndim - own :]
-        if shared and leads[name] == ():
-            return np.ascontiguousarray(array.reshape((1, *last)))
-        if leads[name] != shape:
-            array = np.broadcast_to(array, shape + last)
-        return np.ascontiguousarray(array.reshape((math.prod(shape), *last)))
-
-    q_rows = rows("q", shared=False)
-    assert q_rows is not None
-    return Batch(
-        q_rows,
-        shape,
-        thread_count(threads, shape),
-        rows("T_world_base", shared=True),
-        rows("point", shared=True),
-        rows("qd", shared=False),
-    )
+        if array.shape != lead + last:
+            array = np.broadcast_to(array, lead + last)
+        rows[name] = np.ascontiguousarray(array.reshape((math.prod(lead), *last)))
+    return shape, rows
 
 
 def refuse_infinite(batch: Batch) -> None:

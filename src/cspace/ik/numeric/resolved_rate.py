@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from cspace import _core
-from cspace.arrays import Array, as_floats, bounded_number, leading_axes
+from cspace.arrays import Array, as_floats, bounded_number
 from cspace.errors import InputError
 from cspace.ik.numeric.problem import largest_speeds
-from cspace.kinematics.batch import thread_count
+from cspace.kinematics.batch import broadcast_rows, thread_count
 from cspace.kinematics.jacobian import jacobian
 from cspace.tolerances import FARTHEST, WEAK_DIRECTION
 
@@ -57,27 +57,18 @@ def resolved_rate(
     dof = robot.dof
     if dof > MOST_JOINTS:
         raise InputError(f"{robot.name} has {dof} velocities; resolved_rate takes up to {MOST_JOINTS}")
-    wanted = as_floats(twist, "twist", last=(6,), largest=FARTHEST)
-    wish = None if null_space is None else as_floats(null_space, "null_space", last=(dof,), largest=FARTHEST)
-    wish_axes = () if wish is None else wish.shape[:-1]
-    lead = leading_axes(q=J.shape[:-2], twist=wanted.shape[:-1], null_space=wish_axes)
-
-    number = math.prod(lead)
-
-    def rows(array: Array, own: int) -> Array:
-        last = array.shape[array.ndim - own :]
-        if array.shape == lead + last:
-            return np.ascontiguousarray(array.reshape(number, *last))
-        return np.ascontiguousarray(np.broadcast_to(array, lead + last).reshape(number, *last))
-
+    given = {"q": (J, 2), "twist": (as_floats(twist, "twist", last=(6,), largest=FARTHEST), 1)}
+    if null_space is not None:
+        given["null_space"] = as_floats(null_space, "null_space", last=(dof,), largest=FARTHEST), 1
+    lead, rows = broadcast_rows(given)
     workers = thread_count(threads, lead)
     speeds = largest_speeds(robot, velocity)
     if speeds.size:  # those of a floating base are unlimited
         speeds = np.concatenate([np.full(dof - speeds.size, np.inf), speeds])
-    qd = np.empty((number, dof))
+    qd = np.empty((math.prod(lead), dof))
     weight = -1.0
     if damping is not None:
         weight = bounded_number(damping, "damping", 0.0, "it must be one number, 0 or more", FARTHEST)
-    wishes = np.empty((0, dof)) if wish is None else rows(wish, 1)
-    _core._resolved_rate(rows(J, 2), rows(wanted, 1), wishes, speeds, weight, WEAK_DIRECTION, workers, qd)
+    wishes = rows.get("null_space", np.empty((0, dof)))
+    _core._resolved_rate(rows["q"], rows["twist"], wishes, speeds, weight, WEAK_DIRECTION, workers, qd)
     return qd.reshape(*lead, dof)
