@@ -30,36 +30,34 @@ def joint_number(solver: KinematicModel, key: Any, subject: str) -> int:
     return int(key) % len(names)
 
 
-def locked_values(solver: KinematicModel, locked: Any) -> dict[int, Any]:
-    """The locked joints by number, ascending, each with a number or an array of them."""
+def locked_values(solver: KinematicModel, locked: Any, own: KinematicModel | None = None) -> dict[int, Any]:
+    """The locked joints by number, ascending, each with a number or an array of them.
+
+    own: the user's arm, whose numbers count, where `solver` has the virtual joints of a partial goal too;
+    each joint then takes one value.
+    """
+    if locked is None:
+        return {}
     if not isinstance(locked, Mapping):
         raise InputTypeError(
             f"locked is a {type(locked).__name__}, expected a dict from joints to values: {{'joint_7': 0.3}}"
         )
     out: dict[int, Any] = {}
     for key, value in locked.items():
-        joint = joint_number(solver, key, "locked")
+        name = key
+        if own is not None and not isinstance(key, str):
+            name = own.joint_names[joint_number(own, key, "locked")]
+        joint = joint_number(solver, name, "locked")
         if joint in out:
             raise InputError(f"locked names {solver.joint_names[joint]!r} twice; give each joint one value")
         out[joint] = as_floats(value, f"locked[{key!r}]", largest=FARTHEST)
-    if len(out) >= len(solver.joint_names):
-        raise InputError(f"locked names every joint of {solver.name}; at least one must stay free to move")
-    return dict(sorted(out.items()))
-
-
-def by_name(solver: KinematicModel, locked: Mapping[Any, Any]) -> dict[str, Any]:
-    """Values of locked joints by the joints' names."""
-    out: dict[str, Any] = {}
-    for key, value in locked.items():
-        name = key if isinstance(key, str) else solver.joint_names[joint_number(solver, key, "locked")]
-        if name in out:
-            raise InputError(f"locked names {name!r} twice, by name and by number; give each joint one value")
-        if isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.ndim):
+        if own is not None and out[joint].ndim:
             raise InputTypeError(
                 f"locked[{key!r}] is a {type(value).__name__}, expected one number with parts of a pose"
             )
-        out[name] = value
-    return out
+    if len(out) >= len(solver.joint_names):
+        raise InputError(f"locked names every joint of {solver.name}; at least one must stay free to move")
+    return dict(sorted(out.items()))
 
 
 def locked_in_words(solver: KinematicModel, locked: Mapping[int, Any]) -> str:

@@ -24,6 +24,7 @@ Counts = npt.NDArray[np.int64]
 ENDINGS: Final = ("reached", "stalled", "out of iterations")
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class NumericSolution:
     """The configuration at which a descent ended, one per goal.
 
@@ -33,17 +34,15 @@ class NumericSolution:
     start (...): which start it came from, 0 for the first. Truthy if every goal is reached.
     """
 
-    __slots__ = ("_info", "_limits", "_starts", "goal", "q", "robot")
-
-    def __init__(
-        self, robot: KinematicModel, goal: Array, q: Array, info: Array, starts: int, limits: Array
-    ) -> None:
-        # info (..., 5): position error, rotation error, iterations, start, ending.
-        self.robot, self.goal, self.q = robot, goal, q
-        self._info, self._starts, self._limits = info, starts, limits
+    robot: KinematicModel
+    goal: Array
+    q: Array
+    _info: Array  # (..., 5): position error, rotation error, iterations, start, ending
+    _starts: int
+    _limits: Array
 
     def __bool__(self) -> bool:
-        return bool((self._info[..., 4] == REACHED).all())
+        return bool(self.success.all())
 
     @property
     def success(self) -> Flags:

@@ -68,11 +68,8 @@ def rows_at(solver: Solver, T: Array, swivels: Array) -> Array:
 
 def keep_limits(solver: Solver, rows: Array) -> Flags:
     """Which rows (m, 8, 7) are there and keep all limits, (m, 8)."""
-    flat = rows.reshape(-1, JOINTS)
-    there = np.isfinite(flat[:, 0])
-    lower, upper = solver.limits.lower, solver.limits.upper
-    beyond = measure_violations(np.where(there[:, None], flat, 0.0), solver.joint_types, lower, upper)
-    return np.asarray((there & (beyond <= 0).all(axis=-1)).reshape(rows.shape[:-1]))
+    beyond = measure_violations(rows, solver.joint_types, solver.limits.lower, solver.limits.upper)
+    return np.asarray(np.isfinite(rows[..., 0]) & (beyond <= 0).all(axis=-1))
 
 
 def critical_swivels(solver: Solver, T: Array) -> Array:
@@ -150,10 +147,8 @@ def of_branch(solver: Solver, T: Array, branch: int, ends: Array, rows: Array, f
         count = int(np.argmin(np.roll(fits, -start)))
         lower = float(ends[start])
         upper = float(ends[(start + count - 1) % m + 1]) + (TURN if start + count > m else 0.0)
-        cause = (
-            what_ends(solver, T, branch, lower, min(INSIDE_END, 0.5 * (upper - lower))),
-            what_ends(solver, T, branch, upper, -min(INSIDE_END, 0.5 * (upper - lower))),
-        )
+        step = min(INSIDE_END, 0.5 * (upper - lower))
+        cause = what_ends(solver, T, branch, lower, step), what_ends(solver, T, branch, upper, -step)
         out.append(Interval(lower, upper, branch + 1, cause, rows[(start + count // 2) % m]))
     return out
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -22,8 +21,11 @@ if TYPE_CHECKING:
 END_NOTHING, END_FOLD = -1, -2
 
 
-def redundancy_of_pose(solver: Solver, T: Array, parameter: Any, locked: Any) -> Redundancy:
-    values = locked_values(solver, {} if locked is None else locked)
+def redundancy_of_pose(
+    solver: Solver, T: Array, parameter: Any, locked: Any, own: Solver | None = None
+) -> Redundancy:
+    """The feasible intervals for a pose of the solver's arm. own: as of locked_values."""
+    values = locked_values(solver, locked, own)
     if any(np.ndim(value) for value in values.values()):
         raise InputTypeError("locked= takes one value per joint here")
     others = solver.lock({joint: float(value) for joint, value in values.items()})
@@ -46,18 +48,14 @@ def redundancy_of_pose(solver: Solver, T: Array, parameter: Any, locked: Any) ->
     if not found and joint != usual:
         check_moves(others, T, joint)
     if values:
-        rows = tuple(replace(interval, q=with_locked(solver, values, interval.q)) for interval in found)
-        found = replace(found, solver=solver, intervals=rows)
+
+        def with_locked(q: Array) -> Array:
+            row = np.array([float(values.get(k, np.nan)) for k in range(solver.dof)])
+            row[np.isnan(row)] = q
+            return row
+
+        found = found._of_arm(solver, with_locked)
     return found if is_bounded(others, joint) else replace(found, complete=False)
-
-
-def with_locked(solver: Solver, values: Mapping[int, Any], q: Array) -> Array:
-    """A configuration of the other joints with the locked ones at their values."""
-    out = np.empty(solver.dof)
-    out[[k for k in range(solver.dof) if k not in values]] = q
-    for joint, value in values.items():
-        out[joint] = value
-    return out
 
 
 def is_bounded(solver: Solver, joint: int) -> bool:

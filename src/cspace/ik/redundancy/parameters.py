@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import Any
 
 from cspace.errors import RENAMED, InputError, InputTypeError
 from cspace.ik.goals.partial import KEYWORDS, PartialGoal
 from cspace.ik.goals.parts import check_one_goal, partial_goal
-from cspace.ik.locked_joints import by_name, joint_number
+from cspace.ik.locked_joints import joint_number
 from cspace.ik.redundancy.feasible_intervals import redundancy_of_pose
 from cspace.ik.redundancy.result import Redundancy
 from cspace.ik.solver import HasSolver, Solver, as_solver
@@ -68,7 +67,5 @@ def redundancy_of_parts(solver: Solver, goal: PartialGoal, parameter: Any, locke
         raise InputError(f"the goal has shape {goal.T.shape[:-2]}, expected one goal; call it in a loop")
     named = parameter is None or isinstance(parameter, str)
     joint = parameter if named else solver.joint_names[joint_number(solver, parameter, "parameter")]
-    values = by_name(solver, locked) if isinstance(locked, Mapping) else locked
-    found = redundancy_of_pose(solver.extend(goal), goal.T, joint, values)
-    rows = tuple(replace(interval, q=goal.own_joints(interval.q)) for interval in found)
-    return replace(found, solver=solver, intervals=rows)
+    found = redundancy_of_pose(solver.extend(goal), goal.T, joint, locked, solver)
+    return found._of_arm(solver, goal.own_joints)

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -73,6 +73,11 @@ class Redundancy:
 
     def __iter__(self) -> Iterator[Interval]:
         return iter(self.intervals)
+
+    def _of_arm(self, solver: Solver, joints: Callable[[Array], Array]) -> Redundancy:
+        """The same for an arm with other joints. joints: the configuration of that arm from one of this."""
+        rows = tuple(replace(interval, q=joints(interval.q)) for interval in self.intervals)
+        return replace(self, solver=solver, intervals=rows)
 
     def feasible(self, value: float) -> tuple[int, ...]:
         """The branches that keep all limits at this value of the parameter [rad or m], multiples of 2π

@@ -15,7 +15,7 @@ from cspace.errors import InputTypeError
 from cspace.ik.context import About, Options
 from cspace.ik.goals.given import one_configuration, rows_for_goals
 from cspace.ik.goals.partial import PartialGoal
-from cspace.ik.locked_joints import by_name, locked_values
+from cspace.ik.locked_joints import locked_values
 from cspace.ik.redundancy.result import MOST_SAMPLES
 from cspace.ik.solutions import Solutions
 from cspace.ik.solutions_batch import SolutionsBatch
@@ -35,7 +35,7 @@ def solve_freedom(
     goal: the partial goal that T stands for; its virtual joints are then part of the arm.
     """
     whole = solver if goal is None else solver.extend(goal)
-    values = locked_joints(solver, whole, options.locked)
+    values = locked_values(whole, options.locked, None if whole is solver else solver)
     leaves_joints = bool(values) or whole.is_redundant
     degree = whole.redundancy_degree(tuple(values)) if leaves_joints else 0
     check_samples(solver, options, degree)
@@ -94,15 +94,6 @@ def ask_core(
         return cast(Solutions, made)
     q, rows, count, verdict, self_motion = made
     return SolutionsBatch.of(solver, T, q, count, verdict, replace(about, q=rows), self_motion)
-
-
-def locked_joints(solver: Solver, whole: Solver, locked: Any) -> dict[int, Any]:
-    """Values of locked joints by their number in the whole arm: numbers given are those of the user's arm."""
-    if locked is None:
-        return {}
-    if whole is not solver and isinstance(locked, Mapping):
-        locked = by_name(solver, locked)
-    return locked_values(whole, locked)
 
 
 def columns_of(whole: Solver, locked: Mapping[int, Any]) -> tuple[list[int], Array]:

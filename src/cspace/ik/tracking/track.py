@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
@@ -18,7 +17,7 @@ from cspace.ik.numeric.problem import Question, middle_configuration, pose_probl
 from cspace.ik.solver import as_solver
 from cspace.ik.tracking.result import Branch, Track
 from cspace.ik.wrapping import turning_joints
-from cspace.kinematics.batch import check_choice
+from cspace.kinematics.batch import check_choice, limits_of
 from cspace.spatial import interpolate_decoupled
 from cspace.tolerances import FARTHEST, HALF_TURN, NUMERIC_TOLERANCE, TRACK_BEYOND
 
@@ -73,8 +72,9 @@ def track(
     question = pose_problem(robot, poses, None, None, None, limits, NUMERIC_TOLERANCE)
     T = path_of(question.goals)
     cost_function = cost_of(robot, cost)
-    bounds = np.stack([*open_bounds(robot, question), check_strides(robot, max_step)])
-    starts, numbers, complete, note = starts_of(robot, question, T, start)
+    chosen = limits_of(robot.limits, limits, robot.name)
+    bounds = np.stack([chosen.lower, chosen.upper, check_strides(robot, max_step)])
+    starts, numbers, complete, note = starts_of(robot, question, T, start, limits)
     whole_turns = start is None and not is_redundant(robot, question)
     b, n = len(starts), len(robot.joint_names)
     q, last, info = np.empty((b, len(T), n)), np.empty((b, n)), np.empty((b, 5))
@@ -106,14 +106,6 @@ def path_of(poses: Array) -> Array:
     return np.ascontiguousarray(poses)
 
 
-def open_bounds(robot: KinematicModel, question: Question) -> tuple[Array, Array]:
-    """The limits lower and upper (n,), infinite where there are none."""
-    if question.limits.size:
-        return question.limits[0], question.limits[1]
-    free = np.full(len(robot.joint_names), np.inf)
-    return -free, free
-
-
 def check_strides(robot: KinematicModel, max_step: Any) -> Array:
     """How far each joint may move between neighbouring poses (n,); one number counts for those that turn."""
     steps = as_floats(max_step, "max_step", finite=False)
@@ -132,44 +124,38 @@ def is_redundant(robot: KinematicModel, question: Question) -> bool:
     return bool(_core._ik_moving(robot, question.frame) > SIX)
 
 
-def starts_of(robot: KinematicModel, question: Question, T: Array, start: Any) -> Starts:
+def starts_of(robot: KinematicModel, question: Question, T: Array, start: Any, limits: Any) -> Starts:
     """Where the branches begin."""
     first, n = T[0], len(robot.joint_names)
     if start is not None:
         seed = one_array(start, "start", (n,), "one configuration", largest=FARTHEST)
-        return nearest_start(robot, question, first, seed)
+        return nearest_start(robot, question, first, seed, limits)
     if is_redundant(robot, question):
-        q, numbers, complete, note = nearest_start(
-            robot, question, first, middle_configuration(robot, question.limits)
-        )
+        seed = middle_configuration(robot, question.limits)
+        q, numbers, complete, note = nearest_start(robot, question, first, seed, limits)
         return q, numbers, complete, note or "; it begins nearest the middle of the limits"
     s: Any = as_solver(robot).solve(first)
     note = "" if s else f"the first pose is not reached: {s.reason}"
     return np.ascontiguousarray(s.q), s._branch_numbers, s.complete and not s.self_motions, note
 
 
-def nearest_start(robot: KinematicModel, question: Question, first: Array, seed: Array) -> Starts:
+def nearest_start(
+    robot: KinematicModel, question: Question, first: Array, seed: Array, limits: Any
+) -> Starts:
     """The solution of the first pose nearest to a configuration: itself, if it is one."""
     if plain_goal(first).residual(robot.fk(seed)) <= NUMERIC_TOLERANCE:
         return np.ascontiguousarray(seed)[None], (-1,), False, ""
     if is_redundant(robot, question):  # near= looks past limits, a descent keeps them
-        d = ik_numeric(robot, first, seed, rest=seed, limits=limits_of(robot, question))
+        d = ik_numeric(robot, first, seed, rest=seed, limits=limits)
         if d:
             return np.ascontiguousarray(d.q)[None], (-1,), False, ""
     try:
         s: Any = as_solver(robot).solve(first, near=seed)
     except NoClosedFormError:
-        s = ik_numeric(robot, first, seed, rest=seed, limits=limits_of(robot, question))
+        s = ik_numeric(robot, first, seed, rest=seed, limits=limits)
     if s:
         return np.ascontiguousarray(s.q.reshape(-1, len(seed))[:1]), (-1,), False, ""
     return np.empty((0, len(seed))), (), False, f"the first pose is not reached: {s.reason}"
-
-
-def limits_of(robot: KinematicModel, question: Question) -> Any:
-    """The limits of a question as ik_numeric takes them."""
-    if not question.limits.size:
-        return False
-    return replace(robot.limits, lower=question.limits[0], upper=question.limits[1])
 
 
 def is_out_of_reach(robot: KinematicModel, question: Question, T: Array, end: float) -> bool:
