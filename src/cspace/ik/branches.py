@@ -68,7 +68,7 @@ def words_of(chain: Any, seen: dict[str, Any]) -> Words | None:
 
 def six_joints(other: int, wrist_bit: int, forearm_end: int | None) -> Words:
     def words(at: Placed, number: int) -> str:
-        wrist = meeting_point(at.axes[4], at.points[4], at.axes[other], at.points[other])
+        wrist = meeting_point(at, 4, other)
         end = wrist if forearm_end is None else at.points[forearm_end]
         flip = "flip" if (number >> wrist_bit) & 1 else "no flip"
         return f"{name_shoulder(at, wrist)}, {name_elbow(at, end)}, wrist {flip}"
@@ -91,7 +91,7 @@ def words_of_completed(chain: Any) -> Words | None:
 
 
 def shoulder_and_elbow_at_meeting(at: Placed, _: int) -> str:
-    wrist = meeting_point(at.axes[3], at.points[3], at.axes[4], at.points[4])
+    wrist = meeting_point(at, 3, 4)
     return f"{name_shoulder(at, wrist)}, {name_elbow(at, wrist)}"
 
 

@@ -9,6 +9,8 @@ import numpy as np
 
 from cspace import _core
 from cspace.arrays import Array
+from cspace.ik.conditions import common_point
+from cspace.spatial import exp_so3
 from cspace.tolerances import UPRIGHT_TIP
 
 
@@ -37,15 +39,14 @@ def place_axes(chain: Any, q: Array) -> Placed:
     R, t = np.eye(3), np.zeros(3)
     axes, points = np.empty((2, len(q), 3))
     face = front_at_zero(chain)
-    for i, (h, p, kind, angle) in enumerate(zip(chain.axes, chain.points, chain.joint_types, q, strict=True)):
+    turns = exp_so3(chain.axes * q[:, None])
+    for i, (h, p, kind) in enumerate(zip(chain.axes, chain.points, chain.joint_types, strict=True)):
         axes[i], points[i] = R @ h, R @ p + t
         if kind == "P":
-            t = t + R @ (angle * h)
+            t = t + R @ (q[i] * h)
             continue
-        K = np.array([[0, -h[2], h[1]], [h[2], 0, -h[0]], [-h[1], h[0], 0]])
-        turn = np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
-        t = t + R @ (p - turn @ p)
-        R = R @ turn
+        t = t + R @ (p - turns[i] @ p)
+        R = R @ turns[i]
         if i == 0:
             face = R @ face
     return Placed(axes, points, R @ chain.T_zero[:3, 3] + t, face)
@@ -64,10 +65,6 @@ def front_at_zero(chain: Any) -> Array:
     return np.asarray(square if ahead >= 0 else -square)
 
 
-def meeting_point(h1: Array, p1: Array, h2: Array, p2: Array) -> Array:
-    """The point midway between two lines where they come closest."""
-    n = np.cross(h1, h2)
-    gap = p2 - p1
-    on_first = p1 + (np.cross(gap, h2) @ n) / (n @ n) * h1
-    on_second = p2 + (np.cross(gap, h1) @ n) / (n @ n) * h2
-    return np.asarray(0.5 * (on_first + on_second))
+def meeting_point(at: Placed, i: int, j: int) -> Array:
+    """The point midway between two axes where they come closest."""
+    return common_point(at.axes[[i, j]], at.points[[i, j]])[0]

@@ -9,7 +9,8 @@ import numpy as np
 from cspace.arrays import Array, as_floats, leading_axes, one_array
 from cspace.errors import InputError, InputTypeError
 from cspace.ik.wrapping import turning_joints
-from cspace.spatial import as_pose
+from cspace.spatial import as_pose, exp_so3
+from cspace.spatial.poses import assemble
 from cspace.tolerances import FARTHEST, LEVEL_SLIDE, UPRIGHT_TURN
 
 if TYPE_CHECKING:
@@ -71,15 +72,9 @@ def planar_poses(solver: Solver, goal: Any, position: Any, angle: Any) -> Array:
     p = as_floats(position, "position", last=(2,), largest=FARTHEST)
     T_zero = solver.chain.T_zero
     turn = as_floats(angle, "angle", largest=FARTHEST) - np.arctan2(T_zero[1, 0], T_zero[0, 0])
-    p = lift_points(solver, p)
-    T = np.zeros((*leading_axes(position=p.shape[:-1], angle=turn.shape), 4, 4))
-    T[..., 0, 0] = T[..., 1, 1] = np.cos(turn)
-    T[..., 1, 0] = np.sin(turn)
-    T[..., 0, 1] = -T[..., 1, 0]
-    T[..., 2, 2] = T[..., 3, 3] = 1.0
-    T[..., :3, :3] = T[..., :3, :3] @ T_zero[:3, :3]
-    T[..., :3, 3] = p
-    return T
+    leading_axes(position=p.shape[:-1], angle=turn.shape)
+    R = exp_so3(turn[..., None] * np.array([0.0, 0.0, 1.0])) @ T_zero[:3, :3]
+    return assemble(R, lift_points(solver, p))
 
 
 def lift_points(solver: Solver, p: Array) -> Array:
