@@ -1,15 +1,15 @@
 """The curve that a family runs along, and the part of it that joint limits leave.
 
 A curve that closes is periodic once its angles are unwound: after one time around it stands `shift` further,
-a multiple of 2π for joints that made full revolutions, zero for the others. Its points are named by their arc
-length s from q, over as many times around as the limits leave.
+a multiple of 2π for joints that made full revolutions, zero for the others. It is repeated as often as the
+limits leave, and its points are named by their arc length s from q.
 
 Source: E. L. Allgower and K. Georg, Numerical Continuation Methods, 1990, for the curve itself.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -49,26 +49,26 @@ class Curve:
     def length(self) -> float:
         return float(self.s[-1])
 
-    def beside(self, k: int) -> tuple[float, float]:
-        """The arc lengths of the points before and after point k; a closed curve goes on where it began."""
-        before, last = k - 1, len(self.s) - 1
-        if self.shift is None:
-            return float(self.s[max(before, 0)]), float(self.s[min(k + 1, last)])
-        low = self.s[before] if k > 0 else self.s[last - 1] - self.length
-        high = self.s[k + 1] if k < last else self.s[1] + self.length
-        return float(low), float(high)
+    def repeat(self, back: int, ahead: int) -> Curve:
+        """A closed curve so many times around before q and after it."""
+        n = len(self.s) - 1
+        around, i = np.divmod(np.arange((back + ahead) * n + 1), n)
+        around -= back
+        return replace(
+            self,
+            points=self.points[i] + around[:, None] * self.shift,
+            tangents=self.tangents[i],
+            s=self.s[i] + around * self.length,
+        )
 
     def at(self, s: Array) -> Array:
         """Configurations at these arc lengths (k,), (k, dof)."""
-        around = np.floor(s / self.length) if self.shift is not None else np.zeros_like(s)
-        inner = s - around * self.length
-        i = np.clip(np.searchsorted(self.s, inner) - 1, 0, len(self.s) - 2)
+        i = np.clip(np.searchsorted(self.s, s) - 1, 0, len(self.s) - 2)
         step = self.s[i + 1] - self.s[i]
-        part = np.where(step > 0, (inner - self.s[i]) / np.where(step > 0, step, 1.0), 0.0)
+        part = np.where(step > 0, (s - self.s[i]) / np.where(step > 0, step, 1.0), 0.0)
         chord = self.points[i] + part[:, None] * (self.points[i + 1] - self.points[i])
         exact, _ = return_onto_curve(self.solver, self.q, chord, self.tangents[i], self.whole_pose)
-        exact = np.where(np.isnan(exact), self.points[i], exact)  # a corner too sharp for its chord
-        return exact if self.shift is None else exact + around[:, None] * self.shift
+        return np.where(np.isnan(exact), self.points[i], exact)  # a corner too sharp for its chord
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +86,9 @@ class Arc:
         """The least and the largest value of each joint, (dof, 2)."""
         curve = self.curve
         shift = np.zeros(curve.points.shape[1]) if curve.shift is None else curve.shift
-        points = self.turning_points()
+        inside = (curve.s >= self.first) & (curve.s <= self.last)  # every joint has its extremes among these
+        ends = [end for end in (self.first, self.last) if np.isfinite(end) and not self.is_loop]
+        points = np.concatenate([curve.points[inside], curve.at(np.array(ends))])
         low, high = points.min(axis=0), points.max(axis=0)
         rests = high - low < RESTING_JOINT
         low, high = np.where(rests, curve.q, low), np.where(rests, curve.q, high)
@@ -101,25 +103,6 @@ class Arc:
             low, high = np.where(round_about, -np.pi, low), np.where(round_about, np.pi, high)
         return np.stack([low, high], axis=1)
 
-    def turning_points(self) -> Array:
-        """Points among which every joint has its extremes: the curve's own in the outermost times around,
-        and both ends.
-        """
-        curve, kept = self.curve, []
-        if curve.shift is None:
-            inside = (curve.s >= self.first) & (curve.s <= self.last)
-            kept.append(curve.points[inside])
-        else:
-            ends = [np.floor(end / curve.length) for end in (self.first, self.last) if np.isfinite(end)]
-            for around in {float(e + k) for e in [*ends, 0.0] for k in (-1, 0, 1)}:
-                s = curve.s + around * curve.length
-                inside = (s >= self.first) & (s <= self.last)
-                kept.append(curve.points[inside] + around * curve.shift)
-        for end in (self.first, self.last):
-            if np.isfinite(end) and not self.is_loop:
-                kept.append(curve.at(np.array([end])))
-        return np.concatenate(kept)
-
     def sample(self, n: int) -> Array:
         return self.curve.at(np.linspace(self.first, self.last, n, endpoint=not self.is_loop))
 
@@ -131,10 +114,15 @@ def arc_through(solver: Solver, q: Array, direction: Array, whole_pose: bool) ->
     if not fits[0]:
         return None
     curve, ends = trace_curve(solver, np.ascontiguousarray(moved[0]), direction, whole_pose)
+    if curve.shift is not None:
+        ahead = times_around(curve.points, curve.shift, lower, upper)
+        back = times_around(curve.points - curve.shift, -curve.shift, lower, upper)
+        if min(ahead, back) == MOST_TURNS:
+            return Arc(curve, 0.0, curve.length, True)
+        # The time around in which a limit is met comes last; where none is met, one time around is enough.
+        curve = curve.repeat(back % MOST_TURNS + 1, ahead % MOST_TURNS + 1)
     last = find_stop(curve, lower, upper, 1, ends[1])
     first = find_stop(curve, lower, upper, -1, ends[0])
-    if curve.shift is not None and np.isinf([first, last]).all():
-        return Arc(curve, 0.0, curve.length, True)
     return Arc(curve, first, last, False)
 
 
@@ -143,7 +131,12 @@ def nearest_member(solver: Solver, q: Array, direction: Array, whole_pose: bool,
     revolute joint by the turn that brings it closest."""
     rounds, parts = 9, 33
     curve, _ = trace_curve(solver, np.ascontiguousarray(q), direction, whole_pose)
-    low, high = curve.beside(int(np.argmin(measure_distances(solver, curve.points, seed))))
+    near, last = slice(None), len(curve.s) - 1
+    if curve.shift is not None:  # once around before q, so that every point has neighbours
+        curve, near = curve.repeat(1, 1), slice(last, 2 * last)
+    k = near.start or 0
+    k += int(np.argmin(measure_distances(solver, curve.points[near], seed)))
+    low, high = curve.s[max(k - 1, 0)], curve.s[min(k + 1, len(curve.s) - 1)]
     for _ in range(rounds):  # each narrows the piece between two points sixteenfold
         s = np.linspace(low, high, parts)
         points = curve.at(s)
@@ -207,22 +200,12 @@ def find_stop(curve: Curve, lower: Array, upper: Array, way: int, end: int) -> f
     """The arc length at which the curve, followed from q forward (way 1) or back (−1), meets a limit;
     infinite where it meets none, the end of the curve where it was lost.
     """
-    points, s = (curve.points, curve.s) if way > 0 else (curve.points[::-1], curve.s[::-1])
-    around = 0
-    if curve.shift is None:
-        keep = way * s >= 0
-        points, s = points[keep], s[keep]
-    else:
-        if way < 0:
-            points, s = points - curve.shift, s - curve.length
-        around = times_around(points, way * curve.shift, lower, upper)
-        if around >= MOST_TURNS:
-            return way * np.inf
-        points, s = points + way * around * curve.shift, s + way * around * curve.length
+    ahead = way * curve.s >= 0
+    points, s = curve.points[ahead][::way], curve.s[ahead][::way]
     # Joints at rest stay where the limits hold them, whatever rounding says.
     moving = np.ptp(curve.points, axis=0) > RESTING_JOINT
     outside = (((points < lower) | (points > upper)) & moving).any(axis=1)
-    outside[0] = False  # q itself, or a point that the time around before has passed
+    outside[0] = False  # q itself
     if not outside.any():
         return way * np.inf if curve.shift is not None or end == FAR else float(s[-1])
     i = int(np.argmax(outside))
