@@ -14,4 +14,4 @@ def least_squares_answer(found: Solutions) -> Solutions:
     q = wrap_joints(nearest_to_goal(found)[0], found._whole[0].joint_types)[None]
     about = replace(found._about, q=q) if found._about and found._partial else None
     own = found._wanted.own_joints(q)
-    return Solutions.of(found.solver, found._goal_pose, NEAREST, own, (-1,), (False,), None, about)
+    return Solutions.of(found.solver, found.goal, NEAREST, own, (-1,), (False,), None, about)

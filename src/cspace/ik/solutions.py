@@ -60,8 +60,12 @@ class Solutions(Answers, _core.SolutionsBase):
         note: str | None = None,
         about: About | None = None,
     ) -> Solutions:
-        """A result from its parts: rows q (k, dof), and the branch number and kind of each."""
-        goal, q = np.ascontiguousarray(goal), np.ascontiguousarray(q, dtype=np.float64)
+        """A result from its parts: rows q (k, dof), and the branch number and kind of each.
+
+        goal: a pose (4, 4) or a point (3,).
+        """
+        goal = np.ascontiguousarray(position_goal(goal) if goal.shape == (3,) else goal)
+        q = np.ascontiguousarray(q, dtype=np.float64)
         numbers, flags = tuple(map(int, branches)), tuple(map(bool, self_motion))
         return cast(Solutions, _core._ik_make(solver, goal, verdict, q, numbers, flags, note, about))
 
@@ -123,9 +127,8 @@ class Solutions(Answers, _core.SolutionsBase):
             text = f"{len(self)} of the configurations that reach the goal, which leaves {free}"
         if self._status == SINGULAR:
             moving = sorted({name for self_motion in self.self_motions for name in self_motion.joints})
-            cause = (
-                "the pose is singular" if "pose" in self._wanted.value else "the goal leaves a self-motion"
-            )
+            is_pose = "pose" in self._wanted.value
+            cause = "the pose is singular" if is_pose else "the goal leaves a self-motion"
             text += f"; {cause}: {', '.join(moving)} can move while the tip does not"
         return text if self.complete else text + "; " + UNCERTIFIED
 
@@ -201,27 +204,21 @@ class Solutions(Answers, _core.SolutionsBase):
         names = self.solver.joint_names
         return tuple({name: float(e) for name, e in zip(names, row, strict=True) if e > 0} for row in excess)
 
-    @property
-    def _goal_pose(self) -> Array:
-        return self.goal if self.goal.shape == (4, 4) else position_goal(self.goal)
-
     def _take(self, rows: Any, q: Array, note: str | None) -> Solutions:
         numbers = (self._branch_numbers[row] for row in rows)
         flags = (self._is_self_motion[row] for row in rows)
         about = None if self._about is None else self._about.take(rows, len(rows) == len(self))
-        return Solutions.of(self.solver, self._goal_pose, self._verdict, q, numbers, flags, note, about)
+        return Solutions.of(self.solver, self.goal, self._verdict, q, numbers, flags, note, about)
 
     def __reduce__(self) -> tuple[Any, ...]:
         numbers = (self._branch_numbers, self._is_self_motion, self._note, self._about)
-        return Solutions.of, (self.solver, self._goal_pose, self._verdict, self.q, *numbers)
+        return Solutions.of, (self.solver, self.goal, self._verdict, self.q, *numbers)
 
     def __repr__(self) -> str:
         lines = [f"Solutions({self.status}: {self.reason})"]
         if len(self):
-            for label, q in zip(self.branch, self.q, strict=True):
-                lines.append(
-                    "  [" + ", ".join(f"{angle: .4f}" for angle in np.round(q, 4) + 0.0) + f"]  {label}"
-                )
+            for label, q in zip(self.branch, np.round(self.q, 4) + 0.0, strict=True):
+                lines.append("  [" + ", ".join(f"{angle: .4f}" for angle in q) + f"]  {label}")
         return "\n".join(lines)
 
 

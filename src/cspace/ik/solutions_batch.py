@@ -14,7 +14,6 @@ from cspace.errors import InputError
 from cspace.ik.answers import INCOMPLETE, METRICS, NEAREST, UNREACHABLE, VERDICTS, Answers
 from cspace.ik.context import About
 from cspace.ik.goals.given import rows_for_goals
-from cspace.ik.goals.partial import position_goal
 from cspace.ik.solutions import Solutions
 from cspace.ik.wrapping import into_limits, wrap_joints
 from cspace.kinematics.batch import limits_of
@@ -121,8 +120,7 @@ class SolutionsBatch(Answers):
             gaps = np.abs(np.sin((full.q - rows[:, None]) / 2)).max(axis=2)
             numbers = tuple(full._branch_numbers[row] for row in gaps.argmin(axis=1)) if k else ()
             note = None if k or not len(full) else "solutions exist, the filters left none"
-        pose = position_goal(goal) if self._is_point else goal
-        return Solutions.of(self.solver, pose, int(verdict), rows, numbers, flags, note, about)
+        return Solutions.of(self.solver, goal, int(verdict), rows, numbers, flags, note, about)
 
     def within(self, limits: Limits | None = None) -> SolutionsBatch:
         """The solutions inside the limits, each revolute joint first moved by a multiple of 2π to fit.
