@@ -269,8 +269,8 @@ inline void trace_loops_by_descent(Tracer& tracer) {
 }
 
 // Traces the closed arcs from the solutions at sampled values of the parameter. Other joints are sampled too,
-// because a loop that hardly moves one joint moves others. At the sampled values of the parameter the
-// intervals are counted as a check.
+// because a loop that hardly moves one joint moves others; not those that hardly any self-motion moves. At
+// the sampled values of the parameter the intervals are counted as a check.
 inline void trace_loops(Tracer& tracer, const Sweep& sweep, const LimitArms& arms, SweptRows* swept) {
     constexpr int looks = loop_looks, other_looks = 4;
     const Domain domain = domain_of(*tracer.arm, tracer.parameter, tracer.goal);
@@ -282,7 +282,7 @@ inline void trace_loops(Tracer& tracer, const Sweep& sweep, const LimitArms& arm
         for (int j = 0; j < rows.count; ++j) trace_loop(tracer, rows.q[j]);
     });
     for (int joint = 0; joint < tracer.arm->chain.n; ++joint)
-        if (joint != tracer.parameter)
+        if (joint != tracer.parameter && !arms.rests[joint])
             trace_loops_at(tracer, arms.locked[joint], joint, joint == arms.freest ? looks : other_looks);
     trace_loops_by_descent(tracer);
     for (int k = 0; k < looks && tracer.out->complete; ++k)

@@ -280,10 +280,15 @@ inline void record_point(Tracer& tracer, const double* q, bool first) {
 
 // Whether a configuration lies on a traced arc, from trail point `first` on.
 inline bool is_on_trail(const Tracer& tracer, const double* q, int first = 0) {
+    constexpr double beyond = 1.1;  // of a chord: the chord and its tube
     const Trail& trail = *tracer.trail;
-    for (int k = first + 1; k < trail.count; ++k)
-        if (!trail.first_of_arc[k] && part_of_chord(tracer.arm->chain, trail.q[k - 1], trail.q[k], q) >= 0)
-            return true;
+    const Chain& chain = tracer.arm->chain;
+    for (int k = first + 1; k < trail.count; ++k) {
+        bool near_by = !trail.first_of_arc[k];
+        for (int i = 0; i < chain.n && near_by; ++i)
+            near_by = std::fabs(joint_difference(chain, i, q[i] - trail.q[k][i])) <= beyond * trail.length[k];
+        if (near_by && part_of_chord(chain, trail.q[k - 1], trail.q[k], q) >= 0) return true;
+    }
     return false;
 }
 

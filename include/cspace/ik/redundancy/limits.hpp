@@ -11,6 +11,7 @@ namespace cspace::ik {
 struct LimitArms {
     LockedArm locked[max_joints];
     Arm at_limit[max_joints][2];  // where the joint stands between others: its arm at lower and upper limit
+    bool rests[max_joints] = {};  // whether self-motions hardly move it
     int freest = -1;              // of the joints that nothing stops the one that self-motions move most
 };
 
@@ -37,10 +38,11 @@ inline bool has_limit(const Redundant& arm, int joint, int side) {
     return is_stopped(arm, joint) && std::isfinite(limit_of(arm, joint, side));
 }
 
-// Of the joints without a stop, the one that the self-motion moves most; −1 if every joint can be stopped.
-inline int freest_joint(const Redundant& arm) {
+// Which joints the self-motion hardly moves, and of those without a stop the one that it moves most.
+inline void find_freest_joint(const Redundant& arm, LimitArms& out) {
     constexpr int looks = 8;
-    double moves[max_joints] = {};
+    constexpr double hardly = 0.05;  // of the motion of the joint that moves most
+    double moves[max_joints] = {}, most = 0;
     for (int look = 0; look < looks; ++look) {
         double q[max_joints];
         spread_configuration(look, arm.chain.n, q);
@@ -50,17 +52,18 @@ inline int freest_joint(const Redundant& arm) {
         const double* const along = at.jacobian.v[weakest_direction(at.jacobian)];
         for (int i = 0; i < arm.chain.n; ++i) moves[i] += std::fabs(along[i]);
     }
-    int best = -1;
-    for (int i = 0; i < arm.chain.n; ++i)
-        if (!is_stopped(arm, i) && (best < 0 || moves[i] > moves[best])) best = i;
-    return best;
+    for (int i = 0; i < arm.chain.n; ++i) {
+        most = max(most, moves[i]);
+        if (!is_stopped(arm, i) && (out.freest < 0 || moves[i] > moves[out.freest])) out.freest = i;
+    }
+    for (int i = 0; i < arm.chain.n; ++i) out.rests[i] = moves[i] < hardly * most;
 }
 
 // out: as LimitArms{}. It is large, so the caller provides the memory.
 inline void make_limit_arms(const Redundant& arm, LimitArms& out) {
     double at[max_joints];
     typical_values(arm, at);
-    out.freest = freest_joint(arm);
+    find_freest_joint(arm, out);
     for (int i = 0; i < arm.chain.n; ++i) {
         out.locked[i] = arm.locked.n_locked == 1 && arm.locked.locked_joint[0] == i
                             ? arm.locked

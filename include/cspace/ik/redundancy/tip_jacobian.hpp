@@ -149,15 +149,16 @@ CSPACE_INLINE void find_multipliers(const SplitJacobian<V>& split, int size, con
 // The self-motion curve of an arm with one redundant joint: tangent, curvature, Newton's method back onto the
 // curve, and the folds, where a joint reverses its direction.
 
-// One Newton step from q back onto the curve, and the quantities of the curve at q before the step.
-CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, double length, CurvePoint& at) {
+template <int N>
+CSPACE_INLINE void step_onto_curve(const Chain& chain, int rank, const Posed& goal, double length,
+                                   CurvePoint& at) {
     TipMotion<double>& motion = at.motion;
     SplitJacobian<double>& split = at.split;
-    const int n = chain.n;
+    const int n = size_or<N>(chain.n);
     double step[max_joints];
-    tip_motion<0>(chain, goal, length, at.q, motion);
-    split_jacobian<0>(motion, n, rank, split);
-    free_direction<0>(split, n, 0, at.tangent);
+    tip_motion<N>(chain, goal, length, at.q, motion);
+    split_jacobian<N>(motion, n, rank, split);
+    free_direction<N>(split, n, 0, at.tangent);
     // The pose's second derivative along the tangent; what bends the curve takes it back.
     Vec3d linear = {0, 0, 0}, angular = {0, 0, 0}, turned = {0, 0, 0};
     for (int j = 0; j < n; ++j) {
@@ -169,11 +170,16 @@ CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, dou
         turned = turned + t * h;
     }
     const double back[6] = {-linear.x, -linear.y, -linear.z, -angular.x, -angular.y, -angular.z};
-    shortest_step<0>(split, n, back, at.bend);
-    shortest_step<0>(split, n, motion.error, step);
+    shortest_step<N>(split, n, back, at.bend);
+    shortest_step<N>(split, n, motion.error, step);
     at.error = largest_of(motion.error, 6);
     const double keep = shortening(largest_of(step, n), 0.3);
     for (int i = 0; i < n; ++i) at.q[i] += keep * step[i];
+}
+// One Newton step from q back onto the curve, and the quantities of the curve at q before the step.
+CSPACE_ONCE void onto_curve(const Chain& chain, int rank, const Posed& goal, double length, CurvePoint& at) {
+    chain.n == 7 && rank == 6 ? step_onto_curve<7>(chain, rank, goal, length, at)
+                              : step_onto_curve<0>(chain, rank, goal, length, at);
 }
 
 // ‖J⁺ (J′ − J)‖ for the Jacobian J at `at` and J′ at `other`. If it is below 1 on a convex set, every
