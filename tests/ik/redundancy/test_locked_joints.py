@@ -175,7 +175,7 @@ def test_goals_and_values_that_do_not_fit_together_are_refused():
     T = np.stack([robot.fk(np.full(7, 0.3))] * 2)
     with pytest.raises(InputError, match=r"goal \(2,\) and locked\['iiwa_joint_1'\] \(3,\)"):
         robot.ik(T, locked={0: [0.1, 0.2, 0.3]})
-    with pytest.raises(InputError, match=r"goal \(2,\), swivel \(3,\)"):
+    with pytest.raises(InputError, match=r"goal \(2,\) and swivel \(3,\)"):
         robot.ik(T, swivel=[0.1, 0.2, 0.3])
 
 
