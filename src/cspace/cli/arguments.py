@@ -34,11 +34,9 @@ class Parser(argparse.ArgumentParser):
             formatter_class=argparse.RawDescriptionHelpFormatter,
             allow_abbrev=False,
         )
-        self.add_argument("--json", action="store_true", help="machine-readable output: radians, metres")
-        self.add_argument("--debug", action="store_true", help="show the traceback of an error")
-        self.add_argument(
-            "--time-limit", type=read_seconds, metavar="S", help="stop after S seconds, with exit code 5"
-        )
+        add_option(self, "--json", "machine-readable output: radians, metres")
+        add_option(self, "--debug", "show the traceback of an error")
+        add_option(self, "--time-limit S", "stop after S seconds, with exit code 5", read_seconds)
 
     def print_help(self, file: Any = None) -> None:
         """Write the help; that of argparse would not report a failure, such as a full disk."""
@@ -48,6 +46,22 @@ class Parser(argparse.ArgumentParser):
         """Raise the fault instead of printing the usage and leaving the process."""
         unguarded = re.sub(r"(?<=[\s'])\s+(?=-)", "", message)
         raise UsageError(f"{unguarded}; see {self.prog} --help")
+
+
+def add_option(where: Any, typed: str, text: str, read: Any = None, **more: Any) -> None:
+    """Add an option as it is typed: --deg is a flag, --tip LINK takes a value, --xy X Y two, --near Q… any
+    number. where: a parser or a group. text: its help. read: what makes a value of a word.
+    """
+    words = typed.split()
+    names = [word for word in words if word.startswith("-")]
+    values = [word.removesuffix("…") for word in words[len(names) :]]
+    if values:
+        more |= {"type": read, "metavar": tuple(values) if len(values) > 1 else values[0]}
+        if typed.endswith("…") or len(values) > 1:
+            more["nargs"] = "+" if typed.endswith("…") else len(values)
+    elif "choices" not in more:
+        more.setdefault("action", "store_true")
+    where.add_argument(*names, help=text, **more)
 
 
 class OfPi(float):
@@ -154,30 +168,18 @@ def add_robot(parser: argparse.ArgumentParser) -> None:
     """The robot: a name of the catalogue or a file, and what a file may need besides."""
     parser.add_argument("robot", metavar="ROBOT", help="a name of the catalogue (cspace robots) or a file")
     group = parser.add_argument_group("options for robot files")
-    group.add_argument(
-        "--calibration", metavar="FILE", help="the joint frames of one UR arm, from ur_calibration"
-    )
-    group.add_argument(
-        "--xacro-arg",
-        action="append",
-        default=[],
-        type=named_value,
-        metavar="NAME=VALUE",
-        help="an argument of a xacro file; may be repeated",
-    )
-    group.add_argument(
-        "--package-path",
-        action="append",
-        default=[],
-        metavar="FOLDER",
-        help="a folder with ROS packages, or one package; may be repeated",
-    )
+    text = "the joint frames of one UR arm, from ur_calibration"
+    add_option(group, "--calibration FILE", text)
+    text = "an argument of a xacro file; may be repeated"
+    add_option(group, "--xacro-arg NAME=VALUE", text, named_value, action="append", default=[])
+    text = "a folder with ROS packages, or one package; may be repeated"
+    add_option(group, "--package-path FOLDER", text, action="append", default=[])
 
 
 def add_chain(parser: argparse.ArgumentParser) -> None:
     """The ends of the chain, for files that leave the choice."""
-    parser.add_argument("--base", metavar="LINK", help="the link where the chain begins")
-    parser.add_argument("--tip", metavar="LINK", help="the link where the chain ends")
+    add_option(parser, "--base LINK", "the link where the chain begins")
+    add_option(parser, "--tip LINK", "the link where the chain ends")
 
 
 def add_joints(parser: argparse.ArgumentParser) -> None:
@@ -185,11 +187,11 @@ def add_joints(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "q", metavar="Q", nargs="*", type=read_number, help="one value per joint [rad, m]; pi/2 may be typed"
     )
-    parser.add_argument("--frame", metavar="LINK", help="a frame other than the tip")
+    add_option(parser, "--frame LINK", "a frame other than the tip")
 
 
 def add_degrees(parser: argparse.ArgumentParser) -> None:
     """Degrees instead of radians, typed and read; --json stays in radians."""
     group = parser.add_mutually_exclusive_group()
-    group.add_argument("--deg", action="store_true", help="type and read angles in degrees; pi/2 typed is 90")
-    group.add_argument("--rad", action="store_false", dest="deg", help="angles in radians (the default)")
+    add_option(group, "--deg", "type and read angles in degrees; pi/2 typed is 90")
+    add_option(group, "--rad", "angles in radians (the default)", action="store_false", dest="deg")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING, Any, Final
 
-from cspace.cli.arguments import named_number, read_number, read_radians
+from cspace.cli.arguments import add_option, named_number, read_number, read_radians
 from cspace.cli.exits import UsageError
 from cspace.cli.robot import joint_called
 
@@ -23,34 +23,14 @@ GOAL_JOINT: Final = "goal_"
 def add_freedom(parser: argparse.ArgumentParser) -> None:
     """Add the options for redundancy."""
     group = parser.add_argument_group("redundancy", "for redundant arms and partial goals")
-    group.add_argument(
-        "--locked",
-        nargs="+",
-        action="extend",
-        type=named_number,
-        metavar="JOINT=VALUE",
-        help="joints locked at values; q7 is the seventh joint, whatever its name",
-    )
-    group.add_argument("--swivel", type=read_number, metavar="A", help="angle of the elbow on its circle")
-    group.add_argument(
-        "--samples",
-        type=int,
-        metavar="N",
-        help="the number of values of the redundant parameter (default: 16)",
-    )
-    group.add_argument(
-        "--near",
-        nargs="+",
-        type=read_number,
-        metavar="Q",
-        help="a configuration: nearest solution first, or only it if the goal leaves degrees of freedom",
-    )
-    group.add_argument(
-        "--least-squares",
-        action="store_const",
-        const=True,
-        help="for unreachable goals: the configuration that comes closest",
-    )
+    text = "joints locked at values; q7 is the seventh joint, whatever its name"
+    add_option(group, "--locked JOINT=VALUE…", text, named_number, action="extend")
+    add_option(group, "--swivel A", "angle of the elbow on its circle", read_number)
+    add_option(group, "--samples N", "the number of values of the redundant parameter (default: 16)", int)
+    text = "a configuration: nearest solution first, or only it if the goal leaves degrees of freedom"
+    add_option(group, "--near Q…", text, read_number)
+    text = "for unreachable goals: the configuration that comes closest"
+    add_option(group, "--least-squares", text, default=None)
 
 
 def options_of(args: argparse.Namespace, robot: Robot) -> dict[str, Any]:

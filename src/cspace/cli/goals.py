@@ -9,7 +9,7 @@ from typing import Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.cli.arguments import OPEN, read_coordinate, read_number, read_radians
+from cspace.cli.arguments import OPEN, add_option, read_coordinate, read_number, read_radians
 from cspace.cli.exits import UsageError
 
 ORIENTATIONS: Final = ("rpy", "wxyz", "xyzw", "rotation")
@@ -70,40 +70,26 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
         "goal", "the tip in the base: a pose (a place and an orientation), or the parts of it that matter"
     )
 
-    def add(*names: str, letters: str, text: str, kind: Any = read_number) -> None:
-        words = tuple(letters.split())
-        group.add_argument(*names, nargs=len(words), metavar=words, type=kind, help=text)
-
-    add(
-        "--xyz",
-        "--position",
-        letters="X Y Z",
-        kind=read_coordinate,
-        text=f"position [m]; {OPEN}: does not matter",
-    )
-    add("--xy", letters="X Y", text="position of a planar arm [m]")
-    group.add_argument(
-        "--angle", metavar="A", type=read_number, help="with --xy: the angle of the tip's x axis"
-    )
-    add("--rpy", letters="R P Y", text="orientation: roll, pitch, yaw about fixed x, y, z")
-    add("--wxyz", letters="W X Y Z", text="orientation: quaternion, real part first")
-    add("--xyzw", letters="X Y Z W", text="orientation: quaternion, real part last")
-    group.add_argument(
-        "--rotation", nargs=9, metavar="R", type=read_number, help="orientation: matrix, row by row"
-    )
-    group.add_argument("--matrix", nargs=16, metavar="M", type=read_number, help="the whole pose, row by row")
-    add("--direction", letters="X Y Z", text="direction of the tool axis")
-    add("--look-at", letters="X Y Z", text="a point on the tool axis, ahead of the tip [m]")
-    add("--ray", letters="X Y Z DX DY DZ", text="a point [m] and the direction of the line of the tool axis")
-    group.add_argument(
-        "--angle-to",
-        nargs=2,
-        metavar=("AXIS", "A"),
-        help="with --xyz: an axis of the base, and the angle to it",
-    )
-    group.add_argument(
-        "--tool-axis", nargs="+", metavar="AXIS", help="the tool axis in the tip: z, -x, or 3 numbers"
-    )
+    place = f"position [m]; {OPEN}: does not matter"
+    add_option(group, "--xyz --position X Y Z", place, read_coordinate)
+    for typed, text in (
+        ("--xy X Y", "position of a planar arm [m]"),
+        ("--angle A", "with --xy: the angle of the tip's x axis"),
+        ("--rpy R P Y", "orientation: roll, pitch, yaw about fixed x, y, z"),
+        ("--wxyz W X Y Z", "orientation: quaternion, real part first"),
+        ("--xyzw X Y Z W", "orientation: quaternion, real part last"),
+    ):
+        add_option(group, typed, text, read_number)
+    add_option(group, "--rotation R", "orientation: matrix, row by row", read_number, nargs=9)
+    add_option(group, "--matrix M", "the whole pose, row by row", read_number, nargs=16)
+    for typed, text in (
+        ("--direction X Y Z", "direction of the tool axis"),
+        ("--look-at X Y Z", "a point on the tool axis, ahead of the tip [m]"),
+        ("--ray X Y Z DX DY DZ", "a point [m] and the direction of the line of the tool axis"),
+    ):
+        add_option(group, typed, text, read_number)
+    add_option(group, "--angle-to AXIS A", "with --xyz: an axis of the base, and the angle to it")
+    add_option(group, "--tool-axis AXIS…", "the tool axis in the tip: z, -x, or 3 numbers")
 
 
 def goal_of(args: argparse.Namespace) -> Goal:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 import numpy as np
 
 from cspace.arrays import Array
-from cspace.cli.arguments import add_chain, add_degrees, add_robot
+from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
 from cspace.cli.robot import load_chosen, need_chain
@@ -28,18 +28,12 @@ cspace dh scara --latex --products
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
-    parser.add_argument(
-        "--convention",
-        choices=("standard", "modified"),
-        default="standard",
-        help="standard (Denavit, Hartenberg 1955; the default) or modified (Craig 1986)",
-    )
+    text = "standard (Denavit, Hartenberg 1955; the default) or modified (Craig 1986)"
+    add_option(parser, "--convention", text, choices=("standard", "modified"), default="standard")
     form = parser.add_mutually_exclusive_group()
-    form.add_argument("--latex", action="store_true", help="print LaTeX")
-    form.add_argument("--markdown", action="store_true", help="print Markdown")
-    parser.add_argument(
-        "--products", action="store_true", help="also A1 A2, A1 A2 A3 … with symbols such as c12"
-    )
+    add_option(form, "--latex", "print LaTeX")
+    add_option(form, "--markdown", "print Markdown")
+    add_option(parser, "--products", "also A1 A2, A1 A2 A3 … with symbols such as c12")
     add_degrees(parser)
     add_chain(parser)
 

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from cspace.cli.arguments import add_chain, add_robot
+from cspace.cli.arguments import add_chain, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.files import check_writable
 from cspace.cli.output import Output
@@ -26,22 +26,12 @@ cspace export arm.urdf --lang python --name my_arm > my_arm.py
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
-    parser.add_argument(
-        "--lang", metavar="LANGUAGE", help="cpp, c or python (default: by the ending of FILE, else cpp)"
-    )
-    parser.add_argument(
-        "-o", "--output", type=Path, metavar="FILE", help="output file (default: print the text)"
-    )
-    parser.add_argument("--name", help="namespace or prefix (default: derived from the name of the robot)")
-    parser.add_argument(
-        "--locked",
-        nargs="+",
-        metavar="JOINT",
-        help="joints whose values are arguments of the code; q7 is the seventh",
-    )
-    parser.add_argument(
-        "--example", type=Path, metavar="FILE", help="write a program that uses the exported code"
-    )
+    text = "cpp, c or python (default: by the ending of FILE, else cpp)"
+    add_option(parser, "--lang LANGUAGE", text)
+    add_option(parser, "-o --output FILE", "output file (default: print the text)", Path)
+    add_option(parser, "--name NAME", "namespace or prefix (default: derived from the name of the robot)")
+    add_option(parser, "--locked JOINT…", "joints whose values are arguments of the code; q7 is the seventh")
+    add_option(parser, "--example FILE", "write a program that uses the exported code", Path)
     add_chain(parser)
 
 

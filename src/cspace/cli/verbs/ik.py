@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from cspace.arrays import Array
-from cspace.cli.arguments import add_chain, add_degrees, add_robot
+from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.files import check_format, check_writable
 from cspace.cli.freedom import FREEDOM_WORDS, add_freedom, locked_joints, options_of
@@ -46,14 +46,10 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
     add_goal(parser)
     add_freedom(parser)
-    parser.add_argument(
-        "--limits",
-        choices=("mark", "drop", "keep"),
-        default="mark",
-        help="mark solutions out of limits (default), drop them, or keep all without a check",
-    )
+    text = "mark solutions out of limits (default), drop them, or keep all without a check"
+    add_option(parser, "--limits", text, choices=("mark", "drop", "keep"), default="mark")
     add_explanation(parser)
-    parser.add_argument("--plot", metavar="FILE", type=Path, help="write a picture (png, svg, pdf)")
+    add_option(parser, "--plot FILE", "write a picture (png, svg, pdf)", Path)
     add_degrees(parser)
     add_chain(parser)
 
@@ -123,16 +119,12 @@ def draw_solutions(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, 
 def add_explanation(parser: argparse.ArgumentParser) -> None:
     """The words of an explanation."""
     group = parser.add_argument_group("explanation", "how the arm is solved, instead of an answer to a goal")
-    group.add_argument("--explain", action="store_true", help="the geometry found, the steps, the equations")
-    group.add_argument(
-        "--goal-parts",
-        nargs="+",
-        metavar="PART",
-        help="for partial goals: position, rotation, direction, look-at, ray, angle-to (alone or together)",
-    )
+    add_option(group, "--explain", "the geometry found, the steps, the equations")
+    text = "for partial goals: position, rotation, direction, look-at, ray, angle-to (alone or together)"
+    add_option(group, "--goal-parts PART…", text)
     form = group.add_mutually_exclusive_group()
-    form.add_argument("--markdown", action="store_true", help="as Markdown with formulas")
-    form.add_argument("--latex", action="store_true", help="as LaTeX, for a document with amsmath")
+    add_option(form, "--markdown", "as Markdown with formulas")
+    add_option(form, "--latex", "as LaTeX, for a document with amsmath")
 
 
 def wants_explanation(args: argparse.Namespace) -> bool:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 import numpy as np
 
-from cspace.cli.arguments import add_chain, add_degrees, add_robot
+from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Output, Table
 from cspace.cli.robot import gripper_note, load_chosen
@@ -26,11 +26,8 @@ cspace info arm.urdf --tip tool0 --json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
-    parser.add_argument(
-        "--task",
-        metavar="TASK",
-        help=f"the numbers a goal has: 1 to 6, or {', '.join(TASKS)} (default: as the arm's shape suggests)",
-    )
+    text = f"the numbers a goal has: 1 to 6, or {', '.join(TASKS)} (default: as the arm's shape suggests)"
+    add_option(parser, "--task TASK", text)
     add_degrees(parser)
     add_chain(parser)
 

@@ -6,7 +6,7 @@ import argparse
 from typing import TYPE_CHECKING, Any, Final
 
 from cspace.arrays import Array
-from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_robot
+from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_option, add_robot
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
 from cspace.cli.robot import joint_headings, load_posed
@@ -25,14 +25,10 @@ cspace jacobian puma560 0 0.3 0.2 0 0.5 0 --expressed-in tip --json
 def arguments(parser: argparse.ArgumentParser) -> None:
     add_robot(parser)
     add_joints(parser)
-    parser.add_argument(
-        "--expressed-in", choices=("base", "tip"), default="base", help="the axes of the rows (default: base)"
-    )
-    parser.add_argument(
-        "--rows",
-        choices=("all", "linear", "angular"),
-        help="the rows that count for singularity (default: linear for arms that only position a point)",
-    )
+    text = "the axes of the rows (default: base)"
+    add_option(parser, "--expressed-in", text, choices=("base", "tip"), default="base")
+    text = "the rows that count for singularity (default: linear for arms that only position a point)"
+    add_option(parser, "--rows", text, choices=("all", "linear", "angular"))
     add_degrees(parser)
     add_chain(parser)
 

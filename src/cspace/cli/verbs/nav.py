@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
-from cspace.cli.arguments import named_value, read_number
+from cspace.cli.arguments import add_option, named_value, read_number
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.files import check_format, check_writable
 from cspace.cli.output import Cell, Output, Table
@@ -44,38 +44,18 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "map", type=Path, help="ROS map (.yaml), MovingAI .map, image, GeoJSON or text of polygons"
     )
-    for name in ("start", "goal"):
-        parser.add_argument(
-            f"--{name}", nargs=2, type=read_number, required=True, metavar=("X", "Y"), help="[m]"
-        )
-    parser.add_argument(
-        "--planner",
-        default="any_angle",
-        help="name of a planner, several separated by commas, or all (default: any_angle)",
-    )
-    parser.add_argument(
-        "--option",
-        action="append",
-        default=[],
-        type=named_value,
-        metavar="[PLANNER.]NAME=VALUE",
-        help="an option of the planners (cspace planners NAME); may be repeated",
-    )
-    parser.add_argument("--seed", type=int, metavar="N", help="the seed of sampling-based planners")
-    parser.add_argument(
-        "--radius", type=read_number, default=0.0, help="radius of the robot [m] (default: 0)"
-    )
-    parser.add_argument(
-        "--resolution",
-        type=read_number,
-        help="side of a cell [m], for images and for polygons converted to cells",
-    )
-    parser.add_argument(
-        "--plot", type=Path, metavar="FILE", help="draw the routes side by side (.png, .svg, .pdf)"
-    )
-    parser.add_argument(
-        "--animate", type=Path, metavar="FILE.gif", help="animate the search of the first planner"
-    )
+    add_option(parser, "--start X Y", "[m]", read_number, required=True)
+    add_option(parser, "--goal X Y", "[m]", read_number, required=True)
+    text = "name of a planner, several separated by commas, or all (default: any_angle)"
+    add_option(parser, "--planner PLANNER", text, default="any_angle")
+    text = "an option of the planners (cspace planners NAME); may be repeated"
+    add_option(parser, "--option [PLANNER.]NAME=VALUE", text, named_value, action="append", default=[])
+    add_option(parser, "--seed N", "the seed of sampling-based planners", int)
+    add_option(parser, "--radius RADIUS", "radius of the robot [m] (default: 0)", read_number, default=0.0)
+    text = "side of a cell [m], for images and for polygons converted to cells"
+    add_option(parser, "--resolution RESOLUTION", text, read_number)
+    add_option(parser, "--plot FILE", "draw the routes side by side (.png, .svg, .pdf)", Path)
+    add_option(parser, "--animate FILE.gif", "animate the search of the first planner", Path)
 
 
 def run(args: argparse.Namespace, out: Output) -> int:

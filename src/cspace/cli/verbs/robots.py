@@ -6,6 +6,7 @@ import argparse
 from dataclasses import asdict
 from typing import Final
 
+from cspace.cli.arguments import add_option
 from cspace.cli.exits import Exit
 from cspace.cli.output import Cell, Output, Table
 
@@ -18,8 +19,8 @@ cspace robots --dof 7 --json
 
 def arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("words", nargs="*", metavar="WORD", help="words as for --search")
-    parser.add_argument("--search", nargs="+", metavar="WORD", default=[], help="all words must occur")
-    parser.add_argument("--dof", type=int, metavar="N", help="only arms with N joints")
+    add_option(parser, "--search WORD…", "all words must occur", default=[])
+    add_option(parser, "--dof N", "only arms with N joints", int)
 
 
 def run(args: argparse.Namespace, out: Output) -> int:
