@@ -70,24 +70,19 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
         "goal", "the tip in the base: a pose (a place and an orientation), or the parts of it that matter"
     )
 
-    place = f"position [m]; {OPEN}: does not matter"
-    add_option(group, "--xyz --position X Y Z", place, read_coordinate)
-    for typed, text in (
-        ("--xy X Y", "position of a planar arm [m]"),
-        ("--angle A", "with --xy: the angle of the tip's x axis"),
-        ("--rpy R P Y", "orientation: roll, pitch, yaw about fixed x, y, z"),
-        ("--wxyz W X Y Z", "orientation: quaternion, real part first"),
-        ("--xyzw X Y Z W", "orientation: quaternion, real part last"),
-    ):
-        add_option(group, typed, text, read_number)
+    text = f"position [m]; {OPEN}: does not matter"
+    add_option(group, "--xyz --position X Y Z", text, read_coordinate)
+    add_option(group, "--xy X Y", "position of a planar arm [m]", read_number)
+    add_option(group, "--angle A", "with --xy: the angle of the tip's x axis", read_number)
+    add_option(group, "--rpy R P Y", "orientation: roll, pitch, yaw about fixed x, y, z", read_number)
+    add_option(group, "--wxyz W X Y Z", "orientation: quaternion, real part first", read_number)
+    add_option(group, "--xyzw X Y Z W", "orientation: quaternion, real part last", read_number)
     add_option(group, "--rotation R", "orientation: matrix, row by row", read_number, nargs=9)
     add_option(group, "--matrix M", "the whole pose, row by row", read_number, nargs=16)
-    for typed, text in (
-        ("--direction X Y Z", "direction of the tool axis"),
-        ("--look-at X Y Z", "a point on the tool axis, ahead of the tip [m]"),
-        ("--ray X Y Z DX DY DZ", "a point [m] and the direction of the line of the tool axis"),
-    ):
-        add_option(group, typed, text, read_number)
+    add_option(group, "--direction X Y Z", "direction of the tool axis", read_number)
+    add_option(group, "--look-at X Y Z", "a point on the tool axis, ahead of the tip [m]", read_number)
+    text = "a point [m] and the direction of the line of the tool axis"
+    add_option(group, "--ray X Y Z DX DY DZ", text, read_number)
     add_option(group, "--angle-to AXIS A", "with --xyz: an axis of the base, and the angle to it")
     add_option(group, "--tool-axis AXIS…", "the tool axis in the tip: z, -x, or 3 numbers")
 

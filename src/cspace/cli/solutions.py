@@ -21,59 +21,47 @@ if TYPE_CHECKING:
 RADIANS: Final = re.compile(r"(\d[\d.e+-]*) rad\b")
 """An angle in a sentence of the library."""
 
+FORMS: Final = {"singularity": "{:.4f}", "branch": "{}", "residual": "{:.1e}", "distance": "{:.4f}"}
+"""The columns behind joints and limits, and the form of their entries."""
 
-class Rows:
-    """The solutions in the order of the table: as found, or the nearest to `near` first.
 
-    q: (k, dof), each joint moved into its limits by multiples of 2π if they are checked. branch: k labels.
-    residual: (k,). out: per row the joints out of limits and by how much. singularity: (k,), of the rows of
-    the Jacobian that are `counting`, or None where the arm moves in none of them. distance: (k,) from `near`,
-    or None.
+def solution_rows(
+    robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str | Iterable[str]
+) -> list[dict[str, Any]]:
+    """The solutions as JSON data [rad, m], in the order of the table: as found, or nearest to `near` first.
+
+    check: each joint is moved into its limits by multiples of 2π, and it is said which ones are out of them,
+    by how much. The singularity is that of the rows `counting` of the Jacobian, None where the arm moves in
+    none of them; the distance is from `near`, or None.
     """
+    from cspace.ik.wrapping import into_limits, short_way
 
-    def __init__(
-        self, robot: Robot, answer: Any, near: Array | None, *, check: bool, counting: str | Iterable[str]
-    ) -> None:
-        from cspace.ik.wrapping import into_limits, short_way
-
-        q = np.asarray(answer.q, dtype=np.float64)
-        if check:  # each joint inside its limits, if a multiple of 2π brings it there
-            limits = robot.limits
-            q = into_limits(answer._settled(limits), robot.joint_types, limits.lower, limits.upper)[0]
-        self.distance: Array | None = None
-        order = np.arange(len(q))
-        if near is not None:
-            distance = np.linalg.norm(short_way(q - near, robot.joint_types), axis=1)
-            order = np.argsort(distance, kind="stable")
-            self.distance = distance[order]
-        self.q = q[order]
-        self.branch = [str(answer.branch[k]) for k in order]
-        self.residual = np.asarray(answer.residual)[order]
-        out = answer.violations() if check else [{}] * len(q)
-        self.out: list[dict[str, float]] = [out[k] for k in order]
-        self.checked = check
-        self.singularity = singularity_of_rows(robot, self.q, counting)
-
-    def __len__(self) -> int:
-        return len(self.q)
+    q = np.asarray(answer.q, dtype=np.float64)
+    if check:  # each joint inside its limits, if a multiple of 2π brings it there
+        limits = robot.limits
+        q = into_limits(answer._settled(limits), robot.joint_types, limits.lower, limits.upper)[0]
+    out = answer.violations() if check else [{}] * len(q)
+    singularity = singularity_of_rows(robot, q, counting)
+    distance = None if near is None else np.linalg.norm(short_way(q - near, robot.joint_types), axis=1)
+    order = range(len(q)) if distance is None else np.argsort(distance, kind="stable")
+    return [
+        {
+            "q": q[k].tolist(),
+            "branch": str(answer.branch[k]),
+            "within_limits": not out[k] if check else None,
+            "out_of_limits": out[k],
+            "singularity": None if singularity is None else float(singularity[k]),
+            "residual": float(answer.residual[k]),
+            "distance": None if distance is None else float(distance[k]),
+        }
+        for k in order
+    ]
 
 
 def solutions_document(
-    robot: Robot, answer: Any, rows: Rows, goal: Goal, options: dict[str, Any]
+    robot: Robot, answer: Any, rows: list[dict[str, Any]], goal: Goal, options: dict[str, Any]
 ) -> dict[str, Any]:
-    """The solutions as JSON data, [rad] and [m]."""
-    solutions = [
-        {
-            "q": rows.q[k].tolist(),
-            "branch": rows.branch[k],
-            "within_limits": not rows.out[k] if rows.checked else None,
-            "out_of_limits": rows.out[k],
-            "singularity": None if rows.singularity is None else float(rows.singularity[k]),
-            "residual": float(rows.residual[k]),
-            "distance": None if rows.distance is None else float(rows.distance[k]),
-        }
-        for k in range(len(rows))
-    ]
+    """The answer as JSON data, [rad] and [m]."""
     return {
         "schema": "cspace.ik/1",
         "robot": robot.name,
@@ -88,23 +76,25 @@ def solutions_document(
         "reason": answer.reason,
         "out_of_reach": float(answer.out_of_reach),
         "freedom": list(answer.freedom),
-        "solutions": solutions,
+        "solutions": rows,
     }
 
 
-def print_solutions(out: Output, robot: Robot, answer: Any, rows: Rows, *, degrees: bool) -> None:
+def print_solutions(
+    out: Output, robot: Robot, answer: Any, rows: list[dict[str, Any]], *, degrees: bool
+) -> None:
     """The solutions as a table, or the reason why there are none."""
     reason = answer.reason.replace("least_squares=True", "--least-squares")
     reason = in_degrees(reason) if degrees else reason
     out.line(f"{robot.name}: {reason}", style="bold" if answer else "yellow")
-    if not len(rows):
+    if not rows:
         return
     out.table(table_of(robot, rows, degrees=degrees))
     names = ", ".join(
         f"{short} {name}" for short, name in zip(joint_headings(robot), robot.joint_names, strict=True)
     )
     units = f"angles in {'deg' if degrees else 'rad'}" + (", slides in m" if "P" in robot.joint_types else "")
-    if rows.singularity is not None:
+    if rows[0]["singularity"] is not None:
         units += "; singularity: distance to the nearest singular configuration"
     out.hint(f"{units}; residual: of the true pose")
     if joint_headings(robot) != list(robot.joint_names):
@@ -116,20 +106,18 @@ def in_degrees(sentence: str) -> str:
     return RADIANS.sub(lambda angle: f"{np.degrees(float(angle[1])):.4g} deg", sentence)
 
 
-def table_of(robot: Robot, rows: Rows, *, degrees: bool) -> Table:
+def table_of(robot: Robot, rows: list[dict[str, Any]], *, degrees: bool) -> Table:
     """One row per solution, without empty columns."""
-    texts = [joint_texts(q, robot, degrees=degrees) for q in rows.q]
+    texts = [joint_texts(row["q"], robot, degrees=degrees) for row in rows]
     columns: list[tuple[str, Iterable[Cell | str]]] = [("", [f"{k + 1}" for k in range(len(rows))])]
     columns += zip(joint_headings(robot), zip(*texts, strict=True), strict=True)
-    if rows.checked:
-        columns.append(("limits", [limits_cell(out, robot, degrees=degrees) for out in rows.out]))
-    if rows.singularity is not None:
-        columns.append(("singularity", [f"{value:.4f}" for value in rows.singularity]))
-    if any(rows.branch):
-        columns.append(("branch", rows.branch))
-    columns.append(("residual", [f"{value:.1e}" for value in rows.residual]))
-    if rows.distance is not None:
-        columns.append(("distance", [f"{value:.4f}" for value in rows.distance]))
+    if rows[0]["within_limits"] is not None:
+        columns.append(
+            ("limits", [limits_cell(row["out_of_limits"], robot, degrees=degrees) for row in rows])
+        )
+    for name, form in FORMS.items():
+        if any(row[name] not in (None, "") for row in rows):
+            columns.append((name, [form.format(row[name]) for row in rows]))
     left = frozenset(j for j, (name, _) in enumerate(columns) if name in ("limits", "branch"))
     table = Table([name for name, _ in columns], left=left)
     for cells in zip(*(column for _, column in columns), strict=True):

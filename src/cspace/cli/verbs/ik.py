@@ -15,7 +15,7 @@ from cspace.cli.freedom import FREEDOM_WORDS, add_freedom, locked_joints, option
 from cspace.cli.goals import GOAL_WORDS, Goal, add_goal, axis_of, goal_of
 from cspace.cli.output import Output
 from cspace.cli.robot import gripper_note, load_chosen, need_chain, read_configuration
-from cspace.cli.solutions import Rows, print_solutions, solutions_document
+from cspace.cli.solutions import print_solutions, solution_rows, solutions_document
 from cspace.errors import InputError, InputTypeError
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
     found = solve_goal(robot, goal, near, options)
     if args.limits == "drop":
         found = found.within()
-    rows = Rows(robot, found, near, check=args.limits != "keep", counting=goal.rows)
+    rows = solution_rows(robot, found, near, check=args.limits != "keep", counting=goal.rows)
     if out.as_json:
         out.document(solutions_document(robot, found, rows, goal, options))
     else:
@@ -86,7 +86,7 @@ def answer_goal(args: argparse.Namespace, robot: Robot, out: Output) -> int:
         if note := gripper_note(args, robot):
             out.hint(note)
     if found and args.plot is not None:
-        draw_solutions(args.plot, robot, rows, goal.mark, title=title_of(robot, rows))
+        draw_solutions(args.plot, robot, rows, goal.mark)
         out.hint(f"picture written to {args.plot}")
     return Exit.DONE if found else Exit.NEGATIVE
 
@@ -98,21 +98,19 @@ def solve_goal(robot: Robot, goal: Goal, near: Array | None, options: dict[str, 
     return found if near is None or not leaves_freedom else goal.ask(robot, near=near, **options)
 
 
-def title_of(robot: Robot, rows: Rows) -> str:
-    """The title of the picture."""
-    if len(rows) == 1:
-        return f"{robot.name}: one configuration reaches the goal"
-    return f"{robot.name}: {len(rows)} configurations reach the goal"
-
-
-def draw_solutions(path: Path, robot: Robot, rows: Rows, goal: Array | None, *, title: str) -> None:
+def draw_solutions(path: Path, robot: Robot, rows: list[dict[str, Any]], goal: Array | None) -> None:
     """Write the picture of all solutions, the first row within limits solid."""
     from cspace import plot
 
-    order = sorted(range(len(rows)), key=lambda k: bool(rows.out[k]))
-    labels = [f"{k + 1}  {rows.branch[k]}" + (" (out of limits)" if rows.out[k] else "") for k in order]
-    within = [not rows.out[k] for k in order]
-    plot.save(plot.solutions(robot, rows.q[order], goal, labels=labels, within=within, title=title), path)
+    said = "one configuration reaches" if len(rows) == 1 else f"{len(rows)} configurations reach"
+    order = sorted(range(len(rows)), key=lambda k: bool(rows[k]["out_of_limits"]))
+    within = [not rows[k]["out_of_limits"] for k in order]
+    labels = [
+        f"{k + 1}  {rows[k]['branch']}" + ("" if fits else " (out of limits)")
+        for k, fits in zip(order, within, strict=True)
+    ]
+    q, title = [rows[k]["q"] for k in order], f"{robot.name}: {said} the goal"
+    plot.save(plot.solutions(robot, q, goal, labels=labels, within=within, title=title), path)
 
 
 # --- --explain: how the solver works, instead of solutions ------------------------------------------------
