@@ -49,24 +49,16 @@ def run(args: argparse.Namespace, out: Output) -> int:
     if out.as_json:
         out.document(table_document(robot.name, links, products=args.products))
         return Exit.DONE
-    if args.latex:
-        print_latex(out, links, degrees=args.deg)
-    elif args.markdown:
-        print_markdown(out, links, degrees=args.deg)
+    if args.latex or args.markdown:
+        formulas = matrix_formulas(links) + (links.product_formulas() if args.products else [])
+        table_lines, form = (latex_lines, "{}") if args.latex else (markdown_lines, "\n$${}$$")
+        for line in [*table_lines(table, degrees=args.deg), *map(form.format, formulas)]:
+            out.line(line)
     else:
         print_table(out, robot.name, links, degrees=args.deg)
-    for text in product_texts(links, args) if args.products else ():
-        out.line(text)
+        for text in links.product_texts() if args.products else ():
+            out.line(f"\n{text}")
     return Exit.DONE
-
-
-def product_texts(links: LinkMatrices, args: argparse.Namespace) -> list[str]:
-    """The products of the link matrices in the selected form."""
-    if args.latex:
-        return links.product_formulas()
-    if args.markdown:
-        return [f"\n$${formula}$$" for formula in links.product_formulas()]
-    return [f"\n{text}" for text in links.product_texts()]
 
 
 def entry_texts(A: TrigMatrix) -> list[list[str]]:
@@ -176,9 +168,8 @@ def print_table(out: Output, name: str, links: LinkMatrices, *, degrees: bool) -
             out.line(f"  {left}      q = 0: {right}")
 
 
-def print_latex(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
-    """The table as a LaTeX array and the matrices."""
-    table = links.table
+def latex_lines(table: DHTable, *, degrees: bool) -> list[str]:
+    """The table as a LaTeX array."""
     index = "i-1" if table.convention == "modified" else "i"
     lines = [
         r"\begin{array}{c|cccc}",
@@ -191,9 +182,7 @@ def print_latex(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
             cells[1] += r"^\circ"
             cells[4] += "" if cells[4].startswith("q_") and " " not in cells[4] else r"^\circ"
         lines.append(" & ".join(cells) + r" \\")
-    lines.append(r"\end{array}")
-    for line in [*lines, *matrix_formulas(links)]:
-        out.line(line)
+    return [*lines, r"\end{array}"]
 
 
 def matrix_formulas(links: LinkMatrices) -> list[str]:
@@ -204,14 +193,9 @@ def matrix_formulas(links: LinkMatrices) -> list[str]:
     ]
 
 
-def print_markdown(out: Output, links: LinkMatrices, *, degrees: bool) -> None:
-    """The table as a Markdown table and the matrices as formulas."""
-    table = links.table
+def markdown_lines(table: DHTable, *, degrees: bool) -> list[str]:
+    """The table in Markdown."""
     titles = column_headings(table.convention)
-    out.line("| " + " | ".join(titles) + " |")
-    out.line("|" + "---|" * len(titles))
-    for i in range(len(table)):
-        out.line("| " + " | ".join(row_texts(table, i, degrees=degrees)) + " |")
-    for formula in matrix_formulas(links):
-        out.line()
-        out.line(f"$${formula}$$")
+    rows = [titles, *(row_texts(table, i, degrees=degrees) for i in range(len(table)))]
+    head, *body = ["| " + " | ".join(row) + " |" for row in rows]
+    return [head, "|" + "---|" * len(titles), *body]
