@@ -8,6 +8,10 @@ ROTATION_ERROR: Final = 1e-6
 """Largest ‖RᵀR − I‖ (max norm, unitless) accepted as a rotation: a matrix typed with seven digits passes, a
 shear or a scaled matrix does not."""
 
+TYPED_ROTATION: Final = 2e-5
+"""Largest ‖RᵀR − I‖ of a matrix on the command line that stands for the nearest rotation: three products of
+entries rounded to five decimals (cspace fk prints six)."""
+
 ROTATION_PROJECTION: Final = 0.1
 """Largest ‖RᵀR − I‖ that projection to the nearest rotation accepts: beyond it the input is not a rotation
 but another matrix, and the nearest rotation would be an invention."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -269,3 +271,33 @@ def test_values_of_held_joints_are_in_the_unit_that_was_asked_for():
     assert cspace(f"{line} --deg").out.endswith("nothing reaches the goal with joint_1 = 90 deg\n")
     line = "ik scara --xyz 0.3 0.3 9 --rpy pi 0 0 --locked joint_3=0.1 joint_4=-pi/6 --deg"
     assert cspace(line).out.endswith("with joint_3 = 0.1 m, joint_4 = -30 deg\n")
+
+
+@pytest.mark.parametrize("name", ["ur5e", "puma560", "panda", "simplified_puma", "planar_3r", "so101"])
+@pytest.mark.parametrize("seed", range(4))
+def test_a_pose_printed_by_fk_is_accepted_in_every_form(name, seed):
+    robot = cs.load_robot(name)
+    q = np.random.default_rng(seed).uniform(-1.5, 1.5, len(robot.joint_names))
+    texts = [f"{x:.9f}" for x in q]
+    lines = cspace(f"fk {name}", *texts).out.splitlines()
+    rows = [line.split() for line in lines[1:5]]
+    form = {line.split()[0]: re.findall(r"-?\d+\.\d+", line) for line in lines[5:]}
+    rotation = [x for row in rows[:3] for x in row[:3]]
+    matrix = [x for row in rows for x in row]
+    goals = {"matrix": ["--matrix", *matrix], "rotation": ["--rotation", *rotation, "--xyz", *form["xyz"]]}
+    goals |= {word: [f"--{word}", *form[word], "--xyz", *form["xyz"]] for word in ("rpy", "wxyz", "xyzw")}
+    for words in goals.values():
+        found = cspace(f"ik {name} --json", *words)
+        assert found.code in (0, 1), found.err
+        goal = np.array(found.json["goal"]["matrix"])
+        np.testing.assert_allclose(goal, robot.fk(q), atol=2e-6)
+        np.testing.assert_allclose(goal[:3, :3].T @ goal[:3, :3], np.eye(3), atol=2e-6)
+
+
+def test_a_matrix_that_is_no_rotation_is_refused_and_one_typed_with_five_decimals_is_not():
+    R = cs.pose([0, 0, 0], rpy=[0.3, -0.4, 1.1])[:3, :3]
+    for decimals, code in ((12, 0), (8, 0), (6, 0), (5, 0), (3, 2)):
+        typed = [f"{x:.{decimals}f}" for x in R.ravel()]
+        assert cspace("ik ur5e --xyz 0.3 0.2 0.4 --rotation", *typed).code == code
+    sheared = [f"{x:.6f}" for x in (R + 1e-3 * np.eye(3, k=1)).ravel()]
+    assert cspace("ik ur5e --xyz 0.3 0.2 0.4 --rotation", *sheared).code == 2

@@ -99,3 +99,18 @@ def test_the_sheet_names_the_closed_form_of_a_short_arm(name):
     facts = cspace(f"info {name} --json").json
     assert facts["geometry"]["closed_form"]
     assert facts["geometry"]["family"] == "fewer than six joints"
+
+
+@pytest.mark.parametrize("name", ["planar_2r", "planar_3r", "simplified_puma", "so101", "ur5e", "panda"])
+def test_the_singularity_of_a_pose_is_that_of_the_library(name):
+    robot = cs.load_robot(name)
+    q = np.full(robot.dof, 0.3)
+    matrix = [f"{x:.17g}" for x in robot.fk(q).ravel()]
+    found = cspace(f"ik {name} --json --matrix", *matrix).json["solutions"]
+    assert found
+    for row in found:
+        expected = robot.distance_to_singularity(row["q"])
+        assert row["singularity"] == pytest.approx(expected, rel=1e-9, abs=1e-12)
+    told = cspace(f"jacobian {name} --json", *map(str, q)).json
+    assert told["distance_to_singularity"] == pytest.approx(robot.distance_to_singularity(q), rel=1e-12)
+    assert told["manipulability"] == pytest.approx(robot.manipulability(q), rel=1e-12)

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import cspace as cs
 from cspace.errors import InputError, InputTypeError, UnknownNameError
 from cspace.model import from_screws
 from cspace.robot import Robot
@@ -64,6 +65,80 @@ def test_the_planar_arm_is_singular_where_it_is_stretched_or_folded():
     q = np.stack(np.meshgrid(angles, angles), axis=-1)
     w = robot.manipulability(q, rows=("vx", "vy"))
     np.testing.assert_allclose(w, l1 * l2 * np.abs(np.sin(q[..., 1])), atol=1e-15)
+
+
+def planar_arm(n):
+    points = [[0.4 * k, 0.0, 0.0] for k in range(n)]
+    T_zero = np.eye(4)
+    T_zero[0, 3] = 0.4 * n
+    return Robot(from_screws([Z] * n, points, T_zero, name=f"planar_{n}r"))
+
+
+@pytest.mark.parametrize("n", [1, 2, 3, 4, 5, 8])
+def test_a_planar_arm_is_singular_where_it_is_stretched_and_nowhere_else(n):
+    robot, rng = planar_arm(n), np.random.default_rng(n)
+    q = rng.uniform(0.2, 1.0, (30, n))
+    assert robot.singular_values(q).shape == (30, min(n, 3))
+    assert robot.distance_to_singularity(q).min() > 1e-3
+    assert robot.manipulability(q).min() > 1e-3
+    stretched = np.zeros(n)
+    stretched[0] = 0.7
+    found = robot.singularity(stretched)
+    assert bool(found) == (n > 1)
+    assert found.rank == min(n, 3) - (n > 1)
+    assert found.distance == pytest.approx(robot.distance_to_singularity(stretched), abs=1e-15)
+    if n > 1:
+        assert len(found.joints) <= 3
+        np.testing.assert_allclose(robot.jacobian(stretched) @ found.motion, 0, atol=2e-15 if n > 2 else 1)
+
+
+@pytest.mark.parametrize(
+    ("joint_types", "rows", "rank"),
+    [
+        ("PPP", "linear", 3),
+        ("RRR", "linear", 3),
+        ("RP", "linear", 2),
+        ("RRRR", "all", 4),
+        ("R" * 7, "all", 6),
+    ],
+)
+def test_rows_that_count_are_those_that_the_arm_can_move(joint_types, rows, rank):
+    robot, rng = robots.arm(2, joint_types), np.random.default_rng(0)
+    q = robots.random_q(robot, rng, 20)
+    T = random_pose(rng)
+    expected = robot.singular_values(q, rows=rows)[:, :rank]
+    assert expected.shape == (20, rank)
+    np.testing.assert_array_equal(robot.singular_values(q), expected)
+    np.testing.assert_allclose(robot.singular_values(q, T_world_base=T), expected, atol=1e-14)
+    np.testing.assert_allclose(robot.singular_values(q, expressed_in="tip"), expected, atol=1e-14)
+    np.testing.assert_array_equal(robot.manipulability(q[3]), robot.manipulability(q)[3])
+    np.testing.assert_array_equal(robot.singular_values(q, rows="auto"), robot.singular_values(q))
+
+
+def test_a_robot_of_the_catalogue_is_singular_nowhere_in_general():
+    rng = np.random.default_rng(2)
+    for name in cs.robots.names():
+        robot = cs.load_robot(name)
+        for frame in robot.frames if robot.tip is None else [None, *robot.frames[-3:]]:
+            q = rng.uniform(-1.2, 1.2, (5, len(robot.joint_names)))
+            sigma = robot.singular_values(q, frame)
+            assert robot.distance_to_singularity(q, frame).max() > 1e-4, (name, frame)
+            J = robot.jacobian(q, frame)[..., robot.dof - len(robot.joint_names) :]
+            assert sigma.shape[-1] <= np.linalg.matrix_rank(J).max()
+
+
+def test_the_rank_is_that_of_the_point():
+    """The tip lies on the last axis, the point beside it: three joints then position a point."""
+    T_zero = np.eye(4)
+    T_zero[:3, 3] = [0.4, 0, 0.8]
+    robot = Robot(from_screws([Z, Y, X], [[0, 0, 0], [0, 0, 0.3], [0, 0, 0.8]], T_zero))
+    q = np.random.default_rng(0).uniform(-1, 1, (6, 3))
+    beside = np.random.default_rng(1).uniform(0.1, 0.3, (6, 3))
+    assert robot.distance_to_singularity(q, point=[0.2, 0.1, 0.3]).min() > 1e-3
+    assert robot.distance_to_singularity(q, point=beside).min() > 1e-3
+    expected = robot.singular_values(q, point=beside, rows="linear")
+    np.testing.assert_array_equal(robot.singular_values(q, point=beside), expected)
+    np.testing.assert_array_equal(robot.singular_values(q), robot.singular_values(q, rows="all"))
 
 
 def test_ellipsoid_holds_exactly_the_twists_of_unit_joint_velocities():

@@ -44,7 +44,7 @@ class Goal:
         if set(self.parts) == {"rotation"}:
             return "angular"
         if set(self.parts) != {"position"}:
-            return "all"
+            return "auto"
         place = self.parts["position"]
         asked = [row for row, value in zip(LINEAR, place, strict=False) if value is not None]
         return tuple(asked) if len(place) == 3 else "linear"
@@ -89,7 +89,7 @@ def add_goal(parser: argparse.ArgumentParser) -> None:
 
 def goal_of(args: argparse.Namespace) -> Goal:
     """The goal that the options describe. Raises UsageError for options that do not describe one."""
-    from cspace.spatial import as_pose, pose
+    from cspace.spatial import as_pose, pose, project_pose
 
     given = [name for name in GOAL_WORDS if getattr(args, name) is not None]
     if not given:
@@ -98,7 +98,9 @@ def goal_of(args: argparse.Namespace) -> Goal:
         if len(given) > 1:
             other = next(name for name in given if name != "matrix").replace("_", "-")
             raise UsageError(f"--matrix is the whole pose already; leave --{other} out")
-        return Goal(as_pose(np.reshape(args.matrix, (4, 4)), "--matrix"), tool_axis=axis_of(args))
+        T = np.reshape(args.matrix, (4, 4))
+        T = project_pose(T) if is_rounded(T[:3, :3]) else as_pose(T, "--matrix")
+        return Goal(T, tool_axis=axis_of(args))
     place, R = place_of(args), rotation_of(args)
     parts = {"position": place, "rotation": R, **pointing_of(args)}
     parts = {name: value for name, value in parts.items() if value is not None}
@@ -109,6 +111,14 @@ def goal_of(args: argparse.Namespace) -> Goal:
     if args.angle is not None:
         parts["angle"] = read_radians(args.angle, degrees=args.deg)
     return Goal(None, parts, axis_of(args))
+
+
+def is_rounded(R: Array) -> bool:
+    """Whether a matrix (3, 3) is a rotation typed with few decimals: the nearest rotation is meant."""
+    from cspace.spatial.checks import orthogonality_error
+    from cspace.tolerances import ROTATION_ERROR, TYPED_ROTATION
+
+    return bool(ROTATION_ERROR < orthogonality_error(R) <= TYPED_ROTATION)
 
 
 def place_of(args: argparse.Namespace) -> list[float | None] | None:
@@ -127,7 +137,7 @@ def place_of(args: argparse.Namespace) -> list[float | None] | None:
 
 def rotation_of(args: argparse.Namespace) -> Array | None:
     """The given orientation (3, 3), in one of its forms."""
-    from cspace.spatial import as_rotation, pose
+    from cspace.spatial import as_rotation, pose, project_rotation
 
     forms = [name for name in ORIENTATIONS if getattr(args, name) is not None]
     if len(forms) > 1:
@@ -136,7 +146,8 @@ def rotation_of(args: argparse.Namespace) -> Array | None:
         return None
     values = getattr(args, forms[0])
     if forms[0] == "rotation":
-        return np.asarray(as_rotation(np.reshape(values, (3, 3)), "--rotation"))
+        R = np.reshape(values, (3, 3))
+        return project_rotation(R) if is_rounded(R) else np.asarray(as_rotation(R, "--rotation"))
     if forms[0] == "rpy":
         values = [read_radians(value, degrees=args.deg) for value in values]
     arguments: dict[str, Any] = {forms[0]: np.array(values)}

@@ -12,7 +12,6 @@ from cspace.arrays import Array
 from cspace.cli.goals import Goal
 from cspace.cli.output import Cell, Output, Table
 from cspace.cli.robot import joint_headings, joint_texts
-from cspace.cli.tasks import singularity_of_rows
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -35,13 +34,15 @@ def solution_rows(
     none of them; the distance is from `near`, or None.
     """
     from cspace.ik.wrapping import into_limits, short_way
+    from cspace.kinematics.manipulability import counting_rows, generic_rank
 
     q = np.asarray(answer.q, dtype=np.float64)
     if check:  # each joint inside its limits, if a multiple of 2π brings it there
         limits = robot.limits
         q = into_limits(answer._settled(limits), robot.joint_types, limits.lower, limits.upper)[0]
     out = answer.violations() if check else [{}] * len(q)
-    singularity = singularity_of_rows(robot, q, counting)
+    rank = generic_rank(robot, rows=counting_rows(robot) if counting == "auto" else counting)
+    singularity = robot.singular_values(q, rows=counting)[:, rank - 1] if rank else None
     distance = None if near is None else np.linalg.norm(short_way(q - near, robot.joint_types), axis=1)
     order = range(len(q)) if distance is None else np.argsort(distance, kind="stable")
     return [

@@ -29,6 +29,7 @@ class KinematicModel(KinematicsBase):
         self.joint_names, self.joint_types = assembly.coordinates, assembly.coordinate_types
         self.limits = assembly.limits
         self.mass = float(assembly.mass.sum())
+        self._auto_rows: dict[int, tuple[list[int], int]] = {}  # per frame: rows that count, generic rank
 
     def __setattr__(self, name: str, value: Any) -> None:
         """Refuses to replace what describes the model: its compiled kinematics would not change with it."""

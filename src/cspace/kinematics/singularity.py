@@ -14,7 +14,7 @@ from cspace.arrays import Array
 from cspace.errors import InputError
 from cspace.kinematics.jacobian import jacobian
 from cspace.kinematics.kinematic_model import KinematicModel
-from cspace.kinematics.manipulability import ROWS, row_numbers
+from cspace.kinematics.manipulability import ROWS, select_rows
 from cspace.spatial.checks import PoseLike
 from cspace.tolerances import SINGULAR_ROUNDING, SINGULAR_VALUE
 
@@ -57,7 +57,7 @@ def singularity(
     q: ArrayLike,
     frame: str | None = None,
     *,
-    rows: str | Iterable[str] = "all",
+    rows: str | Iterable[str] = "auto",
     point: ArrayLike | None = None,
     expressed_in: str = "base",
     T_world_base: PoseLike | None = None,
@@ -75,7 +75,7 @@ def singularity(
     Raises InputError for more than one configuration (distance_to_singularity takes batches) and for a robot
     without joints.
     """
-    chosen = row_numbers(rows)
+    chosen, rank = select_rows(robot, frame, rows, point)
     J = jacobian(robot, q, frame, point=point, expressed_in=expressed_in, T_world_base=T_world_base)
     if J.ndim != 2:
         raise InputError(
@@ -88,7 +88,8 @@ def singularity(
         raise InputError(f"no joint of {robot.name} moves this frame, so it has no singularity")
     J = J[chosen][:, on_path]
     U, sigma, Vt = np.linalg.svd(J)
-    dependent = _dependent(J, Vt[sigma.size - 1])
+    sigma = sigma[:rank]
+    dependent = _dependent(J, Vt[sigma.size - 1], sigma.size)
     _, inner, weights = np.linalg.svd(J[:, dependent], full_matrices=False)
     motion = np.zeros(len(robot.joint_names))
     motion[on_path[dependent]] = weights[-1]
@@ -104,15 +105,17 @@ def singularity(
     )
 
 
-def _dependent(J: Array, weights: Array) -> list[int]:
-    """The columns of J (m, n) that become dependent; weights (n,): the joint velocities that move least."""
+def _dependent(J: Array, weights: Array, rank: int) -> list[int]:
+    """The columns of J (m, n) that become dependent, at most `rank`; weights (n,): the joint velocities that
+    move least.
+    """
     sizes = np.linalg.norm(J, axis=0)
     taking_part = np.flatnonzero(sizes > SINGULAR_VALUE)
-    if taking_part.size < min(J.shape):
+    if taking_part.size < rank:
         taking_part = np.arange(J.shape[1])
     best: list[list[int]] = [[]]
     smallest = [float(sizes.max())]
-    for size in range(1, min(J.shape) + 1):
+    for size in range(1, rank + 1):
         sets = _candidates(taking_part, size, weights)
         columns = J[:, sets].swapaxes(0, 1)  # (sets, rows, size)
         values = np.linalg.svd(columns, compute_uv=False)[:, -1]

@@ -11,7 +11,7 @@ from cspace.cli.arguments import add_chain, add_degrees, add_option, add_robot
 from cspace.cli.exits import Exit, UsageError
 from cspace.cli.output import Output, Table
 from cspace.cli.robot import gripper_note, load_chosen
-from cspace.cli.tasks import TASKS, default_task, motion_rank
+from cspace.cli.tasks import TASKS, default_task
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -57,11 +57,12 @@ def task_of(word: str | None, robot: Robot) -> tuple[str, int]:
 
 def robot_document(robot: Robot, task: tuple[str, int]) -> dict[str, Any]:
     """The data sheet as JSON data, [rad] and [m]; no limit is null."""
+    from cspace.kinematics.manipulability import generic_rank
     from cspace.model import mobility, task_word, tree_freedoms
 
     known = robot.description.provenance
     sources = {group: {"source": s.source, "licence": s.licence} for group, s in known.sources.items()}
-    rank = motion_rank(robot) if robot.tip is not None else None
+    rank = generic_rank(robot) if robot.tip is not None else None
     return {
         "schema": "cspace.info/1",
         "robot": robot.name,

@@ -10,7 +10,6 @@ from cspace.cli.arguments import add_chain, add_degrees, add_joints, add_option,
 from cspace.cli.exits import Exit
 from cspace.cli.output import Output, Table, tidy_number
 from cspace.cli.robot import joint_headings, load_posed
-from cspace.cli.tasks import rows_of_task
 
 if TYPE_CHECKING:
     from cspace.robot import Robot
@@ -27,8 +26,8 @@ def arguments(parser: argparse.ArgumentParser) -> None:
     add_joints(parser)
     text = "the axes of the rows (default: base)"
     add_option(parser, "--expressed-in", text, choices=("base", "tip"), default="base")
-    text = "the rows that count for singularity (default: linear for arms that only position a point)"
-    add_option(parser, "--rows", text, choices=("all", "linear", "angular"))
+    text = "the rows that count for singularity (default: linear for arms that position a point)"
+    add_option(parser, "--rows", text, choices=("auto", "all", "linear", "angular"), default="auto")
     add_degrees(parser)
     add_chain(parser)
 
@@ -36,14 +35,14 @@ def arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace, out: Output) -> int:
     """Print the Jacobian and its distance to a singularity."""
     from cspace import kinematics
+    from cspace.kinematics.manipulability import counting_rows
 
     robot, q, frame = load_posed(args)
-    rows = args.rows or rows_of_task(robot)
-    more: dict[str, Any] = {"expressed_in": args.expressed_in, "rows": rows}
+    more: dict[str, Any] = {"expressed_in": args.expressed_in, "rows": args.rows}
     J = robot.jacobian(q, args.frame, expressed_in=args.expressed_in)
     near = kinematics.singularity(robot, q, args.frame, **more)
     facts: dict[str, Any] = {
-        "rows": rows,
+        "rows": counting_rows(robot, args.frame) if args.rows == "auto" else args.rows,
         "singular_values": kinematics.singular_values(robot, q, args.frame, **more).tolist(),
         "manipulability": float(kinematics.manipulability(robot, q, args.frame, **more)),
         "distance_to_singularity": near.distance,
