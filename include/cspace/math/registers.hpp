@@ -157,20 +157,24 @@ CSPACE_INLINE Mask<N> operator!(Mask<N> a) {
     CSPACE_EACH_LANE(Mask, m, ~a.m, ~a.m[i])
 }
 
-// Lane i of the result is lane i ^ s.
+// Lane i of the result is lane i ^ s. GCC shuffles without a loop from version 12 on.
+#if CSPACE_VECTOR_EXTENSIONS && (defined(__clang__) || __GNUC__ >= 12)
+template <int s, int N, int... lanes>
+CSPACE_INLINE Pack<N> swap_listed(Pack<N> a, std::integer_sequence<int, lanes...>) {
+    return {__builtin_shufflevector(a.v, a.v, (lanes ^ s)...)};
+}
 template <int s, int N, when<!is_split<N>> = 0>
 CSPACE_INLINE Pack<N> swap_lanes(Pack<N> a) {
-#if CSPACE_VECTOR_EXTENSIONS
-    const auto swap = [&]<int... lanes>(std::integer_sequence<int, lanes...>) {
-        return Pack<N>{__builtin_shufflevector(a.v, a.v, (lanes ^ s)...)};
-    };
-    return swap(std::make_integer_sequence<int, N>());
+    return swap_listed<s>(a, std::make_integer_sequence<int, N>());
+}
 #else
+template <int s, int N, when<!is_split<N>> = 0>
+CSPACE_INLINE Pack<N> swap_lanes(Pack<N> a) {
     Pack<N> r;
     for (int i = 0; i < N; ++i) r.v[i] = a.v[i ^ s];
     return r;
-#endif
 }
+#endif
 
 // --- bits ------------------------------------------------------------------------------------------------
 // The representation shifted left, zeros coming in.

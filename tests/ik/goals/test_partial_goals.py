@@ -296,9 +296,9 @@ def test_filters_keep_what_was_asked():
         ({"direction": [0, 0, 1], "tool_axis": np.empty((0, 3))}, InputError, "tool_axis has shape"),
         ({"position": [0.1, 0, 0.2], "tool_axis": "x"}, InputTypeError, "tool_axis= can only be combined"),
         ({"goal": np.eye(4), "tool_axis": "x"}, InputTypeError, "tool_axis= can only be combined"),
-        ({"position": np.ones((2, 3)), "direction": np.ones((3, 3))}, InputError, r"position \(2,\), dir"),
-        ({"position": np.ones((2, 3)), "rotation": [np.eye(3)] * 3}, InputError, r"position \(2,\), rot"),
-        ({"ray": (np.ones((2, 3)), np.ones((3, 3)))}, InputError, r"ray\[0\] \(2,\), ray\[1\] \(3,\)"),
+        ({"position": np.ones((2, 3)), "direction": np.ones((3, 3))}, InputError, r"position \(2,\) and dir"),
+        ({"position": np.ones((2, 3)), "rotation": [np.eye(3)] * 3}, InputError, r"position \(2,\) and rot"),
+        ({"ray": (np.ones((2, 3)), np.ones((3, 3)))}, InputError, r"ray\[0\] \(2,\) and ray\[1\] \(3,\)"),
         ({"position": [0.1, 0, 0.2], "angle_to": ("x", [0.1, 0.2])}, InputError, "one angle"),
         ({"position": [0.1, 0, 0.2], "angle_to": (np.eye(3), 0.1)}, InputError, r"angle_to\[0\] has shape"),
         ({"angle": 0.3}, InputTypeError, "angle= can only be combined"),
@@ -313,7 +313,7 @@ def test_goals_that_make_no_sense(keywords, error, words):
 
 def test_points_and_angles_that_do_not_fit_together():
     planar = cs.load_robot("planar_3r")
-    with pytest.raises(InputError, match=r"position \(3,\), angle \(2,\)"):
+    with pytest.raises(InputError, match=r"position \(3,\) and angle \(2,\)"):
         planar.ik(position=np.ones((3, 2)), angle=[0.1, 0.2])
 
 
